@@ -1,0 +1,149 @@
+#include "mpm/cli.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <new>
+
+#include "metrics/exact.hpp"
+#include "metrics/particle_quantities.hpp"
+#include "mpm/run_figures.hpp"
+#include "output/atomic_file.hpp"
+#include "output/run_folder.hpp"
+
+namespace mpm::app {
+namespace {
+
+constexpr const char* footer =
+    R"(Exit codes: 0 done and every expectation held; 2 bad input, nothing was run; 3 the run became unstable or
+invalid (what, where and when is printed; results so far are kept); 4 an expectation in "compare" failed;
+5 the machine failed (disk, memory); 130 stopped by Ctrl-C at a step boundary, everything written.
+Plugins are found in the build tree and in the folders of MPM_PLUGIN_PATH.)";
+
+void add_experiment(CLI::App& verb, RunOptions& options) {
+  verb.add_option("FILE", options.file, "experiment file (JSON, comments allowed)")->required();
+  verb.add_option("--set", options.overrides, "/json/pointer=value: replaces a value of the file; may be repeated")
+      ->allow_extra_args(false);
+  verb.add_option("--backend", options.backend, "reference or cpu, in place of the file's");
+}
+
+std::string typed_command(int argc, char** argv) {
+  std::string command = "./mpm";
+  for (int k = 1; k < argc; ++k) {
+    const std::string word = argv[k];
+    command += word.find_first_of(" \"'$&|;<>()*") == std::string::npos ? " " + word : " '" + word + "'";
+  }
+  return command;
+}
+
+int complain(const std::string& message, int code) {
+  std::cerr << message << "\n";
+  return code;
+}
+
+/// The one place where errors become messages and exit codes.
+template <class Verb>
+int guarded(Verb verb) {
+  try {
+    return verb();
+  } catch (const InputError& error) {
+    const auto count = error.problems().size();
+    return complain(std::string(error.what()) +
+                        (count > 1 ? "\n" + std::to_string(count) + " mistakes; nothing was run" : "\nnothing was run"),
+                    bad_input);
+  } catch (const output::FolderRefused& error) {
+    return complain(error.what(), bad_input);
+  } catch (const PluginError& error) {
+    return complain(error.what(), bad_input);
+  } catch (const std::bad_alloc&) {
+    return complain(
+        "out of memory: use larger cells, fewer particles a cell or --set /precision=float; what was written before is "
+        "kept",
+        machine_failed);
+  } catch (const std::exception& error) {  // MachineError and whatever the system refused
+    return complain(error.what(), machine_failed);
+  }
+}
+
+}  // namespace
+
+Registry load_registry() {
+  Registry registry = Registry::from_folders(Registry::default_folders());
+  for (const std::string& message : registry.rejected()) std::cerr << "warning: " << message << "\n";
+  if (registry.plugins().empty())
+    throw PluginError("no plugin was found: build the target `plugins`, or name their folder in MPM_PLUGIN_PATH");
+  return registry;
+}
+
+ReadOptions read_options(const Registry& registry, const RunOptions& options) {
+  ReadOptions read;
+  read.overrides = options.overrides;
+  read.backend = options.backend;
+  read.exact = exact_solutions();
+  read.figures = figure_names();
+  read.colour_quantities = quantity_names(registry);
+  return read;
+}
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app("MPM Sandbox: material point method experiments from JSON files, components as plugins", "mpm");
+  app.footer(footer);
+  app.require_subcommand(1);
+  app.set_version_flag("--version", std::string("mpm ") + MPM_VERSION);
+  RunOptions options;
+  options.command = typed_command(argc, argv);
+  bool json = false;
+  std::string id;
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path specification, figure_out;
+  int code = done;
+
+  auto* run_verb =
+      app.add_subcommand("run", "run an experiment; writes figures, report.html and numbers to its run folder");
+  add_experiment(*run_verb, options);
+  run_verb->add_option("--out", options.out, "run folder; default runs/<name of the file>");
+  run_verb
+      ->add_option("--threads", options.threads,
+                   "workers of the cpu backend; default all processors; results do not depend on it")
+      ->check(CLI::Range(1, 1024));
+  run_verb->callback([&] { code = guarded([&] { return run(options); }); });
+
+  auto* check_verb = app.add_subcommand("check", "validate an experiment; every mistake is listed with its place");
+  add_experiment(*check_verb, options);
+  check_verb->callback([&] { code = guarded([&] { return check(options); }); });
+
+  auto* plan_verb =
+      app.add_subcommand("plan", "show what a run will hold and do, with bytes, and which line asked for it");
+  add_experiment(*plan_verb, options);
+  plan_verb->add_flag("--json", json, "as JSON");
+  plan_verb->callback([&] { code = guarded([&] { return plan(options, json); }); });
+
+  auto* list_verb = app.add_subcommand("list", "every plugin found, by kind");
+  list_verb->add_flag("--json", json, "as JSON");
+  list_verb->callback([&] { code = guarded([&] { return list(json); }); });
+
+  auto* describe_verb = app.add_subcommand("describe", "one plugin's manual, parameters, state and citation");
+  describe_verb->add_option("ID", id, "id, or kind/id where two kinds share an id")->required();
+  describe_verb->add_flag("--json", json, "as JSON");
+  describe_verb->callback([&] { code = guarded([&] { return describe(id, json); }); });
+
+  auto* schema_verb = app.add_subcommand("schema", "print the JSON Schema of experiment files, for editors");
+  schema_verb->callback([&] { code = guarded([&] { return schema(); }); });
+
+  auto* figure_verb =
+      app.add_subcommand("figure", "draw figures again from recorded numbers; several runs are laid over one another");
+  figure_verb->add_option("RUN", runs, "run folders")->required();
+  figure_verb->add_option("--spec", specification,
+                          "JSON: {\"title\", \"x\", \"y\", \"log_x\", \"log_y\", \"labels\"}, columns of metrics.csv");
+  figure_verb->add_option("--out", figure_out,
+                          "folder for the figures; default figures/ of the run, or runs/overlay for several");
+  figure_verb->callback([&] { code = guarded([&] { return figure(runs, specification, figure_out); }); });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? static_cast<int>(done) : static_cast<int>(bad_input);
+  }
+  return code;
+}
+
+}  // namespace mpm::app

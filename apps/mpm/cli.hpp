@@ -1,0 +1,49 @@
+#pragma once
+// The verbs of the program. Each returns its exit code; the errors they throw are turned into messages and codes in one
+// place.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment/read.hpp"
+#include "plugin/registry.hpp"
+
+namespace mpm::app {
+
+enum ExitCode {
+  done = 0,        ///< and every expectation held
+  bad_input = 2,   ///< nothing was run
+  run_failed = 3,  ///< unstable or invalid: results up to there are kept
+  expectation_failed = 4,
+  machine_failed = 5,  ///< disk, memory
+  interrupted = 130    ///< Ctrl-C: everything up to the last step is written
+};
+
+struct RunOptions {
+  std::filesystem::path file;
+  std::vector<std::string> overrides;
+  std::optional<std::string> backend;
+  std::filesystem::path out;  ///< empty: runs/<name of the file>
+  int threads = 0;            ///< 0: all processors
+  std::string command;        ///< as typed, for the manifest
+};
+
+int run_command_line(int argc, char** argv);
+
+/// What the program offers to the reader: names of exact solutions, figures, quantities.
+ReadOptions read_options(const Registry& registry, const RunOptions& options);
+/// Every plugin of the default folders; unusable files are named on standard error.
+Registry load_registry();
+
+int run(const RunOptions& options);
+int check(const RunOptions& options);
+int plan(const RunOptions& options, bool json);
+int list(bool json);
+int describe(const std::string& id, bool json);
+int schema();
+int figure(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& specification,
+           const std::filesystem::path& out);
+
+}  // namespace mpm::app

@@ -1,0 +1,175 @@
+// Verbs that compute nothing: check, plan, list, describe, schema.
+
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+#include "experiment/diagnostics.hpp"
+#include "experiment/plan.hpp"
+#include "experiment/schema.hpp"
+#include "mpm/cli.hpp"
+
+namespace mpm::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string choice_at(const mpm_parameter& parameter, int index) {
+  std::stringstream list(parameter.choices);
+  std::string choice;
+  for (int k = 0; k <= index; ++k) std::getline(list, choice, '|');
+  return choice;
+}
+
+std::string default_text(const mpm_parameter& parameter) {
+  if (parameter.flags & MPM_REQUIRED) return "required";
+  if (parameter.type == MPM_CHOICE)
+    return "\"" + choice_at(parameter, static_cast<int>(parameter.default_value)) + "\"";
+  if (parameter.type == MPM_BOOLEAN) return parameter.default_value != 0 ? "true" : "false";
+  return number_text(parameter.default_value);
+}
+
+std::string range_text(const mpm_parameter& p) {
+  if (p.type == MPM_CHOICE) return std::string("one of ") + p.choices;
+  if (p.type == MPM_BOOLEAN) return "true or false";
+  const bool below = std::isfinite(p.minimum), above = std::isfinite(p.maximum);
+  std::string text;
+  if (below) text += (p.flags & MPM_ABOVE_MINIMUM ? "above " : "at least ") + number_text(p.minimum);
+  if (above)
+    text +=
+        std::string(below ? ", " : "") + (p.flags & MPM_BELOW_MAXIMUM ? "below " : "at most ") + number_text(p.maximum);
+  return text.empty() ? "any number" : text;
+}
+
+constexpr const char* shape_names[] = {"scalar", "vector", "matrix", "symmetric"};
+
+Json description(const Plugin& plugin) {
+  const mpm_descriptor& d = *plugin.descriptor;
+  Json json{{"id", d.id},
+            {"kind", kind_name(static_cast<mpm_kind>(d.kind))},
+            {"version", d.version},
+            {"summary", d.summary},
+            {"citation", d.citation},
+            {"manual", d.manual}};
+  json["dimensions"] = Json::array();
+  if (d.dimensions & MPM_2D) json["dimensions"].push_back(2);
+  if (d.dimensions & MPM_3D) json["dimensions"].push_back(3);
+  json["precisions"] = Json::array();
+  if (d.precisions & (1u << MPM_LANES_FLOAT)) json["precisions"].push_back("float");
+  if (d.precisions & (1u << MPM_LANES_DOUBLE)) json["precisions"].push_back("double");
+  json["parameters"] = Json::array();
+  for (const mpm_parameter& p : plugin.parameters())
+    json["parameters"].push_back(
+        {{"name", p.name}, {"unit", p.unit}, {"default", default_text(p)}, {"range", range_text(p)}, {"doc", p.doc}});
+  json["state"] = Json::array();
+  for (const mpm_state& s : plugin.state())
+    json["state"].push_back({{"name", s.name}, {"shape", shape_names[s.shape]}, {"unit", s.unit}, {"doc", s.doc}});
+  json["file"] = plugin.file.filename().string();
+  return json;
+}
+
+void print(const Plugin& plugin) {
+  const mpm_descriptor& d = *plugin.descriptor;
+  std::cout << d.id << " (" << kind_name(static_cast<mpm_kind>(d.kind)) << " " << d.version << ", "
+            << plugin.file.filename().string() << ")\n"
+            << d.summary << "\n\n"
+            << d.manual << "\n\nSource: " << d.citation << "\n";
+  const bool two = d.dimensions & MPM_2D, three = d.dimensions & MPM_3D;
+  std::cout << "Runs in: " << (two ? "2-D " : "") << (three ? "3-D " : "") << "| "
+            << (d.precisions & (1u << MPM_LANES_FLOAT) ? "float " : "")
+            << (d.precisions & (1u << MPM_LANES_DOUBLE) ? "double" : "") << "\n";
+  if (d.kind == MPM_SHAPE) {
+    const mpm_shape& shape = plugin.shape();
+    std::cout << "Nodes an axis: " << shape.width << "; second moment: "
+              << (shape.second_moment_kind == MPM_MOMENT_IS_GRADIENT ? "w D^-1 d = grad w"
+                                                                     : number_text(shape.second_moment) + " h^2")
+              << "\n";
+  }
+  std::cout << "\nParameters" << (plugin.parameters().empty() ? ": none\n" : "\n");
+  for (const mpm_parameter& p : plugin.parameters())
+    std::cout << "  " << p.name << (*p.unit ? std::string(" (") + p.unit + ")" : "") << ", default " << default_text(p)
+              << ", " << range_text(p) << "\n      " << p.doc << "\n";
+  std::cout << "State a particle" << (plugin.state().empty() ? ": none\n" : "\n");
+  for (const mpm_state& s : plugin.state())
+    std::cout << "  " << s.name << ", " << shape_names[s.shape] << (*s.unit ? std::string(" (") + s.unit + ")" : "")
+              << "\n      " << s.doc << "\n";
+}
+
+std::vector<const Plugin*> matching(const Registry& registry, const std::string& id) {
+  std::vector<const Plugin*> found;
+  for (const Plugin& plugin : registry.plugins()) {
+    const std::string name(plugin.id()), kind(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind)));
+    if (id == name || id == kind + "/" + name) found.push_back(&plugin);
+  }
+  return found;
+}
+
+}  // namespace
+
+int check(const RunOptions& options) {
+  const Registry registry = load_registry();
+  const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
+  const Plan plan = make_plan(experiment);
+  std::cout << options.file.string() << ": ok, " << experiment.dimension << "-D, " << experiment.bodies.size()
+            << (experiment.bodies.size() == 1 ? " body" : " bodies") << ", about " << plan.particles << " particles, "
+            << experiment.shape.plugin->id() << " + " << experiment.transfer.plugin->id() << "\n";
+  return done;
+}
+
+int plan(const RunOptions& options, bool json) {
+  const Registry registry = load_registry();
+  const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
+  const Plan plan = make_plan(experiment);
+  if (json)
+    std::cout << plan.to_json().dump(2) << "\n";
+  else
+    std::cout << plan.to_text();
+  return done;
+}
+
+int list(bool json) {
+  const Registry registry = load_registry();
+  Json all = Json::object();
+  for (const mpm_kind kind : all_kinds()) {
+    const auto plugins = registry.of_kind(kind);
+    if (!json && !plugins.empty()) std::cout << kind_plural(kind) << "\n";
+    for (const Plugin* plugin : plugins) {
+      all[std::string(kind_name(kind))].push_back(description(*plugin));
+      if (!json)
+        std::cout << "  " << std::left << std::setw(18) << plugin->id() << " " << plugin->descriptor->summary << "\n";
+    }
+  }
+  if (json) std::cout << all.dump(2) << "\n";
+  return done;
+}
+
+int describe(const std::string& id, bool json) {
+  const Registry registry = load_registry();
+  const auto found = matching(registry, id);
+  if (found.empty()) {
+    std::vector<std::string> names;
+    for (const Plugin& plugin : registry.plugins()) names.emplace_back(plugin.id());
+    throw PluginError("no plugin is called " + in_quotes(id) + did_you_mean(id, names) +
+                      "; `mpm list` shows all: " + quoted_list(names));
+  }
+  if (json) {
+    Json all = Json::array();
+    for (const Plugin* plugin : found) all.push_back(description(*plugin));
+    std::cout << (all.size() == 1 ? all[0] : all).dump(2) << "\n";
+    return done;
+  }
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (k) std::cout << "\n----\n\n";
+    print(*found[k]);
+  }
+  return done;
+}
+
+int schema() {
+  const Registry registry = load_registry();
+  std::cout << json_schema(registry, read_options(registry, {})).dump(2) << "\n";
+  return done;
+}
+
+}  // namespace mpm::app

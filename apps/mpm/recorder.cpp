@@ -1,0 +1,170 @@
+#include "mpm/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "metrics/particle_quantities.hpp"
+#include "output/film.hpp"
+#include "output/vtk.hpp"
+
+namespace mpm::app {
+namespace {
+
+/// Frames are held until the end, when the colour scale of the whole run is known; beyond this they are drawn at once.
+constexpr std::size_t held_bytes_limit = 512u << 20;
+
+std::string numbered(const char* stem, std::size_t index) {
+  char name[64];
+  std::snprintf(name, sizeof name, "%s_%04zu", stem, index);
+  return name;
+}
+
+std::pair<double, double> range_of(const std::vector<float>& values, std::pair<double, double> range) {
+  for (const float value : values)
+    if (std::isfinite(value)) range = {std::min<double>(range.first, value), std::max<double>(range.second, value)};
+  return range;
+}
+
+}  // namespace
+
+Recorder::Recorder(const Simulation& simulation, const Metrics& metrics, const output::RunFolder& folder)
+    : simulation_(simulation),
+      metrics_(metrics),
+      folder_(folder),
+      csv_(folder.root() / "metrics.csv", metrics.columns()),
+      latest_(metrics.initial()),
+      largest_energy_(metrics.initial().total_energy()) {}
+
+bool Recorder::frame_due() const {
+  const OutputSpecification& output = simulation_.experiment().output;
+  if (output.frames <= 0) return false;
+  // Frame k belongs to the first step at or after k / (frames - 1) of the end time: the step is never cut to fit.
+  const double next = output.frames == 1 ? 0.0
+                                         : simulation_.experiment().solver.end_time *
+                                               static_cast<double>(frames_taken_) / (output.frames - 1);
+  return frames_taken_ < static_cast<std::size_t>(output.frames) && simulation_.time() >= next * (1 - 1e-12);
+}
+
+void Recorder::record(bool last) {
+  const bool row_due = simulation_.steps() % simulation_.experiment().output.metrics_every == 0 || last;
+  if (row_due && last_row_ != simulation_.steps()) {
+    last_row_ = simulation_.steps();
+    latest_ = metrics_.measure();
+    csv_.row(metrics_.row(latest_));
+    largest_energy_ = std::max(largest_energy_, latest_.total_energy());
+    smallest_J_ = std::min(smallest_J_, latest_.smallest_volume_ratio);
+    largest_J_ = std::max(largest_J_, latest_.largest_volume_ratio);
+    const ContactRecord& contact = simulation_.backend().contact_record();
+    largest_contact_force_ =
+        std::max(largest_contact_force_, std::hypot(contact.force[0], contact.force[1], contact.force[2]));
+    largest_penetration_ = std::max(largest_penetration_, contact.largest_penetration);
+    most_contact_nodes_ = std::max(most_contact_nodes_, contact.nodes);
+  }
+  if (frame_due()) record_frame();
+}
+
+void Recorder::record_frame() {
+  const Experiment& experiment = simulation_.experiment();
+  Snapshot snapshot{simulation_.time(), simulation_.steps(), {}, {}};
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const BodyState state = simulation_.backend().body_state(body);
+    const std::vector<double> values = quantity(experiment, body, state, experiment.output.colour_by);
+    snapshot.positions.insert(snapshot.positions.end(), state.position.begin(), state.position.end());
+    snapshot.values.insert(snapshot.values.end(), values.begin(), values.end());
+  }
+  const std::size_t index = frames_taken_++;
+  if (experiment.output.vtk) write_vtk(index);
+  bytes_held_ += (snapshot.positions.size() + snapshot.values.size()) * sizeof(float);
+  if (bytes_held_ > held_bytes_limit)
+    draw(snapshot, index, range_of(snapshot.values, {INFINITY, -INFINITY}));
+  else
+    snapshots_.push_back(std::move(snapshot));
+}
+
+render::ParticleFrame Recorder::frame_template() const {
+  const Experiment& experiment = simulation_.experiment();
+  const QuantityDescription description = describe_quantity(experiment, experiment.output.colour_by);
+  render::ParticleFrame frame;
+  frame.dimension = experiment.dimension;
+  frame.lower = experiment.grid.lower;
+  frame.upper = experiment.grid.upper;
+  frame.quantity = description.label;
+  frame.unit = description.unit;
+  frame.cell_size = experiment.grid.cell_size;
+  frame.title = experiment.title;
+  frame.footnote = experiment.file.filename().string() + " · run " + folder_.root().filename().string();
+  if (description.name == "body") {
+    frame.map = render::ColourMap::categorical;
+    for (const BodySpecification& body : experiment.bodies) frame.categories.push_back(body.name);
+  } else if (description.name == "pressure") {
+    frame.map = render::ColourMap::diverging;
+  }
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const std::size_t count = simulation_.backend().body_state(body).position.size() / experiment.dimension;
+    frame.half_size.insert(frame.half_size.end(), count,
+                           0.5 * experiment.grid.cell_size / experiment.bodies[body].particles_per_cell_axis);
+  }
+  return frame;
+}
+
+void Recorder::draw(const Snapshot& snapshot, std::size_t index, std::pair<double, double> range) {
+  render::ParticleFrame frame = frame_template();
+  frame.positions.assign(snapshot.positions.begin(), snapshot.positions.end());
+  frame.values.assign(snapshot.values.begin(), snapshot.values.end());
+  frame.time = snapshot.time;
+  frame.step = snapshot.step;
+  if (frame.map == render::ColourMap::diverging) {
+    const double limit = std::max(std::abs(range.first), std::abs(range.second));
+    range = {-limit, limit};
+  }
+  if (frame.map != render::ColourMap::categorical && range.first < range.second) frame.range = range;
+  render::write_frame(frame, folder_.frames() / numbered("frame", index));
+  ++frames_drawn_;
+}
+
+void Recorder::draw_frames() {
+  std::pair<double, double> range{INFINITY, -INFINITY};
+  for (const Snapshot& snapshot : snapshots_) range = range_of(snapshot.values, range);
+  for (std::size_t index = 0; index < snapshots_.size(); ++index) draw(snapshots_[index], index, range);
+  snapshots_.clear();
+  if (!simulation_.experiment().output.film || frames_drawn_ < 2) return;
+  if (!output::write_film(folder_.frames(), folder_.root() / "film.mp4", 20))
+    std::cerr << "no film: ffmpeg is not installed (apt-get install ffmpeg); the frames are there\n";
+}
+
+void Recorder::write_vtk(std::size_t index) {
+  const Experiment& experiment = simulation_.experiment();
+  output::ParticleSnapshot snapshot;
+  snapshot.dimension = experiment.dimension;
+  snapshot.time = simulation_.time();
+  output::PointField velocity{"velocity (m/s)", experiment.dimension, {}};
+  std::vector<output::PointField> scalars;
+  std::vector<std::string> names{"body", "pressure", "von_mises_stress", "volume_ratio"};
+  for (const MaterialSpecification& material : experiment.materials)
+    for (const mpm_state& field : material.component.plugin->state())
+      if (field.shape == MPM_STATE_SCALAR && std::find(names.begin(), names.end(), field.name) == names.end())
+        names.emplace_back(field.name);
+  for (const std::string& name : names) {
+    const std::string unit = describe_quantity(experiment, name).unit;
+    scalars.push_back({unit.empty() ? name : name + " (" + unit + ")", 1, {}});
+  }
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const BodyState state = simulation_.backend().body_state(body);
+    snapshot.positions.insert(snapshot.positions.end(), state.position.begin(), state.position.end());
+    velocity.values.insert(velocity.values.end(), state.velocity.begin(), state.velocity.end());
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const auto values = quantity(experiment, body, state, names[k]);
+      scalars[k].values.insert(scalars[k].values.end(), values.begin(), values.end());
+    }
+  }
+  snapshot.fields.push_back(std::move(velocity));
+  for (auto& scalar : scalars) snapshot.fields.push_back(std::move(scalar));
+  const std::string name = numbered("particles", index) + ".vtu";
+  output::write_vtu(folder_.vtk() / name, snapshot);
+  vtk_files_.emplace_back(simulation_.time(), name);
+  output::write_pvd(folder_.vtk() / "particles.pvd", vtk_files_);
+}
+
+}  // namespace mpm::app

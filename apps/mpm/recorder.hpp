@@ -1,0 +1,58 @@
+#pragma once
+// What a run leaves in its folder while it goes on: rows of metrics.csv, frames, VTK files. Recording reads the state
+// and changes nothing, so its cadence changes no result.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "metrics/metrics.hpp"
+#include "output/csv.hpp"
+#include "output/run_folder.hpp"
+#include "render/frame.hpp"
+
+namespace mpm::app {
+
+class Recorder {
+ public:
+  Recorder(const Simulation& simulation, const Metrics& metrics, const output::RunFolder& folder);
+
+  /// Records what is due after a step (or before the first). `last`: the run ends here, whatever is due.
+  void record(bool last = false);
+  /// Draws the frames, with one colour scale over all of them, and the film when asked for.
+  void draw_frames();
+
+  const Totals& latest() const { return latest_; }
+  double largest_total_energy() const { return largest_energy_; }
+  double smallest_volume_ratio() const { return smallest_J_; }
+  double largest_volume_ratio() const { return largest_J_; }
+  double largest_contact_force() const { return largest_contact_force_; }
+  double largest_penetration() const { return largest_penetration_; }
+  long most_contact_nodes() const { return most_contact_nodes_; }
+
+ private:
+  struct Snapshot {
+    double time;
+    long step;
+    std::vector<float> positions, values;
+  };
+  bool frame_due() const;
+  void record_frame();
+  void write_vtk(std::size_t frame);
+  void draw(const Snapshot& snapshot, std::size_t index, std::pair<double, double> range);
+  render::ParticleFrame frame_template() const;
+
+  const Simulation& simulation_;
+  const Metrics& metrics_;
+  const output::RunFolder& folder_;
+  output::CsvAppender csv_;
+  long last_row_ = -1;
+  std::size_t frames_taken_ = 0, frames_drawn_ = 0, bytes_held_ = 0;
+  std::vector<Snapshot> snapshots_;
+  std::vector<std::pair<double, std::string>> vtk_files_;
+  Totals latest_;
+  double largest_energy_ = 0, smallest_J_ = 1, largest_J_ = 1, largest_contact_force_ = 0, largest_penetration_ = 0;
+  long most_contact_nodes_ = 0;
+};
+
+}  // namespace mpm::app

@@ -1,0 +1,216 @@
+// The verb `run`: an experiment file in; numbers, figures and a report out.
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <thread>
+
+#include "backends/make_backend.hpp"
+#include "experiment/diagnostics.hpp"
+#include "mpm/cli.hpp"
+#include "mpm/run_figures.hpp"
+#include "mpm/summary.hpp"
+#include "output/atomic_file.hpp"
+#include "output/manifest.hpp"
+#include "output/report.hpp"
+
+namespace mpm::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+
+/// Ctrl-C and a polite kill end the run at the next step boundary; a second one ends the program at once.
+class StopOnSignal {
+ public:
+  StopOnSignal() {
+    stop_requested = false;
+    for (const int signal : {SIGINT, SIGTERM})
+      std::signal(signal, [](int received) {
+        stop_requested = true;
+        std::signal(received, SIG_DFL);
+      });
+  }
+  ~StopOnSignal() {
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+  }
+};
+
+/// One line that is rewritten on a terminal, a plain line every tenth of the run elsewhere.
+class Progress {
+ public:
+  explicit Progress(const Simulation& simulation)
+      : simulation_(simulation), terminal_(isatty(STDERR_FILENO)), start_(Clock::now()), shown_(start_) {}
+
+  void show(bool last = false) {
+    const auto now = Clock::now();
+    const double share = simulation_.time() / simulation_.experiment().solver.end_time;
+    const bool due = terminal_ ? now - shown_ > std::chrono::milliseconds(200) : share >= next_share_;
+    if (!due && !last) return;
+    shown_ = now;
+    while (next_share_ <= share) next_share_ += 0.1;
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    const double rate = static_cast<double>(simulation_.steps()) * static_cast<double>(simulation_.particle_count()) /
+                        std::max(elapsed, 1e-9);
+    std::fprintf(stderr, "%sstep %ld, t = %.6g s (%3.0f %%), dt = %.3g s, %.3g M particle-steps/s, %.0f s left%s",
+                 terminal_ ? "\r\033[K" : "", simulation_.steps(), simulation_.time(), 100 * share,
+                 simulation_.last_time_step(), rate / 1e6, share > 0 ? elapsed * (1 / share - 1) : 0.0,
+                 terminal_ && !last ? "" : "\n");
+    std::fflush(stderr);
+  }
+
+ private:
+  const Simulation& simulation_;
+  bool terminal_;
+  Clock::time_point start_, shown_;
+  double next_share_ = 0.1;
+};
+
+nlohmann::ordered_json manifest(const Experiment& experiment, const RunOptions& options, int threads) {
+  nlohmann::ordered_json json{{"program", "mpm"},
+                              {"version", MPM_VERSION},
+                              {"command", options.command},
+                              {"experiment_file", experiment.file.filename().string()}};
+  if (const std::string text = output::read_file(experiment.file); true)
+    json["experiment_sha256"] = output::sha256(text);
+  json["seed"] = experiment.seed;
+  json["threads"] = threads;
+  json["machine"] = output::machine_description();
+  std::vector<const Plugin*> used{experiment.shape.plugin, experiment.transfer.plugin};
+  if (experiment.contact) used.push_back(experiment.contact->plugin);
+  for (const MaterialSpecification& material : experiment.materials)
+    if (std::find(used.begin(), used.end(), material.component.plugin) == used.end())
+      used.push_back(material.component.plugin);
+  for (const Plugin* plugin : used) {
+    const mpm_descriptor& d = *plugin->descriptor;
+    json["plugins"].push_back({{"id", d.id},
+                               {"kind", kind_name(static_cast<mpm_kind>(d.kind))},
+                               {"version", d.version},
+                               {"summary", d.summary},
+                               {"citation", d.citation},
+                               {"file_sha256", output::sha256_of_file(plugin->file)}});
+  }
+  return json;
+}
+
+std::string failure_text(const RunFailure& failure, const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  const int D = experiment.dimension;
+  const BodyState state = simulation.backend().body_state(failure.body);
+  std::string text = "step " + std::to_string(simulation.steps() + 1) + ", t = " + std::to_string(simulation.time()) +
+                     " s: particle " + std::to_string(failure.particle) + " of body \"" +
+                     experiment.bodies[failure.body].name + "\" at (";
+  for (int c = 0; c < D; ++c) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%s%.6g", c ? ", " : "", state.position[failure.particle * D + c]);
+    text += number;
+  }
+  return text + ") m " + failure.cause;
+}
+
+constexpr const char* failure_remedy =
+    "remedy: a smaller /solver/courant or /solver/time_step, a transfer with more damping, or a material that is "
+    "stiffer when crushed";
+
+/// Steps until the end, a failure or a signal.
+Outcome step_to_the_end(Simulation& simulation, Recorder& recorder) {
+  Progress progress(simulation);
+  Outcome outcome;
+  recorder.record();
+  while (!simulation.finished() && !stop_requested) {
+    try {
+      simulation.step();
+    } catch (const RunFailure& failure) {
+      outcome = {run_failed, "failed", failure_text(failure, simulation)};
+      progress.show(true);
+      std::cerr << "the run failed: " << outcome.reason << "\n" << failure_remedy << "\n";
+      return outcome;
+    }
+    recorder.record();
+    progress.show();
+  }
+  recorder.record(true);
+  progress.show(true);
+  if (simulation.finished() && simulation.time() < simulation.experiment().solver.end_time * (1 - 1e-12))
+    outcome = {run_failed, "failed",
+               "max_steps (" + std::to_string(simulation.steps()) + ") was reached before end_time"};
+  else if (!simulation.finished())
+    outcome = {interrupted, "interrupted", "stopped by a signal after step " + std::to_string(simulation.steps())};
+  if (!outcome.reason.empty()) std::cerr << outcome.reason << "\n";
+  return outcome;
+}
+
+void draw(const Experiment& experiment, Recorder& recorder, const output::RunFolder& folder) {
+  recorder.draw_frames();
+  const std::string run = folder.root().filename().string();
+  const RunLabel label{experiment.title.empty() ? experiment.file.stem().string() : experiment.title,
+                       experiment.file.filename().string() + " · run " + run};
+  draw_figures(experiment.figures, output::read_csv(folder.root() / "metrics.csv"), label, folder.figures());
+}
+
+void refuse_figures_without_numbers(const Experiment& experiment, const Metrics& metrics) {
+  output::Table columns;
+  columns.header = metrics.columns();
+  columns.columns.resize(columns.header.size());
+  for (std::size_t k = 0; k < experiment.figures.size(); ++k) {
+    const std::string missing = missing_for(experiment.figures[k], columns);
+    if (missing.empty()) continue;
+    const std::string pointer = "/figures/" + std::to_string(k);
+    throw InputError({Problem{experiment.where(pointer), 0, 0, pointer, missing}});
+  }
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  const auto start = Clock::now();
+  const Registry registry = load_registry();
+  const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
+  const int threads =
+      options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  Simulation simulation(experiment, backend_factory(threads));
+  const Metrics metrics(simulation);
+  refuse_figures_without_numbers(experiment, metrics);
+
+  const auto folder = output::RunFolder::create(
+      options.out.empty() ? std::filesystem::path("runs") / options.file.stem() : options.out);
+  folder.write_json("manifest.json", manifest(experiment, options, threads));
+  folder.write_json("experiment.json", experiment.resolved);
+  folder.write_json("plan.json", simulation.plan().to_json());
+  std::cerr << experiment.title << ": " << simulation.particle_count() << " particles, " << experiment.backend
+            << " backend, " << threads << (threads == 1 ? " thread" : " threads") << "\n";
+
+  const StopOnSignal signals;
+  Recorder recorder(simulation, metrics, folder);
+  Outcome outcome = step_to_the_end(simulation, recorder);
+
+  const double wall = std::chrono::duration<double>(Clock::now() - start).count();
+  nlohmann::ordered_json summary = summarise(simulation, metrics, recorder, wall);
+  if (outcome.exit_code == done) {
+    const auto failed = judge_expectations(experiment, summary);
+    for (const std::string& sentence : failed) std::cerr << sentence << "\n";
+    if (!failed.empty()) outcome = {expectation_failed, "expectation failed", failed.front()};
+  }
+  for (const auto& warning : summary["warnings"]) std::cerr << "warning: " << warning.get<std::string>() << "\n";
+  summary["outcome"] = {{"exit_code", outcome.exit_code}, {"status", outcome.status}, {"reason", outcome.reason}};
+  folder.write_json("summary.json", summary);
+  draw(experiment, recorder, folder);
+  output::write_report(folder.root());
+  std::cout << "total energy final/initial ";
+  if (const auto& total = summary["energy"]["total"]; total.contains("final_over_initial"))
+    std::cout << total["final_over_initial"].get<double>();
+  else
+    std::cout << "undefined (no initial energy)";
+  std::cout << ", " << summary["performance"]["particle_steps_per_second"].get<double>() / 1e6
+            << " M particle-steps/s\nreport: "
+            << (folder.root() / "report.html").lexically_relative(std::filesystem::current_path()).string() << "\n";
+  return outcome.exit_code;
+}
+
+}  // namespace mpm::app

@@ -1,0 +1,284 @@
+#include "mpm/run_figures.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "experiment/diagnostics.hpp"
+#include "mpm/cli.hpp"
+#include "output/atomic_file.hpp"
+#include "output/run_folder.hpp"
+#include "render/plot.hpp"
+
+namespace mpm::app {
+namespace {
+
+using output::Table;
+using render::Plot;
+using render::Series;
+
+/// Unit of a recorded column, with its brackets: " (J/m)".
+std::string unit_of(const Table& table, const std::string& name) {
+  for (const std::string& header : table.header)
+    if (header.starts_with(name + " (")) return header.substr(name.size());
+  return "";
+}
+
+std::vector<double> column(const Table& table, const std::string& name, double factor = 1) {
+  const auto* values = table.find(name);
+  if (!values) throw std::runtime_error("metrics.csv has no column \"" + name + "\"");
+  std::vector<double> scaled(*values);
+  for (double& value : scaled) value *= factor;
+  return scaled;
+}
+
+void add(Plot& plot, const Table& table, const std::string& name, const std::string& label, double factor = 1) {
+  if (table.find(name)) plot.series.push_back({label, column(table, "time"), column(table, name, factor)});
+}
+
+Plot plot_of(const Table& table, const RunLabel& label, const std::string& title, const std::string& quantity,
+             const std::string& like) {
+  Plot plot;
+  plot.title = title;
+  plot.x_label = "time t (s)";
+  plot.y_label = quantity + unit_of(table, like);
+  plot.footnote = label.footnote;
+  return plot;
+}
+
+void draw_energy(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+  Plot plot = plot_of(table, label, "Energy: " + label.title, "energy E", "total energy");
+  add(plot, table, "total energy", "total");
+  add(plot, table, "kinetic energy", "kinetic");
+  add(plot, table, "strain energy", "strain");
+  const auto gravitational = column(table, "gravitational energy");
+  if (std::any_of(gravitational.begin(), gravitational.end(), [](double e) { return e != 0; }))
+    add(plot, table, "gravitational energy", "gravitational");
+  render::write_figure(plot, stem);
+}
+
+void draw_ledger(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+  render::StackedPlot plot;
+  plot.title = "Where the energy went: " + label.title;
+  plot.x_label = "time t (s)";
+  plot.y_label = "energy given since the start" + unit_of(table, "total energy");
+  plot.footnote = label.footnote;
+  plot.x = column(table, "time");
+  const std::pair<const char*, const char*> causes[] = {{"ledger scatter", "particles to grid"},
+                                                        {"ledger gather", "grid to particles"},
+                                                        {"ledger boundary", "boundary"},
+                                                        {"ledger contact", "contact"},
+                                                        {"ledger body force", "body force"}};
+  for (const auto& [name, text] : causes) {
+    auto values = column(table, name);
+    if (std::any_of(values.begin(), values.end(), [](double e) { return e != 0; }))
+      plot.areas.push_back({text, plot.x, values});
+  }
+  auto dissipated = column(table, "ledger material dissipation", -1);
+  if (std::any_of(dissipated.begin(), dissipated.end(), [](double e) { return e != 0; }))
+    plot.areas.push_back({"material", plot.x, dissipated});
+  plot.lines.push_back({"residual", plot.x, column(table, "ledger residual")});
+  render::write_figure(plot, stem);
+}
+
+void draw_dissipation(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+  Plot plot = plot_of(table, label, "Energy dissipated by cause: " + label.title, "energy dissipated since the start",
+                      "total energy");
+  Series transfer{"transfers", column(table, "time"), column(table, "ledger scatter", -1)};
+  const auto gather = column(table, "ledger gather", -1);
+  for (std::size_t k = 0; k < gather.size(); ++k) transfer.y[k] += gather[k];
+  plot.series.push_back(transfer);
+  const auto add_if_any = [&](const char* name, const char* text, double factor) {
+    const auto values = column(table, name);
+    if (std::any_of(values.begin(), values.end(), [](double e) { return e != 0; }))
+      add(plot, table, name, text, factor);
+  };
+  add_if_any("ledger boundary", "boundary", -1);
+  add_if_any("ledger contact", "contact", -1);
+  add_if_any("ledger friction", "of it friction", 1);
+  add_if_any("ledger material dissipation", "material", 1);
+  render::write_figure(plot, stem);
+}
+
+void draw_momentum(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+  Plot plot = plot_of(table, label, "Linear momentum: " + label.title, "momentum p", "momentum x");
+  for (const char* axis : {"x", "y", "z"}) add(plot, table, std::string("momentum ") + axis, std::string("p ") + axis);
+  render::write_figure(plot, stem);
+  Plot spin = plot_of(table, label, "Angular momentum about the centre of mass: " + label.title, "angular momentum L",
+                      "angular momentum z");
+  for (const char* axis : {"x", "y", "z"})
+    add(spin, table, std::string("angular momentum ") + axis, std::string("L ") + axis);
+  render::write_figure(spin, stem.parent_path() / "angular_momentum");
+}
+
+void draw_contact(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+  Plot plot =
+      plot_of(table, label, "Contact force on the first body: " + label.title, "contact force F", "contact force x");
+  for (const char* axis : {"x", "y", "z"})
+    add(plot, table, std::string("contact force ") + axis, std::string("F ") + axis);
+  render::write_figure(plot, stem);
+  Plot nodes = plot_of(table, label, "Nodes in contact: " + label.title, "number of nodes", "contact nodes");
+  add(nodes, table, "contact nodes", "in contact");
+  add(nodes, table, "sticking nodes", "sticking");
+  add(nodes, table, "slipping nodes", "slipping");
+  render::write_figure(nodes, stem.parent_path() / "contact_nodes");
+}
+
+void draw_volume(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+  Plot plot =
+      plot_of(table, label, "Compression and expansion: " + label.title, "volume ratio J", "smallest volume ratio");
+  add(plot, table, "largest volume ratio", "largest J");
+  add(plot, table, "smallest volume ratio", "smallest J");
+  render::write_figure(plot, stem);
+}
+
+void draw_error(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+  Plot plot =
+      plot_of(table, label, "Position error: " + label.title, "position error |x − x exact|", "position error rms");
+  add(plot, table, "position error max", "largest");
+  add(plot, table, "position error rms", "root mean square");
+  plot.log_y = true;
+  render::write_figure(plot, stem);
+}
+
+struct FigureKind {
+  const char* name;
+  const char* needs;   ///< a column of metrics.csv
+  const char* remedy;  ///< what records it
+  void (*draw)(const Table&, const RunLabel&, const std::filesystem::path&);
+};
+constexpr FigureKind kinds[] = {
+    {"energy", "total energy", "", draw_energy},
+    {"ledger", "ledger residual", "set /output/ledger to true", draw_ledger},
+    {"dissipation", "ledger residual", "set /output/ledger to true", draw_dissipation},
+    {"momentum", "momentum x", "", draw_momentum},
+    {"contact", "contact nodes", "give the experiment a \"contact\"", draw_contact},
+    {"volume_ratio", "smallest volume ratio", "", draw_volume},
+    {"error", "position error rms", "name an exact solution in /compare/exact", draw_error},
+};
+
+const FigureKind& kind_of(const std::string& name) {
+  for (const FigureKind& kind : kinds)
+    if (name == kind.name) return kind;
+  throw std::runtime_error("no figure is called \"" + name + "\"");
+}
+
+/// A run folder's name, title and numbers.
+struct RecordedRun {
+  std::filesystem::path folder;
+  std::string title, file;
+  Table metrics;
+};
+
+RecordedRun recorded(const std::filesystem::path& folder) {
+  RecordedRun run{output::RunFolder::open(folder).root(), "", "", {}};
+  run.metrics = output::read_csv(run.folder / "metrics.csv");
+  const auto experiment = nlohmann::json::parse(output::read_file(run.folder / "experiment.json"), nullptr, false);
+  run.title = experiment.is_object() ? experiment.value("title", "") : "";
+  if (run.title.empty()) run.title = run.folder.filename().string();
+  run.file = run.folder.filename().string();
+  return run;
+}
+
+/// One curve a run, of the given columns.
+void draw_overlay(const std::vector<RecordedRun>& runs, Plot plot, const std::string& x, const std::string& y,
+                  const std::vector<std::string>& labels, const std::filesystem::path& stem) {
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    plot.series.push_back(
+        {k < labels.size() ? labels[k] : runs[k].file, column(runs[k].metrics, x), column(runs[k].metrics, y)});
+  for (const RecordedRun& run : runs) plot.footnote += (plot.footnote.empty() ? "runs " : ", ") + run.file;
+  render::write_figure(plot, stem);
+}
+
+void draw_specified(const std::vector<RecordedRun>& runs, const std::filesystem::path& specification,
+                    const std::filesystem::path& out) {
+  const auto json = nlohmann::json::parse(output::read_file(specification), nullptr, false, true);
+  const auto refuse = [&](const std::string& message) {
+    throw InputError({Problem{specification.string(), 0, 0, "", message}});
+  };
+  if (!json.is_object()) refuse("is not a JSON object");
+  for (const auto& [key, value] : json.items())
+    if (std::string(" title x y x_label y_label log_x log_y labels ").find(" " + key + " ") == std::string::npos)
+      refuse("unknown key \"" + key + "\"; a specification has title, x, y, x_label, y_label, log_x, log_y, labels");
+  const std::string x = json.value("x", "time"), y = json.value("y", "");
+  for (const std::string& name : {x, y})
+    for (const RecordedRun& run : runs)
+      if (!run.metrics.find(name))
+        refuse("run " + run.folder.string() + " has no column \"" + name + "\"; it has " +
+               quoted_list(run.metrics.header));
+  Plot plot;
+  plot.title = json.value("title", y);
+  plot.x_label = json.value("x_label", x + unit_of(runs.front().metrics, x));
+  plot.y_label = json.value("y_label", y + unit_of(runs.front().metrics, y));
+  plot.log_x = json.value("log_x", false);
+  plot.log_y = json.value("log_y", false);
+  draw_overlay(runs, plot, x, y, json.value("labels", std::vector<std::string>{}), out / specification.stem());
+}
+
+}  // namespace
+
+std::vector<std::string> figure_names() {
+  std::vector<std::string> names;
+  for (const FigureKind& kind : kinds) names.emplace_back(kind.name);
+  return names;
+}
+
+std::string missing_for(const std::string& name, const Table& metrics) {
+  const FigureKind& kind = kind_of(name);
+  if (metrics.find(kind.needs)) return "";
+  return "figure \"" + name + "\" needs \"" + kind.needs + "\", which the run does not record: " + kind.remedy;
+}
+
+void draw_figures(const std::vector<std::string>& names, const Table& metrics, const RunLabel& label,
+                  const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const std::string& name : names) {
+    const std::string missing = missing_for(name, metrics);
+    if (!missing.empty()) throw std::runtime_error(missing);
+    kind_of(name).draw(metrics, label, folder / name);
+  }
+}
+
+int figure(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& specification,
+           const std::filesystem::path& out) {
+  std::vector<RecordedRun> runs;
+  for (const auto& folder : folders) runs.push_back(recorded(folder));
+  const std::filesystem::path target = !out.empty()       ? out
+                                       : runs.size() == 1 ? runs.front().folder / "figures"
+                                                          : std::filesystem::path("runs/overlay");
+  std::filesystem::create_directories(target);
+  if (!specification.empty()) {
+    draw_specified(runs, specification, target);
+  } else if (runs.size() == 1) {
+    std::vector<std::string> names;
+    for (const std::string& name : figure_names())
+      if (missing_for(name, runs.front().metrics).empty()) names.push_back(name);
+    draw_figures(names, runs.front().metrics, {runs.front().title, "run " + runs.front().file}, target);
+  } else {
+    const std::pair<const char*, const char*> overlays[] = {
+        {"total energy", "Total energy"},
+        {"kinetic energy", "Kinetic energy"},
+        {"strain energy", "Strain energy"},
+        {"angular momentum z", "Angular momentum about the centre of mass"},
+        {"position error rms", "Position error, root mean square"}};
+    for (const auto& [name, title] : overlays) {
+      if (!std::all_of(runs.begin(), runs.end(),
+                       [&, n = name](const RecordedRun& run) { return run.metrics.find(n) != nullptr; }))
+        continue;
+      Plot plot;
+      plot.title = title;
+      plot.x_label = "time t (s)";
+      plot.y_label = std::string(name) + unit_of(runs.front().metrics, name);
+      std::string stem = name;
+      std::replace(stem.begin(), stem.end(), ' ', '_');
+      draw_overlay(runs, plot, "time", name, {}, target / stem);
+    }
+  }
+  std::cout << "figures in " << target.string() << "\n";
+  return done;
+}
+
+}  // namespace mpm::app

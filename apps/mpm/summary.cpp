@@ -1,0 +1,185 @@
+#include "mpm/summary.hpp"
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "experiment/diagnostics.hpp"
+
+namespace mpm::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json change(double initial, double final) {
+  Json json{{"initial", initial}, {"final", final}};
+  if (initial != 0) json["final_over_initial"] = final / initial;
+  return json;
+}
+
+Json by_axis(const std::array<double, 3>& values, int first, int last) {
+  Json json = Json::object();
+  for (int c = first; c < last; ++c) json[std::string(1, "xyz"[c])] = values[c];
+  return json;
+}
+
+double peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024;
+}
+
+Json energy(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder) {
+  const Totals &start = metrics.initial(), &end = recorder.latest();
+  Json json{{"kinetic", change(start.kinetic, end.kinetic)},
+            {"strain", change(start.strain, end.strain)},
+            {"gravitational", change(start.gravitational, end.gravitational)},
+            {"total", change(start.total_energy(), end.total_energy())}};
+  json["total"]["largest"] = recorder.largest_total_energy();
+  if (start.total_energy() != 0)
+    json["total"]["largest_over_initial"] = recorder.largest_total_energy() / start.total_energy();
+  if (!simulation.plan().ledger) return json;
+  const Ledger& l = simulation.backend().ledger();
+  json["ledger"] = {{"scatter", l.scatter},
+                    {"gather", l.gather},
+                    {"internal_force", l.internal_force},
+                    {"gravity", l.gravity},
+                    {"body_force", l.body_force},
+                    {"boundary", l.boundary},
+                    {"contact", l.contact},
+                    {"friction", l.friction},
+                    {"material_dissipation", l.material},
+                    {"residual", metrics.ledger_residual(end)}};
+  return json;
+}
+
+/// Walks a dotted path; null when there is nothing there.
+const Json* at(const Json& summary, const std::string& path) {
+  const Json* value = &summary;
+  std::stringstream names(path);
+  for (std::string name; std::getline(names, name, '.');) {
+    if (!value->is_object() || !value->contains(name)) return nullptr;
+    value = &(*value)[name];
+  }
+  return value;
+}
+
+void collect_names(const Json& value, const std::string& prefix, std::vector<std::string>& names) {
+  if (value.is_number()) names.push_back(prefix);
+  if (!value.is_object()) return;
+  for (const auto& [key, child] : value.items()) collect_names(child, prefix.empty() ? key : prefix + "." + key, names);
+}
+
+}  // namespace
+
+Json summarise(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder, double wall_seconds) {
+  const Experiment& experiment = simulation.experiment();
+  const Totals &start = metrics.initial(), &end = recorder.latest();
+  const bool flat = experiment.dimension == 2;
+  const double particles = static_cast<double>(simulation.particle_count());
+  double stepping = 0;
+  for (const auto& [name, seconds] : simulation.seconds_by_pass()) stepping += seconds;
+
+  Json json{
+      {"particles", simulation.particle_count()}, {"steps", simulation.steps()}, {"simulated_time", simulation.time()}};
+  json["time_step"] = {{"min", simulation.smallest_time_step()}, {"max", simulation.largest_time_step()}};
+  if (const std::string limiting = simulation.limiting_particle(); !limiting.empty())
+    json["limiting_particle"] = limiting;
+  json["energy"] = energy(simulation, metrics, recorder);
+  json["momentum"]["linear"] = {{"initial", by_axis(start.momentum, 0, experiment.dimension)},
+                                {"final", by_axis(end.momentum, 0, experiment.dimension)}};
+  json["momentum"]["angular"] = {{"initial", by_axis(start.angular_momentum, flat ? 2 : 0, 3)},
+                                 {"final", by_axis(end.angular_momentum, flat ? 2 : 0, 3)}};
+  for (int c = flat ? 2 : 0; c < 3; ++c)
+    if (start.angular_momentum[c] != 0)
+      json["momentum"]["angular"]["final_over_initial"][std::string(1, "xyz"[c])] =
+          end.angular_momentum[c] / start.angular_momentum[c];
+  json["centre_of_mass"] = {{"initial", by_axis(start.centre_of_mass, 0, experiment.dimension)},
+                            {"final", by_axis(end.centre_of_mass, 0, experiment.dimension)}};
+  if (simulation.plan().contact) {
+    const ContactRecord& contact = simulation.backend().contact_record();
+    json["contact"] = {{"largest_force", recorder.largest_contact_force()},
+                       {"most_nodes", recorder.most_contact_nodes()},
+                       {"largest_penetration", recorder.largest_penetration()},
+                       {"final_nodes", contact.nodes},
+                       {"momentum_residual", contact.momentum_residual}};
+  }
+  if (experiment.exact)
+    json["error"] = {{"position", {{"rms", end.position_error_rms}, {"max", end.position_error_max}}},
+                     {"velocity", {{"rms", end.velocity_error_rms}, {"max", end.velocity_error_max}}}};
+  json["stability"] = {{"smallest_volume_ratio", recorder.smallest_volume_ratio()},
+                       {"largest_volume_ratio", recorder.largest_volume_ratio()},
+                       {"largest_speed", end.largest_speed}};
+  json["performance"] = {{"wall_seconds", wall_seconds},
+                         {"stepping_seconds", stepping},
+                         {"particle_steps_per_second",
+                          stepping > 0 ? particles * static_cast<double>(simulation.steps()) / stepping : 0.0},
+                         {"bytes_per_particle", static_cast<double>(simulation.backend().particle_bytes()) / particles},
+                         {"grid_bytes", simulation.backend().grid_bytes()},
+                         {"peak_memory", peak_memory()}};
+  for (const auto& [name, seconds] : simulation.seconds_by_pass())
+    json["performance"]["seconds_by_pass"][name] = seconds;
+  json["warnings"] = Json::array();
+  // Case A11: a run without work from outside must not gain energy.
+  const double gain = recorder.largest_total_energy() - start.total_energy();
+  const bool driven = experiment.body_force.has_value() || [&] {
+    for (const auto& axis : experiment.faces)
+      for (const FaceCondition& face : axis)
+        if (face.velocity) return true;
+    for (const BoxCondition& box : experiment.boxes)
+      if (box.velocity) return true;
+    return false;
+  }();
+  const double scale = start.kinetic + start.strain + std::abs(start.gravitational);
+  if (!driven && scale > 0 && gain > 0.01 * scale) {
+    std::ostringstream warning;
+    warning.precision(3);
+    warning << "total energy rose by " << 100 * gain / scale
+            << " % of its initial value: the combination or the time step is not stable";
+    json["warnings"].push_back(warning.str());
+  }
+  return json;
+}
+
+std::vector<std::string> judge_expectations(const Experiment& experiment, Json& summary) {
+  std::vector<std::string> failed;
+  for (const Expectation& expectation : experiment.expectations) {
+    const Json* value = at(summary, expectation.metric);
+    const bool measured = value && value->is_number();
+    const double x = measured ? value->get<double>() : NAN;
+    bool held = measured;
+    std::ostringstream wanted;
+    Json entry{{"metric", expectation.metric}};
+    if (expectation.at_least)
+      wanted << " at least " << *expectation.at_least, held = held && x >= *expectation.at_least,
+                                                       entry["at_least"] = *expectation.at_least;
+    if (expectation.at_most)
+      wanted << " at most " << *expectation.at_most, held = held && x <= *expectation.at_most,
+                                                     entry["at_most"] = *expectation.at_most;
+    if (expectation.equals) {
+      wanted << " " << *expectation.equals << " within " << expectation.tolerance;
+      held = held && std::abs(x - *expectation.equals) <= expectation.tolerance;
+      entry["equals"] = *expectation.equals, entry["tolerance"] = expectation.tolerance;
+    }
+    entry["value"] = measured ? Json(x) : Json(nullptr);
+    entry["held"] = held;
+    if (!held) {
+      std::ostringstream sentence;
+      sentence << experiment.where(expectation.pointer) << ": " << expectation.pointer << ": expected "
+               << expectation.metric << wanted.str();
+      if (measured) {
+        sentence << ", got " << x;
+      } else {
+        std::vector<std::string> names;
+        collect_names(summary, "", names);
+        sentence << ", but the summary has no number of that name" << did_you_mean(expectation.metric, names);
+      }
+      failed.push_back(sentence.str());
+    }
+    summary["expect"].push_back(entry);
+  }
+  return failed;
+}
+
+}  // namespace mpm::app

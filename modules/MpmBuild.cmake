@@ -1,0 +1,28 @@
+# Flags and functions that every target of the sandbox shares.
+
+add_library(mpm_flags INTERFACE)
+# Contraction is chosen on purpose: one binary gives one answer whatever the number of threads, and FMA halves the arithmetic.
+target_compile_options(mpm_flags INTERFACE -Wall -Wextra -fno-math-errno -fno-trapping-math -ffp-contract=fast -Wno-psabi)
+# GCC 12 warns falsely of std::string sums (GCC bug 105329) and of its own AVX-512 headers (bug 105593).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(mpm_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized)
+endif()
+if(MPM_NATIVE)
+  target_compile_options(mpm_flags INTERFACE -march=native)
+endif()
+if(MPM_WERROR)
+  target_compile_options(mpm_flags INTERFACE -Werror)
+endif()
+if(MPM_SANITIZE)
+  target_compile_options(mpm_flags INTERFACE -fsanitize=${MPM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(mpm_flags INTERFACE -fsanitize=${MPM_SANITIZE})
+endif()
+target_include_directories(mpm_flags INTERFACE ${CMAKE_CURRENT_SOURCE_DIR}/modules)
+
+# mpm_add_module(NAME DEPENDS target...): a static library of every .cpp in the current folder.
+function(mpm_add_module name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  add_library(mpm_${name} STATIC ${sources})
+  target_link_libraries(mpm_${name} PUBLIC mpm_flags ${ARG_DEPENDS})
+endfunction()

@@ -1,0 +1,291 @@
+#pragma once
+// The sparse grid: blocks of nodes near particles, planned channels of one quad a node, and the lists of nodes at the
+// edges.
+
+#include <cstdint>
+#include <vector>
+
+#include "aligned_array.hpp"
+#include "particles.hpp"
+#include "scene.hpp"
+
+namespace mpm::cpu {
+
+enum Channel {
+  motion,           ///< scattered momentum and mass; velocity and mass once it has been divided
+  velocity_before,  ///< v-, later the increment v+ - v-
+  force,
+  body_force,
+  volume_gradient,  ///< and volume
+  mass_position,
+  channel_count
+};
+
+/// A node beyond a wall (or an image of a periodic node) and the node it is folded onto.
+struct MirrorPair {
+  std::uint32_t ghost, mirror;
+  std::uint32_t ghost_edge, mirror_edge;  ///< the same nodes among the edge nodes
+  Vector3 foot;                           ///< of the ghost on the wall, m
+};
+
+/// Nodes that one face of the domain concerns.
+struct FaceNodes {
+  int axis = 0, side = 0;
+  const FaceCondition* condition = nullptr;
+  std::vector<MirrorPair> pairs;
+  std::vector<std::uint32_t> wall;
+  std::vector<std::uint32_t> wall_edge;  ///< the same among the edge nodes, or ~0
+  std::vector<Vector3> wall_position;
+  std::vector<std::uint8_t> pair_folds;  ///< decided each step: [field * pairs + i]
+  std::vector<std::uint8_t> wall_holds;  ///< of `separate`, decided each step: [field * wall nodes + i]
+
+  bool periodic() const { return condition->type == ConditionType::periodic; }
+};
+struct BoxNodes {
+  const BoxCondition* condition = nullptr;
+  std::vector<std::uint32_t> nodes;
+  std::vector<Vector3> position;
+};
+
+template <int D, class T>
+class Grid {
+ public:
+  explicit Grid(const Scene<D, T>& scene) : scene_(scene), fields_(scene.experiment.field_count) {}
+
+  void plan_channel(Channel channel) { planned_[channel] = true; }
+  bool has(Channel channel) const { return planned_[channel]; }
+  int fields() const { return fields_; }
+  std::uint32_t slots() const { return static_cast<std::uint32_t>(found_.size()); }
+  std::uint32_t nodes() const { return slots() * block_nodes; }
+
+  T* channel(Channel c, int field) { return data_[c].data() + std::size_t(field) * nodes() * 4; }
+  Quad<T>& quad(Channel c, int field, std::uint32_t node) {
+    return reinterpret_cast<Quad<T>*>(channel(c, field))[node];
+  }
+
+  /// Active blocks are those of particles, their neighbours, and what folding needs; field_bits of a slot says which
+  /// velocity fields may have mass there.
+  void rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body);
+  void clear();
+  void clear(Channel c);
+
+  std::vector<FaceNodes>& faces() { return faces_; }
+  const std::vector<BoxNodes>& boxes() const { return boxes_; }
+  /// Ghosts and the nodes they are folded onto.
+  const std::vector<std::uint32_t>& edge_nodes() const { return edge_nodes_; }
+  /// Slots where two fields or more may meet.
+  const std::vector<std::uint32_t>& shared_slots() const { return shared_; }
+  std::uint64_t bytes() const {
+    std::uint64_t total = 0;
+    for (const auto& data : data_) total += data.bytes();
+    return total;
+  }
+
+ private:
+  void activate(const BlockCoordinates& at, std::uint64_t field_bits);
+  void activate_mirrors();
+  void list_faces();
+  void number_edge_nodes();
+  void list_boxes();
+  bool beyond(int axis, int node) const {
+    return node < 0 || node > scene_.domain.cells[axis] ||
+           (scene_.domain.periodic(axis) && node == scene_.domain.cells[axis]);
+  }
+  int mirrored(int axis, int node) const;
+  bool folded_axis(int axis, int side) const {
+    const ConditionType type = scene_.domain.faces[axis][side];
+    return folds(type) || type == ConditionType::periodic;
+  }
+
+  const Scene<D, T>& scene_;
+  int fields_;
+  bool planned_[channel_count]{};
+  AlignedArray<T> data_[channel_count];
+  BlockTable table_;
+  std::vector<BlockCoordinates> found_;
+  std::vector<std::uint64_t> field_bits_;
+  std::vector<std::uint32_t> shared_;
+  std::vector<FaceNodes> faces_;
+  std::vector<BoxNodes> boxes_;
+  std::vector<std::uint32_t> edge_nodes_;
+};
+
+// ---- implementation ----------------------------------------------------------------------------------------------
+
+template <int D, class T>
+void Grid<D, T>::activate(const BlockCoordinates& at, std::uint64_t field_bits) {
+  const int next = static_cast<int>(found_.size()), slot = table_.insert(at, next);
+  if (slot == next) {
+    found_.push_back(at);
+    field_bits_.push_back(0);
+  }
+  field_bits_[slot] |= field_bits;
+}
+
+/// Node that a node beyond a folding face is folded onto.
+template <int D, class T>
+int Grid<D, T>::mirrored(int axis, int node) const {
+  const int cells = scene_.domain.cells[axis];
+  if (scene_.domain.periodic(axis)) return ((node % cells) + cells) % cells;
+  return node < 0 ? -node : 2 * cells - node;
+}
+
+/// Folding a slot beyond a face needs the slots of its images; images of images follow as the list grows.
+template <int D, class T>
+void Grid<D, T>::activate_mirrors() {
+  for (bool grew = true; grew;) {  // bits must reach images of images even when those were active already
+    grew = false;
+    for (std::size_t slot = 0; slot < found_.size(); ++slot) {
+      const BlockCoordinates at = found_[slot];
+      for (int axis = 0; axis < D; ++axis)
+        for (int k = 0; k < block_side<D>; ++k) {
+          const int node = at[axis] * block_side<D> + k;
+          if (!beyond(axis, node) || !folded_axis(axis, node > 0)) continue;
+          if (node < -grid_padding || node > scene_.domain.cells[axis] + grid_padding) continue;
+          BlockCoordinates image = at;
+          image[axis] = mirrored(axis, node) >> block_bits<D>;
+          const int known = table_.find(image);
+          if (known >= 0 && (field_bits_[known] | field_bits_[slot]) == field_bits_[known]) continue;
+          activate(image, field_bits_[slot]);
+          grew = true;
+        }
+    }
+  }
+}
+
+template <int D, class T>
+void Grid<D, T>::list_faces() {
+  faces_.clear();
+  int face_of[3][2]{};
+  for (const bool periodic : {true, false})  // images are folded before walls
+    for (int axis = 0; axis < D; ++axis)
+      for (int side = 0; side < 2; ++side) {
+        if (scene_.domain.periodic(axis) != periodic) continue;
+        face_of[axis][side] = static_cast<int>(faces_.size());
+        FaceNodes face;
+        face.axis = axis, face.side = side;
+        face.condition = &scene_.experiment.faces[axis][side];
+        faces_.push_back(std::move(face));
+      }
+  for (std::uint32_t slot = 0; slot < slots(); ++slot) {
+    for (int axis = 0; axis < D; ++axis) {
+      const int first = found_[slot][axis] * block_side<D>, cells = scene_.domain.cells[axis];
+      if (first > 0 && first + block_side<D> <= cells) continue;  // no node on or beyond a wall of this axis
+      for (int local = 0; local < block_nodes; ++local) {
+        std::array<int, 3> node = node_at<D>(found_[slot], local);
+        const int index = node[axis];
+        if (index < -grid_padding || index > cells + grid_padding) continue;
+        const std::uint32_t number = slot * block_nodes + local;
+        const int side = index > 0;
+        if (!folded_axis(axis, side)) continue;
+        FaceNodes& face = faces_[face_of[axis][side]];
+        if (beyond(axis, index)) {
+          node[axis] = mirrored(axis, index);
+          BlockCoordinates image{};
+          for (int a = 0; a < D; ++a) image[a] = node[a] >> block_bits<D>;
+          const std::uint32_t mirror =
+              static_cast<std::uint32_t>(table_.find(image)) * block_nodes + node_in_block<D>(node);
+          node[axis] = side ? cells : 0;
+          face.pairs.push_back({number, mirror, 0, 0, scene_.domain.node_position(node, D)});
+        } else if (index == 0 || index == cells) {
+          if (scene_.domain.periodic(axis)) continue;
+          face.wall.push_back(number);
+          face.wall_position.push_back(scene_.domain.node_position(node, D));
+        }
+      }
+    }
+  }
+  for (FaceNodes& face : faces_) {
+    face.pair_folds.assign(face.pairs.size() * fields_, 0);
+    face.wall_holds.assign(face.wall.size() * fields_, 0);
+  }
+  number_edge_nodes();
+}
+
+template <int D, class T>
+void Grid<D, T>::number_edge_nodes() {
+  edge_nodes_.clear();
+  std::vector<std::uint32_t> number(nodes(), ~0u);
+  const auto number_of = [&](std::uint32_t node) {
+    if (number[node] == ~0u) {
+      number[node] = static_cast<std::uint32_t>(edge_nodes_.size());
+      edge_nodes_.push_back(node);
+    }
+    return number[node];
+  };
+  for (FaceNodes& face : faces_)
+    for (MirrorPair& pair : face.pairs) {
+      pair.ghost_edge = number_of(pair.ghost);
+      pair.mirror_edge = number_of(pair.mirror);
+    }
+  for (FaceNodes& face : faces_)
+    for (const std::uint32_t node : face.wall) face.wall_edge.push_back(number[node]);
+}
+
+template <int D, class T>
+void Grid<D, T>::list_boxes() {
+  boxes_.clear();
+  const double tolerance = 1e-9 * scene_.domain.cell_size;
+  for (const BoxCondition& condition : scene_.experiment.boxes) {
+    BoxNodes box;
+    box.condition = &condition;
+    for (std::uint32_t slot = 0; slot < slots(); ++slot)
+      for (int local = 0; local < block_nodes; ++local) {
+        const Vector3 x = scene_.domain.node_position(node_at<D>(found_[slot], local), D);
+        bool inside = true;
+        for (int a = 0; a < D; ++a)
+          inside = inside && x[a] >= condition.lower[a] - tolerance && x[a] <= condition.upper[a] + tolerance;
+        if (!inside) continue;
+        box.nodes.push_back(slot * block_nodes + local);
+        box.position.push_back(x);
+      }
+    boxes_.push_back(std::move(box));
+  }
+}
+
+template <int D, class T>
+void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body) {
+  table_.clear();
+  found_.clear();
+  field_bits_.clear();
+  const auto around = [](const BlockCoordinates& at, auto&& visit) {
+    const int depth = D == 3 ? 1 : 0;
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y)
+        for (int z = -depth; z <= depth; ++z) visit(BlockCoordinates{at[0] + x, at[1] + y, at[2] + z});
+  };
+  for (std::size_t body = 0; body < bodies.size(); ++body)
+    for (Block<D>& block : bodies[body].blocks) {
+      const int field = field_of_body[body];  // fields beyond the bits count as shared
+      const std::uint64_t bits = field < 62 ? std::uint64_t{1} << field : std::uint64_t{3} << 62;
+      int k = 0;
+      around(block.at, [&](const BlockCoordinates& at) {
+        activate(at, bits);
+        block.neighbours[k++] = table_.find(at);
+      });
+    }
+  activate_mirrors();
+  shared_.clear();
+  for (std::uint32_t slot = 0; slot < slots(); ++slot)
+    if ((field_bits_[slot] & (field_bits_[slot] - 1)) != 0) shared_.push_back(slot);
+  for (int c = 0; c < channel_count; ++c)
+    if (planned_[c]) data_[c].require(std::size_t(fields_) * nodes() * 4);
+  list_faces();
+  list_boxes();
+}
+
+template <int D, class T>
+void Grid<D, T>::clear() {
+  for (int c = 0; c < channel_count; ++c)
+    if (planned_[c]) clear(static_cast<Channel>(c));
+}
+
+template <int D, class T>
+void Grid<D, T>::clear(Channel c) {
+  T* const values = data_[c].data();
+  const std::int64_t blocks = std::int64_t(fields_) * slots();
+#pragma omp parallel for num_threads(scene_.threads) schedule(static)
+  for (std::int64_t i = 0; i < blocks; ++i) std::memset(values + i * block_nodes * 4, 0, block_nodes * 4 * sizeof(T));
+}
+
+}  // namespace mpm::cpu

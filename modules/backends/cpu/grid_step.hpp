@@ -1,0 +1,82 @@
+#pragma once
+// The passes that work on nodes: folding at the edges of the domain, conditions, forces, contact; and their ledger.
+
+#include <cstdint>
+#include <vector>
+
+#include "grid.hpp"
+#include "simulation/contact_pair.hpp"
+
+namespace mpm::cpu {
+
+template <int D, class T>
+class GridStep {
+ public:
+  GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, ContactRecord& record);
+
+  /// Folds what was scattered, divides by mass, imposes conditions and contact before the forces.
+  void momentum_to_velocity(bool remap, const StepInfo& step);
+  /// v+ = v- + dt f / m with conditions, contact after the forces, increments, ghosts.
+  void apply_forces(const StepInfo& step);
+  /// Of the velocities after the last apply_forces; the ledger's.
+  double kinetic_energy_after() const { return kinetic_energy_after_; }
+  /// Of the particles when they scattered; the ledger's.
+  void set_particle_kinetic_energy(double energy) { particle_kinetic_energy_ = energy; }
+
+ private:
+  using Q = Quad<T>;
+  /// What imposing a condition leaves for the ledger: its change of energy at once, or a mark for account_for_impulses.
+  enum class Account { nothing, change_of_energy, mark };
+
+  bool ledger_on() const { return scene_.plan.ledger; }
+  Q& motion_at(int field, std::uint32_t node) { return grid_.quad(motion, field, node); }
+  Q mirror_signs(const FaceNodes& face, bool as_slip) const;
+  Q wall_velocity(const std::optional<VectorExpression>& velocity, const Vector3& x, double time) const;
+  template <class Visit>
+  void for_each_block(Visit&& visit);
+  double sum_partials(int which) const;
+  double kinetic_energy(bool of_momenta);
+
+  void fold_images(bool remap, const StepInfo& step);
+  void fold_walls(bool remap, const StepInfo& step);
+  void fold_faces(bool periodic, bool remap, const StepInfo& step);
+  void fold_pair(FaceNodes& face, std::size_t pair, int field, bool remap, double time);
+  bool approaches(const FaceNodes& face, int field, const MirrorPair& pair, double dt);
+  void decide_walls(FaceNodes& face, int field, double dt);
+  void fold_forces(bool periodic);
+  void fill_ghosts(double time, bool increments);
+
+  void impose(double time, Account account);
+  void hold(int field, std::uint32_t node, int component, T velocity, Account account);
+  void divide_by_mass();
+  void keep_velocity();
+  void add_gravity_corrections(double dt);
+  void account_gravity_corrections(double dt);
+  void accelerate(double dt);
+  void account_for_impulses(double dt);
+  void account_for_node(int field, std::uint32_t node, double dt, double* partial);
+  void subtract_velocity_before();
+
+  struct ContactSums;
+  struct ContactBatch;
+  void resolve_contact(const StepInfo& step, bool after_forces, bool in_ledger);
+  void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
+  void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
+  ContactFieldNode contact_node(int field, std::uint32_t node);
+  static int rows_per_cell(const Experiment& experiment, int field);
+
+  const Scene<D, T>& scene_;
+  Grid<D, T>& grid_;
+  Ledger& ledger_;
+  ContactRecord& record_;
+  Q gravity_{};
+  bool has_gravity_ = false;
+  std::vector<EdgeModel> edges_;
+  static constexpr int partial_count = 5;
+  std::vector<double> partials_;    ///< partial_count a block of a field, summed in order
+  std::vector<std::uint8_t> held_;  ///< [field][node] bit per component that a condition gives now; the ledger's
+  std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
+  double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0;
+};
+
+}  // namespace mpm::cpu

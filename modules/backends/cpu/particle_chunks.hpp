@@ -1,0 +1,169 @@
+#pragma once
+// ParticleStep: loops over blocks and chunks, and what scatter and gather share.
+
+#include <omp.h>
+
+#include <tuple>
+
+#include "particle_step.hpp"
+
+namespace mpm::cpu {
+
+template <int D, class T>
+ParticleStep<D, T>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std::vector<Particles<D, T>>& particles,
+                                 std::vector<Body<D, T>> bodies)
+    : scene_(scene),
+      grid_(grid),
+      particles_(particles),
+      bodies_(std::move(bodies)),
+      kernels_(tile_kernels<D, T>(scene.width)) {
+  drift_of_thread_.assign(scene.threads, 0.0);
+  for (int thread = 0; thread < scene.threads; ++thread) {
+    work_.push_back(std::make_unique<Work>());
+    for (int c = 0; c < channel_count; ++c)
+      if (grid.has(static_cast<Channel>(c))) work_.back()->tile[c].require(std::size_t(kernels_.nodes) * 4);
+  }
+}
+
+/// Calls visit(block, work) for every block of a body. Coloured: no two blocks in work at once share a node.
+template <int D, class T>
+template <class Visit>
+void ParticleStep<D, T>::for_each_block(int body, bool coloured, Visit&& visit) {
+  Particles<D, T>& particles = particles_[body];
+  const auto guarded = [&](std::uint32_t first, std::uint32_t last, Work& work) {
+    try {
+      for (std::uint32_t b = first; b < last; ++b) visit(particles.blocks[b], work);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!exception_) exception_ = std::current_exception();
+    }
+  };
+#pragma omp parallel num_threads(scene_.threads)
+  {
+    Work& work = *work_[omp_get_thread_num()];
+    if (coloured) {
+      for (const auto& units : particles.units) {
+#pragma omp for schedule(dynamic, 1)
+        for (std::size_t u = 0; u < units.size(); ++u) guarded(units[u].first, units[u].last, work);
+      }
+    } else {
+#pragma omp for schedule(dynamic, 8)
+      for (std::size_t b = 0; b < particles.blocks.size(); ++b) guarded(b, b + 1, work);
+    }
+  }
+  if (exception_) std::rethrow_exception(std::exchange(exception_, nullptr));
+}
+
+template <int D, class T>
+template <class Visit>
+void ParticleStep<D, T>::for_each_chunk_of(int body, Block<D>& block, Visit&& visit) {
+  Particles<D, T>& particles = particles_[body];
+  for_each_chunk(block, [&](std::uint32_t i, int count) {
+    // The next chunk arrives in the cache while this one is computed.
+    const char* const next = reinterpret_cast<const char*>(particles.chunk(std::min(i + 1, particles.chunks - 1)));
+    for (std::size_t byte = 0; byte < particles.components * chunk_size * sizeof(T); byte += 64)
+      __builtin_prefetch(next + byte, 0, 2);
+    visit(Chunk{particles, bodies_[body], block, particles.chunk(i), particles.ids(i), count, padded(count)});
+  });
+}
+
+template <int D, class T>
+typename ParticleStep<D, T>::States ParticleStep<D, T>::states(const std::vector<StateField>& fields,
+                                                               const Chunk& chunk) const {
+  States result{};
+  for (std::size_t f = 0; f < fields.size(); ++f) result.fields[f] = chunk.at(fields[f].first);
+  return result;
+}
+
+template <int D, class T>
+void ParticleStep<D, T>::throw_failure() {
+  if (failure_.severity == 2) return;
+  const Failure failure = std::exchange(failure_, Failure{});
+  throw RunFailure(failure.cause, failure.body, static_cast<std::size_t>(failure.particle));
+}
+
+template <int D, class T>
+void ParticleStep<D, T>::evaluate_shape(const Chunk& chunk, Work& work, bool gradients) const {
+  const mpm_shape_batch batch{static_cast<std::uint32_t>(chunk.end),
+                              chunk_size,
+                              D,
+                              0,
+                              chunk.at(Particles<D, T>::position),
+                              nullptr,
+                              work.base,
+                              work.offset,
+                              work.weight,
+                              gradients ? work.gradient : nullptr};
+  scene_.evaluate_shape(scene_.shape_parameters, &batch);
+}
+
+/// Stencils' first nodes within the tile; the block remembers what part of it they reach.
+template <int D, class T>
+void ParticleStep<D, T>::place_in_tile(const Chunk& chunk, Work& work, bool extend_reach) const {
+  if (extend_reach) {
+    Reach& reach = chunk.block.reach;
+    for (int axis = 0; axis < D; ++axis) {
+      int low = reach.lowest[axis], high = reach.highest[axis];
+      for (int p = 0; p < chunk.end; ++p) {
+        const int node = work.base[axis * chunk_size + p] + 1;
+        low = std::min(low, node), high = std::max(high, node);
+      }
+      if (low < 0 || high > block_side<D> + 1) throw std::logic_error("a particle left the tile of its block");
+      reach.lowest[axis] = low, reach.highest[axis] = high;
+    }
+  }
+  for (int p = 0; p < chunk.end; ++p) {
+    int node = work.base[p] + 1;
+    for (int axis = 1; axis < D; ++axis) node = node * kernels_.side + work.base[axis * chunk_size + p] + 1;
+    work.tile_node[p] = node;
+  }
+}
+
+template <int D, class T>
+void ParticleStep<D, T>::update_material(const Chunk& chunk, mpm_material_batch request) {
+  States state = states(chunk.particles.material_state, chunk);
+  request.count = static_cast<std::uint32_t>(chunk.end);
+  request.stride = chunk_size;
+  request.dimension = D;
+  request.state = state.fields;
+  if (chunk.body.update_material(chunk.body.material->parameters.data(), &request) >= 0) note_inverted(chunk);
+}
+
+/// Finds the lowest index among the inadmissible particles of a chunk.
+template <int D, class T>
+void ParticleStep<D, T>::note_inverted(const Chunk& chunk) {
+  alignas(64) T ratio[chunk_size];
+  States state = states(chunk.particles.material_state, chunk);
+  mpm_material_batch request{};
+  request.count = static_cast<std::uint32_t>(chunk.end);
+  request.stride = chunk_size;
+  request.dimension = D;
+  request.state = state.fields;
+  request.volume_ratio = ratio;
+  chunk.body.update_material(chunk.body.material->parameters.data(), &request);
+  const std::lock_guard lock(mutex_);
+  for (int p = 0; p < chunk.count; ++p)
+    if (!(ratio[p] > 0))
+      failure_.note(0, chunk.body.index, chunk.ids[p], "inverted: its volume ratio J is not positive");
+}
+
+/// With the affine part where the transfer carries it; offsets are those of the last shape evaluation.
+template <int D, class T>
+double ParticleStep<D, T>::kinetic_energy(const Chunk& chunk, const Work& work) const {
+  double sum = 0;
+  const T* const v = chunk.at(Particles<D, T>::velocity);
+  for (int c = 0; c < D; ++c)
+    for (int p = 0; p < chunk.count; ++p) sum += static_cast<double>(v[c * chunk_size + p]) * v[c * chunk_size + p];
+  if (scene_.has(MPM_AFFINE_CARRIES_ENERGY)) {
+    const T* const C = chunk.at(chunk.particles.transfer_state[0].first);
+    for (int c = 0; c < D; ++c)
+      for (int a = 0; a < D; ++a)
+        for (int p = 0; p < chunk.count; ++p) {
+          const double value = C[(c * D + a) * chunk_size + p];
+          sum += scene_.second_moment(work.offset[a * chunk_size + p]) * value * value;
+        }
+  }
+  return 0.5 * chunk.body.mass * sum;
+}
+
+}  // namespace mpm::cpu

@@ -1,0 +1,189 @@
+#pragma once
+// ParticleStep: particles to grid. Coefficients of a chunk are made as component arrays, then as quads for the tile
+// kernels: what a node gets is w (b + A d) + S grad w, d = node - particle.
+
+#include "particle_chunks.hpp"
+
+namespace mpm::cpu {
+
+template <int D, class T>
+double ParticleStep<D, T>::scatter(const Pass& pass, const StepInfo& step) {
+  const bool merged = pass.force && !grid_.has(force);
+  const auto touched = [&](Channel c) {
+    switch (c) {
+      case motion:
+        return pass.momentum || merged;
+      case force:
+      case body_force:
+        return pass.force && grid_.has(c);
+      case volume_gradient:
+      case mass_position:
+        return pass.contact_fields;
+      default:
+        return false;
+    }
+  };
+  const bool energies = scene_.plan.ledger && pass.momentum && !pass.remap;
+  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
+    for_each_block(body, true, [&](Block<D>& block, Work& work) {
+      if (pass.momentum && !pass.remap) block.reach = {};
+      block.kinetic_energy = 0;
+      for_each_chunk_of(body, block, [&](const Chunk& chunk) {
+        scatter_chunk(pass, step, chunk, work);
+        if (energies) block.kinetic_energy += kinetic_energy(chunk, work);
+      });
+      for (int c = 0; c < channel_count; ++c)
+        if (touched(static_cast<Channel>(c)))
+          kernels_.flush(work.tile[c].data(), grid_.channel(static_cast<Channel>(c), bodies_[body].field),
+                         block.neighbours.data(), block.reach);
+    });
+  throw_failure();
+  double sum = 0;
+  if (energies)
+    for (const auto& particles : particles_)
+      for (const Block<D>& block : particles.blocks) sum += block.kinetic_energy;
+  return sum;
+}
+
+template <int D, class T>
+void ParticleStep<D, T>::scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work) {
+  const bool separate = grid_.has(force), merged = pass.force && !separate;
+  const bool by_gradient = pass.force && !scene_.stress_by_affine;
+  evaluate_shape(chunk, work, by_gradient || pass.contact_fields);
+  place_in_tile(chunk, work, pass.momentum && !pass.remap);
+  if (pass.force || pass.contact_fields) {
+    mpm_material_batch request{};
+    if (pass.force) request.kirchhoff_stress = work.stress;
+    if (pass.contact_fields) request.volume_ratio = work.volume_ratio;
+    update_material(chunk, request);
+  }
+  if (pass.momentum) {
+    momentum_coefficients(chunk, work);
+    if (merged) {
+      stress_coefficients(chunk, work, step.dt, scene_.has(MPM_SCATTERS_AFFINE));
+      if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, true, step.dt);
+    }
+    const bool affine = scene_.has(MPM_SCATTERS_AFFINE) || (merged && scene_.stress_by_affine);
+    add_to_tile(chunk, work, motion, work.mass, true, affine, merged && by_gradient);
+  }
+  if (pass.force && separate) {
+    scatter_stress(chunk, work);
+    if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, false, step.dt);
+  }
+  if (pass.contact_fields) scatter_contact_fields(chunk, work);
+}
+
+template <int D, class T>
+void ParticleStep<D, T>::momentum_coefficients(const Chunk& chunk, Work& work) {
+  std::fill(work.mass, work.mass + chunk.end, static_cast<T>(chunk.body.mass));
+  const States state = states(chunk.particles.transfer_state, chunk);
+  const mpm_scatter_batch batch{static_cast<std::uint32_t>(chunk.end),
+                                chunk_size,
+                                D,
+                                0,
+                                work.mass,
+                                chunk.at(Particles<D, T>::velocity),
+                                state.fields,
+                                work.b,
+                                scene_.has(MPM_SCATTERS_AFFINE) ? work.A : nullptr};
+  scene_.transfer_scatter(scene_.transfer_parameters, &batch);
+}
+
+/// -factor V0 tau D^-1 into A (added or set), or -factor V0 tau into S.
+template <int D, class T>
+void ParticleStep<D, T>::stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add) {
+  const bool by_affine = scene_.stress_by_affine;
+  const T scale = static_cast<T>(-factor * chunk.body.volume * (by_affine ? scene_.inverse_moment : 1.0));
+  T* const out = by_affine ? work.A : work.S;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) {
+      const T* const tau = work.stress + Sym<D, T>::index(i, j) * chunk_size;
+      T* const target = out + (i * D + j) * chunk_size;
+      if (by_affine && add)
+        for (int p = 0; p < chunk.end; ++p) target[p] += scale * tau[p];
+      else
+        for (int p = 0; p < chunk.end; ++p) target[p] = scale * tau[p];
+    }
+}
+
+/// Packs b (when `constant`), A and S with `last` as the fourth scalar of the constant quad, and scatters them into the
+/// tile.
+template <int D, class T>
+void ParticleStep<D, T>::add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last, bool constant,
+                                     bool affine, bool gradient) {
+  const T h = static_cast<T>(scene_.domain.cell_size), inverse_h = T(1) / h;
+  const int groups = quad_groups(D, affine, gradient), n = chunk.end;
+  T* quads = work.quads;
+  alignas(64) T b[D * chunk_size];
+  for (int c = 0; c < D; ++c) {
+    T* const bc = b + c * chunk_size;
+    for (int p = 0; p < n; ++p) bc[p] = constant ? work.b[c * chunk_size + p] : T(0);
+    for (int a = 0; affine && a < D; ++a) {  // about the stencil's first node instead of the particle, A in cells
+      T* const A = work.A + (c * D + a) * chunk_size;
+      const T* const f = work.offset + a * chunk_size;
+      for (int p = 0; p < n; ++p) {
+        A[p] *= h;
+        bc[p] -= A[p] * f[p];
+      }
+    }
+  }
+  const T* const none = nullptr;
+  pack_quads<T>(quads, groups, b, b + chunk_size, D == 3 ? b + (D - 1) * chunk_size : none, last, n);
+  quads += 4;
+  for (int a = 0; affine && a < D; ++a, quads += 4)
+    pack_quads<T>(quads, groups, work.A + a * chunk_size, work.A + (D + a) * chunk_size,
+                  D == 3 ? work.A + ((D - 1) * D + a) * chunk_size : none, none, n);
+  if (gradient)
+    for (int k = 0; k < D * D; ++k)
+      for (int p = 0; p < n; ++p) work.S[k * chunk_size + p] *= inverse_h;
+  for (int a = 0; gradient && a < D; ++a, quads += 4)
+    pack_quads<T>(quads, groups, work.S + a * chunk_size, work.S + (D + a) * chunk_size,
+                  D == 3 ? work.S + ((D - 1) * D + a) * chunk_size : none, none, n);
+  const Stencils<T> stencils{work.tile_node, work.weight, work.gradient};
+  kernels_.scatter[affine][gradient](work.tile[channel].data(), stencils, work.quads, chunk.count);
+}
+
+template <int D, class T>
+void ParticleStep<D, T>::scatter_stress(const Chunk& chunk, Work& work) {
+  stress_coefficients(chunk, work, 1.0, false);
+  add_to_tile(chunk, work, force, nullptr, false, scene_.stress_by_affine, !scene_.stress_by_affine);
+}
+
+/// m b(x, X, t): into its own channel, or times dt onto the momentum's b.
+template <int D, class T>
+void ParticleStep<D, T>::scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt) {
+  const VectorExpression& expression = *scene_.experiment.body_force;
+  if (!merged) std::fill(work.b, work.b + D * chunk_size, T(0));
+  const double factor = chunk.body.mass * (merged ? dt : 1.0);
+  const T* const position = chunk.at(Particles<D, T>::position);
+  for (int p = 0; p < chunk.count; ++p) {
+    Vector3 x{}, X{};
+    for (int a = 0; a < D; ++a) {
+      x[a] = scene_.domain.lower[a] +
+             scene_.domain.cell_size * cells_from_corner(scene_.domain, chunk.block, a, position[a * chunk_size + p]);
+      X[a] =
+          chunk.body.initial_position.empty() ? x[a] : chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
+    }
+    const Vector3 f = expression(x, X, time);
+    for (int c = 0; c < D; ++c) work.b[c * chunk_size + p] += static_cast<T>(factor * f[c]);
+  }
+  if (!merged) add_to_tile(chunk, work, body_force, nullptr, true, false, false);
+}
+
+/// V grad w with w V beside it, and w m (x_p - x_node), V = J V0.
+template <int D, class T>
+void ParticleStep<D, T>::scatter_contact_fields(const Chunk& chunk, Work& work) {
+  const T volume = static_cast<T>(chunk.body.volume), mass = static_cast<T>(chunk.body.mass);
+  for (int p = 0; p < chunk.end; ++p) work.scalar[p] = volume * work.volume_ratio[p];
+  std::fill(work.S, work.S + D * D * chunk_size, T(0));
+  std::fill(work.A, work.A + D * D * chunk_size, T(0));
+  for (int c = 0; c < D; ++c)
+    for (int p = 0; p < chunk.end; ++p) {
+      work.S[(c * D + c) * chunk_size + p] = work.scalar[p];
+      work.A[(c * D + c) * chunk_size + p] = -mass;
+    }
+  add_to_tile(chunk, work, volume_gradient, work.scalar, false, false, true);
+  add_to_tile(chunk, work, mass_position, nullptr, false, true, false);
+}
+
+}  // namespace mpm::cpu

@@ -1,0 +1,136 @@
+#pragma once
+// The passes that work on particles, chunk by chunk: scatter, gather, strain, move, time step. A chunk is loaded once
+// and goes through shape, material and transfer plugins in batches; tiles of nodes are private to a thread.
+
+#include <exception>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "grid.hpp"
+#include "kernel/tensor.hpp"
+
+namespace mpm::cpu {
+
+/// What one thread works in.
+template <int D, class T>
+struct Workspace {
+  static constexpr int symmetric = Sym<D, T>::size;
+  alignas(64) std::int32_t base[D * chunk_size];
+  alignas(64) std::int32_t tile_node[chunk_size];
+  alignas(64) T offset[D * chunk_size], weight[D * 4 * chunk_size], gradient[D * 4 * chunk_size];
+  alignas(64) T mass[chunk_size], b[D * chunk_size], A[D * D * chunk_size], S[D * D * chunk_size];
+  alignas(64) T stress[symmetric * chunk_size], volume_ratio[chunk_size], scalar[chunk_size];
+  alignas(64) T velocity[D * chunk_size], increment[D * chunk_size], affine[D * D * chunk_size],
+      gradient_of_velocity[D * D * chunk_size];
+  alignas(64) T advection[D * chunk_size], quads[(1 + 2 * D) * 4 * chunk_size];
+  /// Zero between uses, so that the scatter may add.
+  AlignedArray<T> tile[channel_count];
+
+  void clear(Channel c, int nodes) { std::memset(tile[c].data(), 0, std::size_t(nodes) * 4 * sizeof(T)); }
+};
+
+/// A particle that cannot go on; the lowest body, then index, is reported.
+struct Failure {
+  int severity = 2;  ///< 0 inverted, 1 position, 2 none
+  int body = 0;
+  std::int32_t particle = std::numeric_limits<std::int32_t>::max();
+  std::string cause;
+  void note(int s, int b, std::int32_t p, const std::string& why) {
+    if (std::tie(s, b, p) < std::tie(severity, body, particle)) *this = {s, b, p, why};
+  }
+};
+
+/// One body with what the plugins need of it.
+template <int D, class T>
+struct Body {
+  int index = 0, field = 0;
+  double mass = 0, volume = 0;
+  const Component* material = nullptr;
+  std::int32_t (*update_material)(const void*, const mpm_material_batch*) = nullptr;
+  bool dissipates = false;
+  std::vector<double> initial_position;  ///< m, by index of seeding, particle-major
+};
+
+template <int D, class T>
+class ParticleStep {
+ public:
+  static constexpr std::size_t max_state_fields = 16;
+  ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std::vector<Particles<D, T>>& particles,
+               std::vector<Body<D, T>> bodies);
+
+  /// Kinetic energy of the particles when momenta are scattered with the ledger on, else zero.
+  double scatter(const Pass& pass, const StepInfo& step);
+  struct Gathered {
+    double kinetic_energy = 0, dissipated = 0;  ///< J, with the ledger on
+  };
+  Gathered gather(const Pass& pass, const StepInfo& step);
+  double strain(const StepInfo& step);  ///< energy dissipated, J
+  void move(const StepInfo& step);
+  TimeStepLimit time_step_limit();
+
+  /// Bound of the distance any particle has moved since it was last reset, in cells.
+  double drift() const { return drift_; }
+  void reset_drift() { drift_ = 0; }
+  const std::vector<Body<D, T>>& bodies() const { return bodies_; }
+
+ private:
+  using Work = Workspace<D, T>;
+  /// One chunk under work.
+  struct Chunk {
+    Particles<D, T>& particles;
+    Body<D, T>& body;
+    Block<D>& block;
+    T* values;
+    const std::int32_t* ids;
+    int count, end;  ///< end: count padded to whole lanes
+    T* at(int component) const { return values + component * chunk_size; }
+  };
+  struct States {
+    void* fields[max_state_fields];
+  };
+
+  template <class Visit>
+  void for_each_block(int body, bool coloured, Visit&& visit);
+  template <class Visit>
+  void for_each_chunk_of(int body, Block<D>& block, Visit&& visit);
+  States states(const std::vector<StateField>& fields, const Chunk& chunk) const;
+  void throw_failure();
+
+  void evaluate_shape(const Chunk& chunk, Work& work, bool gradients) const;
+  void place_in_tile(const Chunk& chunk, Work& work, bool extend_reach) const;
+  void update_material(const Chunk& chunk, mpm_material_batch request);
+  void note_inverted(const Chunk& chunk);
+  double kinetic_energy(const Chunk& chunk, const Work& work) const;
+
+  void scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
+  void momentum_coefficients(const Chunk& chunk, Work& work);
+  void stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add);
+  void add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last, bool constant, bool affine,
+                   bool gradient);
+  void scatter_stress(const Chunk& chunk, Work& work);
+  void scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt);
+  void scatter_contact_fields(const Chunk& chunk, Work& work);
+
+  void gather_chunk(const Chunk& chunk, Work& work, bool update_velocity, bool strain);
+  void affine_from_moments(const Chunk& chunk, Work& work, int groups);
+  void advance_material(const Chunk& chunk, Work& work, double dt);
+  double advance_position(const Chunk& chunk, const T* advection, double dt);
+  double margin(int axis, int side) const;
+  void note_outside(const Chunk& chunk);
+
+  const Scene<D, T>& scene_;
+  Grid<D, T>& grid_;
+  std::vector<Particles<D, T>>& particles_;
+  std::vector<Body<D, T>> bodies_;
+  TileKernels<D, T> kernels_;
+  std::vector<std::unique_ptr<Work>> work_;
+  std::vector<double> drift_of_thread_;
+  double drift_ = 0;
+  Failure failure_;
+  std::exception_ptr exception_;
+  std::mutex mutex_;
+};
+
+}  // namespace mpm::cpu

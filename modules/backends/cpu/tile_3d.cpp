@@ -1,0 +1,15 @@
+#include <stdexcept>
+
+#include "tile.hpp"
+
+namespace mpm::cpu {
+
+template <>
+TileKernels<3, double> tile_kernels<3, double>(int width) {
+  if (width == 2) return tile_kernels_of_width<3, double, 2>();
+  if (width == 3) return tile_kernels_of_width<3, double, 3>();
+  if (width == 4) return tile_kernels_of_width<3, double, 4>();
+  throw std::invalid_argument("the cpu backend takes shapes of 2, 3 or 4 nodes an axis");
+}
+
+}  // namespace mpm::cpu

@@ -1,0 +1,147 @@
+#pragma once
+// An experiment as read, checked and resolved: everything the plan needs, nothing of JSON left to interpret.
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "experiment/expression.hpp"
+#include "experiment/geometry.hpp"
+#include "experiment/vector3.hpp"
+#include "plugin/registry.hpp"
+
+namespace mpm {
+
+enum class Precision { single, double_ };
+enum class StressUpdate { first, last, modified_last };  ///< USF, USL, MUSL
+
+/// A plugin chosen in the file, with its filled parameter block.
+struct Component {
+  const Plugin* plugin = nullptr;
+  std::vector<double> parameters;  ///< the block of doubles handed over the boundary, parameter_bytes / 8 long
+  std::string pointer;             ///< JSON pointer of the choice, for messages and the plan
+
+  /// Value of a parameter by name; throws std::out_of_range when the plugin has none of that name.
+  double parameter(std::string_view name) const;
+};
+
+struct GridSpecification {
+  double cell_size = 0;  ///< m, cubic cells
+  Vector3 lower{}, upper{};
+  std::array<int, 3> cells{1, 1, 1};  ///< whole cells a side
+};
+
+enum class ConditionType { free, stick, slip, separate, prescribed, periodic };
+
+/// What holds on a face of the domain. Stick, slip and separate mirror the material beyond the wall (docs/method.md).
+struct FaceCondition {
+  ConditionType type = ConditionType::slip;
+  std::optional<VectorExpression> velocity;  ///< of the wall, m/s, for `prescribed` (function of t, x, y, z)
+  std::string pointer;
+};
+
+/// What holds on the nodes inside a box.
+struct BoxCondition {
+  ConditionType type = ConditionType::stick;
+  Vector3 lower{}, upper{};  ///< m
+  int axis = 0;              ///< held axis of `slip`, and of `separate` with its sign
+  int side = 1;              ///< `separate`: +1 lets material leave towards +axis only
+  std::array<bool, 3> held{true, true,
+                           true};  ///< `prescribed`: components that are given (null in the file leaves one free)
+  std::optional<VectorExpression> velocity;
+  std::string pointer;
+};
+
+struct MaterialSpecification {
+  std::string name;
+  Component component;
+};
+
+struct BodySpecification {
+  std::string name;
+  int material = 0;  ///< index into Experiment::materials
+  int field = 0;     ///< velocity field this body scatters to (0 without contact; else one a body, or as `field` says)
+  std::shared_ptr<const Geometry> geometry;
+  int particles_per_cell_axis = 2;
+  double jitter = 0;          ///< largest random shift of a particle, in particle spacings
+  VectorExpression velocity;  ///< initial, m/s, function of x, y, z
+  std::optional<VectorExpression> initial_displacement_gradient;  ///< unused until a case needs it
+  std::string pointer;
+};
+
+struct SolverSpecification {
+  StressUpdate stress_update = StressUpdate::last;
+  std::optional<double> time_step;  ///< s; nothing: automatic
+  double courant = 0.3;             ///< fraction of h / (wave speed + particle speed) when automatic
+  double end_time = 0;              ///< s
+  long max_steps = 1000000000;      ///< stops with an error message when reached before end_time
+};
+
+struct OutputSpecification {
+  int metrics_every = 10;           ///< steps between rows of metrics.csv
+  int frames = 0;                   ///< pictures over the run, first and last included
+  std::string colour_by = "speed";  ///< attribute that colours the frames
+  bool vtk = false;                 ///< a .vtu beside each frame
+  bool film = false;
+  bool ledger = true;  ///< the energy ledger, accumulated at every step
+};
+
+struct Expectation {
+  std::string metric;  ///< dotted path into summary.json, e.g. "energy.total.final_over_initial"
+  std::optional<double> at_least, at_most, equals;
+  double tolerance = 0;  ///< of `equals`, absolute
+  std::string pointer;
+};
+
+struct ExactChoice {
+  std::string type;                                    ///< name in the registry of exact solutions
+  std::vector<std::pair<std::string, double>> values;  ///< its parameters
+  std::string pointer;
+};
+
+/// Throws nothing once constructed: reading has validated every value, name and combination.
+struct Experiment {
+  std::filesystem::path file;
+  std::string title, description;
+  int dimension = 2;
+  Precision precision = Precision::double_;
+  std::string backend = "cpu";
+  unsigned seed = 1;  ///< of particle jitter, when asked for
+
+  GridSpecification grid;
+  std::array<std::array<FaceCondition, 2>, 3> faces;  ///< [axis][0 lower, 1 upper]
+  std::vector<BoxCondition> boxes;
+
+  Component shape, transfer;
+  std::optional<Component> filter, contact;
+  std::string contact_normal, contact_detection;  ///< names of the host's choices, empty without contact
+  int field_count = 1;
+  std::vector<std::string> field_names;  ///< one a field; with contact only
+
+  std::vector<MaterialSpecification> materials;
+  std::vector<BodySpecification> bodies;
+
+  Vector3 gravity{};                           ///< m/s^2
+  std::optional<VectorExpression> body_force;  ///< N/kg at (x, y, z), initial (X, Y, Z), t
+  std::string body_force_pointer;
+
+  SolverSpecification solver;
+  OutputSpecification output;
+  std::vector<std::string> figures;
+  std::optional<ExactChoice> exact;
+  std::vector<Expectation> expectations;
+
+  nlohmann::ordered_json resolved;  ///< the file with overrides applied and every default filled: re-runnable
+
+  /// "file:line:column" of a JSON pointer's value, for messages that arise after reading.
+  std::string where(std::string_view pointer) const;
+  std::vector<std::pair<std::string, std::pair<int, int>>> positions;  ///< JSON pointer -> line, column
+};
+
+}  // namespace mpm

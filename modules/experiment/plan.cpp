@@ -1,0 +1,366 @@
+#include "experiment/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+#include "experiment/diagnostics.hpp"
+
+namespace mpm {
+namespace {
+
+/// Gathers the plan of one experiment; every entry says which line asked for it.
+class Planner {
+ public:
+  explicit Planner(const Experiment& experiment)
+      : experiment_(experiment),
+        transfer_(experiment.transfer.plugin->transfer()),
+        shape_(experiment.shape.plugin->shape()) {}
+
+  Plan make() {
+    refuse_impossible_combinations();
+    decide();
+    attributes();
+    channels();
+    passes();
+    estimate();
+    return std::move(plan_);
+  }
+
+ private:
+  std::string named(const Component& component) const {
+    return component.pointer + " \"" + std::string(component.plugin->id()) + "\"";
+  }
+
+  [[noreturn]] void refuse(const std::string& pointer, const std::string& message) const {
+    Problem problem{experiment_.file.string(), 0, 0, pointer, message};
+    for (const auto& [known, position] : experiment_.positions)
+      if (known == pointer) problem.line = position.first, problem.column = position.second;
+    throw InputError({problem});
+  }
+
+  void refuse_impossible_combinations() const {
+    const std::string shape = "shape \"" + std::string(experiment_.shape.plugin->id()) + "\" ";
+    if (shape_.form != MPM_TENSOR_PRODUCT)
+      refuse(experiment_.shape.pointer,
+             shape + "is a list of nodes, which no backend of this version runs; choose a tensor-product shape");
+    if (shape_.width < 2 || shape_.width > 4)
+      refuse(experiment_.shape.pointer,
+             shape + "has " + std::to_string(shape_.width) + " nodes an axis; backends run 2 to 4");
+    if (experiment_.filter)
+      refuse(experiment_.filter->pointer, "filter \"" + std::string(experiment_.filter->plugin->id()) +
+                                              "\" cannot run: no backend of this version runs velocity filters");
+    if (shape_.second_moment_kind == MPM_MOMENT_PER_PARTICLE &&
+        (transfer_.traits & (MPM_GATHERS_AFFINE | MPM_STRESS_BY_AFFINE)))
+      refuse(experiment_.transfer.pointer, "transfer \"" + std::string(experiment_.transfer.plugin->id()) +
+                                               "\" needs the second moment of the shape, which " + shape +
+                                               "gives one a particle; no backend of this version runs that");
+  }
+
+  void decide() {
+    const bool moment_is_gradient = shape_.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
+    plan_.contact = experiment_.contact.has_value();
+    plan_.ledger = experiment_.output.ledger;
+    plan_.velocity_increment = transfer_.traits & MPM_GATHERS_INCREMENT;
+    plan_.affine_moment = transfer_.traits & (MPM_GATHERS_AFFINE | MPM_STRAIN_BY_AFFINE | MPM_STRESS_BY_AFFINE);
+    plan_.weight_gradients = !(transfer_.traits & MPM_STRESS_BY_AFFINE) || !(transfer_.traits & MPM_STRAIN_BY_AFFINE) ||
+                             plan_.contact || (plan_.affine_moment && moment_is_gradient);
+    plan_.separate_force = plan_.velocity_increment || plan_.contact || plan_.ledger ||
+                           experiment_.body_force.has_value() || any_separating_wall() ||
+                           experiment_.solver.stress_update == StressUpdate::first;
+    plan_.kept_advection = experiment_.solver.stress_update == StressUpdate::modified_last;
+    plan_.initial_position =
+        experiment_.exact.has_value() || (experiment_.body_force && experiment_.body_force->uses_initial_position());
+  }
+
+  bool any_separating_wall() const {
+    for (int axis = 0; axis < experiment_.dimension; ++axis)
+      for (const FaceCondition& face : experiment_.faces[axis])
+        if (face.type == ConditionType::separate) return true;
+    return false;
+  }
+
+  std::uint64_t scalar_bytes() const { return experiment_.precision == Precision::single ? 4 : 8; }
+
+  void attribute(int body, const std::string& name, int components, const std::string& because) {
+    plan_.attributes.push_back({body, name, components, components * scalar_bytes(), because});
+  }
+
+  void state(int body, const Component& component) {
+    for (const mpm_state& field : component.plugin->state())
+      attribute(body, field.name, state_components(static_cast<mpm_state_shape>(field.shape), experiment_.dimension),
+                named(component) + ": " + field.doc);
+  }
+
+  void attributes() {
+    const int D = experiment_.dimension;
+    for (int body = 0; body < static_cast<int>(experiment_.bodies.size()); ++body) {
+      const BodySpecification& specification = experiment_.bodies[body];
+      attribute(body, "position", D, specification.pointer + ": every particle");
+      attribute(body, "velocity", D, specification.pointer + ": every particle");
+      plan_.attributes.push_back(
+          {body, "identity", 1, 4, specification.pointer + ": results keep the order of seeding"});
+      if (plan_.initial_position)
+        attribute(body, "initial_position", D,
+                  experiment_.exact ? experiment_.exact->pointer + ": errors are measured at X"
+                                    : experiment_.body_force_pointer + ": the force depends on X");
+      if (plan_.kept_advection)
+        attribute(body, "advection_velocity", D,
+                  "/solver/stress_update \"modified_last\": positions wait for the remapped strain");
+      state(body, experiment_.transfer);
+      state(body, experiment_.materials[specification.material].component);
+    }
+  }
+
+  void channel(const std::string& name, int components, const std::string& because) {
+    // Nodes hold groups of four scalars, the width of a vector register's lane group.
+    const std::uint64_t scalars = (components + 3) / 4 * 4;
+    plan_.channels.push_back(
+        {name, components, experiment_.field_count, scalars * scalar_bytes() * experiment_.field_count, because});
+  }
+
+  void channels() {
+    const int D = experiment_.dimension;
+    channel("mass and momentum", D + 1, named(experiment_.transfer) + ": every transfer");
+    if (plan_.separate_force) channel("force", D, why_separate_force());
+    if (experiment_.body_force)
+      channel("body force", D, experiment_.body_force_pointer + ": its work is accounted for apart");
+    if (plan_.contact) {
+      channel("volume and its gradient", D + 1, experiment_.contact->pointer + "/normal \"average_volume_gradient\"");
+      channel("surface position", D, experiment_.contact->pointer + "/detection \"approach_and_position\"");
+    }
+  }
+
+  std::string why_separate_force() const {
+    if (plan_.velocity_increment) return named(experiment_.transfer) + ": gathers the change of velocity";
+    if (plan_.contact) return named(*experiment_.contact) + ": acts before and after the forces";
+    if (plan_.ledger) return "/output/ledger: work of the forces";
+    if (experiment_.body_force) return experiment_.body_force_pointer + ": work of the forces";
+    if (experiment_.solver.stress_update == StressUpdate::first)
+      return "/solver/stress_update \"first\": stress after the momenta";
+    return "/grid/boundaries \"separate\": the wall predicts with the forces";
+  }
+
+  Pass& pass(PassKind kind, const std::string& because) {
+    plan_.passes.push_back({});
+    plan_.passes.back().kind = kind;
+    plan_.passes.back().because = because;
+    return plan_.passes.back();
+  }
+
+  void passes() {
+    const std::string transfer = named(experiment_.transfer);
+    const std::string order = "/solver/stress_update";
+    if (!experiment_.solver.time_step) pass(PassKind::estimate_time_step, "/solver/time_step \"auto\"").every_steps = 8;
+    if (experiment_.backend == "cpu") pass(PassKind::sort, "/backend \"cpu\": particles stay in their blocks of cells");
+    pass(PassKind::reset_grid, transfer);
+    Pass& scatter = pass(PassKind::scatter, transfer);
+    scatter.momentum = true;
+    scatter.contact_fields = plan_.contact;
+    const bool first = experiment_.solver.stress_update == StressUpdate::first;
+    scatter.force = !first;
+    pass(PassKind::momentum_to_velocity,
+         plan_.contact ? named(*experiment_.contact) + " before the forces; boundaries" : "boundaries");
+    if (first) {
+      pass(PassKind::strain, order + " \"first\"");
+      pass(PassKind::scatter, order + " \"first\": stress at the new strain").force = true;
+    }
+    pass(PassKind::apply_forces,
+         plan_.contact ? named(*experiment_.contact) + " after the forces; boundaries" : "boundaries");
+    Pass& gather = pass(PassKind::gather, transfer);
+    gather.strain = experiment_.solver.stress_update == StressUpdate::last;
+    gather.move = experiment_.solver.stress_update != StressUpdate::modified_last;
+    if (gather.move) return;
+    Pass& again = pass(PassKind::scatter, order + " \"modified_last\": updated velocities, old positions");
+    again.momentum = again.remap = true;
+    pass(PassKind::momentum_to_velocity, order + " \"modified_last\"").remap = true;
+    pass(PassKind::strain, order + " \"modified_last\"");
+    pass(PassKind::move, order + " \"modified_last\": positions by the velocity gathered before");
+  }
+
+  // ---- memory, before anything is allocated ----------------------------------------------------------------------
+
+  /// Share of a body's bounding box that it fills, from a fixed low-discrepancy sample.
+  static double filled_share(const Geometry& geometry, const Vector3& lower, const Vector3& upper) {
+    constexpr int samples = 4096;
+    int inside = 0;
+    for (int k = 0; k < samples; ++k) {
+      const double u[3] = {std::fmod(0.5 + k * 0.8191725133961645, 1.0), std::fmod(0.5 + k * 0.6710436067037893, 1.0),
+                           std::fmod(0.5 + k * 0.5497004779019703, 1.0)};
+      Vector3 x{};
+      for (int c = 0; c < 3; ++c) x[c] = lower[c] + u[c] * (upper[c] - lower[c]);
+      inside += geometry.contains(x);
+    }
+    return std::max(inside, 1) / static_cast<double>(samples);
+  }
+
+  double estimated_particles(const BodySpecification& body) const {
+    auto [lower, upper] = body.geometry->bounds();
+    double count = 1;
+    for (int c = 0; c < experiment_.dimension; ++c) {
+      lower[c] = std::max(lower[c], experiment_.grid.lower[c]);
+      upper[c] = std::min(upper[c], experiment_.grid.upper[c]);
+      count *= std::max(0.0, (upper[c] - lower[c]) / experiment_.grid.cell_size * body.particles_per_cell_axis);
+    }
+    return count * filled_share(*body.geometry, lower, upper);
+  }
+
+  void estimate() {
+    const int D = experiment_.dimension;
+    double particles = 0, particle_bytes = 0, occupied_cells = 0, domain_nodes = 1;
+    for (std::size_t b = 0; b < experiment_.bodies.size(); ++b) {
+      const double count = estimated_particles(experiment_.bodies[b]);
+      particles += count;
+      particle_bytes += count * static_cast<double>(plan_.bytes_per_particle(static_cast<int>(b)));
+      occupied_cells += count / std::pow(experiment_.bodies[b].particles_per_cell_axis, D);
+    }
+    for (int c = 0; c < D; ++c) domain_nodes *= experiment_.grid.cells[c] + 7.0;
+    // The cpu backend keeps blocks around particles only: a body's cells and a rim of about one block on every side.
+    const double rim = 12 * D * std::pow(occupied_cells, (D - 1.0) / D) * (D == 2 ? 8 : 4) / 4 + 4096;
+    const double nodes =
+        experiment_.backend == "reference" ? domain_nodes : std::min(domain_nodes * 2, 1.3 * occupied_cells + rim);
+    // The reference backend keeps stencils and all moments of a particle, and every value of a node side by side.
+    const double stencil = std::pow(shape_.width, D) * 88.0 + 600;
+    if (experiment_.backend == "reference") particle_bytes += particles * stencil;
+    const double grid_bytes =
+        nodes * (experiment_.backend == "reference" ? 240.0 * experiment_.field_count
+                                                    : static_cast<double>(plan_.bytes_per_node()));
+    refuse_too_large(particles, particle_bytes, grid_bytes);
+    plan_.particles = static_cast<std::uint64_t>(particles);
+    plan_.nodes = static_cast<std::uint64_t>(nodes);
+    plan_.particle_bytes = static_cast<std::uint64_t>(particle_bytes);
+    plan_.grid_bytes = static_cast<std::uint64_t>(grid_bytes);
+  }
+
+  static double available_bytes() {
+    std::ifstream file("/proc/meminfo");
+    for (std::string line; std::getline(file, line);)
+      if (unsigned long long kilobytes = 0; std::sscanf(line.c_str(), "MemAvailable: %llu kB", &kilobytes) == 1)
+        return kilobytes * 1024.0;
+    return 8e9;
+  }
+
+  void refuse_too_large(double particles, double particle_bytes, double grid_bytes) const {
+    // Sorting keeps two copies of the particles for a moment.
+    const double needed = 2 * particle_bytes + grid_bytes, available = available_bytes();
+    if (particles < 2e9 && needed < 0.9 * available) return;
+    std::ostringstream message;
+    message.precision(3);
+    message << "the scene needs about " << needed / 1e9 << " GB (" << particles << " particles, "
+            << particle_bytes / 1e9 << " GB of state, " << grid_bytes / 1e9 << " GB of grid), and " << available / 1e9
+            << " GB are free; use larger cells, fewer particles a cell or smaller bodies";
+    refuse("/grid/cell_size", message.str());
+  }
+
+  const Experiment& experiment_;
+  const mpm_transfer& transfer_;
+  const mpm_shape& shape_;
+  Plan plan_;
+};
+
+std::string padded(std::string text, std::size_t width) {
+  if (text.size() < width) text.resize(width, ' ');
+  return text + "  ";
+}
+
+}  // namespace
+
+std::string Pass::name() const {
+  switch (kind) {
+    case PassKind::estimate_time_step:
+      return "estimate time step";
+    case PassKind::sort:
+      return "sort";
+    case PassKind::reset_grid:
+      return "reset grid";
+    case PassKind::scatter:
+      return remap ? "scatter again" : momentum && force ? "scatter" : momentum ? "scatter momentum" : "scatter force";
+    case PassKind::momentum_to_velocity:
+      return remap ? "momentum to velocity again" : "momentum to velocity";
+    case PassKind::apply_forces:
+      return "apply forces";
+    case PassKind::gather:
+      return strain ? "gather and strain" : "gather";
+    case PassKind::strain:
+      return "strain";
+    case PassKind::move:
+      return "move";
+  }
+  return "";
+}
+
+std::uint64_t Plan::bytes_per_particle(int body) const {
+  std::uint64_t sum = 0;
+  for (const PlannedAttribute& attribute : attributes)
+    if (attribute.body == body) sum += attribute.bytes_per_particle;
+  return sum;
+}
+
+std::uint64_t Plan::bytes_per_node() const {
+  std::uint64_t sum = 0;
+  for (const PlannedChannel& channel : channels) sum += channel.bytes_per_node;
+  return sum;
+}
+
+nlohmann::ordered_json Plan::to_json() const {
+  nlohmann::ordered_json json;
+  for (const PlannedAttribute& a : attributes)
+    json["attributes"].push_back({{"body", a.body},
+                                  {"name", a.name},
+                                  {"components", a.components},
+                                  {"bytes_per_particle", a.bytes_per_particle},
+                                  {"because", a.because}});
+  for (const PlannedChannel& c : channels)
+    json["fields"].push_back({{"name", c.name},
+                              {"components", c.components},
+                              {"copies", c.copies},
+                              {"bytes_per_node", c.bytes_per_node},
+                              {"because", c.because}});
+  for (const Pass& p : passes)
+    json["passes"].push_back({{"name", p.name()}, {"every_steps", p.every_steps}, {"because", p.because}});
+  json["weight_gradients"] = weight_gradients;
+  json["affine_moment"] = affine_moment;
+  json["separate_force"] = separate_force;
+  json["velocity_increment"] = velocity_increment;
+  json["ledger"] = ledger;
+  json["estimate"] = {
+      {"particles", particles}, {"nodes", nodes}, {"particle_bytes", particle_bytes}, {"grid_bytes", grid_bytes}};
+  return json;
+}
+
+std::string Plan::to_text() const {
+  std::ostringstream out;
+  out << "Attributes of a particle\n";
+  int body = -1;
+  for (const PlannedAttribute& a : attributes) {
+    if (a.body != body) {
+      body = a.body;
+      out << "  body " << body << ": " << bytes_per_particle(body) << " bytes a particle\n";
+    }
+    out << "    " << padded(a.name, 26)
+        << padded(std::to_string(a.components) + " component" + (a.components > 1 ? "s" : ""), 13)
+        << padded(std::to_string(a.bytes_per_particle) + " B", 6) << a.because << "\n";
+  }
+  out << "Fields of a node: " << bytes_per_node() << " bytes\n";
+  for (const PlannedChannel& c : channels)
+    out << "    " << padded(c.name, 26) << padded(std::to_string(c.copies) + " x " + std::to_string(c.components), 13)
+        << padded(std::to_string(c.bytes_per_node) + " B", 6) << c.because << "\n";
+  out << "Passes of a step\n";
+  for (const Pass& p : passes)
+    out << "    " << padded(p.name(), 26)
+        << padded(p.every_steps > 1 ? "every " + std::to_string(p.every_steps) + " steps" : "", 21) << p.because
+        << "\n";
+  out << "Stencil: weights" << (weight_gradients ? " and gradients" : " only, no gradients") << "; force "
+      << (separate_force ? "in a field of its own" : "merged into momentum") << "\n";
+  out << "Estimate: " << particles << " particles, " << nodes << " nodes, " << (particle_bytes + 524288) / 1048576
+      << " MiB of particles, " << (grid_bytes + 524288) / 1048576 << " MiB of grid\n";
+  return out.str();
+}
+
+Plan make_plan(const Experiment& experiment) {
+  return Planner(experiment).make();
+}
+
+}  // namespace mpm

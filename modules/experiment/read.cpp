@@ -1,0 +1,240 @@
+#include "experiment/read.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "experiment/reader.hpp"
+
+namespace mpm {
+namespace {
+
+bool is_name(const std::string& text) {
+  const auto word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  return !text.empty() && !std::isdigit(static_cast<unsigned char>(text[0])) &&
+         std::all_of(text.begin(), text.end(), word);
+}
+
+/// The members of `object` in the order of a table.
+OrderedJson in_table_order(const OrderedJson& object, const Section& section) {
+  OrderedJson ordered = OrderedJson::object();
+  for (const ParameterSpec& spec : section.parameters) {
+    if (object.contains(spec.name) && !object[spec.name].is_null()) ordered[spec.name] = object[spec.name];
+  }
+  return ordered;
+}
+
+}  // namespace
+
+ComponentLookup::ComponentLookup(const Registry& registry) {
+  for (const Plugin& plugin : registry.plugins()) plugins_.push_back(&plugin);
+}
+
+const Plugin* ComponentLookup::find(mpm_kind kind, std::string_view id) const {
+  for (const Plugin* plugin : plugins_) {
+    if (plugin->descriptor->kind == static_cast<std::uint32_t>(kind) && plugin->id() == id) return plugin;
+  }
+  return nullptr;
+}
+
+std::vector<const Plugin*> ComponentLookup::of_kind(mpm_kind kind) const {
+  std::vector<const Plugin*> found;
+  for (const Plugin* plugin : plugins_) {
+    if (plugin->descriptor->kind == static_cast<std::uint32_t>(kind)) found.push_back(plugin);
+  }
+  return found;
+}
+
+ExperimentReader::ExperimentReader(Node root, const std::filesystem::path& file, const ComponentLookup& components,
+                                   const ReadOptions& options)
+    : root_(std::move(root)), components_(components), options_(options) {
+  context_.file = file.string();
+  experiment_.file = file;
+  apply_overrides(root_, options.overrides, context_.problems);
+  if (options.backend) set_from_option(root_, "backend", *options.backend, "--backend");
+}
+
+Experiment ExperimentReader::read() {
+  // Lengths of vectors and the meaning of formulas depend on these two: they come first, wherever they stand.
+  const Node* dimension = root_.find("dimension");
+  if (dimension && dimension->type == Node::Type::number && (dimension->number == 2 || dimension->number == 3)) {
+    context_.dimension = static_cast<int>(dimension->number);
+  }
+  read_constants();
+
+  const Section section = experiment_section(options_);
+  const Fields fields(&root_, section, context_);
+  resolved_ = fields.resolved;
+  if (!experiment_.resolved.is_null()) resolved_["constants"] = experiment_.resolved;
+  read_header(fields);
+  read_grid(fields.node("grid"));
+  read_node_conditions(fields.node("node_conditions"));
+  read_components(fields);
+  read_materials(fields.node("materials"));
+  read_bodies(fields.node("bodies"));
+  read_solver(fields.node("solver"));
+  read_output(fields.node("output"));
+  read_compare(fields.node("compare"));
+
+  if (!context_.problems.empty()) throw InputError(std::move(context_.problems));
+  experiment_.resolved = in_table_order(resolved_, section);
+  experiment_.positions = all_positions(root_);
+  return std::move(experiment_);
+}
+
+void ExperimentReader::read_constants() {
+  const Node* node = root_.find("constants");
+  if (!node || node->type == Node::Type::null) return;
+  if (node->type != Node::Type::object) {
+    return problem(*node, "expected an object of named numbers, got " + describe_value(*node));
+  }
+  std::vector<std::string> taken = expression_functions();
+  for (const char* name : {"pi", "x", "y", "z", "X", "Y", "Z", "t"}) taken.emplace_back(name);
+  OrderedJson resolved = OrderedJson::object();
+  for (const Member& member : node->members) {
+    double value = 0;
+    if (!is_name(member.key)) {
+      context_.problem(member.at, member.value.pointer,
+                       in_quotes(member.key) + " is no name: letters, digits and _, not beginning with a digit");
+    } else if (std::find(taken.begin(), taken.end(), member.key) != taken.end()) {
+      context_.problem(member.at, member.value.pointer,
+                       in_quotes(member.key) + " already has a meaning in expressions");
+    } else {
+      // A name whose value is wrong stays known, so that its uses are not reported as well.
+      read_si(member.value, "any", "a number", value, context_);
+      context_.constants.emplace_back(member.key, value);
+      resolved[member.key] = value;
+    }
+  }
+  experiment_.resolved = resolved;
+}
+
+void ExperimentReader::read_header(const Fields& fields) {
+  experiment_.title = fields.text("title");
+  experiment_.description = fields.text("description");
+  experiment_.dimension = context_.dimension;
+  experiment_.precision = fields.text("precision") == "float" ? Precision::single : Precision::double_;
+  experiment_.backend = fields.text("backend");
+  experiment_.seed = static_cast<unsigned>(fields.number("seed"));
+  experiment_.gravity = fields.vector("gravity");
+  experiment_.figures = fields.names("figures");
+  if (fields.given("body_force")) {
+    experiment_.body_force = fields.expression("body_force");
+    experiment_.body_force_pointer = "/body_force";
+  }
+  capability_known_ = fields.valid("precision") && fields.valid("backend");
+  if (experiment_.backend == "reference" && experiment_.precision == Precision::single) {
+    capability_known_ = false;
+    const bool file_says_float = fields.place("precision").at.option.empty();
+    problem(fields.place(file_says_float && !fields.place("backend").at.option.empty() ? "backend" : "precision"),
+            "precision \"float\" is not available on backend \"reference\", which computes in double only; "
+            "set precision to \"double\" or backend to \"cpu\"");
+  }
+}
+
+void ExperimentReader::read_solver(const Node* node) {
+  const Fields fields(node, solver_section(), context_);
+  SolverSpecification& solver = experiment_.solver;
+  solver.stress_update = static_cast<StressUpdate>(fields.choice("stress_update"));
+  if (fields.text("time_step").empty()) solver.time_step = fields.number("time_step");
+  solver.courant = fields.number("courant");
+  solver.end_time = fields.number("end_time");
+  solver.max_steps = static_cast<long>(fields.number("max_steps"));
+  resolved_["solver"] = fields.resolved;
+}
+
+void ExperimentReader::read_output(const Node* node) {
+  const Fields fields(node, output_section(options_), context_);
+  OutputSpecification& output = experiment_.output;
+  output.metrics_every = fields.integer("metrics_every");
+  output.frames = fields.integer("frames");
+  output.colour_by = fields.text("colour_by");
+  output.vtk = fields.boolean("vtk");
+  output.film = fields.boolean("film");
+  output.ledger = fields.boolean("ledger");
+  resolved_["output"] = fields.resolved;
+  if (!fields.valid("frames")) return;
+  if (output.film && output.frames < 2) problem(fields.place("film"), "a film needs \"frames\" of at least 2");
+  if (output.vtk && output.frames < 1) problem(fields.place("vtk"), "VTK files are written at frames: set \"frames\"");
+}
+
+void ExperimentReader::read_compare(const Node* node) {
+  if (!node) return;
+  const Fields fields(node, compare_section(), context_);
+  OrderedJson& resolved = resolved_["compare"] = OrderedJson::object();
+  if (fields.given("exact")) resolved["exact"] = read_exact(*fields.node("exact"));
+  if (!fields.given("expect") || !is_list(*fields.node("expect"), "expectations", true)) return;
+  resolved["expect"] = OrderedJson::array();
+  for (const Node& item : fields.node("expect")->items) resolved["expect"].push_back(read_expectation(item));
+}
+
+OrderedJson ExperimentReader::read_exact(const Node& node) {
+  const std::vector<Section> kinds = exact_kinds(options_);
+  const Section* kind = choose_kind(node, kinds, "exact solution", false, context_);
+  if (!kind) return {};
+  const Fields fields(&node, *kind, context_);
+  ExactChoice choice{kind->name, {}, node.pointer};
+  for (const ParameterSpec& spec : kind->parameters) {
+    if (fields.valid(spec.name)) choice.values.emplace_back(spec.name, fields.number(spec.name));
+  }
+  experiment_.exact = std::move(choice);
+  return fields.resolved;
+}
+
+OrderedJson ExperimentReader::read_expectation(const Node& node) {
+  const Fields fields(&node, expectation_section(), context_);
+  Expectation expectation;
+  expectation.metric = fields.text("metric");
+  expectation.pointer = node.pointer;
+  if (fields.given("at_least")) expectation.at_least = fields.number("at_least");
+  if (fields.given("at_most")) expectation.at_most = fields.number("at_most");
+  if (fields.given("equals")) expectation.equals = fields.number("equals");
+  expectation.tolerance = fields.number("tolerance");
+  if (node.type == Node::Type::object) {
+    if (!expectation.at_least && !expectation.at_most && !expectation.equals) {
+      problem(node, "expects nothing: give \"at_least\", \"at_most\" or \"equals\"");
+    }
+    if (fields.given("tolerance") && !expectation.equals) {
+      problem(*fields.node("tolerance"), "a tolerance belongs to \"equals\", which is not given");
+    }
+    const bool both =
+        expectation.at_least && expectation.at_most && fields.valid("at_least") && fields.valid("at_most");
+    if (both && *expectation.at_least > *expectation.at_most) {
+      problem(node, "nothing is both at least " + number_text(*expectation.at_least) + " and at most " +
+                        number_text(*expectation.at_most));
+    }
+  }
+  experiment_.expectations.push_back(std::move(expectation));
+  return fields.resolved;
+}
+
+bool ExperimentReader::is_list(const Node& node, const char* what, bool may_be_empty) {
+  if (node.type != Node::Type::array) {
+    problem(node, std::string("expected a list of ") + what + ", got " + describe_value(node));
+    return false;
+  }
+  if (node.items.empty() && !may_be_empty) problem(node, std::string("the list of ") + what + " is empty");
+  return true;
+}
+
+namespace {
+Experiment read_tree(Node root, const std::filesystem::path& file, const ComponentLookup& components,
+                     const ReadOptions& options) {
+  return ExperimentReader(std::move(root), file, components, options).read();
+}
+}  // namespace
+
+Experiment read_experiment(const std::filesystem::path& file, const ComponentLookup& components,
+                           const ReadOptions& options) {
+  return read_tree(read_located(file), file, components, options);
+}
+
+Experiment read_experiment(const std::filesystem::path& file, const Registry& registry, const ReadOptions& options) {
+  return read_experiment(file, ComponentLookup(registry), options);
+}
+
+Experiment read_experiment_text(std::string_view text, const std::filesystem::path& file,
+                                const ComponentLookup& components, const ReadOptions& options) {
+  return read_tree(parse_located(text, file.string()), file, components, options);
+}
+
+}  // namespace mpm

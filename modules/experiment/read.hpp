@@ -1,0 +1,53 @@
+#pragma once
+// From a file to a checked Experiment, or to every mistake in it at once.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiment/diagnostics.hpp"
+#include "experiment/experiment.hpp"
+#include "experiment/parameter.hpp"
+
+namespace mpm {
+
+/// An exact solution that experiments may name under compare/exact.
+struct ExactDescription {
+  std::string name, doc;
+  std::vector<ParameterSpec> parameters;
+};
+
+/// What the rest of the program offers, so that reading can check names without depending on it.
+struct ReadOptions {
+  std::vector<std::string> overrides;  ///< "/json/pointer=value", applied in order
+  std::optional<std::string> backend;  ///< as --backend gave it; wins over the file
+  std::vector<ExactDescription> exact;
+  std::vector<std::string> backends{"reference", "cpu"};
+  std::vector<std::string> figures;            ///< valid figure names; empty: any
+  std::vector<std::string> colour_quantities;  ///< valid for output/colour_by; empty: any
+};
+
+/// The plugins to choose from. They must outlive every Experiment read with them.
+class ComponentLookup {
+ public:
+  explicit ComponentLookup(const Registry& registry);
+  explicit ComponentLookup(std::vector<const Plugin*> plugins) : plugins_(std::move(plugins)) {}
+
+  const Plugin* find(mpm_kind kind, std::string_view id) const;
+  std::vector<const Plugin*> of_kind(mpm_kind kind) const;
+
+ private:
+  std::vector<const Plugin*> plugins_;
+};
+
+/// Reads, checks and resolves an experiment. Throws InputError with every problem found, in the order of the file.
+Experiment read_experiment(const std::filesystem::path& file, const Registry& registry, const ReadOptions& options);
+Experiment read_experiment(const std::filesystem::path& file, const ComponentLookup& components,
+                           const ReadOptions& options);
+/// The same from text; `file` names it in messages.
+Experiment read_experiment_text(std::string_view text, const std::filesystem::path& file,
+                                const ComponentLookup& components, const ReadOptions& options);
+
+}  // namespace mpm

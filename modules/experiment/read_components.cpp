@@ -1,0 +1,91 @@
+// The plugins an experiment chooses, and whether they can do what it asks.
+#include "experiment/reader.hpp"
+
+namespace mpm {
+namespace {
+
+std::string offered_precisions(std::uint32_t bits) {
+  const bool single = bits & (1u << MPM_LANES_FLOAT);
+  const bool lanes = bits & (1u << MPM_LANES_DOUBLE), scalar = bits & (1u << MPM_SCALAR_DOUBLE);
+  std::vector<std::string> offered;
+  if (single) offered.push_back("float on the cpu");
+  if (lanes) offered.push_back("double on the cpu");
+  if (scalar) offered.push_back("double on the reference backend");
+  std::string text;
+  for (const std::string& one : offered) text += (text.empty() ? "" : ", ") + one;
+  return text.empty() ? "nothing" : text;
+}
+
+}  // namespace
+
+void ExperimentReader::check_capability(const Plugin& plugin, mpm_kind kind, const Node& place) {
+  const mpm_descriptor& descriptor = *plugin.descriptor;
+  const std::string name = std::string(kind_name(kind)) + " " + in_quotes(plugin.id());
+  const int dimension = context_.dimension;
+  if (dimension && !(descriptor.dimensions & (dimension == 2 ? MPM_2D : MPM_3D))) {
+    problem(place, name + " works in " + (dimension == 2 ? "3-D" : "2-D") + " only, but this experiment is " +
+                       std::to_string(dimension) + "-D");
+  }
+  if (!capability_known_) return;
+  const bool reference = experiment_.backend == "reference", single = experiment_.precision == Precision::single;
+  const int wanted = reference ? MPM_SCALAR_DOUBLE : single ? MPM_LANES_FLOAT : MPM_LANES_DOUBLE;
+  if (!(descriptor.precisions & (1u << wanted))) {
+    problem(place, name + " does not offer " + (single ? "float" : "double") + " on backend " +
+                       in_quotes(experiment_.backend) + "; it offers " + offered_precisions(descriptor.precisions));
+  }
+}
+
+ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_kind kind) {
+  Chosen chosen;
+  const std::vector<Section> kinds = component_kinds(components_, kind);
+  const std::string what = kind == MPM_CONTACT ? "contact law" : std::string(kind_name(kind));
+  const Section* section = choose_kind(node, kinds, what, false, context_);
+  if (!section) return chosen;
+  const Plugin* plugin = components_.find(kind, section->name);
+  check_capability(*plugin, kind, *node.find("type"));
+  chosen.fields.emplace(&node, *section, context_);
+  chosen.component.plugin = plugin;
+  chosen.component.pointer = node.pointer;
+  chosen.component.parameters.resize(plugin->descriptor->parameter_bytes / sizeof(double));
+  for (const mpm_parameter& declared : plugin->parameters()) {
+    const std::size_t slot = declared.offset / sizeof(double);
+    if (slot >= chosen.component.parameters.size()) continue;  // the registry refuses such a plugin
+    chosen.component.parameters[slot] = chosen.fields->number(declared.name);
+  }
+  chosen.resolved = chosen.fields->resolved;
+  return chosen;
+}
+
+void ExperimentReader::read_components(const Fields& fields) {
+  const auto choose = [&](const char* key, mpm_kind kind) {
+    Chosen chosen = read_component(*fields.node(key), kind);
+    resolved_[key] = chosen.resolved;
+    return chosen;
+  };
+  if (fields.given("shape")) experiment_.shape = choose("shape", MPM_SHAPE).component;
+  if (fields.given("transfer")) experiment_.transfer = choose("transfer", MPM_TRANSFER).component;
+  if (fields.given("filter")) experiment_.filter = choose("filter", MPM_FILTER).component;
+  if (!fields.given("contact")) return;
+  const Chosen contact = choose("contact", MPM_CONTACT);
+  experiment_.contact = contact.component;
+  if (!contact.fields) return;
+  experiment_.contact_normal = contact.fields->text("normal");
+  experiment_.contact_detection = contact.fields->text("detection");
+}
+
+void ExperimentReader::read_materials(const Node* node) {
+  if (!node) return;
+  if (node->type != Node::Type::object) {
+    return problem(*node, "expected an object of materials by name, got " + describe_value(*node));
+  }
+  if (node->members.empty()) problem(*node, "there is no material in it");
+  OrderedJson& resolved = resolved_["materials"] = OrderedJson::object();
+  for (const Member& member : node->members) {
+    if (member.key.empty()) context_.problem(member.at, member.value.pointer, "a material needs a name");
+    Chosen chosen = read_component(member.value, MPM_MATERIAL);
+    experiment_.materials.push_back({member.key, std::move(chosen.component)});
+    resolved[member.key] = std::move(chosen.resolved);
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,188 @@
+#include "experiment/schema.hpp"
+
+#include <cmath>
+
+#include "experiment/sections.hpp"
+
+namespace mpm {
+namespace {
+
+using Json = OrderedJson;
+
+// A number, then a unit: what units.hpp parses, as far as a pattern can tell.
+constexpr const char* quantity_pattern = "^\\s*[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?\\s*[^0-9\\s.].*$";
+
+Json reference(const std::string& definition) {
+  return {{"$ref", "#/$defs/" + definition}};
+}
+
+Json list_of(Json items) {
+  return {{"type", "array"}, {"items", std::move(items)}};
+}
+
+void put_range(const ParameterSpec& spec, Json& schema) {
+  if (std::isfinite(spec.minimum)) schema[spec.above_minimum ? "exclusiveMinimum" : "minimum"] = spec.minimum;
+  if (std::isfinite(spec.maximum)) schema[spec.below_maximum ? "exclusiveMaximum" : "maximum"] = spec.maximum;
+}
+
+Json quantity(const Json& number, const ParameterSpec& spec) {
+  Json any = Json::array({number, {{"type", "string"}, {"pattern", quantity_pattern}}});
+  if (!spec.word.empty()) any.push_back({{"const", spec.word}});
+  return {{"anyOf", std::move(any)}};
+}
+
+Json vector_of(const ParameterSpec& spec, Json component) {
+  Json schema = list_of(std::move(component));
+  schema["minItems"] = spec.components ? spec.components : 2;
+  schema["maxItems"] = spec.components ? spec.components : 3;
+  return schema;
+}
+
+Json strings_of(const ParameterSpec& spec) {
+  Json schema = {{"type", "string"}};
+  if (!spec.choices.empty()) schema["enum"] = spec.choices;
+  return schema;
+}
+
+Json value_schema(const ParameterSpec& spec) {
+  const Json number = {{"type", "number"}};
+  switch (spec.type) {
+    case ParameterType::number: {
+      Json ranged = number;
+      put_range(spec, ranged);
+      return quantity(ranged, spec);
+    }
+    case ParameterType::integer: {
+      Json schema = {{"type", "integer"}};
+      put_range(spec, schema);
+      return schema;
+    }
+    case ParameterType::boolean:
+      return {{"type", "boolean"}};
+    case ParameterType::choice:
+    case ParameterType::string:
+      return strings_of(spec);
+    case ParameterType::vector:
+      return vector_of(spec, quantity(number, {}));
+    case ParameterType::expression_vector: {
+      Json types = Json::array({"number", "string"});
+      if (spec.may_leave_free) types.push_back("null");
+      return vector_of(spec, {{"type", types}});
+    }
+    case ParameterType::points: {
+      Json schema = list_of(vector_of(spec, quantity(number, {})));
+      schema["minItems"] = spec.least_items;
+      schema["maxItems"] = spec.most_items;
+      return schema;
+    }
+    case ParameterType::names: {
+      Json schema = list_of(strings_of(spec));
+      schema["uniqueItems"] = true;
+      return schema;
+    }
+    case ParameterType::nested: {
+      // null takes an optional section away, so that a study can switch it off.
+      if (spec.required) return reference(spec.definition);
+      return {{"anyOf", Json::array({reference(spec.definition), {{"type", "null"}}})}};
+    }
+  }
+  return {};
+}
+
+Json parameter_schema(const ParameterSpec& spec) {
+  Json schema = value_schema(spec);
+  const bool has_unit = !spec.unit.empty() && spec.unit != "any";
+  const std::string text = spec.doc + (has_unit ? " Unit: " + spec.unit + "." : "");
+  if (!text.empty()) schema["description"] = text;
+  if (spec.default_value.is_null()) return schema;
+  const bool vector = spec.type == ParameterType::vector || spec.type == ParameterType::expression_vector;
+  if (!vector) schema["default"] = spec.default_value;  // a vector's default has as many zeros as dimensions
+  return schema;
+}
+
+Json section_schema(const Section& section) {
+  Json properties = Json::object(), required = Json::array();
+  if (section.tagged) {
+    properties["type"] = {{"const", section.name}};
+    required.push_back("type");
+  }
+  for (const ParameterSpec& spec : section.parameters) {
+    properties[spec.name] = parameter_schema(spec);
+    if (spec.required) required.push_back(spec.name);
+  }
+  Json schema = {{"type", "object"}};
+  if (!section.doc.empty()) schema["description"] = section.doc;
+  schema["properties"] = std::move(properties);
+  if (!required.empty()) schema["required"] = std::move(required);
+  schema["additionalProperties"] = false;
+  return schema;
+}
+
+/// An object whose "type" decides which keys it has: editors then complete the keys of that type alone.
+Json choice_schema(const std::vector<Section>& kinds) {
+  if (kinds.empty()) return {{"not", Json::object()}, {"description", "Nothing of this kind is available."}};
+  Json names = Json::array(), branches = Json::array();
+  for (const Section& kind : kinds) {
+    names.push_back(kind.name);
+    branches.push_back({{"if", {{"properties", {{"type", {{"const", kind.name}}}}}, {"required", {"type"}}}},
+                        {"then", section_schema(kind)}});
+  }
+  return {{"type", "object"},
+          {"required", Json::array({"type"})},
+          {"properties", {{"type", {{"enum", std::move(names)}}}}},
+          {"allOf", std::move(branches)}};
+}
+
+Json face_condition_schema() {
+  const std::vector<Section> kinds = face_condition_kinds();
+  Json names = Json::array();
+  for (const Section& kind : kinds) {
+    if (kind.parameters.empty()) names.push_back(kind.name);
+  }
+  return {{"anyOf", Json::array({{{"enum", std::move(names)}}, choice_schema(kinds)})}};
+}
+
+Json definitions(const ComponentLookup& components, const ReadOptions& options) {
+  Json all = Json::object();
+  all["constants"] = {{"type", "object"},
+                      {"description", "Named numbers for expressions."},
+                      {"additionalProperties", quantity({{"type", "number"}}, {})}};
+  all["grid"] = section_schema(grid_section());
+  all["boundaries"] = section_schema(boundaries_section(3));
+  all["face_condition"] = face_condition_schema();
+  all["node_condition"] = choice_schema(node_condition_kinds());
+  all["node_conditions"] = list_of(reference("node_condition"));
+  for (const mpm_kind kind : {MPM_SHAPE, MPM_TRANSFER, MPM_FILTER, MPM_CONTACT, MPM_MATERIAL}) {
+    all[std::string(kind_name(kind))] = choice_schema(component_kinds(components, kind));
+  }
+  all["materials"] = {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", reference("material")}};
+  all["geometry"] = choice_schema(geometry_kinds());
+  all["geometries"] = list_of(reference("geometry"));
+  all["body"] = section_schema(body_section());
+  all["bodies"] = list_of(reference("body"));
+  all["bodies"]["minItems"] = 1;
+  all["solver"] = section_schema(solver_section());
+  all["output"] = section_schema(output_section(options));
+  all["compare"] = section_schema(compare_section());
+  all["exact"] = choice_schema(exact_kinds(options));
+  all["expectation"] = section_schema(expectation_section());
+  all["expectation"]["anyOf"] =
+      Json::array({{{"required", {"at_least"}}}, {{"required", {"at_most"}}}, {{"required", {"equals"}}}});
+  all["expectations"] = list_of(reference("expectation"));
+  return all;
+}
+
+}  // namespace
+
+nlohmann::ordered_json json_schema(const ComponentLookup& components, const ReadOptions& options) {
+  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "MPM Sandbox experiment"}};
+  schema.update(section_schema(experiment_section(options)));
+  schema["$defs"] = definitions(components, options);
+  return schema;
+}
+
+nlohmann::ordered_json json_schema(const Registry& registry, const ReadOptions& options) {
+  return json_schema(ComponentLookup(registry), options);
+}
+
+}  // namespace mpm

@@ -1,0 +1,14 @@
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "experiment/read.hpp"
+
+namespace mpm {
+
+/// JSON Schema (draft 2020-12) of an experiment file, written from the tables that the reader checks against and from
+/// the parameters that the plugins declare, so that editors complete and check what this build accepts. It cannot say
+/// what the reader checks across keys (whole cells, bodies inside the domain, …).
+nlohmann::ordered_json json_schema(const Registry& registry, const ReadOptions& options);
+nlohmann::ordered_json json_schema(const ComponentLookup& components, const ReadOptions& options);
+
+}  // namespace mpm

@@ -1,0 +1,260 @@
+#include "experiment/sections.hpp"
+
+namespace mpm {
+namespace {
+
+using Type = ParameterType;
+
+Section kind(std::string name, std::string doc, std::vector<ParameterSpec> parameters, int only_dimension = 0) {
+  return {std::move(name), std::move(doc), std::move(parameters), true, only_dimension};
+}
+
+ParameterSpec nested(std::string name, std::string doc, std::string definition) {
+  return parameter(std::move(name), Type::nested, "", std::move(doc)).defined_as(std::move(definition));
+}
+
+ParameterSpec axis(std::string doc) {
+  return parameter("axis", Type::choice, "", std::move(doc)).of({"x", "y", "z"});
+}
+
+}  // namespace
+
+Section experiment_section(const ReadOptions& options) {
+  return {"experiment",
+          "an experiment",
+          {
+              parameter("$schema", Type::string, "", "Where an editor finds the schema of this file."),
+              parameter("title", Type::string, "", "One line that heads report and figures.").standard(""),
+              parameter("description", Type::string, "", "What the experiment shows.").standard(""),
+              parameter("dimension", Type::integer, "", "2 (plane strain, per metre of depth) or 3.")
+                  .from(2)
+                  .to(3)
+                  .needed(),
+              parameter("precision", Type::choice, "", "Arithmetic of particles and grid.")
+                  .of({"double", "float"})
+                  .standard("double"),
+              parameter("backend", Type::choice, "", "What computes: the plain reference or the fast cpu backend.")
+                  .of(options.backends)
+                  .standard("cpu"),
+              parameter("seed", Type::integer, "", "Seed of the random jitter of particles.")
+                  .from(0)
+                  .to(4294967295.0)
+                  .standard(1),
+              nested("constants", "an object of named numbers for expressions", "constants"),
+              nested("grid", "a grid", "grid").needed(),
+              nested("node_conditions", "a list of conditions on the nodes in a box", "node_conditions"),
+              nested("shape", "a shape function", "shape").needed(),
+              nested("transfer", "a transfer scheme", "transfer").needed(),
+              nested("filter", "a filter of the grid velocity", "filter"),
+              nested("contact", "a contact law between velocity fields", "contact"),
+              nested("materials", "an object of materials by name", "materials").needed(),
+              nested("bodies", "a list of bodies", "bodies").needed(),
+              parameter("gravity", Type::vector, "m/s^2", "Acceleration of every particle.").standard(0),
+              parameter("body_force", Type::expression_vector, "N/kg",
+                        "Force per mass at x y z (X Y Z: where the particle began) and time t.")
+                  .over("xyzXYZt"),
+              nested("solver", "a solver", "solver").needed(),
+              nested("output", "output settings", "output"),
+              parameter("figures", Type::names, "", "Figures to draw after the run.")
+                  .of(options.figures)
+                  .standard(OrderedJson::array()),
+              nested("compare", "what to compare the results with", "compare"),
+          }};
+}
+
+Section grid_section() {
+  return {"grid",
+          "a grid",
+          {
+              parameter("cell_size", Type::number, "m", "Edge of the cubic cells.").above(0).needed(),
+              parameter("domain", Type::points, "m", "Lower and upper corner; a whole number of cells a side.")
+                  .items(2, 2)
+                  .needed(),
+              nested("boundaries", "conditions on the faces of the domain", "boundaries"),
+          }};
+}
+
+Section boundaries_section(int dimension) {
+  Section section{"boundaries", "conditions on the faces of the domain", {}};
+  section.parameters.push_back(nested("all", "Condition of every face not named.", "face_condition"));
+  for (const char* name : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}) {
+    if (name[0] == 'z' && dimension == 2) continue;
+    section.parameters.push_back(nested(name, "Condition of this face.", "face_condition"));
+  }
+  return section;
+}
+
+std::vector<Section> face_condition_kinds() {
+  return {
+      kind("slip", "No motion through the wall, free motion along it.", {}),
+      kind("stick", "No motion at the wall.", {}),
+      kind("separate", "As slip, but material may leave the wall.", {}),
+      kind("free", "No condition.", {}),
+      kind("periodic", "Joined to the opposite face.", {}),
+      kind("prescribed", "The wall moves at a given velocity.",
+           {parameter("velocity", Type::expression_vector, "m/s", "Velocity of the wall, of x y z and t.")
+                .over("xyzt")
+                .needed()}),
+  };
+}
+
+std::vector<Section> node_condition_kinds() {
+  const ParameterSpec lower = parameter("lower", Type::vector, "m", "Lower corner of the box of nodes.").needed();
+  const ParameterSpec upper = parameter("upper", Type::vector, "m", "Upper corner of the box of nodes.").needed();
+  return {
+      kind("stick", "The nodes are held.", {lower, upper}),
+      kind("slip", "The nodes are held along one axis.", {lower, upper, axis("Axis that is held.").needed()}),
+      kind("separate", "The nodes are held along one axis, one way only.",
+           {lower, upper, axis("Axis that is held.").needed(),
+            parameter("side", Type::choice, "", "Way along the axis that stays open.").of({"+", "-"}).standard("+")}),
+      kind("prescribed", "The nodes move at a given velocity; null leaves a component free.",
+           {lower, upper,
+            parameter("velocity", Type::expression_vector, "m/s", "Velocity, of x y z and t.")
+                .over("xyzt")
+                .leave_free()
+                .needed()}),
+  };
+}
+
+std::vector<Section> geometry_kinds() {
+  const ParameterSpec centre = parameter("centre", Type::vector, "m", "Centre.").needed();
+  const ParameterSpec parts = nested("of", "a list of geometries", "geometries").needed();
+  return {
+      kind("ball", "A disc in 2-D, a ball in 3-D.",
+           {centre, parameter("radius", Type::number, "m", "Radius.").above(0).needed()}),
+      kind("box", "A box along the axes.",
+           {parameter("lower", Type::vector, "m", "Lower corner.").needed(),
+            parameter("upper", Type::vector, "m", "Upper corner.").needed()}),
+      kind("ring", "An annulus in 2-D; in 3-D a tube, a cylinder when inner_radius is 0.",
+           {centre, parameter("inner_radius", Type::number, "m", "Inner radius.").from(0).needed(),
+            parameter("outer_radius", Type::number, "m", "Outer radius.").above(0).needed(),
+            axis("Axis of the tube, in 3-D."),
+            parameter("length", Type::number, "m", "Length of the tube, in 3-D.").above(0)}),
+      kind("polygon", "A simple polygon, closed by itself.",
+           {parameter("points", Type::points, "m", "Corners in order.").items(3, 10000).with_components(2).needed()},
+           2),
+      kind("half_space", "All on one side of a plane, cut off by the domain.",
+           {parameter("point", Type::vector, "m", "A point of the plane.").needed(),
+            parameter("normal", Type::vector, "", "Points out of the material; any length but zero.").needed()}),
+      kind("union", "What lies in any part.", {parts}),
+      kind("difference", "The first part without the others.", {parts}),
+      kind("intersection", "What lies in every part.", {parts}),
+  };
+}
+
+Section body_section() {
+  return {
+      "body",
+      "a body",
+      {
+          parameter("name", Type::string, "", "Unique name.").needed(),
+          parameter("material", Type::string, "", "Name out of materials.").needed(),
+          nested("geometry", "a geometry", "geometry").needed(),
+          parameter("particles_per_cell_axis", Type::integer, "", "Particles along each edge of a cell.")
+              .from(1)
+              .to(8)
+              .standard(2),
+          parameter("velocity", Type::expression_vector, "m/s", "Initial velocity, of x y z.").over("xyz").standard(0),
+          parameter("jitter", Type::number, "", "Random shift of each particle, in particle spacings.")
+              .from(0)
+              .to(0.5)
+              .standard(0),
+          parameter("field", Type::string, "",
+                    "Velocity field, with contact: bodies that name the same one do not slip on each other. "
+                    "Default: the body's name."),
+      }};
+}
+
+Section solver_section() {
+  return {
+      "solver",
+      "a solver",
+      {
+          parameter("type", Type::choice, "", "Time integration.").of({"explicit"}).standard("explicit"),
+          parameter("stress_update", Type::choice, "",
+                    "When a step updates stress: first (USF), last (USL), or last from mapped-back velocities (MUSL).")
+              .of({"first", "last", "modified_last"})
+              .standard("last"),
+          parameter("time_step", Type::number, "s", "Fixed time step, or \"auto\" by the wave speed.")
+              .above(0)
+              .or_word("auto")
+              .standard("auto"),
+          parameter("courant", Type::number, "", "Automatic step as a fraction of cell size over fastest speed.")
+              .above(0)
+              .to(1)
+              .standard(0.3),
+          parameter("end_time", Type::number, "s", "Time simulated.").above(0).needed(),
+          parameter("max_steps", Type::integer, "", "Stops with an error when reached before end_time.")
+              .from(1)
+              .to(1e15)
+              .standard(1000000000),
+      }};
+}
+
+Section output_section(const ReadOptions& options) {
+  ParameterSpec colour = parameter("colour_by", options.colour_quantities.empty() ? Type::string : Type::choice, "",
+                                   "Quantity that colours the particles.")
+                             .of(options.colour_quantities)
+                             .standard("speed");
+  return {"output",
+          "output settings",
+          {
+              parameter("metrics_every", Type::integer, "", "Steps between rows of metrics.csv.")
+                  .from(1)
+                  .to(1e9)
+                  .standard(10),
+              parameter("frames", Type::integer, "", "Pictures over the run, first and last included.")
+                  .from(0)
+                  .to(100000)
+                  .standard(0),
+              colour,
+              parameter("vtk", Type::boolean, "", "Write a VTK file beside each frame.").standard(false),
+              parameter("film", Type::boolean, "", "Join the frames to a film.").standard(false),
+              parameter("ledger", Type::boolean, "", "Keep the energy ledger.").standard(true),
+          }};
+}
+
+Section compare_section() {
+  return {"compare",
+          "what to compare the results with",
+          {nested("exact", "an exact solution", "exact"), nested("expect", "a list of expectations", "expectations")}};
+}
+
+Section expectation_section() {
+  return {"expectation",
+          "an expectation",
+          {
+              parameter("metric", Type::string, "", "Dotted path into summary.json.").needed(),
+              parameter("at_least", Type::number, "any", "Lower bound."),
+              parameter("at_most", Type::number, "any", "Upper bound."),
+              parameter("equals", Type::number, "any", "Value, within the tolerance."),
+              parameter("tolerance", Type::number, "any", "Allowed distance from `equals`, absolute.").from(0),
+          }};
+}
+
+std::vector<Section> exact_kinds(const ReadOptions& options) {
+  std::vector<Section> kinds;
+  for (const ExactDescription& exact : options.exact) kinds.push_back(kind(exact.name, exact.doc, exact.parameters));
+  return kinds;
+}
+
+std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind wanted) {
+  std::vector<Section> kinds;
+  for (const Plugin* plugin : components.of_kind(wanted)) {
+    Section section =
+        kind(std::string(plugin->id()), plugin->descriptor->summary ? plugin->descriptor->summary : "", {});
+    for (const mpm_parameter& declared : plugin->parameters()) section.parameters.push_back(from_plugin(declared));
+    if (wanted == MPM_CONTACT) {
+      section.parameters.push_back(parameter("normal", Type::choice, "", "How the contact normal is found.")
+                                       .of({"average_volume_gradient"})
+                                       .standard("average_volume_gradient"));
+      section.parameters.push_back(parameter("detection", Type::choice, "", "When two fields count as touching.")
+                                       .of({"approach_and_position"})
+                                       .standard("approach_and_position"));
+    }
+    kinds.push_back(std::move(section));
+  }
+  return kinds;
+}
+
+}  // namespace mpm

@@ -1,0 +1,31 @@
+#pragma once
+// The tables of the experiment file: what the reader checks, the schema lists and `mpm describe` can print.
+
+#include <vector>
+
+#include "experiment/parameter.hpp"
+#include "experiment/read.hpp"
+
+namespace mpm {
+
+constexpr int most_fields = 8;              ///< velocity fields an experiment may have
+constexpr int most_cells_a_side = 1 << 20;  ///< beyond this no machine holds the grid
+
+Section experiment_section(const ReadOptions& options);
+Section grid_section();
+/// "all" and the faces "x_min", "x_max", …; z faces only when `dimension` is not 2.
+Section boundaries_section(int dimension);
+std::vector<Section> face_condition_kinds();
+std::vector<Section> node_condition_kinds();
+std::vector<Section> geometry_kinds();
+Section body_section();
+Section solver_section();
+Section output_section(const ReadOptions& options);
+Section compare_section();
+Section expectation_section();
+std::vector<Section> exact_kinds(const ReadOptions& options);
+
+/// The plugins of a kind as sections, with the keys the host itself reads beside them.
+std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind kind);
+
+}  // namespace mpm

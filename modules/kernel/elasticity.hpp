@@ -1,0 +1,69 @@
+#pragma once
+// What several materials share: moduli, the three volumetric energies, and the isochoric Neo-Hookean part.
+
+#include "kernel/tensor.hpp"
+
+namespace mpm {
+
+/// Volumetric energies U(J) = modulus * u(J). Only `simo` is stiff at both ends: its tangent grows as J -> 0 and as J
+/// -> infinity.
+enum class VolumetricEnergy {
+  logarithmic = 0 /* (ln J)^2 / 2 */,
+  quadratic = 1 /* (J-1)^2 / 2 */,
+  simo = 2 /* ((J^2-1)/2 - ln J) / 2 */
+};
+
+/// u(J).
+template <class S>
+MPM_HD S volumetric_energy(VolumetricEnergy form, S J) {
+  const scalar_of<S> half = real<S>(0.5), one = real<S>(1);
+  if (form == VolumetricEnergy::logarithmic) {
+    const S l = log(J);
+    return half * l * l;
+  }
+  if (form == VolumetricEnergy::quadratic) return half * (J - one) * (J - one);
+  return half * (half * (J * J - one) - log(J));
+}
+
+/// J u'(J): the Kirchhoff pressure over the modulus, positive in tension.
+template <class S>
+MPM_HD S volumetric_stress(VolumetricEnergy form, S J) {
+  const scalar_of<S> half = real<S>(0.5), one = real<S>(1);
+  if (form == VolumetricEnergy::logarithmic) return log(J);
+  if (form == VolumetricEnergy::quadratic) return J * (J - one);
+  return half * (J * J - one);
+}
+
+/// J^2 u''(J): the volumetric part of rho0 c^2 over the modulus; negative beyond J = e for `logarithmic`.
+template <class S>
+MPM_HD S volumetric_tangent(VolumetricEnergy form, S J) {
+  const scalar_of<S> half = real<S>(0.5), one = real<S>(1);
+  if (form == VolumetricEnergy::logarithmic) return one - log(J);
+  if (form == VolumetricEnergy::quadratic) return J * J;
+  return half * (J * J + one);
+}
+
+/// Lame and bulk moduli (Pa) from Young's modulus and Poisson's ratio.
+MPM_HD double shear_modulus(double youngs_modulus, double poisson_ratio) {
+  return youngs_modulus / (2 * (1 + poisson_ratio));
+}
+MPM_HD double lame_lambda(double youngs_modulus, double poisson_ratio) {
+  return youngs_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio));
+}
+MPM_HD double bulk_modulus(double youngs_modulus, double poisson_ratio) {
+  return youngs_modulus / (3 * (1 - 2 * poisson_ratio));
+}
+
+/// rho0 c^2 of the fastest wave in a split Neo-Hookean solid (Simo & Hughes 1998, eq. 9.2.6 contracted with n n n n):
+/// longitudinal K J^2 u'' + mu (5/9 tr b - 1/3 n.b.n), or shear mu n.b.n, whichever is larger. `b` is isochoric.
+template <int D, class S>
+MPM_HD S split_tangent(VolumetricEnergy form, scalar_of<S> mu, scalar_of<S> bulk, const Sym<D, S>& b, S J) {
+  const S mean = trace(b) * real<S>(1.0 / 3.0);
+  const S spread = real<S>(0.816496580927726) * sqrt(squared_norm(deviator(b)));
+  const S smallest = max(mean - spread, S(real<S>(0)));
+  const S longitudinal =
+      bulk * volumetric_tangent(form, J) + mu * (real<S>(5.0 / 3.0) * mean - real<S>(1.0 / 3.0) * smallest);
+  return max(longitudinal, mu * (mean + spread));
+}
+
+}  // namespace mpm

@@ -1,0 +1,57 @@
+#pragma once
+// The arguments that the host hands to functors, and the tables that describe them. Device-safe.
+
+#include "kernel/tensor.hpp"
+
+namespace mpm {
+
+/// What a particle takes back from the grid. Only the moments a transfer declares are filled.
+template <int D, class S>
+struct GatheredMoments {
+  Vec<D, S> velocity;            ///< sum w v+, m/s
+  Vec<D, S> velocity_increment;  ///< sum w (v+ - v-), m/s
+  Mat<D, S> affine;              ///< sum v+ (x) w D^-1 d, 1/s
+};
+
+/// Two velocity fields that meet at a node.
+template <int D, class S>
+struct ContactPair {
+  S mass_a, mass_b;                  ///< kg
+  Vec<D, S> momentum_a, momentum_b;  ///< kg m/s
+  Vec<D, S> normal;                  ///< unit, from a to b
+  S separation;                      ///< m, negative when the surfaces overlap
+  S area;                            ///< m^2
+  scalar_of<S> dt;                   ///< s
+};
+
+template <int D, class S>
+struct ContactResult {
+  Vec<D, S> impulse;  ///< added to a and taken from b, kg m/s
+  S dissipated;       ///< J
+  S status;           ///< 0 apart, 1 sticks, 2 slips
+};
+
+}  // namespace mpm
+
+// Tables of parameters and state stand beside the functor, so that one file holds the method. The device pass skips
+// them.
+#if MPM_HOST
+#include <cstddef>
+#include <limits>
+
+#include "plugin/abi.h"
+namespace mpm {
+inline constexpr double unbounded = std::numeric_limits<double>::infinity();
+inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
+}  // namespace mpm
+
+/// Rows of a parameter table; `member` names both the key in the file and the double in Parameters.
+#define MPM_NUMBER_PARAMETER(member, unit, default_value, minimum, maximum, flags, doc)             \
+  {                                                                                                 \
+#member, unit, doc, "", MPM_NUMBER,                                                             \
+        static_cast < uint32_t>((flags) | ((default_value) == (default_value) ? 0 : MPM_REQUIRED)), \
+        offsetof(Parameters, member), 0, default_value, minimum, maximum                            \
+  }
+#define MPM_CHOICE_PARAMETER(member, choices, default_index, doc) \
+  { #member, "", doc, choices, MPM_CHOICE, 0, offsetof(Parameters, member), 0, default_index, 0, 0 }
+#endif

@@ -1,0 +1,88 @@
+#pragma once
+// Small-strain isotropic elasticity: eps = sym(F) - I, sigma = lambda tr(eps) I + 2 mu eps. The teaching baseline:
+// not objective, a rotation by theta makes the false strain (cos theta - 1) I in its plane. Any textbook, e.g.
+// Timoshenko & Goodier.
+
+#include "kernel/elasticity.hpp"
+#include "kernel/functor.hpp"
+
+namespace mpm {
+
+struct LinearElastic {
+  struct Parameters {
+    double youngs_modulus, poisson_ratio, density;
+  };
+  template <class T>
+  struct Constants {
+    T mu, lambda, longitudinal_speed;
+    MPM_HD explicit Constants(const Parameters& p)
+        : mu(T(shear_modulus(p.youngs_modulus, p.poisson_ratio))),
+          lambda(T(lame_lambda(p.youngs_modulus, p.poisson_ratio))),
+          longitudinal_speed(sqrt(T(
+              (lame_lambda(p.youngs_modulus, p.poisson_ratio) + 2 * shear_modulus(p.youngs_modulus, p.poisson_ratio)) /
+              p.density))) {}
+  };
+  template <int D, class S>
+  struct State {
+    Mat<D, S> deformation_gradient;
+  };
+
+  /// Returns the energy dissipated, J/m^3: none.
+  template <int D, class S>
+  MPM_HD static S advance(const Constants<scalar_of<S>>&, const Mat<D, S>& L, scalar_of<S> dt, State<D, S>& state) {
+    state.deformation_gradient = advanced(state.deformation_gradient, L, dt);
+    return S(real<S>(0));
+  }
+
+  template <int D, class S>
+  MPM_HD static Sym<D, S> strain(const State<D, S>& state) {
+    Sym<D, S> e{};
+    for (int i = 0; i < D; ++i)
+      for (int j = i; j < D; ++j)
+        e(i, j) = real<S>(0.5) * (state.deformation_gradient(i, j) + state.deformation_gradient(j, i));
+    for (int i = 0; i < D; ++i) e(i, i) = e(i, i) - real<S>(1);
+    return e;
+  }
+
+  /// tau = sigma to the order of small strains.
+  template <int D, class S>
+  MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+    Sym<D, S> e = strain(state);
+    const S pressure = c.lambda * trace(e);
+    for (int k = 0; k < Sym<D, S>::size; ++k) e.s[k] = real<S>(2) * c.mu * e.s[k];
+    for (int i = 0; i < 3; ++i) e.s[i] = e.s[i] + pressure;
+    return e;
+  }
+
+  /// psi = mu eps:eps + lambda/2 (tr eps)^2, J/m^3.
+  template <int D, class S>
+  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+    const Sym<D, S> e = strain(state);
+    return c.mu * squared_norm(e) + real<S>(0.5) * c.lambda * trace(e) * trace(e);
+  }
+
+  template <int D, class S>
+  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>&) {
+    return S(c.longitudinal_speed);
+  }
+
+  template <int D, class S>
+  MPM_HD static S volume_ratio(const State<D, S>& state) {
+    return determinant(state.deformation_gradient);
+  }
+
+#if MPM_HOST
+  static constexpr unsigned traits = 0;
+  static constexpr mpm_parameter parameters[] = {
+      MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM, "Young's modulus"),
+      MPM_NUMBER_PARAMETER(poisson_ratio, "", required, -1.0, 0.5, MPM_ABOVE_MINIMUM | MPM_BELOW_MAXIMUM,
+                           "Poisson's ratio"),
+      MPM_NUMBER_PARAMETER(density, "kg/m^3", required, 0.0, unbounded, MPM_ABOVE_MINIMUM, "initial density"),
+  };
+  static constexpr mpm_state state[] = {
+      {"deformation_gradient", "", "deformation gradient F", MPM_STATE_MATRIX, MPM_INITIAL_IDENTITY},
+  };
+#endif
+};
+
+}  // namespace mpm

@@ -1,0 +1,149 @@
+#include "metrics/exact.hpp"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <stdexcept>
+
+namespace mpm {
+namespace {
+
+using std::numbers::pi;
+
+double value(const ExactChoice& choice, const std::string& name) {
+  for (const auto& [known, number] : choice.values)
+    if (known == name) return number;
+  throw std::out_of_range("exact solution \"" + choice.type + "\" has no parameter \"" + name + "\"");
+}
+
+/// Case A7: symplectic Euler under gravity, exactly x = X + V t + g t (t + dt)/2 after whole steps dt.
+class FreeFall final : public ExactSolution {
+ public:
+  FreeFall(const Experiment& experiment, double dt) : gravity_(experiment.gravity), dt_(dt) {}
+  Vector3 position(const Vector3& X, const Vector3& V, double t) const override {
+    Vector3 x;
+    for (int c = 0; c < 3; ++c) x[c] = X[c] + V[c] * t + 0.5 * gravity_[c] * t * (t + dt_);
+    return x;
+  }
+  Vector3 velocity(const Vector3&, const Vector3& V, double t) const override {
+    return {V[0] + gravity_[0] * t, V[1] + gravity_[1] * t, V[2] + gravity_[2] * t};
+  }
+
+ private:
+  Vector3 gravity_;
+  double dt_;
+};
+
+/// Case C5: rigid rotation in the x-y plane.
+class RigidRotation final : public ExactSolution {
+ public:
+  RigidRotation(const ExactChoice& choice)
+      : omega_(value(choice, "angular_velocity")), centre_{value(choice, "centre_x"), value(choice, "centre_y")} {}
+  Vector3 position(const Vector3& X, const Vector3&, double t) const override {
+    const double c = std::cos(omega_ * t), s = std::sin(omega_ * t), x = X[0] - centre_[0], y = X[1] - centre_[1];
+    return {centre_[0] + c * x - s * y, centre_[1] + s * x + c * y, X[2]};
+  }
+  Vector3 velocity(const Vector3& X, const Vector3& V, double t) const override {
+    const Vector3 x = position(X, V, t);
+    return {-omega_ * (x[1] - centre_[1]), omega_ * (x[0] - centre_[0]), 0};
+  }
+
+ private:
+  double omega_, centre_[2];
+};
+
+/// Case C1: a fixed-free bar along x from the lower face, small strain, u = v0/w sin(b x) sin(w t), b = (2 mode - 1) pi
+/// / 2L.
+class BarVibration final : public ExactSolution {
+ public:
+  BarVibration(const ExactChoice& choice)
+      : amplitude_(value(choice, "velocity_amplitude")),
+        b_((2 * value(choice, "mode") - 1) * pi / (2 * value(choice, "length"))),
+        omega_(b_ * std::sqrt(value(choice, "youngs_modulus") / value(choice, "density"))) {}
+  Vector3 position(const Vector3& X, const Vector3&, double t) const override {
+    return {X[0] + amplitude_ / omega_ * std::sin(b_ * X[0]) * std::sin(omega_ * t), X[1], X[2]};
+  }
+  Vector3 velocity(const Vector3& X, const Vector3&, double t) const override {
+    return {amplitude_ * std::sin(b_ * X[0]) * std::cos(omega_ * t), 0, 0};
+  }
+
+ private:
+  double amplitude_, b_, omega_;
+};
+
+/// Case C2 (Wallstedt & Guilkey 2008): u_i = A sin(pi X_i) sin(c pi t + phi_i), phi = (0, pi, 0), on the unit square or
+/// cube.
+class AxisAlignedWave final : public ExactSolution {
+ public:
+  AxisAlignedWave(const ExactChoice& choice, int dimension)
+      : amplitude_(value(choice, "amplitude")), speed_(value(choice, "wave_speed")), dimension_(dimension) {}
+  Vector3 position(const Vector3& X, const Vector3&, double t) const override {
+    Vector3 x = X;
+    for (int c = 0; c < dimension_; ++c)
+      x[c] += amplitude_ * std::sin(pi * X[c]) * std::sin(speed_ * pi * t + phase(c));
+    return x;
+  }
+  Vector3 velocity(const Vector3& X, const Vector3&, double t) const override {
+    Vector3 v{};
+    for (int c = 0; c < dimension_; ++c)
+      v[c] = amplitude_ * speed_ * pi * std::sin(pi * X[c]) * std::cos(speed_ * pi * t + phase(c));
+    return v;
+  }
+
+ private:
+  static double phase(int component) { return component == 1 ? pi : 0; }
+  double amplitude_, speed_;
+  int dimension_;
+};
+
+struct Entry {
+  ExactDescription description;
+  std::function<std::unique_ptr<ExactSolution>(const Experiment&, double)> make;
+};
+
+ParameterSpec number(const char* name, const char* unit, const char* doc) {
+  return parameter(name, ParameterType::number, unit, doc);
+}
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> all{
+      {{"free_fall", "rigid flight under gravity, exact for the discrete scheme with a fixed step", {}},
+       [](const Experiment& e, double dt) { return std::make_unique<FreeFall>(e, dt); }},
+      {{"rigid_rotation",
+        "rotation without deformation in the x-y plane",
+        {number("angular_velocity", "1/s", "angular velocity").needed(),
+         number("centre_x", "m", "centre of rotation").needed(),
+         number("centre_y", "m", "centre of rotation").needed()}},
+       [](const Experiment& e, double) { return std::make_unique<RigidRotation>(*e.exact); }},
+      {{"bar_vibration",
+        "axial vibration of a fixed-free bar along x, small strain",
+        {number("velocity_amplitude", "m/s", "initial velocity of the tip").needed(),
+         parameter("mode", ParameterType::integer, "", "number of the mode, from 1").from(1).standard(1),
+         number("length", "m", "length of the bar").above(0).needed(),
+         number("youngs_modulus", "Pa", "Young's modulus").above(0).needed(),
+         number("density", "kg/m^3", "density").above(0).needed()}},
+       [](const Experiment& e, double) { return std::make_unique<BarVibration>(*e.exact); }},
+      {{"axis_aligned_wave",
+        "manufactured solution u_i = A sin(pi X_i) sin(c pi t + phi_i) on the unit square or cube",
+        {number("amplitude", "m", "amplitude A").needed(),
+         number("wave_speed", "m/s", "c = sqrt(E / density)").above(0).needed()}},
+       [](const Experiment& e, double) { return std::make_unique<AxisAlignedWave>(*e.exact, e.dimension); }}};
+  return all;
+}
+
+}  // namespace
+
+std::vector<ExactDescription> exact_solutions() {
+  std::vector<ExactDescription> descriptions;
+  for (const Entry& entry : entries()) descriptions.push_back(entry.description);
+  return descriptions;
+}
+
+std::unique_ptr<ExactSolution> make_exact_solution(const Experiment& experiment, double dt) {
+  if (!experiment.exact) return nullptr;
+  for (const Entry& entry : entries())
+    if (entry.description.name == experiment.exact->type) return entry.make(experiment, dt);
+  throw std::out_of_range("no exact solution is named \"" + experiment.exact->type + "\"");
+}
+
+}  // namespace mpm

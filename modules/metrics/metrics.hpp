@@ -1,0 +1,57 @@
+#pragma once
+// Totals of a run at one time: energies, momenta, volume ratios, errors against the exact solution. Computed from the
+// particles as doubles, the same for every backend.
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "metrics/exact.hpp"
+#include "simulation/simulation.hpp"
+
+namespace mpm {
+
+/// In 2-D energies, momenta and forces are per metre of depth.
+struct Totals {
+  double time = 0, time_step = 0;
+  long step = 0;
+  double mass = 0;
+  double kinetic = 0, strain = 0, gravitational = 0;  ///< J; kinetic with the affine part
+  std::array<double, 3> momentum{};                   ///< kg m/s
+  std::array<double, 3> angular_momentum{};           ///< kg m^2/s about the centre of mass, affine part included
+  std::array<double, 3> centre_of_mass{};             ///< m
+  double smallest_volume_ratio = 0, largest_volume_ratio = 0;
+  double largest_speed = 0;                               ///< m/s
+  double position_error_rms = 0, position_error_max = 0;  ///< m, against the exact solution
+  double velocity_error_rms = 0, velocity_error_max = 0;  ///< m/s
+
+  double total_energy() const { return kinetic + strain + gravitational; }
+};
+
+/// Keeps what measuring needs of the start: the exact solution and each particle's initial velocity.
+class Metrics {
+ public:
+  explicit Metrics(const Simulation& simulation);
+
+  Totals measure() const;
+
+  /// Change of total energy since the start that no cause explains: time integration. Zero without a ledger. J.
+  double ledger_residual(const Totals& now) const;
+
+  /// Names with units, and values, of one row of metrics.csv.
+  std::vector<std::string> columns() const;
+  std::vector<double> row(const Totals& totals) const;
+
+  const Totals& initial() const { return initial_; }
+
+ private:
+  void add_body(int body, Totals& totals) const;
+  void add_errors(int body, const BodyState& state, Totals& totals) const;
+
+  const Simulation& simulation_;
+  std::vector<BodyState> start_;  ///< kept only when there is an exact solution
+  Totals initial_;
+};
+
+}  // namespace mpm

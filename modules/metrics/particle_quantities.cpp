@@ -1,0 +1,127 @@
+#include "metrics/particle_quantities.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace mpm {
+namespace {
+
+const std::array<QuantityDescription, 7> common{{{"speed", "speed |v|", "m/s"},
+                                                 {"pressure", "pressure p", "Pa"},
+                                                 {"von_mises_stress", "von Mises stress", "Pa"},
+                                                 {"volume_ratio", "volume ratio J", ""},
+                                                 {"stored_energy", "stored energy density ψ", "J/m³"},
+                                                 {"displacement", "displacement |u|", "m"},
+                                                 {"body", "body", ""}}};
+
+std::size_t padded(std::size_t n) {
+  return (n + MPM_LANES - 1) / MPM_LANES * MPM_LANES;
+}
+
+const Component& material_of(const Experiment& experiment, int body) {
+  return experiment.materials[experiment.bodies[body].material].component;
+}
+
+double von_mises(const double* tau, int dimension) {
+  const double p = (tau[0] + tau[1] + tau[2]) / 3;
+  double norm = 0;
+  for (int i = 0; i < 3; ++i) norm += (tau[i] - p) * (tau[i] - p);
+  for (int i = 3; i < (dimension == 2 ? 4 : 6); ++i) norm += 2 * tau[i] * tau[i];
+  return std::sqrt(1.5 * norm);
+}
+
+}  // namespace
+
+MaterialQuantities material_quantities(const Experiment& experiment, int body, const BodyState& state) {
+  const Component& material = material_of(experiment, body);
+  const int D = experiment.dimension, symmetric = D == 2 ? 4 : 6;
+  const std::size_t n = state.position.size() / D, stride = padded(n);
+
+  std::vector<std::vector<double>> fields;
+  std::vector<void*> pointers;
+  for (const mpm_state& declared : material.plugin->state()) {
+    const int components = state_components(static_cast<mpm_state_shape>(declared.shape), D);
+    const std::vector<double>& values = state.material_state.at(declared.name);
+    std::vector<double>& field = fields.emplace_back(components * stride);
+    for (std::size_t p = 0; p < stride; ++p)
+      for (int c = 0; c < components; ++c) field[c * stride + p] = values[std::min(p, n - 1) * components + c];
+  }
+  for (auto& field : fields) pointers.push_back(field.data());
+
+  MaterialQuantities result;
+  std::vector<double> stress(symmetric * stride);
+  for (auto* array : {&result.stored_energy, &result.wave_speed, &result.volume_ratio}) array->resize(stride);
+  mpm_material_batch batch{};
+  batch.count = batch.stride = static_cast<std::uint32_t>(stride);
+  batch.dimension = static_cast<std::uint32_t>(D);
+  batch.state = pointers.data();
+  batch.kirchhoff_stress = stress.data();
+  batch.stored_energy = result.stored_energy.data();
+  batch.wave_speed = result.wave_speed.data();
+  batch.volume_ratio = result.volume_ratio.data();
+  material.plugin->material().update[MPM_SCALAR_DOUBLE][D - 2](material.parameters.data(), &batch);
+
+  result.stress.resize(n * symmetric);
+  for (std::size_t p = 0; p < n; ++p)
+    for (int c = 0; c < symmetric; ++c) result.stress[p * symmetric + c] = stress[c * stride + p];
+  for (auto* array : {&result.stored_energy, &result.wave_speed, &result.volume_ratio}) array->resize(n);
+  return result;
+}
+
+std::span<const QuantityDescription> common_quantities() {
+  return common;
+}
+
+std::vector<std::string> quantity_names(const Registry& registry) {
+  std::vector<std::string> names;
+  for (const QuantityDescription& description : common) names.push_back(description.name);
+  for (const Plugin* plugin : registry.of_kind(MPM_MATERIAL))
+    for (const mpm_state& field : plugin->state())
+      if (field.shape == MPM_STATE_SCALAR && std::find(names.begin(), names.end(), field.name) == names.end())
+        names.emplace_back(field.name);
+  return names;
+}
+
+QuantityDescription describe_quantity(const Experiment& experiment, const std::string& name) {
+  for (const QuantityDescription& description : common)
+    if (description.name == name) return description;
+  for (const MaterialSpecification& material : experiment.materials)
+    for (const mpm_state& field : material.component.plugin->state())
+      if (name == field.name) return {name, field.doc, field.unit};
+  return {name, name, ""};
+}
+
+std::vector<double> quantity(const Experiment& experiment, int body, const BodyState& state, const std::string& name) {
+  const int D = experiment.dimension, symmetric = D == 2 ? 4 : 6;
+  const std::size_t n = state.position.size() / D;
+  std::vector<double> values(n, 0.0);
+  const auto length_of = [&](const std::vector<double>& vectors, std::size_t p) {
+    double sum = 0;
+    for (int c = 0; c < D; ++c) sum += vectors[p * D + c] * vectors[p * D + c];
+    return std::sqrt(sum);
+  };
+  if (name == "body") {
+    values.assign(n, body);
+  } else if (name == "speed") {
+    for (std::size_t p = 0; p < n; ++p) values[p] = length_of(state.velocity, p);
+  } else if (name == "displacement") {
+    std::vector<double> u(state.position);
+    for (std::size_t k = 0; k < u.size() && k < state.initial_position.size(); ++k) u[k] -= state.initial_position[k];
+    for (std::size_t p = 0; p < n && !state.initial_position.empty(); ++p) values[p] = length_of(u, p);
+  } else if (const auto field = state.material_state.find(name);
+             field != state.material_state.end() && field->second.size() == n) {
+    values = field->second;
+  } else if (name == "pressure" || name == "von_mises_stress" || name == "volume_ratio" || name == "stored_energy") {
+    MaterialQuantities material = material_quantities(experiment, body, state);
+    if (name == "volume_ratio") return material.volume_ratio;
+    if (name == "stored_energy") return material.stored_energy;
+    for (std::size_t p = 0; p < n; ++p) {  // Cauchy stress: tau / J
+      const double* tau = &material.stress[p * symmetric];
+      values[p] = (name == "pressure" ? -(tau[0] + tau[1] + tau[2]) / 3 : von_mises(tau, D)) / material.volume_ratio[p];
+    }
+  }
+  return values;
+}
+
+}  // namespace mpm

@@ -1,0 +1,34 @@
+#pragma once
+// Values of single particles computed from a body's state: what the energies sum and what frames and VTK files show.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "simulation/backend.hpp"
+
+namespace mpm {
+
+/// What a material says of each particle of a body, from its state alone.
+struct MaterialQuantities {
+  std::vector<double> stress;         ///< Kirchhoff, particle-major, xx yy zz xy | xx yy zz yz xz xy, Pa
+  std::vector<double> stored_energy;  ///< J/m^3 of initial volume
+  std::vector<double> wave_speed;     ///< m/s
+  std::vector<double> volume_ratio;   ///< J
+};
+MaterialQuantities material_quantities(const Experiment& experiment, int body, const BodyState& state);
+
+/// A quantity that colours particles: name, what it is called on the bar, unit.
+struct QuantityDescription {
+  std::string name, label, unit;
+};
+/// Quantities every scene offers; scalar state fields of its materials (e.g. equivalent_plastic_strain) add to them.
+std::span<const QuantityDescription> common_quantities();
+/// Names valid as output/colour_by for any of the plugins of `registry`.
+std::vector<std::string> quantity_names(const Registry& registry);
+QuantityDescription describe_quantity(const Experiment& experiment, const std::string& name);
+
+/// One value a particle; zero for bodies whose material has no such state field.
+std::vector<double> quantity(const Experiment& experiment, int body, const BodyState& state, const std::string& name);
+
+}  // namespace mpm

@@ -1,0 +1,51 @@
+// The folder that holds everything one run leaves behind.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
+
+namespace mpm::output {
+
+/// The wanted folder may not be used: it holds something else than a run. A mistake of the caller: exit code 2.
+class FolderRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Nothing a person made is ever overwritten: an earlier run is moved aside whole, anything else is refused.
+class RunFolder {
+ public:
+  /// Makes the folder and those above it. If it holds a previous run (a manifest.json), that run is first moved aside
+  /// as NAME.1, NAME.2 …, the first that is free. Write manifest.json early, so that a killed run is known as a run.
+  /// @throws FolderRefused, with a remedy, when the path is a file, a folder with other contents, or the folder the
+  /// program works in; MachineError when the disk refuses.
+  static RunFolder create(const std::filesystem::path& path);
+
+  /// Takes an existing run as it is, to resume it or to draw its figures again.
+  /// @throws FolderRefused when there is no run at this path.
+  static RunFolder open(const std::filesystem::path& path);
+
+  const std::filesystem::path& root() const { return root_; }
+
+  // Subfolders are made at first use. @throws MachineError.
+  std::filesystem::path figures() const { return subfolder("figures"); }
+  std::filesystem::path frames() const { return subfolder("frames"); }
+  std::filesystem::path vtk() const { return subfolder("vtk"); }
+  std::filesystem::path checkpoint() const { return subfolder("checkpoint"); }
+
+  /// Writes root()/name, indented by two, whole or not at all. NaN and infinity become null. @throws MachineError.
+  void write_json(std::string_view name, const nlohmann::ordered_json& value) const;
+
+  /// Writes root()/name, whole or not at all. @throws MachineError.
+  void write_text(std::string_view name, std::string_view text) const;
+
+ private:
+  explicit RunFolder(std::filesystem::path root) : root_(std::move(root)) {}
+  std::filesystem::path subfolder(const char* name) const;
+
+  std::filesystem::path root_;  // absolute, so that a later change of the working folder cannot move it
+};
+
+}  // namespace mpm::output

@@ -1,0 +1,215 @@
+/* The plugin boundary of MPM Sandbox, in plain C.
+ *
+ * A plugin is a shared object that exports ONE symbol, `mpm_plugin_library_v`, a constant `mpm_plugin_library`.
+ * The host reads abi_version and struct_size before anything else and refuses a mismatch by name.
+ *
+ * Rules for every function reached from here:
+ *  - any thread may call it, several at once, with disjoint batches; it keeps no global or static mutable state;
+ *  - it never allocates, throws, prints, or keeps a pointer it was given after it returns;
+ *  - it never parses JSON: the host validates against the tables below and hands a filled, fixed-layout block of
+ * doubles.
+ *
+ * Batches: arrays are laid out [component][stride], 64-byte aligned, stride >= count. `count` is a multiple of
+ * MPM_LANES; the tail beyond the real particles holds copies of a valid particle, so every lane may be computed.
+ * Scalars are float or double by the entry's precision (`void*` below). Index order of entry tables: see mpm_precision.
+ */
+#ifndef MPM_PLUGIN_ABI_H
+#define MPM_PLUGIN_ABI_H
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define MPM_ABI_VERSION 0u /* 0: open to change until the boundary is frozen as version 1 */
+#define MPM_BATCH 64u      /* particles or nodes in a full batch */
+#define MPM_LANES 16u      /* counts are padded to a multiple of this */
+
+enum mpm_kind { MPM_SHAPE = 1, MPM_TRANSFER = 2, MPM_FILTER = 3, MPM_CONTACT = 4, MPM_MATERIAL = 5 };
+
+/* Index into the entry tables. scalar_double is the plain instantiation that the reference backend uses as its oracle.
+ */
+enum mpm_precision { MPM_LANES_FLOAT = 0, MPM_LANES_DOUBLE = 1, MPM_SCALAR_DOUBLE = 2, MPM_PRECISIONS = 3 };
+
+enum mpm_parameter_type { MPM_NUMBER = 0, MPM_INTEGER = 1, MPM_BOOLEAN = 2, MPM_CHOICE = 3 };
+enum mpm_parameter_flag {
+  MPM_REQUIRED = 1,
+  MPM_ABOVE_MINIMUM = 2 /* minimum itself excluded */,
+  MPM_BELOW_MAXIMUM = 4
+};
+
+/* One parameter: an 8-byte double at `offset` in the block; booleans are 0 or 1, a choice is its index. */
+typedef struct mpm_parameter {
+  const char* name;
+  const char* unit;    /* SI unit, e.g. "Pa"; "" for a pure number */
+  const char* doc;     /* one sentence */
+  const char* choices; /* "first|second|third" for MPM_CHOICE, else "" */
+  uint32_t type;
+  uint32_t flags;
+  uint32_t offset;
+  uint32_t reserved;
+  double default_value;
+  double minimum;
+  double maximum;
+} mpm_parameter;
+
+/* Components in 2-D / 3-D: scalar 1/1, vector 2/3, matrix 4/9 (row-major), symmetric 4/6 (xx yy zz xy / xx yy zz yz xz
+ * xy). */
+enum mpm_state_shape { MPM_STATE_SCALAR = 0, MPM_STATE_VECTOR = 1, MPM_STATE_MATRIX = 2, MPM_STATE_SYMMETRIC = 3 };
+enum mpm_state_initial { MPM_INITIAL_ZERO = 0, MPM_INITIAL_ONE = 1, MPM_INITIAL_IDENTITY = 2 };
+
+/* One field a particle carries because this plugin is chosen. */
+typedef struct mpm_state {
+  const char* name;
+  const char* unit;
+  const char* doc;
+  uint32_t shape;
+  uint32_t initial;
+} mpm_state;
+
+/* ---- shape ------------------------------------------------------------------------------------------------- */
+enum mpm_shape_form { MPM_TENSOR_PRODUCT = 0, MPM_NODE_LIST = 1 };
+enum mpm_second_moment {
+  MPM_MOMENT_CONSTANT = 0, /* sum w d d^T = second_moment h^2 I everywhere */
+  MPM_MOMENT_IS_GRADIENT =
+      1, /* w D^-1 d equals grad w identically (linear): the host uses gradients for the affine moment */
+  MPM_MOMENT_PER_PARTICLE = 2
+};
+typedef struct mpm_shape_batch {
+  uint32_t count, stride, dimension, reserved;
+  const void* position;  /* [D][stride], in cells, from any node of the grid */
+  const void* half_size; /* [D][stride], in cells: half the particle's box; null unless declared in `needs` */
+  int32_t* base;         /* [D][stride] out: first node of the stencil */
+  void* offset;          /* [D][stride] out: position - base, in cells */
+  void* weight;          /* [D][width][stride] out */
+  void* gradient;        /* [D][width][stride] out: derivative by position in cells; null when the plan needs none */
+} mpm_shape_batch;
+typedef struct mpm_shape {
+  uint32_t form, width, second_moment_kind, reserved;
+  double second_moment;
+  void (*evaluate[MPM_PRECISIONS])(const void* parameters, const mpm_shape_batch* batch);
+} mpm_shape;
+
+/* ---- transfer ------------------------------------------------------------------------------------------------
+ * A particle gives a node  w (b + A d) + S grad w  with d = node - particle (m). Gathered moments are
+ * sum w v,  sum w (v+ - v-),  C = sum v (x) (w D^-1 d)  and  L = sum v (x) grad w; only declared ones are filled. */
+enum mpm_transfer_trait {
+  MPM_SCATTERS_AFFINE = 1,       /* fills A */
+  MPM_GATHERS_INCREMENT = 2,     /* reads velocity_increment: the grid keeps v- beside v+ */
+  MPM_GATHERS_AFFINE = 4,        /* reads affine */
+  MPM_STRESS_BY_AFFINE = 8,      /* stress enters as -V0 tau D^-1 in A, not as -V0 tau in S (MLS-MPM) */
+  MPM_STRAIN_BY_AFFINE = 16,     /* the velocity gradient that strains the particle is the affine moment itself */
+  MPM_AFFINE_CARRIES_ENERGY = 32 /* the kinetic energy of state 0 (affine velocity) is m/2 D tr(C C^T) */
+};
+typedef struct mpm_scatter_batch {
+  uint32_t count, stride, dimension, reserved;
+  const void* mass;         /* [stride], kg */
+  const void* velocity;     /* [D][stride], m/s */
+  const void* const* state; /* declared state fields, each [components][stride] */
+  void* b;                  /* [D][stride] out, kg m/s */
+  void* A;                  /* [D*D][stride] out, kg/s, row = component; null unless MPM_SCATTERS_AFFINE */
+} mpm_scatter_batch;
+typedef struct mpm_gather_batch {
+  uint32_t count, stride, dimension, reserved;
+  double dt;
+  const void* velocity;           /* [D][stride] sum w v+ */
+  const void* velocity_increment; /* [D][stride] sum w (v+ - v-), or null */
+  const void* affine;             /* [D*D][stride] C, 1/s, or null */
+  void* particle_velocity;        /* [D][stride] in: before, out: after */
+  void* const* state;             /* in and out */
+  void* advection_velocity;       /* [D][stride] out: velocity that moves the particle */
+} mpm_gather_batch;
+typedef struct mpm_transfer {
+  uint32_t traits, reserved;
+  void (*scatter[MPM_PRECISIONS][2])(const void* parameters,
+                                     const mpm_scatter_batch* batch); /* [precision][dimension - 2] */
+  void (*gather[MPM_PRECISIONS][2])(const void* parameters, const mpm_gather_batch* batch);
+} mpm_transfer;
+
+/* ---- contact law ----------------------------------------------------------------------------------------------
+ * One batch entry is the pair (a, b) of velocity fields at one node. */
+enum mpm_contact_trait { MPM_BYPASSES_DETECTION = 1 /* a weld: no prescreen, detection or cap */ };
+enum mpm_contact_status { MPM_APART = 0, MPM_STICKS = 1, MPM_SLIPS = 2 };
+typedef struct mpm_contact_batch {
+  uint32_t count, stride, dimension, reserved;
+  double dt;
+  const void* mass_a; /* [stride], kg */
+  const void* mass_b;
+  const void* momentum_a; /* [D][stride], kg m/s */
+  const void* momentum_b;
+  const void* normal;     /* [D][stride], unit, from a to b, shared by the pair */
+  const void* separation; /* [stride], m, negative when the surfaces overlap */
+  const void* area;       /* [stride], m^2 (m in 2-D per metre of depth) */
+  void* impulse;          /* [D][stride] out: added to a, taken from b, kg m/s */
+  void* dissipated;       /* [stride] out: energy turned to heat by the law, J */
+  int32_t* status;        /* [stride] out: mpm_contact_status */
+} mpm_contact_batch;
+typedef struct mpm_contact {
+  uint32_t traits, reserved;
+  void (*apply[MPM_PRECISIONS][2])(const void* parameters, const mpm_contact_batch* batch);
+} mpm_contact;
+
+/* ---- material -------------------------------------------------------------------------------------------------
+ * `update` first advances the state over dt with the velocity gradient (skipped when that is null), then fills every
+ * output that is not null. It returns -1, or the index of the first particle whose state is not admissible (J <= 0 or
+ * not a number). Energies are per initial volume. Every material has a parameter named `density` (kg/m^3). */
+enum mpm_material_trait {
+  MPM_HYPERELASTIC = 1, /* tau = (dpsi/dF) F^T: the conformance suite checks it */
+  MPM_OBJECTIVE = 2,    /* tau(QF) = Q tau Q^T */
+  MPM_DISSIPATES = 4    /* dissipated_energy may be positive */
+};
+typedef struct mpm_material_batch {
+  uint32_t count, stride, dimension, reserved;
+  double dt;
+  const void* velocity_gradient; /* [D*D][stride], 1/s, row = velocity component; null: only evaluate */
+  void* const* state;            /* in and out */
+  void* kirchhoff_stress;        /* [symmetric][stride] out, Pa */
+  void* stored_energy;           /* [stride] out, J/m^3 */
+  void* dissipated_energy;       /* [stride] out, J/m^3, of this advance */
+  void* wave_speed;              /* [stride] out, m/s, of the fastest tangent wave */
+  void* volume_ratio;            /* [stride] out, J = det F */
+} mpm_material_batch;
+typedef struct mpm_material {
+  uint32_t traits, reserved;
+  int32_t (*update[MPM_PRECISIONS][2])(const void* parameters, const mpm_material_batch* batch);
+} mpm_material;
+
+/* ---- descriptor and library ----------------------------------------------------------------------------------- */
+enum mpm_dimension_bit { MPM_2D = 1, MPM_3D = 2 };
+enum mpm_need { MPM_NEEDS_PARTICLE_DOMAIN = 1 };
+
+typedef struct mpm_descriptor {
+  const char* id;       /* lower_case, unique within its kind */
+  const char* version;  /* of the plugin, "1.0.0" */
+  const char* summary;  /* one line */
+  const char* citation; /* paper, equation */
+  const char* manual;   /* Markdown: what it models, its equations, when to use it */
+  uint32_t kind;
+  uint32_t dimensions; /* mpm_dimension_bit */
+  uint32_t precisions; /* 1 << mpm_precision */
+  uint32_t needs;      /* mpm_need */
+  const mpm_parameter* parameters;
+  uint32_t parameter_count;
+  uint32_t parameter_bytes;
+  const mpm_state* state;
+  uint32_t state_count;
+  uint32_t kind_table_size;
+  const void* kind_table;   /* mpm_shape, mpm_transfer, mpm_contact or mpm_material */
+  const char* functor_name; /* C++ name inside `source` */
+  const char* source;       /* text of the functor's header, for run-time compilation */
+} mpm_descriptor;
+
+typedef struct mpm_plugin_library {
+  uint32_t abi_version; /* MPM_ABI_VERSION the plugin was compiled with: first, read alone */
+  uint32_t struct_size; /* sizeof(mpm_plugin_library) */
+  uint32_t descriptor_size;
+  uint32_t descriptor_count;
+  const mpm_descriptor* descriptors;
+} mpm_plugin_library;
+
+#define MPM_PLUGIN_SYMBOL "mpm_plugin_library_v"
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,365 @@
+#pragma once
+// What a plugin author includes: the concepts a functor must meet, the batch loops around it, and the one export macro.
+//
+// A plugin is a functor (its own header, device-safe) and a .cpp of some twenty lines: parameter table, state table,
+// descriptor, MPM_EXPORT_PLUGIN. The loops here turn the functor into the C entry points of abi.h for lanes and for
+// plain double.
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+
+#include "kernel/functor.hpp"
+#include "kernel/lanes.hpp"
+#include "kernel/tensor.hpp"
+#include "plugin/abi.h"
+
+namespace mpm::sdk {
+
+// ---- concepts: what a functor must offer -------------------------------------------------------------------------
+
+/// Width and second moment, and the weights of one axis. `base` is the first node, x and base in cells.
+template <class F>
+concept ShapeFunctor = requires(const typename F::Parameters& p, double x, double& base, double* w, double* g) {
+  { F::width } -> std::convertible_to<int>;
+  { F::second_moment } -> std::convertible_to<double>;
+  F::evaluate(p, x, base, w, g);
+};
+
+template <class F, int D>
+concept TransferFunctorIn = requires(const typename F::Parameters& p, const Vec<D, double>& v, Vec<D, double>& out,
+                                     Mat<D, double>& A, typename F::template State<D, double>& state,
+                                     const GatheredMoments<D, double>& moments) {
+  { F::traits } -> std::convertible_to<unsigned>;
+  F::scatter(p, 1.0, v, state, out, A);
+  F::gather(p, moments, 1.0, out, state, out);
+};
+template <class F>
+concept TransferFunctor = TransferFunctorIn<F, 2> && TransferFunctorIn<F, 3>;
+
+template <class F, int D>
+concept ContactFunctorIn = requires(const typename F::Parameters& p, const ContactPair<D, double>& pair,
+                                    ContactResult<D, double>& result) {
+  { F::traits } -> std::convertible_to<unsigned>;
+  F::apply(p, pair, result);
+};
+template <class F>
+concept ContactFunctor = ContactFunctorIn<F, 2> && ContactFunctorIn<F, 3>;
+
+template <class F, int D>
+concept MaterialFunctorIn = requires(const typename F::template Constants<double>& c, const Mat<D, double>& L,
+                                     typename F::template State<D, double>& s) {
+  { F::traits } -> std::convertible_to<unsigned>;
+  { F::advance(c, L, 1.0, s) } -> std::convertible_to<double>;
+  { F::kirchhoff_stress(c, s) } -> std::same_as<Sym<D, double>>;
+  { F::stored_energy(c, s) } -> std::convertible_to<double>;
+  { F::wave_speed(c, s) } -> std::convertible_to<double>;
+  { F::volume_ratio(s) } -> std::convertible_to<double>;
+};
+template <class F>
+concept MaterialFunctor = MaterialFunctorIn<F, 2> && MaterialFunctorIn<F, 3>;
+
+// ---- loading and storing components ------------------------------------------------------------------------------
+
+template <class S>
+struct Access {  // plain scalar
+  static constexpr int width = 1;
+  static S load(const S* p) { return *p; }
+  static void store(S* p, S x) { *p = x; }
+  static void store_index(std::int32_t* p, S x) { *p = static_cast<std::int32_t>(x); }
+};
+template <class T>
+struct Access<Lanes<T>> {
+  static constexpr int width = Lanes<T>::width;
+  static Lanes<T> load(const T* p) { return Lanes<T>::load(p); }
+  static void store(T* p, Lanes<T> x) { x.store(p); }
+  static void store_index(std::int32_t* p, Lanes<T> x) {
+    for (int i = 0; i < width; ++i) p[i] = static_cast<std::int32_t>(x[i]);
+  }
+};
+
+/// Number of scalars in a struct of S, zero for an empty one.
+template <class Struct, class S>
+inline constexpr int scalars_in = std::is_empty_v<Struct> ? 0 : static_cast<int>(sizeof(Struct) / sizeof(S));
+
+template <int N, class S, class T>
+MPM_HD void load_components(const void* array, std::uint32_t stride, std::uint32_t lane, T* out) {
+  const scalar_of<S>* p = static_cast<const scalar_of<S>*>(array);
+  for (int k = 0; k < N; ++k) out[k] = Access<S>::load(p + k * stride + lane);
+}
+template <int N, class S, class T>
+MPM_HD void store_components(void* array, std::uint32_t stride, std::uint32_t lane, const T* in) {
+  scalar_of<S>* p = static_cast<scalar_of<S>*>(array);
+  for (int k = 0; k < N; ++k) Access<S>::store(p + k * stride + lane, in[k]);
+}
+
+/// Where each scalar of a State struct lies in the declared fields: field index and component within it.
+template <int Count>
+struct StateLayout {
+  int field[Count ? Count : 1]{};
+  int component[Count ? Count : 1]{};
+};
+constexpr int components_of(std::uint32_t shape, int D) {
+  return shape == MPM_STATE_SCALAR   ? 1
+         : shape == MPM_STATE_VECTOR ? D
+         : shape == MPM_STATE_MATRIX ? D * D
+                                     : (D == 2 ? 4 : 6);
+}
+template <class F, int D>
+constexpr int declared_components() {
+  int total = 0;
+  for (const mpm_state& field : F::state) total += components_of(field.shape, D);
+  return total;
+}
+template <class F>
+concept HasState = requires {
+  F::state[0].shape;
+};
+template <class F, int D, int Count>
+constexpr StateLayout<Count> state_layout() {
+  StateLayout<Count> layout;
+  if constexpr (HasState<F>) {
+    static_assert(declared_components<F, D>() == Count,
+                  "the State struct must hold exactly the declared state fields, in order");
+    int k = 0, f = 0;
+    for (const mpm_state& field : F::state) {
+      for (int c = 0; c < components_of(field.shape, D); ++c, ++k) layout.field[k] = f, layout.component[k] = c;
+      ++f;
+    }
+  } else {
+    static_assert(Count == 0, "a State struct with members needs a `state` table");
+  }
+  return layout;
+}
+
+template <class F, int D, class S>
+struct StateAccess {
+  using State = typename F::template State<D, S>;
+  static constexpr int count = scalars_in<State, S>;
+  static constexpr StateLayout<count> layout = state_layout<F, D, count>();
+
+  MPM_HD static State load(const void* const* fields, std::uint32_t stride, std::uint32_t lane) {
+    State state{};
+    S* flat = reinterpret_cast<S*>(&state);
+    for (int k = 0; k < count; ++k)
+      flat[k] = Access<S>::load(static_cast<const scalar_of<S>*>(fields[layout.field[k]]) +
+                                layout.component[k] * stride + lane);
+    return state;
+  }
+  MPM_HD static void store(void* const* fields, std::uint32_t stride, std::uint32_t lane, const State& state) {
+    const S* flat = reinterpret_cast<const S*>(&state);
+    for (int k = 0; k < count; ++k)
+      Access<S>::store(static_cast<scalar_of<S>*>(fields[layout.field[k]]) + layout.component[k] * stride + lane,
+                       flat[k]);
+  }
+};
+
+// ---- batch loops -------------------------------------------------------------------------------------------------
+
+template <class F, class S>
+void shape_batch(const void* parameters, const mpm_shape_batch* q) {
+  using T = scalar_of<S>;
+  const auto& p = *static_cast<const typename F::Parameters*>(parameters);
+  for (std::uint32_t axis = 0; axis < q->dimension; ++axis)
+    for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+      S base, w[F::width], g[F::width];
+      const S x = Access<S>::load(static_cast<const T*>(q->position) + axis * q->stride + lane);
+      F::evaluate(p, x, base, w, q->gradient ? g : static_cast<S*>(nullptr));
+      Access<S>::store_index(q->base + axis * q->stride + lane, base);
+      Access<S>::store(static_cast<T*>(q->offset) + axis * q->stride + lane, x - base);
+      const std::uint32_t first = axis * F::width * q->stride + lane;
+      for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q->weight) + first + k * q->stride, w[k]);
+      if (q->gradient)
+        for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q->gradient) + first + k * q->stride, g[k]);
+    }
+}
+
+template <class F, int D, class S>
+void scatter_batch(const void* parameters, const mpm_scatter_batch* q) {
+  const auto& p = *static_cast<const typename F::Parameters*>(parameters);
+  for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+    S mass;
+    Vec<D, S> v, b;
+    Mat<D, S> A;
+    load_components<1, S>(q->mass, q->stride, lane, &mass);
+    load_components<D, S>(q->velocity, q->stride, lane, v.v);
+    F::scatter(p, mass, v, StateAccess<F, D, S>::load(q->state, q->stride, lane), b, A);
+    store_components<D, S>(q->b, q->stride, lane, b.v);
+    if constexpr ((F::traits & MPM_SCATTERS_AFFINE) != 0) store_components<D * D, S>(q->A, q->stride, lane, A.m);
+  }
+}
+
+template <class F, int D, class S>
+void gather_batch(const void* parameters, const mpm_gather_batch* q) {
+  const auto& p = *static_cast<const typename F::Parameters*>(parameters);
+  for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+    GatheredMoments<D, S> moments{};
+    load_components<D, S>(q->velocity, q->stride, lane, moments.velocity.v);
+    if constexpr ((F::traits & MPM_GATHERS_INCREMENT) != 0)
+      load_components<D, S>(q->velocity_increment, q->stride, lane, moments.velocity_increment.v);
+    if constexpr ((F::traits & MPM_GATHERS_AFFINE) != 0)
+      load_components<D * D, S>(q->affine, q->stride, lane, moments.affine.m);
+    Vec<D, S> v, advection;
+    load_components<D, S>(q->particle_velocity, q->stride, lane, v.v);
+    auto state = StateAccess<F, D, S>::load(q->state, q->stride, lane);
+    F::gather(p, moments, real<S>(q->dt), v, state, advection);
+    store_components<D, S>(q->particle_velocity, q->stride, lane, v.v);
+    StateAccess<F, D, S>::store(q->state, q->stride, lane, state);
+    store_components<D, S>(q->advection_velocity, q->stride, lane, advection.v);
+  }
+}
+
+template <class F, int D, class S>
+void contact_batch(const void* parameters, const mpm_contact_batch* q) {
+  const auto& p = *static_cast<const typename F::Parameters*>(parameters);
+  for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+    ContactPair<D, S> pair;
+    ContactResult<D, S> result;
+    load_components<1, S>(q->mass_a, q->stride, lane, &pair.mass_a);
+    load_components<1, S>(q->mass_b, q->stride, lane, &pair.mass_b);
+    load_components<D, S>(q->momentum_a, q->stride, lane, pair.momentum_a.v);
+    load_components<D, S>(q->momentum_b, q->stride, lane, pair.momentum_b.v);
+    load_components<D, S>(q->normal, q->stride, lane, pair.normal.v);
+    load_components<1, S>(q->separation, q->stride, lane, &pair.separation);
+    load_components<1, S>(q->area, q->stride, lane, &pair.area);
+    pair.dt = real<S>(q->dt);
+    F::apply(p, pair, result);
+    store_components<D, S>(q->impulse, q->stride, lane, result.impulse.v);
+    store_components<1, S>(q->dissipated, q->stride, lane, &result.dissipated);
+    Access<S>::store_index(q->status + lane, result.status);
+  }
+}
+
+/// Index of the first particle whose J is not a positive number, or -1.
+template <class S>
+std::int32_t first_inadmissible(S J, std::uint32_t lane) {
+  if constexpr (Access<S>::width == 1) {
+    return J > 0 ? -1 : static_cast<std::int32_t>(lane);
+  } else {
+    for (int i = 0; i < Access<S>::width; ++i)
+      if (!(J[i] > 0)) return static_cast<std::int32_t>(lane) + i;
+    return -1;
+  }
+}
+
+template <class F, int D, class S>
+std::int32_t material_batch(const void* parameters, const mpm_material_batch* q) {
+  using T = scalar_of<S>;
+  const typename F::template Constants<T> constants(*static_cast<const typename F::Parameters*>(parameters));
+  std::int32_t inadmissible = -1;
+  for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+    auto state = StateAccess<F, D, S>::load(q->state, q->stride, lane);
+    const auto store = [&](void* array, S value) {
+      if (array) store_components<1, S>(array, q->stride, lane, &value);
+    };
+    if (q->velocity_gradient) {
+      Mat<D, S> L;
+      load_components<D * D, S>(q->velocity_gradient, q->stride, lane, L.m);
+      store(q->dissipated_energy, F::advance(constants, L, real<S>(q->dt), state));
+      StateAccess<F, D, S>::store(q->state, q->stride, lane, state);
+    } else {
+      store(q->dissipated_energy, S(real<S>(0)));  // no advance, no heat
+    }
+    const S J = F::volume_ratio(state);
+    if (inadmissible < 0) inadmissible = first_inadmissible(J, lane);
+    if (q->kirchhoff_stress)
+      store_components<Sym<D, S>::size, S>(q->kirchhoff_stress, q->stride, lane,
+                                           F::kirchhoff_stress(constants, state).s);
+    if (q->stored_energy) store(q->stored_energy, F::stored_energy(constants, state));
+    if (q->wave_speed) store(q->wave_speed, F::wave_speed(constants, state));
+    store(q->volume_ratio, J);
+  }
+  return inadmissible;
+}
+
+// ---- entry tables and descriptors --------------------------------------------------------------------------------
+
+using LanesFloat = Lanes<float>;
+using LanesDouble = Lanes<double>;
+
+template <ShapeFunctor F>
+inline constexpr mpm_shape shape_table{
+    MPM_TENSOR_PRODUCT,    F::width,
+    F::second_moment_kind, 0,
+    F::second_moment,      {&shape_batch<F, LanesFloat>, &shape_batch<F, LanesDouble>, &shape_batch<F, double>}};
+
+#define MPM_ENTRIES(batch)                                                                                          \
+  {                                                                                                                 \
+    {&batch<F, 2, LanesFloat>, &batch<F, 3, LanesFloat>}, {&batch<F, 2, LanesDouble>, &batch<F, 3, LanesDouble>}, { \
+      &batch<F, 2, double>, &batch<F, 3, double>                                                                    \
+    }                                                                                                               \
+  }
+template <TransferFunctor F>
+inline constexpr mpm_transfer transfer_table{F::traits, 0, MPM_ENTRIES(scatter_batch), MPM_ENTRIES(gather_batch)};
+template <ContactFunctor F>
+inline constexpr mpm_contact contact_table{F::traits, 0, MPM_ENTRIES(contact_batch)};
+template <MaterialFunctor F>
+inline constexpr mpm_material material_table{F::traits, 0, MPM_ENTRIES(material_batch)};
+#undef MPM_ENTRIES
+
+/// The words of a plugin's manual page.
+struct Manual {
+  const char* id;
+  const char* version;
+  const char* summary;
+  const char* citation;
+  const char* text;
+  const char* functor_name;
+};
+
+template <class F>
+constexpr mpm_descriptor descriptor(mpm_kind kind, const void* table, std::uint32_t table_size, const Manual& manual,
+                                    const char* source) {
+  mpm_descriptor d{};
+  d.id = manual.id, d.version = manual.version, d.summary = manual.summary, d.citation = manual.citation,
+  d.manual = manual.text;
+  d.kind = kind;
+  d.dimensions = MPM_2D | MPM_3D;
+  d.precisions = (1u << MPM_LANES_FLOAT) | (1u << MPM_LANES_DOUBLE) | (1u << MPM_SCALAR_DOUBLE);
+  if constexpr (requires { F::parameters[0].name; }) {
+    static_assert(sizeof(typename F::Parameters) == sizeof(F::parameters) / sizeof(mpm_parameter) * sizeof(double),
+                  "Parameters must be doubles, one for each row of the parameter table");
+    d.parameters = F::parameters, d.parameter_count = sizeof(F::parameters) / sizeof(mpm_parameter),
+    d.parameter_bytes = sizeof(typename F::Parameters);
+  }
+  if constexpr (HasState<F>) d.state = F::state, d.state_count = sizeof(F::state) / sizeof(mpm_state);
+  d.kind_table = table, d.kind_table_size = table_size;
+  d.functor_name = manual.functor_name, d.source = source;
+  return d;
+}
+
+template <class F>
+constexpr mpm_descriptor shape(const Manual& m, const char* source) {
+  return descriptor<F>(MPM_SHAPE, &shape_table<F>, sizeof(mpm_shape), m, source);
+}
+template <class F>
+constexpr mpm_descriptor transfer(const Manual& m, const char* source) {
+  return descriptor<F>(MPM_TRANSFER, &transfer_table<F>, sizeof(mpm_transfer), m, source);
+}
+template <class F>
+constexpr mpm_descriptor contact(const Manual& m, const char* source) {
+  return descriptor<F>(MPM_CONTACT, &contact_table<F>, sizeof(mpm_contact), m, source);
+}
+template <class F>
+constexpr mpm_descriptor material(const Manual& m, const char* source) {
+  return descriptor<F>(MPM_MATERIAL, &material_table<F>, sizeof(mpm_material), m, source);
+}
+
+}  // namespace mpm::sdk
+
+/// Text of the functor's header, written by the build (mpm_add_plugin in MpmPlugin.cmake).
+#ifdef MPM_EMBEDDED_SOURCE
+namespace mpm::sdk {
+inline constexpr char embedded_source[] =
+#include MPM_EMBEDDED_SOURCE
+    ;
+}  // namespace mpm::sdk
+#endif
+
+/// Exports the plugin: MPM_EXPORT_PLUGIN(material<NeoHookean>, {"neo_hookean", "1.0.0", "summary", "citation",
+/// "manual", "NeoHookean"})
+#define MPM_EXPORT_PLUGIN(maker, ...)                                                                     \
+  static constexpr mpm_descriptor mpm_exported_descriptor =                                               \
+      mpm::sdk::maker(mpm::sdk::Manual __VA_ARGS__, mpm::sdk::embedded_source);                           \
+  extern "C" __attribute__((visibility("default"))) constexpr mpm_plugin_library mpm_plugin_library_v = { \
+      MPM_ABI_VERSION, sizeof(mpm_plugin_library), sizeof(mpm_descriptor), 1, &mpm_exported_descriptor};

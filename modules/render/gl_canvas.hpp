@@ -1,0 +1,51 @@
+// The raster canvas: OpenGL triangles and FreeType glyphs, supersampled.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <tuple>
+
+#include "render/canvas.hpp"
+#include "render/image.hpp"
+#include "render/osmesa_context.hpp"
+
+namespace mpm::render {
+
+/// Draws one rectangular tile of a picture; coordinates stay those of the whole picture.
+class GlCanvas : public Canvas {
+ public:
+  /// @param tile which part of the picture, whole pixels. @param samples samples a pixel in each direction.
+  /// @throws std::runtime_error when no OpenGL context can be made.
+  GlCanvas(const Box& tile, int samples);
+
+  void polyline(std::span<const Point> points, const Stroke& stroke) override;
+  void polygon(std::span<const Point> points, const Colour& fill) override;
+  void band(std::span<const Point> upper, std::span<const Point> lower, const Colour& fill) override;
+  void triangles(std::span<const Vertex> vertices) override;
+  void text(Point at, std::string_view utf8, const TextStyle& style) override;
+  void clip(const Box& box) override;
+  void unclip() override;
+  /// Stretches an image over the box.
+  void image(const Box& box, const Image& picture);
+
+  /// The tile, averaged down to one value a pixel.
+  Image resolve();
+
+ private:
+  struct Glyph {
+    unsigned texture = 0;
+    int width = 0, height = 0, left = 0, top = 0;
+  };
+  const Glyph& glyph(int face, unsigned index, double pixels);
+  void solid(std::span<const Point> points, const Stroke& stroke);
+
+  Box tile_;
+  int samples_;
+  OsMesaContext context_;
+  std::map<std::tuple<int, unsigned, int>, Glyph> glyphs_;
+};
+
+/// Runs `draw` for every tile of a picture of the given size and joins the tiles; large pictures cost no more memory.
+Image rasterise(int width, int height, int samples, const std::function<void(GlCanvas&)>& draw);
+
+}  // namespace mpm::render

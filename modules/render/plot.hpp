@@ -1,0 +1,63 @@
+// Curves, points and stacked areas as figures: STEM.png, STEM.svg and STEM.csv with exactly what is shown.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace mpm::render {
+
+/// computed: coloured line with markers; exact: thin black line; published: black open markers with error bars;
+/// point: coloured markers only.
+enum class SeriesKind { computed, exact, published, point };
+
+/// x and y have equally many values; `error` is empty or holds the half length of each point's error bar, in y's unit.
+struct Series {
+  std::string label = {};
+  std::vector<double> x = {}, y = {};
+  std::vector<double> error = {};
+  SeriesKind kind = SeriesKind::computed;
+  std::vector<std::string> point_labels = {};  // optional: a short name beside each point
+};
+
+/// Labels carry quantity, symbol and unit: "kinetic energy T (J)". Sizes are pixels.
+struct Plot {
+  std::string title = {}, x_label = {}, y_label = {}, footnote = {};
+  bool log_x = false, log_y = false;
+  std::vector<Series> series = {};
+  bool slope_triangles = false;  // log-log only: the order fitted to each computed series, written on a triangle
+  bool pareto_front = false;     // draws the front of least x and least y of all `point` series; the rest is faded
+  int width = 1600, height = 1000;
+};
+
+/// Areas are laid upon one another by cause, positive values upwards from zero, negative ones downwards.
+/// All y have as many values as `x`; the x of each series is not read.
+struct StackedPlot {
+  std::string title = {}, x_label = {}, y_label = {}, footnote = {};
+  std::vector<double> x = {};
+  std::vector<Series> areas = {};
+  std::vector<Series> lines = {};  // drawn in black in a panel of their own, so that a small residual cannot hide
+  int width = 1600, height = 1000;
+};
+
+/// A map of stability: one cell for each pair of x and y, coloured and marked by what became of the run.
+struct OutcomeMap {
+  std::string title = {}, x_label = {}, y_label = {}, footnote = {};
+  std::vector<double> x = {}, y = {};      // centres of the cells, increasing
+  std::vector<int> outcome = {};           // y.size() rows of x.size(): index into `outcomes`, -1 where nothing was run
+  std::vector<std::string> outcomes = {};  // "bounded", "gained energy", "stopped: particle left the grid"
+  std::vector<Series> limits = {};         // theoretical limits, drawn over the cells in black
+  bool log_x = false, log_y = false;
+  int width = 1600, height = 1000;
+};
+
+/// Points that are not finite, and on a logarithmic axis those that are not positive, are left out; the footnote says
+/// so.
+/// @param stem path without extension; its folder exists.
+/// @throws std::invalid_argument when array lengths or the size do not fit.
+/// @throws std::runtime_error naming path and cause when a file cannot be written, or no font or GL context is there.
+void write_figure(const Plot& plot, const std::filesystem::path& stem);
+void write_figure(const StackedPlot& plot, const std::filesystem::path& stem);
+void write_figure(const OutcomeMap& map, const std::filesystem::path& stem);
+
+}  // namespace mpm::render

@@ -1,0 +1,105 @@
+#pragma once
+// What a backend offers the step: passes of the plan, the particles as doubles, and what it measured on the way.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiment/plan.hpp"
+
+namespace mpm {
+
+/// The particles of one body as seeded: all of one volume and mass.
+struct SeededBody {
+  std::vector<double> position;  ///< n*dimension, m, particle-major
+  std::vector<double> velocity;  ///< n*dimension, m/s
+  /// n*dimension*dimension, 1/s, row = component: gradient of the initial velocity. Starts the affine velocity of
+  /// transfers that carry one (MPM_AFFINE_CARRIES_ENERGY: state 0), so that no spin is lost in the first step; empty
+  /// otherwise.
+  std::vector<double> velocity_gradient;
+  double volume = 0;  ///< initial, m^3 (m^2 per metre of depth in 2-D)
+  double mass = 0;    ///< kg
+  std::size_t count() const { return dimension ? position.size() / dimension : 0; }
+  std::size_t dimension = 2;
+};
+
+/// State of one body in doubles, particle-major, in the order of seeding, whatever the backend's own order and
+/// precision.
+struct BodyState {
+  std::vector<double> position, velocity, initial_position;                   ///< m, m/s, m (empty unless planned)
+  std::map<std::string, std::vector<double>> transfer_state, material_state;  ///< by declared field name
+  double volume = 0, mass = 0;
+};
+
+/// Energy given to the kinetic energy by each cause, J, accumulated over all steps. Each is computed from its own
+/// impulses and velocities, never as what the others leave over (docs/method.md, the ledger).
+struct Ledger {
+  double scatter = 0, gather = 0;      ///< exact differences of kinetic energy across the transfers
+  double internal_force = 0;           ///< dt f.(v- + v+)/2 of the stresses
+  double gravity = 0, body_force = 0;  ///< the same of the external forces
+  double boundary = 0, contact = 0;    ///< J.(v- + v+)/2 of impulses
+  double friction = 0;                 ///< share of contact that the law turned to heat (positive)
+  double material = 0;                 ///< dissipated by the materials (positive)
+};
+
+/// What contact did, last step and in total. Forces act on the pair's first body.
+struct ContactRecord {
+  std::array<double, 3> force{};  ///< N, normal and tangential impulses after the forces over dt, last step
+  long nodes = 0, sticking = 0, slipping = 0;  ///< last step
+  double largest_penetration = 0;              ///< m, last step, of pairs in contact
+  double momentum_residual = 0;                ///< kg m/s, sum of the pair's impulses: zero to rounding
+};
+
+struct TimeStepLimit {
+  double speed = 0;       ///< largest wave speed + particle speed, m/s
+  double wave_speed = 0;  ///< of that particle
+  int body = 0;
+  std::size_t particle = 0;
+};
+
+/// A run that cannot go on: what, where and when. Maps to exit code 3.
+class RunFailure : public std::runtime_error {
+ public:
+  RunFailure(std::string cause, int body, std::size_t particle)
+      : std::runtime_error(cause), cause(std::move(cause)), body(body), particle(particle) {}
+  std::string cause;
+  int body;
+  std::size_t particle;  ///< index in the order of seeding
+};
+
+struct StepInfo {
+  double dt = 0, time = 0;  ///< s; time at the start of the step
+  long step = 0;
+};
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+  virtual std::string_view name() const = 0;
+
+  /// Throws RunFailure for the first particle (lowest body, then index) that is not a number, inverted or outside the
+  /// domain.
+  virtual void execute(const Pass& pass, const StepInfo& step) = 0;
+
+  /// Result of the last estimate_time_step pass.
+  virtual TimeStepLimit time_step_limit() const = 0;
+
+  virtual BodyState body_state(int body) const = 0;
+  virtual const Ledger& ledger() const = 0;
+  virtual const ContactRecord& contact_record() const = 0;
+
+  /// Bytes of particle and grid storage in use.
+  virtual std::uint64_t particle_bytes() const = 0;
+  virtual std::uint64_t grid_bytes() const = 0;
+};
+
+/// Both keep references to the experiment and the plan. `threads` is the number of workers of the cpu backend.
+std::unique_ptr<Backend> make_reference_backend(const Experiment&, const Plan&, std::vector<SeededBody>);
+std::unique_ptr<Backend> make_cpu_backend(const Experiment&, const Plan&, std::vector<SeededBody>, int threads);
+
+}  // namespace mpm

@@ -1,0 +1,41 @@
+#pragma once
+// The policy at the edges of the domain, one for all shapes, in the terms both backends use.
+//
+// Nodes run from -padding to cells + padding on each axis; walls stand on nodes 0 and cells. Nodes beyond a wall are
+// ghosts.
+//  stick, slip, prescribed: the material continues beyond the wall as its mirror image. A ghost's mass, momentum and
+//  force
+//    are folded onto its mirror node with the sign of `mirror_sign`; afterwards it takes the mirrored velocity.
+//    Components with sign -1 vanish on the wall itself. Momenta are those relative to the wall's velocity. Gravity is a
+//    force like the others: a ghost of mass m folds m g with the same signs (so the mirror node's weight is (m + sign
+//    m_ghost) g by component, not (m + m_ghost) g). The wall's velocity is taken at the foot of the node on the wall,
+//    at t for v- and at t + dt for v+.
+//  separate: as slip while the mirrored pair approaches (predicted with the forces), otherwise ghosts are ordinary
+//  nodes. free: ghosts are ordinary nodes. periodic: a node is its index modulo the number of cells.
+// Periodic images are summed first; then walls are folded in the order x, y, z; ghosts are filled in the reverse order,
+// so corners are right.
+
+#include "experiment/experiment.hpp"
+
+namespace mpm {
+
+/// Nodes beyond a wall that a stencil may touch; larger than any tensor-product reach.
+inline constexpr int grid_padding = 3;
+
+/// Sign with which component `component` of a vector is mirrored at a wall normal to `axis`.
+constexpr double mirror_sign(ConditionType type, int axis, int component) {
+  if (type == ConditionType::stick || type == ConditionType::prescribed) return -1;
+  return component == axis ? -1 : 1;
+}
+
+constexpr bool folds(ConditionType type) {
+  return type == ConditionType::stick || type == ConditionType::slip || type == ConditionType::prescribed ||
+         type == ConditionType::separate;
+}
+
+/// Whether a wall of this type holds `component` on its own nodes (separate decides by approach).
+constexpr bool holds(ConditionType type, int axis, int component) {
+  return folds(type) && mirror_sign(type, axis, component) < 0;
+}
+
+}  // namespace mpm

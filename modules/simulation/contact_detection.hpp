@@ -1,0 +1,32 @@
+#pragma once
+// Where the surface of a body is, seen from a node: inversion of the one-dimensional model of an edge near a node.
+
+#include <vector>
+
+#include "experiment/experiment.hpp"
+
+namespace mpm {
+
+/// A body occupies x < e on one axis, its particle rows 1/(2n), 3/(2n), ... cells inside the edge (n a cell). A node at
+/// 0 sees the mass-weighted mean position of the rows in its support. That mean grows with e, so it tells e; nothing is
+/// typed in. Positions and edges in cells.
+class EdgeModel {
+ public:
+  /// Throws std::invalid_argument for n < 1.
+  EdgeModel(const Component& shape, int particles_per_cell_axis);
+
+  /// Mean position of the rows for an edge at `edge`.
+  double mean_position(double edge) const;
+  /// Inverse: the edge that gives this mean. Means outside the model's range give its ends.
+  double edge(double mean_position) const;
+  /// Distance between the means of two bodies that touch with their common edge at `edge`: the contact offset.
+  double contact_offset(double edge) const;
+
+ private:
+  std::vector<double> edges_, means_;  ///< monotone table
+  std::vector<double> weights(const std::vector<double>& rows) const;
+  const Component* shape_;
+  int rows_per_cell_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,58 @@
+#pragma once
+// A run: the plan's passes, step by step, on one backend.
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "simulation/backend.hpp"
+
+namespace mpm {
+
+/// Builds the backend that an experiment names (backends/make_backend.hpp).
+using BackendFactory = std::function<std::unique_ptr<Backend>(const Experiment&, const Plan&, std::vector<SeededBody>)>;
+
+class Simulation {
+ public:
+  /// Plans, seeds and builds the backend. `experiment` must outlive the simulation. Throws InputError.
+  Simulation(const Experiment& experiment, const BackendFactory& make_backend);
+  Simulation(const Simulation&) = delete;  // the backend refers to the plan
+
+  bool finished() const;
+  /// One time step: dt is chosen here, every pass of the plan is executed. Throws RunFailure; the state is then the
+  /// broken one.
+  void step();
+
+  double time() const { return time_; }          ///< s
+  double last_time_step() const { return dt_; }  ///< s
+  double smallest_time_step() const { return smallest_; }
+  double largest_time_step() const { return largest_; }
+  long steps() const { return steps_; }
+  std::size_t particle_count() const { return particles_; }
+
+  const Experiment& experiment() const { return experiment_; }
+  const Plan& plan() const { return plan_; }
+  Backend& backend() { return *backend_; }
+  const Backend& backend() const { return *backend_; }
+
+  /// Particle that limits the automatic time step: "particle 12 of disc (wave 3.1 m/s + speed 0.4 m/s)"; empty when dt
+  /// is fixed.
+  std::string limiting_particle() const;
+  /// Seconds spent in each pass so far, by name.
+  const std::map<std::string, double>& seconds_by_pass() const { return seconds_; }
+
+ private:
+  double next_time_step();
+
+  const Experiment& experiment_;
+  Plan plan_;
+  std::unique_ptr<Backend> backend_;
+  double time_ = 0, dt_ = 0, estimate_ = 0, smallest_ = 0, largest_ = 0;
+  long steps_ = 0;
+  std::size_t particles_ = 0;
+  std::map<std::string, double> seconds_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,43 @@
+#pragma once
+// MLS-MPM: APIC whose affine matrix is also the velocity gradient, and whose stress enters through the affine term, so
+// that no weight gradients are needed. Hu, Fang, Ge, Qu, Zhu, Pradhana & Jiang, ACM Trans. Graph. 37 (2018) 150, eqs.
+// 16-18.
+
+#include "kernel/functor.hpp"
+
+namespace mpm {
+
+struct Mls {
+  struct Parameters {};
+  template <int D, class S>
+  struct State {
+    Mat<D, S> affine_velocity;  ///< C = B D^-1, 1/s
+  };
+
+  /// w (b + A d) with b = m v and A = m C; the host adds -dt V0 tau D^-1 to A.
+  template <int D, class S>
+  MPM_HD static void scatter(const Parameters&, S mass, const Vec<D, S>& v, const State<D, S>& state, Vec<D, S>& b,
+                             Mat<D, S>& A) {
+    for (int i = 0; i < D; ++i) b[i] = mass * v[i];
+    for (int k = 0; k < D * D; ++k) A.m[k] = mass * state.affine_velocity.m[k];
+  }
+
+  template <int D, class S>
+  MPM_HD static void gather(const Parameters&, const GatheredMoments<D, S>& moments, scalar_of<S>, Vec<D, S>& v,
+                            State<D, S>& state, Vec<D, S>& advection) {
+    v = moments.velocity;
+    state.affine_velocity = moments.affine;
+    advection = moments.velocity;
+  }
+
+#if MPM_HOST
+  static constexpr unsigned traits = MPM_SCATTERS_AFFINE | MPM_GATHERS_AFFINE | MPM_STRESS_BY_AFFINE |
+                                     MPM_STRAIN_BY_AFFINE | MPM_AFFINE_CARRIES_ENERGY;
+  static constexpr mpm_state state[] = {
+      {"affine_velocity", "1/s", "affine velocity matrix C = B D^-1, also the velocity gradient", MPM_STATE_MATRIX,
+       MPM_INITIAL_ZERO},
+  };
+#endif
+};
+
+}  // namespace mpm

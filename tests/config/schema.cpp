@@ -1,0 +1,97 @@
+// The JSON Schema says what the reader's tables say.
+#include "experiment/schema.hpp"
+
+#include <functional>
+
+#include "config/config_support.hpp"
+#include "support/catch.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+const Json& schema() {
+  static const Json written = json_schema(components(), options());
+  return written;
+}
+
+/// The branch of a choice for one value of "type".
+const Json& branch(const std::string& definition, const std::string& type) {
+  for (const Json& one : schema()["$defs"][definition]["allOf"]) {
+    if (one["if"]["properties"]["type"]["const"] == type) return one["then"];
+  }
+  throw std::out_of_range(definition + " has no type " + type);
+}
+
+void each(const Json& value, const std::function<void(const Json&)>& visit) {
+  visit(value);
+  if (!value.is_structured()) return;
+  for (const Json& child : value) each(child, visit);
+}
+
+/// Checks that every key of an accepted experiment is a property where the schema leads for it.
+void check_keys(const Json& value, const Json& at) {
+  if (at.contains("$ref")) return check_keys(value, schema()["$defs"][at["$ref"].get<std::string>().substr(8)]);
+  if (at.contains("anyOf") && value.is_structured())
+    return check_keys(value, at["anyOf"][at["anyOf"][0].contains("enum") ? 1 : 0]);
+  if (value.is_array()) {
+    for (const Json& item : value) check_keys(item, at["items"]);
+    return;
+  }
+  if (!value.is_object()) return;
+  if (at.contains("allOf")) {
+    for (const Json& one : at["allOf"]) {
+      if (one["if"]["properties"]["type"]["const"] == value["type"]) return check_keys(value, one["then"]);
+    }
+    FAIL("no branch for " << value["type"]);
+  }
+  for (const auto& [key, member] : value.items()) {
+    INFO(key);
+    const bool map = !at.contains("properties");
+    REQUIRE((map || at["properties"].contains(key)));
+    check_keys(member, map ? at["additionalProperties"] : at["properties"][key]);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the schema has every key of the experiment", "[schema]") {
+  CHECK(schema()["$schema"] == "https://json-schema.org/draft/2020-12/schema");
+  CHECK(schema()["additionalProperties"] == false);
+  for (const char* key : {"title",           "dimension",  "precision", "backend", "seed",    "constants", "grid",
+                          "node_conditions", "shape",      "transfer",  "filter",  "contact", "materials", "bodies",
+                          "gravity",         "body_force", "solver",    "output",  "figures", "compare"}) {
+    INFO(key);
+    CHECK(schema()["properties"].contains(key));
+  }
+  CHECK(schema()["required"] == Json({"dimension", "grid", "shape", "transfer", "materials", "bodies", "solver"}));
+  check_keys(read_text(two_discs).resolved, schema());
+}
+
+TEST_CASE("parameters of plugins appear with unit, range, default and choices", "[schema]") {
+  const Json& material = branch("material", "neo_hookean");
+  CHECK(material["required"] == Json({"type", "density", "youngs_modulus"}));
+  CHECK(material["additionalProperties"] == false);
+  CHECK(material["properties"]["density"]["description"] == "A number. Unit: kg/m^3.");
+  CHECK(material["properties"]["density"]["anyOf"][0]["exclusiveMinimum"] == 0);
+  CHECK(material["properties"]["density"]["anyOf"][1]["type"] == "string");
+  CHECK(material["properties"]["poisson_ratio"]["default"] == 0.3);
+  CHECK(material["properties"]["form"]["enum"] == Json({"standard", "logarithmic"}));
+  CHECK(material["properties"]["form"]["default"] == "logarithmic");
+  CHECK(branch("transfer", "slow_double")["properties"]["quadratic"]["default"] == true);
+  CHECK(branch("contact", "coulomb")["properties"].contains("detection"));
+  CHECK(schema()["$defs"]["shape"]["properties"]["type"]["enum"] == Json({"linear", "bspline_quadratic", "only_flat"}));
+  CHECK(schema()["$defs"]["filter"].contains("not"));
+  CHECK(schema()["properties"]["figures"]["items"]["enum"] == Json({"energy", "dissipation", "contact"}));
+}
+
+TEST_CASE("every reference in the schema leads somewhere", "[schema]") {
+  each(schema(), [](const Json& value) {
+    if (!value.is_object() || !value.contains("$ref")) return;
+    const std::string name = value["$ref"].get<std::string>().substr(8);
+    INFO(name);
+    CHECK(schema()["$defs"].contains(name));
+  });
+}

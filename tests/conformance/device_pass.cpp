@@ -1,0 +1,521 @@
+// The device pass, run on the host: every plugin's embedded functor text is composed with a small kernel and compiled
+// with no system headers at all, as a GPU's run-time compiler would; the result must be what the plugin's own scalar
+// entry gives. Where NVRTC is installed the same text is compiled with it too.
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "plugin/conformance_support.hpp"
+#include "plugin/registry.hpp"
+#include "support/catch.hpp"
+
+#ifndef MPM_CXX_COMPILER
+#define MPM_CXX_COMPILER "c++"
+#endif
+#ifndef MPM_SOURCE_DIR
+#define MPM_SOURCE_DIR "."
+#endif
+
+namespace {
+
+using mpm::Plugin;
+using mpm::conformance::ParameterSample;
+using mpm::conformance::Random;
+
+constexpr int particles = 64;
+constexpr double step = 0x1p-6;
+
+// ---- the text around a functor -------------------------------------------------------------------------------------
+
+/// Arrays are [component][64] of S; `state` and all that a functor fills are in `out`.
+constexpr const char* prologue = R"(#include "functor.hpp"
+struct Task { const void* parameters; const void* in[8]; void* out[8]; int count; double dt; };
+namespace mpm {
+template <int N, class S> MPM_HD void load(const void* array, int lane, S* to) {
+  for (int k = 0; k < N; ++k) to[k] = static_cast<const S*>(array)[k * 64 + lane];
+}
+template <int N, class S> MPM_HD void store(void* array, int lane, const S* from) {
+  for (int k = 0; k < N; ++k) static_cast<S*>(array)[k * 64 + lane] = from[k];
+}
+template <class State, class S> constexpr int scalars = static_cast<int>(sizeof(State) / sizeof(S));
+)";
+
+constexpr const char* shape_body = R"(
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
+  for (int axis = 0; axis < D; ++axis) {
+    S x, base, w[Functor::width], g[Functor::width];
+    load<1>(t.in[0], axis * 64 + lane, &x);
+    Functor::evaluate(p, x, base, w, g);
+    store<1>(t.out[0], axis * 64 + lane, &base);
+    store<Functor::width>(t.out[1], axis * Functor::width * 64 + lane, w);
+    store<Functor::width>(t.out[2], axis * Functor::width * 64 + lane, g);
+  }
+}
+)";
+
+constexpr const char* transfer_body = R"(
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
+  using State = typename Functor::template State<D, S>;
+  State state{};
+  load<scalars<State, S>>(t.out[0], lane, reinterpret_cast<S*>(&state));
+  S mass;
+  Vec<D, S> v, b, advection;
+  Mat<D, S> A{};
+  load<1>(t.in[0], lane, &mass);
+  load<D>(t.in[1], lane, v.v);
+  Functor::scatter(p, mass, v, state, b, A);
+  GatheredMoments<D, S> moments;
+  load<D>(t.in[2], lane, moments.velocity.v);
+  load<D>(t.in[3], lane, moments.velocity_increment.v);
+  load<D * D>(t.in[4], lane, moments.affine.m);
+  Functor::gather(p, moments, real<S>(t.dt), v, state, advection);
+  store<scalars<State, S>>(t.out[0], lane, reinterpret_cast<const S*>(&state));
+  store<D>(t.out[1], lane, b.v);
+  store<D * D>(t.out[2], lane, A.m);
+  store<D>(t.out[3], lane, v.v);
+  store<D>(t.out[4], lane, advection.v);
+}
+)";
+
+constexpr const char* contact_body = R"(
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
+  ContactPair<D, S> pair;
+  ContactResult<D, S> result;
+  load<1>(t.in[0], lane, &pair.mass_a);
+  load<1>(t.in[1], lane, &pair.mass_b);
+  load<D>(t.in[2], lane, pair.momentum_a.v);
+  load<D>(t.in[3], lane, pair.momentum_b.v);
+  load<D>(t.in[4], lane, pair.normal.v);
+  load<1>(t.in[5], lane, &pair.separation);
+  load<1>(t.in[6], lane, &pair.area);
+  pair.dt = real<S>(t.dt);
+  Functor::apply(p, pair, result);
+  store<D>(t.out[0], lane, result.impulse.v);
+  store<1>(t.out[1], lane, &result.dissipated);
+  store<1>(t.out[2], lane, &result.status);
+}
+)";
+
+constexpr const char* material_body = R"(
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  const Functor::Constants<S> constants(*static_cast<const Functor::Parameters*>(t.parameters));
+  using State = typename Functor::template State<D, S>;
+  State state{};
+  load<scalars<State, S>>(t.out[0], lane, reinterpret_cast<S*>(&state));
+  Mat<D, S> L;
+  load<D * D>(t.in[0], lane, L.m);
+  const S heat = Functor::advance(constants, L, real<S>(t.dt), state);
+  const Sym<D, S> tau = Functor::kirchhoff_stress(constants, state);
+  const S energy = Functor::stored_energy(constants, state), speed = Functor::wave_speed(constants, state);
+  const S J = Functor::volume_ratio(state);
+  store<scalars<State, S>>(t.out[0], lane, reinterpret_cast<const S*>(&state));
+  store<Sym<D, S>::size>(t.out[1], lane, tau.s);
+  store<1>(t.out[2], lane, &energy);
+  store<1>(t.out[3], lane, &heat);
+  store<1>(t.out[4], lane, &speed);
+  store<1>(t.out[5], lane, &J);
+}
+)";
+
+constexpr const char* epilogue = R"(
+}
+#if defined(__CUDACC_RTC__)
+#define ENTRY(name, D, S) extern "C" __global__ void name(Task t) { \
+  const int lane = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); if (lane < t.count) mpm::run<D, S>(t, lane); }
+#else
+#define ENTRY(name, D, S) extern "C" void name(const Task& t) { for (int lane = 0; lane < t.count; ++lane) mpm::run<D, S>(t, lane); }
+#endif
+ENTRY(run_2_double, 2, double)
+ENTRY(run_3_double, 3, double)
+ENTRY(run_2_float, 2, float)
+ENTRY(run_3_float, 3, float)
+)";
+
+std::string kernel_text(const Plugin& plugin) {
+  const char* body = plugin.descriptor->kind == MPM_SHAPE      ? shape_body
+                     : plugin.descriptor->kind == MPM_TRANSFER ? transfer_body
+                     : plugin.descriptor->kind == MPM_CONTACT  ? contact_body
+                                                               : material_body;
+  return std::string(prologue) + "typedef " + plugin.descriptor->functor_name + " Functor;\n" + body + epilogue;
+}
+
+// ---- inputs and the plugin's own answer ----------------------------------------------------------------------------
+
+using Column = std::vector<double>;  // [component][64]
+
+/// What both sides are given and what they fill; `scale` is the size by which an error in each output is judged.
+struct Call {
+  std::vector<Column> in, out;
+  std::vector<double> scale;
+};
+
+Column random_column(Random& random, int components, double low, double high) {
+  Column column(static_cast<std::size_t>(components) * particles);
+  for (double& value : column) value = random.uniform(low, high);
+  return column;
+}
+
+Column zeros(int components) {
+  return Column(static_cast<std::size_t>(components) * particles);
+}
+
+/// All state fields one after the other, as the functor's State holds them.
+Column initial_state(const Plugin& plugin, int D) {
+  Column state;
+  for (const mpm_state& field : plugin.state()) {
+    const int components = mpm::state_components(static_cast<mpm_state_shape>(field.shape), D);
+    for (int c = 0; c < components; ++c) {
+      const bool diagonal = field.shape == MPM_STATE_MATRIX ? c % (D + 1) == 0 : c < 3;
+      const bool one = field.initial == MPM_INITIAL_ONE || (field.initial == MPM_INITIAL_IDENTITY && diagonal);
+      state.insert(state.end(), particles, one ? 1.0 : 0.0);
+    }
+  }
+  return state;
+}
+
+std::vector<void*> state_pointers(const Plugin& plugin, int D, Column& state) {
+  std::vector<void*> pointers;
+  double* at = state.data();
+  for (const mpm_state& field : plugin.state()) {
+    pointers.push_back(at);
+    at += mpm::state_components(static_cast<mpm_state_shape>(field.shape), D) * particles;
+  }
+  return pointers;
+}
+
+Call inputs(const Plugin& plugin, int D, Random& random) {
+  Call call;
+  const int width = plugin.descriptor->kind == MPM_SHAPE ? static_cast<int>(plugin.shape().width) : 0;
+  switch (plugin.descriptor->kind) {
+    case MPM_SHAPE:
+      call.in = {random_column(random, D, -10, 30)};
+      call.out = {zeros(D), zeros(D * width), zeros(D * width)};
+      break;
+    case MPM_TRANSFER:
+      call.in = {random_column(random, 1, 0.1, 10), random_column(random, D, -1, 1), random_column(random, D, -1, 1),
+                 random_column(random, D, -1, 1), random_column(random, D * D, -1, 1)};
+      call.out = {initial_state(plugin, D), zeros(D), zeros(D * D), zeros(D), zeros(D)};
+      break;
+    case MPM_CONTACT: {
+      call.in = {random_column(random, 1, 0.1, 10),
+                 random_column(random, 1, 0.1, 10),
+                 random_column(random, D, -1, 1),
+                 random_column(random, D, -1, 1),
+                 zeros(D),
+                 random_column(random, 1, -0.1, 0.05),
+                 random_column(random, 1, 0.1, 1)};
+      for (int lane = 0; lane < particles; ++lane) {
+        const mpm::conformance::Vector3 n = random.direction(D);
+        for (int i = 0; i < D; ++i)
+          call.in[4][static_cast<std::size_t>(i * particles + lane)] = static_cast<float>(n[i]);
+      }
+      call.out = {zeros(D), zeros(1), zeros(1)};
+      break;
+    }
+    default:
+      call.in = {random_column(random, D * D, -0.2 / step, 0.2 / step)};
+      call.out = {initial_state(plugin, D), zeros(D == 2 ? 4 : 6), zeros(1), zeros(1), zeros(1), zeros(1)};
+  }
+  return call;
+}
+
+Column as_column(const std::vector<std::int32_t>& indices) {
+  return {indices.begin(), indices.end()};
+}
+
+/// Fills `call.out` through the C boundary, scalar double.
+void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, Call& call) {
+  const std::uint32_t n = particles, dimension = static_cast<std::uint32_t>(D);
+  const int axis = D - 2;
+  auto& in = call.in;
+  auto& out = call.out;
+  std::vector<std::int32_t> indices(static_cast<std::size_t>(D) * particles);
+  switch (plugin.descriptor->kind) {
+    case MPM_SHAPE: {
+      Column offset = zeros(D);
+      const mpm_shape_batch batch{
+          n, n, dimension, 0, in[0].data(), nullptr, indices.data(), offset.data(), out[1].data(), out[2].data()};
+      plugin.shape().evaluate[MPM_SCALAR_DOUBLE](parameters.data(), &batch);
+      out[0] = as_column(indices);
+      break;
+    }
+    case MPM_TRANSFER: {
+      const std::vector<void*> state = state_pointers(plugin, D, out[0]);
+      out[3] = in[1];
+      const mpm_scatter_batch scatter{
+          n, n, dimension, 0, in[0].data(), in[1].data(), state.data(), out[1].data(), out[2].data()};
+      const mpm_gather_batch gather{n,
+                                    n,
+                                    dimension,
+                                    0,
+                                    step,
+                                    in[2].data(),
+                                    in[3].data(),
+                                    in[4].data(),
+                                    out[3].data(),
+                                    state.data(),
+                                    out[4].data()};
+      plugin.transfer().scatter[MPM_SCALAR_DOUBLE][axis](parameters.data(), &scatter);
+      plugin.transfer().gather[MPM_SCALAR_DOUBLE][axis](parameters.data(), &gather);
+      break;
+    }
+    case MPM_CONTACT: {
+      indices.resize(particles);
+      const mpm_contact_batch batch{n,
+                                    n,
+                                    dimension,
+                                    0,
+                                    step,
+                                    in[0].data(),
+                                    in[1].data(),
+                                    in[2].data(),
+                                    in[3].data(),
+                                    in[4].data(),
+                                    in[5].data(),
+                                    in[6].data(),
+                                    out[0].data(),
+                                    out[1].data(),
+                                    indices.data()};
+      plugin.contact().apply[MPM_SCALAR_DOUBLE][axis](parameters.data(), &batch);
+      out[2] = as_column(indices);
+      break;
+    }
+    default: {
+      const std::vector<void*> state = state_pointers(plugin, D, out[0]);
+      const mpm_material_batch batch{n,
+                                     n,
+                                     dimension,
+                                     0,
+                                     step,
+                                     in[0].data(),
+                                     state.data(),
+                                     out[1].data(),
+                                     out[2].data(),
+                                     out[3].data(),
+                                     out[4].data(),
+                                     out[5].data()};
+      plugin.material().update[MPM_SCALAR_DOUBLE][axis](parameters.data(), &batch);
+    }
+  }
+}
+
+// ---- the composed text, compiled and run ---------------------------------------------------------------------------
+
+struct Task {
+  const void* parameters;
+  const void* in[8];
+  void* out[8];
+  int count;
+  double dt;
+};
+
+/// Runs the compiled text over the same arrays, in float or double.
+template <class T>
+void run_composed(void* library, int D, const ParameterSample& parameters, Call& call) {
+  const std::string name = "run_" + std::to_string(D) + (sizeof(T) == 4 ? "_float" : "_double");
+  const auto run = reinterpret_cast<void (*)(const Task&)>(dlsym(library, name.c_str()));
+  REQUIRE(run);
+  std::vector<std::vector<T>> in, out;
+  for (const Column& column : call.in) in.emplace_back(column.begin(), column.end());
+  for (const Column& column : call.out) out.emplace_back(column.begin(), column.end());
+  Task task{parameters.data(), {}, {}, particles, step};
+  for (std::size_t k = 0; k < in.size(); ++k) task.in[k] = in[k].data();
+  for (std::size_t k = 0; k < out.size(); ++k) task.out[k] = out[k].data();
+  run(task);
+  for (std::size_t k = 0; k < out.size(); ++k) call.out[k].assign(out[k].begin(), out[k].end());
+}
+
+/// Largest error of any output in units of `unit` times the output's size. Stress and energy both scale with the
+/// modulus.
+double worst_error(const Plugin& plugin, const Call& got, const Call& expected, double unit) {
+  mpm::conformance::Worst worst;
+  double modulus = 0;
+  const auto size = [](const Column& c) {
+    double largest = 0;
+    for (double value : c) largest = std::max(largest, std::abs(value));
+    return largest;
+  };
+  const bool material = plugin.descriptor->kind == MPM_MATERIAL;
+  if (material) modulus = size(expected.out[1]);
+  for (std::size_t k = 0; k < expected.out.size(); ++k) {
+    const double scale = material && k >= 1 && k <= 3 ? modulus : std::max(size(expected.out[k]), 1e-300);
+    for (std::size_t i = 0; i < expected.out[k].size(); ++i)
+      worst.add(std::abs(got.out[k][i] - expected.out[k][i]) / (unit * scale));
+  }
+  return worst.value;
+}
+
+/// A folder of this process, removed at the end, with nothing to include but the functor and the kernel headers.
+struct WorkFolder {
+  std::filesystem::path path = std::filesystem::temp_directory_path() / ("mpm_device_pass_" + std::to_string(getpid()));
+  WorkFolder() {
+    std::filesystem::create_directories(path);
+    std::filesystem::create_directory_symlink(std::filesystem::path(MPM_SOURCE_DIR) / "modules" / "kernel",
+                                              path / "kernel");
+  }
+  ~WorkFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+};
+
+std::string contents(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+/// Compiles without any system header and loads the result; empty when the compiler refuses, with its words in `log`.
+void* compiled(const Plugin& plugin, const std::filesystem::path& folder, std::string& log) {
+  const std::string id = std::string(plugin.id()), source = (folder / (id + ".cpp")).string();
+  std::ofstream(folder / "functor.hpp") << plugin.descriptor->source;
+  std::ofstream(source) << kernel_text(plugin);
+  const std::string library = (folder / (id + ".so")).string(), messages = (folder / "messages.txt").string();
+  std::string flags =
+      " -std=c++17 -DMPM_DEVICE_PASS=1 -nostdinc -nostdinc++ -O2 -fno-math-errno -fno-trapping-math"
+      " -Wall -Wextra -Werror -shared -fPIC";
+#if defined(__FMA__)
+  flags += " -mfma -ffp-contract=fast";  // the same contraction as the plugins of a native build
+#endif
+  const std::string command = std::string(MPM_CXX_COMPILER) + flags + " -I '" + folder.string() + "' '" + source +
+                              "' -o '" + library + "' -lm > '" + messages + "' 2>&1";
+  const int status = std::system(command.c_str());
+  log = contents(messages);
+  return status == 0 ? dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL) : nullptr;
+}
+
+const mpm::Registry& registry() {
+  static const mpm::Registry found = mpm::Registry::from_folders(mpm::Registry::default_folders());
+  return found;
+}
+
+std::string title(const Plugin& plugin) {
+  return std::string(mpm::kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))) + " " + std::string(plugin.id());
+}
+
+bool has_device_pass(const Plugin& plugin) {
+  return plugin.descriptor->kind != MPM_FILTER;
+}
+
+}  // namespace
+
+TEST_CASE("every functor compiles without system headers and gives the plugin's own results") {
+  const WorkFolder folder;
+  REQUIRE_FALSE(registry().plugins().empty());
+  for (const Plugin& plugin : registry().plugins()) {
+    if (!has_device_pass(plugin)) continue;
+    DYNAMIC_SECTION(title(plugin)) {
+      std::string log;
+      void* library = compiled(plugin, folder.path, log);
+      INFO(log);
+      REQUIRE(library);
+      Random random(20240605);
+      for (const ParameterSample& parameters : mpm::conformance::sample_parameters(plugin, random))
+        for (int D : {2, 3}) {
+          INFO(D << "-D; " << parameters.text);
+          const Call call = inputs(plugin, D, random);
+          Call expected = call, doubles = call, singles = call;
+          run_plugin(plugin, D, parameters, expected);
+          run_composed<double>(library, D, parameters, doubles);
+          run_composed<float>(library, D, parameters, singles);
+          CHECK(worst_error(plugin, doubles, expected, 0x1p-52) <= 64);
+          CHECK(worst_error(plugin, singles, expected, 0x1p-23) <= 64);
+        }
+      dlclose(library);
+    }
+  }
+}
+
+// ---- NVRTC ---------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// The few entries of NVRTC that are needed, by their C signatures; absent where the library is.
+struct Nvrtc {
+  using Program = void*;
+  int (*create)(Program*, const char*, const char*, int, const char* const*, const char* const*) = nullptr;
+  int (*compile)(Program, int, const char* const*) = nullptr;
+  int (*log_size)(Program, std::size_t*) = nullptr;
+  int (*log)(Program, char*) = nullptr;
+  int (*cubin_size)(Program, std::size_t*) = nullptr;
+  int (*destroy)(Program*) = nullptr;
+  bool present = false;
+
+  Nvrtc() {
+    void* library = nullptr;
+    for (const char* folder : {"", "/usr/local/cuda/lib64/"})
+      for (const char* name : {"libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so"})
+        if (!library) library = dlopen((std::string(folder) + name).c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library) return;
+    const auto find = [&](auto& function, const char* name) {
+      function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
+      return function != nullptr;
+    };
+    present = find(create, "nvrtcCreateProgram") && find(compile, "nvrtcCompileProgram") &&
+              find(log_size, "nvrtcGetProgramLogSize") && find(log, "nvrtcGetProgramLog") &&
+              find(cubin_size, "nvrtcGetCUBINSize") && find(destroy, "nvrtcDestroyProgram");
+  }
+};
+
+struct CubinResult {
+  int status = -1;
+  std::size_t size = 0;
+  std::string log;
+};
+
+/// Compiles to machine code of compute capability 9.0, with all headers handed over in memory.
+CubinResult cubin_of(const Nvrtc& nvrtc, const Plugin& plugin) {
+  std::vector<std::string> names{"functor.hpp"}, texts{plugin.descriptor->source};
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(MPM_SOURCE_DIR) / "modules" / "kernel")) {
+    names.push_back("kernel/" + entry.path().filename().string());
+    texts.push_back(contents(entry.path()));
+  }
+  std::vector<const char*> name_pointers, text_pointers;
+  for (const std::string& name : names) name_pointers.push_back(name.c_str());
+  for (const std::string& text : texts) text_pointers.push_back(text.c_str());
+  const std::string kernel = kernel_text(plugin);
+  Nvrtc::Program program = nullptr;
+  CubinResult result;
+  if (nvrtc.create(&program, kernel.c_str(), "kernel.cu", static_cast<int>(names.size()), text_pointers.data(),
+                   name_pointers.data()) != 0)
+    return result;
+  const char* const options[] = {"--gpu-architecture=sm_90", "-std=c++17", "-DMPM_DEVICE_PASS=1"};
+  result.status = nvrtc.compile(program, 3, options);
+  std::size_t length = 0;
+  nvrtc.log_size(program, &length);
+  result.log.resize(length);
+  if (length) nvrtc.log(program, result.log.data());
+  if (result.status == 0) nvrtc.cubin_size(program, &result.size);
+  nvrtc.destroy(&program);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("every functor compiles with NVRTC where it is installed") {
+  static const Nvrtc nvrtc;
+  if (!nvrtc.present) {
+    WARN("NVRTC is not installed: the device text was compiled by the host compiler only");
+    return;
+  }
+  for (const Plugin& plugin : registry().plugins()) {
+    if (!has_device_pass(plugin)) continue;
+    DYNAMIC_SECTION(title(plugin)) {
+      const CubinResult result = cubin_of(nvrtc, plugin);
+      INFO(result.log);
+      CHECK(result.status == 0);
+      CHECK(result.size > 0);
+    }
+  }
+}

@@ -1,0 +1,390 @@
+// The files a figure leaves behind: picture, vector twin and table; and what happens when they cannot be written.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "render/files.hpp"
+#include "render/frame.hpp"
+#include "render/image.hpp"
+#include "render/plot.hpp"
+#include "support/catch.hpp"
+
+using namespace mpm::render;
+namespace fs = std::filesystem;
+
+namespace {
+
+// A folder of its own for each test, removed at its end.
+struct Folder {
+  fs::path path;
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "figures_test_XXXXXX").string();
+    REQUIRE(::mkdtemp(name.data()) != nullptr);
+    path = name;
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+};
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  REQUIRE(file);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> lines_of(const fs::path& path) {
+  std::istringstream text(text_of(path));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+std::size_t count_pixels(const Image& image, int r, int g, int b, int tolerance = 3) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+    count += std::abs(image.rgb[i] - r) <= tolerance && std::abs(image.rgb[i + 1] - g) <= tolerance &&
+             std::abs(image.rgb[i + 2] - b) <= tolerance;
+  }
+  return count;
+}
+
+bool is_white(const Image& image, int x, int y) {
+  const auto* p = image.at(x, y);
+  return p[0] == 255 && p[1] == 255 && p[2] == 255;
+}
+
+// Every element that is opened is closed, in order; attributes and entities are not looked into.
+bool is_balanced_xml(const std::string& text) {
+  std::vector<std::string> open;
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
+    const std::size_t end = text.find('>', at);
+    if (end == std::string::npos) return false;
+    if (text[at + 1] == '?' || text[end - 1] == '/') continue;
+    const bool closes = text[at + 1] == '/';
+    const std::size_t begin = at + (closes ? 2 : 1);
+    const std::string name = text.substr(begin, text.find_first_of(" >", begin) - begin);
+    if (!closes) {
+      open.push_back(name);
+    } else if (open.empty() || open.back() != name) {
+      return false;
+    } else {
+      open.pop_back();
+    }
+  }
+  return open.empty();
+}
+
+Plot two_lines() {
+  Plot plot;
+  plot.title = "Which keeps <more> energy & why?";
+  plot.x_label = "time t (s)";
+  plot.y_label = "kinetic energy T (J)";
+  plot.footnote = "experiment two_discs.json";
+  plot.width = 800;
+  plot.height = 500;
+  Series a{"APIC", {}, {}}, b{"FLIP", {}, {}};
+  for (int i = 0; i <= 100; ++i) {
+    a.x.push_back(i * 0.1 / 3);
+    a.y.push_back(2.5 * std::exp(-i * 0.01));
+    b.x.push_back(i * 0.1 / 3);
+    b.y.push_back(2.5 * std::exp(-i * 0.02));
+  }
+  plot.series = {a, b};
+  return plot;
+}
+
+ParticleFrame one_particle(int dimension) {
+  ParticleFrame frame;
+  frame.dimension = dimension;
+  frame.upper = {1, 1, 1};
+  frame.positions.assign(static_cast<std::size_t>(dimension), 0.5);
+  frame.half_size = {0.25};
+  frame.values = {1};
+  frame.quantity = "body";
+  frame.map = ColourMap::categorical;
+  frame.categories = {"left", "right"};
+  frame.width = 640;
+  frame.height = 400;
+  return frame;
+}
+
+}  // namespace
+
+TEST_CASE("a figure has the size asked for, a white ground and its series' colours", "[figures]") {
+  const Folder folder;
+  write_figure(two_lines(), folder.path / "energy");
+  const Image image = read_png(folder.path / "energy.png");
+  CHECK(image.width == 800);
+  CHECK(image.height == 500);
+  for (const int x : {0, 799}) {
+    for (const int y : {0, 499}) CHECK(is_white(image, x, y));
+  }
+  CHECK(count_pixels(image, 0x00, 0x72, 0xB2) > 300);
+  CHECK(count_pixels(image, 0xD5, 0x5E, 0x00) > 300);
+}
+
+TEST_CASE("a picture larger than one tile has no seam", "[figures]") {
+  const Folder folder;
+  Plot plot = two_lines();
+  plot.width = 2600;
+  plot.height = 1000;
+  write_figure(plot, folder.path / "wide");
+  const Image image = read_png(folder.path / "wide.png");
+  REQUIRE(image.width == 2600);
+  // The axis runs through the seam at 2048 with one colour.
+  int row = -1;
+  for (int y = 500; y < 1000 && row < 0; ++y) {
+    if (image.at(1000, y)[0] < 140 && image.at(1010, y)[0] < 140 && image.at(1005, y)[0] < 140) row = y;
+  }
+  REQUIRE(row > 0);
+  for (int x = 2030; x < 2066; ++x) CHECK(image.at(x, row)[0] < 140);
+}
+
+TEST_CASE("the table holds exactly what is shown", "[figures]") {
+  const Folder folder;
+  const Plot plot = two_lines();
+  write_figure(plot, folder.path / "energy");
+  const auto lines = lines_of(folder.path / "energy.csv");
+  REQUIRE(lines.size() == 1 + 2 * 101);
+  CHECK(lines[0] == "series,kind,time t (s),kinetic energy T (J),error,point");
+  for (std::size_t i = 0; i < 101; ++i) {
+    std::istringstream row(lines[1 + i]);
+    std::string label, kind, x, y;
+    std::getline(row, label, ',');
+    std::getline(row, kind, ',');
+    std::getline(row, x, ',');
+    std::getline(row, y, ',');
+    CHECK(label == "APIC");
+    CHECK(kind == "computed");
+    CHECK(std::strtod(x.c_str(), nullptr) == plot.series[0].x[i]);
+    CHECK(std::strtod(y.c_str(), nullptr) == plot.series[0].y[i]);
+  }
+}
+
+TEST_CASE("the vector twin is well formed and holds its words as text", "[figures]") {
+  const Folder folder;
+  write_figure(two_lines(), folder.path / "energy");
+  const std::string svg = text_of(folder.path / "energy.svg");
+  CHECK(is_balanced_xml(svg));
+  for (const char* words : {">Which keeps &lt;more&gt; energy &amp; why?<", ">time t (s)<", ">kinetic energy T (J)<",
+                            ">APIC<", ">FLIP<", ">experiment two_discs.json<"}) {
+    CHECK(svg.find(words) != std::string::npos);
+  }
+}
+
+TEST_CASE("points that cannot be shown are left out, and the footnote says so", "[figures]") {
+  const Folder folder;
+  Plot plot = two_lines();
+  plot.log_y = true;
+  plot.series[0].y[3] = std::numeric_limits<double>::quiet_NaN();
+  plot.series[0].y[4] = std::numeric_limits<double>::infinity();
+  plot.series[1].y[5] = -1;
+  write_figure(plot, folder.path / "log");
+  CHECK(lines_of(folder.path / "log.csv").size() == 1 + 2 * 101 - 3);
+  const std::string svg = text_of(folder.path / "log.svg");
+  CHECK(svg.find("2 points not finite, left out") != std::string::npos);
+  CHECK(svg.find("1 point not above zero, left out") != std::string::npos);
+  CHECK(svg.find("nan") == std::string::npos);
+  CHECK(svg.find("inf\"") == std::string::npos);
+}
+
+TEST_CASE("empty, single and constant data still make a figure", "[figures]") {
+  const Folder folder;
+  const int kind = GENERATE(0, 1, 2, 3);
+  Plot plot = two_lines();
+  if (kind == 0) plot.series.clear();
+  if (kind == 1) plot.series = {{"nothing", {}, {}}};
+  if (kind == 2) plot.series = {{"one point", {1}, {2}}};
+  if (kind == 3) plot.series = {{"constant", {0, 1}, {0, 0}}};
+  plot.log_x = plot.slope_triangles = false;
+  REQUIRE_NOTHROW(write_figure(plot, folder.path / "bare"));
+  const std::string svg = text_of(folder.path / "bare.svg");
+  if (kind < 2) CHECK(svg.find("no data to show") != std::string::npos);
+  CHECK(svg.find("nan") == std::string::npos);
+}
+
+TEST_CASE("convergence: the fitted order stands on the triangle", "[figures]") {
+  const Folder folder;
+  Plot plot = two_lines();
+  Series s{"second order", {}, {}};
+  for (int i = 0; i < 5; ++i) {
+    s.x.push_back(0.1 / (1 << i));
+    s.y.push_back(3 * s.x.back() * s.x.back());
+  }
+  plot.series = {s};
+  plot.log_x = plot.log_y = plot.slope_triangles = true;
+  write_figure(plot, folder.path / "order");
+  CHECK(text_of(folder.path / "order.svg").find(">2.00<") != std::string::npos);
+}
+
+TEST_CASE("a ledger stacks its causes and draws the residual apart", "[figures]") {
+  const Folder folder;
+  StackedPlot plot;
+  plot.title = "Where does the energy go?";
+  plot.x_label = "time t (s)";
+  plot.y_label = "energy E (J)";
+  plot.x = {0, 1, 2};
+  plot.areas = {{"kinetic", {}, {3, 2, 1}}, {"lost", {}, {0, -1, -2}}};
+  plot.lines = {{"residual", {}, {0, 1e-13, -2e-13}}};
+  plot.width = 800;
+  plot.height = 500;
+  write_figure(plot, folder.path / "ledger");
+  const auto lines = lines_of(folder.path / "ledger.csv");
+  REQUIRE(lines.size() == 4);
+  CHECK(lines[0] == "time t (s),kinetic (J),lost (J),residual (J)");
+  CHECK(lines[3] == "2,1,-2,-2.0000000000000001e-13");
+  CHECK(text_of(folder.path / "ledger.svg").find("residual, drawn apart (10⁻¹⁵ J)") != std::string::npos);
+  const Image image = read_png(folder.path / "ledger.png");
+  CHECK(count_pixels(image, 0x00, 0x72, 0xB2) > 10000);
+  plot.areas[0].y.pop_back();
+  CHECK_THROWS_AS(write_figure(plot, folder.path / "ledger"), std::invalid_argument);
+}
+
+TEST_CASE("a map of stability colours its cells and refuses outcomes without a name", "[figures]") {
+  const Folder folder;
+  OutcomeMap map;
+  map.title = "Which time step is stable?";
+  map.x_label = "cell size h (m)";
+  map.y_label = "Courant number C (–)";
+  map.x = {0.1, 0.2};
+  map.y = {0.5, 1.0, 1.5};
+  map.outcome = {0, 0, 0, 1, 1, -1};
+  map.outcomes = {"bounded", "gained energy"};
+  map.limits = {{"C = 1", {0, 1}, {1, 1}}};
+  map.width = 800;
+  map.height = 500;
+  write_figure(map, folder.path / "map");
+  CHECK(lines_of(folder.path / "map.csv").size() == 1 + 6 + 2);
+  const std::string svg = text_of(folder.path / "map.svg");
+  CHECK(is_balanced_xml(svg));
+  for (const char* words : {">bounded<", ">gained energy<", ">not run<", ">C = 1<"})
+    CHECK(svg.find(words) != std::string::npos);
+  const Image image = read_png(folder.path / "map.png");
+  const std::size_t bounded = count_pixels(image, 64, 149, 197), gained = count_pixels(image, 223, 134, 64);
+  CHECK(static_cast<double>(bounded) / static_cast<double>(gained) == Approx(1.5).epsilon(0.1));
+  map.outcome[0] = 2;
+  CHECK_THROWS_WITH(write_figure(map, folder.path / "map"), "the map has an outcome 2 without a name");
+}
+
+TEST_CASE("a particle is drawn at its true size and place", "[figures]") {
+  const Folder folder;
+  ParticleFrame frame = one_particle(2);
+  frame.width = 1600;
+  frame.height = 1000;
+  frame.values = {1};
+  write_frame(frame, folder.path / "frame");
+  const Image image = read_png(folder.path / "frame.png");
+  int left = image.width, right = 0;
+  std::size_t count = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const auto* p = image.at(x, y);
+      // Only the particle is orange and far from the key at the right.
+      if (p[0] != 0xD5 || p[1] != 0x5E || p[2] != 0x00 || x > image.width * 6 / 10) continue;
+      left = std::min(left, x);
+      right = std::max(right, x);
+      ++count;
+    }
+  }
+  REQUIRE(count > 0);
+  const double side = right - left + 1;
+  CHECK(static_cast<double>(count) == Approx(side * side).epsilon(0.05));  // a square
+  // Half of the domain, whose edge is the longest dark row of the picture.
+  int longest = 0;
+  for (int y = 0; y < image.height; ++y) {
+    int run = 0;
+    for (int x = 0; x < image.width; ++x) {
+      run = image.at(x, y)[0] < 160 && image.at(x, y)[2] < 160 && image.at(x, y)[1] < 90 ? run + 1 : 0;
+      longest = std::max(longest, run);
+    }
+  }
+  CHECK(side / longest == Approx(0.5).margin(0.03));
+}
+
+TEST_CASE("frames in two and three dimensions leave their files", "[figures]") {
+  const Folder folder;
+  const int dimension = GENERATE(2, 3);
+  write_frame(one_particle(dimension), folder.path / "frame");
+  CHECK(fs::exists(folder.path / "frame.svg") == (dimension == 2));
+  const auto lines = lines_of(folder.path / "frame.csv");
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0] == (dimension == 2 ? "x (m),y (m),half size (m),body" : "x (m),y (m),z (m),half size (m),body"));
+  const Image image = read_png(folder.path / "frame.png");
+  std::size_t orange = 0;
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+    orange += image.rgb[i] > 100 && image.rgb[i + 2] < image.rgb[i] / 3;
+  CHECK(orange > 2000);
+  CHECK(is_white(image, 0, 0));
+}
+
+TEST_CASE("the same frame gives the same picture", "[figures]") {
+  const Folder folder;
+  const int dimension = GENERATE(2, 3);
+  write_frame(one_particle(dimension), folder.path / "a");
+  write_frame(one_particle(dimension), folder.path / "b");
+  CHECK(text_of(folder.path / "a.png") == text_of(folder.path / "b.png"));
+}
+
+TEST_CASE("frames without a usable particle, and ranges of one value", "[figures]") {
+  const Folder folder;
+  ParticleFrame frame = one_particle(2);
+  frame.map = ColourMap::viridis;
+  CHECK_NOTHROW(write_frame(frame, folder.path / "one_value"));
+  frame.values[0] = std::numeric_limits<double>::quiet_NaN();
+  write_frame(frame, folder.path / "none");
+  CHECK(lines_of(folder.path / "none.csv").size() == 1);
+  CHECK(text_of(folder.path / "none.svg").find("1 particle not finite, left out") != std::string::npos);
+  frame.map = ColourMap::diverging;
+  frame.range = {{0, 0}};
+  CHECK_NOTHROW(write_frame(frame, folder.path / "zero_range"));
+}
+
+TEST_CASE("arrays that do not match are refused by name", "[figures]") {
+  const Folder folder;
+  Plot plot = two_lines();
+  plot.series[1].y.pop_back();
+  CHECK_THROWS_WITH(write_figure(plot, folder.path / "x"), "series 'FLIP': 101 values of x, but 100 of y");
+  ParticleFrame frame = one_particle(2);
+  frame.positions.push_back(0);
+  CHECK_THROWS_WITH(write_frame(frame, folder.path / "x"), "a frame of 1 values needs 2 coordinates, not 3");
+  frame = one_particle(2);
+  frame.upper[1] = 0;
+  CHECK_THROWS_WITH(write_frame(frame, folder.path / "x"), "the domain of the frame is empty or not finite along y");
+  plot = two_lines();
+  plot.width = 5;
+  CHECK_THROWS_AS(write_figure(plot, folder.path / "x"), std::invalid_argument);
+  CHECK(fs::is_empty(folder.path));
+}
+
+TEST_CASE("a file that cannot be written is named with the cause, and nothing is left behind", "[figures]") {
+  const Folder folder;
+  const fs::path missing = folder.path / "no_such_folder" / "energy";
+  CHECK_THROWS_WITH(write_figure(two_lines(), missing),
+                    "cannot write '" + missing.string() + ".png': No such file or directory");
+  fs::create_directory(folder.path / "taken.txt");
+  CHECK_THROWS_AS(write_file(folder.path / "taken.txt", "text"), std::runtime_error);
+  CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+}
+
+TEST_CASE("files are replaced whole; a stem may hold a dot", "[figures]") {
+  const Folder folder;
+  write_file(folder.path / "a.txt", "first, and long");
+  write_file(folder.path / "a.txt", "second");
+  CHECK(text_of(folder.path / "a.txt") == "second");
+  CHECK(with_suffix("run_0.5", ".png") == fs::path("run_0.5.png"));
+}
+
+TEST_CASE("tables quote what must be quoted", "[figures]") {
+  CsvTable table;
+  table.row({"plain", "with, comma", "say \"so\""});
+  CHECK(table.text() == "plain,\"with, comma\",\"say \"\"so\"\"\"\n");
+  CHECK(std::strtod(full_precision(0.1 + 0.2).c_str(), nullptr) == 0.1 + 0.2);
+}

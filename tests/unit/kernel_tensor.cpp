@@ -1,0 +1,97 @@
+// Small tensors against hand values.
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/tensor.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+using namespace mpm;
+using Mat2 = Mat<2, double>;
+using Mat3 = Mat<3, double>;
+using Sym2 = Sym<2, double>;
+using Sym3 = Sym<3, double>;
+
+constexpr Mat3 example{{1, 2, 3, 0, 4, 5, 1, 0, 6}};
+
+/// Largest eigenvalue of a symmetric tensor by the trigonometric formula of its characteristic cubic.
+double largest_eigenvalue(const Sym3& a) {
+  const Sym3 d = deviator(a);
+  const double p = std::sqrt(squared_norm(d) / 6);
+  if (p == 0) return trace(a) / 3;
+  const double r = std::clamp(determinant(d) / (2 * p * p * p), -1.0, 1.0);
+  return trace(a) / 3 + 2 * p * std::cos(std::acos(r) / 3);
+}
+
+/// A fixed sequence in [-1, 1].
+double number(int k) {
+  return std::fmod(12.9898 * (k + 1) * (k + 3), 2.0) - 1;
+}
+
+}  // namespace
+
+TEST_CASE("matrix product and determinant") {
+  const Mat3 square = example * example;
+  const double expected[] = {4, 10, 31, 5, 16, 50, 7, 2, 39};
+  for (int k = 0; k < 9; ++k) CHECK(square.m[k] == expected[k]);
+  CHECK(determinant(example) == 22);
+  CHECK(determinant(square) == 484);
+  CHECK(determinant(Mat2{{1, 2, 3, 4}}) == -2);
+  CHECK(determinant(Mat3::identity()) == 1);
+  CHECK(determinant(Mat2::identity()) == 1);
+}
+
+TEST_CASE("symmetric tensors are stored xx yy zz yz xz xy, in 2-D xx yy zz xy") {
+  Sym3 a{{1, 2, 3, 4, 5, 6}};
+  CHECK(a(1, 2) == 4);
+  CHECK(a(2, 0) == 5);
+  CHECK(a(1, 0) == 6);
+  CHECK(trace(a) == 6);
+  CHECK(squared_norm(a) == 14 + 2 * (16 + 25 + 36));
+  CHECK(determinant(a) == 6 + 2 * 4 * 5 * 6 - 16 - 2 * 25 - 3 * 36);
+  const Sym2 b{{2, 3, 5, 1}};
+  CHECK(b(1, 0) == 1);
+  CHECK(trace(b) == 10);
+  CHECK(squared_norm(b) == 4 + 9 + 25 + 2);
+  CHECK(determinant(b) == 25);
+  CHECK(std::abs(trace(deviator(a))) < 1e-15);
+  CHECK(deviator(a)(0, 1) == 6);
+  CHECK(Sym2::identity().s[2] == 1);
+  CHECK(Sym2::identity().s[3] == 0);
+}
+
+TEST_CASE("left Cauchy-Green tensor and its plane-strain zz") {
+  const Sym3 b = left_cauchy_green(example);
+  const double expected[] = {14, 41, 37, 30, 19, 23};
+  for (int k = 0; k < 6; ++k) CHECK(b.s[k] == expected[k]);
+  const Sym2 plane = left_cauchy_green(Mat2{{1, 2, 3, 4}});
+  const double expected_plane[] = {5, 25, 1, 11};
+  for (int k = 0; k < 4; ++k) CHECK(plane.s[k] == expected_plane[k]);
+}
+
+TEST_CASE("a step advances the deformation gradient by (I + dt L) F") {
+  const Mat2 F{{1, 0.5, 0, 2}}, L{{0, 1, 2, 0}};
+  const Mat2 r = advanced(F, L, 0.25);
+  const double expected[] = {1, 1, 0.5, 2.25};
+  for (int k = 0; k < 4; ++k) CHECK(r.m[k] == expected[k]);
+}
+
+TEST_CASE("the eigenvalue bound is a bound, and exact for axisymmetric tensors stretched along their axis") {
+  double tightest = 2, loosest = 0;
+  for (int k = 0; k < 2000; ++k) {
+    Mat3 F = Mat3::identity();
+    for (int c = 0; c < 9; ++c) F.m[c] += 0.8 * number(9 * k + c);
+    const Sym3 b = left_cauchy_green(F);
+    const double ratio = largest_eigenvalue_bound(b) / largest_eigenvalue(b);
+    tightest = std::min(tightest, ratio);
+    loosest = std::max(loosest, ratio);
+  }
+  CAPTURE(tightest, loosest);
+  CHECK(tightest >= 1 - 1e-14);
+  CHECK(loosest <= 4.0 / 3);  // reached by eigenvalues (a, a, 0)
+  // Eigenvalues (4, 1, 1): the deviator is (2, -1, -1), so the bound is 2 + sqrt(2/3) sqrt(6) = 4.
+  CHECK(largest_eigenvalue_bound(Sym3{{4, 1, 1, 0, 0, 0}}) == Approx(4).epsilon(1e-15));
+  CHECK(largest_eigenvalue_bound(Sym3::identity()) == 1);
+}

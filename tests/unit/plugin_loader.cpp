@@ -1,0 +1,171 @@
+// What the loader says of every kind of file that cannot be used, word for word.
+
+#include <cstdlib>
+#include <fstream>
+
+#include "fixtures/mpm_fixture.hpp"
+#include "plugin/abi.h"
+#include "plugin/registry.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The loader's message for a file, or nothing when it loads.
+std::string message_for(const fs::path& file) {
+  mpm::Registry registry;
+  try {
+    registry.load(file);
+  } catch (const mpm::PluginError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string start(const fs::path& file) {
+  return "plugin " + file.string() + ": ";
+}
+
+const std::string rebuild = "; rebuild the plugin against this version's headers";
+const std::string wrong_tables = "; the plugin's tables are wrong: build it with plugin/sdk.hpp";
+
+}  // namespace
+
+TEST_CASE("a whole plugin in plain C loads and is found by kind and id") {
+  const fixture::Folder folder;
+  const fs::path file = folder / "whole.so";
+  fixture::build_plugin(file);
+  mpm::Registry registry;
+  registry.load(file);
+  REQUIRE(registry.plugins().size() == 1);
+  const mpm::Plugin* plugin = registry.find(MPM_SHAPE, "fixture");
+  REQUIRE(plugin);
+  CHECK(plugin->file == file);
+  CHECK(plugin->shape().width == 2);
+  CHECK(plugin->parameters().size() == 1);
+  CHECK(plugin->state().empty());
+  CHECK(registry.find(MPM_MATERIAL, "fixture") == nullptr);
+  CHECK(registry.of_kind(MPM_SHAPE).size() == 1);
+  CHECK(registry.of_kind(MPM_CONTACT).empty());
+}
+
+TEST_CASE("a plugin of another ABI version is refused") {
+  const fixture::Folder folder;
+  const fs::path file = folder / "version.so";
+  fixture::build_plugin(file, "-DFIXTURE_ABI=77");
+  CHECK(message_for(file) == start(file) + "was built for plugin ABI version 77, this program has version " +
+                                 std::to_string(MPM_ABI_VERSION) + rebuild);
+}
+
+TEST_CASE("a plugin with other table sizes is refused") {
+  const fixture::Folder folder;
+  const fs::path file = folder / "size.so";
+  const std::string library = std::to_string(sizeof(mpm_plugin_library)),
+                    descriptor = std::to_string(sizeof(mpm_descriptor));
+  fixture::build_plugin(file, "-DFIXTURE_SIZE=12");
+  CHECK(message_for(file) == start(file) + "has table sizes 12 and " + descriptor + ", this program has " + library +
+                                 " and " + descriptor + rebuild);
+  const fs::path other = folder / "descriptor.so";
+  fixture::build_plugin(other, "-DFIXTURE_DESCRIPTOR_SIZE=8");
+  CHECK(message_for(other) == start(other) + "has table sizes " + library + " and 8, this program has " + library +
+                                  " and " + descriptor + rebuild);
+}
+
+TEST_CASE("a shared object without the plugin symbol is refused") {
+  const fixture::Folder folder;
+  const fs::path file = folder / "symbol.so";
+  fixture::build_plugin(file, "-DFIXTURE_SYMBOL=another_name");
+  CHECK(message_for(file) ==
+        start(file) +
+            "exports no symbol `mpm_plugin_library_v`; a plugin needs MPM_EXPORT_PLUGIN in one of its sources");
+}
+
+TEST_CASE("a truncated plugin is refused before it is mapped") {
+  const fixture::Folder folder;
+  const fs::path file = folder / "truncated.so";
+  fixture::build_plugin(file);
+  const auto whole = fs::file_size(file);
+  fs::resize_file(file, whole / 2);
+  const std::string message = message_for(file);
+  // The section table stands at the end of the file, so what is needed is what there was.
+  CHECK(message == start(file) + "is truncated (" + std::to_string(whole / 2) + " of at least " +
+                       std::to_string(whole) + " bytes); rebuild or copy it again");
+  fs::resize_file(file, 10);
+  CHECK(message_for(file) == start(file) + "is not a shared object; rebuild it or remove it from the plugin folder");
+}
+
+TEST_CASE("a file that is not a shared object is refused") {
+  const fixture::Folder folder;
+  const fs::path file = folder / "text.so";
+  std::ofstream(file)
+      << "This is a text of more than sixty-four bytes, which is what the header of an ELF file takes.\n";
+  CHECK(message_for(file) == start(file) + "is not a shared object; rebuild it or remove it from the plugin folder");
+  const fs::path missing = folder / "missing.so";
+  CHECK(message_for(missing) ==
+        start(missing) + "is not a shared object; rebuild it or remove it from the plugin folder");
+}
+
+TEST_CASE("a plugin that needs a symbol nobody defines is refused with its name") {
+  const fixture::Folder folder;
+  const fs::path file = folder / "undefined.so";
+  fixture::build_plugin(file, "-DFIXTURE_CALLS_NOTHING_DEFINED");
+  CHECK(message_for(file) == start(file) + "cannot be loaded: " + file.string() +
+                                 ": undefined symbol: mpm_fixture_defined_nowhere; rebuild it on this machine");
+}
+
+TEST_CASE("a descriptor that makes no sense is refused") {
+  const fixture::Folder folder;
+  const std::string table = std::to_string(sizeof(mpm_shape));
+  const fs::path kind = folder / "kind.so", unit = folder / "unit.so", id = folder / "id.so",
+                 material = folder / "material.so";
+  fixture::build_plugin(kind, "-DFIXTURE_KIND=9");
+  CHECK(message_for(kind) ==
+        start(kind) + "descriptor `fixture` has kind 9 with a table of " + table + " bytes" + wrong_tables);
+  fixture::build_plugin(unit, "-DFIXTURE_UNIT=NULL");
+  CHECK(message_for(unit) == start(unit) + "descriptor `fixture` has an incomplete parameter in row 1" + wrong_tables);
+  fixture::build_plugin(id, "-DFIXTURE_ID=NULL");
+  CHECK(message_for(id) ==
+        start(id) + "has a descriptor without id, version, summary, citation, manual or functor source" + wrong_tables);
+  fixture::build_plugin(material, "-DFIXTURE_KIND=MPM_MATERIAL");
+  CHECK(message_for(material) ==
+        start(material) + "descriptor `fixture` has kind 5 with a table of " + table + " bytes" + wrong_tables);
+}
+
+TEST_CASE("two files with one kind and id: the first folder wins, the second is named") {
+  const fixture::Folder first, second;
+  fixture::build_plugin(first / "one.so");
+  fixture::build_plugin(second / "two.so");
+  const fs::path folders[] = {first.path(), second.path()};
+  const mpm::Registry registry = mpm::Registry::from_folders(folders);
+  REQUIRE(registry.plugins().size() == 1);
+  CHECK(registry.plugins()[0].file == first / "one.so");
+  REQUIRE(registry.rejected().size() == 1);
+  CHECK(registry.rejected()[0] == start(second / "two.so") + "offers shape `fixture`, which " +
+                                      (first / "one.so").string() +
+                                      " already offers; rename one of them or remove a folder from MPM_PLUGIN_PATH");
+}
+
+TEST_CASE("a folder with one bad file still gives its good ones") {
+  const fixture::Folder folder;
+  fixture::build_plugin(folder / "good.so");
+  std::ofstream(folder / "bad.so") << "no";
+  std::ofstream(folder / "notes.txt") << "not looked at";
+  const fs::path folders[] = {folder.path(), folder / "absent"};
+  const mpm::Registry registry = mpm::Registry::from_folders(folders);
+  CHECK(registry.plugins().size() == 1);
+  REQUIRE(registry.rejected().size() == 1);
+  CHECK(registry.rejected()[0] ==
+        start(folder / "bad.so") + "is not a shared object; rebuild it or remove it from the plugin folder");
+}
+
+TEST_CASE("MPM_PLUGIN_PATH comes before the folders of the program") {
+  const char* before = std::getenv("MPM_PLUGIN_PATH");
+  const std::string kept = before ? before : "";
+  setenv("MPM_PLUGIN_PATH", "/first/folder::/second", 1);
+  const auto folders = mpm::Registry::default_folders();
+  before ? setenv("MPM_PLUGIN_PATH", kept.c_str(), 1) : unsetenv("MPM_PLUGIN_PATH");
+  REQUIRE(folders.size() >= 2);
+  CHECK(folders[0] == "/first/folder");
+  CHECK(folders[1] == "/second");
+}
