@@ -8,7 +8,7 @@
 namespace mpm::output {
 namespace {
 
-std::string without_quotes(std::string text) {
+std::string without_quotes(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\"");
   if (first == std::string::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t\"\r") - first + 1);

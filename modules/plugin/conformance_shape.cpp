@@ -98,7 +98,7 @@ double axis_moment(const ShapeBatch& b, int axis, int lane) {
 }
 
 StencilSums stencil_sums(const ShapeBatch& b, int lane) {
-  const int D = b.variant.dimension, nodes = static_cast<int>(std::pow(b.width, D) + 0.5);
+  const int D = b.variant.dimension, nodes = static_cast<int>(std::lround(std::pow(b.width, D)));
   StencilSums s;
   Vector3 moment{};
   for (int a = 0; a < D; ++a) moment[a] = axis_moment(b, a, lane);

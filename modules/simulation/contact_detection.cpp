@@ -11,7 +11,7 @@ constexpr double reach = 4;  // cells: beyond the support of every shape
 }  // namespace
 
 EdgeModel::EdgeModel(const Component& shape, int particles_per_cell_axis)
-    : shape_(&shape), rows_per_cell_(particles_per_cell_axis) {
+    : shape_(shape), rows_per_cell_(particles_per_cell_axis) {
   if (particles_per_cell_axis < 1) throw std::invalid_argument("an edge model needs at least one particle row a cell");
   // The mean grows with the edge up to the node's full support; deeper edges cannot be told apart and count as the
   // deepest.
@@ -31,7 +31,7 @@ EdgeModel::EdgeModel(const Component& shape, int particles_per_cell_axis)
 }
 
 std::vector<double> EdgeModel::weights(const std::vector<double>& rows) const {
-  const mpm_shape& shape = shape_->plugin->shape();
+  const mpm_shape& shape = shape_.plugin->shape();
   const std::size_t n = (rows.size() + MPM_LANES - 1) / MPM_LANES * MPM_LANES;
   std::vector<double> position(n, rows.empty() ? 0.0 : rows.back()), offset(n), weight(n * shape.width);
   std::vector<std::int32_t> base(n);
@@ -47,7 +47,7 @@ std::vector<double> EdgeModel::weights(const std::vector<double>& rows) const {
                               offset.data(),
                               weight.data(),
                               nullptr};
-  shape.evaluate[MPM_SCALAR_DOUBLE](shape_->parameters.data(), &batch);
+  shape.evaluate[MPM_SCALAR_DOUBLE](shape_.parameters.data(), &batch);
   std::vector<double> at_node(rows.size(), 0.0);
   for (std::size_t p = 0; p < rows.size(); ++p) {
     const int node = -base[p];  // position in the stencil of the node at zero

@@ -27,7 +27,7 @@ void check_same_geometry(const Geometry& a, const Geometry& b) {
   CHECK(a.bounds() == b.bounds());
   int different = 0;
   for (int i = 0; i < 8000; ++i) {
-    const Vector3 point{(i % 20) / 20.0, (i / 20 % 20) / 20.0, (i / 400) / 20.0};
+    const Vector3 point{(i % 20) / 20.0, static_cast<double>(i / 20 % 20) / 20.0, static_cast<double>(i / 400) / 20.0};
     different += a.contains(point) != b.contains(point);
   }
   CHECK(different == 0);

@@ -15,7 +15,9 @@ namespace {
 // PATH is only the given folder while this object lives; ffmpeg itself is then found or missing as the test wants.
 class OnlyPath {
  public:
-  explicit OnlyPath(const fs::path& folder) : old_(std::getenv("PATH")) { ::setenv("PATH", folder.c_str(), 1); }
+  explicit OnlyPath(const fs::path& folder) : old_(std::getenv("PATH") ? std::getenv("PATH") : "") {
+    ::setenv("PATH", folder.c_str(), 1);
+  }
   OnlyPath(const OnlyPath&) = delete;
   OnlyPath& operator=(const OnlyPath&) = delete;
   ~OnlyPath() { ::setenv("PATH", old_.c_str(), 1); }

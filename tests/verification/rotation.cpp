@@ -1,9 +1,9 @@
 // Case C5: a spinning disc turns as a rigid body; what each transfer keeps of its angular momentum.
 //
-// FLIP with lumped masses does not keep it: a step adds sum_p m_p x_p x (sum_i w_ip dt f_i / m_i) = dt sum_i c_i x f_i with
-// c_i = sum_p w_ip m_p x_p / m_i, while the forces are free of torque about the nodes, sum_i x_i x f_i = 0. The error
-// dt sum_i (c_i - x_i) x f_i lives where c_i differs from x_i, at the free edge, and does not vanish with dt: the loss is
-// measured here (1.8 % a turn), not the 1 % in ten turns that one would like. APIC keeps it to rounding.
+// FLIP with lumped masses does not keep it: a step adds sum_p m_p x_p x (sum_i w_ip dt f_i / m_i) = dt sum_i c_i x f_i
+// with c_i = sum_p w_ip m_p x_p / m_i, while the forces are free of torque about the nodes, sum_i x_i x f_i = 0. The
+// error dt sum_i (c_i - x_i) x f_i lives where c_i differs from x_i, at the free edge, and does not vanish with dt: the
+// loss is measured here (1.8 % a turn), not the 1 % in ten turns that one would like. APIC keeps it to rounding.
 
 #include <cmath>
 #include <numbers>

@@ -43,7 +43,9 @@ struct VonMises {
     return t;
   }
 
-  /// Returns the energy dissipated by plastic flow, J/m^3: what the return takes out of the stored energy.
+  /// Returns the energy dissipated by plastic flow, J/m^3: the plastic multiplier times its work-conjugate stress at
+  /// the end of the step, which is |s| for small elastic strains. (The stored energy that the return removes from the
+  /// trial state is E de^2/2 a step more, which no force has supplied.)
   template <int D, class S>
   MPM_HD static S advance(const Constants<scalar_of<S>>& c, const Mat<D, S>& L, scalar_of<S> dt, State<D, S>& state) {
     using T = scalar_of<S>;
@@ -67,11 +69,19 @@ struct VonMises {
     const S shrink = real<S>(1) - two_mu_bar * multiplier / max(stress_norm, S(real<S>(1e-30)));
     for (int k = 0; k < Sym<D, S>::size; ++k) d.s[k] = shrink * d.s[k];
     const S new_mean = select(yields, unimodular_mean(d, mean), mean);
+    const S conjugate = mean * conjugate_factor(d, new_mean);
     for (int i = 0; i < 3; ++i) d.s[i] = d.s[i] + new_mean;
     // d + mean rounds: a particle that does not yield keeps b itself, whichever particles share its pack.
     for (int k = 0; k < Sym<D, S>::size; ++k) state.elastic_left_cauchy_green.s[k] = select(yields, d.s[k], b.s[k]);
     state.equivalent_plastic_strain = state.equivalent_plastic_strain + root_two_thirds * multiplier;
-    return real<S>(1.5) * c.mu * (mean - new_mean);
+    return select(yields, shrink * stress_norm * multiplier * conjugate, S(real<S>(0)));
+  }
+
+  /// -(3 mu / 2) dt / d(shrink of d) over mu |d|^2 / 2, with t(d) from det(d + t I) = 1: 1 + O(elastic strain).
+  template <int D, class S>
+  MPM_HD static S conjugate_factor(const Sym<D, S>& d, S t) {
+    const S norm = max(squared_norm(d), S(real<S>(1e-30)));
+    return (t - real<S>(3) * determinant(d) / norm) / (t * t - real<S>(1.0 / 6.0) * norm);
   }
 
   /// f b f^T; in plane strain f_zz = 1.
