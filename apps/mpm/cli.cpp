@@ -1,9 +1,12 @@
 #include "mpm/cli.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
 #include <iostream>
 #include <new>
 
+#include "experiment/diagnostics.hpp"
 #include "metrics/exact.hpp"
 #include "metrics/particle_quantities.hpp"
 #include "mpm/run_figures.hpp"
@@ -42,14 +45,14 @@ int complain(const std::string& message, int code) {
 
 /// The one place where errors become messages and exit codes.
 template <class Verb>
-int guarded(Verb verb) {
+int guarded(Verb verb, const std::string& nothing = "nothing was run") {
   try {
     return verb();
   } catch (const InputError& error) {
     const auto count = error.problems().size();
-    return complain(std::string(error.what()) +
-                        (count > 1 ? "\n" + std::to_string(count) + " mistakes; nothing was run" : "\nnothing was run"),
-                    bad_input);
+    return complain(
+        std::string(error.what()) + "\n" + (count > 1 ? std::to_string(count) + " mistakes; " : "") + nothing,
+        bad_input);
   } catch (const output::FolderRefused& error) {
     return complain(error.what(), bad_input);
   } catch (const PluginError& error) {
@@ -62,6 +65,32 @@ int guarded(Verb verb) {
   } catch (const std::exception& error) {  // MachineError and whatever the system refused
     return complain(error.what(), machine_failed);
   }
+}
+
+/// A first word that is no verb, with the nearest one; an empty string when it is one (or an option, or missing).
+std::string wrong_verb(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return "";
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    verbs.push_back(verb->get_name());
+  if (std::find(verbs.begin(), verbs.end(), argv[1]) != verbs.end()) return "";
+  return "no verb is called " + in_quotes(argv[1]) + suggestion(argv[1], verbs, "verbs are " + quoted_list(verbs));
+}
+
+/// What a verb was given beyond what it takes, with the nearest option it has.
+std::string unexpected_words(const CLI::App& app) {
+  std::string message;
+  for (const CLI::App* verb : app.get_subcommands()) {
+    std::vector<std::string> options;
+    for (const CLI::Option* option : verb->get_options())
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    for (const std::string& word : verb->remaining()) {
+      if (!message.empty()) message += "\n";
+      message += "mpm " + verb->get_name() + " takes no " + in_quotes(word);
+      message += word.starts_with("-") ? suggestion(word, options, "options are " + quoted_list(options)) : "";
+    }
+  }
+  return message;
 }
 
 }  // namespace
@@ -136,10 +165,17 @@ int run_command_line(int argc, char** argv) {
                           "JSON: {\"title\", \"x\", \"y\", \"log_x\", \"log_y\", \"labels\"}, columns of metrics.csv");
   figure_verb->add_option("--out", figure_out,
                           "folder for the figures; default figures/ of the run, or runs/overlay for several");
-  figure_verb->callback([&] { code = guarded([&] { return figure(runs, specification, figure_out); }); });
+  figure_verb->callback(
+      [&] { code = guarded([&] { return figure(runs, specification, figure_out); }, "nothing was drawn"); });
 
+  // A limit on file size is then an error of writing, with its message, like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
+  if (const std::string wrong = wrong_verb(app, argc, argv); !wrong.empty()) return complain(wrong, bad_input);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError& error) {
+    const std::string message = unexpected_words(app);
+    return complain(message.empty() ? error.what() : message, bad_input);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? static_cast<int>(done) : static_cast<int>(bad_input);
   }

@@ -2,8 +2,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -26,20 +29,34 @@ using Clock = std::chrono::steady_clock;
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 
-/// Ctrl-C and a polite kill end the run at the next step boundary; a second one ends the program at once.
+extern "C" void request_stop(int) {
+  stop_requested = true;
+}
+
+/// Ctrl-C and a polite kill end the run at the next step boundary; a second one ends the program at once. A signal that
+/// the caller ignores stays ignored. A reader of the progress lines that goes away does not end the run.
 class StopOnSignal {
  public:
   StopOnSignal() {
     stop_requested = false;
-    for (const int signal : {SIGINT, SIGTERM})
-      std::signal(signal, [](int received) {
-        stop_requested = true;
-        std::signal(received, SIG_DFL);
-      });
+    struct sigaction action {};
+    sigemptyset(&action.sa_mask);
+    for (std::size_t k = 0; k < signals.size(); ++k) {
+      action.sa_handler = signals[k] == SIGPIPE ? SIG_IGN : request_stop;
+      action.sa_flags = SA_RESTART | (signals[k] == SIGPIPE ? 0 : static_cast<int>(SA_RESETHAND));
+      sigaction(signals[k], nullptr, &before_[k]);
+      if (before_[k].sa_handler != SIG_IGN) sigaction(signals[k], &action, nullptr);
+    }
   }
   ~StopOnSignal() {
-    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+    for (std::size_t k = 0; k < signals.size(); ++k) sigaction(signals[k], &before_[k], nullptr);
   }
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
+
+ private:
+  static constexpr std::array signals{SIGINT, SIGTERM, SIGPIPE};
+  std::array<struct sigaction, signals.size()> before_{};
 };
 
 /// One line that is rewritten on a terminal, a plain line every tenth of the run elsewhere.
@@ -52,8 +69,9 @@ class Progress {
     const auto now = Clock::now();
     const double share = simulation_.time() / simulation_.experiment().solver.end_time;
     const bool due = terminal_ ? now - shown_ > std::chrono::milliseconds(200) : share >= next_share_;
-    if (!due && !last) return;
+    if (!due && !(last && (terminal_ || simulation_.steps() != shown_step_))) return;
     shown_ = now;
+    shown_step_ = simulation_.steps();
     while (next_share_ <= share) next_share_ += 0.1;
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     const double rate = static_cast<double>(simulation_.steps()) * static_cast<double>(simulation_.particle_count()) /
@@ -70,6 +88,7 @@ class Progress {
   bool terminal_;
   Clock::time_point start_, shown_;
   double next_share_ = 0.1;
+  long shown_step_ = -1;
 };
 
 nlohmann::ordered_json manifest(const Experiment& experiment, const RunOptions& options, int threads) {
@@ -99,19 +118,25 @@ nlohmann::ordered_json manifest(const Experiment& experiment, const RunOptions& 
   return json;
 }
 
-std::string failure_text(const RunFailure& failure, const Simulation& simulation) {
-  const Experiment& experiment = simulation.experiment();
-  const int D = experiment.dimension;
-  const BodyState state = simulation.backend().body_state(failure.body);
-  std::string text = "step " + std::to_string(simulation.steps() + 1) + ", t = " + std::to_string(simulation.time()) +
-                     " s: particle " + std::to_string(failure.particle) + " of body \"" +
-                     experiment.bodies[failure.body].name + "\" at (";
-  for (int c = 0; c < D; ++c) {
+/// "(0.1, 0.2) m"
+std::string point_text(const BodyState& state, std::size_t particle, std::size_t dimension) {
+  std::string text = "(";
+  for (std::size_t c = 0; c < dimension; ++c) {
     char number[32];
-    std::snprintf(number, sizeof number, "%s%.6g", c ? ", " : "", state.position[failure.particle * D + c]);
+    std::snprintf(number, sizeof number, "%s%.6g", c ? ", " : "", state.position[particle * dimension + c]);
     text += number;
   }
-  return text + ") m " + failure.cause;
+  return text + ") m";
+}
+
+std::string failure_text(const RunFailure& failure, const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  const std::size_t D = static_cast<std::size_t>(experiment.dimension);
+  const BodyState state = simulation.backend().body_state(failure.body);
+  return "step " + std::to_string(simulation.steps() + 1) + ", t = " + number_text(simulation.time()) +
+         " s: particle " + std::to_string(failure.particle) + " of body " +
+         in_quotes(experiment.bodies[failure.body].name) + " at " + point_text(state, failure.particle, D) + " " +
+         failure.cause;
 }
 
 constexpr const char* failure_remedy =
@@ -146,6 +171,16 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder) {
   return outcome;
 }
 
+/// The same, when the disk or the memory fails on the way: what was recorded before still gets its summary.
+Outcome step_or_say_why(Simulation& simulation, Recorder& recorder) {
+  try {
+    return step_to_the_end(simulation, recorder);
+  } catch (const output::MachineError& error) {
+    std::cerr << "the machine failed: " << error.what() << "\n";
+    return {machine_failed, "failed", error.what()};
+  }
+}
+
 void draw(const Experiment& experiment, Recorder& recorder, const output::RunFolder& folder) {
   recorder.draw_frames();
   const std::string run = folder.root().filename().string();
@@ -154,16 +189,63 @@ void draw(const Experiment& experiment, Recorder& recorder, const output::RunFol
   draw_figures(experiment.figures, output::read_csv(folder.root() / "metrics.csv"), label, folder.figures());
 }
 
+/// Draws frames and figures; what prevented that, or an empty string. The numbers are on disk by then.
+std::string trouble_of_drawing(const Experiment& experiment, Recorder& recorder, const output::RunFolder& folder) {
+  try {
+    draw(experiment, recorder, folder);
+    return "";
+  } catch (const std::exception& error) {
+    return std::string("pictures are missing: ") + error.what() + "; the numbers are whole, and `mpm figure " +
+           folder.root().string() + "` draws figures from them again";
+  }
+}
+
+Problem problem_at(const Experiment& experiment, const std::string& pointer, const std::string& message) {
+  for (const auto& [known, place] : experiment.positions)
+    if (known == pointer && place.first > 0)
+      return {experiment.file.string(), place.first, place.second, pointer, message};
+  return {experiment.where(pointer), 0, 0, pointer, message};
+}
+
 void refuse_figures_without_numbers(const Experiment& experiment, const Metrics& metrics) {
   output::Table columns;
   columns.header = metrics.columns();
   columns.columns.resize(columns.header.size());
+  std::vector<Problem> problems;
   for (std::size_t k = 0; k < experiment.figures.size(); ++k) {
     const std::string missing = missing_for(experiment.figures[k], columns);
-    if (missing.empty()) continue;
-    const std::string pointer = "/figures/" + std::to_string(k);
-    throw InputError({Problem{experiment.where(pointer), 0, 0, pointer, missing}});
+    if (!missing.empty()) problems.push_back(problem_at(experiment, "/figures/" + std::to_string(k), missing));
   }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  const std::size_t D = static_cast<std::size_t>(experiment.dimension);
+  std::vector<Problem> problems;
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const BodyState state = simulation.backend().body_state(body);
+    const auto wrong = std::find_if_not(state.velocity.begin(), state.velocity.end(),
+                                        [](double component) { return std::isfinite(component); });
+    if (wrong == state.velocity.end()) continue;
+    const std::size_t particle = static_cast<std::size_t>(wrong - state.velocity.begin()) / D;
+    problems.push_back(problem_at(
+        experiment, experiment.bodies[body].pointer + "/velocity",
+        "is not a finite number at particle " + std::to_string(particle) + ", " + point_text(state, particle, D)));
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+void print_result(const nlohmann::ordered_json& summary, const output::RunFolder& folder) {
+  std::cout << "total energy final/initial ";
+  if (const auto& total = summary["energy"]["total"]; total.contains("final_over_initial"))
+    std::cout << total["final_over_initial"].get<double>();
+  else
+    std::cout << "undefined (no initial energy)";
+  std::cout << ", " << summary["performance"]["particle_steps_per_second"].get<double>() / 1e6
+            << " M particle-steps/s\nreport: "
+            << (folder.root() / "report.html").lexically_relative(std::filesystem::current_path()).string()
+            << std::endl;
 }
 
 }  // namespace
@@ -172,12 +254,14 @@ int run(const RunOptions& options) {
   const auto start = Clock::now();
   const Registry registry = load_registry();
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
-  const int threads =
-      options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int threads = experiment.backend == "reference" ? 1 : options.threads > 0 ? options.threads : processors;
   Simulation simulation(experiment, backend_factory(threads));
   const Metrics metrics(simulation);
   refuse_figures_without_numbers(experiment, metrics);
+  refuse_velocities_that_are_no_numbers(simulation);
 
+  const StopOnSignal signals;
   const auto folder = output::RunFolder::create(
       options.out.empty() ? std::filesystem::path("runs") / options.file.stem() : options.out);
   folder.write_json("manifest.json", manifest(experiment, options, threads));
@@ -186,9 +270,8 @@ int run(const RunOptions& options) {
   std::cerr << experiment.title << ": " << simulation.particle_count() << " particles, " << experiment.backend
             << " backend, " << threads << (threads == 1 ? " thread" : " threads") << "\n";
 
-  const StopOnSignal signals;
   Recorder recorder(simulation, metrics, folder);
-  Outcome outcome = step_to_the_end(simulation, recorder);
+  Outcome outcome = step_or_say_why(simulation, recorder);
 
   const double wall = std::chrono::duration<double>(Clock::now() - start).count();
   nlohmann::ordered_json summary = summarise(simulation, metrics, recorder, wall);
@@ -198,18 +281,19 @@ int run(const RunOptions& options) {
     if (!failed.empty()) outcome = {expectation_failed, "expectation failed", failed.front()};
   }
   for (const auto& warning : summary["warnings"]) std::cerr << "warning: " << warning.get<std::string>() << "\n";
-  summary["outcome"] = {{"exit_code", outcome.exit_code}, {"status", outcome.status}, {"reason", outcome.reason}};
-  folder.write_json("summary.json", summary);
-  draw(experiment, recorder, folder);
+  const auto write_summary = [&] {
+    summary["outcome"] = {{"exit_code", outcome.exit_code}, {"status", outcome.status}, {"reason", outcome.reason}};
+    folder.write_json("summary.json", summary);
+  };
+  write_summary();
+  if (const std::string trouble = trouble_of_drawing(experiment, recorder, folder); !trouble.empty()) {
+    std::cerr << trouble << "\n";
+    summary["warnings"].push_back(trouble);
+    if (outcome.exit_code == done) outcome = {machine_failed, "failed", trouble};
+    write_summary();
+  }
   output::write_report(folder.root());
-  std::cout << "total energy final/initial ";
-  if (const auto& total = summary["energy"]["total"]; total.contains("final_over_initial"))
-    std::cout << total["final_over_initial"].get<double>();
-  else
-    std::cout << "undefined (no initial energy)";
-  std::cout << ", " << summary["performance"]["particle_steps_per_second"].get<double>() / 1e6
-            << " M particle-steps/s\nreport: "
-            << (folder.root() / "report.html").lexically_relative(std::filesystem::current_path()).string() << "\n";
+  print_result(summary, folder);
   return outcome.exit_code;
 }
 

@@ -5,11 +5,14 @@
 #include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "experiment/diagnostics.hpp"
+#include "experiment/parameter.hpp"
 #include "mpm/cli.hpp"
 #include "output/atomic_file.hpp"
+#include "output/report.hpp"
 #include "output/run_folder.hpp"
 #include "render/plot.hpp"
 
@@ -173,14 +176,39 @@ struct RecordedRun {
   Table metrics;
 };
 
+[[noreturn]] void refuse(const std::filesystem::path& what, const std::string& message) {
+  throw InputError({Problem{what.string(), 0, 0, "", message}});
+}
+
 RecordedRun recorded(const std::filesystem::path& folder) {
   RecordedRun run{output::RunFolder::open(folder).root(), "", "", {}};
-  run.metrics = output::read_csv(run.folder / "metrics.csv");
-  const auto experiment = nlohmann::json::parse(output::read_file(run.folder / "experiment.json"), nullptr, false);
-  run.title = experiment.is_object() ? experiment.value("title", "") : "";
+  const std::filesystem::path numbers = run.folder / "metrics.csv";
+  if (!std::filesystem::is_regular_file(numbers))
+    refuse(folder, "holds no metrics.csv: the run ended before its first row");
+  try {
+    run.metrics = output::read_csv(numbers);
+  } catch (const std::exception& error) {
+    refuse(folder, std::string("its numbers cannot be read: ") + error.what());
+  }
+  if (run.metrics.rows() == 0) refuse(numbers, "holds no row: the run ended before its first one");
+  std::error_code ignored;
+  if (const auto file = run.folder / "experiment.json"; std::filesystem::is_regular_file(file, ignored)) {
+    const auto experiment = nlohmann::json::parse(output::read_file(file), nullptr, false);
+    if (experiment.is_object() && experiment.contains("title") && experiment["title"].is_string())
+      run.title = experiment["title"].get<std::string>();
+  }
   if (run.title.empty()) run.title = run.folder.filename().string();
   run.file = run.folder.filename().string();
   return run;
+}
+
+/// Runs of one name in different folders are told apart by those.
+void tell_apart(std::vector<RecordedRun>& runs) {
+  std::vector<std::string> names;
+  for (const RecordedRun& run : runs) names.push_back(run.file);
+  for (RecordedRun& run : runs)
+    if (std::count(names.begin(), names.end(), run.folder.filename().string()) > 1)
+      run.file = (run.folder.parent_path().filename() / run.folder.filename()).string();
 }
 
 /// One curve a run, of the given columns.
@@ -193,29 +221,67 @@ void draw_overlay(const std::vector<RecordedRun>& runs, Plot plot, const std::st
   render::write_figure(plot, stem);
 }
 
-void draw_specified(const std::vector<RecordedRun>& runs, const std::filesystem::path& specification,
-                    const std::filesystem::path& out) {
-  const auto json = nlohmann::json::parse(output::read_file(specification), nullptr, false, true);
-  const auto refuse = [&](const std::string& message) {
-    throw InputError({Problem{specification.string(), 0, 0, "", message}});
-  };
-  if (!json.is_object()) refuse("is not a JSON object");
-  for (const auto& [key, value] : json.items())
-    if (std::string(" title x y x_label y_label log_x log_y labels ").find(" " + key + " ") == std::string::npos)
-      refuse("unknown key \"" + key + "\"; a specification has title, x, y, x_label, y_label, log_x, log_y, labels");
-  const std::string x = json.value("x", "time"), y = json.value("y", "");
-  for (const std::string& name : {x, y})
-    for (const RecordedRun& run : runs)
-      if (!run.metrics.find(name))
-        refuse("run " + run.folder.string() + " has no column \"" + name + "\"; it has " +
-               quoted_list(run.metrics.header));
+Section specification_section() {
+  using Type = ParameterType;
+  return {"specification",
+          "a figure specification",
+          {
+              parameter("title", Type::string, "", "Title; default the name of y."),
+              parameter("x", Type::string, "", "Column of metrics.csv.").standard("time"),
+              parameter("y", Type::string, "", "Column of metrics.csv.").needed(),
+              parameter("x_label", Type::string, "", "Default: the column and its unit."),
+              parameter("y_label", Type::string, "", "Default: the column and its unit."),
+              parameter("log_x", Type::boolean, "", "Logarithmic axis.").standard(false),
+              parameter("log_y", Type::boolean, "", "Logarithmic axis.").standard(false),
+              parameter("labels", Type::names, "", "One a run, in the order of the command line."),
+          }};
+}
+
+/// What `mpm figure --spec` draws, checked against the runs.
+struct Specification {
   Plot plot;
-  plot.title = json.value("title", y);
-  plot.x_label = json.value("x_label", x + unit_of(runs.front().metrics, x));
-  plot.y_label = json.value("y_label", y + unit_of(runs.front().metrics, y));
-  plot.log_x = json.value("log_x", false);
-  plot.log_y = json.value("log_y", false);
-  draw_overlay(runs, plot, x, y, json.value("labels", std::vector<std::string>{}), out / specification.stem());
+  std::string x, y;
+  std::vector<std::string> labels;
+};
+
+std::vector<std::string> names_without_units(const Table& table) {
+  std::vector<std::string> names = table.header;
+  for (std::string& name : names) name = name.substr(0, name.find(" ("));
+  return names;
+}
+
+Specification read_specification(const std::filesystem::path& file, const std::vector<RecordedRun>& runs) {
+  const Node root = read_located(file);
+  ReadContext context;
+  context.file = file.string();
+  const Fields fields(&root, specification_section(), context);
+  for (const char* key : {"x", "y"}) {
+    if (!fields.valid(key)) continue;
+    const std::string& name = fields.text(key);
+    for (const RecordedRun& run : runs) {
+      if (run.metrics.find(name)) continue;
+      const auto names = names_without_units(run.metrics);
+      context.problem(fields.place(key), "run " + run.folder.string() + " has no column " + in_quotes(name) +
+                                             suggestion(name, names, "it has " + quoted_list(names)));
+    }
+  }
+  const std::size_t labels = fields.names("labels").size();
+  if (fields.valid("labels") && labels > 0 && labels != runs.size())
+    context.problem(fields.place("labels"),
+                    std::to_string(labels) + " labels for " + std::to_string(runs.size()) + " runs; give one a run");
+  if (!context.problems.empty()) throw InputError(std::move(context.problems));
+
+  const auto text_or = [&](const char* key, const std::string& standard) {
+    return fields.given(key) ? fields.text(key) : standard;
+  };
+  Specification read{{}, fields.text("x"), fields.text("y"), fields.names("labels")};
+  const Table& first = runs.front().metrics;
+  read.plot.title = text_or("title", read.y);
+  read.plot.x_label = text_or("x_label", read.x + unit_of(first, read.x));
+  read.plot.y_label = text_or("y_label", read.y + unit_of(first, read.y));
+  read.plot.log_x = fields.boolean("log_x");
+  read.plot.log_y = fields.boolean("log_y");
+  return read;
 }
 
 }  // namespace
@@ -246,12 +312,17 @@ int figure(const std::vector<std::filesystem::path>& folders, const std::filesys
            const std::filesystem::path& out) {
   std::vector<RecordedRun> runs;
   for (const auto& folder : folders) runs.push_back(recorded(folder));
+  tell_apart(runs);
+  std::optional<Specification> specified;
+  if (!specification.empty()) specified = read_specification(specification, runs);
   const std::filesystem::path target = !out.empty()       ? out
                                        : runs.size() == 1 ? runs.front().folder / "figures"
                                                           : std::filesystem::path("runs/overlay");
+  if (std::filesystem::exists(target) && !std::filesystem::is_directory(target))
+    refuse(target, "is a file; choose a folder with --out");
   std::filesystem::create_directories(target);
-  if (!specification.empty()) {
-    draw_specified(runs, specification, target);
+  if (specified) {
+    draw_overlay(runs, specified->plot, specified->x, specified->y, specified->labels, target / specification.stem());
   } else if (runs.size() == 1) {
     std::vector<std::string> names;
     for (const std::string& name : figure_names())
@@ -277,6 +348,7 @@ int figure(const std::vector<std::filesystem::path>& folders, const std::filesys
       draw_overlay(runs, plot, "time", name, {}, target / stem);
     }
   }
+  if (out.empty() && runs.size() == 1) output::write_report(runs.front().folder);
   std::cout << "figures in " << target.string() << "\n";
   return done;
 }

@@ -221,6 +221,7 @@ class Planner {
     const double rim = 12 * D * std::pow(occupied_cells, (D - 1.0) / D) * (D == 2 ? 8 : 4) / 4 + 4096;
     const double nodes =
         experiment_.backend == "reference" ? domain_nodes : std::min(domain_nodes * 2, 1.3 * occupied_cells + rim);
+    if (experiment_.backend == "cpu") particle_bytes *= 2;  // sorting moves particles to a second copy
     // The reference backend keeps stencils and all moments of a particle, and every value of a node side by side.
     const double stencil = std::pow(shape_.width, D) * 88.0 + 600;
     if (experiment_.backend == "reference") particle_bytes += particles * stencil;
@@ -234,17 +235,21 @@ class Planner {
     plan_.grid_bytes = static_cast<std::uint64_t>(grid_bytes);
   }
 
+  /// Free memory of the machine, or what its control group leaves.
   static double available_bytes() {
+    double available = 8e9;
     std::ifstream file("/proc/meminfo");
     for (std::string line; std::getline(file, line);)
       if (unsigned long long kilobytes = 0; std::sscanf(line.c_str(), "MemAvailable: %llu kB", &kilobytes) == 1)
-        return kilobytes * 1024.0;
-    return 8e9;
+        available = static_cast<double>(kilobytes) * 1024.0;
+    double limit = 0, used = 0;
+    if (std::ifstream("/sys/fs/cgroup/memory.max") >> limit && std::ifstream("/sys/fs/cgroup/memory.current") >> used)
+      available = std::min(available, limit - used);
+    return available;
   }
 
   void refuse_too_large(double particles, double particle_bytes, double grid_bytes) const {
-    // Sorting keeps two copies of the particles for a moment.
-    const double needed = 2 * particle_bytes + grid_bytes, available = available_bytes();
+    const double needed = particle_bytes + grid_bytes, available = available_bytes();
     if (particles < 2e9 && needed < 0.9 * available) return;
     std::ostringstream message;
     message.precision(3);
@@ -355,7 +360,8 @@ std::string Plan::to_text() const {
   out << "Stencil: weights" << (weight_gradients ? " and gradients" : " only, no gradients") << "; force "
       << (separate_force ? "in a field of its own" : "merged into momentum") << "\n";
   out << "Estimate: " << particles << " particles, " << nodes << " nodes, " << (particle_bytes + 524288) / 1048576
-      << " MiB of particles, " << (grid_bytes + 524288) / 1048576 << " MiB of grid\n";
+      << " MiB of particles (copies and scratch included), " << (grid_bytes + 524288) / 1048576
+      << " MiB of grid\n";
   return out.str();
 }
 

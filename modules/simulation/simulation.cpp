@@ -42,8 +42,12 @@ void Simulation::step() {
     const auto start = std::chrono::steady_clock::now();
     backend_->execute(pass, {dt_, time_, steps_});
     seconds_[pass.name()] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (pass.kind == PassKind::estimate_time_step)
-      estimate_ = experiment_.solver.courant * experiment_.grid.cell_size / backend_->time_step_limit().speed;
+    if (pass.kind == PassKind::estimate_time_step) {
+      const TimeStepLimit limit = backend_->time_step_limit();
+      if (!(limit.speed > 0) || !std::isfinite(limit.speed))
+        throw RunFailure("not a number: its wave or particle speed gives no time step", limit.body, limit.particle);
+      estimate_ = experiment_.solver.courant * experiment_.grid.cell_size / limit.speed;
+    }
   }
   ++steps_;
   // A fixed step multiplies instead of summing, so that rounding does not grow with the number of steps.

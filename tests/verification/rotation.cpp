@@ -40,9 +40,11 @@ TEST_CASE("C5 one turn: APIC, MLS and FLIP keep the spin, PIC loses it", "[C][C5
     Scene scene(disc, {set("/transfer/type", transfer)});
     Totals end;
     INFO(transfer);
-    CHECK(scene.metrics.initial().angular_momentum[2] == Approx(exact).epsilon(0.02));  // the lattice's edge
+    // The affine part adds 2 D w m, D = h^2/4; the rest is the lattice's edge.
+    const double affine = transfer == "flip" ? 0.0 : 4 * (0.05 * 0.05 / 4) / (0.5 * 0.5);
+    CHECK(scene.metrics.initial().angular_momentum[2] == Approx(exact * (1 + affine)).epsilon(0.02));
     CHECK(std::abs(kept_spin(scene, end) - 1) < (transfer == "flip" ? 0.03 : 1e-10));
-    CHECK(end.position_error_rms < 0.02);
+    CHECK(end.position_error_rms < (transfer == "flip" ? 0.06 : 0.01));  // m; FLIP's lost spin is a lag
     CHECK(std::abs(end.smallest_volume_ratio - 1) < 0.02);
   }
   Scene scene(disc, {set("/transfer/type", "pic")});

@@ -166,9 +166,12 @@ std::int32_t Particles::update_material(const mpm_material_batch& request) {
 }
 
 void Particles::refuse_inverted(std::int32_t particle) const {
-  if (particle >= 0)
-    throw RunFailure("inverted: its volume ratio J is not positive", body_,
-                     std::min(static_cast<std::size_t>(particle), count_ - 1));
+  if (particle < 0) return;
+  const std::size_t p = std::min(static_cast<std::size_t>(particle), count_ - 1);
+  for (const auto& [name, field] : material_state_)
+    if (!field.col(static_cast<Eigen::Index>(p)).allFinite())
+      throw RunFailure("not a number: its deformation is no longer finite", body_, p);
+  throw RunFailure("inverted: its volume ratio J is not positive", body_, p);
 }
 
 void Particles::evaluate_stress() {

@@ -1,0 +1,199 @@
+// Exit codes 0, 2 and 4, and the message that comes with each.
+
+#include "cli/program.hpp"
+
+using namespace mpm::test;
+
+namespace {
+
+/// Bad input: code 2, the message, nothing on standard output, and not a file more than before.
+void refused(const Folder& folder, const Words& words, const std::string& message) {
+  const auto before = folder.names();
+  const Result result = call(folder, words);
+  INFO(result.err);
+  INFO("expected: " << message);
+  CHECK(result.code == 2);
+  CHECK(has(result.err, message));
+  CHECK(result.out.empty());
+  CHECK(folder.names() == before);
+}
+
+void refused_scene(const Json& scene, const std::string& message, const Words& more = {}) {
+  const Folder folder;
+  spill(folder / "scene.json", scene.dump(1));
+  Words words{"run", "scene.json", "--out", "run"};
+  words.insert(words.end(), more.begin(), more.end());
+  refused(folder, words, message);
+}
+
+}  // namespace
+
+TEST_CASE("0: a run whose expectations hold") {
+  const Folder folder;
+  const Json scene =
+      expecting(ball(), {{"metric", "energy.total.final_over_initial"}, {"at_least", 0.99}, {"at_most", 1.01}});
+  const Result result = run_scene(folder, scene);
+  INFO(result.err);
+  CHECK(result.code == 0);
+  CHECK(has(result.out, "report: run/report.html"));
+  const Json summary = json_in(folder / "run/summary.json");
+  CHECK(summary["outcome"]["exit_code"] == 0);
+  CHECK(summary["outcome"]["status"] == "done");
+  REQUIRE(summary["expect"].size() == 1);
+  CHECK(summary["expect"][0]["held"] == true);
+  CHECK(summary["performance"]["wall_seconds"].get<double>() > 0);
+  CHECK(summary["performance"]["wall_seconds"].get<double>() < result.seconds);
+  CHECK(summary["performance"]["peak_memory"].get<double>() > 1e6);
+  CHECK(summary["performance"]["peak_memory"].get<double>() < 1e9);
+}
+
+TEST_CASE("progress that is not on a terminal is plain lines, none twice") {
+  const Folder folder;
+  const Result result = run_scene(folder, ball());
+  INFO(result.err);
+  CHECK(!has(result.err, "\r"));
+  CHECK(!has(result.err, "\033"));
+  std::istringstream lines(result.err);
+  std::vector<std::string> steps;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("step ")) steps.push_back(line.substr(0, line.find(',')));
+  CHECK(steps.size() >= 10);
+  CHECK(steps.size() <= 12);
+  CHECK(std::adjacent_find(steps.begin(), steps.end()) == steps.end());
+  CHECK(steps.back() == "step 50");
+}
+
+TEST_CASE("2: the file") {
+  const Folder folder;
+  refused(folder, {"run", "missing.json"}, "missing.json: there is no such file\nnothing was run");
+  refused(folder, {"check", "missing.json"}, "missing.json: there is no such file");
+  refused(folder, {"plan", "missing.json"}, "missing.json: there is no such file");
+  refused(folder, {"run", "."}, ".: ");
+  spill(folder / "broken.json", "{\"title\": \"a\",\n  \"dimension\" 2}");
+  refused(folder, {"run", "broken.json"}, "broken.json:2:15: ");
+  spill(folder / "empty.json", "");
+  refused(folder, {"run", "empty.json"}, "empty.json: ");
+}
+
+TEST_CASE("2: every mistake in a file at once, with place and nearest name") {
+  const Folder folder;
+  std::string text = ball().dump(1);
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    REQUIRE(has(text, from));
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("\"poisson_ratio\"", "\"poison_ratio\"");
+  replace("\"mls\"", "\"msl\"");
+  replace("\"end_time\"", "\"endtime\"");
+  spill(folder / "scene.json", text);
+  const Result result = call(folder, {"run", "scene.json"});
+  INFO(result.err);
+  CHECK(result.code == 2);
+  CHECK(has(result.err, "did you mean \"poisson_ratio\"?"));
+  CHECK(has(result.err, "did you mean \"mls\"?"));
+  CHECK(has(result.err, "did you mean \"end_time\"?"));
+  CHECK(has(result.err, "/transfer"));
+  CHECK(has(result.err, "mistakes; nothing was run"));
+  std::istringstream lines(result.err);
+  std::string line;
+  std::getline(lines, line);
+  int row = 0, column = 0;
+  CHECK(std::sscanf(line.c_str(), "scene.json:%d:%d: /", &row, &column) == 2);
+  CHECK(!fs::exists(folder / "runs"));
+}
+
+TEST_CASE("2: verbs and options") {
+  const Folder folder;
+  spill(folder / "scene.json", ball().dump());
+  refused(folder, {}, "--help");
+  refused(folder, {"rnu", "scene.json"}, "no verb is called \"rnu\"; did you mean \"run\"?");
+  refused(folder, {"frobnicate"}, "verbs are \"run\", \"check\", \"plan\"");
+  refused(folder, {"run", "scene.json", "--thread", "2"}, "mpm run takes no \"--thread\"; did you mean \"--threads\"?");
+  refused(folder, {"run"}, "FILE");
+  refused(folder, {"run", "scene.json", "--threads", "0"}, "--threads");
+  refused(folder, {"run", "scene.json", "--threads", "many"}, "--threads");
+  refused(folder, {"describe"}, "ID");
+  refused(folder, {"run", "scene.json", "--set", "/solver/end_tim=1"}, "end_time");
+  refused(folder, {"run", "scene.json", "--set", "nonsense"}, "--set");
+  refused(folder, {"run", "scene.json", "--backend", "gpu"},
+          "--backend: /backend: expected one of \"reference\", \"cpu\", got \"gpu\"");
+}
+
+TEST_CASE("2: combinations that cannot run") {
+  Json scene = ball();
+  scene["precision"] = "float";
+  refused_scene(scene, "precision \"float\" is not available on backend \"reference\"", {"--backend", "reference"});
+  scene = ball();
+  scene["transfer"]["type"] = "./evil.so";
+  refused_scene(scene, "/transfer/type: unknown transfer \"./evil.so\"");
+  scene = ball();
+  scene["bodies"][0]["geometry"]["centre"] = {5.0, 5.0};
+  refused_scene(scene, "/bodies/0/geometry");
+  scene = ball();
+  scene["bodies"][0]["velocity"] = {"sqrt(x - 0.5)", 0};
+  refused_scene(scene, "/bodies/0/velocity: is not a finite number at particle 0, (0.425, 0.325) m");
+}
+
+TEST_CASE("2: a figure without its numbers, before the run") {
+  const Folder folder;
+  std::string text = ball().dump();
+  text.insert(text.size() - 1, ",\n \"figures\": [\"energy\", \"contact\",\n  \"error\"]");
+  spill(folder / "scene.json", text);
+  refused(
+      folder, {"run", "scene.json", "--out", "run"},
+      "scene.json:2:24: /figures/1: figure \"contact\" needs \"contact nodes\", which the run does not record: give "
+      "the experiment a \"contact\"\n"
+      "scene.json:3:3: /figures/2: figure \"error\" needs \"position error rms\"");
+  refused(folder, {"run", "scene.json", "--set", "/figures=[\"contact\"]"}, "command line: /figures/0: figure");
+}
+
+TEST_CASE("2: a scene too large for memory is refused at once, with the estimate") {
+  const Folder folder;
+  Json scene = ball();
+  scene["grid"]["cell_size"] = 1e-5;
+  spill(folder / "scene.json", scene.dump());
+  const Result result = call(folder, {"run", "scene.json", "--out", "run"});
+  INFO(result.err);
+  CHECK(result.code == 2);
+  CHECK(result.seconds < 5);
+  CHECK(has(result.err, "/grid/cell_size: the scene needs about"));
+  CHECK(has(result.err, "GB of state"));
+  CHECK(has(result.err, "are free; use larger cells"));
+  CHECK(!fs::exists(folder / "run"));
+}
+
+TEST_CASE("2: an --out folder that holds something else stays as it is") {
+  const Folder folder;
+  fs::create_directory(folder / "thesis");
+  spill(folder / "thesis/chapter.tex", "years of work");
+  spill(folder / "scene.json", ball().dump());
+  refused(folder, {"run", "scene.json", "--out", "thesis"}, "holds files that are not an earlier run");
+  CHECK(slurp(folder / "thesis/chapter.tex") == "years of work");
+  refused(folder, {"run", "scene.json", "--out", "scene.json"}, "is a file; choose another folder with --out");
+  CHECK(json_in(folder / "scene.json") == ball());
+}
+
+TEST_CASE("4: an expectation that fails, named with its place; everything is written") {
+  const Folder folder;
+  std::string text = ball().dump();
+  text.insert(text.size() - 1,
+              ",\n \"compare\": {\"expect\": [\n"
+              "  {\"metric\": \"energy.total.final_over_initial\", \"at_least\": 1.5},\n"
+              "  {\"metric\": \"energy.totl.final_over_initial\", \"at_most\": 2},\n"
+              "    {\"metric\": \"particles\", \"equals\": 50, \"tolerance\": 1}]}");
+  spill(folder / "scene.json", text);
+  const Result result = call(folder, {"run", "scene.json", "--out", "run", "--threads", "1"});
+  INFO(result.err);
+  CHECK(result.code == 4);
+  CHECK(has(result.err,
+            "scene.json:3:3: /compare/expect/0: expected energy.total.final_over_initial at least 1.5, got "));
+  CHECK(has(result.err,
+            "scene.json:4:3: /compare/expect/1: expected energy.totl.final_over_initial at most 2, but the summary has "
+            "no number of that name; did you mean \"energy.total.final_over_initial\"?"));
+  CHECK(has(result.err, "scene.json:5:5: /compare/expect/2: expected particles 50 within 1, got 52"));
+  const Json summary = json_in(folder / "run/summary.json");
+  CHECK(summary["outcome"]["exit_code"] == 4);
+  CHECK(summary["outcome"]["status"] == "expectation failed");
+  for (const Json& entry : summary["expect"]) CHECK(entry["held"] == false);
+  CHECK(has(slurp(folder / "run/report.html"), "energy.total.final_over_initial"));
+}

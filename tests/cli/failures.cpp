@@ -1,0 +1,246 @@
+// Exit codes 3, 5 and 130, and a kill without warning: what the run folder then holds.
+
+#include <sys/mount.h>
+
+#include "cli/program.hpp"
+#include "output/csv.hpp"
+
+using namespace mpm::test;
+
+namespace {
+
+/// Every file is whole: JSON parses, rows of metrics.csv are complete, nothing temporary carries a result's name.
+void check_whole(const fs::path& run) {
+  for (const auto& entry : fs::recursive_directory_iterator(run)) {
+    const std::string name = entry.path().filename().string();
+    INFO(entry.path());
+    if (name.starts_with('.')) {
+      CHECK(name.ends_with(".tmp"));
+      continue;
+    }
+    CHECK(!name.ends_with(".tmp"));
+    if (entry.path().extension() == ".json") json_in(entry.path());
+  }
+  if (!fs::exists(run / "metrics.csv")) return;
+  const auto table = mpm::output::read_csv(run / "metrics.csv");
+  CHECK(table.columns.size() > 10);
+}
+
+/// Code 3: the message holds all parts, and so do summary and report; the rows before are there.
+void fails(const Json& scene, const Words& parts) {
+  const Folder folder;
+  const Result result = run_scene(folder, scene);
+  INFO(result.err);
+  CHECK(result.code == 3);
+  const Json summary = json_in(folder / "run/summary.json");
+  CHECK(summary["outcome"]["exit_code"] == 3);
+  CHECK(summary["outcome"]["status"] == "failed");
+  const std::string reason = summary["outcome"]["reason"];
+  CHECK(has(result.err, reason));
+  for (const std::string& part : parts) {
+    INFO(part);
+    CHECK(has(reason, part));
+  }
+  const std::string report = slurp(folder / "run/report.html");
+  CHECK(has(report, "</html>"));
+  CHECK(has(report, reason.substr(reason.rfind(") m ") + 4)));
+  CHECK(mpm::output::read_csv(folder / "run/metrics.csv").rows() >= 1);
+  check_whole(folder / "run");
+}
+
+struct SmallDisk {
+  explicit SmallDisk(fs::path at) : path(std::move(at)) {
+    fs::create_directory(path);
+    mounted = ::mount("tmpfs", path.c_str(), "tmpfs", 0, "size=96k") == 0;
+  }
+  ~SmallDisk() {
+    if (mounted) ::umount2(path.c_str(), MNT_DETACH);
+  }
+  fs::path path;
+  bool mounted = false;
+};
+
+void interrupt_with(int signal) {
+  const Folder folder;
+  Json scene = endless_ball();
+  scene["figures"] = {"energy"};
+  spill(folder / "scene.json", scene.dump());
+  Process process(folder, program({"run", "scene.json", "--out", "run", "--threads", "1"}));
+  REQUIRE(process.wait_until([&] { return rows_written(folder / "run/metrics.csv", 20); }));
+  process.send(signal);
+  const Result result = process.finish();
+  INFO(result.err);
+  CHECK(result.code == 130);
+  CHECK(has(result.err, "stopped by a signal after step"));
+  const Json summary = json_in(folder / "run/summary.json");
+  CHECK(summary["outcome"]["exit_code"] == 130);
+  CHECK(summary["outcome"]["status"] == "interrupted");
+  const auto table = mpm::output::read_csv(folder / "run/metrics.csv");
+  CHECK(!table.last_line_was_cut);
+  CHECK(table.find("step")->back() == summary["steps"].get<double>());
+  CHECK(table.find("time")->back() == summary["simulated_time"].get<double>());
+  CHECK(table.find("total energy")->back() == summary["energy"]["total"]["final"].get<double>());
+  CHECK(fs::exists(folder / "run/figures/energy.png"));
+  CHECK(has(slurp(folder / "run/report.html"), "nterrupted"));
+  check_whole(folder / "run");
+}
+
+}  // namespace
+
+TEST_CASE("3: an inverted particle") {
+  Json scene = ball();
+  scene["solver"] = {{"time_step", 0.5}, {"end_time", 50}};
+  for (const char* backend : {"cpu", "reference"}) {
+    scene["backend"] = backend;
+    fails(scene, {"step ", "t = ", "particle ", "of body \"ball\" at (", ") m ", "inverted"});
+  }
+}
+
+TEST_CASE("3: a particle that leaves the domain") {
+  Json scene = ball();
+  scene["grid"]["boundaries"]["all"] = "free";
+  scene["bodies"][0]["velocity"] = {20, 0};
+  for (const char* backend : {"cpu", "reference"}) {
+    scene["backend"] = backend;
+    fails(scene, {"step ", "particle ", "of body \"ball\" at (", "domain"});
+  }
+}
+
+TEST_CASE("3: not a number, in the very first step and later") {
+  Json scene = ball();
+  for (const char* backend : {"cpu", "reference"})
+    for (const char* force : {"sqrt(x - 10)", "sqrt(0.05 - t)"}) {
+      scene["backend"] = backend;
+      scene["body_force"] = {force, 0};
+      INFO(backend << " " << force);
+      const bool first = std::string(force) == "sqrt(x - 10)";
+      fails(scene, {first ? "step 1, t = 0 s: particle " : "step 2", "of body \"ball\" at (", ") m "});
+    }
+}
+
+TEST_CASE("3: max_steps before the end") {
+  const Folder folder;
+  Json scene = ball();
+  scene["solver"]["max_steps"] = 7;
+  const Result result = run_scene(folder, scene);
+  INFO(result.err);
+  CHECK(result.code == 3);
+  CHECK(has(result.err, "max_steps (7) was reached before end_time"));
+  CHECK(mpm::output::read_csv(folder / "run/metrics.csv").find("step")->back() == 7);
+}
+
+TEST_CASE("5: the disk fills up") {
+  const Folder folder;
+  const SmallDisk disk(folder / "disk");
+  if (!disk.mounted) {
+    WARN("no small disk could be mounted: the test of a full one is left out");
+    return;
+  }
+  spill(folder / "scene.json", endless_ball().dump());
+  const Result result = call(folder, {"run", "scene.json", "--out", "disk/run", "--threads", "1"});
+  INFO(result.err);
+  CHECK(result.code == 5);
+  CHECK(has(result.err, "metrics.csv: No space left on device; free some space there"));
+  const auto table = mpm::output::read_csv(disk.path / "run/metrics.csv");
+  CHECK(!table.last_line_was_cut);
+  CHECK(table.rows() > 10);
+  check_whole(disk.path / "run");
+}
+
+TEST_CASE("5: a file grows beyond its limit; summary and report still say what was reached") {
+  const Folder folder;
+  spill(folder / "scene.json", endless_ball().dump());
+  const std::string command =
+      "ulimit -f 256; exec " MPM_BUILD_DIR "/bin/mpm run scene.json --out run --threads 1";  // of 512 bytes
+  const Result result = Process(folder, {"/bin/sh", "-c", command}).finish();
+  INFO(result.err);
+  CHECK(result.code == 5);
+  CHECK(has(result.err, "metrics.csv: File too large; raise the limit on file size"));
+  const auto table = mpm::output::read_csv(folder / "run/metrics.csv");
+  CHECK(!table.last_line_was_cut);
+  CHECK(table.rows() > 100);
+  const Json summary = json_in(folder / "run/summary.json");
+  CHECK(summary["outcome"]["exit_code"] == 5);
+  CHECK(has(slurp(folder / "run/report.html"), "File too large"));
+  check_whole(folder / "run");
+}
+
+TEST_CASE("5: the run folder cannot be made") {
+  const Folder folder;
+  const Result result = [&] {
+    spill(folder / "scene.json", ball().dump());
+    return call(folder, {"run", "scene.json", "--out", "/proc/no/run"});
+  }();
+  INFO(result.err);
+  CHECK(result.code == 5);
+  CHECK(has(result.err, "cannot create the folder /proc/no/run"));
+}
+
+TEST_CASE("pictures that cannot be drawn do not cost the numbers") {
+  const Folder folder;
+  Json scene = ball();
+  scene["solver"]["end_time"] = 2.0;
+  scene["output"]["metrics_every"] = 1;
+  scene["figures"] = {"energy"};
+  spill(folder / "scene.json", scene.dump());
+  Process process(folder, program({"run", "scene.json", "--out", "run", "--threads", "1"}));
+  REQUIRE(process.wait_until([&] { return rows_written(folder / "run/metrics.csv", 2); }));
+  spill(folder / "run/figures", "a file where the folder should be");
+  const Result result = process.finish();
+  INFO(result.err);
+  CHECK(result.code == 5);
+  CHECK(has(result.err, "pictures are missing: "));
+  CHECK(has(result.err, "`mpm figure "));
+  const Json summary = json_in(folder / "run/summary.json");
+  CHECK(summary["steps"] == 1000);
+  CHECK(summary["outcome"]["exit_code"] == 5);
+  CHECK(has(slurp(folder / "run/report.html"), "</html>"));
+}
+
+TEST_CASE("130: Ctrl-C") {
+  interrupt_with(SIGINT);
+}
+
+TEST_CASE("130: a polite kill") {
+  interrupt_with(SIGTERM);
+}
+
+TEST_CASE("a reader of the messages that goes away does not end the run") {
+  const Folder folder;
+  spill(folder / "scene.json", ball().dump());
+  const std::string command =
+      "{ " MPM_BUILD_DIR "/bin/mpm run scene.json --out run --threads 1 2>&1; echo $? > code; } | :";
+  Process(folder, {"/bin/sh", "-c", command}).finish();
+  CHECK(slurp(folder / "code") == "0\n");
+  CHECK(json_in(folder / "run/summary.json")["steps"] == 50);
+}
+
+TEST_CASE("kill -9 leaves whole files, and the folder can be used again") {
+  const Folder folder;
+  Json scene = endless_ball();
+  scene["output"]["frames"] = 3;
+  scene["output"]["vtk"] = true;
+  spill(folder / "scene.json", scene.dump());
+  int run = 0;
+  for (const int rows : {0, 1, 50}) {
+    const fs::path earlier = folder / ("run." + std::to_string(run));
+    Process process(folder, program({"run", "scene.json", "--out", "run", "--threads", "1"}));
+    REQUIRE(process.wait_until(
+        [&] { return (run == 0 || fs::exists(earlier)) && rows_written(folder / "run/metrics.csv", rows); }));
+    ++run;
+    process.send(SIGKILL);
+    CHECK(process.finish().signal == SIGKILL);
+    check_whole(folder / "run");
+    json_in(folder / "run/manifest.json");
+    json_in(folder / "run/experiment.json");
+    CHECK(!fs::exists(folder / "run/summary.json"));
+  }
+  const Result drawn = call(folder, {"figure", "run"});
+  INFO(drawn.err);
+  CHECK(drawn.code == 0);
+  CHECK(fs::exists(folder / "run/figures/energy.png"));
+  const Result again = run_scene(folder, ball());
+  CHECK(again.code == 0);
+  CHECK(folder.names() == Words{"run", "run.1", "run.2", "run.3", "scene.json"});
+  CHECK(fs::exists(folder / "run/summary.json"));
+}

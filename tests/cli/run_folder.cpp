@@ -1,0 +1,290 @@
+// What a run leaves behind, that it can be run again with the same bytes, and figures drawn again from it.
+
+#include "cli/program.hpp"
+#include "output/csv.hpp"
+
+using namespace mpm::test;
+
+namespace {
+
+std::vector<std::string> files_below(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) names.push_back(entry.path().lexically_relative(folder).string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool is_png(const fs::path& path) {
+  return slurp(path).starts_with("\x89PNG\r\n");
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+/// Final numbers of a summary: all that the cadence of outputs must not change.
+Json final_numbers(const fs::path& run) {
+  const Json summary = json_in(run / "summary.json");
+  Json numbers;
+  for (const char* key : {"particles", "steps", "simulated_time", "time_step", "momentum", "centre_of_mass"})
+    numbers[key] = summary[key];
+  for (const auto& [kind, value] : summary["energy"].items()) numbers[kind] = kind == "ledger" ? value : value["final"];
+  return numbers;
+}
+
+void run_as(const Folder& folder, const Json& scene, const std::string& name, const Words& more = {}) {
+  spill(folder / (name + ".json"), scene.dump());
+  Words words{"run", name + ".json", "--out", name};
+  words.insert(words.end(), more.begin(), more.end());
+  const Result result = call(folder, words);
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+}
+
+/// Bad input to `mpm figure`.
+void figure_refused(const Folder& folder, const Words& words, const std::string& message) {
+  const auto before = files_below(folder.path());
+  const Result result = call(folder, words);
+  INFO(result.err);
+  INFO("expected: " << message);
+  CHECK(result.code == 2);
+  CHECK(has(result.err, message));
+  CHECK(files_below(folder.path()) == before);
+}
+
+}  // namespace
+
+TEST_CASE("the run folder holds what the contract says") {
+  const Folder folder;
+  Json scene = two_balls();
+  scene["output"] = {{"metrics_every", 4}, {"frames", 3}, {"vtk", true}};
+  scene["figures"] = {"energy", "contact"};
+  const Result result = run_scene(folder, scene);
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  Words expected{"experiment.json", "manifest.json", "metrics.csv",      "plan.json",
+                 "report.html",     "summary.json",  "vtk/particles.pvd"};
+  for (const char* figure : {"energy", "contact", "contact_nodes"})
+    for (const char* ending : {".png", ".svg", ".csv"}) expected.push_back(std::string("figures/") + figure + ending);
+  for (const char* frame : {"frame_0000", "frame_0001", "frame_0002"})
+    for (const char* ending : {".png", ".svg", ".csv"}) expected.push_back(std::string("frames/") + frame + ending);
+  for (const char* number : {"0", "1", "2"}) expected.push_back(std::string("vtk/particles_000") + number + ".vtu");
+  std::sort(expected.begin(), expected.end());
+  const fs::path run = folder / "run";
+  CHECK(files_below(run) == expected);
+  for (const std::string& name : expected)
+    if (name.ends_with(".png")) CHECK(is_png(run / name));
+
+  const Json manifest = json_in(run / "manifest.json");
+  for (const char* key : {"program", "version", "command", "experiment_sha256", "seed", "threads", "machine"})
+    CHECK(manifest.contains(key));
+  CHECK(manifest["command"] == "./mpm run scene.json --out run --threads 1");
+  Words ids;
+  for (const Json& plugin : manifest["plugins"]) {
+    ids.push_back(plugin["id"]);
+    CHECK(plugin["file_sha256"].get<std::string>().size() == 64);
+  }
+  std::sort(ids.begin(), ids.end());
+  CHECK(ids == Words{"apic", "bspline_quadratic", "coulomb", "neo_hookean"});
+
+  const auto table = mpm::output::read_csv(run / "metrics.csv");
+  CHECK(table.header.front() == "time (s)");
+  CHECK(*table.find("step") == std::vector<double>{0, 4, 8, 12, 16, 20, 24, 28, 32, 36, 40});
+
+  const Json summary = json_in(run / "summary.json");
+  for (const char* group : {"energy", "momentum", "contact", "stability", "performance", "outcome"})
+    CHECK(summary.contains(group));
+  CHECK(summary["contact"]["most_nodes"].get<long>() > 0);
+
+  const std::string report = slurp(run / "report.html");
+  CHECK(count(report, "src=\"data:image/svg+xml;base64,") + count(report, "src=\"data:image/png;base64,") == 6);
+  CHECK(has(report, "figures/contact_nodes.csv"));
+  CHECK(!has(report, "src=\"http"));
+  CHECK(!has(report, "<script src"));
+}
+
+TEST_CASE("VTK's own reader reads what was written") {
+  const Folder folder;
+  const char* python = "/usr/bin/python3";
+  if (!fs::exists(python) || Process(folder, {python, "-c", "import vtkmodules.vtkIOXML"}).finish().code != 0) {
+    WARN("VTK for Python is not installed: its reader was not asked");
+    return;
+  }
+  Json scene = ball();
+  scene["output"] = {{"frames", 2}, {"vtk", true}};
+  REQUIRE(run_scene(folder, scene).code == 0);
+  spill(folder / "read.py", R"py(
+import sys
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+for name in sys.argv[1:]:
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(name)
+    reader.Update()
+    grid = reader.GetOutput()
+    data = grid.GetPointData()
+    print(grid.GetNumberOfPoints(), *sorted(data.GetArrayName(k) for k in range(data.GetNumberOfArrays())), sep="|")
+    velocity = data.GetArray("velocity (m/s)").GetTuple(0)
+    print(all(abs(v - 0.1) < 1e-6 for v in velocity[:2]))
+)py");
+  const Result result =
+      Process(folder, {python, "read.py", "run/vtk/particles_0000.vtu", "run/vtk/particles_0001.vtu"}).finish();
+  INFO(result.out << result.err);
+  CHECK(result.code == 0);
+  CHECK(count(result.out, "52|body|pressure (Pa)|velocity (m/s)|volume_ratio|von_mises_stress (Pa)\nTrue") == 2);
+}
+
+TEST_CASE("experiment.json runs again and gives the same bytes") {
+  const Folder folder;
+  Json scene = two_balls();
+  scene["solver"]["time_step"] = "auto";
+  scene["bodies"][0]["jitter"] = 0.2;
+  scene["gravity"] = {"0 m/s^2", "-9.81 m/s^2"};
+  run_as(folder, scene, "first", {"--threads", "1", "--set", "/contact/friction=0.5", "--set", "/seed=7"});
+  const Json resolved = json_in(folder / "first/experiment.json");
+  CHECK(resolved["contact"]["friction"] == 0.5);
+  CHECK(resolved["seed"] == 7);
+  CHECK(resolved["gravity"][1] == -9.81);
+  fs::copy_file(folder / "first/experiment.json", folder / "again.json");
+  const Result again = call(folder, {"run", "again.json", "--out", "again", "--threads", "1"});
+  INFO(again.err);
+  REQUIRE(again.code == 0);
+  CHECK(slurp(folder / "first/metrics.csv") == slurp(folder / "again/metrics.csv"));
+  CHECK(json_in(folder / "again/experiment.json") == resolved);
+}
+
+TEST_CASE("the number of threads changes no bit") {
+  const Folder folder;
+  Json scene = two_balls();
+  scene["output"]["metrics_every"] = 1;
+  for (const char* precision : {"double", "float"}) {
+    scene["precision"] = precision;
+    const std::string one = std::string(precision) + "1", two = std::string(precision) + "2";
+    run_as(folder, scene, one, {"--threads", "1"});
+    run_as(folder, scene, two, {"--threads", "2"});
+    CHECK(slurp(folder / one / "metrics.csv") == slurp(folder / two / "metrics.csv"));
+    CHECK(final_numbers(folder / one) == final_numbers(folder / two));
+    CHECK(json_in(folder / two / "manifest.json")["threads"] == 2);
+  }
+}
+
+TEST_CASE("the cadence of rows and frames changes no bit") {
+  for (const char* backend : {"cpu", "reference"}) {
+    INFO(backend);
+    const Folder folder;
+    Json scene = two_balls();
+    scene["backend"] = backend;
+    scene["grid"]["cell_size"] = 0.1;
+    scene["solver"]["time_step"] = "auto";
+    scene["output"] = {{"metrics_every", 1}};
+    run_as(folder, scene, "one", {"--threads", "1"});
+    scene["output"] = {{"metrics_every", 7}};
+    run_as(folder, scene, "seven", {"--threads", "1"});
+    scene["output"] = {{"metrics_every", 1000000}, {"frames", 2}};
+    run_as(folder, scene, "frames", {"--threads", "1"});
+    const Json numbers = final_numbers(folder / "one");
+    CHECK(numbers.dump() == final_numbers(folder / "seven").dump());
+    CHECK(numbers.dump() == final_numbers(folder / "frames").dump());
+  }
+}
+
+TEST_CASE("--set and --backend change the run and are recorded") {
+  const Folder folder;
+  const Result result = run_scene(folder, ball(),
+                                  {"--set", "/transfer/type=pic", "--set", "/solver/end_time=0.01", "--set",
+                                   "/bodies/0/velocity=[1, 0]", "--backend", "reference"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const Json resolved = json_in(folder / "run/experiment.json");
+  CHECK(resolved["transfer"]["type"] == "pic");
+  CHECK(resolved["backend"] == "reference");
+  CHECK(json_in(folder / "run/summary.json")["steps"] == 5);
+  CHECK(has(json_in(folder / "run/manifest.json")["command"], "--set '/bodies/0/velocity=[1, 0]'"));
+}
+
+TEST_CASE("the reference backend records the one thread that it runs on") {
+  const Folder folder;
+  run_as(folder, ball(), "run", {"--backend", "reference", "--threads", "2"});
+  CHECK(json_in(folder / "run/manifest.json")["threads"] == 1);
+}
+
+TEST_CASE("a second run moves the first aside, and runs/<name> is the standard place") {
+  const Folder folder;
+  spill(folder / "scene.json", ball().dump());
+  for (int k = 0; k < 3; ++k) REQUIRE(call(folder, {"run", "scene.json", "--threads", "1"}).code == 0);
+  for (const char* name : {"runs/scene", "runs/scene.1", "runs/scene.2"})
+    CHECK(fs::exists(folder / name / "report.html"));
+  CHECK(!fs::exists(folder / "runs/scene.3"));
+}
+
+TEST_CASE("mpm figure draws one run again and lays several over one another") {
+  const Folder folder;
+  Json scene = ball();
+  scene["figures"] = {"energy"};
+  run_as(folder, scene, "a", {"--threads", "1"});
+  scene["transfer"]["type"] = "pic";
+  fs::create_directory(folder / "deep");
+  run_as(folder, scene, "b", {"--threads", "1"});
+  fs::rename(folder / "b", folder / "deep/a");
+
+  const std::string before = slurp(folder / "a/figures/energy.csv");
+  fs::remove_all(folder / "a/figures");
+  const Result one = call(folder, {"figure", "a"});
+  INFO(one.err);
+  CHECK(one.code == 0);
+  CHECK(slurp(folder / "a/figures/energy.csv") == before);
+  CHECK(fs::exists(folder / "a/figures/momentum.png"));
+  CHECK(!fs::exists(folder / "a/figures/contact.png"));
+  CHECK(has(slurp(folder / "a/report.html"), "figures/momentum.csv"));
+
+  const Result both = call(folder, {"figure", "a", "deep/a", "--out", "overlay"});
+  INFO(both.err);
+  CHECK(both.code == 0);
+  CHECK(has(both.out, "figures in overlay"));
+  CHECK(is_png(folder / "overlay/total_energy.png"));
+  CHECK(!fs::exists(folder / "overlay/position_error_rms.png"));
+  const std::string twin = slurp(folder / "overlay/total_energy.csv");
+  INFO(twin.substr(0, 200));
+  CHECK(has(twin, "work/a"));
+  CHECK(has(twin, "deep/a"));
+
+  spill(folder / "momentum.json", "{\"y\": \"momentum x\", // a comment\n \"labels\": [\"MLS\", \"PIC\"]}");
+  const Result specified = call(folder, {"figure", "a", "deep/a", "--spec", "momentum.json", "--out", "overlay"});
+  INFO(specified.err);
+  CHECK(specified.code == 0);
+  CHECK(is_png(folder / "overlay/momentum.png"));
+  CHECK(has(slurp(folder / "overlay/momentum.csv"), "PIC"));
+
+  const auto specification_refused = [&](const std::string& text, const std::string& message) {
+    spill(folder / "spec.json", text);
+    figure_refused(folder, {"figure", "a", "deep/a", "--spec", "spec.json", "--out", "nowhere"}, message);
+  };
+  specification_refused("{\"y\": \"momentum x\",\n  \"logx\": true}", "spec.json:2:3: /logx: unknown key");
+  specification_refused("{\"y\": \"momentum x\",\n  \"logx\": true}", "did you mean \"log_x\"?");
+  specification_refused("{\"y\": \"total enegry\"}", "spec.json:1:7: /y: run ");
+  specification_refused("{\"y\": \"total enegry\"}", "has no column \"total enegry\"; did you mean \"total energy\"?");
+  specification_refused("{\"x\": \"time\"}", "/y: missing key");
+  specification_refused("{\"y\": 3}", "spec.json:1:7: /y: expected ");
+  specification_refused("{\"y\": \"momentum x\", \"labels\": [\"one\"]}", "1 labels for 2 runs; give one a run");
+  specification_refused("{\"y\" \"momentum x\"}", "spec.json:1:6: ");
+  specification_refused("[]", "spec.json:1:1: ");
+  figure_refused(folder, {"figure", "a", "--spec", "missing.json"},
+                 "missing.json: there is no such file\nnothing was drawn");
+  figure_refused(folder, {"figure", "a", "--out", "spec.json"}, "spec.json: is a file; choose a folder with --out");
+}
+
+TEST_CASE("mpm figure says what is no run") {
+  const Folder folder;
+  fs::create_directories(folder / "empty");
+  figure_refused(folder, {"figure", "missing"}, "missing holds no run (no manifest.json)");
+  figure_refused(folder, {"figure", "empty"}, "empty holds no run (no manifest.json)");
+  figure_refused(folder, {"figure"}, "RUN");
+  spill(folder / "empty/manifest.json", "{}");
+  figure_refused(folder, {"figure", "empty"}, "empty: holds no metrics.csv: the run ended before its first row");
+  spill(folder / "empty/metrics.csv", "time (s),step\n");
+  figure_refused(folder, {"figure", "empty"}, "metrics.csv: holds no row");
+  spill(folder / "empty/metrics.csv", "time (s),step\n0,0\n1,x\n");
+  figure_refused(folder, {"figure", "empty"}, "its numbers cannot be read: ");
+}
