@@ -87,12 +87,15 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
   if (const std::string limiting = simulation.limiting_particle(); !limiting.empty())
     json["limiting_particle"] = limiting;
   json["energy"] = energy(simulation, metrics, recorder);
+  // A ratio of roundings says nothing: spin counts against mass, speed and size of the domain.
+  const double size = experiment.grid.upper[0] - experiment.grid.lower[0];
+  const double scale_of_spin = start.mass * start.largest_speed * size;
   json["momentum"]["linear"] = {{"initial", by_axis(start.momentum, 0, experiment.dimension)},
                                 {"final", by_axis(end.momentum, 0, experiment.dimension)}};
   json["momentum"]["angular"] = {{"initial", by_axis(start.angular_momentum, flat ? 2 : 0, 3)},
                                  {"final", by_axis(end.angular_momentum, flat ? 2 : 0, 3)}};
   for (int c = flat ? 2 : 0; c < 3; ++c)
-    if (start.angular_momentum[c] != 0)
+    if (std::abs(start.angular_momentum[c]) > 1e-9 * scale_of_spin)
       json["momentum"]["angular"]["final_over_initial"][std::string(1, "xyz"[c])] =
           end.angular_momentum[c] / start.angular_momentum[c];
   json["centre_of_mass"] = {{"initial", by_axis(start.centre_of_mass, 0, experiment.dimension)},

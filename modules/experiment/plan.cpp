@@ -360,8 +360,7 @@ std::string Plan::to_text() const {
   out << "Stencil: weights" << (weight_gradients ? " and gradients" : " only, no gradients") << "; force "
       << (separate_force ? "in a field of its own" : "merged into momentum") << "\n";
   out << "Estimate: " << particles << " particles, " << nodes << " nodes, " << (particle_bytes + 524288) / 1048576
-      << " MiB of particles (copies and scratch included), " << (grid_bytes + 524288) / 1048576
-      << " MiB of grid\n";
+      << " MiB of particles (copies and scratch included), " << (grid_bytes + 524288) / 1048576 << " MiB of grid\n";
   return out.str();
 }
 

@@ -10,8 +10,10 @@
 //    force like the others: a ghost of mass m folds m g with the same signs (so the mirror node's weight is (m + sign
 //    m_ghost) g by component, not (m + m_ghost) g). The wall's velocity is taken at the foot of the node on the wall,
 //    at t for v- and at t + dt for v+.
-//  separate: as slip while the mirrored pair approaches (predicted with the forces), otherwise ghosts are ordinary
-//  nodes. free: ghosts are ordinary nodes. periodic: a node is its index modulo the number of cells.
+//  separate: ghosts fold as slip while the mirrored pair approaches (predicted with the forces), else they are ordinary
+//    nodes; nodes on the wall are held while they would move into it.
+//  free: ghosts are ordinary nodes.
+//  periodic: a node is its index modulo the number of cells.
 // Periodic images are summed first; then walls are folded in the order x, y, z; ghosts are filled in the reverse order,
 // so corners are right.
 

@@ -37,7 +37,6 @@ struct FaceNodes {
   std::vector<std::uint32_t> wall_edge;  ///< the same among the edge nodes, or ~0
   std::vector<Vector3> wall_position;
   std::vector<std::uint8_t> pair_folds;  ///< decided each step: [field * pairs + i]
-  std::vector<std::uint8_t> wall_holds;  ///< of `separate`, decided each step: [field * wall nodes + i]
 
   bool periodic() const { return condition->type == ConditionType::periodic; }
 };
@@ -197,7 +196,6 @@ void Grid<D, T>::list_faces() {
   }
   for (FaceNodes& face : faces_) {
     face.pair_folds.assign(face.pairs.size() * fields_, 0);
-    face.wall_holds.assign(face.wall.size() * fields_, 0);
   }
   number_edge_nodes();
 }

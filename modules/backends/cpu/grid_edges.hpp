@@ -65,15 +65,6 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
     if (grid_.has(c)) grid_.quad(c, field, pair.mirror) += slip_signs * grid_.quad(c, field, pair.ghost);
 }
 
-template <int D, class T>
-void GridStep<D, T>::decide_walls(FaceNodes& face, int field, double dt) {
-  for (std::size_t i = 0; i < face.wall.size(); ++i) {
-    const MirrorPair alone{face.wall[i], face.wall[i], face.wall_edge[i], face.wall_edge[i], {}};
-    face.wall_holds[field * face.wall.size() + i] =
-        motion_at(field, face.wall[i])[3] > 0 && approaches(face, field, alone, dt);
-  }
-}
-
 /// Sums the images of periodic nodes: momenta, contact channels and forces.
 template <int D, class T>
 void GridStep<D, T>::fold_images(bool remap, const StepInfo& step) {
@@ -102,7 +93,6 @@ void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step)
         face.pair_folds[field * face.pairs.size() + i] = folds;
         if (folds) fold_pair(face, i, field, remap, step.time);
       }
-      if (separate) decide_walls(face, field, dt);
     }
   }
 }
@@ -160,14 +150,14 @@ void GridStep<D, T>::fill_ghosts(double time, bool increments) {
 /// Sets the velocities that walls and boxes give.
 template <int D, class T>
 void GridStep<D, T>::impose(double time, Account account) {
-  if (account == Account::mark) held_.assign(std::size_t(grid_.fields()) * grid_.nodes(), 0);
   for (const FaceNodes& face : grid_.faces()) {
     const ConditionType type = face.condition->type;
     const bool separate = type == ConditionType::separate;
     for (std::size_t i = 0; i < face.wall.size(); ++i) {
       const Q velocity = wall_velocity(face.condition->velocity, face.wall_position[i], time);
       for (int field = 0; field < grid_.fields(); ++field) {
-        if (separate && !face.wall_holds[field * face.wall.size() + i]) continue;
+        const T inward = face.side == 0 ? T(1) : T(-1);
+        if (separate && !(inward * motion_at(field, face.wall[i])[face.axis] < 0)) continue;
         for (int c = 0; c < D; ++c)
           if (holds(type, face.axis, c)) hold(field, face.wall[i], c, separate ? T(0) : velocity[c], account);
       }

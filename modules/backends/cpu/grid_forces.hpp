@@ -198,6 +198,7 @@ void GridStep<D, T>::apply_forces(const StepInfo& step) {
   add_gravity_corrections(step.dt);
   accelerate(step.dt);
   const Account account = ledger_on() ? Account::mark : Account::nothing;
+  if (ledger_on()) held_.assign(std::size_t(grid_.fields()) * grid_.nodes(), 0);
   impose(end, account);
   if (scene_.plan.contact) {
     resolve_contact(step, true, true);

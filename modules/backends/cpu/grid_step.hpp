@@ -42,7 +42,6 @@ class GridStep {
   void fold_faces(bool periodic, bool remap, const StepInfo& step);
   void fold_pair(FaceNodes& face, std::size_t pair, int field, bool remap, double time);
   bool approaches(const FaceNodes& face, int field, const MirrorPair& pair, double dt);
-  void decide_walls(FaceNodes& face, int field, double dt);
   void fold_forces(bool periodic);
   void fill_ghosts(double time, bool increments);
 

@@ -5,6 +5,8 @@
 
 #include <tuple>
 
+#include <cmath>
+
 #include "particle_step.hpp"
 
 namespace mpm::cpu {
@@ -144,7 +146,9 @@ void ParticleStep<D, T>::note_inverted(const Chunk& chunk) {
   const std::lock_guard lock(mutex_);
   for (int p = 0; p < chunk.count; ++p)
     if (!(ratio[p] > 0))
-      failure_.note(0, chunk.body.index, chunk.ids[p], "inverted: its volume ratio J is not positive");
+      failure_.note(0, chunk.body.index, chunk.ids[p],
+                    std::isnan(ratio[p]) ? "not a number: its deformation is no longer finite"
+                                         : "inverted: its volume ratio J is not positive");
 }
 
 /// With the affine part where the transfer carries it; offsets are those of the last shape evaluation.

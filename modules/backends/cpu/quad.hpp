@@ -8,25 +8,22 @@ struct QuadOf;
 template <>
 struct QuadOf<float> {
   typedef float Vector __attribute__((vector_size(16), may_alias));
-  typedef int Index __attribute__((vector_size(16)));
 };
 template <>
 struct QuadOf<double> {
   typedef double Vector __attribute__((vector_size(32), may_alias));
-  typedef long long Index __attribute__((vector_size(32)));
 };
 template <class T>
 using Quad = typename QuadOf<T>::Vector;
 
 template <class T>
 inline void transpose(Quad<T>& a, Quad<T>& b, Quad<T>& c, Quad<T>& d) {
-  using I = typename QuadOf<T>::Index;
-  const Quad<T> ab_low = __builtin_shuffle(a, b, I{0, 4, 2, 6}), ab_high = __builtin_shuffle(a, b, I{1, 5, 3, 7});
-  const Quad<T> cd_low = __builtin_shuffle(c, d, I{0, 4, 2, 6}), cd_high = __builtin_shuffle(c, d, I{1, 5, 3, 7});
-  a = __builtin_shuffle(ab_low, cd_low, I{0, 1, 4, 5});
-  c = __builtin_shuffle(ab_low, cd_low, I{2, 3, 6, 7});
-  b = __builtin_shuffle(ab_high, cd_high, I{0, 1, 4, 5});
-  d = __builtin_shuffle(ab_high, cd_high, I{2, 3, 6, 7});
+  const Quad<T> ab_low = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_high = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Quad<T> cd_low = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_high = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+  b = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
 }
 
 /// Component arrays -> one quad a particle, `groups` quads apart. A null component is zero. `count` a multiple of 4.

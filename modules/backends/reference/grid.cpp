@@ -16,7 +16,6 @@ Grid::Grid(const Experiment& experiment) : experiment_(experiment) {
     for (int j = 0; j < extent_[1]; ++j)
       for (int i = 0; i < extent_[0]; ++i) coordinates_.push_back(Eigen::Vector3i(i, j, k) - padding_);
   fields_.assign(experiment.field_count, std::vector<Node>(coordinates_.size()));
-  separate_holds_.assign(experiment.field_count, std::vector<char>(coordinates_.size(), 0));
 }
 
 void Grid::reset() {
@@ -86,7 +85,6 @@ void Grid::sum_images(bool remap) {
 }
 
 void Grid::fold_walls(double time, double dt, bool remap) {
-  for (auto& field : separate_holds_) std::fill(field.begin(), field.end(), 0);
   for (int axis = 0; axis < experiment_.dimension; ++axis)
     if (experiment_.faces[axis][0].type != ConditionType::periodic) fold_axis(axis, time, dt, remap);
 }
@@ -111,10 +109,7 @@ void Grid::fold_axis(int axis, double time, double dt, bool remap) {
       if (fields_[field][index].mass <= 0) continue;
       fold.mirror = this->index(target);
       if (type == ConditionType::separate && !approaches_wall(fold, dt)) continue;
-      if (fold.mirror != index)
-        fold_node(fold, time, remap);
-      else if (type == ConditionType::separate)
-        separate_holds_[field][index] = static_cast<char>(separate_holds_[field][index] | (1 << axis));
+      if (fold.mirror != index) fold_node(fold, time, remap);
     }
 }
 
@@ -156,7 +151,7 @@ void Grid::fill_ghosts(double time) {
   }
 }
 
-Held Grid::held(int field, std::size_t index, const Vector& predicted, double time) const {
+Held Grid::held(std::size_t index, const Vector& predicted, double time) const {
   Held held;
   const Eigen::Vector3i& at = coordinates_[index];
   const Vector x = position(at);
@@ -168,10 +163,11 @@ Held Grid::held(int field, std::size_t index, const Vector& predicted, double ti
     held.velocity[component] = velocity[component];
   };
   for (int axis = 0; axis < experiment_.dimension; ++axis) {
-    if (separate_holds_[field][index] & (1 << axis)) hold(axis, Vector::Zero());
     for (int side = 0; side < 2; ++side) {
       const FaceCondition& face = experiment_.faces[axis][side];
-      if (at[axis] != (side == 0 ? 0 : experiment_.grid.cells[axis]) || face.type == ConditionType::separate) continue;
+      if (at[axis] != (side == 0 ? 0 : experiment_.grid.cells[axis])) continue;
+      // A separating wall holds what moves into it, at every imposition: contact may have turned the velocity.
+      if (face.type == ConditionType::separate && (side == 0 ? predicted[axis] >= 0 : predicted[axis] <= 0)) continue;
       const Vector velocity = evaluate(face.velocity);
       for (int c = 0; c < experiment_.dimension; ++c)
         if (holds(face.type, axis, c)) hold(c, velocity);

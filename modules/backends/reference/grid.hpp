@@ -69,7 +69,7 @@ class Grid {
   /// Gives ghosts the mirrored velocities. `time` is that of the wall's velocity.
   void fill_ghosts(double time);
   /// What conditions hold at a node whose velocity would be `predicted` without them.
-  Held held(int field, std::size_t index, const Vector& predicted, double time) const;
+  Held held(std::size_t index, const Vector& predicted, double time) const;
 
  private:
   struct Fold {
@@ -89,8 +89,6 @@ class Grid {
   std::vector<Eigen::Vector3i> coordinates_;
   std::vector<std::vector<Node>> fields_;
   std::vector<Fold> folds_;
-  std::vector<std::vector<char>>
-      separate_holds_;  ///< [field][node] bit per axis: a separating wall holds this node now
 };
 
 }  // namespace mpm::reference

@@ -167,9 +167,9 @@ class ReferenceBackend final : public Backend {
       for (std::size_t i = 0; i < grid_.node_count(); ++i) {
         Node& node = grid_.node(field, i);
         if (node.mass <= 0) continue;
-        const Held held = grid_.held(field, i, node.momentum / node.mass, time);
+        const Held held = grid_.held(i, node.momentum / node.mass, time);
         for (int c = 0; c < 3; ++c) {
-          node.held[c] = held.component[c];
+          node.held[c] = node.held[c] || held.component[c];
           if (held.component[c]) node.momentum[c] = node.mass * held.velocity[c];
         }
       }
@@ -178,8 +178,7 @@ class ReferenceBackend final : public Backend {
   void apply_forces(const StepInfo& step) {
     grid_.fold_forces();  // forces that USF scattered after the momenta were folded; nothing is left of the others
     for (int field = 0; field < grid_.field_count(); ++field)
-      for (std::size_t i = 0; i < grid_.node_count(); ++i)
-        grid_.node(field, i).momentum += step.dt * grid_.node(field, i).force();
+      for (std::size_t i = 0; i < grid_.node_count(); ++i) accelerate(grid_.node(field, i), step.dt);
     impose_conditions(step.time + step.dt);
     if (plan_.contact) resolve_contact(step, true);
     for (int field = 0; field < grid_.field_count(); ++field)
@@ -190,6 +189,11 @@ class ReferenceBackend final : public Backend {
       }
     kinetic_energy_after_ = plan_.ledger ? grid_.kinetic_energy() : 0.0;
     grid_.fill_ghosts(step.time + step.dt);
+  }
+
+  static void accelerate(Node& node, double dt) {
+    node.momentum += dt * node.force();
+    std::fill(node.held, node.held + 3, false);  // conditions after the forces decide whose the reaction is
   }
 
   /// Work of every impulse between v- and v+ at their mean. What the forces do not explain is the reaction of a

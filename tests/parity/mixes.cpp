@@ -1,0 +1,35 @@
+// Every shipped mix of shape, transfer, contact law and material in 2-D and 3-D, as found in the registry.
+
+#include "parity/parity.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+void check_all_mixes(int dimension) {
+  std::vector<std::string> laws = variants(MPM_CONTACT);
+  laws.insert(laws.begin(), "");
+  long count = 0;
+  for (const std::string& shape : variants(MPM_SHAPE))
+    for (const std::string& transfer : variants(MPM_TRANSFER))
+      for (const std::string& contact : laws)
+        for (const std::string& material : variants(MPM_MATERIAL)) {
+          Mix mix;
+          mix.dimension = dimension;
+          mix.shape = shape, mix.transfer = transfer, mix.contact = contact, mix.material = material;
+          check_parity(mix);
+          ++count;
+        }
+  REQUIRE(count >= 2 * 4 * 3 * 8);
+}
+
+}  // namespace
+
+TEST_CASE("parity of every mix in 2-D", "[parity]") {
+  check_all_mixes(2);
+}
+
+TEST_CASE("parity of every mix in 3-D", "[parity]") {
+  check_all_mixes(3);
+}
