@@ -71,8 +71,8 @@ class Planner {
                            experiment_.body_force.has_value() || any_separating_wall() ||
                            experiment_.solver.stress_update == StressUpdate::first;
     plan_.kept_advection = experiment_.solver.stress_update == StressUpdate::modified_last;
-    plan_.initial_position =
-        experiment_.exact.has_value() || (experiment_.body_force && experiment_.body_force->uses_initial_position());
+    plan_.initial_position = experiment_.exact.has_value() || experiment_.output.colour_by == "displacement" ||
+                             (experiment_.body_force && experiment_.body_force->uses_initial_position());
   }
 
   bool any_separating_wall() const {
@@ -104,8 +104,9 @@ class Planner {
           {body, "identity", 1, 4, specification.pointer + ": results keep the order of seeding"});
       if (plan_.initial_position)
         attribute(body, "initial_position", D,
-                  experiment_.exact ? experiment_.exact->pointer + ": errors are measured at X"
-                                    : experiment_.body_force_pointer + ": the force depends on X");
+                  experiment_.exact        ? experiment_.exact->pointer + ": errors are measured at X"
+                  : experiment_.body_force ? experiment_.body_force_pointer + ": the force depends on X"
+                                           : "/output/colour_by \"displacement\"");
       if (plan_.kept_advection)
         attribute(body, "advection_velocity", D,
                   "/solver/stress_update \"modified_last\": positions wait for the remapped strain");

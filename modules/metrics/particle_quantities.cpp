@@ -15,6 +15,41 @@ const std::array<QuantityDescription, 7> common{{{"speed", "speed |v|", "m/s"},
                                                  {"displacement", "displacement |u|", "m"},
                                                  {"body", "body", ""}}};
 
+/// Suffixes of the components of a field, in the order they are stored.
+std::vector<std::string> component_names(std::uint32_t shape, int dimension) {
+  const std::string axes = "xyz";
+  std::vector<std::string> names;
+  if (shape == MPM_STATE_VECTOR)
+    for (int i = 0; i < dimension; ++i) names.emplace_back(1, axes[i]);
+  if (shape == MPM_STATE_MATRIX)
+    for (int i = 0; i < dimension; ++i)
+      for (int j = 0; j < dimension; ++j) names.push_back({axes[i], axes[j]});
+  if (shape == MPM_STATE_SYMMETRIC)
+    names = dimension == 2 ? std::vector<std::string>{"xx", "yy", "zz", "xy"}
+                           : std::vector<std::string>{"xx", "yy", "zz", "yz", "xz", "xy"};
+  return names;
+}
+
+/// A field of state and the component of it that a name such as "deformation_gradient_xy" means; -1: none.
+int component_of(const std::string& name, const mpm_state& field, int dimension) {
+  if (field.shape == MPM_STATE_SCALAR) return name == field.name ? 0 : -1;
+  const auto suffixes = component_names(field.shape, dimension);
+  for (std::size_t k = 0; k < suffixes.size(); ++k)
+    if (name == std::string(field.name) + "_" + suffixes[k]) return static_cast<int>(k);
+  return -1;
+}
+
+constexpr mpm_state velocity_field{"velocity", "m/s", "velocity v", MPM_STATE_VECTOR, MPM_INITIAL_ZERO};
+
+void add_names(const mpm_state& field, std::vector<std::string>& names) {
+  std::vector<std::string> added;
+  if (field.shape == MPM_STATE_SCALAR) added.emplace_back(field.name);
+  for (const std::string& suffix : component_names(field.shape, 3))
+    added.push_back(std::string(field.name) + "_" + suffix);
+  for (const std::string& name : added)
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
 std::size_t padded(std::size_t n) {
   return (n + MPM_LANES - 1) / MPM_LANES * MPM_LANES;
 }
@@ -76,19 +111,26 @@ std::span<const QuantityDescription> common_quantities() {
 std::vector<std::string> quantity_names(const Registry& registry) {
   std::vector<std::string> names;
   for (const QuantityDescription& description : common) names.push_back(description.name);
-  for (const Plugin* plugin : registry.of_kind(MPM_MATERIAL))
-    for (const mpm_state& field : plugin->state())
-      if (field.shape == MPM_STATE_SCALAR && std::find(names.begin(), names.end(), field.name) == names.end())
-        names.emplace_back(field.name);
+  add_names(velocity_field, names);
+  for (const mpm_kind kind : {MPM_MATERIAL, MPM_TRANSFER})
+    for (const Plugin* plugin : registry.of_kind(kind))
+      for (const mpm_state& field : plugin->state()) add_names(field, names);
   return names;
 }
 
 QuantityDescription describe_quantity(const Experiment& experiment, const std::string& name) {
   for (const QuantityDescription& description : common)
     if (description.name == name) return description;
+  const auto described = [&](const mpm_state& field) -> QuantityDescription {
+    const std::string suffix = field.shape == MPM_STATE_SCALAR ? "" : name.substr(name.rfind('_'));
+    return {name, field.doc + (suffix.empty() ? "" : ", component " + suffix.substr(1)), field.unit};
+  };
+  if (component_of(name, velocity_field, 3) >= 0) return described(velocity_field);
   for (const MaterialSpecification& material : experiment.materials)
     for (const mpm_state& field : material.component.plugin->state())
-      if (name == field.name) return {name, field.doc, field.unit};
+      if (component_of(name, field, 3) >= 0) return described(field);
+  for (const mpm_state& field : experiment.transfer.plugin->state())
+    if (component_of(name, field, 3) >= 0) return described(field);
   return {name, name, ""};
 }
 
@@ -109,9 +151,8 @@ std::vector<double> quantity(const Experiment& experiment, int body, const BodyS
     std::vector<double> u(state.position);
     for (std::size_t k = 0; k < u.size() && k < state.initial_position.size(); ++k) u[k] -= state.initial_position[k];
     for (std::size_t p = 0; p < n && !state.initial_position.empty(); ++p) values[p] = length_of(u, p);
-  } else if (const auto field = state.material_state.find(name);
-             field != state.material_state.end() && field->second.size() == n) {
-    values = field->second;
+  } else if (const int axis = component_of(name, velocity_field, D); axis >= 0) {
+    for (std::size_t p = 0; p < n; ++p) values[p] = state.velocity[p * D + axis];
   } else if (name == "pressure" || name == "von_mises_stress" || name == "volume_ratio" || name == "stored_energy") {
     MaterialQuantities material = material_quantities(experiment, body, state);
     if (name == "volume_ratio") return material.volume_ratio;
@@ -120,6 +161,17 @@ std::vector<double> quantity(const Experiment& experiment, int body, const BodyS
       const double* tau = &material.stress[p * symmetric];
       values[p] = (name == "pressure" ? -(tau[0] + tau[1] + tau[2]) / 3 : von_mises(tau, D)) / material.volume_ratio[p];
     }
+  } else {
+    const auto take = [&](const Plugin& plugin, const std::map<std::string, std::vector<double>>& fields) {
+      for (const mpm_state& field : plugin.state()) {
+        const int component = component_of(name, field, D);
+        const int components = state_components(static_cast<mpm_state_shape>(field.shape), D);
+        for (std::size_t p = 0; component >= 0 && p < n; ++p)
+          values[p] = fields.at(field.name)[p * components + component];
+      }
+    };
+    take(*material_of(experiment, body).plugin, state.material_state);
+    take(*experiment.transfer.plugin, state.transfer_state);
   }
   return values;
 }

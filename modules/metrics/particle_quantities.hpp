@@ -22,7 +22,8 @@ MaterialQuantities material_quantities(const Experiment& experiment, int body, c
 struct QuantityDescription {
   std::string name, label, unit;
 };
-/// Quantities every scene offers; scalar state fields of its materials (e.g. equivalent_plastic_strain) add to them.
+/// Quantities every scene offers. Velocity components, and the state of its materials and transfer, add to them:
+/// scalars by name (equivalent_plastic_strain), others by component (deformation_gradient_xy).
 std::span<const QuantityDescription> common_quantities();
 /// Names valid as output/colour_by for any of the plugins of `registry`.
 std::vector<std::string> quantity_names(const Registry& registry);

@@ -59,7 +59,11 @@ Colour FieldColours::operator()(double value) const {
 }
 
 Ticks FieldColours::ticks(const Theme& theme, double height) const {
-  return linear_ticks(lo_, hi_, std::clamp(static_cast<int>(height / theme.text / 4), 2, 8));
+  int count = std::clamp(static_cast<int>(height / theme.text / 4), 2, 8);
+  Ticks marks = linear_ticks(lo_, hi_, count);
+  // One number alone gives no scale: a short bar gets closer marks.
+  while (marks.labels.size() < 3 && count < 8) marks = linear_ticks(lo_, hi_, ++count);
+  return marks;
 }
 
 std::vector<std::string> FieldColours::heading(const Canvas& canvas, const Theme& theme, double height) const {
