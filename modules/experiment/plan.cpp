@@ -26,6 +26,7 @@ class Planner {
     channels();
     passes();
     estimate();
+    name_lines();
     return std::move(plan_);
   }
 
@@ -57,6 +58,18 @@ class Planner {
       refuse(experiment_.transfer.pointer, "transfer \"" + std::string(experiment_.transfer.plugin->id()) +
                                                "\" needs the second moment of the shape, which " + shape +
                                                "gives one a particle; no backend of this version runs that");
+  }
+
+  /// Puts the line of the file before each reason, which starts with a JSON pointer; a default has no line.
+  void name_lines() {
+    const auto name = [&](std::string& because) {
+      const std::string pointer = because.substr(0, because.find_first_of(" :"));
+      for (const auto& [known, position] : experiment_.positions)
+        if (known == pointer && position.first > 0) because = "line " + std::to_string(position.first) + ": " + because;
+    };
+    for (PlannedAttribute& attribute : plan_.attributes) name(attribute.because);
+    for (PlannedChannel& channel : plan_.channels) name(channel.because);
+    for (Pass& pass : plan_.passes) name(pass.because);
   }
 
   void decide() {

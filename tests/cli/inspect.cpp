@@ -187,7 +187,8 @@ TEST_CASE("what is switched on adds its own rows, and each names the line that a
   CHECK(fields(plastic) == fields(bare));
   CHECK(attributes(plastic) == Words{"position 16", "velocity 16", "identity 4", "affine_velocity 32",
                                      "elastic_left_cauchy_green 32", "volume_ratio 8", "equivalent_plastic_strain 8"});
-  CHECK(because(plastic, "attributes", "equivalent_plastic_strain").starts_with("/materials/m \"von_mises\": "));
+  CHECK(
+      because(plastic, "attributes", "equivalent_plastic_strain").starts_with("line 1: /materials/m \"von_mises\": "));
 
   scene = without_ledger(two_balls());
   scene["transfer"]["type"] = "mls";
@@ -198,7 +199,7 @@ TEST_CASE("what is switched on adds its own rows, and each names the line that a
         Words{"mass and momentum 64", "force 64", "volume and its gradient 64", "surface position 64"});
   for (const Json& row : contact["fields"]) CHECK(row["copies"] == 2);
   CHECK(contact["weight_gradients"] == true);
-  CHECK(because(contact, "fields", "force") == "/contact \"coulomb\": acts before and after the forces");
+  CHECK(because(contact, "fields", "force") == "line 1: /contact \"coulomb\": acts before and after the forces");
   CHECK(because(contact, "fields", "volume and its gradient").starts_with("/contact/normal "));
   CHECK(because(contact, "fields", "surface position").starts_with("/contact/detection "));
 
@@ -209,7 +210,7 @@ TEST_CASE("what is switched on adds its own rows, and each names the line that a
   }();
   CHECK(!has(flip.dump(), "affine_velocity"));
   CHECK(flip["weight_gradients"] == true);
-  CHECK(because(flip, "fields", "force") == "/transfer \"flip\": gathers the change of velocity");
+  CHECK(because(flip, "fields", "force") == "line 1: /transfer \"flip\": gathers the change of velocity");
 }
 
 TEST_CASE("plan as text has the same rows") {
