@@ -151,7 +151,7 @@ TEST_CASE("5: a file grows beyond its limit; summary and report still say what w
   const Folder folder;
   spill(folder / "scene.json", endless_ball().dump());
   const std::string command =
-      "ulimit -f 256; exec " MPM_BUILD_DIR "/bin/mpm run scene.json --out run --threads 1";  // of 512 bytes
+      "ulimit -f 256; exec '" MPM_BUILD_DIR "/bin/mpm' run scene.json --out run --threads 1";  // of 512 bytes
   const Result result = Process(folder, {"/bin/sh", "-c", command}).finish();
   INFO(result.err);
   CHECK(result.code == 5);
@@ -209,7 +209,7 @@ TEST_CASE("a reader of the messages that goes away does not end the run") {
   const Folder folder;
   spill(folder / "scene.json", ball().dump());
   const std::string command =
-      "{ " MPM_BUILD_DIR "/bin/mpm run scene.json --out run --threads 1 2>&1; echo $? > code; } | :";
+      "{ '" MPM_BUILD_DIR "/bin/mpm' run scene.json --out run --threads 1 2>&1; echo $? > code; } | :";
   Process(folder, {"/bin/sh", "-c", command}).finish();
   CHECK(slurp(folder / "code") == "0\n");
   CHECK(json_in(folder / "run/summary.json")["steps"] == 50);
