@@ -27,7 +27,8 @@ void check_same_geometry(const Geometry& a, const Geometry& b) {
   CHECK(a.bounds() == b.bounds());
   int different = 0;
   for (int i = 0; i < 8000; ++i) {
-    const Vector3 point{(i % 20) / 20.0, static_cast<double>(i / 20 % 20) / 20.0, static_cast<double>(i / 400) / 20.0};
+    const int column = i % 20, row = i / 20 % 20, layer = i / 400;
+    const Vector3 point{column / 20.0, row / 20.0, layer / 20.0};
     different += a.contains(point) != b.contains(point);
   }
   CHECK(different == 0);

@@ -217,7 +217,7 @@ Call inputs(const Plugin& plugin, int D, Random& random) {
       for (int lane = 0; lane < particles; ++lane) {
         const mpm::conformance::Vector3 n = random.direction(D);
         for (int i = 0; i < D; ++i)
-          call.in[4][static_cast<std::size_t>(i * particles + lane)] = static_cast<float>(n[i]);
+          call.in[4][static_cast<std::size_t>(i) * particles + lane] = static_cast<float>(n[i]);
       }
       call.out = {zeros(D), zeros(1), zeros(1)};
       break;

@@ -77,8 +77,8 @@ TEST_CASE("an expression knows what it depends on", "[expression]") {
 TEST_CASE("components may be numbers and formulas, and copies agree", "[expression]") {
   const std::vector<VectorExpression::Term> terms = {2.0, "x*t", "3*A"};
   const VectorExpression expression(terms, {"xt", {{"A", 2.0}}});
-  const VectorExpression copy =
-      expression;  // NOLINT(performance-unnecessary-copy-initialization): copying is what is tested
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): copying is what is tested
+  const VectorExpression copy = expression;
   CHECK(expression({3, 0, 0}, {}, 5) == Vector3{2, 15, 6});
   CHECK(copy({4, 0, 0}, {}, 5) == Vector3{2, 20, 6});
 }
