@@ -12,12 +12,15 @@ using namespace mpm::output::testing;
 
 namespace {
 
+std::string path_variable() {
+  const char* const value = std::getenv("PATH");
+  return value ? value : "";
+}
+
 // PATH is only the given folder while this object lives; ffmpeg itself is then found or missing as the test wants.
 class OnlyPath {
  public:
-  explicit OnlyPath(const fs::path& folder) : old_(std::getenv("PATH") ? std::getenv("PATH") : "") {
-    ::setenv("PATH", folder.c_str(), 1);
-  }
+  explicit OnlyPath(const fs::path& folder) : old_(path_variable()) { ::setenv("PATH", folder.c_str(), 1); }
   OnlyPath(const OnlyPath&) = delete;
   OnlyPath& operator=(const OnlyPath&) = delete;
   ~OnlyPath() { ::setenv("PATH", old_.c_str(), 1); }
