@@ -8,6 +8,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "kernel/functor.hpp"
 #include "kernel/lanes.hpp"
@@ -156,10 +157,21 @@ struct StateAccess {
 
 // ---- batch loops -------------------------------------------------------------------------------------------------
 
+/// The block as the functor's own struct. A functor without parameters gets no block: the pointer may then be null.
+template <class F>
+const typename F::Parameters& parameters_of(const void* block) {
+  if constexpr (std::is_empty_v<typename F::Parameters>) {
+    static constexpr typename F::Parameters none{};
+    return none;
+  } else {
+    return *static_cast<const typename F::Parameters*>(block);
+  }
+}
+
 template <class F, class S>
 void shape_batch(const void* parameters, const mpm_shape_batch* q) {
   using T = scalar_of<S>;
-  const auto& p = *static_cast<const typename F::Parameters*>(parameters);
+  const auto& p = parameters_of<F>(parameters);
   for (std::uint32_t axis = 0; axis < q->dimension; ++axis)
     for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
       S base, w[F::width], g[F::width];
@@ -176,7 +188,7 @@ void shape_batch(const void* parameters, const mpm_shape_batch* q) {
 
 template <class F, int D, class S>
 void scatter_batch(const void* parameters, const mpm_scatter_batch* q) {
-  const auto& p = *static_cast<const typename F::Parameters*>(parameters);
+  const auto& p = parameters_of<F>(parameters);
   for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
     S mass;
     Vec<D, S> v, b;
@@ -191,7 +203,7 @@ void scatter_batch(const void* parameters, const mpm_scatter_batch* q) {
 
 template <class F, int D, class S>
 void gather_batch(const void* parameters, const mpm_gather_batch* q) {
-  const auto& p = *static_cast<const typename F::Parameters*>(parameters);
+  const auto& p = parameters_of<F>(parameters);
   for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
     GatheredMoments<D, S> moments{};
     load_components<D, S>(q->velocity, q->stride, lane, moments.velocity.v);
@@ -211,7 +223,7 @@ void gather_batch(const void* parameters, const mpm_gather_batch* q) {
 
 template <class F, int D, class S>
 void contact_batch(const void* parameters, const mpm_contact_batch* q) {
-  const auto& p = *static_cast<const typename F::Parameters*>(parameters);
+  const auto& p = parameters_of<F>(parameters);
   for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
     ContactPair<D, S> pair;
     ContactResult<D, S> result;
@@ -245,7 +257,7 @@ std::int32_t first_inadmissible(S J, std::uint32_t lane) {
 template <class F, int D, class S>
 std::int32_t material_batch(const void* parameters, const mpm_material_batch* q) {
   using T = scalar_of<S>;
-  const typename F::template Constants<T> constants(*static_cast<const typename F::Parameters*>(parameters));
+  const typename F::template Constants<T> constants(parameters_of<F>(parameters));
   std::int32_t inadmissible = -1;
   for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
     auto state = StateAccess<F, D, S>::load(q->state, q->stride, lane);

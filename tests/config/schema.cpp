@@ -34,7 +34,7 @@ void each(const Json& value, const std::function<void(const Json&)>& visit) {
 /// Checks that every key of an accepted experiment is a property where the schema leads for it.
 void check_keys(const Json& value, const Json& at) {
   if (at.contains("$ref")) return check_keys(value, schema()["$defs"][at["$ref"].get<std::string>().substr(8)]);
-  if (at.contains("anyOf") && value.is_structured())
+  if (at.contains("anyOf") && !at.contains("properties") && value.is_structured())
     return check_keys(value, at["anyOf"][at["anyOf"][0].contains("enum") ? 1 : 0]);
   if (value.is_array()) {
     for (const Json& item : value) check_keys(item, at["items"]);
