@@ -20,6 +20,7 @@ namespace mpm {
 
 enum class Precision { single, double_ };
 enum class StressUpdate { first, last, modified_last };  ///< USF, USL, MUSL
+enum class PassChoice { automatic, separate, fused };    ///< whether a gather may also scatter for the next step
 
 /// A plugin chosen in the file, with its filled parameter block.
 struct Component {
@@ -80,7 +81,17 @@ struct SolverSpecification {
   std::optional<double> time_step;  ///< s; nothing: automatic
   double courant = 0.3;             ///< fraction of h / (wave speed + particle speed) when automatic
   double end_time = 0;              ///< s
-  long max_steps = 1000000000;      ///< stops with an error message when reached before end_time
+  PassChoice passes = PassChoice::automatic;
+  long max_steps = 1000000000;  ///< stops with an error message when reached before end_time
+};
+
+/// When a filter acts and what acts on it. One of the three intervals is given; the others are zero.
+struct FilterSchedule {
+  int every_steps = 1;
+  double every_time = 0;         ///< s
+  double every_courant = 0;      ///< cells that the fastest wave crosses
+  bool constrain_always = true;  ///< conditions and contact act on every increment, else at the end only
+  double tolerance = 0;          ///< the loop ends when |increment| <= tolerance |first|, mass norms; 0: never
 };
 
 struct OutputSpecification {
@@ -89,7 +100,9 @@ struct OutputSpecification {
   std::string colour_by = "speed";  ///< attribute that colours the frames
   bool vtk = false;                 ///< a .vtu beside each frame
   bool film = false;
-  bool ledger = true;  ///< the energy ledger, accumulated at every step
+  bool ledger = true;              ///< the energy ledger, accumulated at every step
+  double checkpoint_seconds = 60;  ///< of the wall clock between checkpoints; 0: none by the clock
+  long checkpoint_steps = 0;       ///< steps between checkpoints; 0: none by steps
 };
 
 struct Expectation {
@@ -120,6 +133,7 @@ struct Experiment {
 
   Component shape, transfer;
   std::optional<Component> filter, contact;
+  FilterSchedule filter_schedule;
   std::string contact_normal, contact_detection;  ///< names of the host's choices, empty without contact
   int field_count = 1;
   std::vector<std::string> field_names;  ///< one a field; with contact only

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include "experiment/diagnostics.hpp"
@@ -44,20 +45,23 @@ class Planner {
 
   void refuse_impossible_combinations() const {
     const std::string shape = "shape \"" + std::string(experiment_.shape.plugin->id()) + "\" ";
-    if (shape_.form != MPM_TENSOR_PRODUCT)
-      refuse(experiment_.shape.pointer,
-             shape + "is a list of nodes, which no backend of this version runs; choose a tensor-product shape");
-    if (shape_.width < 2 || shape_.width > 4)
+    if (shape_.form == MPM_TENSOR_PRODUCT && (shape_.width < 2 || shape_.width > 4))
       refuse(experiment_.shape.pointer,
              shape + "has " + std::to_string(shape_.width) + " nodes an axis; backends run 2 to 4");
-    if (experiment_.filter)
-      refuse(experiment_.filter->pointer, "filter \"" + std::string(experiment_.filter->plugin->id()) +
-                                              "\" cannot run: no backend of this version runs velocity filters");
-    if (shape_.second_moment_kind == MPM_MOMENT_PER_PARTICLE &&
-        (transfer_.traits & (MPM_GATHERS_AFFINE | MPM_STRESS_BY_AFFINE)))
-      refuse(experiment_.transfer.pointer, "transfer \"" + std::string(experiment_.transfer.plugin->id()) +
-                                               "\" needs the second moment of the shape, which " + shape +
-                                               "gives one a particle; no backend of this version runs that");
+    if (experiment_.filter) refuse_impossible_filter();
+  }
+
+  /// FLIP takes changes of the grid's velocity; a filter replaces the particles' velocity. Every step of both is the
+  /// filter alone.
+  void refuse_impossible_filter() const {
+    const FilterSchedule& schedule = experiment_.filter_schedule;
+    const bool every_step = schedule.every_steps == 1 && schedule.every_time == 0 && schedule.every_courant == 0;
+    if ((transfer_.traits & MPM_GATHERS_INCREMENT) && every_step)
+      refuse(experiment_.filter->pointer,
+             "filter \"" + std::string(experiment_.filter->plugin->id()) +
+                 "\" at every step leaves nothing of transfer \"" + std::string(experiment_.transfer.plugin->id()) +
+                 "\", whose increments it would replace each time; filter periodically (\"every_steps\": 4) or choose "
+                 "transfer \"pic\"");
   }
 
   /// Puts the line of the file before each reason, which starts with a JSON pointer; a default has no line.
@@ -69,7 +73,10 @@ class Planner {
     };
     for (PlannedAttribute& attribute : plan_.attributes) name(attribute.because);
     for (PlannedChannel& channel : plan_.channels) name(channel.because);
-    for (Pass& pass : plan_.passes) name(pass.because);
+    const std::function<void(std::vector<Pass>&)> name_passes = [&](std::vector<Pass>& passes) {
+      for (Pass& pass : passes) name(pass.because), name_passes(pass.children);
+    };
+    name_passes(plan_.passes);
   }
 
   void decide() {
@@ -78,14 +85,45 @@ class Planner {
     plan_.ledger = experiment_.output.ledger;
     plan_.velocity_increment = transfer_.traits & MPM_GATHERS_INCREMENT;
     plan_.affine_moment = transfer_.traits & (MPM_GATHERS_AFFINE | MPM_STRAIN_BY_AFFINE | MPM_STRESS_BY_AFFINE);
+    plan_.velocity_gradient_moment = transfer_.traits & MPM_GATHERS_GRADIENT;
     plan_.weight_gradients = !(transfer_.traits & MPM_STRESS_BY_AFFINE) || !(transfer_.traits & MPM_STRAIN_BY_AFFINE) ||
-                             plan_.contact || (plan_.affine_moment && moment_is_gradient);
+                             plan_.contact || plan_.velocity_gradient_moment ||
+                             (plan_.affine_moment && moment_is_gradient);
+    plan_.particle_domain = experiment_.shape.plugin->descriptor->needs & MPM_NEEDS_DOMAIN;
+    plan_.second_moment = shape_.second_moment_kind == MPM_MOMENT_PER_PARTICLE &&
+                          (plan_.affine_moment || (transfer_.traits & MPM_AFFINE_CARRIES_ENERGY));
+    plan_.filter = experiment_.filter.has_value();
+    plan_.kept_velocity =
+        plan_.filter && !filters_before_forces() && experiment_.solver.stress_update == StressUpdate::first;
+    decide_fusion();
     plan_.separate_force = plan_.velocity_increment || plan_.contact || plan_.ledger ||
                            experiment_.body_force.has_value() || any_separating_wall() ||
                            experiment_.solver.stress_update == StressUpdate::first;
     plan_.kept_advection = experiment_.solver.stress_update == StressUpdate::modified_last;
     plan_.initial_position = experiment_.exact.has_value() || experiment_.output.colour_by == "displacement" ||
                              (experiment_.body_force && experiment_.body_force->uses_initial_position());
+  }
+
+  bool filters_before_forces() const { return experiment_.filter->plugin->filter().traits & MPM_FILTERS_BEFORE_FORCES; }
+
+  /// Gather and the next scatter in one visit of a particle: legal where nothing needs the grid in between.
+  void decide_fusion() {
+    const PassChoice choice = experiment_.solver.passes;
+    std::string& why = plan_.why_not_fused;
+    if (choice == PassChoice::separate)
+      why = "/solver/passes \"separate\"";
+    else if (experiment_.solver.stress_update != StressUpdate::last)
+      why = "/solver/stress_update: only USL strains and scatters at the same particle state";
+    else if (plan_.filter)
+      why = experiment_.filter->pointer + ": the filter reads the grid between gather and scatter";
+    else if (plan_.contact)
+      why = experiment_.contact->pointer + ": several velocity fields take two passes";
+    else if (shape_.form == MPM_NODE_LIST)
+      why = experiment_.shape.pointer + ": a list of nodes takes two passes";
+    else if (experiment_.backend != "cpu")
+      why = "/backend \"" + experiment_.backend + "\" keeps passes apart, as the textbook does";
+    plan_.fused = why.empty();
+    if (choice == PassChoice::fused && !plan_.fused) refuse("/solver/passes", "passes cannot be fused: " + why);
   }
 
   bool any_separating_wall() const {
@@ -123,6 +161,8 @@ class Planner {
       if (plan_.kept_advection)
         attribute(body, "advection_velocity", D,
                   "/solver/stress_update \"modified_last\": positions wait for the remapped strain");
+      if (plan_.particle_domain)
+        attribute(body, "domain", D * D, named(experiment_.shape) + ": semi-side vectors of the particle's domain");
       state(body, experiment_.transfer);
       state(body, experiment_.materials[specification.material].component);
     }
@@ -138,6 +178,10 @@ class Planner {
   void channels() {
     const int D = experiment_.dimension;
     channel("mass and momentum", D + 1, named(experiment_.transfer) + ": every transfer");
+    if (plan_.fused) channel("mass and momentum of the next step", D + 1, "/solver/passes: gather and scatter are one");
+    if (plan_.filter) channel("filter increment and projection", 8, named(*experiment_.filter));
+    if (plan_.kept_velocity)
+      channel("unfiltered velocity", D, named(*experiment_.filter) + ": the strain comes before the forces");
     if (plan_.separate_force) channel("force", D, why_separate_force());
     if (experiment_.body_force)
       channel("body force", D, experiment_.body_force_pointer + ": its work is accounted for apart");
@@ -164,10 +208,52 @@ class Planner {
     return plan_.passes.back();
   }
 
+  /// The filter's loop as a part of the tree.
+  void filter_loop(bool before_forces, bool remap = false, bool restores = false) {
+    const std::string filter = named(*experiment_.filter);
+    Pass& group = pass(PassKind::group, filter);
+    group.condition = PassCondition::when_filtered;
+    const auto child = [&](Pass& parent, PassKind kind, const std::string& because) -> Pass& {
+      Pass& pass = parent.children.emplace_back();
+      pass.kind = kind;
+      pass.because = because;
+      pass.before_forces = before_forces;
+      pass.remap = remap;
+      pass.restores = restores;
+      return pass;
+    };
+    const mpm_filter& functions = experiment_.filter->plugin->filter();
+    const int times = functions.iterations(experiment_.filter->parameters.data());
+    if (times < 0) refuse(experiment_.filter->pointer, "the filter asks for " + std::to_string(times) + " passes");
+    child(group, PassKind::begin_filter,
+          filter + (before_forces ? ": velocity before the forces" : ": velocity after the forces"));
+    if (times > 0) {
+      Pass repeat;
+      repeat.kind = PassKind::repeat;
+      repeat.times = times;
+      repeat.because = filter + ": passes of its loop";
+      child(repeat, PassKind::project, transfer_name() + ": gathers and scatters the increment");
+      child(repeat, PassKind::update_filter,
+            experiment_.filter_schedule.constrain_always ? filter + ": conditions and contact act on every increment"
+                                                         : experiment_.filter->pointer + "/constraints \"at_end\"");
+      group.children.push_back(std::move(repeat));
+    }
+    child(group, PassKind::end_filter, filter);
+  }
+
+  std::string transfer_name() const { return named(experiment_.transfer); }
+
   void passes() {
-    const std::string transfer = named(experiment_.transfer);
+    const std::string transfer = transfer_name();
     const std::string order = "/solver/stress_update";
-    if (!experiment_.solver.time_step) pass(PassKind::estimate_time_step, "/solver/time_step \"auto\"").every_steps = 8;
+    const bool by_courant = plan_.filter && experiment_.filter_schedule.every_courant > 0;
+    if (!experiment_.solver.time_step || by_courant)
+      pass(PassKind::estimate_time_step, by_courant && experiment_.solver.time_step
+                                             ? experiment_.filter->pointer + "/every_courant"
+                                             : "/solver/time_step \"auto\"")
+          .every_steps = 8;
+    std::vector<Pass> outer;
+    if (plan_.fused) outer.swap(plan_.passes);
     if (experiment_.backend == "cpu") pass(PassKind::sort, "/backend \"cpu\": particles stay in their blocks of cells");
     pass(PassKind::reset_grid, transfer);
     Pass& scatter = pass(PassKind::scatter, transfer);
@@ -175,21 +261,38 @@ class Planner {
     scatter.contact_fields = plan_.contact;
     const bool first = experiment_.solver.stress_update == StressUpdate::first;
     scatter.force = !first;
+    if (plan_.fused) {
+      outer.swap(plan_.passes);
+      Pass& group = pass(PassKind::group, "/solver/passes: the step before has scattered already, as a rule");
+      group.condition = PassCondition::unless_scattered;
+      group.children = std::move(outer);
+    }
     pass(PassKind::momentum_to_velocity,
          plan_.contact ? named(*experiment_.contact) + " before the forces; boundaries" : "boundaries");
+    const bool filter_first = plan_.filter && (filters_before_forces() || first);
+    if (filter_first) filter_loop(true, false, plan_.kept_velocity);
     if (first) {
       pass(PassKind::strain, order + " \"first\"");
       pass(PassKind::scatter, order + " \"first\": stress at the new strain").force = true;
     }
+    if (plan_.kept_velocity) {
+      Pass& group = pass(PassKind::group, named(*experiment_.filter) + ": filters once more after the forces");
+      group.condition = PassCondition::when_filtered;
+      group.children.emplace_back().kind = PassKind::restore_velocity;
+      group.children.back().because = group.because;
+    }
     pass(PassKind::apply_forces,
          plan_.contact ? named(*experiment_.contact) + " after the forces; boundaries" : "boundaries");
-    Pass& gather = pass(PassKind::gather, transfer);
+    if (plan_.filter && !filters_before_forces()) filter_loop(false);
+    Pass& gather = pass(plan_.fused ? PassKind::gather_scatter : PassKind::gather, transfer);
     gather.strain = experiment_.solver.stress_update == StressUpdate::last;
     gather.move = experiment_.solver.stress_update != StressUpdate::modified_last;
+    if (plan_.fused) gather.momentum = gather.force = true;
     if (gather.move) return;
     Pass& again = pass(PassKind::scatter, order + " \"modified_last\": updated velocities, old positions");
     again.momentum = again.remap = true;
     pass(PassKind::momentum_to_velocity, order + " \"modified_last\"").remap = true;
+    if (plan_.filter) filter_loop(true, true);
     pass(PassKind::strain, order + " \"modified_last\"");
     pass(PassKind::move, order + " \"modified_last\": positions by the velocity gathered before");
   }
@@ -306,9 +409,52 @@ std::string Pass::name() const {
       return "strain";
     case PassKind::move:
       return "move";
+    case PassKind::gather_scatter:
+      return "gather, strain and scatter";
+    case PassKind::begin_filter:
+      return "begin filter";
+    case PassKind::project:
+      return "project";
+    case PassKind::update_filter:
+      return "update filter";
+    case PassKind::end_filter:
+      return "end filter";
+    case PassKind::restore_velocity:
+      return "restore velocity";
+    case PassKind::group:
+      return condition == PassCondition::unless_scattered ? "unless scattered"
+             : condition == PassCondition::when_filtered  ? "when filtered"
+                                                          : "group";
+    case PassKind::repeat:
+      return "repeat";
   }
   return "";
 }
+
+namespace {
+
+nlohmann::ordered_json to_json(const std::vector<Pass>& passes) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Pass& p : passes) {
+    nlohmann::ordered_json json{{"name", p.name()}, {"every_steps", p.every_steps}, {"because", p.because}};
+    if (p.kind == PassKind::repeat) json["times"] = p.times;
+    if (!p.children.empty()) json["passes"] = to_json(p.children);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+void print(std::ostream& out, const std::vector<Pass>& passes, int depth) {
+  for (const Pass& p : passes) {
+    std::string cadence = p.every_steps > 1 ? "every " + std::to_string(p.every_steps) + " steps" : "";
+    if (p.kind == PassKind::repeat) cadence = "up to " + std::to_string(p.times) + (p.times > 1 ? " times" : " time");
+    out << "    " << padded(std::string(2 * static_cast<std::size_t>(depth), ' ') + p.name(), 30) << padded(cadence, 17)
+        << p.because << "\n";
+    print(out, p.children, depth + 1);
+  }
+}
+
+}  // namespace
 
 std::uint64_t Plan::bytes_per_particle(int body) const {
   std::uint64_t sum = 0;
@@ -337,13 +483,14 @@ nlohmann::ordered_json Plan::to_json() const {
                               {"copies", c.copies},
                               {"bytes_per_node", c.bytes_per_node},
                               {"because", c.because}});
-  for (const Pass& p : passes)
-    json["passes"].push_back({{"name", p.name()}, {"every_steps", p.every_steps}, {"because", p.because}});
+  json["passes"] = mpm::to_json(passes);
   json["weight_gradients"] = weight_gradients;
   json["affine_moment"] = affine_moment;
   json["separate_force"] = separate_force;
   json["velocity_increment"] = velocity_increment;
   json["ledger"] = ledger;
+  json["fused"] = fused;
+  if (!fused) json["why_not_fused"] = why_not_fused;
   json["estimate"] = {
       {"particles", particles}, {"nodes", nodes}, {"particle_bytes", particle_bytes}, {"grid_bytes", grid_bytes}};
   return json;
@@ -367,10 +514,9 @@ std::string Plan::to_text() const {
     out << "    " << padded(c.name, 26) << padded(std::to_string(c.copies) + " x " + std::to_string(c.components), 13)
         << padded(std::to_string(c.bytes_per_node) + " B", 6) << c.because << "\n";
   out << "Passes of a step\n";
-  for (const Pass& p : passes)
-    out << "    " << padded(p.name(), 26)
-        << padded(p.every_steps > 1 ? "every " + std::to_string(p.every_steps) + " steps" : "", 21) << p.because
-        << "\n";
+  print(out, passes, 0);
+  out << "Gather and scatter: " << (fused ? "fused, one visit of a particle a step" : "two passes, " + why_not_fused)
+      << "\n";
   out << "Stencil: weights" << (weight_gradients ? " and gradients" : " only, no gradients") << "; force "
       << (separate_force ? "in a field of its own" : "merged into momentum") << "\n";
   out << "Estimate: " << particles << " particles, " << nodes << " nodes, " << (particle_bytes + 524288) / 1048576

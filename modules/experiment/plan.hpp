@@ -37,7 +37,22 @@ enum class PassKind {
   apply_forces,          ///< p+ = p + dt f with boundary conditions, contact after the forces, v+
   gather,                ///< grid -> particle velocity (and strain, move as said)
   strain,                ///< grid velocity -> velocity gradient -> material state
-  move                   ///< x += dt times the advection velocity kept by the gather
+  move,                  ///< x += dt times the advection velocity kept by the gather
+  gather_scatter,    ///< gather, strain, move, and the next step's reset_grid and scatter in one visit of a particle
+  begin_filter,      ///< increment <- grid velocity (kept aside as well where `restores`)
+  project,           ///< projected <- S+ S increment, by the transfer's own gather and scatter
+  update_filter,     ///< the plugin's update at every node; conditions and contact; the increment's mass norm
+  end_filter,        ///< constraints where they act at the end only; the ledger's entry; ghosts
+  restore_velocity,  ///< grid velocity <- what begin_filter kept aside
+  group,             ///< children, under `condition`
+  repeat             ///< children up to `times`, until |increment| <= tolerance |first|
+};
+
+/// What decides whether a group is executed in a step.
+enum class PassCondition {
+  always,
+  unless_scattered,  ///< the previous step's gather_scatter has not filled the grid already
+  when_filtered      ///< the schedule says that this step is filtered
 };
 
 struct Pass {
@@ -48,8 +63,13 @@ struct Pass {
   bool strain = false;          ///< gather: also advance the material with the gathered velocity gradient
   bool move = false;            ///< gather: also move the particles
   bool remap = false;           ///< scatter and momentum_to_velocity of MUSL: updated velocities, no forces follow
+  bool before_forces = false;   ///< filter passes: they act on v-, before the forces
+  bool restores = false;        ///< begin_filter: restore_velocity follows
   int every_steps = 1;
+  PassCondition condition = PassCondition::always;
+  int times = 0;  ///< of repeat
   std::string because;
+  std::vector<Pass> children;  ///< of group and repeat
 
   std::string name() const;
 };
@@ -57,7 +77,7 @@ struct Pass {
 struct Plan {
   std::vector<PlannedAttribute> attributes;
   std::vector<PlannedChannel> channels;
-  std::vector<Pass> passes;
+  std::vector<Pass> passes;  ///< a tree: see Pass::children
 
   bool weight_gradients = false;    ///< a pass reads grad w
   bool affine_moment = false;       ///< a pass gathers C
@@ -65,8 +85,15 @@ struct Plan {
   bool velocity_increment = false;  ///< v+ - v- is kept and gathered
   bool contact = false;
   bool ledger = false;
-  bool initial_position = false;  ///< particles keep X
-  bool kept_advection = false;    ///< MUSL: the advection velocity waits for `move`
+  bool initial_position = false;          ///< particles keep X
+  bool kept_advection = false;            ///< MUSL: the advection velocity waits for `move`
+  bool filter = false;                    ///< the grid keeps an increment and its projection
+  bool kept_velocity = false;             ///< the grid keeps the unfiltered velocity (a pass restores it)
+  bool particle_domain = false;           ///< particles carry their domain, advanced with L where the material is
+  bool second_moment = false;             ///< the shape's second moment is evaluated a particle
+  bool velocity_gradient_moment = false;  ///< the transfer gathers L
+  bool fused = false;                     ///< a pass is gather_scatter
+  std::string why_not_fused;              ///< empty when fused
 
   std::uint64_t particles = 0, nodes = 0;  ///< estimates before seeding
   std::uint64_t particle_bytes = 0, grid_bytes = 0;

@@ -138,6 +138,7 @@ void ExperimentReader::read_solver(const Node* node) {
   if (fields.text("time_step").empty()) solver.time_step = fields.number("time_step");
   solver.courant = fields.number("courant");
   solver.end_time = fields.number("end_time");
+  solver.passes = static_cast<PassChoice>(fields.choice("passes"));
   solver.max_steps = static_cast<long>(fields.number("max_steps"));
   resolved_["solver"] = fields.resolved;
 }
@@ -151,6 +152,8 @@ void ExperimentReader::read_output(const Node* node) {
   output.vtk = fields.boolean("vtk");
   output.film = fields.boolean("film");
   output.ledger = fields.boolean("ledger");
+  output.checkpoint_seconds = fields.number("checkpoint_every");
+  output.checkpoint_steps = static_cast<long>(fields.number("checkpoint_steps"));
   resolved_["output"] = fields.resolved;
   if (!fields.valid("frames")) return;
   if (output.film && output.frames < 2) problem(fields.place("film"), "a film needs \"frames\" of at least 2");

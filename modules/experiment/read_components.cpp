@@ -56,6 +56,21 @@ ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_
   return chosen;
 }
 
+void ExperimentReader::read_filter_schedule(const Fields& fields) {
+  FilterSchedule& schedule = experiment_.filter_schedule;
+  int intervals = 0;
+  for (const char* key : {"every_steps", "every_time", "every_courant"}) {
+    if (!fields.given(key)) continue;
+    if (++intervals > 1)
+      problem(fields.place(key), "a filter has one interval: every_steps, every_time or every_courant");
+  }
+  if (fields.given("every_steps")) schedule.every_steps = fields.integer("every_steps");
+  if (fields.given("every_time")) schedule.every_time = fields.number("every_time");
+  if (fields.given("every_courant")) schedule.every_courant = fields.number("every_courant");
+  schedule.constrain_always = fields.choice("constraints") == 0;
+  schedule.tolerance = fields.number("tolerance");
+}
+
 void ExperimentReader::read_components(const Fields& fields) {
   const auto choose = [&](const char* key, mpm_kind kind) {
     Chosen chosen = read_component(*fields.node(key), kind);
@@ -64,7 +79,11 @@ void ExperimentReader::read_components(const Fields& fields) {
   };
   if (fields.given("shape")) experiment_.shape = choose("shape", MPM_SHAPE).component;
   if (fields.given("transfer")) experiment_.transfer = choose("transfer", MPM_TRANSFER).component;
-  if (fields.given("filter")) experiment_.filter = choose("filter", MPM_FILTER).component;
+  if (fields.given("filter")) {
+    const Chosen filter = choose("filter", MPM_FILTER);
+    experiment_.filter = filter.component;
+    if (filter.fields) read_filter_schedule(*filter.fields);
+  }
   if (!fields.given("contact")) return;
   const Chosen contact = choose("contact", MPM_CONTACT);
   experiment_.contact = contact.component;

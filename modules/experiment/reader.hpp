@@ -38,6 +38,7 @@ class ExperimentReader {
   // read_components.cpp
   Chosen read_component(const Node& node, mpm_kind kind);
   void check_capability(const Plugin& plugin, mpm_kind kind, const Node& place);
+  void read_filter_schedule(const Fields& fields);
   void read_components(const Fields& fields);
   void read_materials(const Node* node);
 

@@ -13,6 +13,24 @@ ParameterSpec nested(std::string name, std::string doc, std::string definition) 
   return parameter(std::move(name), Type::nested, "", std::move(doc)).defined_as(std::move(definition));
 }
 
+/// When any filter acts, and what acts on it: the host's.
+std::vector<ParameterSpec> filter_schedule() {
+  return {
+      parameter("every_steps", Type::integer, "", "Steps from one filtered step to the next.").from(1).to(1e9),
+      parameter("every_time", Type::number, "s", "Time from one filtered step to the next.").above(0),
+      parameter("every_courant", Type::number, "", "Cells that the fastest wave crosses between filtered steps.")
+          .above(0),
+      parameter("constraints", Type::choice, "", "Whether conditions and contact act on every increment or at the end.")
+          .of({"every_increment", "at_end"})
+          .standard("every_increment"),
+      parameter("tolerance", Type::number, "",
+                "The loop ends when the increment's mass norm has fallen to this share of the first; 0: never.")
+          .from(0)
+          .to(1)
+          .standard(0),
+  };
+}
+
 ParameterSpec axis(std::string doc) {
   return parameter("axis", Type::choice, "", std::move(doc)).of({"x", "y", "z"});
 }
@@ -184,6 +202,10 @@ Section solver_section() {
               .to(1)
               .standard(0.3),
           parameter("end_time", Type::number, "s", "Time simulated.").above(0).needed(),
+          parameter("passes", Type::choice, "",
+                    "Whether a gather also scatters for the next step: auto fuses them where that is legal.")
+              .of({"auto", "separate", "fused"})
+              .standard("auto"),
           parameter("max_steps", Type::integer, "", "Stops with an error when reached before end_time.")
               .from(1)
               .to(1e15)
@@ -211,6 +233,13 @@ Section output_section(const ReadOptions& options) {
               parameter("vtk", Type::boolean, "", "Write a VTK file beside each frame.").standard(false),
               parameter("film", Type::boolean, "", "Join the frames to a film.").standard(false),
               parameter("ledger", Type::boolean, "", "Keep the energy ledger.").standard(true),
+              parameter("checkpoint_every", Type::number, "s", "Wall-clock time between checkpoints; 0: none.")
+                  .from(0)
+                  .standard(60),
+              parameter("checkpoint_steps", Type::integer, "", "Steps between checkpoints; 0: by the clock only.")
+                  .from(0)
+                  .to(1e15)
+                  .standard(0),
           }};
 }
 
@@ -251,6 +280,9 @@ std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind
       section.parameters.push_back(parameter("detection", Type::choice, "", "When two fields count as touching.")
                                        .of({"approach_and_position"})
                                        .standard("approach_and_position"));
+    }
+    if (wanted == MPM_FILTER) {
+      for (const ParameterSpec& spec : filter_schedule()) section.parameters.push_back(spec);
     }
     kinds.push_back(std::move(section));
   }

@@ -11,6 +11,17 @@ struct GatheredMoments {
   Vec<D, S> velocity;            ///< sum w v+, m/s
   Vec<D, S> velocity_increment;  ///< sum w (v+ - v-), m/s
   Mat<D, S> affine;              ///< sum v+ (x) w D^-1 d, 1/s
+  Mat<D, S> velocity_gradient;   ///< sum v+ (x) grad w, 1/s
+};
+
+/// The nodes of one particle, each once; lengths in cells. `T` is a plain scalar: lists are made particle by particle.
+template <int D, class T, int Capacity>
+struct NodeList {
+  static constexpr int capacity = Capacity;
+  int count;
+  int node[Capacity][D];
+  T weight[Capacity];
+  T gradient[Capacity][D];  ///< derivative by the particle's position
 };
 
 /// Two velocity fields that meet at a node.
@@ -52,6 +63,13 @@ inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
         static_cast < uint32_t>((flags) | ((default_value) == (default_value) ? 0 : MPM_REQUIRED)), \
         offsetof(Parameters, member), 0, default_value, minimum, maximum                            \
   }
+#define MPM_INTEGER_PARAMETER(member, default_value, minimum, maximum, doc)                   \
+  {                                                                                           \
+#member, "", doc, "", MPM_INTEGER, (default_value) == (default_value) ? 0 : MPM_REQUIRED, \
+        offsetof(Parameters, member), 0, default_value, minimum, maximum                      \
+  }
+#define MPM_BOOLEAN_PARAMETER(member, default_value, doc) \
+  { #member, "", doc, "", MPM_BOOLEAN, 0, offsetof(Parameters, member), 0, default_value, 0, 1 }
 #define MPM_CHOICE_PARAMETER(member, choices, default_index, doc) \
   { #member, "", doc, choices, MPM_CHOICE, 0, offsetof(Parameters, member), 0, default_index, 0, 0 }
 #endif

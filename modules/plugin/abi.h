@@ -21,9 +21,13 @@
 extern "C" {
 #endif
 
-#define MPM_ABI_VERSION 0u /* 0: open to change until the boundary is frozen as version 1 */
-#define MPM_BATCH 64u      /* particles or nodes in a full batch */
-#define MPM_LANES 16u      /* counts are padded to a multiple of this */
+/* Version 1. Nothing in it changes or moves; fields are only added at the end of a struct, each time with a new
+ * revision. A host takes plugins of its version and of its revision or an older one: it reads an older, shorter table
+ * as if the missing fields were zero. */
+#define MPM_ABI_VERSION 1u
+#define MPM_ABI_REVISION 0u
+#define MPM_BATCH 64u /* particles or nodes in a full batch */
+#define MPM_LANES 16u /* counts are padded to a multiple of this */
 
 enum mpm_kind { MPM_SHAPE = 1, MPM_TRANSFER = 2, MPM_FILTER = 3, MPM_CONTACT = 4, MPM_MATERIAL = 5 };
 
@@ -54,8 +58,14 @@ typedef struct mpm_parameter {
 } mpm_parameter;
 
 /* Components in 2-D / 3-D: scalar 1/1, vector 2/3, matrix 4/9 (row-major), symmetric 4/6 (xx yy zz xy / xx yy zz yz xz
- * xy). */
-enum mpm_state_shape { MPM_STATE_SCALAR = 0, MPM_STATE_VECTOR = 1, MPM_STATE_MATRIX = 2, MPM_STATE_SYMMETRIC = 3 };
+ * xy), deformation 5/9 (a matrix of three-dimensional space in plane strain: xx xy yx yy zz / row-major). */
+enum mpm_state_shape {
+  MPM_STATE_SCALAR = 0,
+  MPM_STATE_VECTOR = 1,
+  MPM_STATE_MATRIX = 2,
+  MPM_STATE_SYMMETRIC = 3,
+  MPM_STATE_DEFORMATION = 4
+};
 enum mpm_state_initial { MPM_INITIAL_ZERO = 0, MPM_INITIAL_ONE = 1, MPM_INITIAL_IDENTITY = 2 };
 
 /* One field a particle carries because this plugin is chosen. */
@@ -67,39 +77,61 @@ typedef struct mpm_state {
   uint32_t initial;
 } mpm_state;
 
-/* ---- shape ------------------------------------------------------------------------------------------------- */
+/* ---- shape ----------------------------------------------------------------------------------------------------
+ * Positions and lengths are in cells. Two forms: a tensor product of weights along the axes, or a list of nodes. */
 enum mpm_shape_form { MPM_TENSOR_PRODUCT = 0, MPM_NODE_LIST = 1 };
 enum mpm_second_moment {
   MPM_MOMENT_CONSTANT = 0, /* sum w d d^T = second_moment h^2 I everywhere */
   MPM_MOMENT_IS_GRADIENT =
       1, /* w D^-1 d equals grad w identically (linear): the host uses gradients for the affine moment */
-  MPM_MOMENT_PER_PARTICLE = 2
+  MPM_MOMENT_PER_PARTICLE = 2 /* the batch fills second_moment, positive definite */
 };
 typedef struct mpm_shape_batch {
   uint32_t count, stride, dimension, reserved;
-  const void* position;  /* [D][stride], in cells, from any node of the grid */
-  const void* half_size; /* [D][stride], in cells: half the particle's box; null unless declared in `needs` */
+  const void* position;  /* [D][stride], from any node of the grid */
+  const void* half_size; /* [D][stride], half the undeformed particle's box; null unless MPM_NEEDS_HALF_SIZE */
+  const void* domain;    /* [D*D][stride], see mpm_list_batch; null unless MPM_NEEDS_DOMAIN */
   int32_t* base;         /* [D][stride] out: first node of the stencil */
-  void* offset;          /* [D][stride] out: position - base, in cells */
+  void* offset;          /* [D][stride] out: position - base */
   void* weight;          /* [D][width][stride] out */
-  void* gradient;        /* [D][width][stride] out: derivative by position in cells; null when the plan needs none */
+  void* gradient;        /* [D][width][stride] out: derivative by position; null when the plan needs none */
+  void* second_moment;   /* [D][stride] out: sum w d^2 along each axis; null unless per particle and needed */
 } mpm_shape_batch;
+/* A particle's nodes, each once: `node_count` of them, at most `capacity`. Entries beyond a particle's count are
+ * undefined. No node lies farther from the particle than sum_k |domain_ak| + reach along an axis a. */
+typedef struct mpm_list_batch {
+  uint32_t count, stride, dimension, capacity;
+  const void* position;  /* [D][stride] */
+  const void* half_size; /* [D][stride]; null unless MPM_NEEDS_HALF_SIZE */
+  const void* domain;    /* [D*D][stride] row-major: column k is the k-th semi-side vector of the particle's domain,
+                            F times the undeformed one; advanced by the host; null unless MPM_NEEDS_DOMAIN */
+  int32_t* node_count;   /* [stride] out */
+  int32_t* node;         /* [capacity][D][stride] out: coordinates */
+  void* weight;          /* [capacity][stride] out */
+  void* gradient;        /* [capacity][D][stride] out: by position; null when the plan needs none */
+  void* second_moment;   /* [D*D][stride] out: sum w d d^T, row-major; null unless per particle and needed */
+} mpm_list_batch;
 typedef struct mpm_shape {
-  uint32_t form, width, second_moment_kind, reserved;
-  double second_moment;
-  void (*evaluate[MPM_PRECISIONS])(const void* parameters, const mpm_shape_batch* batch);
+  uint32_t form, width, second_moment_kind, reserved; /* width: nodes an axis of a tensor product, 2 to 4 */
+  double second_moment;                               /* cells^2, of MPM_MOMENT_CONSTANT */
+  void (*evaluate[MPM_PRECISIONS])(const void* parameters,
+                                   const mpm_shape_batch* batch); /* tensor product, else null */
+  uint32_t capacity[2];                                           /* most nodes of a list, [dimension - 2] */
+  double reach;                                                   /* of a list: see mpm_list_batch */
+  void (*evaluate_list[MPM_PRECISIONS][2])(const void* parameters, const mpm_list_batch* batch); /* list, else null */
 } mpm_shape;
 
 /* ---- transfer ------------------------------------------------------------------------------------------------
  * A particle gives a node  w (b + A d) + S grad w  with d = node - particle (m). Gathered moments are
  * sum w v,  sum w (v+ - v-),  C = sum v (x) (w D^-1 d)  and  L = sum v (x) grad w; only declared ones are filled. */
 enum mpm_transfer_trait {
-  MPM_SCATTERS_AFFINE = 1,       /* fills A */
-  MPM_GATHERS_INCREMENT = 2,     /* reads velocity_increment: the grid keeps v- beside v+ */
-  MPM_GATHERS_AFFINE = 4,        /* reads affine */
-  MPM_STRESS_BY_AFFINE = 8,      /* stress enters as -V0 tau D^-1 in A, not as -V0 tau in S (MLS-MPM) */
-  MPM_STRAIN_BY_AFFINE = 16,     /* the velocity gradient that strains the particle is the affine moment itself */
-  MPM_AFFINE_CARRIES_ENERGY = 32 /* the kinetic energy of state 0 (affine velocity) is m/2 D tr(C C^T) */
+  MPM_SCATTERS_AFFINE = 1,        /* fills A */
+  MPM_GATHERS_INCREMENT = 2,      /* reads velocity_increment: the grid keeps v- beside v+ */
+  MPM_GATHERS_AFFINE = 4,         /* reads affine */
+  MPM_STRESS_BY_AFFINE = 8,       /* stress enters as -V0 tau D^-1 in A, not as -V0 tau in S (MLS-MPM) */
+  MPM_STRAIN_BY_AFFINE = 16,      /* the velocity gradient that strains the particle is the affine moment itself */
+  MPM_AFFINE_CARRIES_ENERGY = 32, /* the kinetic energy of state 0 (affine velocity) is m/2 tr(C D C^T) */
+  MPM_GATHERS_GRADIENT = 64       /* reads velocity_gradient */
 };
 typedef struct mpm_scatter_batch {
   uint32_t count, stride, dimension, reserved;
@@ -115,6 +147,7 @@ typedef struct mpm_gather_batch {
   const void* velocity;           /* [D][stride] sum w v+ */
   const void* velocity_increment; /* [D][stride] sum w (v+ - v-), or null */
   const void* affine;             /* [D*D][stride] C, 1/s, or null */
+  const void* velocity_gradient;  /* [D*D][stride] L = sum v+ (x) grad w, 1/s, or null */
   void* particle_velocity;        /* [D][stride] in: before, out: after */
   void* const* state;             /* in and out */
   void* advection_velocity;       /* [D][stride] out: velocity that moves the particle */
@@ -126,9 +159,35 @@ typedef struct mpm_transfer {
   void (*gather[MPM_PRECISIONS][2])(const void* parameters, const mpm_gather_batch* batch);
 } mpm_transfer;
 
+/* ---- filter ---------------------------------------------------------------------------------------------------
+ * The host runs the loop; the plugin says how a node's accumulated velocity and increment change in one pass:
+ *   increment <- velocity of the grid;  repeat iterations():
+ *     projected <- S+ S increment   (one gather and one mass-weighted scatter, by the transfer of the scene)
+ *     update(projected, increment, velocity)
+ *     conditions and contact correct `velocity`; increment takes the net change of velocity in this pass
+ *   until the mass norm of the increment is small enough, when the experiment says so.
+ * The result replaces the grid velocity; gathered, it replaces the particles' velocity and moves them. */
+enum mpm_filter_trait {
+  MPM_FILTERS_BEFORE_FORCES = 1 /* filters v-, dt f / m is added afterwards (XPIC); else v+ (FMPM) */
+};
+typedef struct mpm_filter_batch {
+  uint32_t count, stride, dimension, iteration; /* iteration: from 1 */
+  const void* projected;                        /* [D][stride], m/s */
+  void* increment;                              /* [D][stride] in and out, m/s */
+  void* velocity;                               /* [D][stride] in and out, m/s: accumulated */
+} mpm_filter_batch;
+typedef struct mpm_filter {
+  uint32_t traits, reserved;
+  int32_t (*iterations)(const void* parameters); /* passes of the loop, 0 or more */
+  void (*update[MPM_PRECISIONS][2])(const void* parameters, const mpm_filter_batch* batch);
+} mpm_filter;
+
 /* ---- contact law ----------------------------------------------------------------------------------------------
  * One batch entry is the pair (a, b) of velocity fields at one node. */
-enum mpm_contact_trait { MPM_BYPASSES_DETECTION = 1 /* a weld: no prescreen, detection or cap */ };
+enum mpm_contact_trait {
+  MPM_BYPASSES_DETECTION = 1, /* a weld: no prescreen, detection or cap */
+  MPM_PULLS = 2               /* may resist separation (adhesion) */
+};
 enum mpm_contact_status { MPM_APART = 0, MPM_STICKS = 1, MPM_SLIPS = 2 };
 typedef struct mpm_contact_batch {
   uint32_t count, stride, dimension, reserved;
@@ -176,7 +235,10 @@ typedef struct mpm_material {
 
 /* ---- descriptor and library ----------------------------------------------------------------------------------- */
 enum mpm_dimension_bit { MPM_2D = 1, MPM_3D = 2 };
-enum mpm_need { MPM_NEEDS_PARTICLE_DOMAIN = 1 };
+enum mpm_need {
+  MPM_NEEDS_HALF_SIZE = 1, /* shapes: half_size */
+  MPM_NEEDS_DOMAIN = 2     /* shapes: domain; each particle then carries D*D scalars that the host advances with L */
+};
 
 typedef struct mpm_descriptor {
   const char* id;       /* lower_case, unique within its kind */
@@ -194,16 +256,20 @@ typedef struct mpm_descriptor {
   const mpm_state* state;
   uint32_t state_count;
   uint32_t kind_table_size;
-  const void* kind_table;   /* mpm_shape, mpm_transfer, mpm_contact or mpm_material */
+  const void* kind_table;   /* mpm_shape, mpm_transfer, mpm_filter, mpm_contact or mpm_material */
   const char* functor_name; /* C++ name inside `source` */
   const char* source;       /* text of the functor's header, for run-time compilation */
 } mpm_descriptor;
 
 typedef struct mpm_plugin_library {
-  uint32_t abi_version; /* MPM_ABI_VERSION the plugin was compiled with: first, read alone */
-  uint32_t struct_size; /* sizeof(mpm_plugin_library) */
-  uint32_t descriptor_size;
+  uint32_t abi_version;     /* MPM_ABI_VERSION the plugin was compiled with: first, read alone */
+  uint32_t struct_size;     /* sizeof(mpm_plugin_library) */
+  uint32_t abi_revision;    /* MPM_ABI_REVISION the plugin was compiled with */
+  uint32_t descriptor_size; /* sizeof(mpm_descriptor), the stride of `descriptors`; likewise the next two */
+  uint32_t parameter_size;
+  uint32_t state_size;
   uint32_t descriptor_count;
+  uint32_t reserved;
   const mpm_descriptor* descriptors;
 } mpm_plugin_library;
 

@@ -49,7 +49,8 @@ bool has_entries(const Plugin& plugin, const conformance::Variant& v) {
   const int axis = v.dimension - 2;
   switch (plugin.descriptor->kind) {
     case MPM_SHAPE:
-      return plugin.shape().evaluate[v.precision];
+      return plugin.shape().form == MPM_NODE_LIST ? plugin.shape().evaluate_list[v.precision][axis] != nullptr
+                                                  : plugin.shape().evaluate[v.precision] != nullptr;
     case MPM_TRANSFER:
       return plugin.transfer().scatter[v.precision][axis] && plugin.transfer().gather[v.precision][axis];
     case MPM_CONTACT:

@@ -21,7 +21,7 @@ struct ShapeBatch {
     const Element element = element_of(v);
     const std::uint32_t n = static_cast<std::uint32_t>(entries);
     position = Array(element, v.dimension, n);
-    if (plugin.descriptor->needs & MPM_NEEDS_PARTICLE_DOMAIN) half_size = Array(element, v.dimension, n);
+    if (plugin.descriptor->needs & MPM_NEEDS_HALF_SIZE) half_size = Array(element, v.dimension, n);
     base = Array(Element::index, v.dimension, n);
     offset = Array(element, v.dimension, n);
     weight = Array(element, v.dimension * width, n);
@@ -29,16 +29,16 @@ struct ShapeBatch {
   }
 
   void evaluate(const Plugin& plugin, const ParameterSample& parameters) {
-    const mpm_shape_batch batch{static_cast<std::uint32_t>(count),
-                                position.stride(),
-                                static_cast<std::uint32_t>(variant.dimension),
-                                0,
-                                position.data(),
-                                half_size.data(),
-                                static_cast<std::int32_t*>(base.data()),
-                                offset.data(),
-                                weight.data(),
-                                gradient.data()};
+    mpm_shape_batch batch{};
+    batch.count = static_cast<std::uint32_t>(count);
+    batch.stride = position.stride();
+    batch.dimension = static_cast<std::uint32_t>(variant.dimension);
+    batch.position = position.data();
+    batch.half_size = half_size.data();
+    batch.base = static_cast<std::int32_t*>(base.data());
+    batch.offset = offset.data();
+    batch.weight = weight.data();
+    batch.gradient = gradient.data();
     plugin.shape().evaluate[variant.precision](parameters.data(), &batch);
   }
 

@@ -69,6 +69,7 @@ struct TransferBatch {
                                  gathered.data(),
                                  increment.data(),
                                  affine.data(),
+                                 nullptr,
                                  particle_velocity.data(),
                                  fields.data(),
                                  advection.data()};

@@ -59,6 +59,8 @@ std::size_t table_size(std::uint32_t kind) {
       return sizeof(mpm_shape);
     case MPM_TRANSFER:
       return sizeof(mpm_transfer);
+    case MPM_FILTER:
+      return sizeof(mpm_filter);
     case MPM_CONTACT:
       return sizeof(mpm_contact);
     case MPM_MATERIAL:
@@ -146,6 +148,8 @@ int state_components(mpm_state_shape shape, int dimension) {
       return dimension * dimension;
     case MPM_STATE_SYMMETRIC:
       return dimension == 2 ? 4 : 6;
+    case MPM_STATE_DEFORMATION:
+      return dimension == 2 ? 5 : 9;
   }
   return 0;
 }

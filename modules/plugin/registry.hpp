@@ -28,6 +28,7 @@ struct Plugin {
   std::span<const mpm_state> state() const { return {descriptor->state, descriptor->state_count}; }
   const mpm_shape& shape() const { return *static_cast<const mpm_shape*>(descriptor->kind_table); }
   const mpm_transfer& transfer() const { return *static_cast<const mpm_transfer*>(descriptor->kind_table); }
+  const mpm_filter& filter() const { return *static_cast<const mpm_filter*>(descriptor->kind_table); }
   const mpm_contact& contact() const { return *static_cast<const mpm_contact*>(descriptor->kind_table); }
   const mpm_material& material() const { return *static_cast<const mpm_material*>(descriptor->kind_table); }
 };

@@ -19,13 +19,54 @@ namespace mpm::sdk {
 
 // ---- concepts: what a functor must offer -------------------------------------------------------------------------
 
+/// What a shape needs of the particle (mpm_need); none when the functor does not say.
+template <class F>
+constexpr std::uint32_t needs_of() {
+  if constexpr (requires { F::needs; })
+    return F::needs;
+  else
+    return 0;
+}
+
 /// Width and second moment, and the weights of one axis. `base` is the first node, x and base in cells.
 template <class F>
-concept ShapeFunctor = requires(const typename F::Parameters& p, double x, double& base, double* w, double* g) {
+concept PlainShapeFunctor = requires(const typename F::Parameters& p, double x, double& base, double* w, double* g) {
   { F::width } -> std::convertible_to<int>;
-  { F::second_moment } -> std::convertible_to<double>;
+  F::second_moment_kind;
   F::evaluate(p, x, base, w, g);
 };
+/// The same of a particle with a size: `half_size` of its undeformed box along the axis, in cells.
+template <class F>
+concept SizedShapeFunctor = (needs_of<F>() == MPM_NEEDS_HALF_SIZE) &&
+                            requires(const typename F::Parameters& p, double x, double half_size, double& base,
+                                     double* w, double* g) {
+  { F::width } -> std::convertible_to<int>;
+  F::second_moment_kind;
+  F::evaluate(p, x, half_size, base, w, g);
+};
+template <class F>
+concept ShapeFunctor = PlainShapeFunctor<F> || SizedShapeFunctor<F>;
+
+/// The nodes of one particle whose domain has the columns of `domain` as semi-side vectors, all in cells.
+template <class F, int D>
+concept ListShapeFunctorIn = requires(const typename F::Parameters& p, const Vec<D, double>& x,
+                                      const Mat<D, double>& domain, NodeList<D, double, F::template capacity<D>>& out) {
+  { F::reach } -> std::convertible_to<double>;
+  F::evaluate(p, x, domain, out);
+};
+template <class F>
+concept ListShapeFunctor = ListShapeFunctorIn<F, 2> && ListShapeFunctorIn<F, 3>;
+
+/// How one pass of the filter's loop changes a node (mpm_filter in abi.h).
+template <class F, int D>
+concept FilterFunctorIn = requires(const typename F::Parameters& p, const Vec<D, double>& projected,
+                                   Vec<D, double>& increment, Vec<D, double>& velocity) {
+  { F::traits } -> std::convertible_to<unsigned>;
+  { F::iterations(p) } -> std::convertible_to<int>;
+  F::update(p, 1, projected, increment, velocity);
+};
+template <class F>
+concept FilterFunctor = FilterFunctorIn<F, 2> && FilterFunctorIn<F, 3>;
 
 template <class F, int D>
 concept TransferFunctorIn = requires(const typename F::Parameters& p, const Vec<D, double>& v, Vec<D, double>& out,
@@ -101,10 +142,11 @@ struct StateLayout {
   int component[Count ? Count : 1]{};
 };
 constexpr int components_of(std::uint32_t shape, int D) {
-  return shape == MPM_STATE_SCALAR   ? 1
-         : shape == MPM_STATE_VECTOR ? D
-         : shape == MPM_STATE_MATRIX ? D * D
-                                     : (D == 2 ? 4 : 6);
+  return shape == MPM_STATE_SCALAR        ? 1
+         : shape == MPM_STATE_VECTOR      ? D
+         : shape == MPM_STATE_MATRIX      ? D * D
+         : shape == MPM_STATE_DEFORMATION ? (D == 2 ? 5 : 9)
+                                          : (D == 2 ? 4 : 6);
 }
 template <class F, int D>
 constexpr int declared_components() {
@@ -175,15 +217,77 @@ void shape_batch(const void* parameters, const mpm_shape_batch* q) {
   for (std::uint32_t axis = 0; axis < q->dimension; ++axis)
     for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
       S base, w[F::width], g[F::width];
-      const S x = Access<S>::load(static_cast<const T*>(q->position) + axis * q->stride + lane);
-      F::evaluate(p, x, base, w, q->gradient ? g : static_cast<S*>(nullptr));
-      Access<S>::store_index(q->base + axis * q->stride + lane, base);
-      Access<S>::store(static_cast<T*>(q->offset) + axis * q->stride + lane, x - base);
+      const std::uint32_t at = axis * q->stride + lane;
+      const S x = Access<S>::load(static_cast<const T*>(q->position) + at);
+      S* const slopes = q->gradient ? g : static_cast<S*>(nullptr);
+      if constexpr (SizedShapeFunctor<F>)
+        F::evaluate(p, x, Access<S>::load(static_cast<const T*>(q->half_size) + at), base, w, slopes);
+      else
+        F::evaluate(p, x, base, w, slopes);
+      const S offset = x - base;
+      Access<S>::store_index(q->base + at, base);
+      Access<S>::store(static_cast<T*>(q->offset) + at, offset);
       const std::uint32_t first = axis * F::width * q->stride + lane;
       for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q->weight) + first + k * q->stride, w[k]);
       if (q->gradient)
         for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q->gradient) + first + k * q->stride, g[k]);
+      if (!q->second_moment) continue;
+      S moment = S(real<S>(0));
+      for (int k = 0; k < F::width; ++k) {
+        const S d = real<S>(k) - offset;
+        moment = moment + w[k] * d * d;
+      }
+      Access<S>::store(static_cast<T*>(q->second_moment) + at, moment);
     }
+}
+
+/// Particle by particle: the number of nodes differs from one to the next.
+template <class F, int D, class T>
+void list_batch(const void* parameters, const mpm_list_batch* q) {
+  using List = NodeList<D, T, F::template capacity<D>>;
+  const auto& p = parameters_of<F>(parameters);
+  for (std::uint32_t i = 0; i < q->count; ++i) {
+    Vec<D, T> x;
+    Mat<D, T> domain{};
+    List list;
+    load_components<D, T>(q->position, q->stride, i, x.v);
+    load_components<D * D, T>(q->domain, q->stride, i, domain.m);
+    F::evaluate(p, x, domain, list);
+    q->node_count[i] = list.count;
+    Mat<D, T> moment{};
+    for (int k = 0; k < list.count; ++k) {
+      static_cast<T*>(q->weight)[k * q->stride + i] = list.weight[k];
+      Vec<D, T> d;
+      for (int a = 0; a < D; ++a) {
+        q->node[(k * D + a) * q->stride + i] = list.node[k][a];
+        if (q->gradient) static_cast<T*>(q->gradient)[(k * D + a) * q->stride + i] = list.gradient[k][a];
+        d[a] = static_cast<T>(list.node[k][a]) - x[a];
+      }
+      if (!q->second_moment) continue;
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) moment(a, b) += list.weight[k] * d[a] * d[b];
+    }
+    if (q->second_moment) store_components<D * D, T>(q->second_moment, q->stride, i, moment.m);
+  }
+}
+
+template <class F>
+std::int32_t filter_iterations(const void* parameters) {
+  return static_cast<std::int32_t>(F::iterations(parameters_of<F>(parameters)));
+}
+
+template <class F, int D, class S>
+void filter_batch(const void* parameters, const mpm_filter_batch* q) {
+  const auto& p = parameters_of<F>(parameters);
+  for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+    Vec<D, S> projected, increment, velocity;
+    load_components<D, S>(q->projected, q->stride, lane, projected.v);
+    load_components<D, S>(q->increment, q->stride, lane, increment.v);
+    load_components<D, S>(q->velocity, q->stride, lane, velocity.v);
+    F::update(p, static_cast<int>(q->iteration), projected, increment, velocity);
+    store_components<D, S>(q->increment, q->stride, lane, increment.v);
+    store_components<D, S>(q->velocity, q->stride, lane, velocity.v);
+  }
 }
 
 template <class F, int D, class S>
@@ -211,6 +315,8 @@ void gather_batch(const void* parameters, const mpm_gather_batch* q) {
       load_components<D, S>(q->velocity_increment, q->stride, lane, moments.velocity_increment.v);
     if constexpr ((F::traits & MPM_GATHERS_AFFINE) != 0)
       load_components<D * D, S>(q->affine, q->stride, lane, moments.affine.m);
+    if constexpr ((F::traits & MPM_GATHERS_GRADIENT) != 0)
+      load_components<D * D, S>(q->velocity_gradient, q->stride, lane, moments.velocity_gradient.m);
     Vec<D, S> v, advection;
     load_components<D, S>(q->particle_velocity, q->stride, lane, v.v);
     auto state = StateAccess<F, D, S>::load(q->state, q->stride, lane);
@@ -289,18 +395,49 @@ std::int32_t material_batch(const void* parameters, const mpm_material_batch* q)
 using LanesFloat = Lanes<float>;
 using LanesDouble = Lanes<double>;
 
-template <ShapeFunctor F>
-inline constexpr mpm_shape shape_table{
-    MPM_TENSOR_PRODUCT,    F::width,
-    F::second_moment_kind, 0,
-    F::second_moment,      {&shape_batch<F, LanesFloat>, &shape_batch<F, LanesDouble>, &shape_batch<F, double>}};
-
 #define MPM_ENTRIES(batch)                                                                                          \
   {                                                                                                                 \
     {&batch<F, 2, LanesFloat>, &batch<F, 3, LanesFloat>}, {&batch<F, 2, LanesDouble>, &batch<F, 3, LanesDouble>}, { \
       &batch<F, 2, double>, &batch<F, 3, double>                                                                    \
     }                                                                                                               \
   }
+template <class F>
+constexpr double second_moment_of() {
+  if constexpr (F::second_moment_kind == MPM_MOMENT_CONSTANT)
+    return F::second_moment;
+  else
+    return 0;
+}
+template <class F>
+struct ShapeTable;
+template <ShapeFunctor F>
+struct ShapeTable<F> {
+  static constexpr mpm_shape value{MPM_TENSOR_PRODUCT,
+                                   F::width,
+                                   F::second_moment_kind,
+                                   0,
+                                   second_moment_of<F>(),
+                                   {&shape_batch<F, LanesFloat>, &shape_batch<F, LanesDouble>, &shape_batch<F, double>},
+                                   {0, 0},
+                                   0,
+                                   {}};
+};
+template <ListShapeFunctor F>
+struct ShapeTable<F> {
+  static constexpr mpm_shape value{MPM_NODE_LIST,
+                                   0,
+                                   MPM_MOMENT_PER_PARTICLE,
+                                   0,
+                                   0,
+                                   {},
+                                   {F::template capacity<2>, F::template capacity<3>},
+                                   F::reach,
+                                   {{&list_batch<F, 2, float>, &list_batch<F, 3, float>},
+                                    {&list_batch<F, 2, double>, &list_batch<F, 3, double>},
+                                    {&list_batch<F, 2, double>, &list_batch<F, 3, double>}}};
+};
+template <FilterFunctor F>
+inline constexpr mpm_filter filter_table{F::traits, 0, &filter_iterations<F>, MPM_ENTRIES(filter_batch)};
 template <TransferFunctor F>
 inline constexpr mpm_transfer transfer_table{F::traits, 0, MPM_ENTRIES(scatter_batch), MPM_ENTRIES(gather_batch)};
 template <ContactFunctor F>
@@ -335,6 +472,7 @@ constexpr mpm_descriptor descriptor(mpm_kind kind, const void* table, std::uint3
     d.parameter_bytes = sizeof(typename F::Parameters);
   }
   if constexpr (HasState<F>) d.state = F::state, d.state_count = sizeof(F::state) / sizeof(mpm_state);
+  d.needs = needs_of<F>();
   d.kind_table = table, d.kind_table_size = table_size;
   d.functor_name = manual.functor_name, d.source = source;
   return d;
@@ -342,7 +480,11 @@ constexpr mpm_descriptor descriptor(mpm_kind kind, const void* table, std::uint3
 
 template <class F>
 constexpr mpm_descriptor shape(const Manual& m, const char* source) {
-  return descriptor<F>(MPM_SHAPE, &shape_table<F>, sizeof(mpm_shape), m, source);
+  return descriptor<F>(MPM_SHAPE, &ShapeTable<F>::value, sizeof(mpm_shape), m, source);
+}
+template <class F>
+constexpr mpm_descriptor filter(const Manual& m, const char* source) {
+  return descriptor<F>(MPM_FILTER, &filter_table<F>, sizeof(mpm_filter), m, source);
 }
 template <class F>
 constexpr mpm_descriptor transfer(const Manual& m, const char* source) {
@@ -374,4 +516,12 @@ inline constexpr char embedded_source[] =
   static constexpr mpm_descriptor mpm_exported_descriptor =                                               \
       mpm::sdk::maker(mpm::sdk::Manual __VA_ARGS__, mpm::sdk::embedded_source);                           \
   extern "C" __attribute__((visibility("default"))) constexpr mpm_plugin_library mpm_plugin_library_v = { \
-      MPM_ABI_VERSION, sizeof(mpm_plugin_library), sizeof(mpm_descriptor), 1, &mpm_exported_descriptor};
+      MPM_ABI_VERSION,                                                                                    \
+      sizeof(mpm_plugin_library),                                                                         \
+      MPM_ABI_REVISION,                                                                                   \
+      sizeof(mpm_descriptor),                                                                             \
+      sizeof(mpm_parameter),                                                                              \
+      sizeof(mpm_state),                                                                                  \
+      1,                                                                                                  \
+      0,                                                                                                  \
+      &mpm_exported_descriptor};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "experiment/plan.hpp"
+#include "simulation/archive.hpp"
 
 namespace mpm {
 
@@ -34,6 +35,10 @@ struct BodyState {
   std::vector<double> position, velocity, initial_position;                   ///< m, m/s, m (empty unless planned)
   std::map<std::string, std::vector<double>> transfer_state, material_state;  ///< by declared field name
   double volume = 0, mass = 0;
+  std::vector<double> domain;  ///< n*dimension*dimension, m, columns are semi-sides; empty unless Plan::particle_domain
+  /// n*dimension*dimension, m^2: second moment of the shape at the particle's position; empty unless
+  /// Plan::second_moment.
+  std::vector<double> second_moment;
 };
 
 /// Energy given to the kinetic energy by each cause, J, accumulated over all steps. Each is computed from its own
@@ -45,6 +50,16 @@ struct Ledger {
   double boundary = 0, contact = 0;    ///< J.(v- + v+)/2 of impulses
   double friction = 0;                 ///< share of contact that the law turned to heat (positive)
   double material = 0;                 ///< dissipated by the materials (positive)
+  double filter = 0;                   ///< change of the grid's kinetic energy over the filter's loops
+};
+
+/// What the filter did in the last step that it acted in.
+struct FilterRecord {
+  long iterations = 0;
+  double first_norm = 0,
+         last_norm = 0;       ///< mass norm of the increment, sqrt(sum m v*.v*), kg^1/2 m/s: at the begin, now
+  double largest_growth = 0;  ///< over the run: largest ratio of a norm to the one before; above 1 a constraint or a
+                              ///< negative weight has broken the contraction
 };
 
 /// What contact did, last step and in total. Forces act on the pair's first body.
@@ -75,6 +90,8 @@ class RunFailure : public std::runtime_error {
 struct StepInfo {
   double dt = 0, time = 0;  ///< s; time at the start of the step
   long step = 0;
+  bool filtered = false;  ///< the filter acts in this step: gathered velocities replace those of the particles
+  double next_dt = 0;     ///< of the following step, for gather_scatter
 };
 
 class Backend {
@@ -92,6 +109,16 @@ class Backend {
   virtual BodyState body_state(int body) const = 0;
   virtual const Ledger& ledger() const = 0;
   virtual const ContactRecord& contact_record() const = 0;
+  virtual const FilterRecord& filter_record() const = 0;
+
+  /// Whether the last gather_scatter left the next step's grid. It may refuse (particles must be sorted first): the
+  /// next step then scatters as usual.
+  virtual bool scattered() const = 0;
+
+  /// Everything that a later step depends on, in the backend's own order and precision: a restored backend goes on bit
+  /// for bit. `restore` is called on a backend made from the same experiment, plan and seeds; throws ArchiveError.
+  virtual void save(ArchiveWriter& archive) const = 0;
+  virtual void restore(ArchiveReader& archive) = 0;
 
   /// Bytes of particle and grid storage in use.
   virtual std::uint64_t particle_bytes() const = 0;

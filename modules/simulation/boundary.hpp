@@ -21,8 +21,13 @@
 
 namespace mpm {
 
-/// Nodes beyond a wall that a stencil may touch; larger than any tensor-product reach.
+/// Nodes beyond a wall that a tensor-product stencil may touch.
 inline constexpr int grid_padding = 3;
+/// The same of a list of nodes, whose particles grow with their deformation; beyond it a run stops with the reason.
+inline constexpr int list_grid_padding = 8;
+inline int grid_padding_of(const mpm_shape& shape) {
+  return shape.form == MPM_NODE_LIST ? list_grid_padding : grid_padding;
+}
 
 /// Sign with which component `component` of a vector is mirrored at a wall normal to `axis`.
 constexpr double mirror_sign(ConditionType type, int axis, int component) {

@@ -30,23 +30,52 @@ EdgeModel::EdgeModel(const Component& shape, int particles_per_cell_axis)
   if (edges_.size() < 2) throw std::invalid_argument("the shape has no support to build an edge model from");
 }
 
+/// A list has no axes: rows of undeformed particles in 2-D, their weights summed over the line of nodes at zero.
+std::vector<double> EdgeModel::list_weights(const std::vector<double>& rows) const {
+  const mpm_shape& shape = shape_.plugin->shape();
+  const std::size_t n = (rows.size() + MPM_LANES - 1) / MPM_LANES * MPM_LANES, capacity = shape.capacity[0];
+  std::vector<double> position(2 * n, rows.empty() ? 0.0 : rows.back()), half_size(2 * n, 0.5 / rows_per_cell_),
+      domain(4 * n, 0.0), weight(capacity * n);
+  std::vector<std::int32_t> count(n), node(capacity * 2 * n);
+  std::copy(rows.begin(), rows.end(), position.begin());
+  std::fill(position.begin() + static_cast<std::ptrdiff_t>(n), position.end(), 0.5 / rows_per_cell_);
+  for (const std::size_t diagonal : {0u, 3u}) std::fill_n(domain.begin() + diagonal * n, n, 0.5 / rows_per_cell_);
+  mpm_list_batch batch{};
+  batch.count = batch.stride = static_cast<std::uint32_t>(n);
+  batch.dimension = 2;
+  batch.capacity = shape.capacity[0];
+  batch.position = position.data();
+  batch.half_size = half_size.data();
+  batch.domain = domain.data();
+  batch.node_count = count.data();
+  batch.node = node.data();
+  batch.weight = weight.data();
+  shape.evaluate_list[MPM_SCALAR_DOUBLE][0](shape_.parameters.data(), &batch);
+  std::vector<double> at_node(rows.size(), 0.0);
+  for (std::size_t p = 0; p < rows.size(); ++p)
+    for (int k = 0; k < count[p]; ++k)
+      if (node[(2 * k) * n + p] == 0) at_node[p] += weight[k * n + p];
+  return at_node;
+}
+
 std::vector<double> EdgeModel::weights(const std::vector<double>& rows) const {
   const mpm_shape& shape = shape_.plugin->shape();
+  if (shape.form == MPM_NODE_LIST) return list_weights(rows);
   const std::size_t n = (rows.size() + MPM_LANES - 1) / MPM_LANES * MPM_LANES;
   std::vector<double> position(n, rows.empty() ? 0.0 : rows.back()), offset(n), weight(n * shape.width);
   std::vector<std::int32_t> base(n);
   std::copy(rows.begin(), rows.end(), position.begin());
-  std::vector<double> half_size(n, 0.5 / rows_per_cell_);
-  const mpm_shape_batch batch{static_cast<std::uint32_t>(n),
-                              static_cast<std::uint32_t>(n),
-                              1,
-                              0,
-                              position.data(),
-                              half_size.data(),
-                              base.data(),
-                              offset.data(),
-                              weight.data(),
-                              nullptr};
+  const std::vector<double> half_size(n, 0.5 / rows_per_cell_);
+  const std::vector<double> domain(n, 0.5 / rows_per_cell_);  // 1-D: one semi-side
+  mpm_shape_batch batch{};
+  batch.count = batch.stride = static_cast<std::uint32_t>(n);
+  batch.dimension = 1;
+  batch.position = position.data();
+  batch.half_size = half_size.data();
+  batch.domain = domain.data();
+  batch.base = base.data();
+  batch.offset = offset.data();
+  batch.weight = weight.data();
   shape.evaluate[MPM_SCALAR_DOUBLE](shape_.parameters.data(), &batch);
   std::vector<double> at_node(rows.size(), 0.0);
   for (std::size_t p = 0; p < rows.size(); ++p) {

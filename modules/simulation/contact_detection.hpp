@@ -25,6 +25,7 @@ class EdgeModel {
  private:
   std::vector<double> edges_, means_;  ///< monotone table
   std::vector<double> weights(const std::vector<double>& rows) const;
+  std::vector<double> list_weights(const std::vector<double>& rows) const;
   Component shape_;
   int rows_per_cell_;
 };

@@ -32,6 +32,11 @@ class Simulation {
   long steps() const { return steps_; }
   std::size_t particle_count() const { return particles_; }
 
+  /// Everything that later steps depend on. `restore` on a simulation of the same experiment goes on bit for bit,
+  /// whatever the number of threads; throws ArchiveError.
+  void save(ArchiveWriter& archive) const;
+  void restore(ArchiveReader& archive);
+
   const Experiment& experiment() const { return experiment_; }
   const Plan& plan() const { return plan_; }
   Backend& backend() { return *backend_; }
@@ -44,12 +49,21 @@ class Simulation {
   const std::map<std::string, double>& seconds_by_pass() const { return seconds_; }
 
  private:
-  double next_time_step();
+  double next_time_step() const;
+  void execute(const std::vector<Pass>& passes, StepInfo& step);
+  void execute(const Pass& pass, StepInfo& step);
+  void estimate_time_step();
+  bool may_fuse() const;
+  bool filter_due();
 
   const Experiment& experiment_;
   Plan plan_;
   std::unique_ptr<Backend> backend_;
   double time_ = 0, dt_ = 0, estimate_ = 0, smallest_ = 0, largest_ = 0;
+  double estimated_speed_ = 0;  ///< m/s, of the last estimate
+  double filter_clock_ = 0;     ///< time or cells since the filter last acted
+  bool chosen_ = false;         ///< dt of this step is known
+  bool scattered_ = false;      ///< the grid holds this step's scatter already
   long steps_ = 0;
   std::size_t particles_ = 0;
   std::map<std::string, double> seconds_;

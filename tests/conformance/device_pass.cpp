@@ -243,8 +243,18 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
   switch (plugin.descriptor->kind) {
     case MPM_SHAPE: {
       Column offset = zeros(D);
-      const mpm_shape_batch batch{
-          n, n, dimension, 0, in[0].data(), nullptr, indices.data(), offset.data(), out[1].data(), out[2].data()};
+      const mpm_shape_batch batch{n,
+                                  n,
+                                  dimension,
+                                  0,
+                                  in[0].data(),
+                                  nullptr,
+                                  nullptr,
+                                  indices.data(),
+                                  offset.data(),
+                                  out[1].data(),
+                                  out[2].data(),
+                                  nullptr};
       plugin.shape().evaluate[MPM_SCALAR_DOUBLE](parameters.data(), &batch);
       out[0] = as_column(indices);
       break;
@@ -262,6 +272,7 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
                                     in[2].data(),
                                     in[3].data(),
                                     in[4].data(),
+                                    nullptr,
                                     out[3].data(),
                                     state.data(),
                                     out[4].data()};

@@ -17,6 +17,10 @@ class CpuBackend final : public Backend {
   BodyState body_state(int body) const override;
   const Ledger& ledger() const override { return ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
+  const FilterRecord& filter_record() const override { return filter_; }
+  bool scattered() const override { return false; }
+  void save(ArchiveWriter&) const override { throw std::logic_error("not yet"); }
+  void restore(ArchiveReader&) override { throw std::logic_error("not yet"); }
   std::uint64_t particle_bytes() const override;
   std::uint64_t grid_bytes() const override { return grid_.bytes(); }
 
@@ -38,6 +42,7 @@ class CpuBackend final : public Backend {
   std::vector<int> field_of_body_;
   Ledger ledger_;
   ContactRecord contact_;
+  FilterRecord filter_;
   TimeStepLimit limit_;
   std::unique_ptr<ParticleStep<D, T>> particle_step_;
   std::unique_ptr<GridStep<D, T>> grid_step_;
@@ -197,6 +202,8 @@ void CpuBackend<D, T>::execute(const Pass& pass, const StepInfo& step) {
       return;
     case PassKind::move:
       return particle_step_->move(step);
+    default:
+      throw std::logic_error("the cpu backend does not execute pass \"" + pass.name() + "\"");
   }
 }
 

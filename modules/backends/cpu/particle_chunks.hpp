@@ -92,10 +92,12 @@ void ParticleStep<D, T>::evaluate_shape(const Chunk& chunk, Work& work, bool gra
                               0,
                               chunk.at(Particles<D, T>::position),
                               nullptr,
+                              nullptr,
                               work.base,
                               work.offset,
                               work.weight,
-                              gradients ? work.gradient : nullptr};
+                              gradients ? work.gradient : nullptr,
+                              nullptr};
   scene_.evaluate_shape(scene_.shape_parameters, &batch);
 }
 

@@ -34,6 +34,7 @@ typename ParticleStep<D, T>::Gathered ParticleStep<D, T>::gather(const Pass& pas
                                      work.velocity,
                                      increment ? work.increment : nullptr,
                                      affine ? work.affine : nullptr,
+                                     nullptr,
                                      chunk.at(Particles<D, T>::velocity),
                                      state.fields,
                                      advection};

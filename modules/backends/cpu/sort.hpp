@@ -90,9 +90,11 @@ class Sorter {
                                 0,
                                 from_.chunk(chunk),
                                 nullptr,
+                                nullptr,
                                 base,
                                 offset,
                                 weight,
+                                nullptr,
                                 nullptr};
     scene_.evaluate_shape(scene_.shape_parameters, &batch);
   }

@@ -114,10 +114,12 @@ void Particles::find_stencils(const Grid& grid) {
                               0,
                               cells.data(),
                               nullptr,
+                              nullptr,
                               base.data(),
                               offset.data(),
                               w.data(),
-                              g.data()};
+                              g.data(),
+                              nullptr};
   shape.evaluate[MPM_SCALAR_DOUBLE](experiment_.shape.parameters.data(), &batch);
 
   stencils_.assign(count_, {});
@@ -205,6 +207,7 @@ void Particles::gather(double dt) {
                                gathered_velocity.data(),
                                gathered_increment.data(),
                                gathered_affine.data(),
+                               nullptr,
                                velocity.data(),
                                state.data(),
                                advection.data()};

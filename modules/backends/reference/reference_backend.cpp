@@ -45,6 +45,8 @@ class ReferenceBackend final : public Backend {
         return strain(step);
       case PassKind::move:
         return move(step);
+      default:
+        throw std::logic_error("the reference backend does not execute pass \"" + pass.name() + "\"");
     }
   }
 
@@ -52,6 +54,10 @@ class ReferenceBackend final : public Backend {
   BodyState body_state(int body) const override { return bodies_[body].state(); }
   const Ledger& ledger() const override { return ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
+  const FilterRecord& filter_record() const override { return filter_; }
+  bool scattered() const override { return false; }
+  void save(ArchiveWriter&) const override { throw std::logic_error("not yet"); }
+  void restore(ArchiveReader&) override { throw std::logic_error("not yet"); }
   std::uint64_t grid_bytes() const override { return grid_.bytes(); }
   std::uint64_t particle_bytes() const override {
     std::uint64_t sum = 0;
@@ -289,6 +295,7 @@ class ReferenceBackend final : public Backend {
   TimeStepLimit limit_;
   Ledger ledger_;
   ContactRecord contact_;
+  FilterRecord filter_;
   double kinetic_energy_after_ = 0;
 };
 
