@@ -7,6 +7,7 @@
 #include <functional>
 #include <sstream>
 
+#include "experiment/compatibility.hpp"
 #include "experiment/diagnostics.hpp"
 
 namespace mpm {
@@ -44,24 +45,22 @@ class Planner {
   }
 
   void refuse_impossible_combinations() const {
-    const std::string shape = "shape \"" + std::string(experiment_.shape.plugin->id()) + "\" ";
-    if (shape_.form == MPM_TENSOR_PRODUCT && (shape_.width < 2 || shape_.width > 4))
-      refuse(experiment_.shape.pointer,
-             shape + "has " + std::to_string(shape_.width) + " nodes an axis; backends run 2 to 4");
-    if (experiment_.filter) refuse_impossible_filter();
-  }
-
-  /// FLIP takes changes of the grid's velocity; a filter replaces the particles' velocity. Every step of both is the
-  /// filter alone.
-  void refuse_impossible_filter() const {
     const FilterSchedule& schedule = experiment_.filter_schedule;
-    const bool every_step = schedule.every_steps == 1 && schedule.every_time == 0 && schedule.every_courant == 0;
-    if ((transfer_.traits & MPM_GATHERS_INCREMENT) && every_step)
-      refuse(experiment_.filter->pointer,
-             "filter \"" + std::string(experiment_.filter->plugin->id()) +
-                 "\" at every step leaves nothing of transfer \"" + std::string(experiment_.transfer.plugin->id()) +
-                 "\", whose increments it would replace each time; filter periodically (\"every_steps\": 4) or choose "
-                 "transfer \"pic\"");
+    Mix mix{experiment_.shape.plugin,
+            experiment_.transfer.plugin,
+            nullptr,
+            nullptr,
+            experiment_.solver.stress_update,
+            schedule.every_steps == 1 && schedule.every_time == 0 && schedule.every_courant == 0};
+    if (experiment_.filter) mix.filter = experiment_.filter->plugin;
+    if (experiment_.contact) mix.contact = experiment_.contact->plugin;
+    const auto refusal = refusal_of(mix);
+    if (!refusal) return;
+    const Component& at = refusal->at == MPM_SHAPE      ? experiment_.shape
+                          : refusal->at == MPM_TRANSFER ? experiment_.transfer
+                          : refusal->at == MPM_FILTER   ? *experiment_.filter
+                                                        : *experiment_.contact;
+    refuse(at.pointer, refusal->reason);
   }
 
   /// Puts the line of the file before each reason, which starts with a JSON pointer; a default has no line.
