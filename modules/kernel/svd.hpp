@@ -26,7 +26,7 @@ MPM_HD constexpr scalar_of<S> tiny() {
 /// Sweeps of Jacobi that reach rounding from any start, found by trial with one to spare.
 template <int D, class S>
 MPM_HD constexpr int sweeps() {
-  return D == 2 ? 3 : (sizeof(scalar_of<S>) == 4 ? 5 : 7);
+  return D == 2 ? 3 : (sizeof(scalar_of<S>) == 4 ? 5 : 6);
 }
 
 /// Columns p and q of M: (p, q) <- (c p - s q, s p + c q).

@@ -58,14 +58,15 @@ struct Cpdi {
   MPM_HD static Corner<D, T> corner_of(int number, const Vec<D, T>& x, const Mat<D, T>& R, const Mat<D, T>& sides) {
     Corner<D, T> corner;
     for (int a = 0; a < D; ++a) {
-      T at = x[a], side = T(0);
+      const T cell = floor(x[a]);  // from there on, so that no digits go to the distance from the grid's first node
+      T at = x[a] - cell, side = T(0);
       for (int k = 0; k < D; ++k) {
         const T sign = number >> k & 1 ? T(1) : T(-1);
         at = at + sign * R(a, k);
         side = side + sign * sides(a, k);
       }
       const T base = floor(at);
-      corner.base[a] = static_cast<int>(base);
+      corner.base[a] = static_cast<int>(cell) + static_cast<int>(base);
       corner.offset[a] = at - base;
       corner.side[a] = side * T(1.0 / (1 << D));
     }
