@@ -93,7 +93,7 @@ class Planner {
                           (plan_.affine_moment || (transfer_.traits & MPM_AFFINE_CARRIES_ENERGY));
     plan_.filter = experiment_.filter.has_value();
     plan_.kept_velocity =
-        plan_.filter && !filters_before_forces() && experiment_.solver.stress_update == StressUpdate::first;
+        plan_.filter && (filters_before_forces() || experiment_.solver.stress_update == StressUpdate::first);
     decide_fusion();
     plan_.separate_force = plan_.velocity_increment || plan_.contact || plan_.ledger ||
                            experiment_.body_force.has_value() || any_separating_wall() ||
@@ -180,7 +180,9 @@ class Planner {
     if (plan_.fused) channel("mass and momentum of the next step", D + 1, "/solver/passes: gather and scatter are one");
     if (plan_.filter) channel("filter increment and projection", 8, named(*experiment_.filter));
     if (plan_.kept_velocity)
-      channel("unfiltered velocity", D, named(*experiment_.filter) + ": the strain comes before the forces");
+      channel("unfiltered velocity", D,
+              named(*experiment_.filter) + (filters_before_forces() ? ": strains; then the correction of the particles"
+                                                                    : ": the strain comes before the forces"));
     if (plan_.separate_force) channel("force", D, why_separate_force());
     if (experiment_.body_force)
       channel("body force", D, experiment_.body_force_pointer + ": its work is accounted for apart");
@@ -268,30 +270,47 @@ class Planner {
     }
     pass(PassKind::momentum_to_velocity,
          plan_.contact ? named(*experiment_.contact) + " before the forces; boundaries" : "boundaries");
-    const bool filter_first = plan_.filter && (filters_before_forces() || first);
-    if (filter_first) filter_loop(true, false, plan_.kept_velocity);
+    // XPIC filters v- for the particles alone; FMPM's velocity strains too, so USF needs it before the forces as well.
+    const bool particles_only = plan_.filter && filters_before_forces();
+    const auto filtered_only = [&](PassKind kind, const std::string& because) -> Pass& {
+      Pass& group = pass(PassKind::group, because);
+      group.condition = PassCondition::when_filtered;
+      Pass& child = group.children.emplace_back();
+      child.kind = kind;
+      child.because = because;
+      return child;
+    };
+    if (particles_only) {
+      filter_loop(true, false, true);
+      filtered_only(PassKind::restore_velocity,
+                    named(*experiment_.filter) + ": forces and strain take what was not filtered")
+          .keeps_correction = true;
+    } else if (plan_.kept_velocity) {
+      filter_loop(true, false, true);
+    }
     if (first) {
       pass(PassKind::strain, order + " \"first\"");
       pass(PassKind::scatter, order + " \"first\": stress at the new strain").force = true;
     }
-    if (plan_.kept_velocity) {
-      Pass& group = pass(PassKind::group, named(*experiment_.filter) + ": filters once more after the forces");
-      group.condition = PassCondition::when_filtered;
-      group.children.emplace_back().kind = PassKind::restore_velocity;
-      group.children.back().because = group.because;
-    }
+    if (plan_.kept_velocity && !particles_only)
+      filtered_only(PassKind::restore_velocity, named(*experiment_.filter) + ": filters once more after the forces");
     pass(PassKind::apply_forces,
          plan_.contact ? named(*experiment_.contact) + " after the forces; boundaries" : "boundaries");
-    if (plan_.filter && !filters_before_forces()) filter_loop(false);
+    if (plan_.filter && !particles_only) filter_loop(false);
+    const bool last = experiment_.solver.stress_update == StressUpdate::last;
+    if (particles_only) {
+      if (last) pass(PassKind::strain, order + " \"last\", by the unfiltered velocity");
+      filtered_only(PassKind::add_correction, named(*experiment_.filter) + ": what the particles take");
+    }
     Pass& gather = pass(plan_.fused ? PassKind::gather_scatter : PassKind::gather, transfer);
-    gather.strain = experiment_.solver.stress_update == StressUpdate::last;
+    gather.strain = last && !particles_only;
     gather.move = experiment_.solver.stress_update != StressUpdate::modified_last;
     if (plan_.fused) gather.momentum = gather.force = true;
     if (gather.move) return;
     Pass& again = pass(PassKind::scatter, order + " \"modified_last\": updated velocities, old positions");
     again.momentum = again.remap = true;
     pass(PassKind::momentum_to_velocity, order + " \"modified_last\"").remap = true;
-    if (plan_.filter) filter_loop(true, true);
+    if (plan_.filter && !particles_only) filter_loop(true, true);
     pass(PassKind::strain, order + " \"modified_last\"");
     pass(PassKind::move, order + " \"modified_last\": positions by the velocity gathered before");
   }
@@ -422,6 +441,8 @@ std::string Pass::name() const {
       return "end filter";
     case PassKind::restore_velocity:
       return "restore velocity";
+    case PassKind::add_correction:
+      return "add correction";
     case PassKind::group:
       return condition == PassCondition::unless_scattered ? "unless scattered"
              : condition == PassCondition::when_filtered  ? "when filtered"

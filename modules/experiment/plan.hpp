@@ -44,6 +44,7 @@ enum class PassKind {
   update_filter,     ///< the plugin's update at every node; conditions and contact; the increment's mass norm
   end_filter,        ///< constraints where they act at the end only; the ledger's entry; ghosts
   restore_velocity,  ///< grid velocity <- what begin_filter kept aside
+  add_correction,    ///< grid velocity += the correction kept aside; conditions and contact: what the particles take
   group,             ///< children, under `condition`
   repeat             ///< children up to `times`, until |increment| <= tolerance |first|
 };
@@ -57,14 +58,15 @@ enum class PassCondition {
 
 struct Pass {
   PassKind kind = PassKind::reset_grid;
-  bool momentum = false;        ///< scatter: mass and momentum
-  bool force = false;           ///< scatter: internal (and body) force
-  bool contact_fields = false;  ///< scatter: volume gradient and surface position
-  bool strain = false;          ///< gather: also advance the material with the gathered velocity gradient
-  bool move = false;            ///< gather: also move the particles
-  bool remap = false;           ///< scatter and momentum_to_velocity of MUSL: updated velocities, no forces follow
-  bool before_forces = false;   ///< filter passes: they act on v-, before the forces
-  bool restores = false;        ///< begin_filter: restore_velocity follows
+  bool momentum = false;          ///< scatter: mass and momentum
+  bool force = false;             ///< scatter: internal (and body) force
+  bool contact_fields = false;    ///< scatter: volume gradient and surface position
+  bool strain = false;            ///< gather: also advance the material with the gathered velocity gradient
+  bool move = false;              ///< gather: also move the particles
+  bool remap = false;             ///< scatter and momentum_to_velocity of MUSL: updated velocities, no forces follow
+  bool before_forces = false;     ///< filter passes: they act on v-, before the forces
+  bool restores = false;          ///< begin_filter: restore_velocity follows
+  bool keeps_correction = false;  ///< restore_velocity: what the filter added is kept for add_correction
   int every_steps = 1;
   PassCondition condition = PassCondition::always;
   int times = 0;  ///< of repeat

@@ -166,9 +166,11 @@ typedef struct mpm_transfer {
  *     update(projected, increment, velocity)
  *     conditions and contact correct `velocity`; increment takes the net change of velocity in this pass
  *   until the mass norm of the increment is small enough, when the experiment says so.
- * The result replaces the grid velocity; gathered, it replaces the particles' velocity and moves them. */
+ * Gathered, the result replaces the particles' velocity and moves them; after the forces it strains them as well. */
 enum mpm_filter_trait {
-  MPM_FILTERS_BEFORE_FORCES = 1 /* filters v-, dt f / m is added afterwards (XPIC); else v+ (FMPM) */
+  /* Filters v-: particles take it plus dt f / m, the strain is that of the unfiltered velocity (XPIC). Else v+ is
+   * filtered for everything (FMPM). */
+  MPM_FILTERS_BEFORE_FORCES = 1
 };
 typedef struct mpm_filter_batch {
   uint32_t count, stride, dimension, iteration; /* iteration: from 1 */

@@ -270,7 +270,9 @@ void CpuBackend<D, T>::execute(const Pass& pass, const StepInfo& step) {
     case PassKind::end_filter:
       return grid_step_->end_filter(pass, step);
     case PassKind::restore_velocity:
-      return grid_step_->restore_velocity();
+      return grid_step_->restore_velocity(pass);
+    case PassKind::add_correction:
+      return grid_step_->add_correction(pass, step);
     default:  // groups and repeats are the simulation's
       throw std::logic_error("the cpu backend does not execute pass \"" + pass.name() + "\"");
   }

@@ -149,14 +149,37 @@ void GridStep<D, T>::end_filter(const Pass& pass, const StepInfo& step) {
   if (ledger_on()) {
     const double energy = kinetic_energy(false);
     ledger_.filter += energy - kinetic_energy_unfiltered_;
-    if (!pass.before_forces) kinetic_energy_after_ = energy;
+    kinetic_energy_after_ = energy;
   }
-  if (pass.before_forces && grid_.has(velocity_before)) copy_velocity(motion, velocity_before);
 }
 
 template <int D, class T>
-void GridStep<D, T>::restore_velocity() {
-  copy_velocity(kept_velocity, motion);
+void GridStep<D, T>::restore_velocity(const Pass& pass) {
+  if (!pass.keeps_correction) return copy_velocity(kept_velocity, motion);
+  for_each_block([&](int field, std::uint32_t first, double*) {
+    Q *const nodes = &motion_at(field, first), *const kept = &grid_.quad(kept_velocity, field, first);
+    for (int k = 0; k < block_nodes; ++k) {
+      const Q filtered = nodes[k];
+      nodes[k] = kept[k];
+      kept[k] = filtered - kept[k];  // no mass left in it
+    }
+  });
+}
+
+/// v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
+template <int D, class T>
+void GridStep<D, T>::add_correction(const Pass& pass, const StepInfo& step) {
+  const double unfiltered = ledger_on() ? kinetic_energy(false) : 0.0;
+  for_each_block([&](int field, std::uint32_t first, double*) {
+    Q* const nodes = &motion_at(field, first);
+    const Q* const correction = &grid_.quad(kept_velocity, field, first);
+    for (int k = 0; k < block_nodes; ++k) nodes[k] += correction[k];
+  });
+  constrain(time_of(pass, step), step);
+  fill_ghosts(time_of(pass, step), false);
+  if (!ledger_on()) return;
+  kinetic_energy_after_ = kinetic_energy(false);
+  ledger_.filter += kinetic_energy_after_ - unfiltered;
 }
 
 }  // namespace mpm::cpu

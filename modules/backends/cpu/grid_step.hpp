@@ -24,7 +24,8 @@ class GridStep {
   void project_increment(const Pass& pass, const StepInfo& step);
   void update_filter(const Pass& pass, const StepInfo& step);
   void end_filter(const Pass& pass, const StepInfo& step);
-  void restore_velocity();
+  void restore_velocity(const Pass& pass);
+  void add_correction(const Pass& pass, const StepInfo& step);
 
   /// Of the velocities after the last apply_forces or filter; the ledger's.
   double kinetic_energy_after() const { return kinetic_energy_after_; }

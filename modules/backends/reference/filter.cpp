@@ -104,14 +104,26 @@ void ReferenceBackend::end_filter(const Pass& pass, const StepInfo& step) {
   if (pass.remap) return;
   const double filtered = plan_.ledger ? grid_.kinetic_energy() : 0.0;
   ledger_.filter += filtered - kinetic_energy_unfiltered_;
-  if (pass.before_forces)
-    for_each_node([](Node& node) { node.velocity_before = node.velocity; });
-  else
-    kinetic_energy_after_ = filtered;
+  kinetic_energy_after_ = filtered;
 }
 
-void ReferenceBackend::restore_velocity() {
-  for_each_node([](Node& node) { node.velocity = node.kept_velocity; });
+void ReferenceBackend::restore_velocity(const Pass& pass) {
+  for_each_node([&](Node& node) {
+    std::swap(node.velocity, node.kept_velocity);
+    if (pass.keeps_correction) node.kept_velocity -= node.velocity;
+  });
+}
+
+/// v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
+void ReferenceBackend::add_correction(const Pass& pass, const StepInfo& step) {
+  const double unfiltered = plan_.ledger ? grid_.kinetic_energy() : 0.0;
+  for_each_node([](Node& node) { node.velocity += node.kept_velocity; });
+  constrain_velocity(pass, step);
+  grid_.fill_ghosts(time_of(pass, step));
+  for_each_node([](Node& node) { node.momentum = node.mass * node.velocity; });
+  if (!plan_.ledger) return;
+  kinetic_energy_after_ = grid_.kinetic_energy();
+  ledger_.filter += kinetic_energy_after_ - unfiltered;
 }
 
 /// Conditions, contact and conditions again, as after the forces, but on velocities and on no one's record.

@@ -45,7 +45,9 @@ void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
     case PassKind::end_filter:
       return end_filter(pass, step);
     case PassKind::restore_velocity:
-      return restore_velocity();
+      return restore_velocity(pass);
+    case PassKind::add_correction:
+      return add_correction(pass, step);
     default:  // gather_scatter is planned for the cpu only; groups and repetitions are the simulation's
       throw std::logic_error("the reference backend does not execute pass \"" + pass.name() + "\"");
   }

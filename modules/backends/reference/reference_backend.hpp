@@ -77,7 +77,8 @@ class ReferenceBackend final : public Backend {
   void update_filter(const Pass& pass, const StepInfo& step);
   void call_filter(int field);
   void end_filter(const Pass& pass, const StepInfo& step);
-  void restore_velocity();
+  void restore_velocity(const Pass& pass);
+  void add_correction(const Pass& pass, const StepInfo& step);
   void constrain_velocity(const Pass& pass, const StepInfo& step);
   void impose_on_velocity(double time);
   void resolve_contact_of_velocity(double dt);
