@@ -19,7 +19,7 @@ std::string column(const std::string& shape, double cell) {
     "shape": {"type": ")" + shape + R"("}, "transfer": {"type": "flip"},
     "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e6, "poisson_ratio": 0, "density": 80}},
     "bodies": [{"name": "column", "material": "m", "geometry": {"type": "box", "lower": [0, 0], "upper": [)" + digits(cell) +
-         R"(, 50]}}], "body_force": [0, "-5*(1-cos(pi*t/20))"],
+         R"(, 50]}}], "body_force": [0, "5*cos(pi*t/20) - 5"],
     "solver": {"stress_update": "modified_last", "time_step": "auto", "courant": 0.4, "end_time": 20}, "output": {
     "ledger" : false
   }
