@@ -66,7 +66,7 @@ struct Cpdi {
         side = side + sign * sides(a, k);
       }
       const T base = floor(at);
-      corner.base[a] = static_cast<int>(cell) + static_cast<int>(base);
+      corner.base[a] = static_cast<int>(cell + base);
       corner.offset[a] = at - base;
       corner.side[a] = side * T(1.0 / (1 << D));
     }
