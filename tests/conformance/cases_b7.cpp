@@ -30,10 +30,7 @@ struct Particle {
       : constants({young, poisson, 1600, friction_angle, cohesion, corrected ? 1.0 : 0.0}) {}
 
   Sym<3, double> stress() const { return DruckerPrager::kirchhoff_stress(constants, state); }
-  double mean_strain() const {
-    SingularValues<3, double> parts;
-    return DruckerPrager::sum(DruckerPrager::strains(state.elastic_deformation_gradient, parts));
-  }
+  double mean_strain() const { return DruckerPrager::sum(DruckerPrager::prepared(state).strain); }
   double advance(const Mat3& increment) {
     const double now = DruckerPrager::advance(constants, increment, 1.0, state);
     heat += now;

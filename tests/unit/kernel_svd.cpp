@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -158,6 +159,25 @@ TEMPLATE_TEST_CASE("singular value decomposition: random, singular, repeated, re
 TEMPLATE_TEST_CASE("singular value decomposition over lanes", "", float, double) {
   check_lanes<2, TestType>();
   check_lanes<3, TestType>();
+}
+
+TEMPLATE_TEST_CASE("left stretches agree with the singular values", "", float, double) {
+  double value = 0, product = 0, rotation = 0;
+  for (const Mat<3, TestType>& A : matrices<3, TestType>()) {
+    const LeftStretches<3, TestType> r = left_stretches(A);
+    const SingularValues<3, TestType> s = singular_value_decomposition(A);
+    double stretches[] = {r.stretch[0], r.stretch[1], r.stretch[2]};
+    std::sort(stretches, stretches + 3, std::greater<>());
+    const double size = std::max(1.0, largest(A)), unit = epsilon<TestType>;
+    for (int i = 0; i < 3; ++i) value = std::max(value, std::abs(stretches[i] - std::abs(s.values[i])) / (size * unit));
+    Vec<3, TestType> squared = r.stretch;
+    for (TestType& entry : squared.v) entry *= entry;
+    product = std::max(product, distance(composed(r.U, squared, r.U), A * transposed(A)) / (size * size * unit));
+    rotation = std::max(rotation, distance(r.U * transposed(r.U), Mat<3, TestType>::identity()) / unit);
+  }
+  CHECK(value <= 45);
+  CHECK(product <= 96);  // a square has twice the error of its root, and the product rounds as well
+  CHECK(rotation <= 45);
 }
 
 TEST_CASE("singular values do not mind the size of the matrix") {
