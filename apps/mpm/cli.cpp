@@ -148,7 +148,9 @@ int run_command_line(int argc, char** argv) {
 
   auto* list_verb = app.add_subcommand("list", "every plugin found, by kind");
   list_verb->add_flag("--json", json, "as JSON");
-  list_verb->callback([&] { code = guarded([&] { return list(json); }); });
+  bool combinations = false;
+  list_verb->add_flag("--combinations", combinations, "which components run together, and which are refused and why");
+  list_verb->callback([&] { code = guarded([&] { return combinations ? list_combinations(json) : list(json); }); });
 
   auto* describe_verb = app.add_subcommand("describe", "one plugin's manual, parameters, state and citation");
   describe_verb->add_option("ID", id, "id, or kind/id where two kinds share an id")->required();

@@ -41,6 +41,8 @@ int run(const RunOptions& options);
 int check(const RunOptions& options);
 int plan(const RunOptions& options, bool json);
 int list(bool json);
+/// Which components run together and which are refused, generated from the same function that refuses.
+int list_combinations(bool json);
 int describe(const std::string& id, bool json);
 int schema();
 int figure(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& specification,

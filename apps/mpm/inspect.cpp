@@ -1,10 +1,12 @@
 // Verbs that compute nothing: check, plan, list, describe, schema.
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <sstream>
 
+#include "experiment/compatibility.hpp"
 #include "experiment/diagnostics.hpp"
 #include "experiment/plan.hpp"
 #include "experiment/schema.hpp"
@@ -42,7 +44,7 @@ std::string range_text(const mpm_parameter& p) {
   return text.empty() ? "any number" : text;
 }
 
-constexpr const char* shape_names[] = {"scalar", "vector", "matrix", "symmetric"};
+constexpr const char* shape_names[] = {"scalar", "vector", "matrix", "symmetric", "deformation"};
 
 Json description(const Plugin& plugin) {
   const mpm_descriptor& d = *plugin.descriptor;
@@ -81,10 +83,17 @@ void print(const Plugin& plugin) {
             << (d.precisions & (1u << MPM_LANES_DOUBLE) ? "double" : "") << "\n";
   if (d.kind == MPM_SHAPE) {
     const mpm_shape& shape = plugin.shape();
-    std::cout << "Nodes an axis: " << shape.width << "; second moment: "
-              << (shape.second_moment_kind == MPM_MOMENT_IS_GRADIENT ? "w D^-1 d = grad w"
-                                                                     : number_text(shape.second_moment) + " h^2")
+    if (shape.form == MPM_NODE_LIST)
+      std::cout << "A list of at most " << shape.capacity[0] << " nodes in 2-D, " << shape.capacity[1] << " in 3-D";
+    else
+      std::cout << "Nodes an axis: " << shape.width;
+    std::cout << "; second moment: "
+              << (shape.second_moment_kind == MPM_MOMENT_IS_GRADIENT    ? "w D^-1 d = grad w"
+                  : shape.second_moment_kind == MPM_MOMENT_PER_PARTICLE ? "one a particle"
+                                                                        : number_text(shape.second_moment) + " h^2")
               << "\n";
+    if (d.needs & MPM_NEEDS_HALF_SIZE) std::cout << "Needs the size of the undeformed particle\n";
+    if (d.needs & MPM_NEEDS_DOMAIN) std::cout << "Needs the deformed domain of the particle, which it then carries\n";
   }
   std::cout << "\nParameters" << (plugin.parameters().empty() ? ": none\n" : "\n");
   for (const mpm_parameter& p : plugin.parameters())
@@ -141,6 +150,72 @@ int list(bool json) {
     }
   }
   if (json) std::cout << all.dump(2) << "\n";
+  return done;
+}
+
+namespace {
+
+constexpr const char* update_names[] = {"first", "last", "modified_last"};
+
+std::string id_of(const Plugin* plugin) {
+  return plugin ? std::string(plugin->id()) : "none";
+}
+
+/// A table of transfers against filters: what holds for every shape, contact law and stress update.
+void print_filters(const Registry& registry) {
+  const auto filters = registry.of_kind(MPM_FILTER);
+  std::cout << "| transfer |";
+  for (const Plugin* filter : filters) std::cout << " `" << filter->id() << "` at every step | periodically |";
+  std::cout << "\n|---|";
+  for (std::size_t k = 0; k < filters.size(); ++k) std::cout << "---|---|";
+  std::cout << "\n";
+  for (const Plugin* transfer : registry.of_kind(MPM_TRANSFER)) {
+    std::cout << "| `" << transfer->id() << "` |";
+    for (const Plugin* filter : filters)
+      for (const bool every_step : {true, false}) {
+        const Mix mix{registry.of_kind(MPM_SHAPE).front(), transfer, filter, nullptr, StressUpdate::last, every_step};
+        std::cout << (refusal_of(mix) ? " refused |" : " runs |");
+      }
+    std::cout << "\n";
+  }
+}
+
+}  // namespace
+
+int list_combinations(bool json) {
+  const Registry registry = load_registry();
+  const std::vector<Mix> mixes = all_mixes(registry);
+  Json refused = Json::array();
+  std::vector<std::string> reasons;
+  for (const Mix& mix : mixes) {
+    const auto refusal = refusal_of(mix);
+    if (!refusal) continue;
+    refused.push_back({{"shape", id_of(mix.shape)},
+                       {"transfer", id_of(mix.transfer)},
+                       {"filter", id_of(mix.filter)},
+                       {"filtered_every_step", mix.filtered_every_step},
+                       {"contact", id_of(mix.contact)},
+                       {"stress_update", update_names[static_cast<int>(mix.stress_update)]},
+                       {"reason", refusal->reason}});
+    if (std::find(reasons.begin(), reasons.end(), refusal->reason) == reasons.end()) reasons.push_back(refusal->reason);
+  }
+  if (json) {
+    std::cout << Json{{"combinations", mixes.size()}, {"refused", refused}}.dump(2) << "\n";
+    return done;
+  }
+  for (const mpm_kind kind : all_kinds()) {
+    std::cout << "- " << kind_plural(kind) << ":";
+    for (const Plugin* plugin : registry.of_kind(kind)) std::cout << " `" << plugin->id() << "`";
+    std::cout << "\n";
+  }
+  std::cout
+      << "\nShape x transfer x filter (none, at every step, periodically) x contact (none, each law) x stress update: "
+      << mixes.size() << " combinations, " << refused.size() << " refused, for " << reasons.size()
+      << (reasons.size() == 1 ? " reason" : " reasons")
+      << ". The others run on every backend, in 2-D and 3-D, with every material.\n\n";
+  print_filters(registry);
+  std::cout << "\nRefused at load, with this reason:\n\n";
+  for (const std::string& reason : reasons) std::cout << "- " << reason << "\n";
   return done;
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <sstream>
 
+#include "experiment/compatibility.hpp"
 #include "experiment/diagnostics.hpp"
 
 namespace mpm {
@@ -44,24 +45,22 @@ class Planner {
   }
 
   void refuse_impossible_combinations() const {
-    const std::string shape = "shape \"" + std::string(experiment_.shape.plugin->id()) + "\" ";
-    if (shape_.form == MPM_TENSOR_PRODUCT && (shape_.width < 2 || shape_.width > 4))
-      refuse(experiment_.shape.pointer,
-             shape + "has " + std::to_string(shape_.width) + " nodes an axis; backends run 2 to 4");
-    if (experiment_.filter) refuse_impossible_filter();
-  }
-
-  /// FLIP takes changes of the grid's velocity; a filter replaces the particles' velocity. Every step of both is the
-  /// filter alone.
-  void refuse_impossible_filter() const {
     const FilterSchedule& schedule = experiment_.filter_schedule;
-    const bool every_step = schedule.every_steps == 1 && schedule.every_time == 0 && schedule.every_courant == 0;
-    if ((transfer_.traits & MPM_GATHERS_INCREMENT) && every_step)
-      refuse(experiment_.filter->pointer,
-             "filter \"" + std::string(experiment_.filter->plugin->id()) +
-                 "\" at every step leaves nothing of transfer \"" + std::string(experiment_.transfer.plugin->id()) +
-                 "\", whose increments it would replace each time; filter periodically (\"every_steps\": 4) or choose "
-                 "transfer \"pic\"");
+    Mix mix{experiment_.shape.plugin,
+            experiment_.transfer.plugin,
+            nullptr,
+            nullptr,
+            experiment_.solver.stress_update,
+            schedule.every_steps == 1 && schedule.every_time == 0 && schedule.every_courant == 0};
+    if (experiment_.filter) mix.filter = experiment_.filter->plugin;
+    if (experiment_.contact) mix.contact = experiment_.contact->plugin;
+    const auto refusal = refusal_of(mix);
+    if (!refusal) return;
+    const Component& at = refusal->at == MPM_SHAPE      ? experiment_.shape
+                          : refusal->at == MPM_TRANSFER ? experiment_.transfer
+                          : refusal->at == MPM_FILTER   ? *experiment_.filter
+                                                        : *experiment_.contact;
+    refuse(at.pointer, refusal->reason);
   }
 
   /// Puts the line of the file before each reason, which starts with a JSON pointer; a default has no line.
@@ -326,6 +325,7 @@ class Planner {
 
   void estimate() {
     const int D = experiment_.dimension;
+    const double padding = shape_.form == MPM_NODE_LIST ? 8 : 3;  // nodes beyond a wall: grid_padding_of(shape)
     double particles = 0, particle_bytes = 0, occupied_cells = 0, domain_nodes = 1;
     for (std::size_t b = 0; b < experiment_.bodies.size(); ++b) {
       const double count = estimated_particles(experiment_.bodies[b]);
@@ -333,17 +333,18 @@ class Planner {
       particle_bytes += count * static_cast<double>(plan_.bytes_per_particle(static_cast<int>(b)));
       occupied_cells += count / std::pow(experiment_.bodies[b].particles_per_cell_axis, D);
     }
-    for (int c = 0; c < D; ++c) domain_nodes *= experiment_.grid.cells[c] + 7.0;
+    for (int c = 0; c < D; ++c) domain_nodes *= experiment_.grid.cells[c] + 1 + 2 * padding;
     // The cpu backend keeps blocks around particles only: a body's cells and a rim of about one block on every side.
     const double rim = 12 * D * std::pow(occupied_cells, (D - 1.0) / D) * (D == 2 ? 8 : 4) / 4 + 4096;
     const double nodes =
         experiment_.backend == "reference" ? domain_nodes : std::min(domain_nodes * 2, 1.3 * occupied_cells + rim);
     if (experiment_.backend == "cpu") particle_bytes *= 2;  // sorting moves particles to a second copy
     // The reference backend keeps stencils and all moments of a particle, and every value of a node side by side.
-    const double stencil = std::pow(shape_.width, D) * 88.0 + 600;
+    const bool list = shape_.form == MPM_NODE_LIST;
+    const double stencil = (list ? shape_.capacity[D - 2] * (100.0 + 12 * D) : std::pow(shape_.width, D) * 88.0) + 700;
     if (experiment_.backend == "reference") particle_bytes += particles * stencil;
     const double grid_bytes =
-        nodes * (experiment_.backend == "reference" ? 240.0 * experiment_.field_count
+        nodes * (experiment_.backend == "reference" ? 290.0 * experiment_.field_count
                                                     : static_cast<double>(plan_.bytes_per_node()));
     refuse_too_large(particles, particle_bytes, grid_bytes);
     plan_.particles = static_cast<std::uint64_t>(particles);

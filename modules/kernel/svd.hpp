@@ -23,10 +23,16 @@ MPM_HD constexpr scalar_of<S> tiny() {
   return sizeof(scalar_of<S>) == 4 ? scalar_of<S>(1.2e-38) : scalar_of<S>(2.3e-308);
 }
 
+/// A squared length whose own square still is an ordinary number.
+template <class S>
+MPM_HD constexpr scalar_of<S> smallest_square() {
+  return sizeof(scalar_of<S>) == 4 ? scalar_of<S>(1e-18) : scalar_of<S>(1e-153);
+}
+
 /// Sweeps of Jacobi that reach rounding from any start, found by trial with one to spare.
 template <int D, class S>
 MPM_HD constexpr int sweeps() {
-  return D == 2 ? 3 : (sizeof(scalar_of<S>) == 4 ? 5 : 7);
+  return D == 2 ? 3 : (sizeof(scalar_of<S>) == 4 ? 5 : 6);
 }
 
 /// Columns p and q of M: (p, q) <- (c p - s q, s p + c q).
@@ -48,12 +54,16 @@ MPM_HD void orthogonalise(Mat<D, S>& B, Mat<D, S>& V, int p, int q) {
     beta = beta + B(i, q) * B(i, q);
     gamma = gamma + B(i, p) * B(i, q);
   }
+  // Tangent of the angle: sine / cosine = 2 gamma sign(beta - alpha) / (|beta - alpha| + hypotenuse). Columns whose
+  // squares leave the range of S are far below rounding of the largest and stay as they are.
   const S twice = gamma + gamma, difference = beta - alpha;
-  const S size = abs(difference) + sqrt(difference * difference + twice * twice);
-  const S tangent = select(difference < real<S>(0), -twice, twice) / max(size, S(tiny<S>()));
-  const S c = real<S>(1) / sqrt(real<S>(1) + tangent * tangent);
-  rotate_columns(B, p, q, c, tangent * c);
-  rotate_columns(V, p, q, c, tangent * c);
+  const S cosine = abs(difference) + sqrt(difference * difference + twice * twice);
+  const S sine = select(difference < real<S>(0), -twice, twice);
+  const S inverse = real<S>(1) / sqrt(max(cosine * cosine + sine * sine, S(tiny<S>())));
+  const auto turns = cosine > smallest_square<S>();
+  const S c = select(turns, cosine * inverse, S(real<S>(1))), s = select(turns, sine * inverse, S(real<S>(0)));
+  rotate_columns(B, p, q, c, s);
+  rotate_columns(V, p, q, c, s);
 }
 
 /// Columns (p, q) <- (q, -p) where the mask holds.
@@ -91,26 +101,62 @@ MPM_HD void eliminate(Mat<D, S>& B, Mat<D, S>& U, int p, int q) {
   rotate_columns(U, p, q, c, -s);
 }
 
+/// Turns all columns of B orthogonal by the rotation V.
+template <int D, class S>
+MPM_HD void orthogonalise_all(Mat<D, S>& B, Mat<D, S>& V) {
+  V = Mat<D, S>::identity();
+  for (int sweep = 0; sweep < sweeps<D, S>(); ++sweep)
+    for (int p = 0; p < D - 1; ++p)
+      for (int q = p + 1; q < D; ++q) orthogonalise(B, V, p, q);
+}
+
+/// The largest entry, by which a matrix is divided so that squares stay in range.
+template <int D, class S>
+MPM_HD S largest_entry(const Mat<D, S>& A) {
+  S scale = abs(A.m[0]);
+  for (int k = 1; k < D * D; ++k) scale = max(scale, abs(A.m[k]));
+  return max(scale, S(tiny<S>()));
+}
+
 }  // namespace svd
 
 template <int D, class S>
 MPM_HD SingularValues<D, S> singular_value_decomposition(const Mat<D, S>& A) {
-  S scale = abs(A.m[0]);
-  for (int k = 1; k < D * D; ++k) scale = max(scale, abs(A.m[k]));
-  scale = max(scale, S(svd::tiny<S>()));
+  const S scale = svd::largest_entry(A);
   Mat<D, S> B;
   for (int k = 0; k < D * D; ++k) B.m[k] = A.m[k] / scale;
   SingularValues<D, S> r;
-  r.V = Mat<D, S>::identity();
   r.U = Mat<D, S>::identity();
-  for (int sweep = 0; sweep < svd::sweeps<D, S>(); ++sweep)
-    for (int p = 0; p < D - 1; ++p)
-      for (int q = p + 1; q < D; ++q) svd::orthogonalise(B, r.V, p, q);
+  svd::orthogonalise_all(B, r.V);
   for (int last = D - 1; last > 0; --last)
     for (int p = 0; p < last; ++p) svd::sort_columns(B, r.V, p, p + 1);
   for (int p = 0; p < D - 1; ++p)
     for (int q = p + 1; q < D; ++q) svd::eliminate(B, r.U, p, q);
   for (int i = 0; i < D; ++i) r.values[i] = scale * B(i, i);
+  return r;
+}
+
+/// A A^T = U diag(stretch^2) U^T: the principal directions and stretches of F, without V; in no order, not negative.
+template <int D, class S>
+struct LeftStretches {
+  Mat<D, S> U;  ///< a rotation
+  Vec<D, S> stretch;
+};
+
+/// Half the work of the whole decomposition.
+template <int D, class S>
+MPM_HD LeftStretches<D, S> left_stretches(const Mat<D, S>& A) {
+  const S scale = svd::largest_entry(A);
+  Mat<D, S> B;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) B(i, j) = A(j, i) / scale;
+  LeftStretches<D, S> r;
+  svd::orthogonalise_all(B, r.U);
+  for (int j = 0; j < D; ++j) {
+    S squared = B(0, j) * B(0, j);
+    for (int i = 1; i < D; ++i) squared = squared + B(i, j) * B(i, j);
+    r.stretch[j] = scale * sqrt(squared);
+  }
   return r;
 }
 

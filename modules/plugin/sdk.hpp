@@ -360,6 +360,16 @@ std::int32_t first_inadmissible(S J, std::uint32_t lane) {
   }
 }
 
+/// What the outputs of a material share, computed once: F::prepared(state) where the functor has it (then it also takes
+/// that in place of a state), else the state itself.
+template <class F, class State>
+decltype(auto) prepared_of(const State& state) {
+  if constexpr (requires { F::prepared(state); })
+    return F::prepared(state);
+  else
+    return (state);
+}
+
 template <class F, int D, class S>
 std::int32_t material_batch(const void* parameters, const mpm_material_batch* q) {
   using T = scalar_of<S>;
@@ -380,11 +390,12 @@ std::int32_t material_batch(const void* parameters, const mpm_material_batch* q)
     }
     const S J = F::volume_ratio(state);
     if (inadmissible < 0) inadmissible = first_inadmissible(J, lane);
+    const auto& prepared = prepared_of<F>(state);
     if (q->kirchhoff_stress)
       store_components<Sym<D, S>::size, S>(q->kirchhoff_stress, q->stride, lane,
-                                           F::kirchhoff_stress(constants, state).s);
-    if (q->stored_energy) store(q->stored_energy, F::stored_energy(constants, state));
-    if (q->wave_speed) store(q->wave_speed, F::wave_speed(constants, state));
+                                           F::kirchhoff_stress(constants, prepared).s);
+    if (q->stored_energy) store(q->stored_energy, F::stored_energy(constants, prepared));
+    if (q->wave_speed) store(q->wave_speed, F::wave_speed(constants, prepared));
     store(q->volume_ratio, J);
   }
   return inadmissible;

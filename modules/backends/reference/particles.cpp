@@ -56,6 +56,8 @@ void Particles::initialise(Fields& fields, const Plugin& plugin) {
     if (declared.initial == MPM_INITIAL_IDENTITY)
       for (int i = 0; i < (declared.shape == MPM_STATE_SYMMETRIC ? 3 : dimension_); ++i)
         field.row(declared.shape == MPM_STATE_SYMMETRIC ? i : i * (dimension_ + 1)).setOnes();
+    const bool plane_strain = declared.shape == MPM_STATE_DEFORMATION && dimension_ == 2;  // xx xy yx yy zz
+    if (declared.initial == MPM_INITIAL_IDENTITY && plane_strain) field.row(4).setOnes();
   }
 }
 

@@ -20,7 +20,9 @@ struct DruckerPrager {
   };
   template <class T>
   struct Constants {
-    T mu, lambda, inverse_density, slope, tip;  ///< k and t
+    T mu, lambda, inverse_density;
+    T slope, tip;    ///< k and t
+    T longitudinal;  ///< lambda + 2 mu and what yielding adds at most, see wave_speed
     bool corrects_volume;
     MPM_HD explicit Constants(const Parameters& p)
         : mu(T(shear_modulus(p.youngs_modulus, p.poisson_ratio))),
@@ -30,7 +32,10 @@ struct DruckerPrager {
       const double sine = sin_of(p.friction_angle);
       const double bulk = bulk_modulus(p.youngs_modulus, p.poisson_ratio);
       const double alpha = 0.816496580927726 * 2 * sine / (3 - sine);
-      slope = T(alpha * 3 * bulk / (2 * shear_modulus(p.youngs_modulus, p.poisson_ratio)));
+      const double shear = shear_modulus(p.youngs_modulus, p.poisson_ratio), k = alpha * 3 * bulk / (2 * shear);
+      slope = T(k);
+      const double u = k < 2 * 0.816496580927726 ? k / 2 : 0.816496580927726;
+      longitudinal = T(bulk + 4 * shear / 3 + 2 * shear * u * (k - u));
       tip = T(p.cohesion * sqrt(1 - sine * sine) / sine / bulk);
     }
   };
@@ -136,17 +141,35 @@ struct DruckerPrager {
     for (int k = 0; k < 9; ++k) out.plane.m[k] = select(first, a.plane.m[k], b.plane.m[k]);
   }
 
+  /// Principal directions of F_e F_e^T and elastic Hencky strains along them: what stress, energy and wave speed share.
+  template <int D, class S>
+  struct Principal {
+    Mat<D, S> directions;
+    Vec<3, S> strain;
+  };
+
+  template <class S>
+  MPM_HD static Principal<2, S> prepared(const State<2, S>& state) {
+    const LeftStretches<2, S> parts = left_stretches(state.elastic_deformation_gradient.plane);
+    const S zz = state.elastic_deformation_gradient.zz;
+    return {parts.U, {{log(parts.stretch[0]), log(parts.stretch[1]), log(zz)}}};
+  }
+  template <class S>
+  MPM_HD static Principal<3, S> prepared(const State<3, S>& state) {
+    const LeftStretches<3, S> parts = left_stretches(state.elastic_deformation_gradient.plane);
+    return {parts.U, {{log(parts.stretch[0]), log(parts.stretch[1]), log(parts.stretch[2])}}};
+  }
+
   /// tau = U diag(principal stresses) U^T.
   template <int D, class S>
-  MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
-    SingularValues<D, S> parts;
-    const Vec<3, S> principal = stresses(c, strains(state.elastic_deformation_gradient, parts));
+  MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const Principal<D, S>& p) {
+    const Vec<3, S> principal = stresses(c, p.strain);
     Sym<D, S> tau;
     tau.s[2] = principal[2];  // zz in 2-D; written over below in 3-D
     for (int i = 0; i < D; ++i)
       for (int j = i; j < D; ++j) {
-        S t = parts.U(i, 0) * principal[0] * parts.U(j, 0);
-        for (int k = 1; k < D; ++k) t = t + parts.U(i, k) * principal[k] * parts.U(j, k);
+        S t = p.directions(i, 0) * principal[0] * p.directions(j, 0);
+        for (int k = 1; k < D; ++k) t = t + p.directions(i, k) * principal[k] * p.directions(j, k);
         tau(i, j) = t;
       }
     return tau;
@@ -154,23 +177,36 @@ struct DruckerPrager {
 
   /// mu eps:eps + lambda/2 tr(eps)^2.
   template <int D, class S>
-  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
-    SingularValues<D, S> parts;
-    const Vec<3, S> e = strains(state.elastic_deformation_gradient, parts);
+  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const Principal<D, S>& p) {
+    const Vec<3, S>& e = p.strain;
     const S trace = sum(e);
     return c.mu * (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]) + real<S>(0.5) * c.lambda * trace * trace;
   }
 
-  /// Longitudinal: rho0 c^2 = lambda + 2 mu - (least principal stress, where it presses). Shear between principal
-  /// stretches e^a, e^b: 2 mu x/(1 - e^-2x) <= mu (1 + 2 x) with x = |a - b|. Yielding only softens.
+  /// Longitudinal: rho0 c^2 = lambda + 2 mu - (least principal stress, where it presses). On the cone a wave that takes
+  /// pressure off takes strength off too, as the flow is not associated: 2 mu u (k - u) more, -u = n.N.n the component
+  /// of the unit deviator N, which is largest at u = k/2 or at its limit sqrt(2/3). Shear between principal stretches
+  /// e^a, e^b: 2 mu x/(1 - e^-2x) <= mu (1 + 2 x) with x = |a - b|.
   template <int D, class S>
-  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
-    SingularValues<D, S> parts;
-    const Vec<3, S> e = strains(state.elastic_deformation_gradient, parts);
+  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const Principal<D, S>& p) {
+    const Vec<3, S>& e = p.strain;
     const S least = min(min(e[0], e[1]), e[2]), spread = max(max(e[0], e[1]), e[2]) - least;
     const S pressing = min(real<S>(2) * c.mu * least + c.lambda * sum(e), S(real<S>(0)));
-    const S longitudinal = (c.lambda + real<S>(2) * c.mu) - pressing;
-    return sqrt(c.inverse_density * max(longitudinal, c.mu * (real<S>(1) + spread + spread)));
+    return sqrt(c.inverse_density * max(c.longitudinal - pressing, c.mu * (real<S>(1) + spread + spread)));
+  }
+
+  /// The same of a state.
+  template <int D, class S>
+  MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+    return kirchhoff_stress(c, prepared(state));
+  }
+  template <int D, class S>
+  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+    return stored_energy(c, prepared(state));
+  }
+  template <int D, class S>
+  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+    return wave_speed(c, prepared(state));
   }
 
   template <int D, class S>

@@ -58,99 +58,111 @@ struct Cpdi {
   MPM_HD static Corner<D, T> corner_of(int number, const Vec<D, T>& x, const Mat<D, T>& R, const Mat<D, T>& sides) {
     Corner<D, T> corner;
     for (int a = 0; a < D; ++a) {
-      T at = x[a], side = T(0);
+      const T cell = floor(x[a]);  // from there on, so that no digits go to the distance from the grid's first node
+      T at = x[a] - cell, side = T(0);
       for (int k = 0; k < D; ++k) {
         const T sign = number >> k & 1 ? T(1) : T(-1);
         at = at + sign * R(a, k);
         side = side + sign * sides(a, k);
       }
       const T base = floor(at);
-      corner.base[a] = static_cast<int>(base);
+      corner.base[a] = static_cast<int>(cell) + static_cast<int>(base);
       corner.offset[a] = at - base;
       corner.side[a] = side * T(1.0 / (1 << D));
     }
     return corner;
   }
 
-  /// Adds one node of a corner's cell to entry `k`. A flat domain takes the mean of the tents' own gradients instead.
+  /// Weights and gradients before they are put into the list.
   template <int D, class T>
-  MPM_HD static void add(const Corner<D, T>& corner, int which, bool flat, List<D, T>& out, int k) {
-    T tent[D], w = T(1.0 / (1 << D));
+  struct Sums {
+    T weight[capacity<D>], gradient[D][capacity<D>];
+  };
+
+  template <int D, class T>
+  MPM_HD static void clear(Sums<D, T>& sums, int entries) {
+    for (int k = 0; k < entries; ++k) sums.weight[k] = T(0);
+    for (int a = 0; a < D; ++a)
+      for (int k = 0; k < entries; ++k) sums.gradient[a][k] = T(0);
+  }
+
+  /// Adds node `which` of a corner's cell to entry `k`. A flat domain takes the mean of the tents' own gradients
+  /// instead.
+  template <int D, class T>
+  MPM_HD static void add(const Corner<D, T>& corner, int which, bool flat, Sums<D, T>& sums, int k) {
+    T tent[D], w = T(1);
     for (int a = 0; a < D; ++a) {
       tent[a] = which >> a & 1 ? corner.offset[a] : T(1) - corner.offset[a];
       w = w * tent[a];
     }
-    out.weight[k] = out.weight[k] + w;
+    sums.weight[k] = sums.weight[k] + w * T(1.0 / (1 << D));
+    if (!flat) {
+      for (int a = 0; a < D; ++a) sums.gradient[a][k] = sums.gradient[a][k] + corner.side[a] * w;
+      return;
+    }
     for (int a = 0; a < D; ++a) {
-      T g = corner.side[a] * (w * T(1 << D));
-      if (flat) {
-        g = which >> a & 1 ? T(1.0 / (1 << D)) : T(-1.0 / (1 << D));
-        for (int b = 0; b < D; ++b)
-          if (b != a) g = g * tent[b];
-      }
-      out.gradient[k][a] = out.gradient[k][a] + g;
+      T g = which >> a & 1 ? T(1.0 / (1 << D)) : T(-1.0 / (1 << D));
+      for (int b = 0; b < D; ++b)
+        if (b != a) g = g * tent[b];
+      sums.gradient[a][k] = sums.gradient[a][k] + g;
     }
   }
 
+  /// Makes entry `k` the next of the list when anything was added to it. (No branch: which are used is at random.)
+  /// There are no more entries than the list holds, so its end is never passed.
   template <int D, class T>
-  MPM_HD static void clear(List<D, T>& out, int k) {
-    out.weight[k] = T(0);
-    for (int a = 0; a < D; ++a) out.gradient[k][a] = T(0);
+  MPM_HD static void keep(const Sums<D, T>& sums, int k, const int* node, List<D, T>& out) {
+    T used = abs(sums.weight[k]);
+    for (int a = 0; a < D; ++a) used = used + abs(sums.gradient[a][k]);
+    const int to = out.count;
+    out.weight[to] = sums.weight[k];
+    for (int a = 0; a < D; ++a) out.node[to][a] = node[a], out.gradient[to][a] = sums.gradient[a][k];
+    out.count += used != T(0) ? 1 : 0;
   }
 
-  /// Drops the entries that nothing was added to; the others keep their order.
-  template <int D, class T>
-  MPM_HD static void compact(List<D, T>& out, int entries) {
-    out.count = 0;
-    for (int k = 0; k < entries; ++k) {
-      bool used = out.weight[k] != T(0);
-      for (int a = 0; a < D; ++a) used = used || out.gradient[k][a] != T(0);
-      if (!used) continue;
-      const int to = out.count++;
-      out.weight[to] = out.weight[k];
-      for (int a = 0; a < D; ++a) out.node[to][a] = out.node[k][a], out.gradient[to][a] = out.gradient[k][a];
-    }
-  }
-
-  /// Corners that lie within 4 nodes an axis: each node has its place in a box of `extent` nodes from `low`.
+  /// Corners that lie within 4 nodes an axis: each node has its place in a box of 4 nodes an axis from `low`.
   template <int D, class T>
   MPM_HD static void merge_in_box(const Corner<D, T>* corners, const int* low, const int* extent, bool flat,
                                   List<D, T>& out) {
-    int entries = 1;
-    for (int a = 0; a < D; ++a) entries = entries * extent[a];
-    for (int k = 0; k < entries; ++k) {
-      clear<D, T>(out, k);
-      int rest = k;
-      for (int a = 0; a < D; ++a) out.node[k][a] = low[a] + rest % extent[a], rest = rest / extent[a];
+    Sums<D, T> sums;
+    clear<D, T>(sums, capacity<D>);
+    for (int c = 0; c < 1 << D; ++c) {
+      int first = 0;
+      for (int a = 0; a < D; ++a) first += (corners[c].base[a] - low[a]) << 2 * a;
+      for (int which = 0; which < 1 << D; ++which)
+        add<D, T>(corners[c], which, flat, sums, first + (which & 1) + (which >> 1 & 1) * 4 + (which >> 2) * 16);
     }
-    for (int c = 0; c < 1 << D; ++c)
-      for (int which = 0; which < 1 << D; ++which) {
-        int k = 0;
-        for (int a = D - 1; a >= 0; --a) k = k * extent[a] + corners[c].base[a] - low[a] + (which >> a & 1);
-        add<D, T>(corners[c], which, flat, out, k);
-      }
-    compact<D, T>(out, entries);
+    out.count = 0;
+    for (int z = 0; z < (D == 3 ? extent[D - 1] : 1); ++z)
+      for (int y = 0; y < extent[1]; ++y)
+        for (int x = 0; x < extent[0]; ++x) {
+          const int node[3] = {low[0] + x, low[1] + y, low[D - 1] + z};
+          keep<D, T>(sums, (z * 4 + y) * 4 + x, node, out);
+        }
   }
 
   /// Corners far apart: every node is looked up among those already there.
   template <int D, class T>
   MPM_HD static void merge_by_search(const Corner<D, T>* corners, bool flat, List<D, T>& out) {
-    int entries = 0;
+    Sums<D, T> sums;
+    clear<D, T>(sums, capacity<D>);
+    int entries = 0, node[capacity<D>][D];
     for (int c = 0; c < 1 << D; ++c)
       for (int which = 0; which < 1 << D; ++which) {
         int k = 0;
         for (; k < entries; ++k) {
           bool same = true;
-          for (int a = 0; a < D; ++a) same = same && out.node[k][a] == corners[c].base[a] + (which >> a & 1);
+          for (int a = 0; a < D; ++a) same = same && node[k][a] == corners[c].base[a] + (which >> a & 1);
           if (same) break;
         }
         if (k == entries) {
-          clear<D, T>(out, entries++);
-          for (int a = 0; a < D; ++a) out.node[k][a] = corners[c].base[a] + (which >> a & 1);
+          for (int a = 0; a < D; ++a) node[k][a] = corners[c].base[a] + (which >> a & 1);
+          ++entries;
         }
-        add<D, T>(corners[c], which, flat, out, k);
+        add<D, T>(corners[c], which, flat, sums, k);
       }
-    compact<D, T>(out, entries);
+    out.count = 0;
+    for (int k = 0; k < entries; ++k) keep<D, T>(sums, k, node[k], out);
   }
 
   /// x and domain in cells; column k of `domain` is the k-th semi-side vector. Each node comes once.

@@ -1,0 +1,66 @@
+// What runs together: few refusals, each with its reason, and the page in the docs that says so.
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "experiment/compatibility.hpp"
+#include "support/catch.hpp"
+#include "support/scene.hpp"
+
+using namespace mpm;
+
+TEST_CASE("few mixes are refused, and for stated reasons", "[combinations]") {
+  const std::vector<Mix> mixes = all_mixes(test::plugins());
+  std::set<std::string> reasons;
+  std::set<std::pair<std::string, std::string>> pairs;
+  std::size_t refused = 0;
+  for (const Mix& mix : mixes)
+    if (const auto refusal = refusal_of(mix)) {
+      ++refused;
+      reasons.insert(refusal->reason);
+      pairs.insert({std::string(mix.transfer->id()), mix.filter ? std::string(mix.filter->id()) : ""});
+      CHECK(refusal->reason.find(mix.transfer->id()) != std::string::npos);
+    }
+  // flip with each of the two filters at every step: the transfer would do nothing.
+  CHECK(pairs == std::set<std::pair<std::string, std::string>>{{"flip", "fmpm"}, {"flip", "xpic"}});
+  CHECK(reasons.size() == 2);
+  CHECK(refused * 10 < mixes.size());
+}
+
+TEST_CASE("a refused mix names the place, both components and a remedy", "[combinations]") {
+  const char* text = R"J({ "dimension": 2,
+    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]},
+    "shape": {"type": "linear"}, "transfer": {"type": "flip"},
+    "filter": {"type": "fmpm", "order": 4},
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000}},
+    "bodies": [{"name": "b", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0.2], "upper": [0.4, 0.4]}}],
+    "solver": {"end_time": 1}})J";
+  try {
+    make_plan(test::experiment_from(text));
+    FAIL("the mix was not refused");
+  } catch (const InputError& error) {
+    CHECK(
+        std::string(error.what()) ==
+        "test.json:4:15: /filter: filter \"fmpm\" at every step leaves nothing of transfer \"flip\", whose increments "
+        "it would replace each time; filter periodically (\"every_steps\": 4) or choose transfer \"pic\"");
+  }
+  CHECK_NOTHROW(make_plan(test::experiment_from(text, {"/filter/every_steps=4"})));
+}
+
+TEST_CASE("the page of combinations is that of the program", "[combinations]") {
+  const std::filesystem::path folder(MPM_BUILD_DIR), printed = folder / "combinations.txt";
+  const std::string command =
+      "'" + (folder / "bin" / "mpm").string() + "' list --combinations > '" + printed.string() + "'";
+  REQUIRE(std::system(command.c_str()) == 0);
+  const auto read = [](const std::filesystem::path& file) {
+    std::stringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  };
+  const std::string page = read(std::filesystem::path(MPM_SOURCE_DIR) / "docs" / "combinations.md");
+  INFO("docs/generate_combinations.sh writes the page anew");
+  CHECK(page.find(read(printed)) != std::string::npos);
+  CHECK(page.size() > 200);
+}

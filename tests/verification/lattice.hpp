@@ -1,0 +1,92 @@
+#pragma once
+// A periodic line of particles on one row of cells: the layout of cases A3, A4 and A5, whose factors and limits are
+// exact.
+
+#include <functional>
+#include <numbers>
+
+#include "support/scene.hpp"
+
+namespace mpm::test {
+
+struct Line {
+  std::string shape = "linear", transfer = "pic", filter = {}, stress_update = "last", backend = "reference";
+  int cells = 32, particles_per_cell = 1, mode = 1;
+  double offset = 0;         ///< cells by which the lattice is moved along the line
+  double jitter = 0;         ///< largest shift of a particle, cells: couples modes that a perfect lattice keeps apart
+  double time_step = 1e-13;  ///< s; with unit cells and unit wave speed, also the Courant number
+};
+
+/// Wave speed, cell size and density are one. Velocities are those of the mode, or what `velocity` gives of the place
+/// on the line before the offset.
+class LineScene {
+ public:
+  explicit LineScene(const Line& line, const std::function<double(double)>& velocity = {})
+      : line_(line),
+        experiment_(experiment_from(text(line))),
+        simulation_(experiment_, [&](const Experiment& e, const Plan& p, std::vector<SeededBody> bodies) {
+          for (std::size_t k = 0; k < bodies[0].count(); ++k) {
+            const double x = bodies[0].position[2 * k];
+            bodies[0].velocity[2 * k] = velocity ? velocity(x) : mode(x);
+            bodies[0].position[2 * k] =
+                std::fmod(x + line.offset + line.jitter * std::sin(1e4 * std::sin(7.7 * x)), line.cells);
+          }
+          return backend_factory(1)(e, p, std::move(bodies));
+        }) {}
+
+  void step(long count = 1) {
+    for (long k = 0; k < count; ++k) simulation_.step();
+  }
+  std::vector<double> velocities() const {
+    const BodyState state = simulation_.backend().body_state(0);
+    std::vector<double> v;
+    for (std::size_t k = 0; k < state.velocity.size(); k += 2) v.push_back(state.velocity[k]);
+    return v;
+  }
+  /// sum v sin(2 pi mode x / length).
+  double amplitude() const {
+    const BodyState state = simulation_.backend().body_state(0);
+    double sum = 0;
+    for (std::size_t k = 0; k < state.velocity.size(); k += 2)
+      sum += state.velocity[k] * mode(state.position[k] - line_.offset);
+    return sum;
+  }
+  double largest_speed() const {
+    double largest = 0;
+    for (const double v : velocities()) largest = std::max(largest, std::abs(v));
+    return largest;
+  }
+
+  /// Of velocity over wave speed and of strain: the shortest wave shows in strains only.
+  double largest_disturbance() const {
+    double largest = largest_speed();
+    const auto F = simulation_.backend().body_state(0).material_state.at("deformation_gradient");
+    for (std::size_t k = 0; k < F.size(); k += 4) largest = std::max(largest, std::abs(F[k] - 1));
+    return largest;
+  }
+
+ private:
+  double mode(double x) const { return std::sin(2 * std::numbers::pi * line_.mode * x / line_.cells); }
+  static std::string text(const Line& line) {
+    const std::string length = std::to_string(line.cells);
+    return R"({"dimension": 2, "backend": ")" + line.backend + R"(", "grid": {"cell_size": 1, "domain": [[0, 0], [)" +
+           length +
+           R"(, 1]], "boundaries": {"x_min": "periodic", "x_max": "periodic", "y_min": "slip", "y_max": "slip"}},
+      "shape": {"type": ")" +
+           line.shape + R"("}, "transfer": {"type": ")" + line.transfer + "\"}," +
+           (line.filter.empty() ? "" : "\"filter\": " + line.filter + ",") + R"(
+      "materials": {"m": {"type": "linear_elastic", "youngs_modulus": 1, "poisson_ratio": 0, "density": 1}},
+      "bodies": [{"name": "line", "material": "m", "particles_per_cell_axis": )" +
+           std::to_string(line.particles_per_cell) + R"(, "geometry": {"type": "box", "lower": [0, 0], "upper": [)" +
+           length + R"(, 1]}}],
+      "solver": {"stress_update": ")" +
+           line.stress_update + R"(", "time_step": )" + digits(line.time_step) +
+           R"(, "end_time": 1e9}, "output": {"ledger": false}})";
+  }
+
+  Line line_;
+  Experiment experiment_;
+  Simulation simulation_;
+};
+
+}  // namespace mpm::test
