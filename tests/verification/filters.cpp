@@ -231,6 +231,31 @@ TEST_CASE("filters conserve momentum", "[filters][momentum]") {
           }
 }
 
+TEST_CASE("no wall breaks the contraction", "[filters][walls]") {
+  for (const std::string& backend : backends)
+    for (const std::string& shape : shapes)
+      for (const std::string& transfer : filtered_transfers)
+        for (const std::string wall : {"stick", "slip", "separate"}) {
+          Scene scene(rough,
+                      std::vector<std::string>{set("/backend", backend), set("/shape/type", shape),
+                                               set("/transfer/type", transfer), filter("fmpm", 12),
+                                               set("/grid/boundaries/all", wall), set("/solver/time_step", "1e-4")});
+          scene.run_steps(5);
+          INFO(backend << " " << shape << " " << transfer << " " << wall);
+          CHECK(scene.simulation.backend().filter_record().largest_growth > 0.1);
+          CHECK(scene.simulation.backend().filter_record().largest_growth <= 1 + 1e-12);
+        }
+}
+
+TEST_CASE("the record takes the largest growth, of rounding none", "[filters]") {
+  FilterRecord record;
+  record.first_norm = record.last_norm = 2;
+  for (const double norm : {1.0, 1.5, 0.75, 1e-13, 1e-12}) record.take_norm(norm);
+  CHECK(record.largest_growth == 1.5);
+  CHECK(record.last_norm == 1e-12);
+  CHECK(record.iterations == 5);
+}
+
 TEST_CASE("the loop contracts in the mass norm, and ends at the tolerance", "[filters]") {
   // S+ S of PIC and of the affine transfers is a mean of projections in the mass norm: I - S+S never grows anything.
   for (const std::string& backend : backends)
