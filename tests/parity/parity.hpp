@@ -12,8 +12,9 @@ namespace mpm::test {
 
 /// A parameter that has no default and is not named here stops the suite: give it a value fit for these scenes.
 inline double required_value(const mpm_parameter& parameter) {
-  static const std::map<std::string, double> values{
-      {"youngs_modulus", 1000}, {"poisson_ratio", 0.3}, {"density", 1000}, {"yield_stress", 60}};
+  static const std::map<std::string, double> values{{"youngs_modulus", 1000}, {"poisson_ratio", 0.3},
+                                                    {"density", 1000},        {"yield_stress", 60},
+                                                    {"friction_angle", 0.6},  {"order", 3}};
   const auto found = values.find(parameter.name);
   if (found == values.end())
     throw std::runtime_error(std::string("tests/parity: no value for the required parameter ") + parameter.name);
@@ -49,24 +50,23 @@ inline std::vector<std::string> variants(const Plugin& plugin) {
 inline std::vector<std::string> variants(mpm_kind kind) {
   std::vector<std::string> all;
   for (const Plugin* plugin : plugins().of_kind(kind)) {
-    // The cpu backend takes tensor products only.
-    if (kind == MPM_SHAPE && plugin->shape().form != MPM_TENSOR_PRODUCT) continue;
     for (std::string& text : variants(*plugin)) all.push_back(std::move(text));
   }
   return all;
 }
 
-/// What a parity scene varies. `contact` is empty for none; `more` is text of further keys of the experiment.
+/// What a parity scene varies. `contact` and `filter` are empty for none; `more` is text of further keys of the
+/// experiment.
 struct Mix {
   int dimension = 2;
-  std::string shape = R"({"type": "bspline_quadratic"})", transfer = R"({"type": "apic"})", contact;
+  std::string shape = R"({"type": "bspline_quadratic"})", transfer = R"({"type": "apic"})", contact, filter;
   std::string material = R"({"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000})";
   std::string boundaries = R"({"all": "slip"})", stress_update = "last", more;
   bool close = false;  ///< the domain ends where the bodies do, so that they press against its walls
 
   std::string name() const {
-    return std::to_string(dimension) + "-D " + shape + " " + transfer + " contact " + contact + " " + material + " " +
-           stress_update + " " + boundaries + " " + more;
+    return std::to_string(dimension) + "-D " + shape + " " + transfer + " contact " + contact + " filter " + filter +
+           " " + material + " " + stress_update + " " + boundaries + " " + more;
   }
   /// Two bodies of different make collide while both cross cells: an eighth of a cell a step, so that the cpu backend
   /// sorts in 14 steps. Jitter keeps particles off the edges of cells, where float and double may fall apart.
@@ -82,6 +82,7 @@ struct Mix {
         << R"(, "boundaries": )" << boundaries << R"(}, "shape": )" << shape << R"(, "transfer": )" << transfer
         << R"(, "materials": {"m": )" << material << "},";
     if (!contact.empty()) out << R"("contact": )" << contact << ",";
+    if (!filter.empty()) out << R"("filter": )" << filter << ",";
     out << R"J("bodies": [{"name": "a", "material": "m", "jitter": 0.2, "geometry": {"type": "ball", "centre": )J"
         << (flat ? R"J([0.31, 0.43], "radius": 0.2}, "velocity": ["1.4-0.9*(y-0.43)", "0.1+0.9*(x-0.31)"]})J"
                  : R"J([0.27, 0.23, 0.31], "radius": 0.14},
@@ -140,13 +141,21 @@ inline void compare_states(const Scene& reference, const Scene& cpu, double epsi
     REQUIRE(expected.material_state.size() == found.material_state.size());
     for (const auto& [name, values] : expected.material_state)  // strains and stretches: of order 1
       CHECK(difference(values, found.material_state.at(name), 1.0) <= allowed.material * epsilon);
+    CHECK(difference(expected.domain, found.domain, h) <= allowed.material * epsilon);
+    CHECK(difference(expected.second_moment, found.second_moment, h * h) <= allowed.material * epsilon);
   }
 }
 
 inline std::vector<double> ledger_values(const Scene& scene) {
   const Ledger& l = scene.simulation.backend().ledger();
-  return {l.scatter,  l.gather,  l.internal_force, l.gravity, l.body_force,
-          l.boundary, l.contact, l.friction,       l.material};
+  return {l.scatter,  l.gather,  l.internal_force, l.gravity,  l.body_force,
+          l.boundary, l.contact, l.friction,       l.material, l.filter};
+}
+
+/// Passes and norms of the filter's last loop; `scale` is that of sqrt(m) v.
+inline std::vector<double> filter_values(const Scene& scene, double scale) {
+  const FilterRecord& f = scene.simulation.backend().filter_record();
+  return {static_cast<double>(f.iterations), f.first_norm / scale, f.last_norm / scale};
 }
 
 /// Force over the scene's scale. Counts of nodes are no part of it: a pair whose approach is zero to rounding (after a
@@ -194,6 +203,8 @@ inline void check_parity(const Mix& mix) {
     CHECK(difference(total_values(end, start, 1.5), total_values(found, start, 1.5), 1.0) <= allowed.ledger * epsilon);
     const double force = start.mass * 1.5 / end.time_step;
     CHECK(difference(contact_values(reference, force), contact_values(cpu, force), 1.0) <= allowed.ledger * epsilon);
+    const double norm = std::sqrt(start.mass) * 1.5;
+    CHECK(difference(filter_values(reference, norm), filter_values(cpu, norm), 1.0) <= allowed.ledger * epsilon);
     CHECK(cpu.simulation.backend().contact_record().momentum_residual <= 1e2 * epsilon * start.mass * 1.5);
   }
 }

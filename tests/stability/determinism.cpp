@@ -1,9 +1,7 @@
 // The same bits whatever the number of threads, the cadence of outputs, or the run.
 
-#include <cstring>
-
 #include "support/catch.hpp"
-#include "support/scene.hpp"
+#include "support/results.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -35,25 +33,6 @@ const char* solid = R"J({
 
 constexpr long steps = 60;
 
-/// Everything a run leaves: particles, ledger, contact, time.
-std::vector<double> all_results(const Scene& scene) {
-  std::vector<double> all{scene.simulation.time(), scene.simulation.last_time_step()};
-  const auto append = [&](const std::vector<double>& values) { all.insert(all.end(), values.begin(), values.end()); };
-  for (int body = 0; body < static_cast<int>(scene.experiment.bodies.size()); ++body) {
-    const BodyState state = scene.body(body);
-    append(state.position), append(state.velocity);
-    for (const auto* fields : {&state.transfer_state, &state.material_state})
-      for (const auto& [name, values] : *fields) append(values);
-  }
-  const Ledger& l = scene.simulation.backend().ledger();
-  append(
-      {l.scatter, l.gather, l.internal_force, l.gravity, l.body_force, l.boundary, l.contact, l.friction, l.material});
-  const ContactRecord& c = scene.simulation.backend().contact_record();
-  append({c.force[0], c.force[1], c.force[2], static_cast<double>(c.nodes), static_cast<double>(c.sticking),
-          c.largest_penetration, c.momentum_residual});
-  return all;
-}
-
 std::vector<double> results(const char* text, const std::vector<std::string>& overrides, int threads,
                             int measure_every = 0) {
   Scene scene(text, overrides, threads);
@@ -61,15 +40,7 @@ std::vector<double> results(const char* text, const std::vector<std::string>& ov
     scene.simulation.step();
     if (measure_every && step % measure_every == 0) scene.metrics.measure();
   }
-  return all_results(scene);
-}
-
-/// Different bits, NaN included.
-std::size_t different(const std::vector<double>& a, const std::vector<double>& b) {
-  if (a.size() != b.size()) return std::max(a.size(), b.size());
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) count += std::memcmp(&a[i], &b[i], sizeof(double)) != 0;
-  return count;
+  return all_results(scene.simulation);
 }
 
 }  // namespace
@@ -85,6 +56,23 @@ TEST_CASE("results are the same bits for any number of threads", "[stability][de
           CHECK(different(one, results(text, overrides, threads)) == 0);
         }
       }
+}
+
+TEST_CASE("filters and lists of nodes give the same bits for any number of threads", "[stability][determinism]") {
+  for (const char* text : {flat, solid})
+    for (const std::string precision : {"double", "float"})
+      for (const std::string shape : {"gimp", "cpdi"})
+        for (const char* filter : {R"({"type": "fmpm", "order": 3, "every_steps": 2})",
+                                   R"({"type": "xpic", "order": 2, "every_courant": 0.5, "constraints": "at_end"})"}) {
+          const std::vector<std::string> overrides{set("/precision", precision), set("/shape/type", shape),
+                                                   set("/filter", filter)};
+          const auto one = results(text, overrides, 1);
+          for (const int threads : {2, 5}) {
+            INFO(precision << " " << shape << " " << filter << " " << threads << " threads"
+                           << (text == flat ? ", 2-D" : ", 3-D"));
+            CHECK(different(one, results(text, overrides, threads)) == 0);
+          }
+        }
 }
 
 TEST_CASE("results do not depend on the cadence of outputs", "[stability][determinism]") {

@@ -172,17 +172,22 @@ void Grid<D, T>::activate_mirrors() {
 template <int D, class T>
 void Grid<D, T>::list_faces() {
   faces_.clear();
-  int face_of[3][2]{};
+  // In a domain of few cells a ghost's mirror may be a ghost of the other wall, which is folded on afterwards: such
+  // ghosts are folded by their distance from the wall, the outermost first.
+  int first_face[3]{}, levels[3]{};
   for (const bool periodic : {true, false})  // images are folded before walls
-    for (int axis = 0; axis < D; ++axis)
-      for (int side = 0; side < 2; ++side) {
-        if (scene_.domain.periodic(axis) != periodic) continue;
-        face_of[axis][side] = static_cast<int>(faces_.size());
-        FaceNodes face;
-        face.axis = axis, face.side = side;
-        face.condition = &scene_.experiment.faces[axis][side];
-        faces_.push_back(std::move(face));
-      }
+    for (int axis = 0; axis < D; ++axis) {
+      if (scene_.domain.periodic(axis) != periodic) continue;
+      first_face[axis] = static_cast<int>(faces_.size());
+      levels[axis] = !periodic && scene_.domain.cells[axis] < padding(axis) ? padding(axis) : 1;
+      for (int level = levels[axis]; level > 0; --level)
+        for (int side = 0; side < 2; ++side) {
+          FaceNodes face;
+          face.axis = axis, face.side = side;
+          face.condition = &scene_.experiment.faces[axis][side];
+          faces_.push_back(std::move(face));
+        }
+    }
   for (std::uint32_t slot = 0; slot < slots(); ++slot) {
     for (int axis = 0; axis < D; ++axis) {
       const int first = found_[slot][axis] * block_side<D>, cells = scene_.domain.cells[axis];
@@ -194,7 +199,8 @@ void Grid<D, T>::list_faces() {
         const std::uint32_t number = slot * block_nodes + local;
         const int side = index > 0;
         if (!folded_axis(axis, side)) continue;
-        FaceNodes& face = faces_[face_of[axis][side]];
+        const int level = levels[axis] == 1 ? 1 : std::max({1, -index, index - cells});
+        FaceNodes& face = faces_[first_face[axis] + 2 * (levels[axis] - level) + side];
         if (beyond(axis, index)) {
           node[axis] = mirrored(axis, index);
           BlockCoordinates image{};

@@ -2,6 +2,8 @@
 // GridStep: the loop of a filter over the nodes (abi.h, mpm_filter). Ghosts have no mass while their mirrors stand for
 // them, so nodes with mass are the nodes that count.
 
+#include <limits>
+
 #include "grid_step.hpp"
 
 namespace mpm::cpu {
@@ -123,10 +125,7 @@ void GridStep<D, T>::update_filter(const Pass& pass, const StepInfo& step) {
               motion_at(field, node) - grid_.quad(filter_projection, field, node);
     });
   }
-  const double previous = filter_.last_norm;
-  ++filter_.iterations;
-  filter_.last_norm = mass_norm_of_increment();
-  if (previous > 0) filter_.largest_growth = std::max(filter_.largest_growth, filter_.last_norm / previous);
+  filter_.take_norm(mass_norm_of_increment(), 4500.0 * static_cast<double>(std::numeric_limits<T>::epsilon()));
 
   // An increment is a difference of velocities: walls mirror it as if they were at rest.
   auto& faces = grid_.faces();

@@ -1,0 +1,87 @@
+// Gather and the next scatter in one pass against two passes, bit by bit: sorts fall on the same steps.
+
+#include "parity/parity.hpp"
+#include "support/results.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+struct Outcome {
+  std::vector<double> results;
+  long scattered = 0, refused = 0;  ///< steps whose end left the next grid, or not
+};
+
+Outcome run(const std::string& text, std::vector<std::string> overrides, const std::string& passes, int threads,
+            long steps) {
+  overrides.push_back(set("/solver/passes", passes));
+  CpuRun run(text, overrides, threads);
+  Outcome outcome;
+  for (long k = 0; k < steps; ++k) {
+    run.simulation.step();
+    ++(run.simulation.backend().scattered() ? outcome.scattered : outcome.refused);
+  }
+  outcome.results = all_results(run.simulation);
+  return outcome;
+}
+
+void check_fused(const std::string& text, const std::vector<std::string>& overrides, long steps = 120) {
+  const Outcome separate = run(text, overrides, "separate", 1, steps);
+  CHECK(separate.scattered == 0);
+  for (const int threads : {1, 2}) {
+    INFO(text << " " << threads << " threads");
+    const Outcome fused = run(text, overrides, "fused", threads, steps);
+    CHECK(different(separate.results, fused.results) == 0);
+    CHECK(fused.scattered > steps / 2);
+    CHECK(fused.refused > 0);  // the scene sorts
+  }
+}
+
+}  // namespace
+
+TEST_CASE("fused and separate passes agree on every shape and transfer", "[parity]") {
+  for (const int dimension : {2, 3})
+    for (const Plugin* shape : plugins().of_kind(MPM_SHAPE))
+      for (const std::string& transfer : variants(MPM_TRANSFER))
+        for (const std::string precision : {"double", "float"}) {
+          if (shape->shape().form != MPM_TENSOR_PRODUCT) continue;
+          Mix mix;
+          mix.dimension = dimension;
+          mix.shape = "{\"type\": \"" + std::string(shape->id()) + "\"}", mix.transfer = transfer;
+          mix.more = precision == "double" ? "" : R"(, "output": {"ledger": false})";
+          const std::vector<std::string> overrides{set("/precision", precision), "/solver/end_time=1"};
+          check_fused(mix.text(), overrides, 50);
+        }
+}
+
+TEST_CASE("fused and separate passes agree with walls, body forces, plasticity and automatic steps", "[parity]") {
+  for (const std::string boundaries :
+       {R"({"all": "stick"})", R"({"all": "separate"})", R"({"all": "free"})", R"({"all": "periodic"})",
+        R"({"all": "slip", "y_min": {"type": "prescribed", "velocity": ["0.3+t", "0.1*x"]}})"})
+    for (const std::string ledger : {"true", "false"}) {
+      Mix mix;
+      mix.boundaries = boundaries;
+      mix.more = R"J(, "body_force": ["2*sin(3*X)+t", "x-Y*y"], "output": {"ledger": )J" + ledger + "}";
+      mix.close = boundaries.find("separate") != boundaries.npos || boundaries.find("periodic") != boundaries.npos;
+      mix.material =
+          R"({"type": "von_mises", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000, "yield_stress": 60})";
+      const std::vector<std::string> overrides{"/solver/end_time=0.45"};
+      check_fused(mix.text(), overrides, 26);
+      std::vector<std::string> automatic = overrides;
+      automatic.push_back("/solver/time_step=auto");
+      check_fused(mix.text(), automatic, 26);
+    }
+}
+
+TEST_CASE("fused and separate passes agree for thin fast bodies", "[parity]") {
+  for (const std::string precision : {"double", "float"})
+    check_fused(R"J({"title": "thin", "dimension": 2, "seed": 2,
+      "grid": {"cell_size": 0.1, "domain": [[0, 0], [8, 2]], "boundaries": {"all": "periodic"}},
+      "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "mls"},
+      "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000}},
+      "bodies": [{"name": "a", "material": "m", "geometry": {"type": "box", "lower": [0.1, 0.3], "upper": [0.15, 1.4]}, "velocity": [9, 3]},
+                 {"name": "b", "material": "m", "geometry": {"type": "box", "lower": [1.1, 0.5], "upper": [2.6, 0.55]}, "velocity": [9, 5]}],
+      "solver": {"time_step": 0.005, "end_time": 3}})J",
+                {set("/precision", precision)}, 300);
+}

@@ -1,0 +1,57 @@
+// Everything a run leaves, to be compared bit by bit.
+#pragma once
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "support/scene.hpp"
+
+namespace mpm::test {
+
+/// Particles, ledger, contact, filter, time.
+inline std::vector<double> all_results(const Simulation& simulation) {
+  std::vector<double> all{simulation.time(), simulation.last_time_step()};
+  const auto append = [&](const std::vector<double>& values) { all.insert(all.end(), values.begin(), values.end()); };
+  const Backend& backend = simulation.backend();
+  for (int body = 0; body < static_cast<int>(simulation.experiment().bodies.size()); ++body) {
+    const BodyState state = backend.body_state(body);
+    append(state.position), append(state.velocity), append(state.domain);
+    for (const auto* fields : {&state.transfer_state, &state.material_state})
+      for (const auto& [name, values] : *fields) append(values);
+  }
+  const Ledger& l = backend.ledger();
+  append({l.scatter, l.gather, l.internal_force, l.gravity, l.body_force, l.boundary, l.contact, l.friction, l.material,
+          l.filter});
+  const ContactRecord& c = backend.contact_record();
+  append({c.force[0], c.force[1], c.force[2], static_cast<double>(c.nodes), static_cast<double>(c.sticking),
+          c.largest_penetration, c.momentum_residual});
+  const FilterRecord& f = backend.filter_record();
+  append({static_cast<double>(f.iterations), f.first_norm, f.last_norm, f.largest_growth});
+  return all;
+}
+
+/// Different bits, NaN included.
+inline std::size_t different(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.size() != b.size()) return std::max(a.size(), b.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) count += std::memcmp(&a[i], &b[i], sizeof(double)) != 0;
+  return count;
+}
+
+/// A run on the cpu backend with exactly this number of workers, however few its particles are.
+class CpuRun {
+ public:
+  CpuRun(const std::string& text, const std::vector<std::string>& overrides, int threads)
+      : experiment(experiment_from(text, overrides)),
+        simulation(experiment, [threads](const Experiment& e, const Plan& plan, std::vector<SeededBody> bodies) {
+          return make_cpu_backend(e, plan, std::move(bodies), threads);
+        }) {}
+  void steps(long count) {
+    for (long k = 0; k < count; ++k) simulation.step();
+  }
+  const Experiment experiment;
+  Simulation simulation;
+};
+
+}  // namespace mpm::test
