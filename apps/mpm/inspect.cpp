@@ -42,7 +42,7 @@ std::string range_text(const mpm_parameter& p) {
   return text.empty() ? "any number" : text;
 }
 
-constexpr const char* shape_names[] = {"scalar", "vector", "matrix", "symmetric"};
+constexpr const char* shape_names[] = {"scalar", "vector", "matrix", "symmetric", "deformation"};
 
 Json description(const Plugin& plugin) {
   const mpm_descriptor& d = *plugin.descriptor;
