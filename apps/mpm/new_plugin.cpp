@@ -158,7 +158,7 @@ int new_plugin(const std::string& kind, const std::string& id, const fs::path& f
   std::cout << kind << " " << in_quotes(id) << " is in " << folder.string() << ":";
   for (const File& file : files) std::cout << " " << file.name.string();
   const std::string source = quoted_for_shell(folder.string()), build = quoted_for_shell((folder / "build").string());
-  std::cout << "\nconfigure, build, test, run:\n  cmake -S " << source << " -B " << build;
+  std::cout << "\nconfigure, build, test, run:\n  cmake -G Ninja -S " << source << " -B " << build;
   if (!package.empty()) std::cout << " -Dmpm_sandbox_DIR=" << quoted_for_shell(package.string());
   std::cout << "\n  cmake --build " << build << "\n  ctest --test-dir " << build << " --output-on-failure\n"
             << "  MPM_PLUGIN_PATH=" << quoted_for_shell((folder / "build/plugins").string()) << " "
