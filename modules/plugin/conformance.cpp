@@ -53,6 +53,8 @@ bool has_entries(const Plugin& plugin, const conformance::Variant& v) {
                                                   : plugin.shape().evaluate[v.precision] != nullptr;
     case MPM_TRANSFER:
       return plugin.transfer().scatter[v.precision][axis] && plugin.transfer().gather[v.precision][axis];
+    case MPM_FILTER:
+      return plugin.filter().update[v.precision][axis];
     case MPM_CONTACT:
       return plugin.contact().apply[v.precision][axis];
     case MPM_MATERIAL:
@@ -79,6 +81,9 @@ std::vector<ConformanceFinding> check_plugin(const Plugin& plugin, const Conform
       break;
     case MPM_TRANSFER:
       conformance::check_transfer(plugin, findings);
+      break;
+    case MPM_FILTER:
+      conformance::check_filter(plugin, findings);
       break;
     case MPM_CONTACT:
       conformance::check_contact(plugin, findings);

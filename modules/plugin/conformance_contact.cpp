@@ -157,7 +157,7 @@ void check_pairs(const Plugin& plugin, const ContactBatch& b, const Pairs& pairs
     if (state == MPM_STICKS) sticking.add(magnitude(after), lane);
   }
   const double bound = 256 * v.epsilon();
-  if (!is_weld(plugin))
+  if (!is_weld(plugin) && !(plugin.contact().traits & MPM_PULLS))
     findings.at_most("no_pull", v, apart, 0, "impulse over reduced mass of pairs that part or are apart" + where);
   findings.at_most("no_approach_after", v, approach, bound, "approach left after the impulse, m/s" + where);
   findings.at_most("dissipation_not_negative", v, dissipated, 0, "negative heat over reduced mass" + where);

@@ -51,11 +51,8 @@ struct MaterialBatch {
   }
 
   void initialise(Array& array, const mpm_state& field) const {
-    for (int c = 0; c < array.components(); ++c) {
-      const bool diagonal = field.shape == MPM_STATE_MATRIX ? c % (variant.dimension + 1) == 0 : c < 3;
-      const bool one = field.initial == MPM_INITIAL_ONE || (field.initial == MPM_INITIAL_IDENTITY && diagonal);
-      for (int lane = 0; lane < count; ++lane) array.set(c, lane, one ? 1 : 0);
-    }
+    for (int c = 0; c < array.components(); ++c)
+      for (int lane = 0; lane < count; ++lane) array.set(c, lane, initial_value(field, c, variant.dimension));
   }
 
   /// Advances by the increments over one step; returns what the plugin returns.

@@ -14,7 +14,7 @@ constexpr int full = MPM_BATCH;
 struct ShapeBatch {
   Variant variant;
   int width, count;
-  Array position, half_size, base, offset, weight, gradient;
+  Array position, half_size, base, offset, weight, gradient, second_moment;
 
   ShapeBatch(const Plugin& plugin, const Variant& v, int entries, bool gradients)
       : variant(v), width(static_cast<int>(plugin.shape().width)), count(entries) {
@@ -26,6 +26,8 @@ struct ShapeBatch {
     offset = Array(element, v.dimension, n);
     weight = Array(element, v.dimension * width, n);
     if (gradients) gradient = Array(element, v.dimension * width, n);
+    if (gradients && plugin.shape().second_moment_kind == MPM_MOMENT_PER_PARTICLE)
+      second_moment = Array(element, v.dimension, n);
   }
 
   void evaluate(const Plugin& plugin, const ParameterSample& parameters) {
@@ -39,6 +41,7 @@ struct ShapeBatch {
     batch.offset = offset.data();
     batch.weight = weight.data();
     batch.gradient = gradient.data();
+    batch.second_moment = second_moment.data();
     plugin.shape().evaluate[variant.precision](parameters.data(), &batch);
   }
 
@@ -62,7 +65,9 @@ ShapeInput shape_input(Random& random, int dimension) {
       if (lane % 8 == 3) x = std::nextafter(static_cast<float>(std::floor(x)), -1000.0f);
       if (lane % 8 == 4) x = std::nextafter(static_cast<float>(std::floor(x) + 0.5), 1000.0f);
       input.position[lane][a] = x;
-      input.half_size[lane][a] = random.uniform(0.1, 0.5);
+      input.half_size[lane][a] = lane % 5 == 0   ? 0.5
+                                 : lane % 5 == 1 ? random.logarithmic(0.01, 0.5)
+                                                 : random.uniform(0.1, 0.5);
     }
   return input;
 }
@@ -153,6 +158,22 @@ void check_sums(const Plugin& plugin, const ShapeBatch& b, const std::string& wh
   if (plugin.shape().second_moment_kind == MPM_MOMENT_IS_GRADIENT)
     findings.at_most("second_moment_is_gradient", v, identity, b.width * bound, "|w d - D grad w| a node" + where);
   findings.report("negative_weight [" + v.name() + "]", std::max(0.0, -least), "largest negative weight" + where);
+}
+
+/// A moment that the batch exports is that of its weights, and positive.
+void check_moment(const ShapeBatch& b, const std::string& where, Findings& findings) {
+  if (!b.second_moment.components()) return;
+  const Variant& v = b.variant;
+  Worst error;
+  bool positive = true;
+  for (int lane = 0; lane < full; ++lane)
+    for (int a = 0; a < v.dimension; ++a) {
+      error.add(std::abs(b.second_moment(a, lane) - axis_moment(b, a, lane)), lane);
+      positive &= b.second_moment(a, lane) > 0;
+    }
+  findings.at_most("second_moment_summed", v, error, v.single() ? 1e-6 : 1e-14,
+                   "|D - sum w d^2| along an axis, cells^2" + where);
+  findings.require("second_moment_positive [" + v.name() + "]", positive, "above 0 along every axis" + where);
 }
 
 /// The base covers the particle, offset is position - base, and every declared node is used by some particle.
@@ -256,7 +277,7 @@ void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample
             same &= b.w(a, k, lane) == reference.w(a, k, lane) &&
                     (!gradients || b.g(a, k, lane) == reference.g(a, k, lane));
         }
-      for (const Array* out : {&b.base, &b.offset, &b.weight, &b.gradient}) {
+      for (const Array* out : {&b.base, &b.offset, &b.weight, &b.gradient, &b.second_moment}) {
         guards &= out->guards_intact();
         written &= out->all_written();
       }
@@ -273,9 +294,10 @@ void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample
 
 void check_shape(const Plugin& plugin, Findings& findings) {
   const mpm_shape& shape = plugin.shape();
-  findings.require("form", shape.form == MPM_TENSOR_PRODUCT, "only tensor-product shapes have checks");
-  findings.require("width", shape.width >= 2 && shape.width <= 8, "2 to 8 nodes an axis");
-  if (shape.form != MPM_TENSOR_PRODUCT || shape.width < 2 || shape.width > 8) return;
+  findings.require("form", shape.form == MPM_TENSOR_PRODUCT || shape.form == MPM_NODE_LIST, "of mpm_shape_form");
+  if (shape.form == MPM_NODE_LIST) return check_list_shape(plugin, findings);
+  findings.require("width", shape.width >= 2 && shape.width <= 4, "2 to 4 nodes an axis");
+  if (shape.form != MPM_TENSOR_PRODUCT || shape.width < 2 || shape.width > 4) return;
   Random random(20240601);
   for (const ParameterSample& parameters : sample_parameters(plugin, random))
     for (const Variant& v : variants_of(*plugin.descriptor)) {
@@ -284,6 +306,7 @@ void check_shape(const Plugin& plugin, Findings& findings) {
       findings.running("sums and stencil", v, where);
       const ShapeBatch b = evaluated(plugin, v, parameters, input);
       check_sums(plugin, b, where, findings);
+      check_moment(b, where, findings);
       check_stencil(b, where, findings);
       findings.running("translation", v, where);
       check_translation(plugin, v, parameters, input, where, findings);

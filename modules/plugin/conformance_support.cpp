@@ -305,4 +305,12 @@ double parameter_value(const Plugin& plugin, const ParameterSample& sample, std:
   return otherwise;
 }
 
+double initial_value(const mpm_state& field, int component, int dimension) {
+  if (field.initial != MPM_INITIAL_IDENTITY) return field.initial == MPM_INITIAL_ONE ? 1 : 0;
+  if (field.shape == MPM_STATE_SYMMETRIC) return component < 3;
+  if (field.shape == MPM_STATE_DEFORMATION && component == 4) return 1;  // zz in 2-D, yy in 3-D
+  return component % (dimension + 1) == 0 &&
+         (field.shape != MPM_STATE_DEFORMATION || component < dimension * dimension);
+}
+
 }  // namespace mpm::conformance

@@ -137,8 +137,13 @@ std::vector<ParameterSample> sample_parameters(const Plugin& plugin, Random& ran
 /// Value of a parameter in a block, or `otherwise` when the plugin has none of that name.
 double parameter_value(const Plugin& plugin, const ParameterSample& sample, std::string_view name, double otherwise);
 
+/// What a new particle holds in one component of a state field.
+double initial_value(const mpm_state& field, int component, int dimension);
+
 void check_shape(const Plugin& plugin, Findings& findings);
+void check_list_shape(const Plugin& plugin, Findings& findings);
 void check_transfer(const Plugin& plugin, Findings& findings);
+void check_filter(const Plugin& plugin, Findings& findings);
 void check_contact(const Plugin& plugin, Findings& findings);
 void check_material(const Plugin& plugin, Findings& findings);
 

@@ -2,7 +2,10 @@
 
 #include <cmath>
 
+#include "kernel/lanes.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
+#include "shapes/cpdi/cpdi.hpp"
+#include "shapes/gimp/gimp.hpp"
 #include "shapes/linear/linear.hpp"
 #include "support/catch.hpp"
 
@@ -56,4 +59,157 @@ TEST_CASE("A1: second moments are 1/4 for the quadratic spline, f (1 - f) for th
     CHECK(std::abs(second_moment<mpm::BsplineQuadratic>(x) - 0.25) <= 1e-14);
     CHECK(std::abs(second_moment<mpm::Linear>(x) - f * (1 - f)) <= 1e-14);
   }
+}
+
+namespace {
+
+/// uGIMP of case A1, distance d and half width l in cells.
+double gimp(double d, double l) {
+  d = std::abs(d);
+  if (d < l) return 1 - (d * d + l * l) / (2 * l);
+  if (d <= 1 - l) return 1 - d;
+  return d < 1 + l ? (1 + l - d) * (1 + l - d) / (4 * l) : 0;
+}
+
+double gimp_slope(double d, double l) {
+  const double a = std::abs(d), sign = d < 0 ? -1 : 1;
+  if (a < l) return -d / l;
+  if (a <= 1 - l) return -sign;
+  return a < 1 + l ? -sign * (1 + l - a) / (2 * l) : 0;
+}
+
+/// Weights and slopes of one axis by absolute node.
+struct Axis {
+  double base, w[3], g[3];
+  Axis(double x, double l) { mpm::Gimp::evaluate({}, x, l, base, w, g); }
+  double weight(int node) const { return inside(node) ? w[node - static_cast<int>(base)] : 0; }
+  double slope(int node) const { return inside(node) ? g[node - static_cast<int>(base)] : 0; }
+  bool inside(int node) const { return node >= base && node <= base + 2; }
+};
+
+constexpr double half_sizes[] = {0.5, 0.25, 1.0 / 6, 0.125, 0.05, 0.01};
+
+}  // namespace
+
+TEST_CASE("A1: uGIMP equals its piecewise formula and its derivative") {
+  for (double l : half_sizes)
+    for (int k = -200; k <= 200; ++k) {
+      const double x = k / 100.0;
+      const Axis axis(x, l);
+      double sum = 0, slopes = 0, first = 0;
+      for (int node = -4; node <= 4; ++node) {
+        CHECK(std::abs(axis.weight(node) - gimp(x - node, l)) <= 1e-14);
+        CHECK(std::abs(axis.slope(node) - gimp_slope(x - node, l)) <= 1e-13);
+        sum += axis.weight(node), slopes += axis.slope(node), first += axis.weight(node) * (node - x);
+      }
+      CHECK(std::abs(sum - 1) <= 1e-14);
+      CHECK(std::abs(slopes) <= 1e-14);
+      CHECK(std::abs(first) <= 1e-14);
+    }
+}
+
+TEST_CASE("A1: uGIMP with a box one cell wide is the quadratic spline") {
+  for (int k = -250; k <= 250; ++k) {
+    const double x = k / 77.0;
+    const Axis axis(x, 0.5);
+    double base, w[3], g[3];
+    mpm::BsplineQuadratic::evaluate({}, x, base, w, g);
+    CHECK(axis.base == base);
+    for (int node = 0; node < 3; ++node) {
+      CHECK(std::abs(axis.w[node] - w[node]) <= 1e-14);
+      CHECK(std::abs(axis.g[node] - g[node]) <= 1e-14);
+    }
+  }
+}
+
+TEST_CASE("A1: uGIMP in lanes equals uGIMP in scalars") {
+  using L = mpm::Lanes<double>;
+  for (int first = 0; first < 400; first += L::width) {
+    L x{}, l{}, base, w[3], g[3];
+    for (int lane = 0; lane < L::width; ++lane)
+      x.v[lane] = (first + lane) / 97.0 - 2, l.v[lane] = half_sizes[(first + lane) % 6];
+    mpm::Gimp::evaluate({}, x, l, base, w, g);
+    for (int lane = 0; lane < L::width; ++lane) {
+      const Axis one(x[lane], l[lane]);
+      CHECK(base[lane] == one.base);
+      for (int k = 0; k < 3; ++k) {
+        CHECK(std::abs(w[k][lane] - one.w[k]) <= 1e-15);
+        CHECK(std::abs(g[k][lane] - one.g[k]) <= 1e-15);
+      }
+    }
+  }
+}
+
+namespace {
+
+template <int D>
+mpm::Cpdi::List<D, double> cpdi(const mpm::Vec<D, double>& x, const mpm::Mat<D, double>& domain) {
+  mpm::Cpdi::List<D, double> list;
+  mpm::Cpdi::evaluate({}, x, domain, list);
+  return list;
+}
+
+}  // namespace
+
+TEST_CASE("A1: CPDI equals uGIMP where the box straddles no grid line") {
+  for (double l : {0.25, 0.125, 0.01})
+    for (int k = 0; k <= 20; ++k)
+      for (int m = 0; m <= 20; ++m) {
+        const double x = l + (1 - 2 * l) * k / 20, y = l + (1 - 2 * l) * m / 20;
+        const auto list = cpdi<2>({{x + 3, y - 5}}, {{l, 0, 0, l}});
+        const Axis along_x(x + 3, l), along_y(y - 5, l);
+        for (int n = 0; n < list.count; ++n) {
+          const int i = list.node[n][0], j = list.node[n][1];
+          CHECK(std::abs(list.weight[n] - along_x.weight(i) * along_y.weight(j)) <= 1e-14);
+          CHECK(std::abs(list.gradient[n][0] - along_x.slope(i) * along_y.weight(j)) <= 1e-13);
+          CHECK(std::abs(list.gradient[n][1] - along_x.weight(i) * along_y.slope(j)) <= 1e-13);
+        }
+      }
+}
+
+TEST_CASE("A1: CPDI differs from uGIMP where the box straddles a grid line in 2-D") {
+  // The corners' tents are averaged, not integrated: at a node the box of half length 1/4 gives it 9/16, not (7/8)^2.
+  const auto list = cpdi<2>({{0, 0}}, {{0.25, 0, 0, 0.25}});
+  double at_origin = 0;
+  for (int n = 0; n < list.count; ++n)
+    if (list.node[n][0] == 0 && list.node[n][1] == 0) at_origin = list.weight[n];
+  CHECK(at_origin == 9.0 / 16);
+  CHECK(list.count == 9);
+}
+
+TEST_CASE("A1: CPDI takes the mean over the domain of the corners' multilinear field") {
+  // One node, one corner at it, the others in cells that do not touch it: weight 1/4 and gradient R^-T s / 4.
+  const mpm::Mat<2, double> R{{1.5, 0.25, -0.25, 1.25}};
+  const auto list = cpdi<2>({{10 - 1.75, 20 - 1.0}}, R);
+  const double det = 1.5 * 1.25 + 0.25 * 0.25;
+  bool found = false;
+  for (int n = 0; n < list.count; ++n)
+    if (list.node[n][0] == 10 && list.node[n][1] == 20) {
+      found = true;
+      CHECK(std::abs(list.weight[n] - 0.25) <= 1e-15);
+      CHECK(std::abs(list.gradient[n][0] - (1.25 + 0.25) / det / 4) <= 1e-15);
+      CHECK(std::abs(list.gradient[n][1] - (-0.25 + 1.5) / det / 4) <= 1e-15);
+    }
+  CHECK(found);
+}
+
+TEST_CASE("A1: a collapsed CPDI domain gives the mean of the tents' gradients") {
+  for (const mpm::Mat<3, double>& R :
+       {mpm::Mat<3, double>{}, mpm::Mat<3, double>{{0.3, 0.3, 0, 0.1, 0.1, 0, 0, 0, 0.25}}}) {
+    const mpm::Vec<3, double> x{{4.3, -2.6, 0.45}};
+    const auto list = cpdi<3>(x, R);
+    double sum = 0;
+    mpm::Mat<3, double> affine{};
+    for (int n = 0; n < list.count; ++n) {
+      sum += list.weight[n];
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) affine(i, j) += (list.node[n][i] - x[i]) * list.gradient[n][j];
+    }
+    CHECK(std::abs(sum - 1) <= 1e-14);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) CHECK(std::abs(affine(i, j) - (i == j)) <= 1e-14);
+  }
+  const auto point = cpdi<2>({{0.25, 0.5}}, mpm::Mat<2, double>{});  // a point: the tent itself
+  CHECK(point.count == 4);
+  CHECK(point.weight[0] == 0.375);
 }

@@ -61,6 +61,59 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
 }
 )";
 
+constexpr const char* sized_shape_body = R"(
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
+  for (int axis = 0; axis < D; ++axis) {
+    S x, half_size, base, w[Functor::width], g[Functor::width];
+    load<1>(t.in[0], axis * 64 + lane, &x);
+    load<1>(t.in[1], axis * 64 + lane, &half_size);
+    Functor::evaluate(p, x, half_size, base, w, g);
+    store<1>(t.out[0], axis * 64 + lane, &base);
+    store<Functor::width>(t.out[1], axis * Functor::width * 64 + lane, w);
+    store<Functor::width>(t.out[2], axis * Functor::width * 64 + lane, g);
+  }
+}
+)";
+
+/// Entries beyond a particle's count are stored as zero, so that whole arrays compare.
+constexpr const char* list_shape_body = R"(
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
+  Vec<D, S> x;
+  Mat<D, S> domain;
+  load<D>(t.in[0], lane, x.v);
+  load<D * D>(t.in[1], lane, domain.m);
+  NodeList<D, S, Functor::template capacity<D>> list;
+  Functor::evaluate(p, x, domain, list);
+  for (int k = 0; k < Functor::template capacity<D>; ++k) {
+    const bool used = k < list.count;
+    S node[D], w = used ? list.weight[k] : S(0), g[D];
+    for (int a = 0; a < D; ++a) node[a] = used ? static_cast<S>(list.node[k][a]) : S(0), g[a] = used ? list.gradient[k][a] : S(0);
+    store<D>(t.out[0], k * D * 64 + lane, node);
+    store<1>(t.out[1], k * 64 + lane, &w);
+    store<D>(t.out[2], k * D * 64 + lane, g);
+  }
+  const S count = static_cast<S>(list.count);
+  store<1>(t.out[3], lane, &count);
+}
+)";
+
+constexpr const char* filter_body = R"(
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
+  Vec<D, S> projected, increment, velocity;
+  load<D>(t.in[0], lane, projected.v);
+  load<D>(t.out[0], lane, increment.v);
+  load<D>(t.out[1], lane, velocity.v);
+  Functor::update(p, 2, projected, increment, velocity);
+  store<D>(t.out[0], lane, increment.v);
+  store<D>(t.out[1], lane, velocity.v);
+  const S passes = static_cast<S>(Functor::iterations(p));
+  store<1>(t.out[2], lane, &passes);
+}
+)";
+
 constexpr const char* transfer_body = R"(
 template <int D, class S> MPM_HD void run(const Task& t, int lane) {
   const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
@@ -77,6 +130,7 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
   load<D>(t.in[2], lane, moments.velocity.v);
   load<D>(t.in[3], lane, moments.velocity_increment.v);
   load<D * D>(t.in[4], lane, moments.affine.m);
+  load<D * D>(t.in[5], lane, moments.velocity_gradient.m);
   Functor::gather(p, moments, real<S>(t.dt), v, state, advection);
   store<scalars<State, S>>(t.out[0], lane, reinterpret_cast<const S*>(&state));
   store<D>(t.out[1], lane, b.v);
@@ -141,11 +195,28 @@ ENTRY(run_2_float, 2, float)
 ENTRY(run_3_float, 3, float)
 )";
 
+bool is_list(const Plugin& plugin) {
+  return plugin.descriptor->kind == MPM_SHAPE && plugin.shape().form == MPM_NODE_LIST;
+}
+
+const char* body_of(const Plugin& plugin) {
+  switch (plugin.descriptor->kind) {
+    case MPM_SHAPE:
+      if (is_list(plugin)) return list_shape_body;
+      return plugin.descriptor->needs & MPM_NEEDS_HALF_SIZE ? sized_shape_body : shape_body;
+    case MPM_TRANSFER:
+      return transfer_body;
+    case MPM_FILTER:
+      return filter_body;
+    case MPM_CONTACT:
+      return contact_body;
+    default:
+      return material_body;
+  }
+}
+
 std::string kernel_text(const Plugin& plugin) {
-  const char* body = plugin.descriptor->kind == MPM_SHAPE      ? shape_body
-                     : plugin.descriptor->kind == MPM_TRANSFER ? transfer_body
-                     : plugin.descriptor->kind == MPM_CONTACT  ? contact_body
-                                                               : material_body;
+  const char* body = body_of(plugin);
   return std::string(prologue) + "typedef " + plugin.descriptor->functor_name + " Functor;\n" + body + epilogue;
 }
 
@@ -174,11 +245,8 @@ Column initial_state(const Plugin& plugin, int D) {
   Column state;
   for (const mpm_state& field : plugin.state()) {
     const int components = mpm::state_components(static_cast<mpm_state_shape>(field.shape), D);
-    for (int c = 0; c < components; ++c) {
-      const bool diagonal = field.shape == MPM_STATE_MATRIX ? c % (D + 1) == 0 : c < 3;
-      const bool one = field.initial == MPM_INITIAL_ONE || (field.initial == MPM_INITIAL_IDENTITY && diagonal);
-      state.insert(state.end(), particles, one ? 1.0 : 0.0);
-    }
+    for (int c = 0; c < components; ++c)
+      state.insert(state.end(), particles, mpm::conformance::initial_value(field, c, D));
   }
   return state;
 }
@@ -193,18 +261,39 @@ std::vector<void*> state_pointers(const Plugin& plugin, int D, Column& state) {
   return pointers;
 }
 
+/// Domains of a cell or so, turned and stretched; in cells.
+Column domains(Random& random, int D) {
+  Column domain = random_column(random, D * D, -0.4, 0.4);
+  for (int i = 0; i < D; ++i)
+    for (int lane = 0; lane < particles; ++lane)
+      domain[static_cast<std::size_t>(i * (D + 1)) * particles + static_cast<std::size_t>(lane)] +=
+          lane % 2 ? 0.75 : 1.5;
+  return domain;
+}
+
 Call inputs(const Plugin& plugin, int D, Random& random) {
   Call call;
   const int width = plugin.descriptor->kind == MPM_SHAPE ? static_cast<int>(plugin.shape().width) : 0;
   switch (plugin.descriptor->kind) {
     case MPM_SHAPE:
-      call.in = {random_column(random, D, -10, 30)};
+      if (is_list(plugin)) {
+        const int capacity = static_cast<int>(plugin.shape().capacity[D - 2]);
+        call.in = {random_column(random, D, -10, 30), domains(random, D)};
+        call.out = {zeros(capacity * D), zeros(capacity), zeros(capacity * D), zeros(1)};
+        break;
+      }
+      call.in = {random_column(random, D, -10, 30), random_column(random, D, 0.1, 0.5)};
       call.out = {zeros(D), zeros(D * width), zeros(D * width)};
       break;
     case MPM_TRANSFER:
-      call.in = {random_column(random, 1, 0.1, 10), random_column(random, D, -1, 1), random_column(random, D, -1, 1),
-                 random_column(random, D, -1, 1), random_column(random, D * D, -1, 1)};
+      call.in = {random_column(random, 1, 0.1, 10),   random_column(random, D, -1, 1),
+                 random_column(random, D, -1, 1),     random_column(random, D, -1, 1),
+                 random_column(random, D * D, -1, 1), random_column(random, D * D, -1, 1)};
       call.out = {initial_state(plugin, D), zeros(D), zeros(D * D), zeros(D), zeros(D)};
+      break;
+    case MPM_FILTER:
+      call.in = {random_column(random, D, -1, 1)};
+      call.out = {random_column(random, D, -1, 1), random_column(random, D, -1, 1), zeros(1)};
       break;
     case MPM_CONTACT: {
       call.in = {random_column(random, 1, 0.1, 10),
@@ -233,6 +322,31 @@ Column as_column(const std::vector<std::int32_t>& indices) {
   return {indices.begin(), indices.end()};
 }
 
+/// The nodes of every particle through the C boundary; entries beyond a particle's count are left zero.
+void run_list(const Plugin& plugin, int D, const ParameterSample& parameters, Call& call) {
+  const std::size_t capacity = plugin.shape().capacity[D - 2], n = particles, dimension = static_cast<std::size_t>(D);
+  std::vector<std::int32_t> count(n), node(capacity * dimension * n);
+  Column weight(capacity * n), gradient(capacity * dimension * n);
+  mpm_list_batch batch{};
+  batch.count = batch.stride = particles;
+  batch.dimension = static_cast<std::uint32_t>(D);
+  batch.capacity = static_cast<std::uint32_t>(capacity);
+  batch.position = call.in[0].data(), batch.domain = call.in[1].data();
+  batch.node_count = count.data(), batch.node = node.data();
+  batch.weight = weight.data(), batch.gradient = gradient.data();
+  plugin.shape().evaluate_list[MPM_SCALAR_DOUBLE][D - 2](parameters.data(), &batch);
+  for (std::size_t lane = 0; lane < n; ++lane) {
+    call.out[3][lane] = count[lane];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count[lane]); ++k) {
+      call.out[1][k * n + lane] = weight[k * n + lane];
+      for (std::size_t a = 0; a < dimension; ++a) {
+        call.out[0][(k * dimension + a) * n + lane] = node[(k * dimension + a) * n + lane];
+        call.out[2][(k * dimension + a) * n + lane] = gradient[(k * dimension + a) * n + lane];
+      }
+    }
+  }
+}
+
 /// Fills `call.out` through the C boundary, scalar double.
 void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, Call& call) {
   const std::uint32_t n = particles, dimension = static_cast<std::uint32_t>(D);
@@ -242,13 +356,14 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
   std::vector<std::int32_t> indices(static_cast<std::size_t>(D) * particles);
   switch (plugin.descriptor->kind) {
     case MPM_SHAPE: {
+      if (is_list(plugin)) return run_list(plugin, D, parameters, call);
       Column offset = zeros(D);
       const mpm_shape_batch batch{n,
                                   n,
                                   dimension,
                                   0,
                                   in[0].data(),
-                                  nullptr,
+                                  in[1].data(),
                                   nullptr,
                                   indices.data(),
                                   offset.data(),
@@ -272,12 +387,18 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
                                     in[2].data(),
                                     in[3].data(),
                                     in[4].data(),
-                                    nullptr,
+                                    in[5].data(),
                                     out[3].data(),
                                     state.data(),
                                     out[4].data()};
       plugin.transfer().scatter[MPM_SCALAR_DOUBLE][axis](parameters.data(), &scatter);
       plugin.transfer().gather[MPM_SCALAR_DOUBLE][axis](parameters.data(), &gather);
+      break;
+    }
+    case MPM_FILTER: {
+      const mpm_filter_batch batch{n, n, dimension, 2, in[0].data(), out[0].data(), out[1].data()};
+      plugin.filter().update[MPM_SCALAR_DOUBLE][axis](parameters.data(), &batch);
+      out[2].assign(particles, plugin.filter().iterations(parameters.data()));
       break;
     }
     case MPM_CONTACT: {
@@ -414,17 +535,12 @@ std::string title(const Plugin& plugin) {
   return std::string(mpm::kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))) + " " + std::string(plugin.id());
 }
 
-bool has_device_pass(const Plugin& plugin) {
-  return plugin.descriptor->kind != MPM_FILTER;
-}
-
 }  // namespace
 
 TEST_CASE("every functor compiles without system headers and gives the plugin's own results") {
   const WorkFolder folder;
   REQUIRE_FALSE(registry().plugins().empty());
   for (const Plugin& plugin : registry().plugins()) {
-    if (!has_device_pass(plugin)) continue;
     DYNAMIC_SECTION(title(plugin)) {
       std::string log;
       void* library = compiled(plugin, folder.path, log);
@@ -521,7 +637,6 @@ TEST_CASE("every functor compiles with NVRTC where it is installed") {
     return;
   }
   for (const Plugin& plugin : registry().plugins()) {
-    if (!has_device_pass(plugin)) continue;
     DYNAMIC_SECTION(title(plugin)) {
       const CubinResult result = cubin_of(nvrtc, plugin);
       INFO(result.log);

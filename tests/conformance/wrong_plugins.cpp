@@ -3,13 +3,17 @@
 #include <set>
 
 #include "contacts/coulomb/coulomb.hpp"
+#include "filters/fmpm/fmpm.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
 #include "plugin/conformance.hpp"
 #include "plugin/sdk.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
+#include "shapes/cpdi/cpdi.hpp"
+#include "shapes/gimp/gimp.hpp"
 #include "support/catch.hpp"
 #include "transfers/apic/apic.hpp"
 #include "transfers/flip/flip.hpp"
+#include "transfers/tpic/tpic.hpp"
 
 namespace mpm {  // so that functors find mpm::floor and its like, as those of the modules do
 namespace {
@@ -50,6 +54,163 @@ struct WrongBase : BsplineQuadratic {  // floor(x) covers only half of the posit
   MPM_HD static void evaluate(const Parameters& p, S x, S& base, S* w, S* g) {
     BsplineQuadratic::evaluate(p, x, base, w, g);
     base = floor(x);
+  }
+};
+
+// ---- lists of nodes
+
+struct RepeatsNode : Cpdi {  // the first node's weight comes in two halves
+  template <int D>
+  static constexpr int capacity = Cpdi::capacity<D> + 1;
+  template <int D, class T>
+  MPM_HD static void evaluate(const Parameters& p, const Vec<D, T>& x, const Mat<D, T>& domain,
+                              NodeList<D, T, capacity<D>>& out) {
+    Cpdi::List<D, T> list;
+    Cpdi::evaluate(p, x, domain, list);
+    out.count = list.count + 1;
+    for (int k = 0; k < out.count; ++k) {
+      const int from = k < list.count ? k : 0;
+      const T share = from == 0 ? T(0.5) : T(1);
+      out.weight[k] = share * list.weight[from];
+      for (int a = 0; a < D; ++a)
+        out.node[k][a] = list.node[from][a], out.gradient[k][a] = share * list.gradient[from][a];
+    }
+  }
+};
+
+struct MissesNode : Cpdi {
+  template <int D, class T>
+  MPM_HD static void evaluate(const Parameters& p, const Vec<D, T>& x, const Mat<D, T>& domain, List<D, T>& out) {
+    Cpdi::evaluate(p, x, domain, out);
+    if (out.count > 1) --out.count;
+  }
+};
+
+struct TurnsListGradient : Cpdi {  // R^-1 where R^-T belongs
+  template <int D, class T>
+  MPM_HD static void evaluate(const Parameters& p, const Vec<D, T>& x, const Mat<D, T>& domain, List<D, T>& out) {
+    Mat<D, T> turned;
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) turned(i, j) = domain(j, i);
+    List<D, T> other;
+    Cpdi::evaluate(p, x, turned, other);
+    Cpdi::evaluate(p, x, domain, out);
+    for (int k = 0; k < out.count && k < other.count; ++k)
+      for (int a = 0; a < D; ++a) out.gradient[k][a] = other.gradient[k][a];
+  }
+};
+
+struct OutOfReach : Cpdi {
+  static constexpr double reach = 0.5;
+};
+
+/// Makes the exported second moment of a box 1 % too large.
+template <class S>
+void large_moment(const void* parameters, const mpm_shape_batch* q) {
+  sdk::shape_batch<Gimp, S>(parameters, q);
+  if (!q->second_moment) return;
+  for (std::uint32_t axis = 0; axis < q->dimension; ++axis)
+    for (std::uint32_t lane = 0; lane < q->count; ++lane)
+      static_cast<scalar_of<S>*>(q->second_moment)[axis * q->stride + lane] *= real<S>(1.01);
+}
+constexpr mpm_shape large_moment_table{
+    MPM_TENSOR_PRODUCT,
+    3,
+    MPM_MOMENT_PER_PARTICLE,
+    0,
+    0,
+    {&large_moment<Lanes<float>>, &large_moment<Lanes<double>>, &large_moment<double>},
+    {0, 0},
+    0,
+    {}};
+
+/// Leaves the off-diagonal of a list's second moment out.
+template <int D, class T>
+void diagonal_moment(const void* parameters, const mpm_list_batch* q) {
+  sdk::list_batch<Cpdi, D, T>(parameters, q);
+  if (!q->second_moment) return;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j)
+      for (std::uint32_t lane = 0; lane < q->count && i != j; ++lane)
+        static_cast<T*>(q->second_moment)[static_cast<std::uint32_t>(i * D + j) * q->stride + lane] = 0;
+}
+constexpr mpm_shape diagonal_moment_table{MPM_NODE_LIST,
+                                          0,
+                                          MPM_MOMENT_PER_PARTICLE,
+                                          0,
+                                          0,
+                                          {},
+                                          {16, 64},
+                                          1,
+                                          {{&diagonal_moment<2, float>, &diagonal_moment<3, float>},
+                                           {&diagonal_moment<2, double>, &diagonal_moment<3, double>},
+                                           {&diagonal_moment<2, double>, &diagonal_moment<3, double>}}};
+
+// ---- filters
+
+struct FilterMakesNaN : Fmpm {
+  template <int D, class S>
+  MPM_HD static void update(const Parameters& p, int iteration, const Vec<D, S>& projected, Vec<D, S>& increment,
+                            Vec<D, S>& velocity) {
+    Fmpm::update(p, iteration, projected, increment, velocity);
+    velocity[0] = velocity[0] + (sqrt(projected[0]) - sqrt(projected[0]));  // of a negative number
+  }
+};
+
+struct FilterSlowsDown : Fmpm {
+  template <int D, class S>
+  MPM_HD static void update(const Parameters& p, int iteration, const Vec<D, S>& projected, Vec<D, S>& increment,
+                            Vec<D, S>& velocity) {
+    Fmpm::update(p, iteration, projected, increment, velocity);
+    for (int i = 0; i < D; ++i) velocity[i] = real<S>(0.99) * velocity[i];
+  }
+};
+
+struct FilterRunsBackwards : Fmpm {
+  MPM_HD static int iterations(const Parameters& p) { return -static_cast<int>(p.order); }
+};
+
+/// Reads the node after each: the last reads beyond the batch.
+template <int D, class S>
+void reads_beyond(const void* parameters, const mpm_filter_batch* q) {
+  using T = scalar_of<S>;
+  sdk::filter_batch<Fmpm, D, S>(parameters, q);
+  T* velocity = static_cast<T*>(q->velocity);
+  const T* projected = static_cast<const T*>(q->projected);
+  for (std::uint32_t lane = 0; lane < q->count; ++lane) velocity[lane] += projected[lane + 1] - projected[lane];
+}
+/// Writes the velocity of one node more than there are.
+template <int D, class S>
+void writes_beyond(const void* parameters, const mpm_filter_batch* q) {
+  sdk::filter_batch<Fmpm, D, S>(parameters, q);
+  static_cast<scalar_of<S>*>(q->velocity)[q->count] = 0;
+}
+constexpr mpm_filter reads_beyond_table{0,
+                                        0,
+                                        &sdk::filter_iterations<Fmpm>,
+                                        {{&reads_beyond<2, Lanes<float>>, &reads_beyond<3, Lanes<float>>},
+                                         {&reads_beyond<2, Lanes<double>>, &reads_beyond<3, Lanes<double>>},
+                                         {&reads_beyond<2, double>, &reads_beyond<3, double>}}};
+constexpr mpm_filter writes_beyond_table{0,
+                                         0,
+                                         &sdk::filter_iterations<Fmpm>,
+                                         {{&writes_beyond<2, Lanes<float>>, &writes_beyond<3, Lanes<float>>},
+                                          {&writes_beyond<2, Lanes<double>>, &writes_beyond<3, Lanes<double>>},
+                                          {&writes_beyond<2, double>, &writes_beyond<3, double>}}};
+
+/// The descriptor of a right plugin over another table.
+template <class Table>
+mpm_descriptor with_table(mpm_descriptor descriptor, const Table& table) {
+  descriptor.kind_table = &table;
+  return descriptor;
+}
+
+struct HalvesGradient : Tpic {
+  template <int D, class S>
+  MPM_HD static void gather(const Parameters& p, const GatheredMoments<D, S>& moments, scalar_of<S> dt, Vec<D, S>& v,
+                            State<D, S>& state, Vec<D, S>& advection) {
+    Tpic::gather(p, moments, dt, v, state, advection);
+    for (S& entry : state.velocity_gradient.m) entry = real<S>(0.5) * entry;
   }
 };
 
@@ -107,6 +268,10 @@ struct Pulls : Coulomb {
   }
 };
 
+struct PullsOpenly : Pulls {  // the same law, declared
+  static constexpr unsigned traits = MPM_PULLS;
+};
+
 struct StressOffEnergy : NeoHookean {
   template <int D, class S>
   MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
@@ -152,6 +317,8 @@ struct HidesInversion : NeoHookean {
 template <class F>
 constexpr mpm_descriptor wrong_shape = sdk::shape<F>(manual, source);
 template <class F>
+constexpr mpm_descriptor wrong_filter = sdk::filter<F>(manual, source);
+template <class F>
 constexpr mpm_descriptor wrong_transfer = sdk::transfer<F>(manual, source);
 template <class F>
 constexpr mpm_descriptor wrong_contact = sdk::contact<F>(manual, source);
@@ -166,6 +333,10 @@ void check_caught(const mpm_descriptor& descriptor, const char* check) {
 
 TEST_CASE("the plugins that the wrong ones are made from pass") {
   CHECK(failures(wrong_shape<BsplineQuadratic>).empty());
+  CHECK(failures(wrong_shape<Gimp>).empty());
+  CHECK(failures(wrong_shape<Cpdi>).empty());
+  CHECK(failures(wrong_filter<Fmpm>).empty());
+  CHECK(failures(wrong_transfer<Tpic>).empty());
   CHECK(failures(wrong_transfer<Apic>).empty());
   CHECK(failures(wrong_transfer<Flip>).empty());
   CHECK(failures(wrong_contact<Coulomb>).empty());
@@ -180,7 +351,31 @@ TEST_CASE("wrong shapes are caught") {
   check_caught(wrong_shape<WrongBase>, "linear_consistency");
 }
 
+TEST_CASE("wrong exported second moments are caught") {
+  check_caught(with_table(wrong_shape<Gimp>, large_moment_table), "second_moment_summed");
+  check_caught(with_table(wrong_shape<Cpdi>, diagonal_moment_table), "second_moment_summed");
+}
+
+TEST_CASE("wrong lists of nodes are caught") {
+  check_caught(wrong_shape<RepeatsNode>, "unique_nodes");
+  check_caught(wrong_shape<MissesNode>, "partition_of_unity");
+  check_caught(wrong_shape<MissesNode>, "affine_value");
+  check_caught(wrong_shape<TurnsListGradient>, "affine_consistency");
+  check_caught(wrong_shape<TurnsListGradient>, "affine_slope");
+  check_caught(wrong_shape<OutOfReach>, "reach");
+}
+
+TEST_CASE("wrong filters are caught") {
+  check_caught(wrong_filter<FilterMakesNaN>, "finite");
+  check_caught(wrong_filter<FilterSlowsDown>, "uniform_motion_kept");
+  check_caught(wrong_filter<FilterRunsBackwards>, "iterations_not_negative");
+  check_caught(with_table(wrong_filter<Fmpm>, reads_beyond_table), "independent_of_batch");
+  check_caught(with_table(wrong_filter<Fmpm>, reads_beyond_table), "independent_of_neighbours");
+  check_caught(with_table(wrong_filter<Fmpm>, writes_beyond_table), "writes_inside_arrays");
+}
+
 TEST_CASE("wrong transfers are caught") {
+  check_caught(wrong_transfer<HalvesGradient>, "round_trip_velocity");
   check_caught(wrong_transfer<LosesMomentum>, "scattered_momentum");
   check_caught(wrong_transfer<TransposesAffine>, "angular_momentum");
   check_caught(wrong_transfer<TransposesAffine>, "round_trip_velocity");
@@ -192,6 +387,7 @@ TEST_CASE("wrong contact laws are caught") {
   check_caught(wrong_contact<OneSided>, "pair_symmetry");
   check_caught(wrong_contact<OneSided>, "no_approach_after");
   check_caught(wrong_contact<Pulls>, "no_pull");
+  CHECK(failures(wrong_contact<PullsOpenly>).count("no_pull") == 0);
 }
 
 TEST_CASE("wrong materials are caught") {

@@ -1,0 +1,352 @@
+// Checks of shapes that list their nodes: the identities of reference case A1 under random domains, each node once,
+// and agreement of all instantiations.
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "plugin/conformance_support.hpp"
+
+namespace mpm::conformance {
+namespace {
+
+constexpr int full = MPM_BATCH;
+
+enum Outputs { none = 0, gradients = 1, moments = 2, all = 3 };
+
+int capacity_of(const Plugin& plugin, int dimension) {
+  return static_cast<int>(plugin.shape().capacity[dimension - 2]);
+}
+
+/// One call of the plugin with all its arrays.
+struct ListBatch {
+  Variant variant;
+  int capacity, count;
+  Array position, half_size, domain, node_count, node, weight, gradient, second_moment;
+
+  ListBatch(const Plugin& plugin, const Variant& v, int entries, int outputs)
+      : variant(v), capacity(capacity_of(plugin, v.dimension)), count(entries) {
+    const Element element = element_of(v);
+    const std::uint32_t n = static_cast<std::uint32_t>(entries);
+    const int D = v.dimension;
+    position = Array(element, D, n);
+    if (plugin.descriptor->needs & MPM_NEEDS_HALF_SIZE) half_size = Array(element, D, n);
+    if (plugin.descriptor->needs & MPM_NEEDS_DOMAIN) domain = Array(element, D * D, n);
+    node_count = Array(Element::index, 1, n);
+    node = Array(Element::index, capacity * D, n);
+    weight = Array(element, capacity, n);
+    if (outputs & gradients) gradient = Array(element, capacity * D, n);
+    if ((outputs & moments) && plugin.shape().second_moment_kind == MPM_MOMENT_PER_PARTICLE)
+      second_moment = Array(element, D * D, n);
+  }
+
+  void evaluate(const Plugin& plugin, const ParameterSample& parameters) {
+    mpm_list_batch batch{};
+    batch.count = static_cast<std::uint32_t>(count);
+    batch.stride = position.stride();
+    batch.dimension = static_cast<std::uint32_t>(variant.dimension);
+    batch.capacity = static_cast<std::uint32_t>(capacity);
+    batch.position = position.data();
+    batch.half_size = half_size.data();
+    batch.domain = domain.data();
+    batch.node_count = static_cast<std::int32_t*>(node_count.data());
+    batch.node = static_cast<std::int32_t*>(node.data());
+    batch.weight = weight.data();
+    batch.gradient = gradient.data();
+    batch.second_moment = second_moment.data();
+    plugin.shape().evaluate_list[variant.precision][variant.dimension - 2](parameters.data(), &batch);
+  }
+
+  /// Never beyond the arrays, whatever the plugin wrote.
+  int nodes(int lane) const { return std::clamp(static_cast<int>(node_count(0, lane)), 0, capacity); }
+  double coordinate(int k, int axis, int lane) const { return node(k * variant.dimension + axis, lane); }
+  double slope(int k, int axis, int lane) const { return gradient(k * variant.dimension + axis, lane); }
+};
+
+/// What particles are given, the same for every precision: representable as float.
+struct ListInput {
+  std::array<Vector3, full> position{}, half_size{};
+  std::array<Matrix3, full> domain{};
+  std::array<bool, full> flat{};
+};
+
+/// Domains from a fraction of a cell to several cells, turned and sheared; every sixteenth has collapsed.
+ListInput list_input(Random& random, int dimension) {
+  ListInput input;
+  for (int lane = 0; lane < full; ++lane) {
+    for (int a = 0; a < dimension; ++a) {
+      double x = random.uniform(-40, 60);
+      if (lane % 8 == 1) x = std::floor(x);
+      if (lane % 8 == 2) x = std::floor(x) + 0.5;
+      if (lane % 8 == 3) x = std::nextafter(static_cast<float>(std::floor(x)), -1000.0f);
+      input.position[lane][a] = x;
+      input.half_size[lane][a] = random.uniform(0.1, 0.5);
+    }
+    const double size = lane % 4 == 3 ? random.uniform(0.5, 3) : random.uniform(0.05, 0.5);
+    Matrix3 shape = sum(Matrix3::identity(), random.matrix(dimension, lane % 8 < 3 ? 0 : 0.3));
+    if (lane % 2) shape = random.rotation(dimension) * shape;
+    input.flat[lane] = lane % 16 == 15;
+    for (int i = 0; i < dimension; ++i)
+      for (int j = 0; j < dimension; ++j) {
+        const int column = input.flat[lane] && j == 1 ? 0 : j;
+        input.domain[lane](i, j) = static_cast<float>(size * shape(i, column));
+      }
+    if (lane == full - 1) input.domain[lane] = Matrix3{};  // a point
+  }
+  return input;
+}
+
+ListBatch loaded(const Plugin& plugin, const Variant& v, const ListInput& input, int count, int outputs) {
+  ListBatch batch(plugin, v, count, outputs);
+  const int D = v.dimension;
+  for (int lane = 0; lane < count; ++lane)
+    for (int a = 0; a < D; ++a) {
+      batch.position.set(a, lane, input.position[lane][a]);
+      if (batch.half_size.components()) batch.half_size.set(a, lane, input.half_size[lane][a]);
+      for (int b = 0; b < D && batch.domain.components(); ++b)
+        batch.domain.set(a * D + b, lane, input.domain[lane](a, b));
+    }
+  return batch;
+}
+
+ListBatch evaluated(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const ListInput& input,
+                    int count = full, int outputs = all) {
+  ListBatch batch = loaded(plugin, v, input, count, outputs);
+  batch.evaluate(plugin, parameters);
+  return batch;
+}
+
+/// How far a particle's nodes may lie along an axis, cells.
+double reach_of(const Plugin& plugin, const ListInput& input, int axis, int lane) {
+  double reach = plugin.shape().reach;
+  if (plugin.descriptor->needs & MPM_NEEDS_DOMAIN)
+    for (int k = 0; k < 3; ++k) reach += std::abs(input.domain[lane](axis, k));
+  return reach;
+}
+
+/// Largest entry of the inverse of the domain, which rounding in a gradient is multiplied by; 1 at least.
+double steepness(const ListInput& input, int dimension, int lane) {
+  if (input.flat[lane]) return 1;
+  Matrix3 domain = input.domain[lane];
+  if (dimension == 2) domain(2, 2) = 1;
+  return std::max(1.0, largest_difference(inverse(domain), {}));
+}
+
+/// Count, capacity, each node once, and none out of reach.
+void check_nodes(const Plugin& plugin, const ListBatch& b, const ListInput& input, const std::string& where,
+                 Findings& findings) {
+  const Variant& v = b.variant;
+  Worst beyond;
+  bool counted = true, unique = true;
+  for (int lane = 0; lane < full; ++lane) {
+    counted &= b.node_count(0, lane) >= 1 && b.node_count(0, lane) <= b.capacity;
+    for (int k = 0; k < b.nodes(lane); ++k) {
+      for (int a = 0; a < v.dimension; ++a)
+        beyond.add(std::abs(b.coordinate(k, a, lane) - b.position(a, lane)) - reach_of(plugin, input, a, lane), lane);
+      for (int other = 0; other < k; ++other) {
+        bool same = true;
+        for (int a = 0; a < v.dimension; ++a) same &= b.coordinate(k, a, lane) == b.coordinate(other, a, lane);
+        unique &= !same;
+      }
+    }
+  }
+  findings.require("node_count [" + v.name() + "]", counted, "1 to capacity nodes a particle" + where);
+  findings.require("unique_nodes [" + v.name() + "]", unique, "each node of a particle comes once" + where);
+  findings.at_most("reach", v, beyond, 64 * v.epsilon(), "cells beyond sum |domain| + reach" + where);
+}
+
+/// Case A1, for any domain: sums over the nodes, and the value and slope of a random affine field.
+void check_sums(const Plugin& plugin, const ListBatch& b, const ListInput& input, Random& random,
+                const std::string& where, Findings& findings) {
+  const Variant& v = b.variant;
+  const int D = v.dimension;
+  Worst unity, gradient, linear, affine, value, slope;
+  double least = 1;
+  for (int lane = 0; lane < full; ++lane) {
+    const Vector3 field = random.direction(D);
+    double weights = 0, f = 0, extent = 1;
+    Vector3 slopes{}, first{}, f_slope{};
+    Matrix3 identity{};
+    for (int a = 0; a < D; ++a) extent = std::max(extent, reach_of(plugin, input, a, lane));
+    for (int k = 0; k < b.nodes(lane); ++k) {
+      const double w = b.weight(k, lane);
+      Vector3 d{};
+      for (int a = 0; a < D; ++a) d[a] = b.coordinate(k, a, lane) - b.position(a, lane);
+      weights += w, f += w * dot(field, d), least = std::min(least, w);
+      for (int i = 0; i < D; ++i) {
+        slopes[i] += b.slope(k, i, lane), first[i] += w * d[i], f_slope[i] += dot(field, d) * b.slope(k, i, lane);
+        for (int j = 0; j < D; ++j) identity(i, j) += d[i] * b.slope(k, j, lane);
+      }
+    }
+    const double steep = steepness(input, D, lane);
+    unity.add(std::abs(weights - 1), lane);
+    value.add(std::abs(f) / extent, lane);
+    for (int i = 0; i < D; ++i) {
+      gradient.add(std::abs(slopes[i]) / steep, lane);
+      linear.add(std::abs(first[i]) / extent, lane);
+      slope.add(std::abs(f_slope[i] - field[i]) / (steep * extent), lane);
+      for (int j = 0; j < D; ++j) affine.add(std::abs(identity(i, j) - (i == j)) / (steep * extent), lane);
+    }
+  }
+  const double bound = v.single() ? 1e-6 : 1e-14;
+  findings.at_most("partition_of_unity", v, unity, bound, "|sum w - 1|" + where);
+  findings.at_most("gradient_sum", v, gradient, 3 * bound, "|sum grad w| over the inverse domain" + where);
+  findings.at_most("linear_consistency", v, linear, 3 * bound, "|sum w (x_i - x)| over the reach" + where);
+  findings.at_most("affine_consistency", v, affine, 3 * bound,
+                   "|sum (x_i - x) (x) grad w - I| over reach and inverse domain" + where);
+  findings.at_most("affine_value", v, value, 3 * bound, "affine field under a random domain, value" + where);
+  findings.at_most("affine_slope", v, slope, 3 * bound, "affine field under a random domain, gradient" + where);
+  findings.report("negative_weight [" + v.name() + "]", std::max(0.0, -least), "largest negative weight" + where);
+}
+
+/// The exported second moment is the sum over the nodes, and positive definite for a domain that has not collapsed.
+void check_moment(const Plugin& plugin, const ListBatch& b, const ListInput& input, const std::string& where,
+                  Findings& findings) {
+  if (!b.second_moment.components()) return;
+  const Variant& v = b.variant;
+  const int D = v.dimension;
+  Worst error;
+  bool positive = true;
+  for (int lane = 0; lane < full; ++lane) {
+    Matrix3 moment{}, exported = Matrix3::identity();
+    double extent = 1;
+    for (int a = 0; a < D; ++a) extent = std::max(extent, reach_of(plugin, input, a, lane));
+    for (int k = 0; k < b.nodes(lane); ++k)
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j)
+          moment(i, j) += b.weight(k, lane) * (b.coordinate(k, i, lane) - b.position(i, lane)) *
+                          (b.coordinate(k, j, lane) - b.position(j, lane));
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) {
+        exported(i, j) = b.second_moment(i * D + j, lane);
+        error.add(std::abs(exported(i, j) - moment(i, j)) / (extent * extent), lane);
+      }
+    const double minor = exported(0, 0) * exported(1, 1) - exported(0, 1) * exported(1, 0);
+    positive &= input.flat[lane] || (exported(0, 0) > 0 && minor > 0 && determinant(exported) > 0);
+  }
+  findings.at_most("second_moment_summed", v, error, v.single() ? 1e-6 : 1e-14,
+                   "|D - sum w d d^T| over the reach squared" + where);
+  findings.require("second_moment_positive [" + v.name() + "]", positive,
+                   "positive definite for a domain with a volume" + where);
+}
+
+/// Place of a node in a particle's list, or -1.
+int find_node(const ListBatch& b, const ListBatch& other, int k, int lane) {
+  for (int entry = 0; entry < b.nodes(lane); ++entry) {
+    bool same = true;
+    for (int a = 0; a < b.variant.dimension; ++a) same &= b.coordinate(entry, a, lane) == other.coordinate(k, a, lane);
+    if (same) return entry;
+  }
+  return -1;
+}
+
+/// Node by node; a node that only one of the two lists counts with zero weight.
+void check_agreement(const ListBatch& b, const ListBatch& oracle, const ListInput& input, const std::string& where,
+                     Findings& findings) {
+  const int D = b.variant.dimension;
+  Worst weight, gradient;
+  for (int lane = 0; lane < full; ++lane) {
+    const double steep = steepness(input, D, lane);
+    for (const ListBatch* from : {&b, &oracle}) {
+      const ListBatch& to = from == &b ? oracle : b;
+      for (int k = 0; k < from->nodes(lane); ++k) {
+        const int entry = find_node(to, *from, k, lane);
+        weight.add(std::abs(from->weight(k, lane) - (entry < 0 ? 0 : to.weight(entry, lane))), lane);
+        // A collapsed domain may take the tents' own gradients, which jump where a corner rounds across a grid line.
+        for (int a = 0; a < D && !input.flat[lane]; ++a)
+          gradient.add(std::abs(from->slope(k, a, lane) - (entry < 0 ? 0 : to.slope(entry, a, lane))) / steep, lane);
+      }
+    }
+  }
+  const double bound = b.variant.single() ? 2e-6 : 1e-14;
+  findings.at_most("agrees_with_scalar", b.variant, weight, bound, "|w - w of scalar double|" + where);
+  findings.at_most("gradient_agrees_with_scalar", b.variant, gradient, bound,
+                   "|g - g of scalar double| over the inverse domain" + where);
+}
+
+/// A shift by whole cells moves the nodes and changes nothing else, bit for bit.
+void check_translation(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
+                       const ListInput& input, const std::string& where, Findings& findings) {
+  constexpr int cells = 23;
+  ListInput still = input, moved = input;
+  for (int lane = 0; lane < full; ++lane)
+    for (int a = 0; a < v.dimension; ++a) {
+      const double x = std::floor(input.position[lane][a] * 4096) / 4096;  // so that the shift is exact in float
+      still.position[lane][a] = x;
+      moved.position[lane][a] = x + cells;
+    }
+  const ListBatch s = evaluated(plugin, v, parameters, still), m = evaluated(plugin, v, parameters, moved);
+  bool same = s.node_count == m.node_count;
+  for (int lane = 0; lane < full; ++lane)
+    for (int k = 0; k < s.nodes(lane) && same; ++k) {
+      same &= s.weight(k, lane) == m.weight(k, lane);
+      for (int a = 0; a < v.dimension; ++a)
+        same &=
+            m.coordinate(k, a, lane) - s.coordinate(k, a, lane) == cells && s.slope(k, a, lane) == m.slope(k, a, lane);
+    }
+  findings.require("translation [" + v.name() + "]", same, "a shift by whole cells changes only the nodes" + where);
+}
+
+/// Writes stay inside the arrays at every batch size, inputs stay as they were, optional outputs may be null.
+void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const ListInput& input,
+                   const std::string& where, Findings& findings) {
+  const ListBatch reference = evaluated(plugin, v, parameters, input);
+  bool guards = true, finite = true, same = true, inputs = true;
+  for (int count = MPM_LANES; count <= full; count += MPM_LANES)
+    for (int outputs : {none, gradients, moments, all}) {
+      const ListBatch untouched = loaded(plugin, v, input, count, outputs);
+      const ListBatch b = evaluated(plugin, v, parameters, input, count, outputs);
+      for (int lane = 0; lane < count; ++lane) {
+        same &= b.node_count(0, lane) == reference.node_count(0, lane);
+        for (int k = 0; k < b.nodes(lane); ++k) {
+          finite &= std::isfinite(b.weight(k, lane));
+          same &= b.weight(k, lane) == reference.weight(k, lane);
+          for (int a = 0; a < v.dimension; ++a) {
+            same &= b.coordinate(k, a, lane) == reference.coordinate(k, a, lane);
+            if (!(outputs & gradients)) continue;
+            finite &= std::isfinite(b.slope(k, a, lane));
+            same &= b.slope(k, a, lane) == reference.slope(k, a, lane);
+          }
+        }
+        for (int c = 0; c < b.second_moment.components(); ++c)
+          same &= b.second_moment(c, lane) == reference.second_moment(c, lane);
+      }
+      for (const Array* out : {&b.node_count, &b.node, &b.weight, &b.gradient, &b.second_moment})
+        guards &= out->guards_intact();
+      guards &= b.node_count.all_written() && b.second_moment.all_written();
+      inputs &= b.position == untouched.position && b.half_size == untouched.half_size && b.domain == untouched.domain;
+    }
+  findings.require("writes_inside_arrays [" + v.name() + "]", guards, "guards around the outputs" + where);
+  findings.require("finite [" + v.name() + "]", finite, "weights and gradients, for collapsed domains too" + where);
+  findings.require("inputs_untouched [" + v.name() + "]", inputs, "positions, boxes and domains" + where);
+  findings.require("independent_of_batch [" + v.name() + "]", same,
+                   "counts of 16 to 64, with and without optional outputs" + where);
+}
+
+}  // namespace
+
+void check_list_shape(const Plugin& plugin, Findings& findings) {
+  const mpm_shape& shape = plugin.shape();
+  const bool sized = shape.capacity[0] >= 1 && shape.capacity[1] >= 1 && shape.capacity[0] <= 4096 &&
+                     shape.capacity[1] <= 4096 && shape.reach > 0;
+  findings.require("capacity_and_reach", sized, "1 to 4096 nodes and a positive reach");
+  findings.require("second_moment_kind", shape.second_moment_kind <= MPM_MOMENT_PER_PARTICLE, "of mpm_second_moment");
+  if (!sized) return;
+  Random random(20240607);
+  for (const ParameterSample& parameters : sample_parameters(plugin, random))
+    for (const Variant& v : variants_of(*plugin.descriptor)) {
+      const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
+      const ListInput input = list_input(random, v.dimension);
+      const ListBatch b = evaluated(plugin, v, parameters, input);
+      check_nodes(plugin, b, input, where, findings);
+      check_sums(plugin, b, input, random, where, findings);
+      check_moment(plugin, b, input, where, findings);
+      check_translation(plugin, v, parameters, input, where, findings);
+      check_batches(plugin, v, parameters, input, where, findings);
+      if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
+      check_agreement(b, evaluated(plugin, {MPM_SCALAR_DOUBLE, v.dimension}, parameters, input), input, where,
+                      findings);
+    }
+}
+
+}  // namespace mpm::conformance

@@ -1,0 +1,204 @@
+// Reference case B7: sand on triaxial paths, in Kirchhoff stresses; and what a gap opened in tension does afterwards.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "materials/drucker_prager/drucker_prager.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+using namespace mpm;
+using Mat3 = Mat<3, double>;
+using State3 = DruckerPrager::State<3, double>;
+
+constexpr double young = 1e7, poisson = 0.3, bulk = young / (3 * (1 - 2 * poisson));
+constexpr double degree = 3.14159265358979323846 / 180;
+
+State3 initial() {
+  return {{Mat3::identity()}, 1};
+}
+
+/// One particle driven by increments dt L.
+struct Particle {
+  DruckerPrager::Constants<double> constants;
+  State3 state = initial();
+  double heat = 0;
+
+  Particle(double friction_angle, double cohesion, bool corrected = true)
+      : constants({young, poisson, 1600, friction_angle, cohesion, corrected ? 1.0 : 0.0}) {}
+
+  Sym<3, double> stress() const { return DruckerPrager::kirchhoff_stress(constants, state); }
+  double mean_strain() const {
+    SingularValues<3, double> parts;
+    return DruckerPrager::sum(DruckerPrager::strains(state.elastic_deformation_gradient, parts));
+  }
+  double advance(const Mat3& increment) {
+    const double now = DruckerPrager::advance(constants, increment, 1.0, state);
+    heat += now;
+    return now;
+  }
+  double advance(double x, double y, double z) { return advance({{x, 0, 0, 0, y, 0, 0, 0, z}}); }
+
+  /// Compression positive.
+  double q() const { return stress()(1, 1) - stress()(0, 0); }
+  double p() const { return -trace(stress()) / 3; }
+
+  void press_to(double pressure) {
+    const double stretch = std::exp(-pressure / (3 * bulk)) - 1;
+    advance(stretch, stretch, stretch);
+    REQUIRE(std::abs(p() / pressure - 1) < 1e-9);
+  }
+
+  /// Axial compression while the lateral stress stays: the lateral increment by a secant.
+  void squeeze(double axial, double lateral_stress) {
+    const Particle before = *this;
+    const auto miss = [&](double side) {
+      *this = before;
+      advance(-axial, side, side);
+      return (stress()(1, 1) + lateral_stress) / lateral_stress;
+    };
+    double a = 0, b = poisson * axial, at_a = miss(a), at_b = miss(b);
+    for (int iteration = 0; iteration < 60 && std::abs(at_b) > 1e-13 && at_a != at_b; ++iteration) {
+      const double next = b - at_b * (b - a) / (at_b - at_a);
+      a = b, at_a = at_b;
+      b = next, at_b = miss(b);
+    }
+    REQUIRE(std::abs(at_b) < 1e-10);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("B7: triaxial compression fails at q = M p + k") {
+  const double lateral = 1e5;
+  for (double angle : {20.0, 30.0, 40.0})
+    for (double cohesion : {0.0, 1e4, 5e4}) {
+      CAPTURE(angle, cohesion);
+      const double sine = std::sin(angle * degree), cosine = std::cos(angle * degree);
+      const double M = 6 * sine / (3 - sine), k = 6 * cohesion * cosine / (3 - sine);
+      const double q_f = (3 * M * lateral + 3 * k) / (3 - M);
+      const double mohr_coulomb = lateral * (1 + sine) / (1 - sine) + 2 * cohesion * cosine / (1 - sine);
+      CHECK(std::abs((lateral + q_f) / mohr_coulomb - 1) < 1e-12);
+      Particle sand(angle * degree, cohesion);
+      sand.press_to(lateral);
+      double q = sand.q(), p = sand.p();
+      int elastic = 0;
+      for (int step = 0; step < 100; ++step) {
+        sand.squeeze(q_f / young / 40, lateral);
+        if (sand.heat == 0) {
+          CHECK(std::abs((sand.q() - q) / (sand.p() - p) - 3) < 1e-6);
+          ++elastic;
+        }
+        q = sand.q(), p = sand.p();
+      }
+      CHECK(elastic > 30);
+      CHECK(elastic < 50);
+      CHECK(std::abs(q / q_f - 1) < 1e-8);
+      CHECK(std::abs(-sand.stress()(0, 0) / mohr_coulomb - 1) < 1e-8);
+      CHECK(sand.heat > 0);
+    }
+}
+
+TEST_CASE("B7: the published numbers at 30 degrees") {
+  Particle sand(30 * degree, 0);
+  sand.press_to(1e5);
+  for (int step = 0; step < 60; ++step) sand.squeeze(1e-3, 1e5);
+  CHECK(std::abs(sand.q() / 200e3 - 1) < 1e-8);
+  CHECK(std::abs(-sand.stress()(0, 0) / 300e3 - 1) < 1e-8);
+  // alpha of Klar et al.: k = alpha (3 lambda + 2 mu)/(2 mu).
+  const auto& c = sand.constants;
+  CHECK(std::abs(c.slope * 2 * c.mu / (3 * c.lambda + 2 * c.mu) - 0.32659863) < 5e-9);
+}
+
+TEST_CASE("B7: flow at failure keeps the volume and dissipates q times the plastic strain") {
+  Particle sand(30 * degree, 0);
+  sand.press_to(1e5);
+  for (int step = 0; step < 60; ++step) sand.squeeze(1e-3, 1e5);
+  const double volume = sand.state.volume_ratio, heat = sand.heat;
+  for (int step = 0; step < 20; ++step) sand.squeeze(1e-4, 1e5);
+  CHECK(std::abs(sand.state.volume_ratio - volume) < 1e-9);
+  // Axial strain e, lateral -e/2 each: work s1 e - s3 e = q e, all of it heat at constant stress.
+  CHECK(sand.heat - heat == Approx(200e3 * -20 * std::log(1 - 1e-4)).epsilon(1e-6));
+}
+
+TEST_CASE("B7: dry sand carries no tension") {
+  for (bool corrected : {true, false}) {
+    Particle sand(30 * degree, 0, corrected);
+    sand.press_to(1e4);
+    sand.advance({{0.02, 0.01, 0, 0, 0.01, 0, -0.02, 0, 0.03}});
+    CHECK(std::abs(sand.mean_strain()) < 1e-14);
+    for (double component : sand.stress().s) CHECK(std::abs(component) < 1e-14 * young);
+    CHECK(DruckerPrager::stored_energy(sand.constants, sand.state) < 1e-20 * young);
+  }
+}
+
+TEST_CASE("a gap opened in tension must close before pressure returns") {
+  Particle sand(30 * degree, 0);
+  for (int step = 0; step < 50; ++step) sand.advance(1e-3, 1e-3, 1e-3);
+  double least = 0, worst = 0;
+  for (int step = 0; step < 80; ++step) {
+    sand.advance(-1e-3, -1e-3, -1e-3);
+    const double volume = std::log(sand.state.volume_ratio), pressure = sand.p();
+    if (volume > 1e-12) worst = std::max(worst, std::abs(pressure));
+    if (volume < 0) {
+      CHECK(std::abs(pressure / (-bulk * volume) - 1) < 1e-10);
+      least = std::min(least, volume);
+    }
+  }
+  CHECK(worst < 1e-7);
+  CHECK(least < -0.05);
+}
+
+TEST_CASE("without volume correction pressure returns at once") {
+  Particle sand(30 * degree, 0, false);
+  for (int step = 0; step < 50; ++step) sand.advance(1e-3, 1e-3, 1e-3);
+  sand.advance(-1e-3, -1e-3, -1e-3);
+  CHECK(sand.state.volume_ratio > 1.1);
+  CHECK(sand.p() == Approx(-3 * bulk * std::log(1 - 1e-3)).epsilon(1e-9));
+}
+
+TEST_CASE("cohesive sand parts at c cot phi, unloads its tension, and presses again only below J = 1") {
+  const double cohesion = 2e4, tension = cohesion / std::tan(30 * degree);
+  Particle sand(30 * degree, cohesion);
+  for (int step = 0; step < 50; ++step) sand.advance(1e-3, 1e-3, 1e-3);
+  CHECK(std::abs(-sand.p() / tension - 1) < 1e-9);
+  // What was put in beyond the tip is heat: c cot phi times the volume that opened.
+  CHECK(sand.heat == Approx(tension * (std::log(sand.state.volume_ratio) - tension / bulk)).epsilon(1e-9));
+  const double heat = sand.heat;
+  sand.advance(-1e-4, -1e-4, -1e-4);
+  CHECK(-sand.p() == Approx(tension + 3 * bulk * std::log(1 - 1e-4)).epsilon(1e-9));
+  double strongest = 0;
+  while (std::log(sand.state.volume_ratio) > 3e-3) {
+    CHECK(sand.advance(-1e-3, -1e-3, -1e-3) >= 0);
+    strongest = std::max(strongest, sand.p());
+  }
+  CHECK(strongest < 1e-7);
+  for (int step = 0; step < 10; ++step) CHECK(sand.advance(-1e-3, -1e-3, -1e-3) >= -1e-20 * young);
+  CHECK(std::abs(sand.p() / (-bulk * std::log(sand.state.volume_ratio)) - 1) < 1e-10);
+  CHECK(sand.heat >= heat);
+}
+
+TEST_CASE("shearing to and fro under pressure neither dilates nor compacts") {
+  for (double cohesion : {0.0, 1e4}) {
+    Particle sand(35 * degree, cohesion);
+    sand.press_to(5e4);
+    const double pressure = sand.p();
+    for (int step = 0; step < 400; ++step) sand.advance({{0, step / 50 % 2 ? 1e-3 : -1e-3, 0, 0, 0, 0, 0, 0, 0}});
+    CHECK(std::abs(sand.p() / pressure - 1) < 1e-9);
+    CHECK(sand.heat > 0);
+  }
+}
+
+TEST_CASE("sand that does not yield keeps the elastic deformation gradient to the last bit") {
+  Particle sand(30 * degree, 1e4);
+  sand.press_to(1e5);
+  Mat3 F = sand.state.elastic_deformation_gradient.plane;
+  for (int step = 0; step < 10; ++step) {
+    const Mat3 L{{1e-6 * step, 3e-7, 0, -2e-7, 1e-6, 1e-7, 4e-7, 0, -1e-6}};
+    F = advanced(F, L, 1.0);
+    CHECK(sand.advance(L) == 0);
+    for (int k = 0; k < 9; ++k) CHECK(sand.state.elastic_deformation_gradient.plane.m[k] == F.m[k]);
+  }
+}
