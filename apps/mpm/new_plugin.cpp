@@ -1,9 +1,9 @@
 // Verb `new`: a project of its own for a plugin, written from texts that are compiled into the program.
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <iostream>
+#include <iterator>
 
 #include "experiment/diagnostics.hpp"
 #include "mpm/cli.hpp"
@@ -21,6 +21,11 @@ struct Text {
 /// apps/mpm/templates, where the plugin is called my_plugin, its class MyPlugin and its kind my_kind.
 constexpr Text texts[] = {
 #include "templates.inc"
+};
+
+/// Classes of kernel/, which every functor sees.
+constexpr std::string_view kernel_classes[] = {
+#include "kernel_classes.inc"
 };
 
 [[noreturn]] void refuse(const std::string& message) {
@@ -54,11 +59,8 @@ void check_id(mpm_kind kind, const std::string& id) {
     refuse("the id " + in_quotes(id) +
            " cannot be used: it starts with a lower-case letter, goes on with lower-case letters, digits and '_', and "
            "has at most 64 characters, as in \"my_rubber\"");
-  // Classes of kernel/ that every plugin sees.
-  constexpr std::array taken{"Vec",         "Mat",           "Sym",      "Lanes",           "LaneTypes",
-                             "ContactPair", "ContactResult", "NodeList", "GatheredMoments", "VolumetricEnergy"};
   const std::string functor = class_name(id);
-  if (std::find(taken.begin(), taken.end(), functor) != taken.end())
+  if (std::find(std::begin(kernel_classes), std::end(kernel_classes), functor) != std::end(kernel_classes))
     refuse("the id " + in_quotes(id) + " cannot be used: its class " + functor +
            " is one of the kernel headers; choose another id");
   const Registry registry = Registry::from_folders(Registry::default_folders());

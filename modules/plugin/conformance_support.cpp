@@ -79,8 +79,12 @@ std::vector<Variant> variants_of(const mpm_descriptor& descriptor) {
   return variants;
 }
 
+void Findings::running(const std::string& group) const {
+  if (progress_) progress_(group);
+}
+
 void Findings::running(const char* group, const Variant& variant, const std::string& where) const {
-  if (progress_) progress_(std::string(group) + " [" + variant.name() + "]" + where);
+  running(std::string(group) + " [" + variant.name() + "]" + where);
 }
 
 void Findings::at_most(const std::string& check, const Variant& variant, const Worst& measured, double bound,

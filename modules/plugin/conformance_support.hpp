@@ -57,6 +57,7 @@ class Findings {
   explicit Findings(ConformanceProgress progress = {}) : progress_(std::move(progress)) {}
 
   /// Says what is run next: a group of checks, its variant, and the parameters (as `where` of the findings).
+  void running(const std::string& group) const;
   void running(const char* group, const Variant& variant, const std::string& where) const;
   void at_most(const std::string& check, const Variant& variant, const Worst& measured, double bound,
                const std::string& detail);
