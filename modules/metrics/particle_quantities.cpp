@@ -21,7 +21,8 @@ std::vector<std::string> component_names(std::uint32_t shape, int dimension) {
   std::vector<std::string> names;
   if (shape == MPM_STATE_VECTOR)
     for (int i = 0; i < dimension; ++i) names.emplace_back(1, axes[i]);
-  if (shape == MPM_STATE_MATRIX)
+  if (shape == MPM_STATE_DEFORMATION && dimension == 2) names = {"xx", "xy", "yx", "yy", "zz"};
+  if (shape == MPM_STATE_MATRIX || (shape == MPM_STATE_DEFORMATION && dimension == 3))
     for (int i = 0; i < dimension; ++i)
       for (int j = 0; j < dimension; ++j) names.push_back({axes[i], axes[j]});
   if (shape == MPM_STATE_SYMMETRIC)

@@ -60,8 +60,8 @@ FILE:1:1: /solver: missing key; expected a solver)");
 }
 
 TEST_CASE("plugins that do not exist or cannot do what is asked", "[config]") {
-  CHECK(errors_after("\"dimension\": 2,", "\"dimension\": 2, \"filter\": {\"type\": \"fmpn\"},") ==
-        "FILE:4:38: /filter/type: unknown filter \"fmpn\"");
+  CHECK(errors_after("\"dimension\": 2,", "\"dimension\": 2, \"filter\": {\"type\": \"fmpm\"},") ==
+        "FILE:4:38: /filter/type: unknown filter \"fmpm\"; no filter is available");
   CHECK(
       errors_after("{\"type\": \"flip\", \"pic_fraction\": 0.1}", "{\"type\": \"slow_double\", \"iterations\": 2.5}") ==
       "FILE:16:24: /transfer/type: transfer \"slow_double\" does not offer double on backend \"cpu\"; "

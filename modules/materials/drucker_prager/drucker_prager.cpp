@@ -22,5 +22,7 @@ compressed again and the sand seems to grow. With it the elastic volume is read 
 unloads first, then there is no pressure until J is below 1 again, and from there on the elastic volumetric strain is ln J. Dry
 sand so has tr(eps) = min(ln J, 0) always.
 
-Wave speed: sqrt((lambda + 2 mu - least principal stress)/density), and never below the shear wave's.)",
+Wave speed: sqrt((lambda + 2 mu + a - least principal stress)/density), never below the shear wave's. On the cone a wave that takes
+pressure off takes strength off too, so it may outrun the elastic wave: a is the most that this can add (16 % of lambda + 2 mu at 30
+degrees and a Poisson's ratio of 0.3).)",
      "DruckerPrager"})

@@ -20,7 +20,9 @@ struct DruckerPrager {
   };
   template <class T>
   struct Constants {
-    T mu, lambda, inverse_density, slope, tip;  ///< k and t
+    T mu, lambda, inverse_density;
+    T slope, tip;    ///< k and t
+    T longitudinal;  ///< lambda + 2 mu and what yielding adds at most, see wave_speed
     bool corrects_volume;
     MPM_HD explicit Constants(const Parameters& p)
         : mu(T(shear_modulus(p.youngs_modulus, p.poisson_ratio))),
@@ -30,7 +32,10 @@ struct DruckerPrager {
       const double sine = sin_of(p.friction_angle);
       const double bulk = bulk_modulus(p.youngs_modulus, p.poisson_ratio);
       const double alpha = 0.816496580927726 * 2 * sine / (3 - sine);
-      slope = T(alpha * 3 * bulk / (2 * shear_modulus(p.youngs_modulus, p.poisson_ratio)));
+      const double shear = shear_modulus(p.youngs_modulus, p.poisson_ratio), k = alpha * 3 * bulk / (2 * shear);
+      slope = T(k);
+      const double u = k < 2 * 0.816496580927726 ? k / 2 : 0.816496580927726;
+      longitudinal = T(bulk + 4 * shear / 3 + 2 * shear * u * (k - u));
       tip = T(p.cohesion * sqrt(1 - sine * sine) / sine / bulk);
     }
   };
@@ -161,16 +166,17 @@ struct DruckerPrager {
     return c.mu * (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]) + real<S>(0.5) * c.lambda * trace * trace;
   }
 
-  /// Longitudinal: rho0 c^2 = lambda + 2 mu - (least principal stress, where it presses). Shear between principal
-  /// stretches e^a, e^b: 2 mu x/(1 - e^-2x) <= mu (1 + 2 x) with x = |a - b|. Yielding only softens.
+  /// Longitudinal: rho0 c^2 = lambda + 2 mu - (least principal stress, where it presses). On the cone a wave that takes
+  /// pressure off takes strength off too, as the flow is not associated: 2 mu u (k - u) more, -u = n.N.n the component
+  /// of the unit deviator N, which is largest at u = k/2 or at its limit sqrt(2/3). Shear between principal stretches
+  /// e^a, e^b: 2 mu x/(1 - e^-2x) <= mu (1 + 2 x) with x = |a - b|.
   template <int D, class S>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
     SingularValues<D, S> parts;
     const Vec<3, S> e = strains(state.elastic_deformation_gradient, parts);
     const S least = min(min(e[0], e[1]), e[2]), spread = max(max(e[0], e[1]), e[2]) - least;
     const S pressing = min(real<S>(2) * c.mu * least + c.lambda * sum(e), S(real<S>(0)));
-    const S longitudinal = (c.lambda + real<S>(2) * c.mu) - pressing;
-    return sqrt(c.inverse_density * max(longitudinal, c.mu * (real<S>(1) + spread + spread)));
+    return sqrt(c.inverse_density * max(c.longitudinal - pressing, c.mu * (real<S>(1) + spread + spread)));
   }
 
   template <int D, class S>
