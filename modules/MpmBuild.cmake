@@ -1,15 +1,21 @@
 # Flags and functions that every target of the sandbox shares.
 
-add_library(mpm_flags INTERFACE)
+# What decides the arithmetic of a plugin, in this build and outside of it (MpmPackage.cmake).
 # Contraction is chosen on purpose: one binary gives one answer whatever the number of threads, and FMA halves the arithmetic.
-target_compile_options(mpm_flags INTERFACE -Wall -Wextra -fno-math-errno -fno-trapping-math -ffp-contract=fast -Wno-psabi)
+set(mpm_arithmetic_flags -fno-math-errno -fno-trapping-math -ffp-contract=fast -Wno-psabi)
+# The width of a pack of lanes follows from the instruction set (kernel/lanes.hpp).
+set(mpm_instruction_set)
+if(MPM_NATIVE)
+  set(mpm_instruction_set -march=native)
+endif()
+
+add_library(mpm_flags INTERFACE)
+target_compile_options(mpm_flags INTERFACE -Wall -Wextra ${mpm_arithmetic_flags})
 # GCC 12 warns falsely of std::string sums (GCC bug 105329) and of its own AVX-512 headers (bug 105593).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(mpm_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized)
 endif()
-if(MPM_NATIVE)
-  target_compile_options(mpm_flags INTERFACE -march=native)
-endif()
+target_compile_options(mpm_flags INTERFACE ${mpm_instruction_set})
 if(MPM_WERROR)
   target_compile_options(mpm_flags INTERFACE -Werror)
 endif()

@@ -18,8 +18,9 @@ namespace {
 
 constexpr const char* footer =
     R"(Exit codes: 0 done and every expectation held; 2 bad input, nothing was run; 3 the run became unstable or
-invalid (what, where and when is printed; results so far are kept); 4 an expectation in "compare" failed;
-5 the machine failed (disk, memory); 130 stopped by Ctrl-C at a step boundary, everything written.
+invalid (what, where and when is printed; results so far are kept), or test-plugin found a plugin that fails, crashes
+or hangs; 4 an expectation in "compare" failed; 5 the machine failed (disk, memory); 130 stopped by Ctrl-C at a step
+boundary, everything written.
 Plugins are found in the build tree and in the folders of MPM_PLUGIN_PATH.)";
 
 void add_experiment(CLI::App& verb, RunOptions& options) {
@@ -124,6 +125,10 @@ int run_command_line(int argc, char** argv) {
   std::string id;
   std::vector<std::filesystem::path> runs;
   std::filesystem::path specification, figure_out;
+  std::string kind;
+  std::filesystem::path plugin_file, plugin_folder;
+  double seconds = 60;
+  bool verbose = false;
   int code = done;
 
   auto* run_verb =
@@ -169,6 +174,21 @@ int run_command_line(int argc, char** argv) {
                           "folder for the figures; default figures/ of the run, or runs/overlay for several");
   figure_verb->callback(
       [&] { code = guarded([&] { return figure(runs, specification, figure_out); }, "nothing was drawn"); });
+
+  auto* new_verb = app.add_subcommand("new", "write a project for a plugin of your own, with an experiment and a test");
+  new_verb->add_option("KIND", kind, "shape, transfer, filter, contact or material")->required();
+  new_verb->add_option("ID", id, "the word that experiments will use, e.g. my_rubber")->required();
+  new_verb->add_option("DIR", plugin_folder, "folder to write, new or empty")->required();
+  new_verb->callback(
+      [&] { code = guarded([&] { return new_plugin(kind, id, plugin_folder); }, "nothing was written"); });
+
+  auto* test_verb = app.add_subcommand("test-plugin", "run the conformance suite on a plugin's file");
+  test_verb->add_option("FILE", plugin_file, "the plugin, KIND_ID.so")->required();
+  test_verb->add_option("--seconds", seconds, "time after which a plugin counts as hung; default 60")
+      ->check(CLI::Range(0.1, 86400.0));
+  test_verb->add_flag("--verbose", verbose, "every check, not only those that failed");
+  test_verb->add_flag("--json", json, "as JSON; a number that is not finite is null");
+  test_verb->callback([&] { code = guarded([&] { return test_plugin(plugin_file, seconds, verbose, json); }); });
 
   // A limit on file size is then an error of writing, with its message, like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);

@@ -15,7 +15,7 @@ namespace mpm::app {
 enum ExitCode {
   done = 0,        ///< and every expectation held
   bad_input = 2,   ///< nothing was run
-  run_failed = 3,  ///< unstable or invalid: results up to there are kept
+  run_failed = 3,  ///< unstable or invalid: results up to there are kept; test-plugin: the plugin failed
   expectation_failed = 4,
   machine_failed = 5,  ///< disk, memory
   interrupted = 130    ///< Ctrl-C: everything up to the last step is written
@@ -45,6 +45,10 @@ int list(bool json);
 int list_combinations(bool json);
 int describe(const std::string& id, bool json);
 int schema();
+/// Writes a project for a plugin of `kind` into `folder`, which must be empty or missing. Throws InputError.
+int new_plugin(const std::string& kind, const std::string& id, const std::filesystem::path& folder);
+/// Runs the conformance suite on a plugin's file in a process of its own, for at most `seconds`.
+int test_plugin(const std::filesystem::path& file, double seconds, bool verbose, bool json);
 int figure(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& specification,
            const std::filesystem::path& out);
 

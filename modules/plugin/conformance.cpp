@@ -66,9 +66,11 @@ bool has_entries(const Plugin& plugin, const conformance::Variant& v) {
 
 }  // namespace
 
-std::vector<ConformanceFinding> check_plugin(const Plugin& plugin) {
-  Findings findings;
+std::vector<ConformanceFinding> check_plugin(const Plugin& plugin, const ConformanceProgress& progress) {
+  Findings findings(progress);
   check_descriptor(plugin, findings);
+  findings.require("variants", !conformance::variants_of(*plugin.descriptor).empty(),
+                   "at least one precision and one dimension is declared");
   bool callable = true;
   for (const conformance::Variant& v : conformance::variants_of(*plugin.descriptor)) callable &= has_entries(plugin, v);
   findings.require("entry_points", callable, "every declared precision and dimension has an entry point");

@@ -2,7 +2,9 @@
 // Conformance: what every plugin of a kind must satisfy, measured through its C entry points only, so that the same
 // suite judges the components shipped here and those of others (`mpm test-plugin`).
 
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plugin/registry.hpp"
@@ -18,8 +20,12 @@ struct ConformanceFinding {
   std::string detail;  ///< what was computed and where the worst case lies
 };
 
+/// Told what is about to be run, "energy balance [scalar double, 2-D]; density=1000", so that a plugin that never
+/// returns from it can be reported.
+using ConformanceProgress = std::function<void(std::string_view)>;
+
 /// Runs every check of the plugin's kind with seeded random inputs: the same findings at every call.
-std::vector<ConformanceFinding> check_plugin(const Plugin& plugin);
+std::vector<ConformanceFinding> check_plugin(const Plugin& plugin, const ConformanceProgress& progress = {});
 
 /// One line for a person: "FAILED gradient_sum [lanes float, 2-D]: measured 0.5, bound 1e-06 (...)".
 std::string to_string(const ConformanceFinding& finding);

@@ -283,13 +283,18 @@ void check_contact(const Plugin& plugin, Findings& findings) {
     for (const Variant& v : variants_of(*plugin.descriptor)) {
       const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
       const Pairs pairs = random_pairs(random, v.dimension);
+      findings.running("pairs and friction", v, where);
       const ContactBatch b = applied(plugin, v, parameters, pairs);
       check_pairs(plugin, b, pairs, where, findings);
       check_friction(plugin, b, parameters, pairs, where, findings);
+      findings.running("symmetry and frames", v, where);
       check_symmetry(plugin, b, parameters, pairs, random.rotation(v.dimension), where, findings);
+      findings.running("neighbours", v, where);
       check_neighbours(plugin, b, parameters, pairs, where, findings);
+      findings.running("batches", v, where);
       check_batches(plugin, b, parameters, pairs, where, findings);
       if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
+      findings.running("agreement with scalar", v, where);
       check_agreement(b, applied(plugin, {MPM_SCALAR_DOUBLE, v.dimension}, parameters, pairs), pairs, where, findings);
     }
 }

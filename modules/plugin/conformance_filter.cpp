@@ -141,6 +141,7 @@ void check_filter(const Plugin& plugin, Findings& findings) {
   Random random(20240608);
   for (const ParameterSample& parameters : sample_parameters(plugin, random)) {
     const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
+    findings.running("number of passes" + where);
     const std::int32_t passes = plugin.filter().iterations(parameters.data());
     findings.require("iterations_not_negative", passes >= 0, std::to_string(passes) + " passes" + where);
     findings.require("iterations_repeatable", passes == plugin.filter().iterations(parameters.data()),
@@ -148,11 +149,14 @@ void check_filter(const Plugin& plugin, Findings& findings) {
     for (const Variant& v : variants_of(*plugin.descriptor))
       for (int iteration : {1, 2, 7}) {
         const FilterInput input = random_input(random, v.dimension), other = random_input(random, v.dimension);
+        findings.running("uniform motion", v, where);
         check_translation(plugin, v, parameters, random, iteration, where, findings);
+        findings.running("batches", v, where);
         check_batches(plugin, v, parameters, input, iteration, where, findings);
         findings.report("nonlinearity [" + v.name() + "]", nonlinearity(plugin, v, parameters, input, other, iteration),
                         "|u(a + b) - u(a) - u(b)|" + where);
         if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
+        findings.running("agreement with scalar", v, where);
         const Variant oracle{MPM_SCALAR_DOUBLE, v.dimension};
         findings.at_most("agrees_with_scalar", v,
                          difference(updated(plugin, v, parameters, input, iteration),

@@ -337,13 +337,17 @@ void check_list_shape(const Plugin& plugin, Findings& findings) {
     for (const Variant& v : variants_of(*plugin.descriptor)) {
       const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
       const ListInput input = list_input(random, v.dimension);
+      findings.running("nodes, sums and moment", v, where);
       const ListBatch b = evaluated(plugin, v, parameters, input);
       check_nodes(plugin, b, input, where, findings);
       check_sums(plugin, b, input, random, where, findings);
       check_moment(plugin, b, input, where, findings);
+      findings.running("translation", v, where);
       check_translation(plugin, v, parameters, input, where, findings);
+      findings.running("batches", v, where);
       check_batches(plugin, v, parameters, input, where, findings);
       if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
+      findings.running("agreement with scalar", v, where);
       check_agreement(b, evaluated(plugin, {MPM_SCALAR_DOUBLE, v.dimension}, parameters, input), input, where,
                       findings);
     }

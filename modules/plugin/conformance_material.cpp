@@ -513,18 +513,28 @@ void check_material(const Plugin& plugin, Findings& findings) {
   Random random(20240604);
   for (const ParameterSample& parameters : sample_parameters(plugin, random))
     for (const Variant& v : variants_of(*plugin.descriptor)) {
+      findings.running("rest", v, "; " + parameters.text);
       const Context c{plugin, v, parameters, stiffness(plugin, v, parameters), "; " + parameters.text, findings};
       const std::vector<Increments> path = random_path(random, v.dimension, 16, 0.4);
       check_rest(c);
+      findings.running("path of large strain", v, c.where);
       check_path(c, path);
+      findings.running("stress from energy and objectivity", v, c.where);
       if (traits & MPM_HYPERELASTIC) check_hyperelastic(c, path);
       if (traits & MPM_OBJECTIVE) check_objective(c, path, random);
+      findings.running("energy balance", v, c.where);
       check_energy_balance(c, random);
+      findings.running("wave speed", v, c.where);
       check_wave_speed(c, random);
+      findings.running("inadmissible states", v, c.where);
       check_inadmissible(c, path);
+      findings.running("agreement with scalar", v, c.where);
       check_agreement(c, path);
+      findings.running("plane strain", v, c.where);
       check_plane_strain(c, path);
+      findings.running("neighbours", v, c.where);
       check_neighbours(c, path);
+      findings.running("batches", v, c.where);
       check_batches(c, path.front());
     }
 }

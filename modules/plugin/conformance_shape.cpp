@@ -303,14 +303,18 @@ void check_shape(const Plugin& plugin, Findings& findings) {
     for (const Variant& v : variants_of(*plugin.descriptor)) {
       const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
       const ShapeInput input = shape_input(random, v.dimension);
+      findings.running("sums and stencil", v, where);
       const ShapeBatch b = evaluated(plugin, v, parameters, input);
       check_sums(plugin, b, where, findings);
       check_moment(b, where, findings);
       check_stencil(b, where, findings);
+      findings.running("translation", v, where);
       check_translation(plugin, v, parameters, input, where, findings);
+      findings.running("batches", v, where);
       check_batches(plugin, v, parameters, input, where, findings);
       if (!(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
       const Variant oracle{MPM_SCALAR_DOUBLE, v.dimension};
+      findings.running("derivatives or agreement", v, where);
       if (v.precision == MPM_SCALAR_DOUBLE)
         check_differences(plugin, v, parameters, input, where, findings);
       else

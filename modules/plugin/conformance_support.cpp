@@ -79,6 +79,14 @@ std::vector<Variant> variants_of(const mpm_descriptor& descriptor) {
   return variants;
 }
 
+void Findings::running(const std::string& group) const {
+  if (progress_) progress_(group);
+}
+
+void Findings::running(const char* group, const Variant& variant, const std::string& where) const {
+  running(std::string(group) + " [" + variant.name() + "]" + where);
+}
+
 void Findings::at_most(const std::string& check, const Variant& variant, const Worst& measured, double bound,
                        const std::string& detail) {
   at_most(check + " [" + variant.name() + "]", measured.value, bound,

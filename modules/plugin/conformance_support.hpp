@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kernel/tensor.hpp"
@@ -53,6 +54,11 @@ struct Worst {
 /// Findings by name, each its worst case over repeated calls.
 class Findings {
  public:
+  explicit Findings(ConformanceProgress progress = {}) : progress_(std::move(progress)) {}
+
+  /// Says what is run next: a group of checks, its variant, and the parameters (as `where` of the findings).
+  void running(const std::string& group) const;
+  void running(const char* group, const Variant& variant, const std::string& where) const;
   void at_most(const std::string& check, const Variant& variant, const Worst& measured, double bound,
                const std::string& detail);
   void at_most(const std::string& check, double measured, double bound, const std::string& detail);
@@ -62,6 +68,7 @@ class Findings {
   std::vector<ConformanceFinding> take() { return std::move(findings_); }
 
  private:
+  ConformanceProgress progress_;
   std::vector<ConformanceFinding> findings_;
 };
 

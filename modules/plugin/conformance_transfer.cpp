@@ -435,11 +435,16 @@ void check_transfer(const Plugin& plugin, Findings& findings) {
     for (const Variant& v : variants_of(*plugin.descriptor)) {
       const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
       const Particles particles = random_particles(random, v.dimension);
+      findings.running("momentum", v, where);
       check_momentum(plugin, v, parameters, particles, random, where, findings);
+      findings.running("force-free round trip", v, where);
       check_force_free(plugin, v, parameters, particles, random, where, findings);
+      findings.running("affine round trip", v, where);
       check_affine(plugin, v, parameters, particles, random, where, findings);
+      findings.running("batches", v, where);
       check_batches(plugin, v, parameters, particles, where, findings);
       if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
+      findings.running("agreement with scalar", v, where);
       const Variant oracle{MPM_SCALAR_DOUBLE, v.dimension};
       check_agreement(run_both(plugin, v, parameters, particles), run_both(plugin, oracle, parameters, particles),
                       where, findings);

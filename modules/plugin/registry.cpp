@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -34,22 +34,77 @@ void check_whole(const std::filesystem::path& file) {
            "rebuild or copy it again");
 }
 
-const mpm_plugin_library& checked_library(void* handle, const std::filesystem::path& file) {
-  const void* symbol = dlsym(handle, MPM_PLUGIN_SYMBOL);
+/// A loaded file, closed again unless it is kept.
+class Library {
+ public:
+  explicit Library(const std::filesystem::path& file)
+      : handle_(dlopen(std::filesystem::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL)) {
+    if (handle_) return;
+    const char* reason = dlerror();
+    refuse(file, std::string("cannot be loaded: ") + (reason ? reason : "unknown reason"),
+           "rebuild it on this machine");
+  }
+  ~Library() {
+    if (handle_) dlclose(handle_);
+  }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+
+  const void* symbol(const char* name) const { return dlsym(handle_, name); }
+  void keep() { handle_ = nullptr; }
+
+ private:
+  void* handle_;
+};
+
+/// A table's size as the plugin has it: not above this program's, and whole 8-byte words.
+void check_size(const std::filesystem::path& file, const char* table, std::uint32_t theirs, std::size_t ours) {
+  if (theirs <= ours && theirs > 0 && theirs % alignof(void*) == 0) return;
+  refuse(file,
+         std::string("has ") + table + " of " + std::to_string(theirs) + " bytes, this program has " +
+             std::to_string(ours),
+         theirs > ours ? "rebuild the plugin against this version's headers, or use the newer program it was made for"
+                       : "the plugin's tables are wrong: build it with plugin/sdk.hpp");
+}
+
+/// The first `bytes` of a plugin's struct in one of this program's, whose further fields stay zero.
+template <class Struct>
+Struct widened(const void* source, std::size_t bytes) {
+  Struct copy{};
+  std::memcpy(static_cast<void*>(&copy), source, bytes);
+  return copy;
+}
+
+mpm_plugin_library checked_library(const Library& loaded, const std::filesystem::path& file) {
+  const void* symbol = loaded.symbol(MPM_PLUGIN_SYMBOL);
   if (!symbol)
     refuse(file, "exports no symbol `" MPM_PLUGIN_SYMBOL "`", "a plugin needs MPM_EXPORT_PLUGIN in one of its sources");
-  const auto& library = *static_cast<const mpm_plugin_library*>(symbol);
-  if (library.abi_version != MPM_ABI_VERSION)
+  const std::uint32_t version = *static_cast<const std::uint32_t*>(symbol);
+  if (version != MPM_ABI_VERSION)
     refuse(file,
-           "was built for plugin ABI version " + std::to_string(library.abi_version) + ", this program has version " +
+           "was built for plugin ABI version " + std::to_string(version) + ", this program has version " +
                std::to_string(MPM_ABI_VERSION),
            "rebuild the plugin against this version's headers");
-  if (library.struct_size != sizeof(mpm_plugin_library) || library.descriptor_size != sizeof(mpm_descriptor))
+  const std::uint32_t size = *(static_cast<const std::uint32_t*>(symbol) + 1);
+  // The sizes and revision stand before `descriptors`, which closes revision 0: no library table is shorter.
+  constexpr std::size_t least = offsetof(mpm_plugin_library, descriptors) + sizeof(void*);
+  if (size < least)
+    refuse(
+        file,
+        "has a library table of " + std::to_string(size) + " bytes, at least " + std::to_string(least) + " are needed",
+        "the plugin's tables are wrong: build it with plugin/sdk.hpp");
+  const auto library = widened<mpm_plugin_library>(symbol, std::min<std::size_t>(size, sizeof(mpm_plugin_library)));
+  if (library.abi_revision > MPM_ABI_REVISION)
     refuse(file,
-           "has table sizes " + std::to_string(library.struct_size) + " and " +
-               std::to_string(library.descriptor_size) + ", this program has " +
-               std::to_string(sizeof(mpm_plugin_library)) + " and " + std::to_string(sizeof(mpm_descriptor)),
-           "rebuild the plugin against this version's headers");
+           "was built for plugin ABI revision " + std::to_string(library.abi_revision) +
+               ", this program knows revisions up to " + std::to_string(MPM_ABI_REVISION),
+           "rebuild the plugin against this version's headers, or use the newer program it was made for");
+  check_size(file, "a library table", size, sizeof(mpm_plugin_library));
+  check_size(file, "descriptors", library.descriptor_size, sizeof(mpm_descriptor));
+  check_size(file, "parameter rows", library.parameter_size, sizeof(mpm_parameter));
+  check_size(file, "state rows", library.state_size, sizeof(mpm_state));
+  if (library.descriptor_count == 0 || !library.descriptors)
+    refuse(file, "holds no descriptor", "the plugin's tables are wrong: build it with plugin/sdk.hpp");
   return library;
 }
 
@@ -70,27 +125,90 @@ std::size_t table_size(std::uint32_t kind) {
   }
 }
 
+/// One descriptor with its rows and its kind's table, in this program's sizes.
+struct Tables {
+  mpm_descriptor descriptor{};
+  std::vector<mpm_parameter> parameters;
+  std::vector<mpm_state> state;
+  union {
+    mpm_shape shape;
+    mpm_transfer transfer;
+    mpm_filter filter;
+    mpm_contact contact;
+    mpm_material material;
+  } kind{};
+};
+
+/// `count` rows that lie `size` bytes apart.
+template <class Row>
+std::vector<Row> rows(const void* first, std::uint32_t count, std::uint32_t size) {
+  std::vector<Row> copies;
+  for (std::uint32_t k = 0; k < count; ++k)
+    copies.push_back(widened<Row>(static_cast<const char*>(first) + static_cast<std::size_t>(k) * size, size));
+  return copies;
+}
+
+/// Everything that the program takes for granted of a descriptor later on, whose rows may not be there at all.
 void check_descriptor(const mpm_descriptor& d, const std::filesystem::path& file) {
   const std::string remedy = "the plugin's tables are wrong: build it with plugin/sdk.hpp";
   if (!d.id || !*d.id || !d.version || !d.summary || !d.citation || !d.manual || !d.functor_name || !d.source)
     refuse(file, "has a descriptor without id, version, summary, citation, manual or functor source", remedy);
   const std::string name = std::string("descriptor `") + d.id + "` ";
   const bool known = std::any_of(kinds.begin(), kinds.end(), [&](std::uint32_t kind) { return kind == d.kind; });
-  if (!known || !d.kind_table || d.kind_table_size != table_size(d.kind))
+  if (!known || !d.kind_table || d.kind_table_size == 0)
     refuse(file,
            name + "has kind " + std::to_string(d.kind) + " with a table of " + std::to_string(d.kind_table_size) +
                " bytes",
            remedy);
-  for (std::uint32_t k = 0; k < d.parameter_count; ++k) {
-    const mpm_parameter& p = d.parameters[k];
-    if (!p.name || !p.unit || !p.doc || !p.choices || p.offset + sizeof(double) > d.parameter_bytes ||
-        p.offset % sizeof(double) != 0)
-      refuse(file, name + "has an incomplete parameter in row " + std::to_string(k + 1), remedy);
+  const std::string table = "descriptor `" + std::string(d.id) + "` with a " +
+                            std::string(kind_name(static_cast<mpm_kind>(d.kind))) + " table";
+  check_size(file, table.c_str(), d.kind_table_size, table_size(d.kind));
+  if ((d.parameter_count > 0 && !d.parameters) || (d.state_count > 0 && !d.state))
+    refuse(file,
+           name + "counts " + std::to_string(d.parameter_count) + " parameters and " + std::to_string(d.state_count) +
+               " state fields, and one of the tables is null",
+           remedy);
+}
+
+void check_rows(const Tables& tables, const std::filesystem::path& file) {
+  const std::string remedy = "the plugin's tables are wrong: build it with plugin/sdk.hpp";
+  const std::string name = std::string("descriptor `") + tables.descriptor.id + "` ";
+  const auto incomplete = [&](const char* what, std::size_t row) {
+    refuse(file, name + "has an incomplete " + what + " in row " + std::to_string(row + 1), remedy);
+  };
+  bool density = false;
+  for (std::size_t k = 0; k < tables.parameters.size(); ++k) {
+    const mpm_parameter& p = tables.parameters[k];
+    if (!p.name || !p.unit || !p.doc || !p.choices || p.type > MPM_CHOICE ||
+        p.offset + sizeof(double) > tables.descriptor.parameter_bytes || p.offset % sizeof(double) != 0)
+      incomplete("parameter", k);
+    density |= std::strcmp(p.name, "density") == 0;
   }
-  if (d.kind == MPM_MATERIAL &&
-      std::none_of(d.parameters, d.parameters + d.parameter_count,
-                   [](const mpm_parameter& p) { return std::strcmp(p.name, "density") == 0; }))
+  for (std::size_t k = 0; k < tables.state.size(); ++k) {
+    const mpm_state& s = tables.state[k];
+    if (!s.name || !*s.name || !s.unit || !s.doc || s.shape > MPM_STATE_DEFORMATION || s.initial > MPM_INITIAL_IDENTITY)
+      incomplete("state field", k);
+  }
+  if (tables.descriptor.kind == MPM_MATERIAL && !density)
     refuse(file, name + "is a material without a parameter `density`", remedy);
+}
+
+/// The checked copy of the descriptor at `source`. @throws PluginError.
+std::shared_ptr<const Tables> copied(const void* source, const mpm_plugin_library& library,
+                                     const std::filesystem::path& file) {
+  auto tables = std::make_shared<Tables>();
+  mpm_descriptor& d = tables->descriptor = widened<mpm_descriptor>(source, library.descriptor_size);
+  check_descriptor(d, file);
+  tables->parameters = rows<mpm_parameter>(d.parameters, d.parameter_count, library.parameter_size);
+  tables->state = rows<mpm_state>(d.state, d.state_count, library.state_size);
+  std::memset(static_cast<void*>(&tables->kind), 0, sizeof tables->kind);
+  std::memcpy(static_cast<void*>(&tables->kind), d.kind_table, d.kind_table_size);
+  check_rows(*tables, file);
+  d.parameters = tables->parameters.data();
+  d.state = tables->state.data();
+  d.kind_table = &tables->kind;
+  d.kind_table_size = static_cast<std::uint32_t>(table_size(d.kind));
+  return tables;
 }
 
 /// Folder of the running program.
@@ -156,23 +274,26 @@ int state_components(mpm_state_shape shape, int dimension) {
 
 void Registry::load(const std::filesystem::path& file) {
   check_whole(file);
-  void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) {
-    const char* reason = dlerror();
-    refuse(file, std::string("cannot be loaded: ") + (reason ? reason : "unknown reason"),
-           "rebuild it on this machine");
-  }
-  const mpm_plugin_library& library = checked_library(handle, file);
+  Library loaded(file);
+  const mpm_plugin_library library = checked_library(loaded, file);
+  std::vector<Plugin> found;
+  const auto offers = [](const Plugin& plugin, const mpm_descriptor& d) {
+    return plugin.descriptor->kind == d.kind && plugin.id() == d.id;
+  };
   for (std::uint32_t k = 0; k < library.descriptor_count; ++k) {
-    const mpm_descriptor& d = library.descriptors[k];
-    check_descriptor(d, file);
+    const char* first = reinterpret_cast<const char*>(library.descriptors);
+    const auto tables = copied(first + static_cast<std::size_t>(k) * library.descriptor_size, library, file);
+    const mpm_descriptor& d = tables->descriptor;
+    const std::string name = std::string(kind_name(static_cast<mpm_kind>(d.kind))) + " `" + d.id + "`";
     if (const Plugin* earlier = find(static_cast<mpm_kind>(d.kind), d.id))
-      refuse(file,
-             "offers " + std::string(kind_name(static_cast<mpm_kind>(d.kind))) + " `" + d.id + "`, which " +
-                 earlier->file.string() + " already offers",
+      refuse(file, "offers " + name + ", which " + earlier->file.string() + " already offers",
              "rename one of them or remove a folder from MPM_PLUGIN_PATH");
+    if (std::any_of(found.begin(), found.end(), [&](const Plugin& plugin) { return offers(plugin, d); }))
+      refuse(file, "offers " + name + " twice", "rename one of them");
+    found.push_back({&d, file, tables});
   }
-  for (std::uint32_t k = 0; k < library.descriptor_count; ++k) plugins_.push_back({&library.descriptors[k], file});
+  loaded.keep();
+  plugins_.insert(plugins_.end(), found.begin(), found.end());
 }
 
 Registry Registry::from_folders(std::span<const std::filesystem::path> folders) {

@@ -3,6 +3,7 @@
 // used.
 
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -18,10 +19,12 @@ class PluginError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One component as found: its descriptor lives in the loaded file, which stays loaded until the process ends.
+/// One component as found. Its file stays loaded until the process ends; its tables are copies of this program's sizes,
+/// where fields that an older plugin lacks are zero.
 struct Plugin {
   const mpm_descriptor* descriptor = nullptr;
   std::filesystem::path file;
+  std::shared_ptr<const void> tables{};  ///< what `descriptor` points into; null for a descriptor of constants
 
   std::string_view id() const { return descriptor->id; }
   std::span<const mpm_parameter> parameters() const { return {descriptor->parameters, descriptor->parameter_count}; }
@@ -51,7 +54,7 @@ class Registry {
   /// Folders searched: MPM_PLUGIN_PATH (colon separated), then the build or install tree beside the program.
   static std::vector<std::filesystem::path> default_folders();
 
-  /// Loads one file and adds what it holds. Throws PluginError.
+  /// Loads one file and adds what it holds. Throws PluginError; then nothing is added and the file is not kept loaded.
   void load(const std::filesystem::path& file);
 
   const std::vector<Plugin>& plugins() const { return plugins_; }
