@@ -30,8 +30,10 @@ std::string included_file(const std::string& line) {
   std::istringstream words(line);
   std::string first, second;
   words >> first >> second;
-  if (first == "#" && second == "include") words >> second;
-  else if (first != "#include") return "";
+  if (first == "#" && second == "include")
+    words >> second;
+  else if (first != "#include")
+    return "";
   return second;
 }
 
@@ -52,8 +54,8 @@ class Text {
     add_lines(text, path, /*functor=*/false);
   }
   void add_functor(const Plugin& plugin) {
-    const std::string name = std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))) + " plugin " +
-                             std::string(plugin.id());
+    const std::string name =
+        std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))) + " plugin " + std::string(plugin.id());
     if (!done_.insert(name).second) return;
     if (!plugin.descriptor->source || !*plugin.descriptor->source)
       throw ComposeError(name + " carries no text of its functor; build it with mpm_add_plugin(... HEADER file)");
@@ -161,8 +163,7 @@ std::vector<std::string> entry_names(const Choice& choice) {
 }  // namespace
 
 std::string Choice::name() const {
-  std::string text =
-      std::to_string(dimension) + "-D " + (precision == Precision::single ? "float" : "double") + ":";
+  std::string text = std::to_string(dimension) + "-D " + (precision == Precision::single ? "float" : "double") + ":";
   std::vector<const Plugin*> plugins{shape, transfer, filter, contact};
   plugins.insert(plugins.end(), materials.begin(), materials.end());
   for (const Plugin* plugin : plugins)

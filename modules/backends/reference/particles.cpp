@@ -56,6 +56,8 @@ void Particles::initialise(Fields& fields, const Plugin& plugin) {
     if (declared.initial == MPM_INITIAL_IDENTITY)
       for (int i = 0; i < (declared.shape == MPM_STATE_SYMMETRIC ? 3 : dimension_); ++i)
         field.row(declared.shape == MPM_STATE_SYMMETRIC ? i : i * (dimension_ + 1)).setOnes();
+    if (declared.initial == MPM_INITIAL_IDENTITY && declared.shape == MPM_STATE_DEFORMATION && dimension_ == 2)
+      field.row(4).setOnes();  // zz of plane strain
   }
 }
 

@@ -5,7 +5,7 @@
 namespace mpm::device {
 
 /// A wall's kind, in the order of ConditionType (compose.cpp checks it).
-enum Wall : int { wall_free = 0, wall_slip, wall_stick, wall_separate, wall_prescribed, wall_periodic };
+enum Wall : int { wall_free = 0, wall_stick, wall_slip, wall_separate, wall_prescribed, wall_periodic };
 
 /// Cells of a block along each axis: the particles of one block are one team's work.
 inline constexpr int block_cells = 4;

@@ -91,9 +91,8 @@ MPM_HD void update_filter(const Team& team, const Arguments<typename Scene::Scal
 /// p = m v.
 template <class Scene>
 MPM_HD void velocity_to_momentum(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
-    a.grid.momentum[at] = a.grid.mass[at % a.node_count] * a.grid.velocity[at];
-  });
+  for_each_index(team, Scene::dimension * a.node_count,
+                 [&](int at) { a.grid.momentum[at] = a.grid.mass[at % a.node_count] * a.grid.velocity[at]; });
 }
 
 /// increment += velocity - trial_velocity, at nodes with mass.
@@ -101,8 +100,7 @@ template <class Scene>
 MPM_HD void correct_increment(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
-    if (a.grid.mass[at % a.node_count] > T(0))
-      a.grid.increment[at] += a.grid.velocity[at] - a.grid.trial_velocity[at];
+    if (a.grid.mass[at % a.node_count] > T(0)) a.grid.increment[at] += a.grid.velocity[at] - a.grid.trial_velocity[at];
   });
 }
 

@@ -56,31 +56,31 @@ MPM_HD void take_mirrored(T* channel, int nodes, const Fold& fold) {
     channel[c * nodes + fold.ghost] = T(mirror_sign(fold.wall, fold.axis, c)) * channel[c * nodes + fold.mirror];
 }
 
-/// Calls body(fold) for every node of the lines along a.axis that lies beyond an end and has a mirror or image, upwards
-/// or downwards.
+/// Calls body(fold) for every node of the lines along a.axis that lies beyond an end and has a mirror or image: the
+/// outermost first when folding, since in a domain of few cells its mirror is a ghost too; last when filling.
 template <int D, class T, class Body>
-MPM_HD void for_each_fold(const Team& team, const Arguments<T>& a, bool upwards, Body body) {
+MPM_HD void for_each_fold(const Team& team, const Arguments<T>& a, bool outermost_first, Body body) {
   const int axis = a.axis, extent = a.extent[axis], padding = a.padding[axis], cells = a.cells[axis];
   int stride = 1;
   for (int c = 0; c < axis; ++c) stride *= a.extent[c];
   for_each_index(team, a.node_count / extent, [&](int line) {
-    const int first = line / stride * stride * extent + line % stride;  // node of coordinate -padding
-    for (int k = 0; k < extent; ++k) {
-      const int i = (upwards ? k : extent - 1 - k) - padding;
-      const int side = i <= 0 ? 0 : 1, wall = a.walls[axis][side];
+    const int origin = line / stride * stride * extent + line % stride + padding * stride;  // node 0 of the line
+    for (int k = 0; k < 2 * (padding + 1); ++k) {
+      const int at = outermost_first ? k : 2 * padding + 1 - k;
+      const int beyond = padding - at / 2, side = at % 2, wall = a.walls[axis][side];
+      const int i = side == 0 ? -beyond : cells + beyond;
       int mirror = i;
       if (wall == wall_periodic)
         mirror = ((i % cells) + cells) % cells;
-      else if (folds(wall) && (i <= 0 || i >= cells))
-        mirror = i <= 0 ? -i : 2 * cells - i;
-      if (mirror == i || mirror < -padding || mirror > cells + padding) continue;
-      body(Fold{first + (i + padding) * stride, first + (mirror + padding) * stride, axis, side, wall});
+      else if (folds(wall))
+        mirror = side == 0 ? beyond : cells - beyond;
+      if (mirror != i) body(Fold{origin + i * stride, origin + mirror * stride, axis, side, wall});
     }
   });
 }
 
-/// Adds masses, momenta and contact channels of ghosts along a.axis to their mirrors, and marks the ghosts. A separating
-/// wall folds while the pair approaches it, by p + dt f.
+/// Adds masses, momenta and contact channels of ghosts along a.axis to their mirrors, and marks the ghosts. A
+/// separating wall folds while the pair approaches it, by p + dt f.
 template <class Scene>
 MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;

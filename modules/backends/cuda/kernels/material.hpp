@@ -1,6 +1,6 @@
 #pragma once
-// The material functor on its particles: stress, strain, wave speed. A lane a particle. A particle whose volume ratio is
-// not a positive number is reported as failed.
+// The material functor on its particles: stress, strain, wave speed. A lane a particle. A particle whose volume ratio
+// is not a positive number is reported as failed.
 
 #include "backends/cuda/kernels/arrays.hpp"
 

@@ -62,7 +62,7 @@ MPM_HD void scatter_block(const Team& team, const Arguments<T>& a, Contribute co
 template <class Scene>
 inline constexpr int scatter_channels = (1 + 2 * Scene::dimension) * (Scene::contact ? 2 : 1);
 template <class Scene>
-inline constexpr int scatter_scalars = scatter_channels<Scene> * Tile<Scene::dimension>::nodes;
+inline constexpr int scatter_scalars = scatter_channels<Scene>* Tile<Scene::dimension>::nodes;
 
 /// The grid's array of a channel, null where this scatter leaves it alone.
 template <class Scene, class T = typename Scene::Scalar>
@@ -101,7 +101,6 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
               load_state<typename Transfer::template State<D, T>>(particles.transfer_state, particles.stride, p), b, A);
         if (a.force)
           for (int k = 0; k < Sym<D, T>::size; ++k) tau.s[k] = particles.stress[k * particles.stride + p];
-        const T volume = a.contact_fields ? particles.volume * particles.volume_ratio[p] : T(0);
         const bool weighs = a.momentum && !a.remap;
         stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
           T values[scatter_channels<Scene>];
@@ -119,12 +118,15 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
                 traction += tau(i, j) * s.gradient[j];
             values[1 + i] = s.weight * momentum;
             values[1 + D + i] = (weighs ? mass * a.gravity[i] : T(0)) - particles.volume * traction;
-            if constexpr (Scene::contact) {
+          }
+          if constexpr (Scene::contact) {
+            const T volume = a.contact_fields ? particles.volume * particles.volume_ratio[p] : T(0);
+            values[1 + 2 * D] = s.weight * volume;
+            for (int i = 0; i < D; ++i) {
               values[2 + 2 * D + i] = volume * s.gradient[i];
               values[2 + 3 * D + i] = -mass * s.distance[i];
             }
           }
-          if constexpr (Scene::contact) values[1 + 2 * D] = s.weight * volume;
           add(s.node, values);
         });
       },

@@ -1,7 +1,8 @@
 #pragma once
-// A team of lanes that works on one block. A kernel is a sequence of phases: for_each_lane runs one phase over all lanes
-// and ends when all lanes have ended it. On the GPU a lane is a thread and the end a barrier; on the host a lane is one
-// turn of a loop. A kernel keeps nothing in local variables from one phase to the next: what must last is in memory.
+// A team of lanes that works on one block. A kernel is a sequence of phases: for_each_lane runs one phase over all
+// lanes and ends when all lanes have ended it. On the GPU a lane is a thread and the end a barrier; on the host a lane
+// is one turn of a loop. A kernel keeps nothing in local variables from one phase to the next: what must last is in
+// memory.
 
 #include "kernel/config.hpp"
 
@@ -35,10 +36,10 @@ class Team {
 };
 
 /// extern "C" entry `name` that runs `kernel` with room for `scalars` values in shared memory.
-#define MPM_DEVICE_ENTRY(name, kernel, scalars)                                          \
-  extern "C" __global__ void name(const mpm::device::Arguments<Scene::Scalar> a) {       \
-    __shared__ alignas(16) unsigned char shared[sizeof(Scene::Scalar) * (scalars)];      \
-    mpm::device::kernel(mpm::device::Team(shared), a);                                   \
+#define MPM_DEVICE_ENTRY(name, kernel, scalars)                                     \
+  extern "C" __global__ void name(const mpm::device::Arguments<Scene::Scalar> a) {  \
+    __shared__ alignas(16) unsigned char shared[sizeof(Scene::Scalar) * (scalars)]; \
+    mpm::device::kernel(mpm::device::Team(shared), a);                              \
   }
 
 #else
@@ -69,15 +70,15 @@ class Team {
   int block_, lanes_;
 };
 
-/// The same on the host: teams one after another. Shared memory starts as NaN, so that what a kernel reads before it has
-/// written it shows.
-#define MPM_DEVICE_ENTRY(name, kernel, scalars)                                                         \
-  extern "C" void name(const mpm::device::Arguments<Scene::Scalar>* a, int teams, int lanes) {          \
-    alignas(16) unsigned char shared[sizeof(Scene::Scalar) * (scalars)];                                \
-    for (int block = 0; block < teams; ++block) {                                                       \
-      for (unsigned char& byte : shared) byte = 0xff;                                                   \
-      mpm::device::kernel(mpm::device::Team(shared, block, lanes), *a);                                 \
-    }                                                                                                   \
+/// The same on the host: teams one after another. Shared memory starts as NaN, so that what a kernel reads before it
+/// has written it shows.
+#define MPM_DEVICE_ENTRY(name, kernel, scalars)                                                \
+  extern "C" void name(const mpm::device::Arguments<Scene::Scalar>* a, int teams, int lanes) { \
+    alignas(16) unsigned char shared[sizeof(Scene::Scalar) * (scalars)];                       \
+    for (int block = 0; block < teams; ++block) {                                              \
+      for (unsigned char& byte : shared) byte = 0xff;                                          \
+      mpm::device::kernel(mpm::device::Team(shared, block, lanes), *a);                        \
+    }                                                                                          \
   }
 
 #endif
