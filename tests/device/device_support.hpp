@@ -98,10 +98,10 @@ class Devices {
 /// A scene on the host-run device.
 class DeviceScene {
  public:
-  DeviceScene(const std::string& text, const std::string& precision, int lanes = 32)
+  DeviceScene(const std::string& text, const std::string& precision, const device::TeamShape& team = {})
       : experiment(device_experiment(text, precision)),
-        simulation(experiment, [lanes](const Experiment& e, const Plan& plan, std::vector<SeededBody> bodies) {
-          return device::make_host_run(e, plan, bodies, Devices::shared().of(device::choice_of(e)), lanes);
+        simulation(experiment, [team](const Experiment& e, const Plan& plan, std::vector<SeededBody> bodies) {
+          return device::make_host_run(e, plan, bodies, Devices::shared().of(device::choice_of(e)), team);
         }) {}
   void run() {
     while (!simulation.finished()) simulation.step();
@@ -141,10 +141,11 @@ inline double epsilon_of(const std::string& precision) {
   return precision == "double" ? 0x1p-52 : 0x1p-23;
 }
 
-/// Multiples of epsilon that states may differ by (see parity_tolerance). Gradients that do not vanish with their
-/// weight make f/m of a node barely reached unbounded.
+/// Multiples of epsilon that states may differ by after 14 steps, each value relative to its scale: sums over stencils
+/// make some tens, and f/m of a node that a particle barely reaches more where gradients do not vanish with weights
+/// (linear). Measured: up to 56, and 111 on linear.
 inline double device_bound(const Mix& mix) {
-  return mix.shape.find("linear") != mix.shape.npos ? 1e7 : 1e4;
+  return mix.shape.find("linear") != mix.shape.npos ? 1e4 : 1e3;
 }
 
 /// Runs a mix on the reference (in double) and on the device in these precisions; both go 14 steps, in which bodies
@@ -160,7 +161,6 @@ inline void check_on_device(const Mix& mix, const std::vector<std::string>& prec
     scene.run();
     REQUIRE(scene.simulation.steps() == reference.simulation.steps());
     const double worst = scene_difference(reference, scene) / epsilon_of(precision);
-    if (std::getenv("MPM_SHOW")) printf("%-8s %10.3g %s\n", precision.c_str(), worst, mix.name().c_str());
     CHECK(worst <= device_bound(mix));
   }
 }

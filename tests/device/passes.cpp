@@ -69,7 +69,7 @@ TEST_CASE("the filter's norms on the host-run device are those of the reference 
   Mix mix = mix_with(plugin(MPM_FILTER, "fmpm"), 2);
   const std::string text = mix.text();
   Scene reference(text, {set("/backend", "reference"), set("/precision", "double")});
-  DeviceScene scene(text, "double", 17);
+  DeviceScene scene(text, "double", {17, true});
   reference.run_steps(6);
   for (int k = 0; k < 6; ++k) scene.simulation.step();
   const FilterRecord& expected = reference.simulation.backend().filter_record();
@@ -131,15 +131,20 @@ TEST_CASE("bodies of different materials run in one composition", "[device]") {
   CHECK(scene_difference(reference, scene) <= 1e3 * 0x1p-52);
 }
 
-TEST_CASE("teams of any size give the same result", "[device]") {
-  const std::string text = mix_with(plugin(MPM_FILTER, "xpic"), 2).text();
-  DeviceScene one(text, "double", 1);
-  one.run();
-  for (const int lanes : {3, 32, 256}) {
-    DeviceScene many(text, "double", lanes);
-    many.run();
-    INFO(lanes << " lanes");
-    CHECK(scene_difference(one, many) <= 1e2 * 0x1p-52);
+TEST_CASE("teams of any size and order give the same result", "[device]") {
+  for (const int dimension : {2, 3}) {
+    Mix mix = mix_with(plugin(MPM_FILTER, "xpic"), dimension);
+    mix.contact = R"({"type": "coulomb", "friction": 0.2})", mix.close = true;
+    mix.boundaries = R"({"all": "slip", "x_min": "periodic", "x_max": "periodic"})";
+    const std::string text = mix.text();
+    DeviceScene one(text, "double", {1, false});
+    one.run();
+    for (const device::TeamShape team : {device::TeamShape{1, true}, {3, false}, {32, true}, {256, true}}) {
+      DeviceScene many(text, "double", team);
+      many.run();
+      INFO(dimension << "-D, " << team.lanes << " lanes" << (team.backwards ? ", backwards" : ""));
+      CHECK(scene_difference(one, many) <= 1e2 * 0x1p-52);
+    }
   }
 }
 
@@ -176,6 +181,6 @@ TEST_CASE("the host-run device refuses what its kernels do not do", "[device]") 
     CHECK_THROWS_WITH(DeviceScene(mix.text(), "double"), Catch::Contains("given velocity"));
   }
   SECTION("too large a team") {
-    CHECK_THROWS_WITH(DeviceScene(mix.text(), "double", 257), Catch::Contains("256 lanes"));
+    CHECK_THROWS_WITH(DeviceScene(mix.text(), "double", {257, false}), Catch::Contains("256 lanes"));
   }
 }

@@ -65,8 +65,8 @@ class Text {
   std::string str() const { return out_.str(); }
 
  private:
-  /// Includes of kernel headers are replaced by their text. Others may stand where only the host looks: a kernel header
-  /// keeps them inside its own #if MPM_HOST, a functor too.
+  /// Includes of kernel headers are replaced by their text; those inside #if MPM_HOST, where only the host looks, are
+  /// dropped.
   void add_lines(const char* text, const std::string& name, bool functor) {
     std::istringstream lines(text);
     std::string line;
@@ -79,7 +79,11 @@ class Text {
       if (line.rfind("#endif", 0) == 0 && depth-- == host_depth) host_depth = 0;
       if (line.rfind("#pragma once", 0) == 0) line.clear();
       const std::string file = included_file(line);
-      if (file.empty() || host_depth) continue;
+      if (file.empty()) continue;
+      if (host_depth) {
+        line.clear();
+        continue;
+      }
       const std::string where = name + ", line " + std::to_string(number);
       if (file.front() != '"' || file.size() < 3 || (functor && file.rfind("\"kernel/", 0) != 0))
         throw ComposeError(where + " includes " + file +

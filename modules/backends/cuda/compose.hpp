@@ -35,7 +35,7 @@ class ComposeError : public std::runtime_error {
 
 struct Composition {
   std::string name;                  ///< of the choice
-  std::string text;                  ///< C++17, no #include left outside `#if MPM_HOST`
+  std::string text;                  ///< C++17 without any #include
   std::string hash;                  ///< SHA-256 of the text, hexadecimal
   std::vector<std::string> entries;  ///< extern "C" names, one a phase
 };

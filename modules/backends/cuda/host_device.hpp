@@ -27,6 +27,12 @@ struct HostCompiler {
   std::vector<std::string> all_options() const;
 };
 
+/// How teams run on the host.
+struct TeamShape {
+  int lanes = 32;
+  bool backwards = false;  ///< lanes and teams in the reverse order: results must agree to the rounding of sums
+};
+
 /// The phases of one composition, loaded into this process.
 class HostDevice {
  public:
@@ -35,11 +41,11 @@ class HostDevice {
 
   const std::string& name() const { return name_; }
 
-  /// Runs the entry "mpm_<phase>" with that many teams of that many lanes. Throws std::logic_error when the composition
-  /// has no such entry.
+  /// Runs the entry "mpm_<phase>" with that many teams. Throws std::logic_error when the composition has no such entry.
   template <class T>
-  void run(const std::string& phase, const Arguments<T>& arguments, int teams, int lanes) const {
-    reinterpret_cast<void (*)(const Arguments<T>*, int, int)>(entry(phase))(&arguments, teams, lanes);
+  void run(const std::string& phase, const Arguments<T>& arguments, int teams, const TeamShape& team) const {
+    using Entry = void (*)(const Arguments<T>*, int teams, int lanes, bool backwards);
+    reinterpret_cast<Entry>(entry(phase))(&arguments, teams, team.lanes, team.backwards);
   }
 
  private:

@@ -149,8 +149,8 @@ template <class T>
 class HostRun final : public Backend {
  public:
   HostRun(const Experiment& experiment, const Plan& plan, const std::vector<SeededBody>& seeded, HostDevice device,
-          int lanes)
-      : experiment_(experiment), plan_(plan), device_(std::move(device)), lanes_(lanes) {
+          const TeamShape& team)
+      : experiment_(experiment), plan_(plan), device_(std::move(device)), team_(team) {
     refuse_what_kernels_lack();
     describe_scene();
     for (std::size_t body = 0; body < seeded.size(); ++body)
@@ -253,7 +253,7 @@ class HostRun final : public Backend {
     if (!experiment_.boxes.empty()) refuse("boxes of conditions");
     if (experiment_.body_force) refuse("body forces");
     if (plan_.ledger) refuse("the energy ledger (\"/output/ledger\": false turns it off)");
-    if (lanes_ < 1 || lanes_ > largest_team)
+    if (team_.lanes < 1 || team_.lanes > largest_team)
       throw std::invalid_argument("a team has 1 to " + std::to_string(largest_team) + " lanes");
   }
 
@@ -295,14 +295,14 @@ class HostRun final : public Backend {
 
   // ---- launching ---------------------------------------------------------------------------------------------------
 
-  int teams(int indices) const { return (indices + lanes_ - 1) / lanes_; }
+  int teams(int indices) const { return (indices + team_.lanes - 1) / team_.lanes; }
 
   /// One phase over `indices` of every field's grid.
   void for_each_field(const std::string& phase, int indices, bool remap = false) {
     for (Field<T>& field : fields_) {
       Arguments<T> a = scene_;
       a.grid = field.arrays(), a.remap = remap, a.iteration = static_cast<int>(filter_.iterations + 1);
-      device_.run(phase, a, teams(indices), lanes_);
+      device_.run(phase, a, teams(indices), team_);
     }
   }
 
@@ -312,7 +312,7 @@ class HostRun final : public Backend {
       for (Field<T>& field : fields_) {
         Arguments<T> a = scene_;
         a.grid = field.arrays(), a.axis = axis, a.remap = remap;
-        device_.run(phase, a, teams(nodes() / scene_.extent[axis]), lanes_);
+        device_.run(phase, a, teams(nodes() / scene_.extent[axis]), team_);
       }
   }
   /// Periodic images first, then walls; ghosts are filled in the reverse order.
@@ -339,7 +339,7 @@ class HostRun final : public Backend {
   /// Runs a phase and stops the run where it reports a particle.
   void run(const std::string& phase, const Arguments<T>& a, int teams, const Body<T>& body, const char* cause) {
     first_failed_ = INT_MAX;
-    device_.run(phase, a, teams, lanes_);
+    device_.run(phase, a, teams, team_);
     if (first_failed_ != INT_MAX)
       throw RunFailure(cause, static_cast<int>(&body - bodies_.data()), static_cast<std::size_t>(first_failed_));
   }
@@ -437,7 +437,7 @@ class HostRun final : public Backend {
         arguments.grid = fields_[a].arrays(), arguments.other = fields_[b].arrays();
         arguments.contact = {active_.data(),  normal_.data(),     separation_.data(), area_.data(),
                              impulse_.data(), dissipated_.data(), status_.data()};
-        device_.run("contact", arguments, teams(nodes()), lanes_);
+        device_.run("contact", arguments, teams(nodes()), team_);
         if (step) record_pairs(step->dt);
       }
     for_each_field("impose_walls", nodes());
@@ -488,7 +488,7 @@ class HostRun final : public Backend {
     for (Field<T>& field : fields_) {
       Arguments<T> a = scene_;
       a.grid = field.arrays(), a.partial_sums = partial.data();
-      device_.run("increment_norm", a, teams(nodes()), lanes_);
+      device_.run("increment_norm", a, teams(nodes()), team_);
       for (const T part : partial) sum += part;
     }
     return std::sqrt(sum);
@@ -535,7 +535,7 @@ class HostRun final : public Backend {
   const Experiment& experiment_;
   const Plan& plan_;
   HostDevice device_;
-  int lanes_;
+  TeamShape team_;
   Arguments<T> scene_;
   std::vector<Body<T>> bodies_;
   std::vector<Field<T>> fields_;
@@ -553,10 +553,11 @@ class HostRun final : public Backend {
 }  // namespace
 
 std::unique_ptr<Backend> make_host_run(const Experiment& experiment, const Plan& plan,
-                                       const std::vector<SeededBody>& seeded, const HostDevice& device, int lanes) {
+                                       const std::vector<SeededBody>& seeded, const HostDevice& device,
+                                       const TeamShape& team) {
   if (experiment.precision == Precision::single)
-    return std::make_unique<HostRun<float>>(experiment, plan, seeded, device, lanes);
-  return std::make_unique<HostRun<double>>(experiment, plan, seeded, device, lanes);
+    return std::make_unique<HostRun<float>>(experiment, plan, seeded, device, team);
+  return std::make_unique<HostRun<double>>(experiment, plan, seeded, device, team);
 }
 
 }  // namespace mpm::device

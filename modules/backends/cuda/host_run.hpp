@@ -7,10 +7,11 @@
 
 namespace mpm::device {
 
-/// `device` is a composition of choice_of(experiment); `lanes` is the size of a team, 1 to 256.
+/// `device` is a composition of choice_of(experiment); a team has 1 to 256 lanes.
 /// Throws std::invalid_argument for what kernels do not do yet: prescribed walls, boxes of conditions, body forces and
 /// the energy ledger ("/output/ledger": false turns it off).
 std::unique_ptr<Backend> make_host_run(const Experiment& experiment, const Plan& plan,
-                                       const std::vector<SeededBody>& seeded, const HostDevice& device, int lanes);
+                                       const std::vector<SeededBody>& seeded, const HostDevice& device,
+                                       const TeamShape& team);
 
 }  // namespace mpm::device

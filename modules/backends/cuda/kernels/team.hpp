@@ -46,7 +46,8 @@ class Team {
 
 class Team {
  public:
-  Team(void* shared, int block, int lanes) : shared_(shared), block_(block), lanes_(lanes) {}
+  Team(void* shared, int block, int lanes, bool backwards)
+      : shared_(shared), block_(block), lanes_(lanes), backwards_(backwards) {}
   int block() const { return block_; }
   int lanes() const { return lanes_; }
   template <class T>
@@ -55,7 +56,7 @@ class Team {
   }
   template <class Phase>
   void for_each_lane(Phase phase) const {
-    for (int lane = 0; lane < lanes_; ++lane) phase(lane);
+    for (int k = 0; k < lanes_; ++k) phase(backwards_ ? lanes_ - 1 - k : k);
   }
   template <class T>
   static void add(T* to, T value) {
@@ -68,17 +69,18 @@ class Team {
  private:
   void* shared_;
   int block_, lanes_;
+  bool backwards_;
 };
 
-/// The same on the host: teams one after another. Shared memory starts as NaN, so that what a kernel reads before it
-/// has written it shows.
-#define MPM_DEVICE_ENTRY(name, kernel, scalars)                                                \
-  extern "C" void name(const mpm::device::Arguments<Scene::Scalar>* a, int teams, int lanes) { \
-    alignas(16) unsigned char shared[sizeof(Scene::Scalar) * (scalars)];                       \
-    for (int block = 0; block < teams; ++block) {                                              \
-      for (unsigned char& byte : shared) byte = 0xff;                                          \
-      mpm::device::kernel(mpm::device::Team(shared, block, lanes), *a);                        \
-    }                                                                                          \
+/// The same on the host: teams one after another, upwards or downwards like the lanes in them. Shared memory starts as
+/// NaN, so that what a kernel reads before it has written it shows.
+#define MPM_DEVICE_ENTRY(name, kernel, scalars)                                                                \
+  extern "C" void name(const mpm::device::Arguments<Scene::Scalar>* a, int teams, int lanes, bool backwards) { \
+    alignas(16) unsigned char shared[sizeof(Scene::Scalar) * (scalars)];                                       \
+    for (int k = 0; k < teams; ++k) {                                                                          \
+      for (unsigned char& byte : shared) byte = 0xff;                                                          \
+      mpm::device::kernel(mpm::device::Team(shared, backwards ? teams - 1 - k : k, lanes, backwards), *a);     \
+    }                                                                                                          \
   }
 
 #endif
