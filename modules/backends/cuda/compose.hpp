@@ -1,0 +1,53 @@
+#pragma once
+// From the plugins that a scene chooses to one self-contained source text for exactly that scene: kernel headers, the
+// functors' embedded text, and the entries. g++ (the host-run device) and NVRTC compile the same text.
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiment/experiment.hpp"
+
+namespace mpm::device {
+
+/// What a composition holds. `filter` and `contact` may be null; `materials` has at least one.
+struct Choice {
+  int dimension = 2;
+  Precision precision = Precision::double_;
+  const Plugin* shape = nullptr;
+  const Plugin* transfer = nullptr;
+  const Plugin* filter = nullptr;
+  const Plugin* contact = nullptr;
+  std::vector<const Plugin*> materials;
+
+  /// "2-D double: linear apic coulomb neo_hookean", for messages.
+  std::string name() const;
+};
+
+/// Everything a run of the experiment needs; its materials in the experiment's order.
+Choice choice_of(const Experiment& experiment);
+
+/// A functor's text that cannot be composed; the message names the plugin, the line and the remedy.
+class ComposeError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Composition {
+  std::string name;                  ///< of the choice
+  std::string text;                  ///< C++17 without any #include
+  std::string hash;                  ///< SHA-256 of the text, hexadecimal
+  std::vector<std::string> entries;  ///< extern "C" names, one a phase
+};
+
+/// Throws ComposeError.
+Composition compose(const Choice& choice);
+
+/// Key of compiled code in a cache: text, the compiler's name and version, and its options.
+std::string cache_key(const Composition& composition, std::string_view compiler,
+                      const std::vector<std::string>& options);
+
+/// The text of an embedded kernel header ("kernel/math.hpp"), or null.
+const char* embedded_header(std::string_view path);
+
+}  // namespace mpm::device

@@ -1,0 +1,91 @@
+#pragma once
+// Grid to particles: moments of a velocity field, the transfer's gather, and the move. A lane a particle.
+
+#include "backends/cuda/kernels/stencil.hpp"
+
+namespace mpm::device {
+
+/// Moments of `velocity` (and of velocity - before, where the transfer reads it) over a stencil.
+template <class Scene>
+MPM_HD GatheredMoments<Scene::dimension, typename Scene::Scalar> gathered_moments(
+    const Arguments<typename Scene::Scalar>& a, const Stencil<Scene>& stencil, const typename Scene::Scalar* velocity,
+    const typename Scene::Scalar* before) {
+  using T = typename Scene::Scalar;
+  constexpr int D = Scene::dimension;
+  GatheredMoments<D, T> moments{};
+  stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
+    const int node = node_index<D>(a, s.node);
+    for (int i = 0; i < D; ++i) {
+      const T v = velocity[i * a.node_count + node];
+      moments.velocity[i] += s.weight * v;
+      if constexpr (Scene::gathers_increment)
+        if (before) moments.velocity_increment[i] += s.weight * (v - before[i * a.node_count + node]);
+      for (int j = 0; j < D; ++j) {
+        if constexpr (Scene::affine) moments.affine(i, j) += v * s.affine[j];
+        moments.velocity_gradient(i, j) += v * s.gradient[j];
+      }
+    }
+  });
+  return moments;
+}
+
+/// Gather pass; without `update_particles` only the velocity gradient that strains the particle (of USF and MUSL).
+template <class Scene>
+MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  using Transfer = typename Scene::Transfer;
+  using State = typename Transfer::template State<Scene::dimension, T>;
+  constexpr int D = Scene::dimension;
+  for_each_index(team, a.particles.count, [&](int p) {
+    const ParticleArrays<T>& particles = a.particles;
+    const int stride = particles.stride;
+    const Stencil<Scene> stencil(a, p);
+    if (!stencil.inside()) return Team::lower(a.first_failed, p);
+    const auto moments = gathered_moments<Scene>(a, stencil, a.grid.velocity, a.grid.velocity_before);
+    store_matrix(particles.velocity_gradient, stride, p,
+                 Scene::strain_by_affine ? moments.affine : moments.velocity_gradient);
+    if (!a.update_particles) return;
+    Vec<D, T> v = load<D>(particles.velocity, stride, p), advection;
+    State state = load_state<State>(particles.transfer_state, stride, p);
+    Transfer::gather(parameters_of<Transfer>(a.transfer_parameters), moments, a.dt, v, state, advection);
+    if (a.filtered) v = advection = moments.velocity;
+    store(particles.velocity, stride, p, v);
+    store(particles.advection, stride, p, advection);
+    store_state(particles.transfer_state, stride, p, state);
+  });
+}
+
+/// Beyond a wall by more than this share of the domain a particle has left it; a separating wall lets half a cell
+/// through.
+template <class T>
+inline constexpr T position_tolerance = sizeof(T) == 4 ? T(1e-6) : T(1e-9);
+
+/// x += dt advection; periodic axes are wrapped.
+template <class Scene>
+MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  constexpr int D = Scene::dimension;
+  for_each_index(team, a.particles.count, [&](int p) {
+    const int stride = a.particles.stride;
+    Vec<D, T> x = load<D>(a.particles.position, stride, p);
+    const Vec<D, T> v = load<D>(a.particles.advection, stride, p);
+    bool inside = true;
+    for (int c = 0; c < D; ++c) {
+      const T size = T(a.cells[c]) * a.cell_size;
+      x[c] += a.dt * v[c];
+      T at = x[c] - a.lower[c];
+      if (a.walls[c][0] == wall_periodic) {
+        x[c] -= size * floor(at / size);
+        at = x[c] - a.lower[c];
+      }
+      const auto margin = [&](int side) {
+        return a.walls[c][side] == wall_separate ? T(0.5) * a.cell_size : position_tolerance<T> * size;
+      };
+      inside = inside && at >= -margin(0) && at <= size + margin(1);  // false for NaN
+    }
+    store(a.particles.position, stride, p, x);
+    if (!inside) Team::lower(a.first_failed, p);
+  });
+}
+
+}  // namespace mpm::device

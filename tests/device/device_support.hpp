@@ -1,0 +1,168 @@
+// Scenes run through the host-run device and through the reference backend, compared value by value.
+#pragma once
+
+#include <future>
+#include <map>
+#include <mutex>
+#include <set>
+
+#include "backends/cuda/host_run.hpp"
+#include "parity/parity.hpp"
+
+namespace mpm::test {
+
+/// A plugin as its choice in an experiment. A required parameter that is not named here stops the suite: give it a
+/// value fit for these scenes.
+inline std::string device_choice(const Plugin& plugin) {
+  static const std::map<std::string, double> values{{"youngs_modulus", 1000}, {"poisson_ratio", 0.3},
+                                                    {"density", 1000},        {"yield_stress", 60},
+                                                    {"friction_angle", 0.6},  {"order", 3}};
+  std::string text = "{\"type\": \"" + std::string(plugin.id()) + "\"";
+  for (const mpm_parameter& parameter : plugin.parameters()) {
+    if (!(parameter.flags & MPM_REQUIRED)) continue;
+    const auto found = values.find(parameter.name);
+    if (found == values.end())
+      throw std::runtime_error(std::string("tests/device: no value for the required parameter ") + parameter.name);
+    text += ", \"" + found->first + "\": " + digits(found->second);
+  }
+  if (plugin.descriptor->kind == MPM_FILTER) text += ", \"every_steps\": 2";
+  return text + "}";
+}
+
+/// A mix with this plugin in it and the usual partners elsewhere; `more` keeps the ledger off, which the device lacks.
+inline Mix mix_with(const Plugin& plugin, int dimension) {
+  Mix mix;
+  mix.dimension = dimension;
+  mix.more = R"(, "output": {"ledger": false})";
+  const std::string choice = device_choice(plugin);
+  switch (plugin.descriptor->kind) {
+    case MPM_SHAPE:
+      mix.shape = choice;
+      break;
+    case MPM_TRANSFER:
+      mix.transfer = choice;
+      break;
+    case MPM_FILTER:
+      mix.more += ", \"filter\": " + choice;
+      break;
+    case MPM_CONTACT:
+      mix.contact = choice;
+      break;
+    default:
+      mix.material = choice;
+  }
+  return mix;
+}
+
+/// Passes as the reference backend takes them; that one has no float, so it is chosen afterwards.
+inline Experiment device_experiment(const std::string& text, const std::string& precision) {
+  Experiment experiment = experiment_from(text, {set("/backend", "reference"), set("/precision", "double")});
+  if (precision == "float") experiment.precision = Precision::single;
+  return experiment;
+}
+
+/// Compiled compositions, each once a process.
+class Devices {
+ public:
+  static Devices& shared() {
+    static Devices devices;
+    return devices;
+  }
+  device::HostDevice of(const device::Choice& choice) {
+    const device::Composition composition = device::compose(choice);
+    {
+      const std::lock_guard lock(mutex_);
+      if (const auto found = devices_.find(composition.hash); found != devices_.end()) return found->second;
+    }
+    device::HostCompiler compiler;
+    compiler.options = {"-O1", "-Wall", "-Wextra", "-Werror"};
+    device::HostDevice made(composition, compiler);
+    const std::lock_guard lock(mutex_);
+    return devices_.emplace(composition.hash, made).first->second;
+  }
+  /// Compiles several at once, two side by side.
+  void prepare(const std::vector<device::Choice>& choices) {
+    const auto every_second = [&](std::size_t first) {
+      for (std::size_t k = first; k < choices.size(); k += 2) of(choices[k]);
+    };
+    std::future<void> other = std::async(std::launch::async, every_second, 1);
+    every_second(0);
+    other.get();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, device::HostDevice> devices_;
+};
+
+/// A scene on the host-run device.
+class DeviceScene {
+ public:
+  DeviceScene(const std::string& text, const std::string& precision, const device::TeamShape& team = {})
+      : experiment(device_experiment(text, precision)),
+        simulation(experiment, [team](const Experiment& e, const Plan& plan, std::vector<SeededBody> bodies) {
+          return device::make_host_run(e, plan, bodies, Devices::shared().of(device::choice_of(e)), team);
+        }) {}
+  void run() {
+    while (!simulation.finished()) simulation.step();
+  }
+  BodyState body(int index) const { return simulation.backend().body_state(index); }
+
+  const Experiment experiment;
+  Simulation simulation;
+};
+
+/// Largest difference of two bodies' states, each value over the scene's scale of it.
+inline double state_difference(const Experiment& experiment, const BodyState& expected, BodyState found) {
+  const double speed = 1.5, h = experiment.grid.cell_size;  // scales of the scenes in parity.hpp
+  wrap_onto(experiment, expected.position, found.position);
+  double worst = std::max(difference(expected.position, found.position, 1.0),
+                          difference(expected.velocity, found.velocity, speed));
+  worst = std::max(worst, difference(expected.domain, found.domain, h));
+  const auto fields = [&](const auto& a, const auto& b, double scale) {
+    REQUIRE(a.size() == b.size());
+    for (const auto& [name, values] : a) worst = std::max(worst, difference(values, b.at(name), scale));
+  };
+  fields(expected.transfer_state, found.transfer_state, speed / h);
+  fields(expected.material_state, found.material_state, 1.0);
+  return worst;
+}
+
+/// Largest of all bodies.
+template <class Reference>
+double scene_difference(const Reference& reference, const DeviceScene& found) {
+  double worst = 0;
+  for (int body = 0; body < static_cast<int>(reference.experiment.bodies.size()); ++body)
+    worst = std::max(worst, state_difference(reference.experiment, reference.body(body), found.body(body)));
+  return worst;
+}
+
+inline double epsilon_of(const std::string& precision) {
+  return precision == "double" ? 0x1p-52 : 0x1p-23;
+}
+
+/// Multiples of epsilon that states may differ by after 14 steps, each value relative to its scale: sums over stencils
+/// make some tens, and f/m of a node that a particle barely reaches more where gradients do not vanish with weights
+/// (linear). Measured: up to 56, and 111 on linear.
+inline double device_bound(const Mix& mix) {
+  return mix.shape.find("linear") != mix.shape.npos ? 1e4 : 1e3;
+}
+
+/// Runs a mix on the reference (in double) and on the device in these precisions; both go 14 steps, in which bodies
+/// cross cells. The bound is that of tests/parity in units of the precision's epsilon.
+inline void check_on_device(const Mix& mix, const std::vector<std::string>& precisions = {"double", "float"}) {
+  INFO(mix.name());
+  const std::string text = mix.text();
+  Scene reference(text, {set("/backend", "reference"), set("/precision", "double")});
+  while (!reference.simulation.finished()) reference.simulation.step();
+  for (const std::string& precision : precisions) {
+    INFO(precision);
+    DeviceScene scene(text, precision);
+    scene.run();
+    REQUIRE(scene.simulation.steps() == reference.simulation.steps());
+    const double worst = scene_difference(reference, scene) / epsilon_of(precision);
+    CHECK(worst <= device_bound(mix));
+  }
+}
+
+}  // namespace mpm::test

@@ -1,0 +1,48 @@
+// Every plugin of the registry on the host-run device, against the reference backend.
+
+#include "device/device_support.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+const std::vector<std::string> precisions{"double", "float"};
+
+/// Compositions of these mixes in both precisions, compiled side by side.
+void prepare(const std::vector<Mix>& mixes, const std::vector<std::string>& in = precisions) {
+  std::vector<device::Choice> choices;
+  std::set<std::string> names;
+  for (const Mix& mix : mixes)
+    for (const std::string& precision : in) {
+      const device::Choice choice = device::choice_of(device_experiment(mix.text(), precision));
+      if (names.insert(choice.name()).second) choices.push_back(choice);
+    }
+  Devices::shared().prepare(choices);
+}
+
+}  // namespace
+
+TEST_CASE("every plugin runs on the host-run device as on the reference backend", "[device]") {
+  std::vector<Mix> mixes;
+  for (const Plugin& plugin : plugins().plugins())
+    for (const int dimension : {2, 3}) mixes.push_back(mix_with(plugin, dimension));
+  REQUIRE(mixes.size() >= 2 * 11);
+  prepare(mixes);
+  for (const Mix& mix : mixes) check_on_device(mix);
+}
+
+TEST_CASE("every shape runs with every transfer on the host-run device", "[device]") {
+  std::vector<Mix> mixes;
+  const std::vector<std::string> orders{"last", "first", "modified_last"};
+  for (const Plugin* shape : plugins().of_kind(MPM_SHAPE))
+    for (const Plugin* transfer : plugins().of_kind(MPM_TRANSFER))
+      for (const int dimension : {2, 3}) {
+        Mix mix = mix_with(*shape, dimension);
+        mix.transfer = device_choice(*transfer);
+        mix.stress_update = orders[mixes.size() % orders.size()];
+        mixes.push_back(mix);
+      }
+  prepare(mixes, {"double"});
+  for (const Mix& mix : mixes) check_on_device(mix, {"double"});
+}
