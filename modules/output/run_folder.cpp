@@ -1,7 +1,10 @@
 #include "output/run_folder.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "output/atomic_file.hpp"
 
@@ -32,6 +35,7 @@ fs::path without_trailing_slash(const fs::path& path) {
 }
 
 void move_aside(const fs::path& folder) {
+  const FolderLock nobody_writes(folder);
   if (contains(folder, fs::current_path())) {
     throw FolderRefused(folder.string() +
                         " holds an earlier run, and the program was started inside it, so that it cannot be moved "
@@ -94,6 +98,24 @@ fs::path RunFolder::subfolder(const char* name) const {
   fs::path folder = root_ / name;
   make_folder(folder);
   return folder;
+}
+
+void RunFolder::remove_temporary_files() const {
+  std::error_code error;
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::recursive_directory_iterator(root_, error)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_regular_file() && name.starts_with('.') && name.ends_with(".tmp")) left.push_back(entry.path());
+  }
+  for (const fs::path& path : left) fs::remove(path, error);  // what stays costs room and nothing else
+}
+
+FolderLock::FolderLock(const fs::path& folder) : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (folder_.valid() && ::flock(folder_.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    throw FolderRefused(folder.string() +
+                        " is being written by another mpm that still runs; wait for it or end it, or choose another "
+                        "folder with --out");
+  }
 }
 
 void RunFolder::write_json(std::string_view name, const nlohmann::ordered_json& value) const {
