@@ -72,10 +72,12 @@ void draw_ledger(const Table& table, const RunLabel& label, const std::filesyste
   plot.x = column(table, "time");
   const std::pair<const char*, const char*> causes[] = {{"ledger scatter", "particles to grid"},
                                                         {"ledger gather", "grid to particles"},
+                                                        {"ledger filter", "filter"},
                                                         {"ledger boundary", "boundary"},
                                                         {"ledger contact", "contact"},
                                                         {"ledger body force", "body force"}};
   for (const auto& [name, text] : causes) {
+    if (!table.find(name)) continue;  // the filter's, in a run without one
     auto values = column(table, name);
     if (std::any_of(values.begin(), values.end(), [](double e) { return e != 0; }))
       plot.areas.push_back({text, plot.x, values});
@@ -95,10 +97,12 @@ void draw_dissipation(const Table& table, const RunLabel& label, const std::file
   for (std::size_t k = 0; k < gather.size(); ++k) transfer.y[k] += gather[k];
   plot.series.push_back(transfer);
   const auto add_if_any = [&](const char* name, const char* text, double factor) {
+    if (!table.find(name)) return;
     const auto values = column(table, name);
     if (std::any_of(values.begin(), values.end(), [](double e) { return e != 0; }))
       add(plot, table, name, text, factor);
   };
+  add_if_any("ledger filter", "filter", -1);
   add_if_any("ledger boundary", "boundary", -1);
   add_if_any("ledger contact", "contact", -1);
   add_if_any("ledger friction", "of it friction", 1);

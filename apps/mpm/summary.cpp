@@ -51,6 +51,7 @@ Json energy(const Simulation& simulation, const Metrics& metrics, const Recorder
                     {"friction", l.friction},
                     {"material_dissipation", l.material},
                     {"residual", metrics.ledger_residual(end)}};
+  if (simulation.plan().filter) json["ledger"]["filter"] = l.filter;
   return json;
 }
 
@@ -117,6 +118,12 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
   json["stability"] = {{"smallest_volume_ratio", recorder.smallest_volume_ratio()},
                        {"largest_volume_ratio", recorder.largest_volume_ratio()},
                        {"largest_speed", end.largest_speed}};
+  if (simulation.plan().filter) {
+    const FilterRecord& filter = simulation.backend().filter_record();
+    json["stability"]["filter"] = {{"iterations", filter.iterations},
+                                   {"increment_norm", filter.last_norm},
+                                   {"largest_growth", filter.largest_growth}};
+  }
   json["performance"] = {{"wall_seconds", earlier.wall_seconds + wall_seconds},
                          {"stepping_seconds", stepping},
                          {"particle_steps_per_second",
@@ -143,6 +150,14 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
     warning.precision(3);
     warning << "total energy rose by " << 100 * gain / scale
             << " % of its initial value: the combination or the time step is not stable";
+    json["warnings"].push_back(warning.str());
+  }
+  if (const double growth = simulation.backend().filter_record().largest_growth; growth > 1 + 1e-9) {
+    std::ostringstream warning;
+    warning.precision(6);
+    warning << "the filter's increment grew by a factor of up to " << growth
+            << " in one pass: its loop no longer contracts, because constraints or negative weights broke it; filter "
+               "with fewer passes or with /filter/constraints \"at_end\"";
     json["warnings"].push_back(warning.str());
   }
   return json;

@@ -40,6 +40,20 @@ struct Sym {
   }
 };
 
+/// Matrix of three-dimensional space that couples no in-plane axis with z in 2-D (plane strain): there xx xy yx yy and
+/// zz. Laid out as MPM_STATE_DEFORMATION.
+template <int D, class S>
+struct Deformation;
+template <class S>
+struct Deformation<2, S> {
+  Mat<2, S> plane;
+  S zz;
+};
+template <class S>
+struct Deformation<3, S> {
+  Mat<3, S> plane;  ///< all of space
+};
+
 template <int D, class S>
 MPM_HD Mat<D, S> operator*(const Mat<D, S>& a, const Mat<D, S>& b) {
   Mat<D, S> r;

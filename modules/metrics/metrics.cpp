@@ -13,13 +13,35 @@ std::array<double, 3> cross(const double* a, const double* b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Second moment of the shape on each axis, m^2: constant, or f(1 - f) h^2 for the linear shape.
-double second_moment(const Experiment& experiment, double x, int axis) {
+/// Entry (a, b) of the shape's second moment at particle p, m^2: the particle's own, or on the diagonal constant, or
+/// f(1 - f) h^2 for the linear shape.
+double second_moment(const Experiment& experiment, const BodyState& state, std::size_t p, int a, int b) {
   const mpm_shape& shape = experiment.shape.plugin->shape();
+  const int D = experiment.dimension;
   const double h = experiment.grid.cell_size;
+  if (!state.second_moment.empty()) return state.second_moment[p * D * D + a * D + b];
+  if (a != b) return 0;
   if (shape.second_moment_kind != MPM_MOMENT_IS_GRADIENT) return shape.second_moment * h * h;
-  const double cell = (x - experiment.grid.lower[axis]) / h, f = cell - std::floor(cell);
+  const double cell = (state.position[p * D + a] - experiment.grid.lower[a]) / h, f = cell - std::floor(cell);
   return f * (1 - f) * h * h;
+}
+
+/// The affine part C of a velocity over the nodes of a particle: m sum w |C d|^2 / 2 and m sum w d x (C d).
+void add_affine(const Experiment& experiment, const BodyState& state, const double* C, std::size_t p, Totals& totals) {
+  const int D = experiment.dimension;
+  for (int a = 0; a < D; ++a)
+    for (int b = 0; b < D; ++b) {
+      const double moment = second_moment(experiment, state, p, a, b);
+      if (moment == 0) continue;
+      double d[3] = {}, column_a[3] = {}, column_b[3] = {};
+      d[a] = 1;
+      for (int c = 0; c < D; ++c) column_a[c] = C[c * D + a], column_b[c] = C[c * D + b];
+      const auto spin = cross(d, column_b);
+      for (int c = 0; c < 3; ++c) {
+        totals.kinetic += 0.5 * state.mass * moment * column_a[c] * column_b[c];
+        totals.angular_momentum[c] += state.mass * moment * spin[c];
+      }
+    }
 }
 
 }  // namespace
@@ -75,18 +97,7 @@ void Metrics::add_body(int body, Totals& totals) const {
       totals.centre_of_mass[c] += m * x[c];
       totals.gravitational -= m * experiment.gravity[c] * x[c];
     }
-    if (!C) continue;
-    for (int a = 0; a < D; ++a) {  // sum over nodes of w d x (C d) and |C d|^2 / 2
-      const double moment = second_moment(experiment, x[a], a);
-      double d[3] = {}, column[3] = {};
-      d[a] = 1;
-      for (int c = 0; c < D; ++c) column[c] = C[p * D * D + c * D + a];
-      const auto spin = cross(d, column);
-      for (int c = 0; c < 3; ++c) {
-        totals.kinetic += 0.5 * m * moment * column[c] * column[c];
-        totals.angular_momentum[c] += m * moment * spin[c];
-      }
-    }
+    if (C) add_affine(experiment, state, &C[p * D * D], p, totals);
   }
   if (!start_.empty()) add_errors(body, state, totals);
 }
@@ -116,8 +127,8 @@ void Metrics::add_errors(int body, const BodyState& state, Totals& totals) const
 double Metrics::ledger_residual(const Totals& now) const {
   if (!simulation_.plan().ledger) return 0;
   const Ledger& ledger = simulation_.backend().ledger();
-  const double explained =
-      ledger.scatter + ledger.gather + ledger.boundary + ledger.contact + ledger.body_force - ledger.material;
+  const double explained = ledger.scatter + ledger.gather + ledger.filter + ledger.boundary + ledger.contact +
+                           ledger.body_force - ledger.material;
   return now.total_energy() - initial_.total_energy() - explained;
 }
 
@@ -133,6 +144,7 @@ std::vector<std::string> Metrics::columns() const {
     for (const char* name : {"scatter", "gather", "internal force", "gravity", "body force", "boundary", "contact",
                              "friction", "material dissipation"})
       names.push_back(std::string("ledger ") + name + energy);
+    if (simulation_.plan().filter) names.push_back("ledger filter" + energy);
     names.push_back("ledger residual" + energy);
   }
   for (int c = 0; c < experiment.dimension; ++c) names.push_back(std::string("momentum ") + "xyz"[c] + momentum);
@@ -145,6 +157,10 @@ std::vector<std::string> Metrics::columns() const {
       names.push_back(std::string("contact force ") + "xyz"[c] + (flat ? " (N/m)" : " (N)"));
     for (const char* name : {"contact nodes", "sticking nodes", "slipping nodes", "largest penetration (m)"})
       names.emplace_back(name);
+  }
+  if (simulation_.plan().filter) {
+    names.push_back(std::string("filter increment norm (kg^0.5 m/s") + (flat ? " per m^0.5)" : ")"));
+    names.emplace_back("filter iterations");
   }
   if (experiment.exact)
     for (const char* name :
@@ -160,7 +176,9 @@ std::vector<double> Metrics::row(const Totals& t) const {
   if (simulation_.plan().ledger) {
     const Ledger& l = simulation_.backend().ledger();
     values.insert(values.end(), {l.scatter, l.gather, l.internal_force, l.gravity, l.body_force, l.boundary, l.contact,
-                                 l.friction, l.material, ledger_residual(t)});
+                                 l.friction, l.material});
+    if (simulation_.plan().filter) values.push_back(l.filter);
+    values.push_back(ledger_residual(t));
   }
   values.insert(values.end(), t.momentum.begin(), t.momentum.begin() + experiment.dimension);
   values.insert(values.end(), t.angular_momentum.begin() + (experiment.dimension == 2 ? 2 : 0),
@@ -172,6 +190,10 @@ std::vector<double> Metrics::row(const Totals& t) const {
     values.insert(values.end(), c.force.begin(), c.force.begin() + experiment.dimension);
     values.insert(values.end(), {static_cast<double>(c.nodes), static_cast<double>(c.sticking),
                                  static_cast<double>(c.slipping), c.largest_penetration});
+  }
+  if (simulation_.plan().filter) {
+    const FilterRecord& f = simulation_.backend().filter_record();
+    values.insert(values.end(), {f.last_norm, static_cast<double>(f.iterations)});
   }
   if (experiment.exact)
     values.insert(values.end(),

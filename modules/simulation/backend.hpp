@@ -1,6 +1,7 @@
 #pragma once
 // What a backend offers the step: passes of the plan, the particles as doubles, and what it measured on the way.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -60,6 +61,13 @@ struct FilterRecord {
          last_norm = 0;       ///< mass norm of the increment, sqrt(sum m v*.v*), kg^1/2 m/s: at the begin, now
   double largest_growth = 0;  ///< over the run: largest ratio of a norm to the one before; above 1 a constraint or a
                               ///< negative weight has broken the contraction
+
+  /// Takes the norm after one more pass. Growth of what is rounding already (relative to the first norm) says nothing.
+  void take_norm(double norm, double rounding = 1e-12) {
+    if (last_norm > rounding * first_norm) largest_growth = std::max(largest_growth, norm / last_norm);
+    last_norm = norm;
+    ++iterations;
+  }
 };
 
 /// What contact did, last step and in total. Forces act on the pair's first body.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace mpm::reference {
 
@@ -9,13 +10,24 @@ Grid::Grid(const Experiment& experiment) : experiment_(experiment) {
   padding_ = Eigen::Vector3i::Zero();
   extent_ = Eigen::Vector3i::Ones();
   for (int axis = 0; axis < experiment.dimension; ++axis) {
-    padding_[axis] = grid_padding;
-    extent_[axis] = experiment.grid.cells[axis] + 1 + 2 * grid_padding;
+    padding_[axis] = grid_padding_of(experiment.shape.plugin->shape());
+    extent_[axis] = experiment.grid.cells[axis] + 1 + 2 * padding_[axis];
   }
   for (int k = 0; k < extent_[2]; ++k)
     for (int j = 0; j < extent_[1]; ++j)
       for (int i = 0; i < extent_[0]; ++i) coordinates_.push_back(Eigen::Vector3i(i, j, k) - padding_);
   fields_.assign(experiment.field_count, std::vector<Node>(coordinates_.size()));
+  // In a domain of few cells a ghost's mirror is a ghost of the other wall: it is folded on after what it receives.
+  for (int axis = 0; axis < experiment.dimension; ++axis) {
+    auto& order = outermost_first_[axis];
+    order.resize(coordinates_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto beyond = [&](std::size_t index) {
+      const int i = coordinates_[index][axis];
+      return std::max({-i, i - experiment.grid.cells[axis], 0});
+    };
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return beyond(a) > beyond(b); });
+  }
 }
 
 void Grid::reset() {
@@ -37,6 +49,11 @@ std::size_t Grid::index(const Eigen::Vector3i& coordinates) const {
   return (static_cast<std::size_t>(c[2]) * extent_[1] + c[1]) * extent_[0] + c[0];
 }
 
+bool Grid::contains(const Eigen::Vector3i& coordinates) const {
+  const Eigen::Vector3i c = coordinates + padding_;
+  return (c.array() >= 0).all() && (c.array() < extent_.array()).all();
+}
+
 Vector Grid::position(const Eigen::Vector3i& coordinates) const {
   return to_eigen(experiment_.grid.lower) + experiment_.grid.cell_size * coordinates.cast<double>();
 }
@@ -46,6 +63,14 @@ double Grid::kinetic_energy() const {
   for (const auto& field : fields_)
     for (const Node& node : field) sum += node.kinetic_energy();
   return sum;
+}
+
+double Grid::mass_norm(Vector Node::*velocity) const {
+  double sum = 0;
+  for (const auto& field : fields_)
+    for (const Node& node : field)
+      if (node.mass > 0) sum += node.mass * (node.*velocity).squaredNorm();
+  return std::sqrt(sum);
 }
 
 Vector Grid::wall_velocity(const Fold& fold, double time) const {
@@ -92,11 +117,11 @@ void Grid::fold_walls(double time, double dt, bool remap) {
 void Grid::fold_axis(int axis, double time, double dt, bool remap) {
   const int cells = experiment_.grid.cells[axis];
   for (int field = 0; field < field_count(); ++field)
-    for (std::size_t index = 0; index < node_count(); ++index) {
+    for (const std::size_t index : outermost_first_[axis]) {
       Eigen::Vector3i target = coordinates_[index];
       const int i = target[axis];
       const ConditionType type = experiment_.faces[axis][i <= 0 ? 0 : 1].type;
-      Fold fold{field, index, index, axis, i <= 0 ? 0 : 1};
+      Fold fold{field, index, index, axis, i <= 0 ? 0 : 1, 0};
       if (type == ConditionType::periodic) {
         if (i >= 0 && i < cells) continue;
         target[axis] = ((i % cells) + cells) % cells;
@@ -113,8 +138,9 @@ void Grid::fold_axis(int axis, double time, double dt, bool remap) {
     }
 }
 
-void Grid::fold_node(const Fold& fold, double time, bool remap) {
+void Grid::fold_node(Fold fold, double time, bool remap) {
   Node& ghost = fields_[fold.field][fold.ghost];
+  fold.mass = ghost.mass;
   Node& node = fields_[fold.field][fold.mirror];
   const Vector wall = fold.side < 0 ? Vector(Vector::Zero()) : Vector(ghost.mass * wall_velocity(fold, time));
   node.mass += ghost.mass;
@@ -127,6 +153,25 @@ void Grid::fold_node(const Fold& fold, double time, bool remap) {
     node.mass_position += mirrored(ghost.mass_position, fold, ConditionType::slip);
   }
   folds_.push_back(fold);
+}
+
+void Grid::fold_projection(std::optional<double> time) {
+  for (const Fold& fold : folds_) {
+    Vector& ghost = fields_[fold.field][fold.ghost].projected;
+    const bool wall_moves = time && fold.side >= 0;
+    const Vector wall = wall_moves ? Vector(fold.mass * wall_velocity(fold, *time)) : Vector(Vector::Zero());
+    fields_[fold.field][fold.mirror].projected += wall + mirrored(ghost - wall, fold, type_of(fold));
+    ghost = Vector::Zero();
+  }
+  for (auto& field : fields_)
+    for (Node& node : field)
+      node.projected = node.mass > 0 ? Vector(node.projected / node.mass) : Vector(Vector::Zero());
+}
+
+void Grid::fill_increment_ghosts() {
+  for (auto fold = folds_.rbegin(); fold != folds_.rend(); ++fold)
+    fields_[fold->field][fold->ghost].increment =
+        mirrored(fields_[fold->field][fold->mirror].increment, *fold, type_of(*fold));
 }
 
 void Grid::fold_forces() {

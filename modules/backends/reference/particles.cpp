@@ -6,6 +6,7 @@ namespace mpm::reference {
 
 Particles::Particles(const Experiment& experiment, const Plan& plan, int body, const SeededBody& seeded)
     : experiment_(experiment),
+      plan_(plan),
       transfer_(experiment.transfer),
       material_(experiment.materials[experiment.bodies[body].material].component),
       body_(body),
@@ -14,7 +15,8 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
       count_(seeded.position.size() / experiment.dimension),
       padded_((count_ + MPM_LANES - 1) / MPM_LANES * MPM_LANES),
       mass_(seeded.mass),
-      volume_(seeded.volume) {
+      volume_(seeded.volume),
+      shape_(experiment, plan) {
   const int D = dimension_;
   position = make(D), velocity = make(D), advection = make(D);
   for (std::size_t p = 0; p < count_; ++p)
@@ -26,7 +28,12 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
   if (plan.initial_position) initial_position = position;
   b = make(D), A = make(D * D), stress = make(D == 2 ? 4 : 6), volume_ratio = make(1);
   gathered_velocity = make(D), gathered_increment = make(D), gathered_affine = make(D * D),
-  velocity_gradient = make(D * D);
+  gathered_gradient = make(D * D), velocity_gradient = make(D * D);
+  if (plan.particle_domain) {
+    domain_ = make(D * D);
+    for (int a = 0; a < D; ++a)
+      domain_.row(a * (D + 1)).setConstant(0.5 / experiment.bodies[body].particles_per_cell_axis);
+  }
   initialise(transfer_state_, *transfer_.plugin);
   initialise(material_state_, *material_.plugin);
   if (!seeded.velocity_gradient.empty()) {
@@ -41,7 +48,7 @@ Array Particles::make(int components) const {
   return Array::Zero(components, static_cast<Eigen::Index>(padded_));
 }
 
-void Particles::initialise(std::map<std::string, Array>& fields, const Plugin& plugin) {
+void Particles::initialise(Fields& fields, const Plugin& plugin) {
   for (const mpm_state& declared : plugin.state()) {
     const int components = state_components(static_cast<mpm_state_shape>(declared.shape), dimension_);
     Array& field = fields[declared.name] = make(components);
@@ -52,7 +59,7 @@ void Particles::initialise(std::map<std::string, Array>& fields, const Plugin& p
   }
 }
 
-std::vector<void*> Particles::pointers(std::map<std::string, Array>& fields, const Plugin& plugin) {
+std::vector<void*> Particles::pointers(Fields& fields, const Plugin& plugin) {
   std::vector<void*> list;
   for (const mpm_state& declared : plugin.state()) list.push_back(fields.at(declared.name).data());
   return list;
@@ -60,8 +67,9 @@ std::vector<void*> Particles::pointers(std::map<std::string, Array>& fields, con
 
 std::uint64_t Particles::bytes() const {
   Eigen::Index scalars = 0;
-  for (const Array* array : {&position, &velocity, &initial_position, &advection, &b, &A, &stress, &volume_ratio,
-                             &gathered_velocity, &gathered_increment, &gathered_affine, &velocity_gradient})
+  for (const Array* array :
+       {&position, &velocity, &initial_position, &advection, &b, &A, &stress, &volume_ratio, &gathered_velocity,
+        &gathered_increment, &gathered_affine, &gathered_gradient, &velocity_gradient, &domain_})
     scalars += array->size();
   for (const auto* fields : {&transfer_state_, &material_state_})
     for (const auto& [name, array] : *fields) scalars += array.size();
@@ -101,61 +109,52 @@ void Particles::pad(Array& array) const {
   for (std::size_t p = count_; p < padded_; ++p) array.col(p) = array.col(count_ - 1);
 }
 
-void Particles::find_stencils(const Grid& grid) {
-  const mpm_shape& shape = experiment_.shape.plugin->shape();
-  const int D = dimension_, K = static_cast<int>(shape.width);
-  const double h = experiment_.grid.cell_size;
-  Array cells = make(D), offset = make(D), w = make(D * K), g = make(D * K);
-  std::vector<std::int32_t> base(D * padded_);
-  for (int c = 0; c < D; ++c) cells.row(c) = (position.row(c).array() - experiment_.grid.lower[c]) / h;
-  const mpm_shape_batch batch{static_cast<std::uint32_t>(padded_),
-                              static_cast<std::uint32_t>(padded_),
-                              static_cast<std::uint32_t>(D),
-                              0,
-                              cells.data(),
-                              nullptr,
-                              nullptr,
-                              base.data(),
-                              offset.data(),
-                              w.data(),
-                              g.data(),
-                              nullptr};
-  shape.evaluate[MPM_SCALAR_DOUBLE](experiment_.shape.parameters.data(), &batch);
-
-  stencils_.assign(count_, {});
-  for (std::size_t p = 0; p < count_; ++p)
-    for (int k = 0; k < (D == 3 ? K : 1); ++k)
-      for (int j = 0; j < K; ++j)
-        for (int i = 0; i < K; ++i) {
-          const int at[3] = {i, j, k};
-          Eigen::Vector3i coordinates = Eigen::Vector3i::Zero();
-          StencilNode node;
-          node.weight = 1, node.gradient = Vector::Zero(), node.distance = Vector::Zero();
-          for (int c = 0; c < D; ++c) {
-            coordinates[c] = base[c * padded_ + p] + at[c];
-            node.distance[c] = h * (at[c] - offset(c, p));
-            node.weight *= w(c * K + at[c], p);
-            node.gradient[c] = g(c * K + at[c], p) / h;
-            for (int e = 0; e < D; ++e)
-              if (e != c) node.gradient[c] *= w(e * K + at[e], p);
-          }
-          node.index = grid.index(coordinates);
-          node.affine = shape.second_moment_kind == MPM_MOMENT_IS_GRADIENT
-                            ? node.gradient
-                            : Vector(node.weight * node.distance / (shape.second_moment * h * h));
-          stencils_[p].push_back(node);
-        }
+ShapeArguments Particles::shape_arguments() const {
+  ShapeArguments at{make(dimension_), make(dimension_), domain_};
+  for (int c = 0; c < dimension_; ++c)
+    at.position.row(c) = (position.row(c).array() - experiment_.grid.lower[c]) / experiment_.grid.cell_size;
+  at.half_size.setConstant(0.5 / experiment_.bodies[body_].particles_per_cell_axis);
+  return at;
 }
 
-void Particles::scatter_coefficients() {
+void Particles::find_stencils(const Grid& grid) {
+  const ShapeArguments at = shape_arguments();
+  const ShapeValues values = shape_.evaluate(at);
+  stencils_.clear(), second_moments_.clear();
+  for (std::size_t p = 0; p < count_; ++p) {
+    stencils_.push_back(shape_.stencil(values, at, p, grid, body_));
+    second_moments_.push_back(shape_.second_moment(values, at, p));
+  }
+}
+
+void Particles::call_scatter(const Array& velocities, Fields& states) {
   const mpm_transfer& transfer = transfer_.plugin->transfer();
   Array mass = make(1);
   mass.setConstant(mass_);
-  const auto state = pointers(transfer_state_, *transfer_.plugin);
+  const auto state = pointers(states, *transfer_.plugin);
   const auto n = static_cast<std::uint32_t>(padded_);
-  const mpm_scatter_batch batch{
-      n, n, static_cast<std::uint32_t>(dimension_), 0, mass.data(), velocity.data(), state.data(), b.data(), A.data()};
+  const mpm_scatter_batch batch{n,
+                                n,
+                                static_cast<std::uint32_t>(dimension_),
+                                0,
+                                mass.data(),
+                                velocities.data(),
+                                state.data(),
+                                b.data(),
+                                transfer.traits & MPM_SCATTERS_AFFINE ? A.data() : nullptr};
   transfer.scatter[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
+}
+
+void Particles::scatter_coefficients() {
+  call_scatter(velocity, transfer_state_);
+}
+
+void Particles::project_coefficients(double dt) {
+  Array velocities = make(dimension_), advections = make(dimension_);
+  Fields states = transfer_state_;
+  for (auto& [name, field] : states) field.setZero();
+  call_gather(dt, gathered_velocity, velocities, states, advections);
+  call_scatter(velocities, states);
 }
 
 std::int32_t Particles::update_material(const mpm_material_batch& request) {
@@ -191,13 +190,16 @@ double Particles::strain(double dt) {
   batch.velocity_gradient = velocity_gradient.data();
   batch.dissipated_energy = dissipated.data();
   refuse_inverted(update_material(batch));
+  if (plan_.particle_domain)  // (I + dt L) domain, as F
+    for (std::size_t p = 0; p < padded_; ++p)
+      set(domain_, p, Matrix((Matrix::Identity() + dt * matrix(velocity_gradient, p)) * matrix(domain_, p)));
   return volume_ * dissipated.leftCols(count_).sum();
 }
 
-void Particles::gather(double dt) {
+void Particles::call_gather(double dt, const Array& increments, Array& velocities, Fields& states, Array& advections) {
   const mpm_transfer& transfer = transfer_.plugin->transfer();
-  for (Array* array : {&gathered_velocity, &gathered_increment, &gathered_affine}) pad(*array);
-  const auto state = pointers(transfer_state_, *transfer_.plugin);
+  for (Array* array : {&gathered_velocity, &gathered_increment, &gathered_affine, &gathered_gradient}) pad(*array);
+  const auto state = pointers(states, *transfer_.plugin);
   const auto n = static_cast<std::uint32_t>(padded_);
   const mpm_gather_batch batch{n,
                                n,
@@ -205,13 +207,21 @@ void Particles::gather(double dt) {
                                0,
                                dt,
                                gathered_velocity.data(),
-                               gathered_increment.data(),
+                               increments.data(),
                                gathered_affine.data(),
-                               nullptr,
-                               velocity.data(),
+                               gathered_gradient.data(),
+                               velocities.data(),
                                state.data(),
-                               advection.data()};
+                               advections.data()};
   transfer.gather[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
+}
+
+void Particles::gather(double dt) {
+  call_gather(dt, gathered_increment, velocity, transfer_state_, advection);
+}
+
+void Particles::take_gathered_velocity() {
+  velocity = advection = gathered_velocity;
 }
 
 TimeStepLimit Particles::time_step_limit() {
@@ -229,19 +239,12 @@ TimeStepLimit Particles::time_step_limit() {
 }
 
 double Particles::kinetic_energy() const {
-  const mpm_shape& shape = experiment_.shape.plugin->shape();
-  const double h = experiment_.grid.cell_size;
   const bool affine = transfer_.plugin->transfer().traits & MPM_AFFINE_CARRIES_ENERGY;
   const Array* C = affine ? &transfer_state_.at(transfer_.plugin->state()[0].name) : nullptr;
   double sum = 0;
   for (std::size_t p = 0; p < count_; ++p) {
     sum += 0.5 * mass_ * column(velocity, p).squaredNorm();
-    for (int a = 0; C && a < dimension_; ++a) {
-      const double cell = (position(a, p) - experiment_.grid.lower[a]) / h, f = cell - std::floor(cell);
-      const double moment =
-          h * h * (shape.second_moment_kind == MPM_MOMENT_IS_GRADIENT ? f * (1 - f) : shape.second_moment);
-      sum += 0.5 * mass_ * moment * matrix(*C, p).col(a).squaredNorm();
-    }
+    if (C) sum += 0.5 * mass_ * (matrix(*C, p) * second_moments_[p] * matrix(*C, p).transpose()).trace();
   }
   return sum;
 }
@@ -259,9 +262,36 @@ BodyState Particles::state() const {
   if (initial_position.size()) result.initial_position = particle_major(initial_position);
   for (const auto& [name, array] : transfer_state_) result.transfer_state[name] = particle_major(array);
   for (const auto& [name, array] : material_state_) result.material_state[name] = particle_major(array);
+  if (plan_.particle_domain) result.domain = particle_major(experiment_.grid.cell_size * domain_);
+  if (plan_.second_moment) {
+    const double h = experiment_.grid.cell_size;
+    result.second_moment = particle_major(h * h * shape_.evaluate(shape_arguments()).second_moment);
+  }
   result.volume = volume_;
   result.mass = mass_;
   return result;
+}
+
+template <class Self, class Visit>
+void Particles::visit_saved(Self& self, Visit visit) {
+  visit("position", self.position);
+  visit("velocity", self.velocity);
+  visit("initial_position", self.initial_position);
+  visit("domain", self.domain_);
+  for (auto& [name, field] : self.transfer_state_) visit(name, field);
+  for (auto& [name, field] : self.material_state_) visit(name, field);
+}
+
+void Particles::save(ArchiveWriter& archive) const {
+  visit_saved(*this, [&](const std::string& name, const Array& array) {
+    archive.put(name, array.data(), static_cast<std::size_t>(array.size()));
+  });
+}
+
+void Particles::restore(ArchiveReader& archive) {
+  visit_saved(*this, [&](const std::string& name, Array& array) {
+    archive.get(name, array.data(), static_cast<std::size_t>(array.size()));
+  });
 }
 
 }  // namespace mpm::reference

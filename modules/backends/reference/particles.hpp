@@ -1,27 +1,13 @@
 #pragma once
 // The particles of one body in the reference backend, and their calls over the plugin boundary.
 
-#include <Eigen/Core>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "backends/reference/grid.hpp"
+#include "backends/reference/stencil.hpp"
 
 namespace mpm::reference {
-
-/// [component][particle], padded with copies of the last particle so that a plugin may compute whole lanes.
-using Array = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// One node of a particle's stencil.
-struct StencilNode {
-  std::size_t index = 0;
-  double weight = 0;
-  Vector gradient;  ///< grad w, 1/m
-  Vector distance;  ///< d = node - particle, m
-  Vector affine;    ///< w D^-1 d, 1/m
-};
-using Stencil = std::vector<StencilNode>;
 
 class Particles {
  public:
@@ -42,45 +28,65 @@ class Particles {
   /// Copies the last particle into the padding.
   void pad(Array& array) const;
 
-  /// Stencils at the current positions.
+  /// Stencils and second moments at the current positions and domains; they hold until the next call. Throws
+  /// RunFailure.
   void find_stencils(const Grid& grid);
   const Stencil& stencil(std::size_t p) const { return stencils_[p]; }
 
   /// Momentum coefficients b and A of all particles.
   void scatter_coefficients();
+  /// The same of the velocity that the transfer makes of the gathered moments alone, particles at rest before: S+ S of
+  /// a filter. Changes no particle.
+  void project_coefficients(double dt);
   /// Kirchhoff stress and volume ratio at the current state. Throws RunFailure when a particle is inverted.
   void evaluate_stress();
-  /// Advances the material by dt with `velocity_gradient`; returns the energy dissipated, J. Throws RunFailure.
+  /// Advances material and domain by dt with `velocity_gradient`; returns the energy dissipated, J. Throws RunFailure.
   double strain(double dt);
   /// Updates velocity and transfer state from the gathered moments.
   void gather(double dt);
+  /// The gathered velocity moves the particles and replaces theirs: the step was filtered.
+  void take_gathered_velocity();
   /// Largest wave speed + particle speed.
   TimeStepLimit time_step_limit();
 
-  /// Kinetic energy with the affine part, J.
+  /// Kinetic energy, J, with the affine part m/2 tr(C D C^T), D as the stencils were found.
   double kinetic_energy() const;
 
   BodyState state() const;
+  void save(ArchiveWriter& archive) const;
+  void restore(ArchiveReader& archive);
 
   Array position, velocity, initial_position, advection;
   Array b, A, stress, volume_ratio;
-  Array gathered_velocity, gathered_increment, gathered_affine, velocity_gradient;
+  Array gathered_velocity, gathered_increment, gathered_affine, gathered_gradient;
+  Array velocity_gradient;  ///< what strains the particle
 
  private:
+  using Fields = std::map<std::string, Array>;
   Array make(int components) const;
-  std::vector<void*> pointers(std::map<std::string, Array>& fields, const Plugin& plugin);
-  void initialise(std::map<std::string, Array>& fields, const Plugin& plugin);
+  ShapeArguments shape_arguments() const;
+  void call_scatter(const Array& velocities, Fields& states);
+  void call_gather(double dt, const Array& increments, Array& velocities, Fields& states, Array& advections);
+  /// What saving writes and restoring reads, in order.
+  template <class Self, class Visit>
+  static void visit_saved(Self& self, Visit visit);
+  std::vector<void*> pointers(Fields& fields, const Plugin& plugin);
+  void initialise(Fields& fields, const Plugin& plugin);
   std::int32_t update_material(const mpm_material_batch& outputs);
   void refuse_inverted(std::int32_t particle) const;
 
   const Experiment& experiment_;
+  const Plan& plan_;
   const Component& transfer_;
   const Component& material_;
   int body_, field_, dimension_;
   std::size_t count_, padded_;
   double mass_, volume_;
-  std::map<std::string, Array> transfer_state_, material_state_;
+  Shape shape_;
+  Array domain_;  ///< [D*D], cells, column k the k-th semi-side; empty unless Plan::particle_domain
+  Fields transfer_state_, material_state_;
   std::vector<Stencil> stencils_;
+  std::vector<Matrix> second_moments_;  ///< m^2, with the stencils
 };
 
 }  // namespace mpm::reference

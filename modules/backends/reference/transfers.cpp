@@ -1,0 +1,110 @@
+// Particles to grid and back.
+
+#include "backends/reference/reference_backend.hpp"
+
+namespace mpm::reference {
+
+void ReferenceBackend::scatter(const Pass& pass, const StepInfo& step) {
+  if (pass.remap) grid_.reset_momentum();
+  for (Particles& body : bodies_) {
+    if (!pass.remap && pass.momentum) body.find_stencils(grid_);
+    if (pass.momentum) scatter_momentum(body, pass.remap);
+    if (pass.force || pass.contact_fields) body.evaluate_stress();
+    if (pass.force) scatter_force(body, step.time);
+    if (pass.contact_fields) scatter_contact_fields(body);
+  }
+  if (!pass.momentum) return;
+  grid_.sum_images(pass.remap);
+  if (plan_.ledger && !pass.remap) ledger_.scatter += grid_.kinetic_energy() - particle_kinetic_energy();
+}
+
+/// Node by node: w m, and w (b + A d).
+void ReferenceBackend::scatter_momentum(Particles& body, bool remap) {
+  const bool affine = experiment_.transfer.plugin->transfer().traits & MPM_SCATTERS_AFFINE;
+  const Vector gravity = to_eigen(experiment_.gravity);
+  body.scatter_coefficients();
+  for (std::size_t p = 0; p < body.count(); ++p) {
+    const Vector b = body.column(body.b, p);
+    const Matrix A = affine ? body.matrix(body.A, p) : Matrix(Matrix::Zero());
+    for (const StencilNode& s : body.stencil(p)) {
+      Node& node = grid_.node(body.field(), s.index);
+      node.mass += s.weight * body.mass();
+      node.momentum += s.weight * (b + A * s.distance);
+      if (!remap) node.gravity_force += s.weight * body.mass() * gravity;
+    }
+  }
+}
+
+/// f = -V0 tau grad w, or -V0 tau (w D^-1 d) when the transfer takes stress by the affine term; body forces w m b(x,
+/// X, t).
+void ReferenceBackend::scatter_force(Particles& body, double time) {
+  const bool by_affine = experiment_.transfer.plugin->transfer().traits & MPM_STRESS_BY_AFFINE;
+  for (std::size_t p = 0; p < body.count(); ++p) {
+    const Matrix tau = body.symmetric(body.stress, p);
+    Vector force = Vector::Zero();
+    if (experiment_.body_force) {
+      const Vector x = body.column(body.position, p);
+      const Vector X = plan_.initial_position ? body.column(body.initial_position, p) : x;
+      force = body.mass() * to_eigen((*experiment_.body_force)({x[0], x[1], x[2]}, {X[0], X[1], X[2]}, time));
+    }
+    for (const StencilNode& s : body.stencil(p)) {
+      Node& node = grid_.node(body.field(), s.index);
+      node.internal_force -= body.volume() * (tau * (by_affine ? s.affine : s.gradient));
+      node.body_force += s.weight * force;
+    }
+  }
+}
+
+void ReferenceBackend::scatter_contact_fields(Particles& body) {
+  for (std::size_t p = 0; p < body.count(); ++p) {
+    const double volume = body.volume() * body.volume_ratio(0, p);
+    for (const StencilNode& s : body.stencil(p)) {
+      Node& node = grid_.node(body.field(), s.index);
+      node.volume += s.weight * volume;
+      node.volume_gradient += volume * s.gradient;
+      node.mass_position -= s.weight * body.mass() * s.distance;
+    }
+  }
+}
+
+void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
+  for (Particles& body : bodies_) {
+    gather_moments(body, &Node::velocity);
+    body.gather(step.dt);
+    if (step.filtered) body.take_gathered_velocity();
+    if (pass.strain) ledger_.material += body.strain(step.dt);
+  }
+  if (plan_.ledger) ledger_.gather += particle_kinetic_energy() - kinetic_energy_after_;
+  if (pass.move) move(step);
+}
+
+/// sum w v, sum w (v - v-), C = sum v (x) w D^-1 d and L = sum v (x) grad w of the given velocity, v+ as a rule.
+void ReferenceBackend::gather_moments(Particles& body, Vector Node::*velocity_of) {
+  const bool strain_by_affine = experiment_.transfer.plugin->transfer().traits & MPM_STRAIN_BY_AFFINE;
+  for (std::size_t p = 0; p < body.count(); ++p) {
+    Vector velocity = Vector::Zero(), increment = Vector::Zero();
+    Matrix affine = Matrix::Zero(), gradient = Matrix::Zero();
+    for (const StencilNode& s : body.stencil(p)) {
+      const Node& node = grid_.node(body.field(), s.index);
+      const Vector& v = node.*velocity_of;
+      velocity += s.weight * v;
+      increment += s.weight * (v - node.velocity_before);
+      affine += v * s.affine.transpose();
+      gradient += v * s.gradient.transpose();
+    }
+    body.set(body.gathered_velocity, p, velocity);
+    body.set(body.gathered_increment, p, increment);
+    body.set(body.gathered_affine, p, affine);
+    body.set(body.gathered_gradient, p, gradient);
+    body.set(body.velocity_gradient, p, strain_by_affine ? affine : gradient);
+  }
+}
+
+void ReferenceBackend::strain(const StepInfo& step) {
+  for (Particles& body : bodies_) {
+    gather_moments(body, &Node::velocity);
+    ledger_.material += body.strain(step.dt);
+  }
+}
+
+}  // namespace mpm::reference
