@@ -18,9 +18,9 @@ class CpuBackend final : public Backend {
   const Ledger& ledger() const override { return ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
   const FilterRecord& filter_record() const override { return filter_; }
-  bool scattered() const override { return false; }
-  void save(ArchiveWriter&) const override { throw std::logic_error("not yet"); }
-  void restore(ArchiveReader&) override { throw std::logic_error("not yet"); }
+  bool scattered() const override { return scattered_; }
+  void save(ArchiveWriter& archive) const override;
+  void restore(ArchiveReader& archive) override;
   std::uint64_t particle_bytes() const override;
   std::uint64_t grid_bytes() const override { return grid_.bytes(); }
 
@@ -28,12 +28,17 @@ class CpuBackend final : public Backend {
   void plan_channels();
   std::vector<Body<D, T>> make_bodies(std::vector<SeededBody>& seeds);
   void lay_out_state(Particles<D, T>& particles, const Component& material) const;
+  void set_half_size(Particles<D, T>& particles, int particles_per_cell_axis) const;
   void initialise_state(Particles<D, T>& particles, const Component& material,
                         const std::vector<double>& velocity_gradient) const;
   void sort_all();
   void sort_when_moved();
   void scatter(const Pass& pass, const StepInfo& step);
   void gather(const Pass& pass, const StepInfo& step);
+  void gather_scatter(const Pass& pass, const StepInfo& step);
+  void account_for_gather(const typename ParticleStep<D, T>::Gathered& gathered);
+  std::string signature() const;
+  void restore_particles(ArchiveReader& archive, Particles<D, T>& particles);
 
   Scene<D, T> scene_;
   Grid<D, T> grid_;
@@ -44,6 +49,7 @@ class CpuBackend final : public Backend {
   ContactRecord contact_;
   FilterRecord filter_;
   TimeStepLimit limit_;
+  bool scattered_ = false;  ///< the last gather_scatter left the next step's grid
   std::unique_ptr<ParticleStep<D, T>> particle_step_;
   std::unique_ptr<GridStep<D, T>> grid_step_;
 };
@@ -58,7 +64,7 @@ CpuBackend<D, T>::CpuBackend(const Experiment& experiment, const Plan& plan, std
   for (SeededBody& seed : seeds) gradients.push_back(std::move(seed.velocity_gradient));
   std::vector<Body<D, T>> bodies = make_bodies(seeds);
   particle_step_ = std::make_unique<ParticleStep<D, T>>(scene_, grid_, particles_, std::move(bodies));
-  grid_step_ = std::make_unique<GridStep<D, T>>(scene_, grid_, ledger_, contact_);
+  grid_step_ = std::make_unique<GridStep<D, T>>(scene_, grid_, ledger_, contact_, filter_);
   sort_all();
   for (std::size_t body = 0; body < particles_.size(); ++body)
     initialise_state(particles_[body], *particle_step_->bodies()[body].material, gradients[body]);
@@ -79,6 +85,12 @@ void CpuBackend<D, T>::plan_channels() {
     grid_.plan_channel(volume_gradient);
     grid_.plan_channel(mass_position);
   }
+  if (plan.fused) grid_.plan_channel(next_motion);
+  if (plan.filter) {
+    grid_.plan_channel(filter_increment);
+    grid_.plan_channel(filter_projection);
+  }
+  if (plan.kept_velocity) grid_.plan_channel(kept_velocity);
 }
 
 template <int D, class T>
@@ -98,6 +110,7 @@ std::vector<Body<D, T>> CpuBackend<D, T>::make_bodies(std::vector<SeededBody>& s
     field_of_body_.push_back(body.field);
     lay_out_state(particles_[i], *body.material);
     seed_particles(particles_[i], seeds[i], scene_.domain);
+    set_half_size(particles_[i], experiment.bodies[i].particles_per_cell_axis);
     if (scene_.plan.initial_position) body.initial_position = std::move(seeds[i].position);
     seeds[i] = {};
   }
@@ -121,6 +134,24 @@ void CpuBackend<D, T>::lay_out_state(Particles<D, T>& particles, const Component
     particles.advection = particles.components;
     particles.components += D;
   }
+  if (!scene_.plan.particle_domain) return;
+  particles.domain = particles.components;
+  particles.components += D * D;
+  if (scene_.experiment.solver.stress_update != StressUpdate::first) return;
+  particles.next_domain = particles.components;
+  particles.components += D * D;
+}
+
+/// Half the undeformed particle's box in cells: constant, and what its domain starts as.
+template <int D, class T>
+void CpuBackend<D, T>::set_half_size(Particles<D, T>& particles, int particles_per_cell_axis) const {
+  const T half = static_cast<T>(0.5 / particles_per_cell_axis);
+  particles.half_size.require(std::size_t(D) * chunk_size);
+  std::fill_n(particles.half_size.data(), D * chunk_size, half);
+  for (const int first : {particles.domain, particles.next_domain})
+    for (int k = 0; first >= 0 && k < D * D; ++k)
+      for (std::uint32_t i = 0; i < particles.chunks; ++i)
+        std::fill_n(particles.chunk(i) + (first + k) * chunk_size, chunk_size, k % (D + 1) == 0 ? half : T(0));
 }
 
 template <int D, class T>
@@ -128,8 +159,9 @@ void CpuBackend<D, T>::initialise_state(Particles<D, T>& particles, const Compon
                                         const std::vector<double>& velocity_gradient) const {
   const auto set = [&](const StateField& field, const mpm_state& declared) {
     const bool symmetric = declared.shape == MPM_STATE_SYMMETRIC;
+    const bool plane_strain = declared.shape == MPM_STATE_DEFORMATION && D == 2;  // xx xy yx yy zz
     for (int c = 0; c < field.components; ++c) {
-      const bool diagonal = symmetric ? c < 3 : c % (D + 1) == 0;
+      const bool diagonal = symmetric ? c < 3 : plane_strain ? c == 0 || c >= 3 : c % (D + 1) == 0;
       const bool one = declared.initial == MPM_INITIAL_ONE || (declared.initial == MPM_INITIAL_IDENTITY && diagonal);
       for (std::uint32_t i = 0; i < particles.chunks; ++i)
         std::fill_n(particles.chunk(i) + (field.first + c) * chunk_size, chunk_size, one ? T(1) : T(0));
@@ -153,14 +185,14 @@ void CpuBackend<D, T>::initialise_state(Particles<D, T>& particles, const Compon
 template <int D, class T>
 void CpuBackend<D, T>::sort_all() {
   for (auto& particles : particles_) sort_particles(particles, spare_, scene_);
+  if (scene_.list) particle_step_->widen_active_blocks();
   grid_.rebuild(particles_, field_of_body_);
-  particle_step_->reset_drift();
+  particle_step_->set_drift(0);
 }
 
-/// A tile has a margin of one cell for particles that moved since they were sorted.
 template <int D, class T>
 void CpuBackend<D, T>::sort_when_moved() {
-  if (particle_step_->drift() > 0.99) sort_all();
+  if (particle_step_->must_sort()) sort_all();
 }
 
 template <int D, class T>
@@ -172,7 +204,29 @@ void CpuBackend<D, T>::scatter(const Pass& pass, const StepInfo& step) {
 
 template <int D, class T>
 void CpuBackend<D, T>::gather(const Pass& pass, const StepInfo& step) {
-  const auto gathered = particle_step_->gather(pass, step);
+  account_for_gather(particle_step_->gather(pass, step));
+}
+
+/// Gather, and the scatter of the step that follows, into a second motion channel: that of this step is still read.
+template <int D, class T>
+void CpuBackend<D, T>::gather_scatter(const Pass& pass, const StepInfo& step) {
+  for (const Channel c : {next_motion, force, body_force})
+    if (grid_.has(c)) grid_.clear(c);
+  StepInfo next{step.next_dt, step.time + step.dt, step.step + 1};
+  // The very time that the simulation gives the next step: fixed steps are multiplied, not summed.
+  const auto& fixed = scene_.experiment.solver.time_step;
+  if (fixed && step.dt == *fixed) next.time = static_cast<double>(step.step + 1) * step.dt;
+  scattered_ = false;
+  const auto fused = particle_step_->gather_scatter(pass, step, next);
+  account_for_gather(fused.gathered);
+  scattered_ = fused.scattered;
+  if (!scattered_) return;
+  grid_.swap(motion, next_motion);
+  grid_step_->set_particle_kinetic_energy(fused.kinetic_energy);
+}
+
+template <int D, class T>
+void CpuBackend<D, T>::account_for_gather(const typename ParticleStep<D, T>::Gathered& gathered) {
   if (!scene_.plan.ledger) return;
   ledger_.gather += gathered.kinetic_energy - grid_step_->kinetic_energy_after();
   ledger_.material += gathered.dissipated;
@@ -188,6 +242,7 @@ void CpuBackend<D, T>::execute(const Pass& pass, const StepInfo& step) {
       return sort_when_moved();
     case PassKind::reset_grid:
       sort_when_moved();  // a plan without a sort pass
+      if (scene_.list && particle_step_->widen_active_blocks()) grid_.rebuild(particles_, field_of_body_);
       return grid_.clear();
     case PassKind::scatter:
       return scatter(pass, step);
@@ -202,7 +257,21 @@ void CpuBackend<D, T>::execute(const Pass& pass, const StepInfo& step) {
       return;
     case PassKind::move:
       return particle_step_->move(step);
-    default:
+    case PassKind::gather_scatter:
+      return gather_scatter(pass, step);
+    case PassKind::begin_filter:
+      return grid_step_->begin_filter(pass);
+    case PassKind::project:
+      grid_.clear(filter_projection);
+      particle_step_->project(step);
+      return grid_step_->project_increment(pass, step);
+    case PassKind::update_filter:
+      return grid_step_->update_filter(pass, step);
+    case PassKind::end_filter:
+      return grid_step_->end_filter(pass, step);
+    case PassKind::restore_velocity:
+      return grid_step_->restore_velocity();
+    default:  // groups and repeats are the simulation's
       throw std::logic_error("the cpu backend does not execute pass \"" + pass.name() + "\"");
   }
 }
@@ -244,7 +313,111 @@ BodyState CpuBackend<D, T>::body_state(int index) const {
     state.transfer_state[field.name] = copy(field.first, field.components);
   for (const StateField& field : particles.material_state)
     state.material_state[field.name] = copy(field.first, field.components);
+  if (particles.domain >= 0) state.domain = copy(particles.domain, D * D);
+  for (double& side : state.domain) side *= scene_.domain.cell_size;
+  if (scene_.plan.second_moment) state.second_moment = particle_step_->second_moments(index);
   return state;
+}
+
+/// What a state is good for: storage differs between dimensions, precisions and layouts.
+template <int D, class T>
+std::string CpuBackend<D, T>::signature() const {
+  return "cpu " + std::to_string(D) + "-D of " + std::to_string(sizeof(T)) + " bytes, chunks of " +
+         std::to_string(chunk_size);
+}
+
+template <int D, class T>
+void CpuBackend<D, T>::save(ArchiveWriter& archive) const {
+  archive.put("backend", signature());
+  archive.put("drift", particle_step_->drift());
+  archive.put("ledger", ledger_);
+  archive.put("contact", contact_);
+  archive.put("filter", filter_);
+  archive.put("speed", limit_.speed);
+  archive.put("wave_speed", limit_.wave_speed);
+  archive.put("limiting_body", limit_.body);
+  archive.put("limiting_particle", limit_.particle);
+  for (const Particles<D, T>& particles : particles_) {
+    archive.put("components", particles.components);
+    archive.put("chunks", particles.chunks);
+    std::vector<std::int32_t> blocks;
+    for (const Block<D>& block : particles.blocks) {
+      for (const auto& triple : {block.at, block.first_active, block.last_active})
+        blocks.insert(blocks.end(), triple.begin(), triple.end());
+      blocks.push_back(static_cast<std::int32_t>(block.first_chunk));
+      blocks.push_back(static_cast<std::int32_t>(block.count));
+    }
+    archive.put("blocks", blocks);
+    for (const auto& units : particles.units) archive.put("units", units);
+    archive.put("identities", particles.id.data(), std::size_t(particles.chunks) * chunk_size);
+    archive.put("values", particles.data.data(), std::size_t(particles.chunks) * particles.components * chunk_size);
+  }
+}
+
+/// The grid is built for the same blocks in the same order, so that its sums are the same.
+template <int D, class T>
+void CpuBackend<D, T>::restore(ArchiveReader& archive) {
+  std::string written;
+  archive.get("backend", written);
+  if (written != signature())
+    throw ArchiveError("the state is of backend \"" + written + "\", not of \"" + signature() + "\"");
+  double drift = 0;
+  archive.get("drift", drift);
+  archive.get("ledger", ledger_);
+  archive.get("contact", contact_);
+  archive.get("filter", filter_);
+  archive.get("speed", limit_.speed);
+  archive.get("wave_speed", limit_.wave_speed);
+  archive.get("limiting_body", limit_.body);
+  archive.get("limiting_particle", limit_.particle);
+  for (Particles<D, T>& particles : particles_) restore_particles(archive, particles);
+  grid_.rebuild(particles_, field_of_body_);
+  particle_step_->set_drift(drift);
+  scattered_ = false;
+}
+
+template <int D, class T>
+void CpuBackend<D, T>::restore_particles(ArchiveReader& archive, Particles<D, T>& particles) {
+  int components = 0;
+  std::size_t before = 0, count = 0;
+  std::vector<std::int32_t> numbers;
+  for (const Block<D>& block : particles.blocks) before += block.count;
+  archive.get("components", components);
+  if (components != particles.components) throw ArchiveError("particles carry other attributes");
+  archive.get("chunks", particles.chunks);
+  archive.get("blocks", numbers);
+  constexpr std::size_t of_block = 11;
+  if (numbers.size() % of_block != 0) throw ArchiveError("value \"blocks\" has another length");
+  particles.blocks.clear();
+  for (std::size_t i = 0; i < numbers.size(); i += of_block) {
+    Block<D> block;
+    const std::int32_t* next = numbers.data() + i;
+    for (auto* const triple : {&block.at, &block.first_active, &block.last_active})
+      for (auto& value : *triple) value = *next++;
+    block.first_chunk = static_cast<std::uint32_t>(next[0]);
+    block.count = static_cast<std::uint32_t>(next[1]);
+    const std::uint64_t chunks = (std::uint64_t(block.count) + chunk_size - 1) / chunk_size;
+    if (block.count == 0 || block.first_chunk + chunks > particles.chunks)
+      throw ArchiveError("value \"blocks\" is not of these particles");
+    count += block.count;
+    particles.blocks.push_back(block);
+  }
+  if (count != before || particles.chunks > count) throw ArchiveError("it holds another number of particles");
+  for (auto& units : particles.units) {
+    archive.get("units", units);
+    for (const Unit& unit : units)
+      if (unit.first > unit.last || unit.last > particles.blocks.size())
+        throw ArchiveError("value \"units\" is not of these particles");
+  }
+  particles.require_chunks(particles.chunks);
+  archive.get("identities", particles.id.data(), std::size_t(particles.chunks) * chunk_size);
+  archive.get("values", particles.data.data(), std::size_t(particles.chunks) * components * chunk_size);
+  for (const Block<D>& block : particles.blocks)
+    for_each_chunk(block, [&](std::uint32_t chunk, int lanes) {
+      for (int lane = 0; lane < lanes; ++lane)
+        if (particles.ids(chunk)[lane] < 0 || std::size_t(particles.ids(chunk)[lane]) >= count)
+          throw ArchiveError("value \"identities\" is not of these particles");
+    });
 }
 
 template <int D, class T>

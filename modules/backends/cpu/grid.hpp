@@ -18,6 +18,11 @@ enum Channel {
   body_force,
   volume_gradient,  ///< and volume
   mass_position,
+  next_motion,        ///< scattered momentum and mass of the following step, by the fused pass
+  filter_increment,   ///< v* of the filter's loop
+  filter_projection,  ///< momentum S+ S v* and mass while it is scattered, then velocity; then the velocity before
+                      ///< conditions
+  kept_velocity,      ///< of the grid before the filter, with the mass
   channel_count
 };
 
@@ -62,11 +67,21 @@ class Grid {
     return reinterpret_cast<Quad<T>*>(channel(c, field))[node];
   }
 
-  /// Active blocks are those of particles, their neighbours, and what folding needs; field_bits of a slot says which
-  /// velocity fields may have mass there.
+  /// Active blocks are those of particles, their neighbours (and what their lists reach), and what folding needs;
+  /// field_bits of a slot says which velocity fields may have mass there.
   void rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body);
+  /// Zero for what is scattered in a step.
   void clear();
   void clear(Channel c);
+  void swap(Channel a, Channel b) { std::swap(data_[a], data_[b]); }
+
+  /// Number of a node from its coordinates; -1 where no block is active.
+  std::int32_t find(const std::array<int, 3>& node) const {
+    BlockCoordinates at{};
+    for (int a = 0; a < D; ++a) at[a] = node[a] >> block_bits<D>;
+    const int slot = table_.find(at);
+    return slot < 0 ? -1 : slot * block_nodes + node_in_block<D>(node);
+  }
 
   std::vector<FaceNodes>& faces() { return faces_; }
   const std::vector<BoxNodes>& boxes() const { return boxes_; }
@@ -91,6 +106,8 @@ class Grid {
            (scene_.domain.periodic(axis) && node == scene_.domain.cells[axis]);
   }
   int mirrored(int axis, int node) const;
+  /// Particles are wrapped when they are sorted: until then a list may reach a cell farther.
+  int padding(int axis) const { return scene_.padding + (scene_.list && scene_.domain.periodic(axis) ? 2 : 0); }
   bool folded_axis(int axis, int side) const {
     const ConditionType type = scene_.domain.faces[axis][side];
     return folds(type) || type == ConditionType::periodic;
@@ -140,7 +157,7 @@ void Grid<D, T>::activate_mirrors() {
         for (int k = 0; k < block_side<D>; ++k) {
           const int node = at[axis] * block_side<D> + k;
           if (!beyond(axis, node) || !folded_axis(axis, node > 0)) continue;
-          if (node < -grid_padding || node > scene_.domain.cells[axis] + grid_padding) continue;
+          if (node < -padding(axis) || node > scene_.domain.cells[axis] + padding(axis)) continue;
           BlockCoordinates image = at;
           image[axis] = mirrored(axis, node) >> block_bits<D>;
           const int known = table_.find(image);
@@ -173,7 +190,7 @@ void Grid<D, T>::list_faces() {
       for (int local = 0; local < block_nodes; ++local) {
         std::array<int, 3> node = node_at<D>(found_[slot], local);
         const int index = node[axis];
-        if (index < -grid_padding || index > cells + grid_padding) continue;
+        if (index < -padding(axis) || index > cells + padding(axis)) continue;
         const std::uint32_t number = slot * block_nodes + local;
         const int side = index > 0;
         if (!folded_axis(axis, side)) continue;
@@ -246,21 +263,26 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
   table_.clear();
   found_.clear();
   field_bits_.clear();
-  const auto around = [](const BlockCoordinates& at, auto&& visit) {
-    const int depth = D == 3 ? 1 : 0;
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        for (int z = -depth; z <= depth; ++z) visit(BlockCoordinates{at[0] + x, at[1] + y, at[2] + z});
+  const auto around = [](const BlockCoordinates& at, const std::array<int, 3>& low, const std::array<int, 3>& high,
+                         auto&& visit) {
+    for (int x = low[0]; x <= high[0]; ++x)
+      for (int y = low[1]; y <= high[1]; ++y)
+        for (int z = D == 3 ? low[2] : 0; z <= (D == 3 ? high[2] : 0); ++z)
+          visit(BlockCoordinates{at[0] + x, at[1] + y, at[2] + z});
   };
+  constexpr std::array<int, 3> below{-1, -1, -1}, above{1, 1, 1};
   for (std::size_t body = 0; body < bodies.size(); ++body)
     for (Block<D>& block : bodies[body].blocks) {
       const int field = field_of_body[body];  // fields beyond the bits count as shared
       const std::uint64_t bits = field < 62 ? std::uint64_t{1} << field : std::uint64_t{3} << 62;
       int k = 0;
-      around(block.at, [&](const BlockCoordinates& at) {
+      around(block.at, below, above, [&](const BlockCoordinates& at) {
         activate(at, bits);
         block.neighbours[k++] = table_.find(at);
       });
+      if (block.first_active != below || block.last_active != above)
+        around(block.at, block.first_active, block.last_active,
+               [&](const BlockCoordinates& at) { activate(at, bits); });
     }
   activate_mirrors();
   shared_.clear();
@@ -274,8 +296,8 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
 
 template <int D, class T>
 void Grid<D, T>::clear() {
-  for (int c = 0; c < channel_count; ++c)
-    if (planned_[c]) clear(static_cast<Channel>(c));
+  for (const Channel c : {motion, velocity_before, force, body_force, volume_gradient, mass_position})
+    if (planned_[c]) clear(c);
 }
 
 template <int D, class T>

@@ -1,5 +1,6 @@
 #include "grid_contact.hpp"
 #include "grid_edges.hpp"
+#include "grid_filter.hpp"
 #include "grid_forces.hpp"
 
 namespace mpm::cpu {

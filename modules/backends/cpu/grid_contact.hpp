@@ -128,12 +128,15 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
 }
 
 template <int D, class T>
-void GridStep<D, T>::resolve_contact(const StepInfo& step, bool after_forces, bool in_ledger) {
+void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
+  const bool after_forces = recorded == Recorded::after_forces;
+  const bool in_ledger = after_forces || recorded == Recorded::before_forces;
   const auto& slots = grid_.shared_slots();
   std::vector<ContactSums> sums(slots.size());
 #pragma omp parallel for num_threads(scene_.threads) schedule(dynamic, 4)
   for (std::size_t i = 0; i < slots.size(); ++i) resolve_slot(slots[i], step, sums[i]);
 
+  if (recorded == Recorded::filter) return;
   ContactRecord record;
   double change[3]{}, squared = 0;
   for (const ContactSums& s : sums) {

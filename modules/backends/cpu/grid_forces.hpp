@@ -6,8 +6,9 @@
 namespace mpm::cpu {
 
 template <int D, class T>
-GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, ContactRecord& record)
-    : scene_(scene), grid_(grid), ledger_(ledger), record_(record) {
+GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, ContactRecord& record,
+                         FilterRecord& filter)
+    : scene_(scene), grid_(grid), ledger_(ledger), record_(record), filter_(filter) {
   for (int c = 0; c < D; ++c) {
     gravity_[c] = static_cast<T>(scene.experiment.gravity[c]);
     has_gravity_ = has_gravity_ || gravity_[c] != 0;
@@ -65,13 +66,6 @@ void GridStep<D, T>::divide_by_mass() {
 }
 
 template <int D, class T>
-void GridStep<D, T>::keep_velocity() {
-  for_each_block([&](int field, std::uint32_t first, double*) {
-    std::memcpy(&grid_.quad(velocity_before, field, first), &motion_at(field, first), block_nodes * sizeof(Q));
-  });
-}
-
-template <int D, class T>
 void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   const bool accounted = ledger_on() && !remap;
   fold_images(remap, step);
@@ -84,10 +78,10 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   const Account account = accounted ? Account::change_of_energy : Account::nothing;
   impose(step.time, account);
   if (scene_.plan.contact) {
-    resolve_contact(step, false, !remap);
+    resolve_contact(step, remap ? Recorded::remap : Recorded::before_forces);
     impose(step.time, account);
   }
-  if (!remap && grid_.has(velocity_before)) keep_velocity();
+  if (!remap && grid_.has(velocity_before)) copy_velocity(motion, velocity_before);
   fill_ghosts(step.time, false);
 }
 
@@ -201,7 +195,7 @@ void GridStep<D, T>::apply_forces(const StepInfo& step) {
   if (ledger_on()) held_.assign(std::size_t(grid_.fields()) * grid_.nodes(), 0);
   impose(end, account);
   if (scene_.plan.contact) {
-    resolve_contact(step, true, true);
+    resolve_contact(step, Recorded::after_forces);
     impose(end, account);
   }
   if (ledger_on()) {

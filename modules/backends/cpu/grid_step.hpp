@@ -12,13 +12,21 @@ namespace mpm::cpu {
 template <int D, class T>
 class GridStep {
  public:
-  GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, ContactRecord& record);
+  GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, ContactRecord& record, FilterRecord& filter);
 
   /// Folds what was scattered, divides by mass, imposes conditions and contact before the forces.
   void momentum_to_velocity(bool remap, const StepInfo& step);
   /// v+ = v- + dt f / m with conditions, contact after the forces, increments, ghosts.
   void apply_forces(const StepInfo& step);
-  /// Of the velocities after the last apply_forces; the ledger's.
+
+  /// Passes of the filter's loop: see PassKind. project_increment takes what the particles have scattered.
+  void begin_filter(const Pass& pass);
+  void project_increment(const Pass& pass, const StepInfo& step);
+  void update_filter(const Pass& pass, const StepInfo& step);
+  void end_filter(const Pass& pass, const StepInfo& step);
+  void restore_velocity();
+
+  /// Of the velocities after the last apply_forces or filter; the ledger's.
   double kinetic_energy_after() const { return kinetic_energy_after_; }
   /// Of the particles when they scattered; the ledger's.
   void set_particle_kinetic_energy(double energy) { particle_kinetic_energy_ = energy; }
@@ -48,7 +56,6 @@ class GridStep {
   void impose(double time, Account account);
   void hold(int field, std::uint32_t node, int component, T velocity, Account account);
   void divide_by_mass();
-  void keep_velocity();
   void add_gravity_corrections(double dt);
   void account_gravity_corrections(double dt);
   void accelerate(double dt);
@@ -56,9 +63,19 @@ class GridStep {
   void account_for_node(int field, std::uint32_t node, double dt, double* partial);
   void subtract_velocity_before();
 
+  static double time_of(const Pass& pass, const StepInfo& step) {
+    return pass.before_forces || pass.remap ? step.time : step.time + step.dt;
+  }
+  void copy_velocity(Channel from, Channel to);
+  double mass_norm_of_increment();
+  void constrain(double time, const StepInfo& step);
+  void update_block(int field, std::uint32_t first, std::uint32_t iteration);
+
+  /// How far contact is recorded: the filter's loop leaves no trace.
+  enum class Recorded { before_forces, after_forces, remap, filter };
   struct ContactSums;
   struct ContactBatch;
-  void resolve_contact(const StepInfo& step, bool after_forces, bool in_ledger);
+  void resolve_contact(const StepInfo& step, Recorded recorded);
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
   ContactFieldNode contact_node(int field, std::uint32_t node);
@@ -68,6 +85,7 @@ class GridStep {
   Grid<D, T>& grid_;
   Ledger& ledger_;
   ContactRecord& record_;
+  FilterRecord& filter_;
   Q gravity_{};
   bool has_gravity_ = false;
   std::vector<EdgeModel> edges_;
@@ -75,7 +93,7 @@ class GridStep {
   std::vector<double> partials_;    ///< partial_count a block of a field, summed in order
   std::vector<std::uint8_t> held_;  ///< [field][node] bit per component that a condition gives now; the ledger's
   std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
-  double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0;
+  double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0, kinetic_energy_unfiltered_ = 0;
 };
 
 }  // namespace mpm::cpu

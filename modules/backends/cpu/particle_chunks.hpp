@@ -3,9 +3,8 @@
 
 #include <omp.h>
 
-#include <tuple>
-
 #include <cmath>
+#include <tuple>
 
 #include "particle_step.hpp"
 
@@ -20,10 +19,24 @@ ParticleStep<D, T>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std
       bodies_(std::move(bodies)),
       kernels_(tile_kernels<D, T>(scene.width)) {
   drift_of_thread_.assign(scene.threads, 0.0);
+  int transfer_components = 0;
+  for (const Particles<D, T>& body : particles)
+    for (const StateField& field : body.transfer_state)
+      transfer_components = std::max(transfer_components, field.first + field.components - 2 * D);
   for (int thread = 0; thread < scene.threads; ++thread) {
     work_.push_back(std::make_unique<Work>());
+    Work& work = *work_.back();
     for (int c = 0; c < channel_count; ++c)
-      if (grid.has(static_cast<Channel>(c))) work_.back()->tile[c].require(std::size_t(kernels_.nodes) * 4);
+      if (grid.has(static_cast<Channel>(c))) work.tile[c].require(std::size_t(kernels_.nodes) * 4);
+    work.velocity_tile.require(std::size_t(kernels_.nodes) * 4);
+    if (scene.has(MPM_GATHERS_INCREMENT)) work.increment_tile.require(std::size_t(kernels_.nodes) * 4);
+    if (scene.list) {
+      work.lists.require(scene.capacity);
+      std::fill(work.offset, work.offset + D * chunk_size, T(0));  // lists count from the particle itself
+    }
+    if (!scene.plan.filter) continue;
+    work.scratch_velocity.require(std::size_t(D) * chunk_size);
+    work.scratch_state.require(std::size_t(std::max(transfer_components, 1)) * chunk_size);
   }
 }
 
@@ -84,26 +97,32 @@ void ParticleStep<D, T>::throw_failure() {
   throw RunFailure(failure.cause, failure.body, static_cast<std::size_t>(failure.particle));
 }
 
+/// Weights (and gradients, and what the second moment needs) of a chunk. Called from several passes that must agree to
+/// the last bit, so it is compiled once.
 template <int D, class T>
-void ParticleStep<D, T>::evaluate_shape(const Chunk& chunk, Work& work, bool gradients) const {
+[[gnu::noinline]] void ParticleStep<D, T>::evaluate_shape(const Chunk& chunk, Work& work, bool gradients) {
+  if (scene_.list) return evaluate_lists(chunk, work, gradients);
+  const bool moments = scene_.plan.second_moment;
   const mpm_shape_batch batch{static_cast<std::uint32_t>(chunk.end),
                               chunk_size,
                               D,
                               0,
                               chunk.at(Particles<D, T>::position),
-                              nullptr,
-                              nullptr,
+                              scene_.half_size ? chunk.particles.half_size.data() : nullptr,
+                              chunk.particles.domain < 0 ? nullptr : chunk.at(chunk.particles.domain),
                               work.base,
                               work.offset,
                               work.weight,
                               gradients ? work.gradient : nullptr,
-                              nullptr};
+                              moments ? work.second_moment : nullptr};
   scene_.evaluate_shape(scene_.shape_parameters, &batch);
+  if (moments) invert_moments(chunk, work);
 }
 
-/// Stencils' first nodes within the tile; the block remembers what part of it they reach.
+/// Stencils' first nodes within the tile; the block remembers what part of it they reach. False when one lies outside.
 template <int D, class T>
-void ParticleStep<D, T>::place_in_tile(const Chunk& chunk, Work& work, bool extend_reach) const {
+bool ParticleStep<D, T>::place_in_tile(const Chunk& chunk, Work& work, bool extend_reach) const {
+  if (scene_.list) return place_lists(chunk, work, extend_reach);
   if (extend_reach) {
     Reach& reach = chunk.block.reach;
     for (int axis = 0; axis < D; ++axis) {
@@ -112,7 +131,7 @@ void ParticleStep<D, T>::place_in_tile(const Chunk& chunk, Work& work, bool exte
         const int node = work.base[axis * chunk_size + p] + 1;
         low = std::min(low, node), high = std::max(high, node);
       }
-      if (low < 0 || high > block_side<D> + 1) throw std::logic_error("a particle left the tile of its block");
+      if (low < 0 || high > block_side<D> + 1) return false;
       reach.lowest[axis] = low, reach.highest[axis] = high;
     }
   }
@@ -120,6 +139,41 @@ void ParticleStep<D, T>::place_in_tile(const Chunk& chunk, Work& work, bool exte
     int node = work.base[p] + 1;
     for (int axis = 1; axis < D; ++axis) node = node * kernels_.side + work.base[axis * chunk_size + p] + 1;
     work.tile_node[p] = node;
+  }
+  return true;
+}
+
+/// D^-1 of each particle: of a diagonal, or of a symmetric matrix by its adjugate.
+template <int D, class T>
+void ParticleStep<D, T>::invert_moments(const Chunk& chunk, Work& work) const {
+  const T scale = static_cast<T>(1 / (scene_.domain.cell_size * scene_.domain.cell_size));
+  const T* const m = work.second_moment;
+  T* const inverse = work.inverse_moment;
+  const int n = chunk.end;
+  if (!scene_.list) {
+    for (int a = 0; a < D; ++a)
+      for (int p = 0; p < n; ++p) inverse[a * chunk_size + p] = scale / m[a * chunk_size + p];
+    return;
+  }
+  const auto at = [](int i, int j) { return (i * D + j) * chunk_size; };
+  if constexpr (D == 2) {
+    for (int p = 0; p < n; ++p) {
+      const T xx = m[at(0, 0) + p], xy = m[at(0, 1) + p], yy = m[at(1, 1) + p], f = scale / (xx * yy - xy * xy);
+      inverse[at(0, 0) + p] = f * yy, inverse[at(1, 1) + p] = f * xx;
+      inverse[at(0, 1) + p] = inverse[at(1, 0) + p] = -f * xy;
+    }
+  } else {
+    for (int p = 0; p < n; ++p) {
+      const T xx = m[at(0, 0) + p], xy = m[at(0, 1) + p], xz = m[at(0, D - 1) + p], yy = m[at(1, 1) + p],
+              yz = m[at(1, D - 1) + p], zz = m[at(D - 1, D - 1) + p];
+      const T a = yy * zz - yz * yz, b = xz * yz - xy * zz, c = xy * yz - xz * yy;
+      const T f = scale / (xx * a + xy * b + xz * c);
+      inverse[at(0, 0) + p] = f * a, inverse[at(1, 1) + p] = f * (xx * zz - xz * xz);
+      inverse[at(D - 1, D - 1) + p] = f * (xx * yy - xy * xy);
+      inverse[at(0, 1) + p] = inverse[at(1, 0) + p] = f * b;
+      inverse[at(0, D - 1) + p] = inverse[at(D - 1, 0) + p] = f * c;
+      inverse[at(1, D - 1) + p] = inverse[at(D - 1, 1) + p] = f * (xy * xz - xx * yz);
+    }
   }
 }
 
@@ -153,7 +207,7 @@ void ParticleStep<D, T>::note_inverted(const Chunk& chunk) {
                                          : "inverted: its volume ratio J is not positive");
 }
 
-/// With the affine part where the transfer carries it; offsets are those of the last shape evaluation.
+/// With the affine part where the transfer carries it; offsets and moments are those of the last shape evaluation.
 template <int D, class T>
 double ParticleStep<D, T>::kinetic_energy(const Chunk& chunk, const Work& work) const {
   double sum = 0;
@@ -162,11 +216,20 @@ double ParticleStep<D, T>::kinetic_energy(const Chunk& chunk, const Work& work) 
     for (int p = 0; p < chunk.count; ++p) sum += static_cast<double>(v[c * chunk_size + p]) * v[c * chunk_size + p];
   if (scene_.has(MPM_AFFINE_CARRIES_ENERGY)) {
     const T* const C = chunk.at(chunk.particles.transfer_state[0].first);
+    const double square = scene_.domain.cell_size * scene_.domain.cell_size;
+    const bool of_particle = scene_.moment_of_particle;
     for (int c = 0; c < D; ++c)
       for (int a = 0; a < D; ++a)
         for (int p = 0; p < chunk.count; ++p) {
           const double value = C[(c * D + a) * chunk_size + p];
-          sum += scene_.second_moment(work.offset[a * chunk_size + p]) * value * value;
+          if (of_particle && scene_.list)  // tr(C D C^T) of a full matrix
+            for (int b = 0; b < D; ++b)
+              sum +=
+                  square * work.second_moment[(a * D + b) * chunk_size + p] * value * C[(c * D + b) * chunk_size + p];
+          else if (of_particle)
+            sum += square * work.second_moment[a * chunk_size + p] * value * value;
+          else
+            sum += scene_.second_moment(work.offset[a * chunk_size + p]) * value * value;
         }
   }
   return 0.5 * chunk.body.mass * sum;

@@ -5,47 +5,22 @@
 #include <sstream>
 
 #include "kernel/lanes.hpp"
-#include "particle_chunks.hpp"
+#include "particle_lists.hpp"
 
 namespace mpm::cpu {
 
+/// Copies what a block reaches of the velocities (and of what FLIP takes) into the thread's tiles.
 template <int D, class T>
-typename ParticleStep<D, T>::Gathered ParticleStep<D, T>::gather(const Pass& pass, const StepInfo& step) {
-  std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
-  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
-    for_each_block(body, false, [&](Block<D>& block, Work& work) {
-      const int field = bodies_[body].field;
-      kernels_.load(work.tile[motion].data(), grid_.channel(motion, field), block.neighbours.data(), block.reach);
-      if (scene_.has(MPM_GATHERS_INCREMENT))
-        kernels_.load(work.tile[velocity_before].data(), grid_.channel(velocity_before, field), block.neighbours.data(),
-                      block.reach);
-      block.kinetic_energy = block.dissipated = 0;
-      double& drift = drift_of_thread_[omp_get_thread_num()];
-      for_each_chunk_of(body, block, [&](const Chunk& chunk) {
-        gather_chunk(chunk, work, true, pass.strain);
-        States state = states(chunk.particles.transfer_state, chunk);
-        const bool increment = scene_.has(MPM_GATHERS_INCREMENT), affine = scene_.has(MPM_GATHERS_AFFINE);
-        T* const advection = pass.move ? work.advection : chunk.at(chunk.particles.advection);
-        const mpm_gather_batch batch{static_cast<std::uint32_t>(chunk.end),
-                                     chunk_size,
-                                     D,
-                                     0,
-                                     step.dt,
-                                     work.velocity,
-                                     increment ? work.increment : nullptr,
-                                     affine ? work.affine : nullptr,
-                                     nullptr,
-                                     chunk.at(Particles<D, T>::velocity),
-                                     state.fields,
-                                     advection};
-        scene_.transfer_gather(scene_.transfer_parameters, &batch);
-        if (scene_.plan.ledger) block.kinetic_energy += kinetic_energy(chunk, work);
-        if (pass.strain) advance_material(chunk, work, step.dt);
-        if (pass.move) drift = std::max(drift, advance_position(chunk, advection, step.dt));
-      });
-      work.clear(motion, kernels_.nodes);
-      if (scene_.has(MPM_GATHERS_INCREMENT)) work.clear(velocity_before, kernels_.nodes);
-    });
+void ParticleStep<D, T>::load_velocities(int body, const Block<D>& block, Work& work) {
+  const int field = bodies_[body].field;
+  kernels_.load(work.velocity_tile.data(), grid_.channel(motion, field), block.neighbours.data(), block.reach);
+  if (scene_.has(MPM_GATHERS_INCREMENT))
+    kernels_.load(work.increment_tile.data(), grid_.channel(velocity_before, field), block.neighbours.data(),
+                  block.reach);
+}
+
+template <int D, class T>
+typename ParticleStep<D, T>::Gathered ParticleStep<D, T>::sum_gathered() {
   drift_ += *std::max_element(drift_of_thread_.begin(), drift_of_thread_.end());
   throw_failure();
   Gathered sum;
@@ -58,17 +33,103 @@ typename ParticleStep<D, T>::Gathered ParticleStep<D, T>::gather(const Pass& pas
 }
 
 template <int D, class T>
-double ParticleStep<D, T>::strain(const StepInfo& step) {
+typename ParticleStep<D, T>::Gathered ParticleStep<D, T>::gather(const Pass& pass, const StepInfo& step) {
+  std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
-      kernels_.load(work.tile[motion].data(), grid_.channel(motion, bodies_[body].field), block.neighbours.data(),
+      load_velocities(body, block, work);
+      block.kinetic_energy = block.dissipated = 0;
+      double& drift = drift_of_thread_[omp_get_thread_num()];
+      for_each_chunk_of(body, block,
+                        [&](const Chunk& chunk) { drift = std::max(drift, gather_one(pass, step, chunk, work)); });
+    });
+  return sum_gathered();
+}
+
+/// Every block gathers from the grid and scatters what follows into next_motion and the forces, which nothing reads any
+/// more. The tile's margin may not suffice for the new positions: particles then only gather.
+template <int D, class T>
+typename ParticleStep<D, T>::Fused ParticleStep<D, T>::gather_scatter(const Pass& pass, const StepInfo& step,
+                                                                      const StepInfo& next) {
+  const std::vector<Channel> channels = scattered_channels(pass, next_motion);
+  std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
+  abandoned_ = false;
+  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
+    for_each_block(body, true, [&](Block<D>& block, Work& work) {
+      load_velocities(body, block, work);
+      block.reach = {};
+      block.kinetic_energy = block.dissipated = block.scattered_energy = 0;
+      double& drift = drift_of_thread_[omp_get_thread_num()];
+      for_each_chunk_of(body, block, [&](const Chunk& chunk) {
+        drift = std::max(drift, gather_one(pass, step, chunk, work));
+        if (abandoned_) return;
+        if (!scatter_chunk(pass, next, chunk, work, next_motion)) abandoned_ = true;
+        if (scene_.plan.ledger) block.scattered_energy += kinetic_energy(chunk, work);
+      });
+      for (const Channel c : channels)
+        if (abandoned_)
+          work.clear(c, kernels_.nodes);
+        else
+          kernels_.flush(work.tile[c].data(), grid_.channel(c, bodies_[body].field), block.neighbours.data(),
+                         block.reach);
+    });
+  Fused result;
+  result.gathered = sum_gathered();
+  result.scattered = !abandoned_ && !must_sort();
+  for (const auto& particles : particles_)
+    for (const Block<D>& block : particles.blocks) result.kinetic_energy += block.scattered_energy;
+  return result;
+}
+
+/// What one chunk takes from the tiles; returns the largest displacement in cells. Called by the gather and by the
+/// fused pass, which must agree to the last bit, so it is compiled once.
+template <int D, class T>
+[[gnu::noinline]] double ParticleStep<D, T>::gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk,
+                                                        Work& work) {
+  Wanted wanted;
+  wanted.transfer = true, wanted.strain = pass.strain;
+  gather_chunk(chunk, work, wanted);
+  States state = states(chunk.particles.transfer_state, chunk);
+  T* const velocity = chunk.at(Particles<D, T>::velocity);
+  T* const advection = pass.move ? work.advection : chunk.at(chunk.particles.advection);
+  const mpm_gather_batch batch{static_cast<std::uint32_t>(chunk.end),
+                               chunk_size,
+                               D,
+                               0,
+                               step.dt,
+                               work.velocity,
+                               scene_.has(MPM_GATHERS_INCREMENT) ? work.increment : nullptr,
+                               scene_.has(MPM_GATHERS_AFFINE) ? work.affine : nullptr,
+                               scene_.has(MPM_GATHERS_GRADIENT) ? work.gradient_of_velocity : nullptr,
+                               velocity,
+                               state.fields,
+                               advection};
+  scene_.transfer_gather(scene_.transfer_parameters, &batch);
+  if (step.filtered)  // the filtered velocity replaces the particle's
+    for (int c = 0; c < D; ++c)
+      for (T* const target : {velocity, advection})
+        std::copy_n(work.velocity + c * chunk_size, chunk.end, target + c * chunk_size);
+  if (scene_.plan.ledger) chunk.block.kinetic_energy += kinetic_energy(chunk, work);
+  if (pass.strain) advance_material(chunk, work, step.dt);
+  if (!pass.move) return 0;
+  if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
+    std::copy_n(chunk.at(chunk.particles.next_domain), D * D * chunk_size, chunk.at(chunk.particles.domain));
+  return advance_position(chunk, advection, step.dt);
+}
+
+template <int D, class T>
+double ParticleStep<D, T>::strain(const StepInfo& step) {
+  Wanted wanted;
+  wanted.strain = true;
+  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
+    for_each_block(body, false, [&](Block<D>& block, Work& work) {
+      kernels_.load(work.velocity_tile.data(), grid_.channel(motion, bodies_[body].field), block.neighbours.data(),
                     block.reach);
       block.dissipated = 0;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
-        gather_chunk(chunk, work, false, true);
+        gather_chunk(chunk, work, wanted);
         advance_material(chunk, work, step.dt);
       });
-      work.clear(motion, kernels_.nodes);
     });
   throw_failure();
   double sum = 0;
@@ -77,18 +138,32 @@ double ParticleStep<D, T>::strain(const StepInfo& step) {
   return sum;
 }
 
+/// Sums over the nodes of a chunk's particles, as quads: in the tile, or on the grid for lists that leave it.
+template <int D, class T>
+void ParticleStep<D, T>::gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment,
+                                        bool gradient) {
+  if (!scene_.list) {
+    const Stencils<T> stencils{work.tile_node, work.weight, work.gradient};
+    return kernels_.gather[moment][gradient](tile, stencils, work.quads, chunk.end);
+  }
+  const auto kernel = kernels_.gather_lists[moment][gradient];
+  if (!work.far_only) kernel(tile, work.lists.near_lists(), work.quads, chunk.end);
+  if (work.lists.far > 0)
+    kernel(grid_.channel(channel, chunk.body.field), work.lists.far_lists(), work.quads, chunk.end);
+}
+
 /// Fills velocity, increment, affine and gradient_of_velocity of the work space, as far as they will be read.
 template <int D, class T>
-void ParticleStep<D, T>::gather_chunk(const Chunk& chunk, Work& work, bool update_velocity, bool strain) {
+void ParticleStep<D, T>::gather_chunk(const Chunk& chunk, Work& work, const Wanted& wanted) {
   const bool affine =
-      (update_velocity && scene_.has(MPM_GATHERS_AFFINE)) || (strain && scene_.has(MPM_STRAIN_BY_AFFINE));
+      (wanted.transfer && scene_.has(MPM_GATHERS_AFFINE)) || (wanted.strain && scene_.has(MPM_STRAIN_BY_AFFINE));
   const bool moment = affine && !scene_.moment_is_gradient;
-  const bool gradient = (strain && !scene_.has(MPM_STRAIN_BY_AFFINE)) || (affine && scene_.moment_is_gradient);
+  const bool gradient = (wanted.strain && !scene_.has(MPM_STRAIN_BY_AFFINE)) ||
+                        (wanted.transfer && scene_.has(MPM_GATHERS_GRADIENT)) || (affine && scene_.moment_is_gradient);
   evaluate_shape(chunk, work, gradient);
   place_in_tile(chunk, work, false);
-  const Stencils<T> stencils{work.tile_node, work.weight, work.gradient};
   const int groups = quad_groups(D, moment, gradient), n = chunk.end;
-  kernels_.gather[moment][gradient](work.tile[motion].data(), stencils, work.quads, n);
+  gather_moments(chunk, work, work.velocity_tile.data(), wanted.channel, moment, gradient);
   unpack_quads<D, T>(work.quads, groups,
                      {work.velocity, work.velocity + chunk_size, work.velocity + (D - 1) * chunk_size}, n);
   if (moment) affine_from_moments(chunk, work, groups);
@@ -103,17 +178,18 @@ void ParticleStep<D, T>::gather_chunk(const Chunk& chunk, Work& work, bool updat
       for (int p = 0; p < n; ++p) L[k * chunk_size + p] *= inverse_h;
     if (affine && scene_.moment_is_gradient) std::copy(L, L + D * D * chunk_size, work.affine);
   }
-  if (update_velocity && scene_.has(MPM_GATHERS_INCREMENT)) {
-    kernels_.gather[0][0](work.tile[velocity_before].data(), stencils, work.quads, n);
+  if (wanted.transfer && wanted.channel == motion && scene_.has(MPM_GATHERS_INCREMENT)) {
+    gather_moments(chunk, work, work.increment_tile.data(), velocity_before, false, false);
     unpack_quads<D, T>(work.quads, 1,
                        {work.increment, work.increment + chunk_size, work.increment + (D - 1) * chunk_size}, n);
   }
 }
 
-/// C = D^-1 h (sum k w v - f sum w v): the moment about the particle.
+/// C = h (sum k w v - f sum w v) D^-1: the moment about the particle.
 template <int D, class T>
 void ParticleStep<D, T>::affine_from_moments(const Chunk& chunk, Work& work, int groups) {
-  const T scale = static_cast<T>(scene_.inverse_moment * scene_.domain.cell_size);
+  const T h = static_cast<T>(scene_.domain.cell_size);
+  const T scale = scene_.moment_of_particle ? h : static_cast<T>(scene_.inverse_moment * scene_.domain.cell_size);
   T* const C = work.affine;
   for (int a = 0; a < D; ++a) {
     unpack_quads<D, T>(work.quads + 4 * (1 + a), groups,
@@ -125,6 +201,77 @@ void ParticleStep<D, T>::affine_from_moments(const Chunk& chunk, Work& work, int
       for (int p = 0; p < chunk.end; ++p) Cca[p] = scale * (Cca[p] - f[p] * v[p]);
     }
   }
+  if (!scene_.moment_of_particle) return;
+  const T* const inverse = work.inverse_moment;
+  for (int c = 0; c < D; ++c) {
+    T* const row = C + c * D * chunk_size;
+    for (int p = 0; p < chunk.end; ++p) {
+      T product[D];
+      for (int a = 0; a < D; ++a) {
+        if (!scene_.list) {
+          product[a] = row[a * chunk_size + p] * inverse[a * chunk_size + p];
+          continue;
+        }
+        product[a] = 0;
+        for (int b = 0; b < D; ++b) product[a] += row[b * chunk_size + p] * inverse[(b * D + a) * chunk_size + p];
+      }
+      for (int a = 0; a < D; ++a) row[a * chunk_size + p] = product[a];
+    }
+  }
+}
+
+/// One pass of the filter's loop on the particles: v* is gathered and scattered again by the transfer itself.
+template <int D, class T>
+void ParticleStep<D, T>::project(const StepInfo& step) {
+  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
+    const int field = bodies_[body].field;
+    for_each_block(body, true, [&](Block<D>& block, Work& work) {
+      kernels_.load(work.velocity_tile.data(), grid_.channel(filter_increment, field), block.neighbours.data(),
+                    block.reach);
+      for_each_chunk_of(body, block, [&](const Chunk& chunk) { project_chunk(step, chunk, work); });
+      kernels_.flush(work.tile[filter_projection].data(), grid_.channel(filter_projection, field),
+                     block.neighbours.data(), block.reach);
+    });
+    scatter_far(body, [&](const Chunk& chunk, Work& work) { project_chunk(step, chunk, work); });
+  }
+  throw_failure();
+}
+
+/// The transfer acts on a particle at rest with zero state, so that what it scatters is linear in v*.
+template <int D, class T>
+void ParticleStep<D, T>::project_chunk(const StepInfo& step, const Chunk& chunk, Work& work) {
+  Wanted wanted;
+  wanted.transfer = true, wanted.channel = filter_increment;
+  gather_chunk(chunk, work, wanted);
+  T* const velocity = work.scratch_velocity.data();
+  std::fill_n(velocity, D * chunk_size, T(0));
+  States state{};
+  T* next = work.scratch_state.data();
+  for (std::size_t f = 0; f < chunk.particles.transfer_state.size(); ++f) {
+    const int scalars = chunk.particles.transfer_state[f].components * chunk_size;
+    state.fields[f] = std::fill_n(next, scalars, T(0)) - scalars;
+    next += scalars;
+  }
+  const std::uint32_t n = static_cast<std::uint32_t>(chunk.end);
+  const mpm_gather_batch gathered{n,
+                                  chunk_size,
+                                  D,
+                                  0,
+                                  step.dt,
+                                  work.velocity,
+                                  scene_.has(MPM_GATHERS_INCREMENT) ? work.velocity : nullptr,
+                                  scene_.has(MPM_GATHERS_AFFINE) ? work.affine : nullptr,
+                                  scene_.has(MPM_GATHERS_GRADIENT) ? work.gradient_of_velocity : nullptr,
+                                  velocity,
+                                  state.fields,
+                                  work.advection};
+  scene_.transfer_gather(scene_.transfer_parameters, &gathered);
+  std::fill(work.mass, work.mass + chunk.end, static_cast<T>(chunk.body.mass));
+  const bool affine = scene_.has(MPM_SCATTERS_AFFINE);
+  const mpm_scatter_batch scattered{
+      n, chunk_size, D, 0, work.mass, velocity, state.fields, work.b, affine ? work.A : nullptr};
+  scene_.transfer_scatter(scene_.transfer_parameters, &scattered);
+  add_to_tile(chunk, work, filter_projection, work.mass, true, affine, false);
 }
 
 template <int D, class T>
@@ -132,13 +279,34 @@ void ParticleStep<D, T>::advance_material(const Chunk& chunk, Work& work, double
   const bool dissipation = scene_.plan.ledger && chunk.body.dissipates;
   mpm_material_batch request{};
   request.dt = dt;
-  request.velocity_gradient = scene_.has(MPM_STRAIN_BY_AFFINE) ? work.affine : work.gradient_of_velocity;
+  const T* const velocity_gradient = scene_.has(MPM_STRAIN_BY_AFFINE) ? work.affine : work.gradient_of_velocity;
+  request.velocity_gradient = velocity_gradient;
   if (dissipation) request.dissipated_energy = work.scalar;
   update_material(chunk, request);
+  if (chunk.particles.domain >= 0) advance_domain(chunk, velocity_gradient, dt);
   if (!dissipation) return;
   double sum = 0;
   for (int p = 0; p < chunk.count; ++p) sum += work.scalar[p];
   chunk.block.dissipated += chunk.body.volume * sum;
+}
+
+/// domain <- (I + dt L) domain. USF goes on with the old weights until its gather.
+template <int D, class T>
+void ParticleStep<D, T>::advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const {
+  const T* const from = chunk.at(chunk.particles.domain);
+  T* const to = chunk.at(chunk.particles.next_domain < 0 ? chunk.particles.domain : chunk.particles.next_domain);
+  const T step = static_cast<T>(dt);
+  for (int k = 0; k < D; ++k)  // column by column
+    for (int p = 0; p < chunk.end; ++p) {
+      T advanced[D];
+      for (int a = 0; a < D; ++a) {
+        T rate = 0;
+        for (int b = 0; b < D; ++b)
+          rate += velocity_gradient[(a * D + b) * chunk_size + p] * from[(b * D + k) * chunk_size + p];
+        advanced[a] = from[(a * D + k) * chunk_size + p] + step * rate;
+      }
+      for (int a = 0; a < D; ++a) to[(a * D + k) * chunk_size + p] = advanced[a];
+    }
 }
 
 /// Room beyond a face that cannot be folded away, in cells: half a cell at a separating wall, rounding elsewhere.

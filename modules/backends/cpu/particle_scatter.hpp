@@ -2,55 +2,72 @@
 // ParticleStep: particles to grid. Coefficients of a chunk are made as component arrays, then as quads for the tile
 // kernels: what a node gets is w (b + A d) + S grad w, d = node - particle.
 
-#include "particle_chunks.hpp"
+#include "particle_lists.hpp"
 
 namespace mpm::cpu {
 
+/// Channels that a scatter pass adds to, its momenta to `momentum`.
+template <int D, class T>
+std::vector<Channel> ParticleStep<D, T>::scattered_channels(const Pass& pass, Channel momentum) const {
+  std::vector<Channel> channels;
+  if (pass.momentum || (pass.force && !grid_.has(force))) channels.push_back(momentum);
+  for (const Channel c : {force, body_force})
+    if (pass.force && grid_.has(c)) channels.push_back(c);
+  if (pass.contact_fields) channels.insert(channels.end(), {volume_gradient, mass_position});
+  return channels;
+}
+
+/// Calls visit(chunk, work) for the chunks of blocks with particles that no tile holds, in order and on one thread, so
+/// that sums on the grid are the same for any number of threads. What is scattered meanwhile is theirs alone.
+template <int D, class T>
+template <class Visit>
+void ParticleStep<D, T>::scatter_far(int body, Visit&& visit) {
+  if (!scene_.list || failure_.severity < 2) return;
+  Work& work = *work_[0];
+  work.far_only = true;
+  for (Block<D>& block : particles_[body].blocks)
+    if (block.far > 0) for_each_chunk_of(body, block, [&](const Chunk& chunk) { visit(chunk, work); });
+  work.far_only = false;
+}
+
 template <int D, class T>
 double ParticleStep<D, T>::scatter(const Pass& pass, const StepInfo& step) {
-  const bool merged = pass.force && !grid_.has(force);
-  const auto touched = [&](Channel c) {
-    switch (c) {
-      case motion:
-        return pass.momentum || merged;
-      case force:
-      case body_force:
-        return pass.force && grid_.has(c);
-      case volume_gradient:
-      case mass_position:
-        return pass.contact_fields;
-      default:
-        return false;
-    }
-  };
+  const std::vector<Channel> channels = scattered_channels(pass, motion);
   const bool energies = scene_.plan.ledger && pass.momentum && !pass.remap;
-  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
+  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
       if (pass.momentum && !pass.remap) block.reach = {};
-      block.kinetic_energy = 0;
+      block.scattered_energy = 0;
+      block.far = 0;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
-        scatter_chunk(pass, step, chunk, work);
-        if (energies) block.kinetic_energy += kinetic_energy(chunk, work);
+        if (!scatter_chunk(pass, step, chunk, work, motion))
+          throw std::logic_error("a particle left the tile of its block");
+        if (energies) block.scattered_energy += kinetic_energy(chunk, work);
+        if (scene_.list) block.far += static_cast<std::uint32_t>(work.lists.far_of_chunk);
       });
-      for (int c = 0; c < channel_count; ++c)
-        if (touched(static_cast<Channel>(c)))
-          kernels_.flush(work.tile[c].data(), grid_.channel(static_cast<Channel>(c), bodies_[body].field),
-                         block.neighbours.data(), block.reach);
+      for (const Channel c : channels)
+        kernels_.flush(work.tile[c].data(), grid_.channel(c, bodies_[body].field), block.neighbours.data(),
+                       block.reach);
     });
+    scatter_far(body, [&](const Chunk& chunk, Work& work) { scatter_chunk(pass, step, chunk, work, motion); });
+  }
   throw_failure();
   double sum = 0;
   if (energies)
     for (const auto& particles : particles_)
-      for (const Block<D>& block : particles.blocks) sum += block.kinetic_energy;
+      for (const Block<D>& block : particles.blocks) sum += block.scattered_energy;
   return sum;
 }
 
+/// What a chunk gives its tiles; false, and nothing given, when a particle is outside of them. Called by the scatter
+/// and by the fused pass, which must agree to the last bit, so it is compiled once.
 template <int D, class T>
-void ParticleStep<D, T>::scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work) {
+[[gnu::noinline]] bool ParticleStep<D, T>::scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk,
+                                                         Work& work, Channel momentum) {
   const bool separate = grid_.has(force), merged = pass.force && !separate;
   const bool by_gradient = pass.force && !scene_.stress_by_affine;
   evaluate_shape(chunk, work, by_gradient || pass.contact_fields);
-  place_in_tile(chunk, work, pass.momentum && !pass.remap);
+  if (!place_in_tile(chunk, work, pass.momentum && !pass.remap && !work.far_only)) return false;
   if (pass.force || pass.contact_fields) {
     mpm_material_batch request{};
     if (pass.force) request.kirchhoff_stress = work.stress;
@@ -64,13 +81,14 @@ void ParticleStep<D, T>::scatter_chunk(const Pass& pass, const StepInfo& step, c
       if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, true, step.dt);
     }
     const bool affine = scene_.has(MPM_SCATTERS_AFFINE) || (merged && scene_.stress_by_affine);
-    add_to_tile(chunk, work, motion, work.mass, true, affine, merged && by_gradient);
+    add_to_tile(chunk, work, momentum, work.mass, true, affine, merged && by_gradient);
   }
   if (pass.force && separate) {
     scatter_stress(chunk, work);
     if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, false, step.dt);
   }
   if (pass.contact_fields) scatter_contact_fields(chunk, work);
+  return true;
 }
 
 template <int D, class T>
@@ -92,13 +110,23 @@ void ParticleStep<D, T>::momentum_coefficients(const Chunk& chunk, Work& work) {
 /// -factor V0 tau D^-1 into A (added or set), or -factor V0 tau into S.
 template <int D, class T>
 void ParticleStep<D, T>::stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add) {
-  const bool by_affine = scene_.stress_by_affine;
-  const T scale = static_cast<T>(-factor * chunk.body.volume * (by_affine ? scene_.inverse_moment : 1.0));
+  const bool by_affine = scene_.stress_by_affine, of_particle = by_affine && scene_.moment_of_particle;
+  const T scale =
+      static_cast<T>(-factor * chunk.body.volume * (by_affine && !of_particle ? scene_.inverse_moment : 1.0));
   T* const out = by_affine ? work.A : work.S;
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
-      const T* const tau = work.stress + Sym<D, T>::index(i, j) * chunk_size;
       T* const target = out + (i * D + j) * chunk_size;
+      if (of_particle) {
+        if (!add) std::fill(target, target + chunk.end, T(0));
+        for (int k = scene_.list ? 0 : j; k < (scene_.list ? D : j + 1); ++k) {
+          const T* const tau = work.stress + Sym<D, T>::index(i, k) * chunk_size;
+          const T* const inverse = work.inverse_moment + (scene_.list ? k * D + j : j) * chunk_size;
+          for (int p = 0; p < chunk.end; ++p) target[p] += scale * tau[p] * inverse[p];
+        }
+        continue;
+      }
+      const T* const tau = work.stress + Sym<D, T>::index(i, j) * chunk_size;
       if (by_affine && add)
         for (int p = 0; p < chunk.end; ++p) target[p] += scale * tau[p];
       else
@@ -139,6 +167,14 @@ void ParticleStep<D, T>::add_to_tile(const Chunk& chunk, Work& work, Channel cha
   for (int a = 0; gradient && a < D; ++a, quads += 4)
     pack_quads<T>(quads, groups, work.S + a * chunk_size, work.S + (D + a) * chunk_size,
                   D == 3 ? work.S + ((D - 1) * D + a) * chunk_size : none, none, n);
+  if (scene_.list) {
+    const auto kernel = kernels_.scatter_lists[affine][gradient];
+    if (work.far_only)
+      kernel(grid_.channel(channel, chunk.body.field), work.lists.far_lists(), work.quads, chunk.count);
+    else
+      kernel(work.tile[channel].data(), work.lists.near_lists(), work.quads, chunk.count);
+    return;
+  }
   const Stencils<T> stencils{work.tile_node, work.weight, work.gradient};
   kernels_.scatter[affine][gradient](work.tile[channel].data(), stencils, work.quads, chunk.count);
 }

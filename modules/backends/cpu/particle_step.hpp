@@ -2,6 +2,7 @@
 // The passes that work on particles, chunk by chunk: scatter, gather, strain, move, time step. A chunk is loaded once
 // and goes through shape, material and transfer plugins in batches; tiles of nodes are private to a thread.
 
+#include <atomic>
 #include <exception>
 #include <limits>
 #include <memory>
@@ -12,6 +13,33 @@
 #include "kernel/tensor.hpp"
 
 namespace mpm::cpu {
+
+/// The lists of nodes of one chunk, made from batches of MPM_LANES particles.
+template <int D, class T>
+struct ListWork {
+  static constexpr int lanes = MPM_LANES;
+  // one batch, as the shape takes and gives it
+  alignas(64) T position[D * lanes], half_size[D * lanes], domain[D * D * lanes], second_moment[D * D * lanes];
+  alignas(64) std::int32_t count[lanes];
+  AlignedArray<std::int32_t> coordinates;
+  AlignedArray<T> weight, gradient;
+  // the chunk: entries of a particle from first[p], in its tile up to near_end[p] or on the grid up to far_end[p]
+  std::int32_t first[chunk_size], near_end[chunk_size], far_end[chunk_size];
+  AlignedArray<std::int32_t> node;
+  AlignedArray<T> values;  ///< see NodeLists
+  int lowest[3], highest[3];
+  int far = 0, far_of_chunk = 0;  ///< particles with a node outside the tile, with the tail's lanes and without
+
+  void require(int capacity) {
+    coordinates.require(std::size_t(capacity) * D * lanes);
+    weight.require(std::size_t(capacity) * lanes);
+    gradient.require(std::size_t(capacity) * D * lanes);
+    node.require(std::size_t(capacity) * chunk_size);
+    values.require(std::size_t(capacity) * chunk_size * 8);
+  }
+  NodeLists<T> near_lists() const { return {first, near_end, node.data(), values.data()}; }
+  NodeLists<T> far_lists() const { return {first, far_end, node.data(), values.data()}; }
+};
 
 /// What one thread works in.
 template <int D, class T>
@@ -25,15 +53,22 @@ struct Workspace {
   alignas(64) T velocity[D * chunk_size], increment[D * chunk_size], affine[D * D * chunk_size],
       gradient_of_velocity[D * D * chunk_size];
   alignas(64) T advection[D * chunk_size], quads[(1 + 2 * D) * 4 * chunk_size];
+  /// Of moments a particle: cells^2, and the inverse in 1/m^2. [D] of a tensor product, [D * D] of a list.
+  alignas(64) T second_moment[D * D * chunk_size], inverse_moment[D * D * chunk_size];
   /// Zero between uses, so that the scatter may add.
   AlignedArray<T> tile[channel_count];
+  /// Tiles to gather from; only what the block reaches is valid.
+  AlignedArray<T> velocity_tile, increment_tile;
+  ListWork<D, T> lists;
+  AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
+  bool far_only = false;  ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
 
   void clear(Channel c, int nodes) { std::memset(tile[c].data(), 0, std::size_t(nodes) * 4 * sizeof(T)); }
 };
 
 /// A particle that cannot go on; the lowest body, then index, is reported.
 struct Failure {
-  int severity = 2;  ///< 0 inverted, 1 position, 2 none
+  int severity = 2;  ///< in the order that a pass looks: -1 domain, 0 inverted, 1 position, 2 none
   int body = 0;
   std::int32_t particle = std::numeric_limits<std::int32_t>::max();
   std::string cause;
@@ -66,13 +101,28 @@ class ParticleStep {
     double kinetic_energy = 0, dissipated = 0;  ///< J, with the ledger on
   };
   Gathered gather(const Pass& pass, const StepInfo& step);
+  struct Fused {
+    Gathered gathered;
+    bool scattered = false;     ///< next_motion and the forces are those of the following step
+    double kinetic_energy = 0;  ///< as `scatter` returns it
+  };
+  /// Gather, strain, move, and the scatter of the following step `next` while the chunk is at hand.
+  Fused gather_scatter(const Pass& pass, const StepInfo& step, const StepInfo& next);
+  /// Momentum of the filter's increment, gathered and scattered again, into filter_projection.
+  void project(const StepInfo& step);
   double strain(const StepInfo& step);  ///< energy dissipated, J
   void move(const StepInfo& step);
   TimeStepLimit time_step_limit();
 
   /// Bound of the distance any particle has moved since it was last reset, in cells.
   double drift() const { return drift_; }
-  void reset_drift() { drift_ = 0; }
+  void set_drift(double drift) { drift_ = drift; }
+  /// Tiles have a margin of one cell for particles that moved since they were sorted.
+  bool must_sort() const { return drift_ > 0.99; }
+  /// Widens the range of grid blocks that the lists of each block of particles may reach; whether any grew.
+  bool widen_active_blocks();
+  /// n*D*D, m^2, of every particle at its position, by index of seeding.
+  std::vector<double> second_moments(int body);
   const std::vector<Body<D, T>>& bodies() const { return bodies_; }
 
  private:
@@ -98,13 +148,22 @@ class ParticleStep {
   States states(const std::vector<StateField>& fields, const Chunk& chunk) const;
   void throw_failure();
 
-  void evaluate_shape(const Chunk& chunk, Work& work, bool gradients) const;
-  void place_in_tile(const Chunk& chunk, Work& work, bool extend_reach) const;
+  void evaluate_shape(const Chunk& chunk, Work& work, bool gradients);
+  void evaluate_lists(const Chunk& chunk, Work& work, bool gradients);
+  void evaluate_list_batch(const Chunk& chunk, Work& work, int first_lane, bool gradients) const;
+  int keep_list(const Chunk& chunk, Work& work, int first_lane, int lane, int entry, bool gradients);
+  bool reaches_too_far(const Chunk& chunk, int particle, const int* low, const int* high);
+  bool place_in_tile(const Chunk& chunk, Work& work, bool extend_reach) const;
+  bool place_lists(const Chunk& chunk, const Work& work, bool extend_reach) const;
+  void invert_moments(const Chunk& chunk, Work& work) const;
   void update_material(const Chunk& chunk, mpm_material_batch request);
   void note_inverted(const Chunk& chunk);
   double kinetic_energy(const Chunk& chunk, const Work& work) const;
 
-  void scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
+  std::vector<Channel> scattered_channels(const Pass& pass, Channel momentum) const;
+  bool scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work, Channel momentum);
+  template <class Visit>
+  void scatter_far(int body, Visit&& visit);
   void momentum_coefficients(const Chunk& chunk, Work& work);
   void stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add);
   void add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last, bool constant, bool affine,
@@ -113,9 +172,20 @@ class ParticleStep {
   void scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt);
   void scatter_contact_fields(const Chunk& chunk, Work& work);
 
-  void gather_chunk(const Chunk& chunk, Work& work, bool update_velocity, bool strain);
+  void load_velocities(int body, const Block<D>& block, Work& work);
+  double gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
+  Gathered sum_gathered();
+  /// What gather_chunk reads: velocities for the transfer, for the material, or the filter's increment.
+  struct Wanted {
+    bool transfer = false, strain = false;
+    Channel channel = motion;
+  };
+  void gather_chunk(const Chunk& chunk, Work& work, const Wanted& wanted);
+  void gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment, bool gradient);
   void affine_from_moments(const Chunk& chunk, Work& work, int groups);
+  void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
   void advance_material(const Chunk& chunk, Work& work, double dt);
+  void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const;
   double advance_position(const Chunk& chunk, const T* advection, double dt);
   double margin(int axis, int side) const;
   void note_outside(const Chunk& chunk);
@@ -131,6 +201,7 @@ class ParticleStep {
   Failure failure_;
   std::exception_ptr exception_;
   std::mutex mutex_;
+  std::atomic<bool> abandoned_{false};  ///< the fused pass does not scatter any more
 };
 
 }  // namespace mpm::cpu

@@ -20,7 +20,11 @@ struct Block {
   std::uint32_t first_chunk = 0, count = 0;
   Reach reach;                                                ///< of this step's stencils
   std::array<std::int32_t, neighbour_count<D>> neighbours{};  ///< slots of the grid
-  double kinetic_energy = 0, dissipated = 0;                  ///< partial sums of the ledger, J
+  /// Blocks of the grid, from this one, that its particles' lists may reach: always the neighbours.
+  std::array<std::int32_t, 3> first_active{-1, -1, -1}, last_active{1, 1, 1};
+  std::uint32_t far = 0;                      ///< particles whose lists leave the tile
+  double kinetic_energy = 0, dissipated = 0;  ///< partial sums of the ledger, J
+  double scattered_energy = 0;                ///< the same of the particles when they scatter, J
 };
 
 /// Blocks of one unit lie side by side; units of one colour touch no common node.
@@ -40,8 +44,11 @@ template <int D, class T>
 struct Particles {
   // components of a chunk
   static constexpr int position = 0, velocity = D;
-  int advection = -1;  ///< kept for the move pass of MUSL
+  int advection = -1;    ///< kept for the move pass of MUSL
+  int domain = -1;       ///< semi-side vectors in cells, row-major, columns are vectors
+  int next_domain = -1;  ///< of USF, which strains between two scatters with the same weights
   int components = 2 * D;
+  AlignedArray<T> half_size;  ///< [D][chunk_size] cells, of shapes that read it
   std::vector<StateField> transfer_state, material_state;
 
   AlignedArray<T> data;
@@ -103,7 +110,8 @@ inline double cells_from_corner(const Domain& domain, const Block<D>& block, int
 template <int D, class T>
 void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain);
 
-/// Sorts stably by block and cell of the stencil's first node. `spare` is the other buffer and is swapped in.
+/// Sorts stably by block and cell of the stencil's first node (of a list: of the position less half a cell). `spare` is
+/// the other buffer and is swapped in.
 template <int D, class T>
 void sort_particles(Particles<D, T>& particles, Particles<D, T>& spare, const Scene<D, T>& scene);
 

@@ -14,6 +14,9 @@ namespace mpm::cpu {
 template <class T>
 inline constexpr int lane_precision = sizeof(T) == 4 ? MPM_LANES_FLOAT : MPM_LANES_DOUBLE;
 
+/// Width of the tile that lists of nodes are scattered to: the widest.
+inline constexpr int list_width = 4;
+
 /// Domain in cells.
 struct Domain {
   Vector3 lower{};       ///< m
@@ -39,14 +42,22 @@ struct Scene {
     for (int axis = 0; axis < 3; ++axis)
       for (int side = 0; side < 2; ++side) domain.faces[axis][side] = e.faces[axis][side].type;
     const mpm_shape& shape = e.shape.plugin->shape();
-    if (shape.form != MPM_TENSOR_PRODUCT || shape.second_moment_kind == MPM_MOMENT_PER_PARTICLE)
-      throw std::invalid_argument(
-          "the cpu backend takes tensor-product shapes with a constant second moment or the linear one's");
-    width = static_cast<int>(shape.width);
-    evaluate_shape = shape.evaluate[lane_precision<T>];
+    list = shape.form == MPM_NODE_LIST;
+    width = list ? list_width : static_cast<int>(shape.width);
+    if (list) {
+      capacity = static_cast<int>(shape.capacity[D - 2]);
+      list_reach = shape.reach;
+      evaluate_list = shape.evaluate_list[lane_precision<T>][D - 2];
+    } else {
+      evaluate_shape = shape.evaluate[lane_precision<T>];
+    }
+    padding = grid_padding_of(shape);
     shape_parameters = e.shape.parameters.data();
+    half_size = e.shape.plugin->descriptor->needs & MPM_NEEDS_HALF_SIZE;
     moment_is_gradient = shape.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
-    if (!moment_is_gradient) inverse_moment = 1 / (shape.second_moment * domain.cell_size * domain.cell_size);
+    moment_of_particle = shape.second_moment_kind == MPM_MOMENT_PER_PARTICLE;
+    if (shape.second_moment_kind == MPM_MOMENT_CONSTANT)
+      inverse_moment = 1 / (shape.second_moment * domain.cell_size * domain.cell_size);
 
     const mpm_transfer& transfer = e.transfer.plugin->transfer();
     traits = transfer.traits;
@@ -56,7 +67,7 @@ struct Scene {
     stress_by_affine = has(MPM_STRESS_BY_AFFINE) && !moment_is_gradient;
   }
   bool has(unsigned trait) const { return (traits & trait) != 0; }
-  /// D_a of one axis (m^2) for a particle at `offset` cells from its stencil's first node.
+  /// D_a of one axis (m^2) for a particle at `offset` cells from its stencil's first node; not of moments a particle.
   double second_moment(double offset) const {
     return moment_is_gradient ? offset * (1 - offset) * domain.cell_size * domain.cell_size : 1 / inverse_moment;
   }
@@ -66,11 +77,17 @@ struct Scene {
   int threads = 1;
   Domain domain;
 
-  int width = 3;
+  int width = 3;  ///< nodes an axis of a stencil, which make the tile of a block
   void (*evaluate_shape)(const void*, const mpm_shape_batch*) = nullptr;
   const void* shape_parameters = nullptr;
-  bool moment_is_gradient = false;
-  double inverse_moment = 0;  ///< 1 / (second_moment h^2), 1/m^2
+  bool list = false;  ///< the shape gives lists of nodes
+  void (*evaluate_list)(const void*, const mpm_list_batch*) = nullptr;
+  int capacity = 0;       ///< most nodes of a list
+  double list_reach = 0;  ///< cells, of nodes beyond the particle's domain
+  int padding = grid_padding;
+  bool half_size = false;  ///< the shape reads it
+  bool moment_is_gradient = false, moment_of_particle = false;
+  double inverse_moment = 0;  ///< 1 / (second_moment h^2), 1/m^2, of a constant one
 
   unsigned traits = 0;
   bool stress_by_affine = false;

@@ -83,13 +83,20 @@ class Sorter {
   }
 
   void first_nodes(std::uint32_t chunk, int count, std::int32_t* base) const {
+    if (scene_.list) {  // the middle of the list's nodes comes to the middle of the tile
+      for (int axis = 0; axis < D; ++axis)
+        for (int p = 0; p < count; ++p)
+          base[axis * chunk_size + p] =
+              static_cast<std::int32_t>(std::floor(from_.chunk(chunk)[axis * chunk_size + p] - T(0.5)));
+      return;
+    }
     alignas(64) T offset[D * chunk_size], weight[D * 4 * chunk_size];
     const mpm_shape_batch batch{static_cast<std::uint32_t>(padded(count)),
                                 chunk_size,
                                 D,
                                 0,
                                 from_.chunk(chunk),
-                                nullptr,
+                                scene_.half_size ? from_.half_size.data() : nullptr,
                                 nullptr,
                                 base,
                                 offset,

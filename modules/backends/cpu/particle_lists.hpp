@@ -1,0 +1,200 @@
+#pragma once
+// ParticleStep: lists of nodes. A list whose nodes lie in the tile of its block goes through the tile; the others, of
+// far stretched particles, go to the grid itself, one after another.
+
+#include <sstream>
+
+#include "particle_chunks.hpp"
+
+namespace mpm::cpu {
+
+template <int D, class T>
+void ParticleStep<D, T>::evaluate_list_batch(const Chunk& chunk, Work& work, int first_lane, bool gradients) const {
+  ListWork<D, T>& lists = work.lists;
+  constexpr int lanes = ListWork<D, T>::lanes;
+  const auto copy = [&](const T* from, int components, T* to) {
+    for (int c = 0; c < components; ++c) std::copy_n(from + c * chunk_size + first_lane, lanes, to + c * lanes);
+  };
+  const bool domain = chunk.particles.domain >= 0;
+  copy(chunk.at(Particles<D, T>::position), D, lists.position);
+  if (domain) copy(chunk.at(chunk.particles.domain), D * D, lists.domain);
+  if (scene_.half_size) copy(chunk.particles.half_size.data(), D, lists.half_size);
+  const bool moments = scene_.plan.second_moment;
+  const mpm_list_batch batch{lanes,
+                             lanes,
+                             D,
+                             static_cast<std::uint32_t>(scene_.capacity),
+                             lists.position,
+                             scene_.half_size ? lists.half_size : nullptr,
+                             domain ? lists.domain : nullptr,
+                             lists.count,
+                             lists.coordinates.data(),
+                             lists.weight.data(),
+                             gradients ? lists.gradient.data() : nullptr,
+                             moments ? lists.second_moment : nullptr};
+  scene_.evaluate_list(scene_.shape_parameters, &batch);
+  for (int c = 0; moments && c < D * D; ++c)
+    std::copy_n(lists.second_moment + c * lanes, lanes, work.second_moment + c * chunk_size + first_lane);
+}
+
+template <int D, class T>
+void ParticleStep<D, T>::evaluate_lists(const Chunk& chunk, Work& work, bool gradients) {
+  ListWork<D, T>& lists = work.lists;
+  lists.far = lists.far_of_chunk = 0;
+  for (int a = 0; a < 3; ++a) lists.lowest[a] = 1 << 20, lists.highest[a] = -(1 << 20);
+  int entry = 0;
+  for (int first = 0; first < chunk.end; first += ListWork<D, T>::lanes) {
+    evaluate_list_batch(chunk, work, first, gradients);
+    for (int lane = 0; lane < ListWork<D, T>::lanes; ++lane)
+      entry = keep_list(chunk, work, first, lane, entry, gradients);
+  }
+  if (scene_.plan.second_moment) invert_moments(chunk, work);
+}
+
+/// Appends one particle's list to those of the chunk; returns the next free entry.
+template <int D, class T>
+int ParticleStep<D, T>::keep_list(const Chunk& chunk, Work& work, int first_lane, int lane, int entry, bool gradients) {
+  ListWork<D, T>& lists = work.lists;
+  constexpr int lanes = ListWork<D, T>::lanes;
+  const int p = first_lane + lane, count = lists.count[lane];
+  const auto shape = [&] { return "shape \"" + std::string(scene_.experiment.shape.plugin->id()) + "\" "; };
+  if (count < 1 || count > scene_.capacity)
+    throw std::logic_error(shape() + "gave a list of " + std::to_string(count) + " nodes");
+  const std::int32_t* const nodes = lists.coordinates.data() + lane;
+  int low[3]{}, high[3]{};
+  for (int a = 0; a < D; ++a) {
+    low[a] = high[a] = nodes[a * lanes];
+    for (int k = 1; k < count; ++k) {
+      const int node = nodes[(k * D + a) * lanes];
+      low[a] = std::min(low[a], node), high[a] = std::max(high[a], node);
+    }
+  }
+  lists.first[p] = lists.near_end[p] = lists.far_end[p] = entry;
+  if (reaches_too_far(chunk, p, low, high)) return entry;
+  bool near = true;
+  for (int a = 0; a < D; ++a) near = near && low[a] >= -1 && high[a] < kernels_.side - 1;
+
+  for (int k = 0; k < count; ++k) {
+    T* const values = lists.values.data() + std::size_t(entry + k) * 8;
+    std::array<int, 3> node{};
+    int tile_node = 0;
+    for (int a = 0; a < D; ++a) {
+      node[a] = nodes[(k * D + a) * lanes];
+      tile_node = tile_node * kernels_.side + node[a] + 1;
+      values[a] = static_cast<T>(node[a]) - lists.position[a * lanes + lane];
+      if (gradients) values[4 + a] = lists.gradient[(k * D + a) * lanes + lane];
+    }
+    values[3] = lists.weight[k * lanes + lane];
+    if (!near) {
+      for (int a = 0; a < D; ++a) node[a] += chunk.block.at[a] * block_side<D>;
+      tile_node = grid_.find(node);
+      if (tile_node < 0) throw std::logic_error(shape() + "gave a node beyond its declared reach");
+    }
+    lists.node[entry + k] = tile_node;
+  }
+  if (near) {
+    for (int a = 0; a < D; ++a) {
+      lists.lowest[a] = std::min(lists.lowest[a], low[a]);
+      lists.highest[a] = std::max(lists.highest[a], high[a]);
+    }
+    lists.near_end[p] = entry + count;
+  } else {
+    lists.far_end[p] = entry + count;
+    ++lists.far;
+    lists.far_of_chunk += p < chunk.count;
+  }
+  return entry + count;
+}
+
+/// Whether a list has nodes beyond the padding of the domain; the run then ends after this pass.
+template <int D, class T>
+bool ParticleStep<D, T>::reaches_too_far(const Chunk& chunk, int p, const int* low, const int* high) {
+  bool beyond = false;
+  for (int a = 0; a < D; ++a) {
+    int origin = chunk.block.at[a] * block_side<D>;
+    const int cells = scene_.domain.cells[a];
+    if (scene_.domain.periodic(a)) {
+      const double x = origin + static_cast<double>(chunk.at(Particles<D, T>::position + a)[p]);
+      origin -= cells * static_cast<int>(std::floor(x / cells));
+    }
+    beyond = beyond || origin + low[a] < -scene_.padding || origin + high[a] > cells + scene_.padding;
+  }
+  if (!beyond) return false;
+  const std::lock_guard lock(mutex_);
+  failure_.note(-1, chunk.body.index, chunk.ids[p],
+                "its domain reaches more than " + std::to_string(scene_.padding) + " cells beyond the domain's edge");
+  return true;
+}
+
+/// As place_in_tile: what the lists in the tile reach, as first nodes of stencils of the tile's width.
+template <int D, class T>
+bool ParticleStep<D, T>::place_lists(const Chunk& chunk, const Work& work, bool extend_reach) const {
+  if (!extend_reach) return true;
+  Reach& reach = chunk.block.reach;
+  for (int a = 0; a < D; ++a) {
+    reach.lowest[a] = std::min(reach.lowest[a], work.lists.lowest[a] + 1);
+    reach.highest[a] = std::max(reach.highest[a], work.lists.highest[a] + 2 - list_width);
+  }
+  return true;
+}
+
+template <int D, class T>
+bool ParticleStep<D, T>::widen_active_blocks() {
+  std::atomic<bool> grew{false};
+  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
+    for_each_block(body, false, [&](Block<D>& block, Work&) {
+      const int domain = particles_[body].domain;
+      double low[D], high[D];
+      std::fill(low, low + D, std::numeric_limits<double>::max());
+      std::fill(high, high + D, std::numeric_limits<double>::lowest());
+      for_each_chunk_of(body, block, [&](const Chunk& chunk) {
+        for (int a = 0; a < D; ++a)
+          for (int p = 0; p < chunk.count; ++p) {
+            double extent = scene_.list_reach;
+            for (int k = 0; domain >= 0 && k < D; ++k) extent += std::abs(chunk.at(domain + a * D + k)[p]);
+            const double x = chunk.at(Particles<D, T>::position + a)[p];
+            low[a] = low[a] <= x - extent ? low[a] : x - extent;
+            high[a] = high[a] >= x + extent ? high[a] : x + extent;
+          }
+      });
+      for (int a = 0; a < D; ++a) {
+        // What lies beyond is refused by reaches_too_far; so is what is not a number.
+        const double origin = block.at[a] * block_side<D>, least = -scene_.padding - 2 - origin,
+                     most = scene_.domain.cells[a] + scene_.padding + 2 - origin;
+        const int first = static_cast<int>(low[a] > least ? std::floor(low[a]) : least) >> block_bits<D>;
+        const int last = static_cast<int>(high[a] < most ? std::ceil(high[a]) : most) >> block_bits<D>;
+        if (first >= block.first_active[a] && last <= block.last_active[a]) continue;
+        block.first_active[a] = std::min(block.first_active[a], first);
+        block.last_active[a] = std::max(block.last_active[a], last);
+        grew = true;
+      }
+    });
+  return grew;
+}
+
+template <int D, class T>
+std::vector<double> ParticleStep<D, T>::second_moments(int body) {
+  std::size_t n = 0;
+  for (const Block<D>& block : particles_[body].blocks) n += block.count;
+  std::vector<double> moments(n * D * D, 0.0);
+  const double square = scene_.domain.cell_size * scene_.domain.cell_size;
+  Work& work = *work_[0];
+  for (Block<D>& block : particles_[body].blocks)
+    for_each_chunk_of(body, block, [&](const Chunk& chunk) {
+      if (scene_.list)
+        for (int first = 0; first < chunk.end; first += ListWork<D, T>::lanes)
+          evaluate_list_batch(chunk, work, first, false);  // where its nodes are does not matter
+      else
+        evaluate_shape(chunk, work, false);
+      for (int p = 0; p < chunk.count; ++p)
+        for (int a = 0; a < D; ++a)
+          for (int b = 0; b < D; ++b) {
+            if (!scene_.list && a != b) continue;
+            moments[(std::size_t(chunk.ids[p]) * D + a) * D + b] =
+                square * work.second_moment[(scene_.list ? a * D + b : a) * chunk_size + p];
+          }
+    });
+  return moments;
+}
+
+}  // namespace mpm::cpu
