@@ -324,7 +324,6 @@ EarlierParts resume(Simulation& simulation, Recorder& recorder, const output::Ru
   EarlierParts earlier = restore_newest(simulation, recorder, folder, identity_of(simulation.experiment()));
   folder.write_json("manifest.json", resumed_manifest(folder, options, threads, simulation.steps()));
   for (const char* name : {"summary.json", "report.html"}) std::filesystem::remove(folder.root() / name);
-  folder.remove_temporary_files();
   std::cerr << "resumed from step " << simulation.steps() << ", t = " << number_text(simulation.time()) << " s\n";
   return earlier;
 }
@@ -379,6 +378,7 @@ int run(const RunOptions& options) {
     earlier = resume(simulation, recorder, folder, options, threads);
   else
     folder.write_json("manifest.json", manifest(experiment, options, threads));
+  folder.remove_temporary_files();
   folder.write_json("experiment.json", experiment.resolved);
   folder.write_json("plan.json", simulation.plan().to_json());
   std::cerr << experiment.title << ": " << simulation.particle_count() << " particles, " << experiment.backend

@@ -17,9 +17,16 @@ bool holds_a_run(const fs::path& folder) {
   return fs::is_regular_file(folder / "manifest.json");
 }
 
-// Empty subfolders do not count: a run that was killed at its very start leaves those.
+/// What write_atomically leaves when the process is killed in it.
+bool is_temporary(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.starts_with('.') && name.ends_with(".tmp");
+}
+
+// Empty subfolders and half-written files do not count: a run that was killed at its very start leaves those.
 bool holds_no_file(const fs::path& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (is_temporary(entry.path()) && entry.is_regular_file()) continue;
     if (!entry.is_directory() || entry.is_symlink()) return false;
   }
   return true;
@@ -104,8 +111,7 @@ void RunFolder::remove_temporary_files() const {
   std::error_code error;
   std::vector<fs::path> left;
   for (const auto& entry : fs::recursive_directory_iterator(root_, error)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.is_regular_file() && name.starts_with('.') && name.ends_with(".tmp")) left.push_back(entry.path());
+    if (entry.is_regular_file() && is_temporary(entry.path())) left.push_back(entry.path());
   }
   for (const fs::path& path : left) fs::remove(path, error);  // what stays costs room and nothing else
 }
