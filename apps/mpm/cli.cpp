@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <iostream>
 #include <new>
@@ -21,6 +22,7 @@ constexpr const char* footer =
 invalid (what, where and when is printed; results so far are kept), or test-plugin found a plugin that fails, crashes
 or hangs; 4 an expectation in "compare" failed; 5 the machine failed (disk, memory); 130 stopped by Ctrl-C at a step
 boundary, everything written.
+A run that was stopped, killed or had no room on the disk goes on from its last checkpoint with --resume.
 Plugins are found in the build tree and in the folders of MPM_PLUGIN_PATH.)";
 
 void add_experiment(CLI::App& verb, RunOptions& options) {
@@ -30,11 +32,22 @@ void add_experiment(CLI::App& verb, RunOptions& options) {
   verb.add_option("--backend", options.backend, "reference or cpu, in place of the file's");
 }
 
+std::string quoted_for_a_shell(const std::string& word) {
+  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    return c >= 128 || std::isalnum(c) ||
+           std::string_view("_@%+=:,./-").find(static_cast<char>(c)) != std::string::npos;
+  });
+  if (plain) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
 std::string typed_command(int argc, char** argv) {
   std::string command = "./mpm";
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
-    command += word.find_first_of(" \"'$&|;<>()*") == std::string::npos ? " " + word : " '" + word + "'";
+    command += " " + quoted_for_a_shell(word);
   }
   return command;
 }
@@ -139,6 +152,9 @@ int run_command_line(int argc, char** argv) {
       ->add_option("--threads", options.threads,
                    "workers of the cpu backend; default all processors; results do not depend on it")
       ->check(CLI::Range(1, 1024));
+  run_verb->add_flag("--resume", options.resume,
+                     "goes on with the unfinished run in the run folder, from its last checkpoint, bit for bit; with "
+                     "the same FILE, --set and --backend");
   run_verb->callback([&] { code = guarded([&] { return run(options); }); });
 
   auto* check_verb = app.add_subcommand("check", "validate an experiment; every mistake is listed with its place");

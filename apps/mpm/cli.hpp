@@ -27,6 +27,7 @@ struct RunOptions {
   std::optional<std::string> backend;
   std::filesystem::path out;  ///< empty: runs/<name of the file>
   int threads = 0;            ///< 0: all processors
+  bool resume = false;        ///< goes on with the unfinished run in `out`
   std::string command;        ///< as typed, for the manifest
 };
 

@@ -1,11 +1,13 @@
 #include "mpm/recorder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 
 #include "metrics/particle_quantities.hpp"
+#include "output/checkpoint_file.hpp"
 #include "output/film.hpp"
 #include "output/vtk.hpp"
 
@@ -33,9 +35,83 @@ Recorder::Recorder(const Simulation& simulation, const Metrics& metrics, const o
     : simulation_(simulation),
       metrics_(metrics),
       folder_(folder),
-      csv_(folder.root() / "metrics.csv", metrics.columns()),
+      kept_snapshots_(folder.root() / "checkpoint/snapshots.records"),
       latest_(metrics.initial()),
       largest_energy_(metrics.initial().total_energy()) {}
+
+void Recorder::start() {
+  csv_.emplace(folder_.root() / "metrics.csv", metrics_.columns());
+}
+
+void Recorder::save(ArchiveWriter& archive) {
+  csv_->sync();
+  while (kept_snapshots_.count() < snapshots_.size()) {
+    const Snapshot& snapshot = snapshots_[kept_snapshots_.count()];
+    ArchiveWriter record;
+    record.put("time", snapshot.time);
+    record.put("step", snapshot.step);
+    record.put("positions", snapshot.positions);
+    record.put("values", snapshot.values);
+    kept_snapshots_.append({record.bytes().data(), record.bytes().size()});
+  }
+  archive.put("rows", csv_->bytes());
+  archive.put("snapshots", kept_snapshots_.index());
+  archive.put("last_row", last_row_);
+  archive.put("frames_taken", frames_taken_);
+  archive.put("frames_drawn", frames_drawn_);
+  archive.put("bytes_held", bytes_held_);
+  archive.put("vtk_files", vtk_files_.size());
+  for (const auto& [time, name] : vtk_files_) {
+    archive.put("vtk_time", time);
+    archive.put("vtk_name", name);
+  }
+  archive.put("latest", latest_);
+  archive.put("extremes",
+              std::array{largest_energy_, smallest_J_, largest_J_, largest_contact_force_, largest_penetration_});
+  archive.put("most_contact_nodes", most_contact_nodes_);
+}
+
+void Recorder::restore(ArchiveReader& archive) {
+  const std::filesystem::path table = folder_.root() / "metrics.csv";
+  std::size_t rows = 0;
+  archive.get("rows", rows);
+  if (!output::holds_whole_lines(table, rows))
+    throw output::CheckpointDamaged(table, "does not hold the rows written before the checkpoint");
+  std::string index;
+  archive.get("snapshots", index);
+  snapshots_.clear();
+  for (const std::string& bytes : kept_snapshots_.resume(index)) {
+    ArchiveReader record(bytes);
+    Snapshot& snapshot = snapshots_.emplace_back();
+    record.get("time", snapshot.time);
+    record.get("step", snapshot.step);
+    record.get("positions", snapshot.positions);
+    record.get("values", snapshot.values);
+  }
+  archive.get("last_row", last_row_);
+  archive.get("frames_taken", frames_taken_);
+  archive.get("frames_drawn", frames_drawn_);
+  archive.get("bytes_held", bytes_held_);
+  std::size_t files = 0;
+  archive.get("vtk_files", files);
+  vtk_files_.clear();
+  while (vtk_files_.size() < files) {
+    auto& [time, name] = vtk_files_.emplace_back();
+    archive.get("vtk_time", time);
+    archive.get("vtk_name", name);
+  }
+  archive.get("latest", latest_);
+  std::array<double, 5> extremes{};
+  archive.get("extremes", extremes);
+  largest_energy_ = extremes[0];
+  smallest_J_ = extremes[1];
+  largest_J_ = extremes[2];
+  largest_contact_force_ = extremes[3];
+  largest_penetration_ = extremes[4];
+  archive.get("most_contact_nodes", most_contact_nodes_);
+  output::cut_to(table, rows);
+  start();
+}
 
 bool Recorder::frame_due() const {
   const OutputSpecification& output = simulation_.experiment().output;
@@ -49,20 +125,23 @@ bool Recorder::frame_due() const {
 
 void Recorder::record(bool last) {
   const bool row_due = simulation_.steps() % simulation_.experiment().output.metrics_every == 0 || last;
-  if (row_due && last_row_ != simulation_.steps()) {
-    last_row_ = simulation_.steps();
-    latest_ = metrics_.measure();
-    csv_.row(metrics_.row(latest_));
-    largest_energy_ = std::max(largest_energy_, latest_.total_energy());
-    smallest_J_ = std::min(smallest_J_, latest_.smallest_volume_ratio);
-    largest_J_ = std::max(largest_J_, latest_.largest_volume_ratio);
-    const ContactRecord& contact = simulation_.backend().contact_record();
-    largest_contact_force_ =
-        std::max(largest_contact_force_, std::hypot(contact.force[0], contact.force[1], contact.force[2]));
-    largest_penetration_ = std::max(largest_penetration_, contact.largest_penetration);
-    most_contact_nodes_ = std::max(most_contact_nodes_, contact.nodes);
-  }
+  if (row_due && last_row_ != simulation_.steps()) record_row();
   if (frame_due()) record_frame();
+}
+
+void Recorder::record_row() {
+  const Totals totals = metrics_.measure();
+  csv_->row(metrics_.row(totals));  // what fails is done before anything is counted
+  latest_ = totals;
+  last_row_ = simulation_.steps();
+  largest_energy_ = std::max(largest_energy_, latest_.total_energy());
+  smallest_J_ = std::min(smallest_J_, latest_.smallest_volume_ratio);
+  largest_J_ = std::max(largest_J_, latest_.largest_volume_ratio);
+  const ContactRecord& contact = simulation_.backend().contact_record();
+  largest_contact_force_ =
+      std::max(largest_contact_force_, std::hypot(contact.force[0], contact.force[1], contact.force[2]));
+  largest_penetration_ = std::max(largest_penetration_, contact.largest_penetration);
+  most_contact_nodes_ = std::max(most_contact_nodes_, contact.nodes);
 }
 
 void Recorder::record_frame() {
@@ -74,13 +153,14 @@ void Recorder::record_frame() {
     snapshot.positions.insert(snapshot.positions.end(), state.position.begin(), state.position.end());
     snapshot.values.insert(snapshot.values.end(), values.begin(), values.end());
   }
-  const std::size_t index = frames_taken_++;
-  if (experiment.output.vtk) write_vtk(index);
-  bytes_held_ += (snapshot.positions.size() + snapshot.values.size()) * sizeof(float);
-  if (bytes_held_ > held_bytes_limit)
-    draw(snapshot, index, range_of(snapshot.values, {INFINITY, -INFINITY}));
+  if (experiment.output.vtk) write_vtk(frames_taken_);
+  const std::size_t bytes = (snapshot.positions.size() + snapshot.values.size()) * sizeof(float);
+  if (bytes_held_ + bytes > held_bytes_limit)
+    draw(snapshot, frames_taken_, range_of(snapshot.values, {INFINITY, -INFINITY}));
   else
     snapshots_.push_back(std::move(snapshot));
+  bytes_held_ += bytes;
+  ++frames_taken_;
 }
 
 render::ParticleFrame Recorder::frame_template() const {
@@ -163,6 +243,7 @@ void Recorder::write_vtk(std::size_t index) {
   for (auto& scalar : scalars) snapshot.fields.push_back(std::move(scalar));
   const std::string name = numbered("particles", index) + ".vtu";
   output::write_vtu(folder_.vtk() / name, snapshot);
+  vtk_files_.resize(index);  // without what an attempt that failed has left
   vtk_files_.emplace_back(simulation_.time(), name);
   output::write_pvd(folder_.vtk() / "particles.pvd", vtk_files_);
 }

@@ -8,6 +8,7 @@
 
 #include "metrics/metrics.hpp"
 #include "output/csv.hpp"
+#include "output/record_file.hpp"
 #include "output/run_folder.hpp"
 #include "render/frame.hpp"
 
@@ -17,7 +18,18 @@ class Recorder {
  public:
   Recorder(const Simulation& simulation, const Metrics& metrics, const output::RunFolder& folder);
 
-  /// Records what is due after a step (or before the first). `last`: the run ends here, whatever is due.
+  /// Begins metrics.csv. Call it, or `restore`, before anything is recorded.
+  void start();
+
+  /// All that a recorder of the same run needs to go on as if it had recorded everything itself. Rows and snapshots are
+  /// on the disk when it returns. @throws output::MachineError.
+  void save(ArchiveWriter& archive);
+  /// In place of `start`: cuts off the rows written after `save`. @throws output::CheckpointDamaged when the folder
+  /// does not hold what was recorded until then; nothing is changed in it by then. ArchiveError.
+  void restore(ArchiveReader& archive);
+
+  /// Records what is due after a step (or before the first). `last`: the run ends here, whatever is due. Recording the
+  /// same step again does nothing, or what failed the first time (output::MachineError).
   void record(bool last = false);
   /// Draws the frames, with one colour scale over all of them, and the film when asked for.
   void draw_frames();
@@ -37,6 +49,7 @@ class Recorder {
     std::vector<float> positions, values;
   };
   bool frame_due() const;
+  void record_row();
   void record_frame();
   void write_vtk(std::size_t frame);
   void draw(const Snapshot& snapshot, std::size_t index, std::pair<double, double> range);
@@ -45,7 +58,8 @@ class Recorder {
   const Simulation& simulation_;
   const Metrics& metrics_;
   const output::RunFolder& folder_;
-  output::CsvAppender csv_;
+  std::optional<output::CsvAppender> csv_;
+  output::RecordFile kept_snapshots_;  ///< the first ones of snapshots_, for a resumed run
   long last_row_ = -1;
   std::size_t frames_taken_ = 0, frames_drawn_ = 0, bytes_held_ = 0;
   std::vector<Snapshot> snapshots_;

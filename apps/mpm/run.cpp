@@ -14,6 +14,7 @@
 
 #include "backends/make_backend.hpp"
 #include "experiment/diagnostics.hpp"
+#include "mpm/checkpoint.hpp"
 #include "mpm/cli.hpp"
 #include "mpm/run_figures.hpp"
 #include "mpm/summary.hpp"
@@ -63,31 +64,47 @@ class StopOnSignal {
 class Progress {
  public:
   explicit Progress(const Simulation& simulation)
-      : simulation_(simulation), terminal_(isatty(STDERR_FILENO)), start_(Clock::now()), shown_(start_) {}
+      : simulation_(simulation),
+        terminal_(isatty(STDERR_FILENO)),
+        start_(Clock::now()),
+        shown_(start_),
+        first_step_(simulation.steps()),
+        first_share_(share()) {
+    while (next_share_ <= first_share_) next_share_ += 0.1;
+  }
+
+  /// Frees the line for another message.
+  void clear() const {
+    if (terminal_) std::fputs("\r\033[K", stderr);
+  }
 
   void show(bool last = false) {
     const auto now = Clock::now();
-    const double share = simulation_.time() / simulation_.experiment().solver.end_time;
+    const double share = this->share();
     const bool due = terminal_ ? now - shown_ > std::chrono::milliseconds(200) : share >= next_share_;
     if (!due && !(last && (terminal_ || simulation_.steps() != shown_step_))) return;
     shown_ = now;
     shown_step_ = simulation_.steps();
     while (next_share_ <= share) next_share_ += 0.1;
     const double elapsed = std::chrono::duration<double>(now - start_).count();
-    const double rate = static_cast<double>(simulation_.steps()) * static_cast<double>(simulation_.particle_count()) /
-                        std::max(elapsed, 1e-9);
+    const double rate = static_cast<double>(simulation_.steps() - first_step_) *
+                        static_cast<double>(simulation_.particle_count()) / std::max(elapsed, 1e-9);
+    const double done_here = share - first_share_;
     std::fprintf(stderr, "%sstep %ld, t = %.6g s (%3.0f %%), dt = %.3g s, %.3g M particle-steps/s, %.0f s left%s",
                  terminal_ ? "\r\033[K" : "", simulation_.steps(), simulation_.time(), 100 * share,
-                 simulation_.last_time_step(), rate / 1e6, share > 0 ? elapsed * (1 / share - 1) : 0.0,
+                 simulation_.last_time_step(), rate / 1e6, done_here > 0 ? elapsed * (1 - share) / done_here : 0.0,
                  terminal_ && !last ? "" : "\n");
     std::fflush(stderr);
   }
 
  private:
+  double share() const { return simulation_.time() / simulation_.experiment().solver.end_time; }
+
   const Simulation& simulation_;
   bool terminal_;
   Clock::time_point start_, shown_;
-  double next_share_ = 0.1;
+  long first_step_;  ///< of this process
+  double first_share_, next_share_ = 0.1;
   long shown_step_ = -1;
 };
 
@@ -101,12 +118,7 @@ nlohmann::ordered_json manifest(const Experiment& experiment, const RunOptions& 
   json["seed"] = experiment.seed;
   json["threads"] = threads;
   json["machine"] = output::machine_description();
-  std::vector<const Plugin*> used{experiment.shape.plugin, experiment.transfer.plugin};
-  if (experiment.contact) used.push_back(experiment.contact->plugin);
-  for (const MaterialSpecification& material : experiment.materials)
-    if (std::find(used.begin(), used.end(), material.component.plugin) == used.end())
-      used.push_back(material.component.plugin);
-  for (const Plugin* plugin : used) {
+  for (const Plugin* plugin : plugins_of(experiment)) {
     const mpm_descriptor& d = *plugin->descriptor;
     json["plugins"].push_back({{"id", d.id},
                                {"kind", kind_name(static_cast<mpm_kind>(d.kind))},
@@ -116,6 +128,21 @@ nlohmann::ordered_json manifest(const Experiment& experiment, const RunOptions& 
                                {"file_sha256", output::sha256_of_file(plugin->file)}});
   }
   return json;
+}
+
+/// That of the first part, with a line for each resumption, those included whose work was lost again.
+nlohmann::ordered_json resumed_manifest(const output::RunFolder& folder, const RunOptions& options, int threads,
+                                        long step) {
+  auto json = nlohmann::ordered_json::parse(output::read_file(folder.root() / "manifest.json"), nullptr, false);
+  if (!json.is_object())
+    throw output::FolderRefused((folder.root() / "manifest.json").string() +
+                                " is damaged; start anew without --resume (the unfinished run is then moved aside)");
+  json["resumed"].push_back({{"resumed_from_step", step}, {"command", options.command}, {"threads", threads}});
+  return json;
+}
+
+std::string resume_command(const RunOptions& options) {
+  return options.command + (options.resume ? "" : " --resume");
 }
 
 /// "(0.1, 0.2) m"
@@ -143,41 +170,66 @@ constexpr const char* failure_remedy =
     "remedy: a smaller /solver/courant or /solver/time_step, a transfer with more damping, or a material that is "
     "stiffer when crushed";
 
+/// What stands between a run and its end; the run can be resumed from there.
+Outcome unfinished(const Simulation& simulation) {
+  if (!simulation.finished())
+    return {interrupted, "interrupted", "stopped by a signal after step " + std::to_string(simulation.steps())};
+  if (simulation.time() < simulation.experiment().solver.end_time * (1 - 1e-12))
+    return {run_failed, "failed", "max_steps (" + std::to_string(simulation.steps()) + ") was reached before end_time"};
+  return {};
+}
+
+void say_how_to_resume(const Outcome& outcome, const Checkpoints& checkpoints, const RunOptions& options) {
+  const bool too_few_steps = outcome.exit_code == run_failed;
+  if (checkpoints.any())
+    std::cerr << "resume with: " << resume_command(options) << (too_few_steps ? " --set /solver/max_steps=..." : "")
+              << "\n";
+  else
+    std::cerr << "there is no checkpoint: this run cannot be resumed\n";
+}
+
 /// Steps until the end, a failure or a signal.
-Outcome step_to_the_end(Simulation& simulation, Recorder& recorder) {
+Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints& checkpoints,
+                        const RunOptions& options) {
   Progress progress(simulation);
-  Outcome outcome;
   recorder.record();
   while (!simulation.finished() && !stop_requested) {
     try {
       simulation.step();
     } catch (const RunFailure& failure) {
-      outcome = {run_failed, "failed", failure_text(failure, simulation)};
+      const Outcome outcome{run_failed, "failed", failure_text(failure, simulation)};
       progress.show(true);
       std::cerr << "the run failed: " << outcome.reason << "\n" << failure_remedy << "\n";
       return outcome;
     }
     recorder.record();
+    checkpoints.write_if_due();
     progress.show();
+  }
+  const Outcome outcome = unfinished(simulation);
+  if (!outcome.reason.empty()) {
+    progress.clear();
+    checkpoints.write();  // before the row below, which the whole run does not have
+    say_how_to_resume(outcome, checkpoints, options);
   }
   recorder.record(true);
   progress.show(true);
-  if (simulation.finished() && simulation.time() < simulation.experiment().solver.end_time * (1 - 1e-12))
-    outcome = {run_failed, "failed",
-               "max_steps (" + std::to_string(simulation.steps()) + ") was reached before end_time"};
-  else if (!simulation.finished())
-    outcome = {interrupted, "interrupted", "stopped by a signal after step " + std::to_string(simulation.steps())};
   if (!outcome.reason.empty()) std::cerr << outcome.reason << "\n";
   return outcome;
 }
 
 /// The same, when the disk or the memory fails on the way: what was recorded before still gets its summary.
-Outcome step_or_say_why(Simulation& simulation, Recorder& recorder) {
+Outcome step_or_say_why(Simulation& simulation, Recorder& recorder, Checkpoints& checkpoints,
+                        const RunOptions& options) {
   try {
-    return step_to_the_end(simulation, recorder);
+    return step_to_the_end(simulation, recorder, checkpoints, options);
   } catch (const output::MachineError& error) {
     std::cerr << "the machine failed: " << error.what() << "\n";
-    return {machine_failed, "failed", error.what()};
+    // The step is whole, and what could not be recorded of it is recorded when the run is resumed.
+    checkpoints.write();
+    const Outcome outcome{machine_failed, "failed", error.what()};
+    say_how_to_resume(outcome, checkpoints, options);
+    return outcome;
   }
 }
 
@@ -248,33 +300,37 @@ void print_result(const nlohmann::ordered_json& summary, const output::RunFolder
             << std::endl;
 }
 
-}  // namespace
+/// The code of a run that has come to its end and needs no resuming.
+std::optional<int> already_finished(const Experiment& experiment, const output::RunFolder& folder) {
+  const std::optional<int> code = finished_with(folder);
+  if (!code) return std::nullopt;
+  refuse_other_experiment(experiment,
+                          nlohmann::ordered_json::parse(output::read_file(folder.root() / "experiment.json")), folder);
+  std::cerr << folder.root().string() << " holds a finished run (exit code " << *code << "): nothing was left to do\n";
+  return code;
+}
 
-int run(const RunOptions& options) {
-  const auto start = Clock::now();
-  const Registry registry = load_registry();
-  const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
-  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const int threads = experiment.backend == "reference" ? 1 : options.threads > 0 ? options.threads : processors;
-  Simulation simulation(experiment, backend_factory(threads));
-  const Metrics metrics(simulation);
-  refuse_figures_without_numbers(experiment, metrics);
-  refuse_velocities_that_are_no_numbers(simulation);
+output::RunFolder open_to_resume(const std::filesystem::path& place) {
+  if (!std::filesystem::is_regular_file(place / "manifest.json"))
+    throw output::FolderRefused(place.string() +
+                                " holds no run (no manifest.json), so nothing can be resumed: name "
+                                "its folder with --out, or start it without --resume");
+  return output::RunFolder::open(place);
+}
 
-  const StopOnSignal signals;
-  const auto folder = output::RunFolder::create(
-      options.out.empty() ? std::filesystem::path("runs") / options.file.stem() : options.out);
-  folder.write_json("manifest.json", manifest(experiment, options, threads));
-  folder.write_json("experiment.json", experiment.resolved);
-  folder.write_json("plan.json", simulation.plan().to_json());
-  std::cerr << experiment.title << ": " << simulation.particle_count() << " particles, " << experiment.backend
-            << " backend, " << threads << (threads == 1 ? " thread" : " threads") << "\n";
+/// Goes back to the newest checkpoint; the folder then no longer says how the run ended before.
+EarlierParts resume(Simulation& simulation, Recorder& recorder, const output::RunFolder& folder,
+                    const RunOptions& options, int threads) {
+  EarlierParts earlier = restore_newest(simulation, recorder, folder, identity_of(simulation.experiment()));
+  folder.write_json("manifest.json", resumed_manifest(folder, options, threads, simulation.steps()));
+  for (const char* name : {"summary.json", "report.html"}) std::filesystem::remove(folder.root() / name);
+  std::cerr << "resumed from step " << simulation.steps() << ", t = " << number_text(simulation.time()) << " s\n";
+  return earlier;
+}
 
-  Recorder recorder(simulation, metrics, folder);
-  Outcome outcome = step_or_say_why(simulation, recorder);
-
-  const double wall = std::chrono::duration<double>(Clock::now() - start).count();
-  nlohmann::ordered_json summary = summarise(simulation, metrics, recorder, wall);
+/// Summary, pictures and report.
+Outcome finish(Outcome outcome, nlohmann::ordered_json summary, const Experiment& experiment, Recorder& recorder,
+               const output::RunFolder& folder) {
   if (outcome.exit_code == done) {
     const auto failed = judge_expectations(experiment, summary);
     for (const std::string& sentence : failed) std::cerr << sentence << "\n";
@@ -294,6 +350,48 @@ int run(const RunOptions& options) {
   }
   output::write_report(folder.root());
   print_result(summary, folder);
+  return outcome;
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  const auto start = Clock::now();
+  const Registry registry = load_registry();
+  const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
+  const auto place = options.out.empty() ? std::filesystem::path("runs") / options.file.stem() : options.out;
+  if (options.resume)
+    if (const auto code = already_finished(experiment, open_to_resume(place))) return *code;
+  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int threads = experiment.backend == "reference" ? 1 : options.threads > 0 ? options.threads : processors;
+  Simulation simulation(experiment, backend_factory(threads));
+  const Metrics metrics(simulation);  // of step 0, also when the run goes on from a later one
+  refuse_figures_without_numbers(experiment, metrics);
+  refuse_velocities_that_are_no_numbers(simulation);
+
+  const StopOnSignal signals;
+  const auto folder = options.resume ? open_to_resume(place) : output::RunFolder::create(place);
+  const output::FolderLock lock(folder.root());
+  Recorder recorder(simulation, metrics, folder);
+  EarlierParts earlier;
+  if (options.resume)
+    earlier = resume(simulation, recorder, folder, options, threads);
+  else
+    folder.write_json("manifest.json", manifest(experiment, options, threads));
+  folder.remove_temporary_files();
+  folder.write_json("experiment.json", experiment.resolved);
+  folder.write_json("plan.json", simulation.plan().to_json());
+  std::cerr << experiment.title << ": " << simulation.particle_count() << " particles, " << experiment.backend
+            << " backend, " << threads << (threads == 1 ? " thread" : " threads") << "\n";
+  if (!options.resume) recorder.start();
+
+  Checkpoints checkpoints(simulation, recorder, folder, identity_of(experiment), earlier, start);
+  const Outcome stepped = step_or_say_why(simulation, recorder, checkpoints, options);
+  const double wall = std::chrono::duration<double>(Clock::now() - start).count();
+  nlohmann::ordered_json summary = summarise(simulation, metrics, recorder, wall, earlier);
+  if (!checkpoints.trouble().empty()) summary["warnings"].push_back(checkpoints.trouble());
+  const Outcome outcome = finish(stepped, std::move(summary), experiment, recorder, folder);
+  if (outcome.exit_code == done || outcome.exit_code == expectation_failed) checkpoints.remove();
   return outcome.exit_code;
 }
 

@@ -74,13 +74,16 @@ void collect_names(const Json& value, const std::string& prefix, std::vector<std
 
 }  // namespace
 
-Json summarise(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder, double wall_seconds) {
+Json summarise(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder, double wall_seconds,
+               const EarlierParts& earlier) {
   const Experiment& experiment = simulation.experiment();
   const Totals &start = metrics.initial(), &end = recorder.latest();
   const bool flat = experiment.dimension == 2;
   const double particles = static_cast<double>(simulation.particle_count());
+  std::map<std::string, double> seconds_by_pass = earlier.seconds_by_pass;
+  for (const auto& [name, seconds] : simulation.seconds_by_pass()) seconds_by_pass[name] += seconds;
   double stepping = 0;
-  for (const auto& [name, seconds] : simulation.seconds_by_pass()) stepping += seconds;
+  for (const auto& [name, seconds] : seconds_by_pass) stepping += seconds;
 
   Json json{
       {"particles", simulation.particle_count()}, {"steps", simulation.steps()}, {"simulated_time", simulation.time()}};
@@ -121,15 +124,15 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
                                    {"increment_norm", filter.last_norm},
                                    {"largest_growth", filter.largest_growth}};
   }
-  json["performance"] = {{"wall_seconds", wall_seconds},
+  json["performance"] = {{"wall_seconds", earlier.wall_seconds + wall_seconds},
                          {"stepping_seconds", stepping},
                          {"particle_steps_per_second",
                           stepping > 0 ? particles * static_cast<double>(simulation.steps()) / stepping : 0.0},
                          {"bytes_per_particle", static_cast<double>(simulation.backend().particle_bytes()) / particles},
                          {"grid_bytes", simulation.backend().grid_bytes()},
                          {"peak_memory", peak_memory()}};
-  for (const auto& [name, seconds] : simulation.seconds_by_pass())
-    json["performance"]["seconds_by_pass"][name] = seconds;
+  for (const auto& [name, seconds] : seconds_by_pass) json["performance"]["seconds_by_pass"][name] = seconds;
+  if (!earlier.resumed_from_steps.empty()) json["performance"]["resumed_from_step"] = earlier.resumed_from_steps;
   json["warnings"] = Json::array();
   // Case A11: a run without work from outside must not gain energy.
   const double gain = recorder.largest_total_energy() - start.total_energy();

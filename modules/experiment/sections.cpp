@@ -233,10 +233,10 @@ Section output_section(const ReadOptions& options) {
               parameter("vtk", Type::boolean, "", "Write a VTK file beside each frame.").standard(false),
               parameter("film", Type::boolean, "", "Join the frames to a film.").standard(false),
               parameter("ledger", Type::boolean, "", "Keep the energy ledger.").standard(true),
-              parameter("checkpoint_every", Type::number, "s", "Wall-clock time between checkpoints; 0: none.")
+              parameter("checkpoint_every", Type::number, "s", "Wall-clock time between checkpoints; 0: none by the clock.")
                   .from(0)
                   .standard(60),
-              parameter("checkpoint_steps", Type::integer, "", "Steps between checkpoints; 0: by the clock only.")
+              parameter("checkpoint_steps", Type::integer, "", "Steps between checkpoints; 0: none by steps.")
                   .from(0)
                   .to(1e15)
                   .standard(0),

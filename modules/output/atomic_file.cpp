@@ -116,8 +116,14 @@ MachineError MachineError::from_errno(std::string_view action, const fs::path& p
 }
 
 void write_atomically(const fs::path& path, std::string_view bytes) {
+  write_atomically(path, {bytes});
+}
+
+void write_atomically(const fs::path& path, std::initializer_list<std::string_view> pieces) {
   TemporaryFile temporary = open_temporary(path);
-  int error = temporary.file.write_all(bytes);
+  int error = 0;
+  for (const std::string_view piece : pieces)
+    if (error == 0) error = temporary.file.write_all(piece);
   if (error == 0 && ::fsync(temporary.file.number()) != 0) error = errno;
   const int close_error = temporary.file.close();
   if (error == 0) error = close_error;
@@ -142,8 +148,12 @@ std::string sha256_of_file(const fs::path& path) {
 }
 
 std::string sha256(std::string_view bytes) {
+  return sha256({bytes});
+}
+
+std::string sha256(std::initializer_list<std::string_view> pieces) {
   Sha256 hash;
-  hash.add(bytes.data(), bytes.size());
+  for (const std::string_view piece : pieces) hash.add(piece.data(), piece.size());
   return hash.hex();
 }
 

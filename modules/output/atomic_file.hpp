@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -22,6 +23,8 @@ class MachineError : public std::runtime_error {
 /// Readers see the old file or the new one, never a part. The folder must exist.
 /// @throws MachineError; the old file is then untouched and the temporary one removed.
 void write_atomically(const std::filesystem::path& path, std::string_view bytes);
+/// The same for pieces that are written one after another, so that large ones need not be joined in memory.
+void write_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
 
 /// The whole file as bytes. @throws MachineError when it cannot be opened or read.
 std::string read_file(const std::filesystem::path& path);
@@ -31,5 +34,7 @@ std::string sha256_of_file(const std::filesystem::path& path);
 
 /// SHA-256 of `bytes`, 64 lower-case hexadecimal digits.
 std::string sha256(std::string_view bytes);
+/// Of the pieces as if they were joined.
+std::string sha256(std::initializer_list<std::string_view> pieces);
 
 }  // namespace mpm::output

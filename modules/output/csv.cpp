@@ -150,6 +150,10 @@ void CsvAppender::row(std::span<const double> values) {
   whole_bytes_ += line.size();
 }
 
+void CsvAppender::sync() {
+  if (::fsync(file_.number()) != 0) throw MachineError::from_errno("write", path_, errno);
+}
+
 const std::vector<double>* Table::find(std::string_view name) const {
   for (std::size_t i = 0; i < header.size(); ++i) {
     if (header[i] == name) return &columns[i];
@@ -203,6 +207,17 @@ void drop_rows_after(const fs::path& path, double last) {
     if (!parse_number(line.substr(0, line.find(',')), first) || !(first <= last)) break;
   }
   if (kept < bytes.size()) write_atomically(path, std::string_view(bytes).substr(0, kept));
+}
+
+bool holds_whole_lines(const fs::path& path, std::size_t bytes) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  char last = 0;
+  return file.valid() && bytes > 0 && ::pread(file.number(), &last, 1, static_cast<off_t>(bytes - 1)) == 1 &&
+         last == '\n';
+}
+
+void cut_to(const fs::path& path, std::size_t bytes) {
+  if (::truncate(path.c_str(), static_cast<off_t>(bytes)) != 0) throw MachineError::from_errno("shorten", path, errno);
 }
 
 }  // namespace mpm::output

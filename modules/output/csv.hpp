@@ -26,6 +26,11 @@ class CsvAppender {
   /// file then ends with its last whole row and can be appended to again).
   void row(std::span<const double> values);
 
+  /// Length of the file, header and whole rows.
+  std::size_t bytes() const { return whole_bytes_; }
+  /// Returns when all rows are on the disk. @throws MachineError.
+  void sync();
+
  private:
   void open_existing(const std::string& header_line);
 
@@ -55,5 +60,12 @@ void write_csv(const std::filesystem::path& path, const Table& table);
 /// Keeps the rows whose first column is at most `last` (in that column's unit), byte for byte, before a run resumes
 /// from a checkpoint older than its last row. Does nothing when the file is missing. @throws MachineError.
 void drop_rows_after(const std::filesystem::path& path, double last);
+
+/// Whether the file's first `bytes` bytes are there and end with a whole line.
+bool holds_whole_lines(const std::filesystem::path& path, std::size_t bytes);
+
+/// Cuts the file to its first `bytes` bytes, before a run resumes from a checkpoint that counted them. @throws
+/// MachineError.
+void cut_to(const std::filesystem::path& path, std::size_t bytes);
 
 }  // namespace mpm::output

@@ -1,7 +1,10 @@
 #include "output/run_folder.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "output/atomic_file.hpp"
 
@@ -14,9 +17,16 @@ bool holds_a_run(const fs::path& folder) {
   return fs::is_regular_file(folder / "manifest.json");
 }
 
-// Empty subfolders do not count: a run that was killed at its very start leaves those.
+/// What write_atomically leaves when the process is killed in it.
+bool is_temporary(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.starts_with('.') && name.ends_with(".tmp");
+}
+
+// Empty subfolders and half-written files do not count: a run that was killed at its very start leaves those.
 bool holds_no_file(const fs::path& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (is_temporary(entry.path()) && entry.is_regular_file()) continue;
     if (!entry.is_directory() || entry.is_symlink()) return false;
   }
   return true;
@@ -32,6 +42,7 @@ fs::path without_trailing_slash(const fs::path& path) {
 }
 
 void move_aside(const fs::path& folder) {
+  const FolderLock nobody_writes(folder);
   if (contains(folder, fs::current_path())) {
     throw FolderRefused(folder.string() +
                         " holds an earlier run, and the program was started inside it, so that it cannot be moved "
@@ -94,6 +105,23 @@ fs::path RunFolder::subfolder(const char* name) const {
   fs::path folder = root_ / name;
   make_folder(folder);
   return folder;
+}
+
+void RunFolder::remove_temporary_files() const {
+  std::error_code error;
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::recursive_directory_iterator(root_, error)) {
+    if (entry.is_regular_file() && is_temporary(entry.path())) left.push_back(entry.path());
+  }
+  for (const fs::path& path : left) fs::remove(path, error);  // what stays costs room and nothing else
+}
+
+FolderLock::FolderLock(const fs::path& folder) : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (folder_.valid() && ::flock(folder_.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    throw FolderRefused(folder.string() +
+                        " is being written by another mpm that still runs; wait for it or end it, or choose another "
+                        "folder with --out");
+  }
 }
 
 void RunFolder::write_json(std::string_view name, const nlohmann::ordered_json& value) const {

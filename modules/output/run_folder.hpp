@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "output/file_descriptor.hpp"
+
 namespace mpm::output {
 
 /// The wanted folder may not be used: it holds something else than a run. A mistake of the caller: exit code 2.
@@ -19,8 +21,8 @@ class RunFolder {
  public:
   /// Makes the folder and those above it. If it holds a previous run (a manifest.json), that run is first moved aside
   /// as NAME.1, NAME.2 …, the first that is free. Write manifest.json early, so that a killed run is known as a run.
-  /// @throws FolderRefused, with a remedy, when the path is a file, a folder with other contents, or the folder the
-  /// program works in; MachineError when the disk refuses.
+  /// @throws FolderRefused, with a remedy, when the path is a file, a folder with other contents, the folder the
+  /// program works in, or a run that still goes on; MachineError when the disk refuses.
   static RunFolder create(const std::filesystem::path& path);
 
   /// Takes an existing run as it is, to resume it or to draw its figures again.
@@ -35,6 +37,9 @@ class RunFolder {
   std::filesystem::path vtk() const { return subfolder("vtk"); }
   std::filesystem::path checkpoint() const { return subfolder("checkpoint"); }
 
+  /// Removes what killed processes left half-written (".*.tmp"), in all subfolders. Only for who holds the lock.
+  void remove_temporary_files() const;
+
   /// Writes root()/name, indented by two, whole or not at all. NaN and infinity become null. @throws MachineError.
   void write_json(std::string_view name, const nlohmann::ordered_json& value) const;
 
@@ -46,6 +51,17 @@ class RunFolder {
   std::filesystem::path subfolder(const char* name) const;
 
   std::filesystem::path root_;  // absolute, so that a later change of the working folder cannot move it
+};
+
+/// Held by the one program that writes to a run folder; the system lets go of it when that program ends, however it
+/// ends. Leaves no file.
+class FolderLock {
+ public:
+  /// @throws FolderRefused when another program holds it. A file system without locks is used without.
+  explicit FolderLock(const std::filesystem::path& folder);
+
+ private:
+  FileDescriptor folder_;
 };
 
 }  // namespace mpm::output

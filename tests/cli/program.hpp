@@ -122,6 +122,7 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
+  pid_t id() const { return id_; }
   void send(int signal) const { ::kill(id_, signal); }
 
   /// Waits until `ready` holds; false when the process ended or half a minute passed before.
