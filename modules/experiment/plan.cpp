@@ -162,6 +162,10 @@ class Planner {
                   "/solver/stress_update \"modified_last\": positions wait for the remapped strain");
       if (plan_.particle_domain)
         attribute(body, "domain", D * D, named(experiment_.shape) + ": semi-side vectors of the particle's domain");
+      if (plan_.particle_domain && experiment_.backend == "cpu" &&
+          experiment_.solver.stress_update == StressUpdate::first)
+        attribute(body, "strained_domain", D * D,
+                  "/solver/stress_update \"first\": the weights of a step stay those before its strain");
       state(body, experiment_.transfer);
       state(body, experiment_.materials[specification.material].component);
     }
