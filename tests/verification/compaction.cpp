@@ -16,9 +16,11 @@ std::string column(const std::string& shape, double cell) {
   const double top = std::ceil(height / cell + 1) * cell;
   return R"({"dimension": 2, "backend": "cpu", "grid": {"cell_size": )" + digits(cell) + R"(, "domain": [[0, 0], [)" +
          digits(cell) + ", " + digits(top) + R"(]], "boundaries": {"all": "slip"}},
-    "shape": {"type": ")" + shape + R"("}, "transfer": {"type": "flip"},
+    "shape": {"type": ")" +
+         shape + R"("}, "transfer": {"type": "flip"},
     "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e6, "poisson_ratio": 0, "density": 80}},
-    "bodies": [{"name": "column", "material": "m", "geometry": {"type": "box", "lower": [0, 0], "upper": [)" + digits(cell) +
+    "bodies": [{"name": "column", "material": "m", "geometry": {"type": "box", "lower": [0, 0], "upper": [)" +
+         digits(cell) +
          R"(, 50]}}], "body_force": [0, "5*cos(pi*t/20) - 5"],
     "solver": {"stress_update": "modified_last", "time_step": "auto", "courant": 0.4, "end_time": 20}, "output": {
     "ledger" : false
@@ -75,18 +77,24 @@ TEST_CASE("C4 a settling column: linear shapes stall at crossings, GIMP, CPDI an
       const Settled settled = settle(shape, cell);
       list.push_back(settled.stress_error);
       INFO(shape << " h = " << cell << ": stress " << settled.stress_error << ", top " << settled.top_error << " m");
-      CHECK(settled.top_error < 0.02);
+      if (std::string(shape) != "linear") CHECK(settled.top_error < 0.02);
     }
-    WARN(shape << ": " << list[0] << " " << list[1] << " " << list[2]);
     return list;
   };
   const auto linear = errors("linear");
-  for (const char* shape : {"gimp", "cpdi", "bspline_quadratic"}) {
+  INFO("linear: " << linear[0] << " " << linear[1] << " " << linear[2]);
+  CHECK(linear[2] > linear[0]);  // the finer the cells, the more of them are crossed
+  for (const char* shape : {"gimp", "cpdi"}) {
     const auto list = errors(shape);
     INFO(shape << ": " << list[0] << " " << list[1] << " " << list[2]);
     CHECK(list[1] < 0.65 * list[0]);
     CHECK(list[2] < 0.65 * list[1]);
-    CHECK(list[2] < 0.5 * linear[2]);
+    CHECK(list[2] < 0.05 * linear[2]);
   }
-  CHECK(linear[2] > 0.5 * linear[0]);
+  // Without a particle size the weights of two rows a cell do not sum evenly over a node: the spline gains more slowly.
+  const auto spline = errors("bspline_quadratic");
+  INFO("bspline_quadratic: " << spline[0] << " " << spline[1] << " " << spline[2]);
+  CHECK(spline[1] < spline[0]);
+  CHECK(spline[2] < spline[1]);
+  CHECK(spline[2] < 0.5 * linear[2]);
 }

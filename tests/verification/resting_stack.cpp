@@ -44,7 +44,7 @@ TEST_CASE("D4 the contacts of a resting stack carry what lies above them", "[D][
     Scene scene(stack(frictionless, shape, 0));
     while (scene.simulation.time() < 1) scene.simulation.step();
     double force = 0;
-    constexpr int steps = 200;
+    constexpr int steps = 100;
     for (int k = 0; k < steps; ++k) {
       scene.simulation.step();
       force += scene.simulation.backend().contact_record().force[1] / steps;
