@@ -326,6 +326,7 @@ class Planner {
 
   void estimate() {
     const int D = experiment_.dimension;
+    const double padding = shape_.form == MPM_NODE_LIST ? 8 : 3;  // nodes beyond a wall: grid_padding_of(shape)
     double particles = 0, particle_bytes = 0, occupied_cells = 0, domain_nodes = 1;
     for (std::size_t b = 0; b < experiment_.bodies.size(); ++b) {
       const double count = estimated_particles(experiment_.bodies[b]);
@@ -333,17 +334,18 @@ class Planner {
       particle_bytes += count * static_cast<double>(plan_.bytes_per_particle(static_cast<int>(b)));
       occupied_cells += count / std::pow(experiment_.bodies[b].particles_per_cell_axis, D);
     }
-    for (int c = 0; c < D; ++c) domain_nodes *= experiment_.grid.cells[c] + 7.0;
+    for (int c = 0; c < D; ++c) domain_nodes *= experiment_.grid.cells[c] + 1 + 2 * padding;
     // The cpu backend keeps blocks around particles only: a body's cells and a rim of about one block on every side.
     const double rim = 12 * D * std::pow(occupied_cells, (D - 1.0) / D) * (D == 2 ? 8 : 4) / 4 + 4096;
     const double nodes =
         experiment_.backend == "reference" ? domain_nodes : std::min(domain_nodes * 2, 1.3 * occupied_cells + rim);
     if (experiment_.backend == "cpu") particle_bytes *= 2;  // sorting moves particles to a second copy
     // The reference backend keeps stencils and all moments of a particle, and every value of a node side by side.
-    const double stencil = std::pow(shape_.width, D) * 88.0 + 600;
+    const bool list = shape_.form == MPM_NODE_LIST;
+    const double stencil = (list ? shape_.capacity[D - 2] * (100.0 + 12 * D) : std::pow(shape_.width, D) * 88.0) + 700;
     if (experiment_.backend == "reference") particle_bytes += particles * stencil;
     const double grid_bytes =
-        nodes * (experiment_.backend == "reference" ? 240.0 * experiment_.field_count
+        nodes * (experiment_.backend == "reference" ? 290.0 * experiment_.field_count
                                                     : static_cast<double>(plan_.bytes_per_node()));
     refuse_too_large(particles, particle_bytes, grid_bytes);
     plan_.particles = static_cast<std::uint64_t>(particles);

@@ -3,6 +3,7 @@
 #include "cli/program.hpp"
 #include "output/csv.hpp"
 
+namespace output = mpm::output;
 using namespace mpm::test;
 
 namespace {
@@ -208,6 +209,33 @@ TEST_CASE("the reference backend records the one thread that it runs on") {
   const Folder folder;
   run_as(folder, ball(), "run", {"--backend", "reference", "--threads", "2"});
   CHECK(json_in(folder / "run/manifest.json")["threads"] == 1);
+}
+
+TEST_CASE("a filtered run records what the filter did, and others say nothing of it") {
+  const Folder folder;
+  Json scene = two_balls();
+  scene["filter"] = {{"type", "fmpm"}, {"order", 3}};
+  scene["figures"] = {"ledger", "dissipation"};
+  run_as(folder, scene, "filtered", {"--backend", "reference"});
+  const Json summary = json_in(folder / "filtered/summary.json");
+  CHECK(summary["energy"]["ledger"]["filter"] != 0);
+  const Json& filter = summary["stability"]["filter"];
+  CHECK(filter["iterations"] == 2);
+  CHECK(filter["increment_norm"] > 0);
+  CHECK(filter["largest_growth"] > 0);
+  // The loop contracts as long as no constraint acts on it; the warning says when one has broken that.
+  CHECK((filter["largest_growth"] > 1 + 1e-9) == has(summary["warnings"].dump(), "its loop no longer contracts"));
+  const output::Table table = output::read_csv(folder / "filtered/metrics.csv");
+  for (const char* column : {"ledger filter", "filter increment norm", "filter iterations"}) CHECK(table.find(column));
+  CHECK(has(slurp(folder / "filtered/figures/dissipation.csv"), "filter"));
+  CHECK(has(slurp(folder / "filtered/figures/ledger.csv"), "filter"));
+
+  scene.erase("filter");
+  run_as(folder, scene, "plain", {"--backend", "reference"});
+  const Json plain = json_in(folder / "plain/summary.json");
+  CHECK(!plain["energy"]["ledger"].contains("filter"));
+  CHECK(!plain["stability"].contains("filter"));
+  CHECK(!has(slurp(folder / "plain/metrics.csv"), "filter"));
 }
 
 TEST_CASE("a second run moves the first aside, and runs/<name> is the standard place") {
