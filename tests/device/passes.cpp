@@ -50,6 +50,32 @@ TEST_CASE("lists of nodes beyond walls on the host-run device", "[device]") {
   }
 }
 
+TEST_CASE("lists of nodes that reach beyond a block's tile on the host-run device", "[device]") {
+  for (const Plugin* shape : plugins().of_kind(MPM_SHAPE)) {
+    if (shape->shape().form != MPM_NODE_LIST) continue;
+    Mix mix = mix_with(*shape, 2);
+    std::string text = mix.text();
+    const auto replace = [&](const std::string& from, const std::string& to) {
+      const std::size_t at = text.find(from);
+      REQUIRE(at != text.npos);
+      text.replace(at, from.size(), to);
+    };
+    // One soft particle a cell, pulled to more than twice its length: semi-sides of more than a cell.
+    replace("\"youngs_modulus\": 1000", "\"youngs_modulus\": 1");
+    replace("\"name\": \"a\",", "\"name\": \"a\", \"particles_per_cell_axis\": 1,");
+    replace("1.4-0.9*(y-0.43)", "2.4+16*(x-0.31)");
+    Scene reference(text, {set("/backend", "reference"), set("/precision", "double")});
+    reference.run();
+    const std::vector<double> domain = reference.body(0).domain;
+    REQUIRE(*std::max_element(domain.begin(), domain.end()) > 1.5 * reference.experiment.grid.cell_size);
+    for (const std::string precision : {"double", "float"}) {
+      DeviceScene scene(text, precision);
+      scene.run();
+      CHECK(scene_difference(reference, scene) <= device_bound(mix) * epsilon_of(precision));
+    }
+  }
+}
+
 TEST_CASE("filters with walls, contact, every schedule and order on the host-run device", "[device]") {
   REQUIRE(plugins().of_kind(MPM_FILTER).size() >= 2);
   for (const Plugin* filter : plugins().of_kind(MPM_FILTER))

@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace mpm::device {
@@ -38,6 +39,8 @@ std::optional<Nvrtc> Nvrtc::find(std::string& why) {
   for (const char* variable : {"CUDA_PATH", "CUDA_HOME"})
     if (const char* root = std::getenv(variable); root && *root) folders.push_back(std::string(root) + "/lib64/");
   folders.emplace_back("/usr/local/cuda/lib64/");
+  std::sort(folders.begin() + 1, folders.end());
+  folders.erase(std::unique(folders.begin(), folders.end()), folders.end());
   for (const std::string& folder : folders)
     for (const char* name : {"libnvrtc.so", "libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so.11.2"}) {
       // Stays loaded until the process ends: it keeps threads and memory of its own.
