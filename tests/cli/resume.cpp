@@ -181,6 +181,7 @@ TEST_CASE("a hundred kills at random moments change no byte") {
     const Folder folder;
     Json scene = meeting();
     scene["backend"] = backend;
+    scene["output"]["frames"] = 2;  // drawing takes longer than stepping
     scene["solver"]["end_time"] = 0.4;
     spill(folder / "scene.json", scene.dump(1));
     const Result whole = run_in(folder, "whole");
@@ -191,16 +192,17 @@ TEST_CASE("a hundred kills at random moments change no byte") {
         const bool goes_on = !checkpoints(folder, place).empty();
         resumed += goes_on;
         Process process(folder, program(words_for(place, goes_on ? Words{"--resume"} : Words{})));
-        const double wait = std::uniform_real_distribution<double>(0, 0.8 * whole.seconds)(random);
-        std::this_thread::sleep_for(std::chrono::duration<double>(wait));
-        process.send(SIGKILL);
+        const double wait = std::uniform_real_distribution<double>(0, whole.seconds)(random);
+        if (kills < goal) {  // the last run comes to its end
+          std::this_thread::sleep_for(std::chrono::duration<double>(wait));
+          process.send(SIGKILL);
+        }
         const Result result = process.finish();
         INFO("seed " << seed << ", kill " << kills << " after " << wait << " s\n" << result.err);
         ended = result.signal != SIGKILL;
         kills += !ended;
         if (ended) must_end_with(0, result);
         // A run whose results are whole needs nothing more, even when it was killed while it tidied up.
-        if (kills > 2 * goal) FAIL("the runs make no progress");
         if (!ended && fs::exists(folder / (place + "/run/summary.json")) && checkpoints(folder, place).empty()) {
           ended = true;
           fs::remove(folder / (place + "/run/checkpoint/snapshots.records"));
@@ -406,8 +408,8 @@ TEST_CASE("a finished run is left as it is; what is no run is refused") {
   resume_refused(folder, words_for("parts", {"--resume", "--set", "/solver/end_time=0.1"}),
                  {"/solver/end_time: is 0.1, and 0.08"});
 
-  const Words failing{"--set", "/compare/expect=[{\"metric\": \"steps\", \"at_least\": 1000}]"};
-  must_end_with(4, run_in(folder, "failing", failing));
+  spill(folder / "scene.json", expecting(meeting(), {{"metric", "steps"}, {"at_least", 1000}}).dump(1));
+  must_end_with(4, run_in(folder, "failing"));
   CHECK(!fs::exists(folder / "failing/run/checkpoint"));
   must_end_with(4, run_in(folder, "failing", {"--resume"}));
 
