@@ -199,8 +199,10 @@ class HostRun final : public Backend {
       case PassKind::end_filter:
         return end_filter(pass);
       case PassKind::restore_velocity:
-        for_each_field("restore_velocity", vectors());
+        for_each_field(pass.keeps_correction ? "keep_correction" : "restore_velocity", vectors());
         return for_each_field("velocity_to_momentum", vectors());
+      case PassKind::add_correction:
+        return add_correction();
       default:
         throw std::logic_error("the host-run device does not execute pass \"" + pass.name() + "\"");
     }
@@ -529,7 +531,13 @@ class HostRun final : public Backend {
     for_each_axis("fill_velocities", filled_axes());
     if (pass.restores) return;
     for_each_field("velocity_to_momentum", vectors());
-    if (pass.before_forces && !pass.remap) for_each_field("keep_as_velocity_before", vectors());
+  }
+
+  void add_correction() {
+    for_each_field("add_correction", vectors());
+    constrain_velocity();
+    for_each_axis("fill_velocities", filled_axes());
+    for_each_field("velocity_to_momentum", vectors());
   }
 
   const Experiment& experiment_;

@@ -113,11 +113,21 @@ MPM_HD void fill_increments(const Team& team, const Arguments<typename Scene::Sc
   });
 }
 
-/// v- <- velocity: of a filter before the forces.
+/// velocity <- what begin_filter kept, which then keeps what the filter added (XPIC).
 template <class Scene>
-MPM_HD void keep_as_velocity_before(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+MPM_HD void keep_correction(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    const typename Scene::Scalar filtered = a.grid.velocity[at];
+    a.grid.velocity[at] = a.grid.kept_velocity[at];
+    a.grid.kept_velocity[at] = filtered - a.grid.velocity[at];
+  });
+}
+
+/// velocity += the kept correction: what the particles take.
+template <class Scene>
+MPM_HD void add_correction(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   for_each_index(team, Scene::dimension * a.node_count,
-                 [&](int at) { a.grid.velocity_before[at] = a.grid.velocity[at]; });
+                 [&](int at) { a.grid.velocity[at] += a.grid.kept_velocity[at]; });
 }
 
 /// velocity <- what begin_filter kept.

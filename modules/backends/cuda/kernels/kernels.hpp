@@ -34,7 +34,8 @@
   MPM_DEVICE_ENTRY(mpm_velocity_to_momentum, velocity_to_momentum<Scene>, 1)         \
   MPM_DEVICE_ENTRY(mpm_correct_increment, correct_increment<Scene>, 1)               \
   MPM_DEVICE_ENTRY(mpm_fill_increments, fill_increments<Scene>, 1)                   \
-  MPM_DEVICE_ENTRY(mpm_keep_as_velocity_before, keep_as_velocity_before<Scene>, 1)   \
+  MPM_DEVICE_ENTRY(mpm_keep_correction, keep_correction<Scene>, 1)                   \
+  MPM_DEVICE_ENTRY(mpm_add_correction, add_correction<Scene>, 1)                     \
   MPM_DEVICE_ENTRY(mpm_restore_velocity, restore_velocity<Scene>, 1)                 \
   MPM_DEVICE_ENTRY(mpm_increment_norm, increment_norm<Scene>, mpm::device::largest_team)
 
