@@ -97,7 +97,8 @@ class Planner {
     decide_fusion();
     plan_.separate_force = plan_.velocity_increment || plan_.contact || plan_.ledger ||
                            experiment_.body_force.has_value() || any_separating_wall() ||
-                           experiment_.solver.stress_update == StressUpdate::first;
+                           experiment_.solver.stress_update == StressUpdate::first ||
+                           (plan_.filter && filters_before_forces());
     plan_.kept_advection = experiment_.solver.stress_update == StressUpdate::modified_last;
     plan_.initial_position = experiment_.exact.has_value() || experiment_.output.colour_by == "displacement" ||
                              (experiment_.body_force && experiment_.body_force->uses_initial_position());
@@ -201,6 +202,8 @@ class Planner {
     if (experiment_.body_force) return experiment_.body_force_pointer + ": work of the forces";
     if (experiment_.solver.stress_update == StressUpdate::first)
       return "/solver/stress_update \"first\": stress after the momenta";
+    if (plan_.filter && filters_before_forces())
+      return named(*experiment_.filter) + ": filters the velocity before the forces";
     return "/grid/boundaries \"separate\": the wall predicts with the forces";
   }
 
