@@ -202,8 +202,7 @@ class Planner {
     if (experiment_.body_force) return experiment_.body_force_pointer + ": work of the forces";
     if (experiment_.solver.stress_update == StressUpdate::first)
       return "/solver/stress_update \"first\": stress after the momenta";
-    if (plan_.filter && filters_before_forces())
-      return named(*experiment_.filter) + ": filters the velocity before the forces";
+    if (plan_.filter && filters_before_forces()) return named(*experiment_.filter) + ": filters before the forces";
     return "/grid/boundaries \"separate\": the wall predicts with the forces";
   }
 
