@@ -31,6 +31,8 @@ TEST_CASE("parity of filters on every shape and transfer", "[parity]") {
         for (const std::string& filter : filters(transfer)) {
           Mix mix;
           mix.dimension = dimension;
+          // Without a ledger forces may come merged with momenta: not where the filter looks between them.
+          if (dimension == 2) mix.more = R"(, "output": {"ledger": false})";
           mix.shape = shape, mix.transfer = transfer, mix.filter = filter;
           // Linear shapes in 3-D do not bear a third order at this step: particles are inverted, on either backend.
           const std::size_t third = mix.filter.find("\"order\": 3");

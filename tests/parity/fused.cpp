@@ -74,6 +74,15 @@ TEST_CASE("fused and separate passes agree with walls, body forces, plasticity a
     }
 }
 
+TEST_CASE("fused and separate passes agree on every material", "[parity]") {
+  for (const std::string& material : variants(MPM_MATERIAL))
+    for (const std::string precision : {"double", "float"}) {
+      Mix mix;
+      mix.material = material;
+      check_fused(mix.text(), {set("/precision", precision), "/solver/end_time=1"}, 40);
+    }
+}
+
 TEST_CASE("fused and separate passes agree for thin fast bodies", "[parity]") {
   for (const std::string precision : {"double", "float"})
     check_fused(R"J({"title": "thin", "dimension": 2, "seed": 2,
