@@ -92,6 +92,7 @@ struct Plan {
   bool filter = false;                    ///< the grid keeps an increment and its projection
   bool kept_velocity = false;             ///< the grid keeps the unfiltered velocity (a pass restores it)
   bool particle_domain = false;           ///< particles carry their domain, advanced with L where the material is
+  bool strained_domain = false;           ///< and its strained copy: a later pass of the step needs the old weights
   bool second_moment = false;             ///< the shape's second moment is evaluated a particle
   bool velocity_gradient_moment = false;  ///< the transfer gathers L
   bool fused = false;                     ///< a pass is gather_scatter

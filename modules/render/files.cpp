@@ -38,8 +38,8 @@ mode_t default_mode() {
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
   Temporary file;
-  std::string name = (path.parent_path() / ("." + path.filename().string() + ".XXXXXX")).string();
-  file.descriptor = ::mkstemp(name.data());
+  std::string name = (path.parent_path() / ("." + path.filename().string() + ".XXXXXX.tmp")).string();
+  file.descriptor = ::mkstemps(name.data(), 4);  // the ending tells a later run what a killed process left
   if (file.descriptor < 0) fail(path, errno);
   file.name = name;
   while (!bytes.empty()) {

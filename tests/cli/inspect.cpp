@@ -139,13 +139,26 @@ TEST_CASE("a single elastic body with MLS holds nothing that it does not use") {
   CHECK(attributes(plan) ==
         Words{"position 16", "velocity 16", "identity 4", "affine_velocity 32", "deformation_gradient 32"});
   CHECK(total(plan, "attributes", "bytes_per_particle") == 100);
-  CHECK(fields(plan) == Words{"mass and momentum 32"});
+  CHECK(fields(plan) == Words{"mass and momentum 32", "mass and momentum of the next step 32"});
   CHECK(plan["fields"][0]["copies"] == 1);
+  CHECK(plan["fused"] == true);
   for (const char* flag : {"weight_gradients", "separate_force", "velocity_increment", "ledger"})
     CHECK(plan[flag] == false);
   CHECK(plan["affine_moment"] == true);
   Words passes;
   for (const Json& pass : plan["passes"]) passes.push_back(pass["name"]);
+  CHECK(passes == Words{"unless scattered", "momentum to velocity", "apply forces", "gather, strain and scatter"});
+  Words first;
+  for (const Json& pass : plan["passes"][0]["passes"]) first.push_back(pass["name"]);
+  CHECK(first == Words{"sort", "reset grid", "scatter"});
+
+  Json apart = without_ledger(ball());
+  apart["solver"]["passes"] = "separate";
+  const Json separate = plan_of(apart);
+  CHECK(fields(separate) == Words{"mass and momentum 32"});
+  CHECK(separate["why_not_fused"] == "/solver/passes \"separate\"");
+  passes.clear();
+  for (const Json& pass : separate["passes"]) passes.push_back(pass["name"]);
   CHECK(passes == Words{"sort", "reset grid", "scatter", "momentum to velocity", "apply forces", "gather and strain"});
   const std::string all = plan.dump();
   for (const char* word : {"contact", "filter", "plastic", "volume", "surface"}) CHECK(!has(all, word));
@@ -154,7 +167,7 @@ TEST_CASE("a single elastic body with MLS holds nothing that it does not use") {
   single["precision"] = "float";
   const Json half = plan_of(single);
   CHECK(total(half, "attributes", "bytes_per_particle") == 52);  // the identity stays 4 bytes
-  CHECK(fields(half) == Words{"mass and momentum 16"});
+  CHECK(fields(half) == Words{"mass and momentum 16", "mass and momentum of the next step 16"});
 }
 
 TEST_CASE("the backend holds what the plan says, twice for the sort, and the padding of its last batches") {
@@ -174,7 +187,7 @@ TEST_CASE("what is switched on adds its own rows, and each names the line that a
 
   const Json ledger = plan_of(ball());
   CHECK(attributes(ledger) == attributes(bare));
-  CHECK(fields(ledger) == Words{"mass and momentum 32", "force 32"});
+  CHECK(fields(ledger) == Words{"mass and momentum 32", "mass and momentum of the next step 32", "force 32"});
   CHECK(because(ledger, "fields", "force") == "/output/ledger: work of the forces");
 
   Json scene = without_ledger(ball());
@@ -219,11 +232,42 @@ TEST_CASE("plan as text has the same rows") {
   const Result result = call(folder, {"plan", "scene.json"});
   CHECK(result.code == 0);
   CHECK(has(result.out, "body 0: 100 bytes a particle"));
-  CHECK(has(result.out, "Fields of a node: 32 bytes"));
+  CHECK(has(result.out, "Fields of a node: 64 bytes"));
   CHECK(has(result.out, "deformation_gradient"));
   CHECK(has(result.out, "Stencil: weights only, no gradients; force merged into momentum"));
+  CHECK(has(result.out, "Gather and scatter: fused, one visit of a particle a step"));
   CHECK(has(result.out, "Estimate: "));
   CHECK(!has(result.out, "contact"));
+}
+
+TEST_CASE("a filter is a branch of the plan's tree, with its loop") {
+  const Folder folder;
+  Json scene = without_ledger(ball());
+  scene["filter"] = {{"type", "fmpm"}, {"order", 4}, {"every_steps", 2}};
+  const Json plan = plan_of(scene);
+  CHECK(plan["fused"] == false);
+  CHECK(has(plan["why_not_fused"].get<std::string>(), "/filter: the filter reads the grid between gather and scatter"));
+  const auto group = std::find_if(plan["passes"].begin(), plan["passes"].end(),
+                                  [](const Json& pass) { return pass["name"] == "when filtered"; });
+  REQUIRE(group != plan["passes"].end());
+  Words names;
+  for (const Json& pass : (*group)["passes"]) names.push_back(pass["name"]);
+  CHECK(names == Words{"begin filter", "repeat", "end filter"});
+  CHECK((*group)["passes"][1]["times"] == 3);
+  CHECK((*group)["passes"][1]["passes"][0]["name"] == "project");
+  CHECK((*group)["passes"][1]["passes"][1]["name"] == "update filter");
+  CHECK(fields(plan) == Words{"mass and momentum 32", "filter increment and projection 64"});
+
+  spill(folder / "scene.json", scene.dump());
+  const Result text = call(folder, {"plan", "scene.json"});
+  CHECK(has(text.out, "repeat"));
+  CHECK(has(text.out, "up to 3 times"));
+
+  scene["solver"]["passes"] = "fused";
+  spill(folder / "scene.json", scene.dump());
+  const Result refused = call(folder, {"check", "scene.json"});
+  CHECK(refused.code == 2);
+  CHECK(has(refused.err, "passes cannot be fused: /filter: the filter reads the grid between gather and scatter"));
 }
 
 TEST_CASE("plugins that cannot be used are named, and the program goes on") {

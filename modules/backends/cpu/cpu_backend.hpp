@@ -137,7 +137,7 @@ void CpuBackend<D, T>::lay_out_state(Particles<D, T>& particles, const Component
   if (!scene_.plan.particle_domain) return;
   particles.domain = particles.components;
   particles.components += D * D;
-  if (scene_.experiment.solver.stress_update != StressUpdate::first) return;
+  if (!scene_.plan.strained_domain) return;
   particles.next_domain = particles.components;
   particles.components += D * D;
 }

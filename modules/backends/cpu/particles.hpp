@@ -46,7 +46,7 @@ struct Particles {
   static constexpr int position = 0, velocity = D;
   int advection = -1;    ///< kept for the move pass of MUSL
   int domain = -1;       ///< semi-side vectors in cells, row-major, columns are vectors
-  int next_domain = -1;  ///< of USF, which strains between two scatters with the same weights
+  int next_domain = -1;  ///< where a step strains before its last use of the weights (Plan::strained_domain)
   int components = 2 * D;
   AlignedArray<T> half_size;  ///< [D][chunk_size] cells, of shapes that read it
   std::vector<StateField> transfer_state, material_state;
