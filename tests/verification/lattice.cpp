@@ -195,6 +195,13 @@ void check_limits(const std::vector<Limit>& limits) {
     INFO(row.shape << " " << row.transfer << " " << row.filter << " " << row.update << " offset " << row.offset
                    << ": found " << found << ", exact " << row.expected);
     CHECK(std::abs(found - row.expected) <= std::max(0.005, 0.006 * row.expected));
+    // The reference backend: on both sides of the limit, as the case says it.
+    Line reference = line;
+    reference.backend = "reference";
+    reference.time_step = 0.97 * row.expected;
+    CHECK(stable(reference));
+    reference.time_step = 1.03 * row.expected;
+    CHECK(!stable(reference));
   }
 }
 

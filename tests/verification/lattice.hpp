@@ -17,8 +17,9 @@ struct Line {
   double time_step = 1e-13;  ///< s; with unit cells and unit wave speed, also the Courant number
 };
 
-/// Wave speed, cell size and density are one. Velocities are those of the mode, or what `velocity` gives of the place
-/// on the line before the offset.
+/// Wave speed, cell size and density are one. Periodic across the line too: both rows of nodes are one, so that no
+/// shear across it, with a limit of its own, can grow out of rounding. Velocities are those of the mode, or what
+/// `velocity` gives of the place on the line before the offset.
 class LineScene {
  public:
   explicit LineScene(const Line& line, const std::function<double(double)>& velocity = {})
@@ -71,7 +72,7 @@ class LineScene {
     const std::string length = std::to_string(line.cells);
     return R"({"dimension": 2, "backend": ")" + line.backend + R"(", "grid": {"cell_size": 1, "domain": [[0, 0], [)" +
            length +
-           R"(, 1]], "boundaries": {"x_min": "periodic", "x_max": "periodic", "y_min": "slip", "y_max": "slip"}},
+           R"(, 1]], "boundaries": {"x_min": "periodic", "x_max": "periodic", "y_min": "periodic", "y_max": "periodic"}},
       "shape": {"type": ")" +
            line.shape + R"("}, "transfer": {"type": ")" + line.transfer + "\"}," +
            (line.filter.empty() ? "" : "\"filter\": " + line.filter + ",") + R"(
