@@ -234,4 +234,16 @@ TEST_CASE("lesson 5: only the bar of CPDI comes back", "[lesson]") {
   }
   Lesson finer_gimp("stretched_bar_gimp", {"/grid/cell_size=0.05"});
   CHECK(largest_and_last(finer_gimp)[1] == Approx(3.16).margin(0.03));
+
+  // "Let the bar swing on".
+  Lesson swing("stretched_bar_cpdi", {"/solver/end_time=1.2"});
+  double shortest = 1;
+  Totals now;
+  while (!swing.simulation.finished()) {
+    now = swing.step();
+    shortest = std::min(shortest, now.centre_of_mass[0] / swing.metrics.initial().centre_of_mass[0]);
+  }
+  CHECK(shortest == Approx(0.06).margin(0.005));
+  CHECK(swing.largest_energy / swing.metrics.initial().total_energy() == Approx(1.012).margin(0.001));
+  CHECK(kept_energy(swing, now) == Approx(0.91).margin(0.005));
 }
