@@ -1,51 +1,18 @@
-// What docs/lessons claims, on the very files the pages name.
+// What lessons 1 and 2 of docs/lessons claim, on the very files the pages name.
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "lesson.hpp"
 #include "support/catch.hpp"
-#include "support/scene.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
 
 namespace {
 
-/// A lesson as it stands in the file.
-struct Lesson {
-  explicit Lesson(const std::string& name, const std::vector<std::string>& overrides = {})
-      : experiment(read(name, overrides)), simulation(experiment, backend_factory(1)), metrics(simulation) {}
-
-  Totals run() {
-    while (!simulation.finished()) {
-      simulation.step();
-      const Totals now = metrics.measure();
-      largest_volume_ratio = std::max(largest_volume_ratio, now.largest_volume_ratio);
-    }
-    return metrics.measure();
-  }
-
-  const Experiment experiment;
-  Simulation simulation;
-  Metrics metrics;
-  double largest_volume_ratio = 1;
-
- private:
-  static Experiment read(const std::string& name, const std::vector<std::string>& overrides) {
-    ReadOptions options;
-    options.overrides = overrides;
-    options.exact = exact_solutions();
-    return read_experiment(std::string(MPM_SOURCE_DIR "/experiments/lessons/") + name + ".json",
-                           ComponentLookup(plugins()), options);
-  }
-};
-
 double kept_spin(const Lesson& lesson, const Totals& end) {
   return end.angular_momentum[2] / lesson.metrics.initial().angular_momentum[2];
-}
-double kept_energy(const Lesson& lesson, const Totals& end) {
-  return end.total_energy() / lesson.metrics.initial().total_energy();
 }
 
 /// Share of the wave's energy that is left: the flight of the whole bar does not count.
