@@ -52,6 +52,7 @@ void Recorder::save(ArchiveWriter& archive) {
     record.put("step", snapshot.step);
     record.put("positions", snapshot.positions);
     record.put("values", snapshot.values);
+    record.put("domain_axes", snapshot.domain_axes);
     kept_snapshots_.append({record.bytes().data(), record.bytes().size()});
   }
   archive.put("rows", csv_->bytes());
@@ -87,6 +88,7 @@ void Recorder::restore(ArchiveReader& archive) {
     record.get("step", snapshot.step);
     record.get("positions", snapshot.positions);
     record.get("values", snapshot.values);
+    record.get("domain_axes", snapshot.domain_axes);
   }
   archive.get("last_row", last_row_);
   archive.get("frames_taken", frames_taken_);
@@ -146,15 +148,19 @@ void Recorder::record_row() {
 
 void Recorder::record_frame() {
   const Experiment& experiment = simulation_.experiment();
-  Snapshot snapshot{simulation_.time(), simulation_.steps(), {}, {}};
+  Snapshot snapshot{simulation_.time(), simulation_.steps(), {}, {}, {}};
   for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
     const BodyState state = simulation_.backend().body_state(body);
     const std::vector<double> values = quantity(experiment, body, state, experiment.output.colour_by);
     snapshot.positions.insert(snapshot.positions.end(), state.position.begin(), state.position.end());
     snapshot.values.insert(snapshot.values.end(), values.begin(), values.end());
+    for (std::size_t k = 0; experiment.dimension == 2 && k < state.domain.size(); k += 4)
+      for (const std::size_t component : {0, 2, 1, 3})  // columns of the matrix are the semi-sides
+        snapshot.domain_axes.push_back(static_cast<float>(state.domain[k + component]));
   }
   if (experiment.output.vtk) write_vtk(frames_taken_);
-  const std::size_t bytes = (snapshot.positions.size() + snapshot.values.size()) * sizeof(float);
+  const std::size_t bytes =
+      (snapshot.positions.size() + snapshot.values.size() + snapshot.domain_axes.size()) * sizeof(float);
   if (bytes_held_ + bytes > held_bytes_limit)
     draw(snapshot, frames_taken_, range_of(snapshot.values, {INFINITY, -INFINITY}));
   else
@@ -193,6 +199,7 @@ void Recorder::draw(const Snapshot& snapshot, std::size_t index, std::pair<doubl
   render::ParticleFrame frame = frame_template();
   frame.positions.assign(snapshot.positions.begin(), snapshot.positions.end());
   frame.values.assign(snapshot.values.begin(), snapshot.values.end());
+  frame.domain_axes.assign(snapshot.domain_axes.begin(), snapshot.domain_axes.end());
   frame.time = snapshot.time;
   frame.step = snapshot.step;
   if (frame.map == render::ColourMap::diverging) {

@@ -47,6 +47,7 @@ class Recorder {
     double time;
     long step;
     std::vector<float> positions, values;
+    std::vector<float> domain_axes;  ///< of 2-D particles that carry their domain: four a particle
   };
   bool frame_due() const;
   void record_row();

@@ -1,5 +1,6 @@
 // What a run leaves behind, that it can be run again with the same bytes, and figures drawn again from it.
 
+#include <sstream>
 #include "cli/program.hpp"
 #include "output/csv.hpp"
 
@@ -315,4 +316,27 @@ TEST_CASE("mpm figure says what is no run") {
   figure_refused(folder, {"figure", "empty"}, "metrics.csv: holds no row");
   spill(folder / "empty/metrics.csv", "time (s),step\n0,0\n1,x\n");
   figure_refused(folder, {"figure", "empty"}, "its numbers cannot be read: ");
+}
+
+TEST_CASE("a frame shows the domains of particles that carry them") {
+  const Folder folder;
+  Json scene = ball();
+  scene["shape"]["type"] = "cpdi";
+  scene["output"]["frames"] = 1;
+  spill(folder / "scene.json", scene.dump());
+  const Result result = call(folder, {"run", "scene.json", "--out", "run"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const std::string table = slurp(folder / "run/frames/frame_0000.csv");
+  CHECK(has(table, "semi-side 1 x (m),semi-side 1 y (m),semi-side 2 x (m),semi-side 2 y (m)"));
+  // Undeformed: half a particle's side along x, nothing along y, then the other way round.
+  const std::string half = table.substr(table.find('\n') + 1);
+  std::vector<double> numbers;
+  std::istringstream row(half.substr(0, half.find('\n')));
+  for (std::string cell; std::getline(row, cell, ',');) numbers.push_back(std::stod(cell));
+  REQUIRE(numbers.size() == 8);
+  CHECK(numbers[3] == Approx(numbers[2]).epsilon(1e-6));
+  CHECK(numbers[4] == 0);
+  CHECK(numbers[5] == 0);
+  CHECK(numbers[6] == Approx(numbers[2]).epsilon(1e-6));
 }
