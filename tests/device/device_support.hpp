@@ -100,7 +100,7 @@ class DeviceScene {
  public:
   DeviceScene(const std::string& text, const std::string& precision, const device::TeamShape& team = {})
       : experiment(device_experiment(text, precision)),
-        simulation(experiment, [team](const Experiment& e, const Plan& plan, std::vector<SeededBody> bodies) {
+        simulation(experiment, [team](const Experiment& e, const Plan& plan, const std::vector<SeededBody>& bodies) {
           return device::make_host_run(e, plan, bodies, Devices::shared().of(device::choice_of(e)), team);
         }) {}
   void run() {
