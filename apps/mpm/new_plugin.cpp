@@ -29,7 +29,7 @@ constexpr std::string_view kernel_classes[] = {
 };
 
 [[noreturn]] void refuse(const std::string& message) {
-  throw InputError({Problem{"", 0, 0, "", message}});
+  throw InputError({Problem{"mpm new", 0, 0, "", message}});
 }
 
 mpm_kind kind_of(const std::string& name) {

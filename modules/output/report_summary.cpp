@@ -115,7 +115,7 @@ std::string simple_cards(const Json& summary) {
       {"wall time", {"wall_seconds", "wall_time", "seconds"}, "\xC2\xA0s"},
       {"per particle", {"bytes_per_particle"}, ""},
       {"peak memory", {"peak_memory", "peak_memory_bytes"}, ""},
-      {"total energy, final / initial", {"total.final_over_initial", "final_over_initial"}, ""},
+      {"total energy, final / initial", {"total.final_over_initial"}, ""},
   };
   std::string html;
   for (const Entry& entry : entries) {

@@ -80,6 +80,20 @@ TEST_CASE("the report shows every recorded number, also of unknown groups", "[ou
   CHECK_FALSE(contains(html, "e+0"));
 }
 
+TEST_CASE("the card of the total energy shows the total, not the first energy that has a ratio", "[output][report]") {
+  const ScratchFolder scratch;
+  const RunFolder run = sample_run(scratch / "run", 0);
+  run.write_json(
+      "summary.json",
+      {{"outcome", {{"exit_code", 0}, {"status", "done"}, {"reason", ""}}},
+       {"energy", {{"kinetic", {{"final_over_initial", 0.125}}}, {"total", {{"final_over_initial", 0.9375}}}}}});
+  const std::string html = report_of(run);
+  const std::size_t card = html.find("total energy, final / initial");
+  REQUIRE(card != std::string::npos);
+  CHECK(html.substr(card, 100).find("0.9375") != std::string::npos);
+  CHECK(html.substr(card, 100).find("0.125") == std::string::npos);
+}
+
 TEST_CASE("a failed run says so in red, with the reason", "[output][report]") {
   const ScratchFolder scratch;
   const std::string good = report_of(sample_run(scratch / "good", 0));
