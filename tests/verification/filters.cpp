@@ -12,7 +12,7 @@ using namespace mpm::test;
 
 namespace {
 
-const std::vector<std::string> backends{"reference"};
+const std::vector<std::string> backends{"reference", "cpu"};
 const std::vector<std::string> shapes{"linear", "bspline_quadratic", "gimp", "cpdi"};
 const std::vector<std::string> filtered_transfers{"pic", "apic", "mls", "tpic"};  // flip: periodically
 

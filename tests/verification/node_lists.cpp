@@ -11,7 +11,7 @@ using namespace mpm::test;
 
 namespace {
 
-const std::vector<std::string> backends{"reference"};
+const std::vector<std::string> backends{"reference", "cpu"};
 const std::vector<std::string> sized_shapes{"gimp", "cpdi"};
 const std::vector<std::string> transfers{"pic", "flip", "apic", "mls", "tpic"};
 

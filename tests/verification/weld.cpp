@@ -58,55 +58,58 @@ TEST_CASE("D4 a welded interface is transparent to rounding", "[D][D4]") {
 }
 
 TEST_CASE("D4 the weld is transparent to sized shapes and Taylor transfer", "[D][D4]") {
-  for (const std::string shape : {"linear", "bspline_quadratic", "gimp", "cpdi"})
-    for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic"})
-      for (const std::string order : {"last", "modified_last"}) {
-        if ((shape == "linear" || shape == "bspline_quadratic") && transfer != "tpic") continue;  // above
-        const std::vector<std::string> common{set("/shape/type", shape), set("/transfer/type", transfer),
-                                              set("/solver/stress_update", order), set("/backend", "reference")};
-        auto single = common;
-        single.push_back("/contact=null");
-        Scene welded(halves, common), one(halves, single);
-        INFO(shape << " " << transfer << " " << order);
-        welded.run_steps(1), one.run_steps(1);
-        CHECK(largest_difference(welded, one) < 1e-12);
-        welded.run_steps(30), one.run_steps(30);
-        CHECK(largest_difference(welded, one) < 1e-9);
-      }
+  for (const std::string backend : {"reference", "cpu"})
+    for (const std::string shape : {"linear", "bspline_quadratic", "gimp", "cpdi"})
+      for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic"})
+        for (const std::string order : {"last", "modified_last"}) {
+          if ((shape == "linear" || shape == "bspline_quadratic") && transfer != "tpic") continue;  // above
+          const std::vector<std::string> common{set("/shape/type", shape), set("/transfer/type", transfer),
+                                                set("/solver/stress_update", order), set("/backend", backend)};
+          auto single = common;
+          single.push_back("/contact=null");
+          Scene welded(halves, common), one(halves, single);
+          INFO(backend << " " << shape << " " << transfer << " " << order);
+          welded.run_steps(1), one.run_steps(1);
+          CHECK(largest_difference(welded, one) < 1e-12);
+          welded.run_steps(30), one.run_steps(30);
+          CHECK(largest_difference(welded, one) < 1e-9);
+        }
 }
 
 TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the end is not", "[D][D4][filters]") {
   const std::string rough = R"J(["1+0.3*sin(40*x)","0.4*x+0.3*cos(31*x*y)"])J";
-  for (const std::string shape : {"linear", "bspline_quadratic", "gimp", "cpdi"})
-    for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic"})
-      for (const auto& [type, order] : {std::pair{"fmpm", "4"}, std::pair{"xpic", "3"}}) {
-        const auto run = [&](const std::string& constraints, bool weld) {
-          const std::string interval =
-              transfer == "flip" ? R"("every_steps":2,)" : "";  // FLIP at every step is refused
-          std::vector<std::string> overrides{set("/shape/type", shape), set("/transfer/type", transfer),
-                                             set("/backend", "reference"),
-                                             std::string(R"(/filter={"type":")") + type + R"(","order":)" + order +
-                                                 "," + interval + R"("constraints":")" + constraints + "\"}"};
-          // FMPM drives light surface nodes harder than the transfer alone: a step below its limit there.
-          overrides.insert(overrides.end(), {set("/solver/time_step", "0.001"), set("/bodies/0/velocity", rough),
-                                             set("/bodies/1/velocity", rough)});
-          if (!weld) overrides.emplace_back("/contact=null");
-          return std::make_unique<Scene>(halves, overrides);
-        };
-        const auto one = run("every_increment", false), always = run("every_increment", true),
-                   at_end = run("at_end", true);
-        const auto step_all = [&](int steps) {
-          for (Scene* scene : {one.get(), always.get(), at_end.get()}) scene->run_steps(steps);
-        };
-        step_all(transfer == "flip" ? 2 : 1);
-        double exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
-        INFO(shape << " " << transfer << " " << type << ": every increment " << exact << ", at the end " << late);
-        CHECK(exact < 1e-14);
-        CHECK(late > 1e-5);  // ten orders above
-        step_all(20);
-        exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
-        INFO("after 20 more: every increment " << exact << ", at the end " << late);
-        CHECK(exact < 1e-13);
-        CHECK(late > 1e-3);
-      }
+  for (const std::string backend : {"reference", "cpu"})
+    for (const std::string shape : {"linear", "bspline_quadratic", "gimp", "cpdi"})
+      for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic"})
+        for (const auto& [type, order] : {std::pair{"fmpm", "4"}, std::pair{"xpic", "3"}}) {
+          const auto run = [&](const std::string& constraints, bool weld) {
+            const std::string interval =
+                transfer == "flip" ? R"("every_steps":2,)" : "";  // FLIP at every step is refused
+            std::vector<std::string> overrides{set("/shape/type", shape), set("/transfer/type", transfer),
+                                               set("/backend", backend),
+                                               std::string(R"(/filter={"type":")") + type + R"(","order":)" + order +
+                                                   "," + interval + R"("constraints":")" + constraints + "\"}"};
+            // FMPM drives light surface nodes harder than the transfer alone: a step below its limit there.
+            overrides.insert(overrides.end(), {set("/solver/time_step", "0.001"), set("/bodies/0/velocity", rough),
+                                               set("/bodies/1/velocity", rough)});
+            if (!weld) overrides.emplace_back("/contact=null");
+            return std::make_unique<Scene>(halves, overrides);
+          };
+          const auto one = run("every_increment", false), always = run("every_increment", true),
+                     at_end = run("at_end", true);
+          const auto step_all = [&](int steps) {
+            for (Scene* scene : {one.get(), always.get(), at_end.get()}) scene->run_steps(steps);
+          };
+          step_all(transfer == "flip" ? 2 : 1);
+          double exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
+          INFO(backend << " " << shape << " " << transfer << " " << type << ": every increment " << exact
+                       << ", at the end " << late);
+          CHECK(exact < 1e-14);
+          CHECK(late > 1e-5);  // ten orders above
+          step_all(20);
+          exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
+          INFO("after 20 more: every increment " << exact << ", at the end " << late);
+          CHECK(exact < 1e-13);
+          CHECK(late > 1e-3);
+        }
 }
