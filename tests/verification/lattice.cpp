@@ -16,7 +16,7 @@ std::string filter(const std::string& type, int order) {
 }
 
 /// Factor on the velocity of a mode in one step. The first step brings affine velocities to the mode's own.
-double factor(Line line) {
+double factor(const Line& line) {
   LineScene scene(line);
   scene.step();
   const double before = scene.amplitude();
@@ -146,7 +146,7 @@ namespace {
 
 /// Whether random velocities of 1e-8 stay bounded for 2000 steps; growth in proportion to time is allowed, exponential
 /// growth is not.
-bool stable(Line line) {
+bool stable(const Line& line) {
   const auto noise = [](double x) { return 1e-8 * std::sin(1e4 * std::sin(12.9898 * x + 1)); };
   LineScene scene(line, noise);
   double middle = 0, last = 0;
