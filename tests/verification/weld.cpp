@@ -82,7 +82,7 @@ TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the
     for (const std::string shape : {"linear", "bspline_quadratic", "gimp", "cpdi"})
       for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic"})
         for (const auto& [type, order] : {std::pair{"fmpm", "4"}, std::pair{"xpic", "3"}}) {
-          const auto run = [&](const std::string& constraints, bool weld) {
+          const auto run = [&, type = type, order = order](const std::string& constraints, bool weld) {
             const std::string interval =
                 transfer == "flip" ? R"("every_steps":2,)" : "";  // FLIP at every step is refused
             std::vector<std::string> overrides{set("/shape/type", shape), set("/transfer/type", transfer),
