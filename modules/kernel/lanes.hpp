@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "kernel/math.hpp"
 
@@ -22,12 +23,14 @@ template <>
 struct LaneTypes<float> {
   typedef float Vector __attribute__((vector_size(lane_bytes)));
   typedef std::int32_t Mask __attribute__((vector_size(lane_bytes)));
+  typedef std::uint32_t Bits __attribute__((vector_size(lane_bytes)));
   using Integer = std::int32_t;
 };
 template <>
 struct LaneTypes<double> {
   typedef double Vector __attribute__((vector_size(lane_bytes)));
   typedef std::int64_t Mask __attribute__((vector_size(lane_bytes)));
+  typedef std::uint64_t Bits __attribute__((vector_size(lane_bytes)));
   using Integer = std::int64_t;
 };
 
@@ -37,6 +40,7 @@ struct Lanes {
   using integer = typename LaneTypes<T>::Integer;
   using Vector = typename LaneTypes<T>::Vector;
   using Mask = typename LaneTypes<T>::Mask;
+  using Bits = typename LaneTypes<T>::Bits;  ///< unsigned: wraps where a mask would overflow
 
   Vector v;
 
@@ -90,12 +94,14 @@ struct Lanes {
   /// Natural logarithm to about 1 ulp; NaN below zero, -inf at zero. Exponent split, then the atanh series of the
   /// mantissa.
   MPM_HD friend Lanes log(Lanes x) {
-    constexpr integer one_over_sqrt2 = sizeof(T) == 4 ? integer(0x3f3504f3) : integer(0x3fe6a09e667f3bcdLL);
+    using unsigned_integer = std::make_unsigned_t<integer>;
+    constexpr unsigned_integer one_over_sqrt2 =
+        sizeof(T) == 4 ? unsigned_integer(0x3f3504f3) : unsigned_integer(0x3fe6a09e667f3bcdULL);
     constexpr int mantissa_bits = sizeof(T) == 4 ? 23 : 52;
-    Mask bits;
+    Bits bits;
     std::memcpy(&bits, &x.v, sizeof bits);
-    const Mask exponent = (bits - one_over_sqrt2) >> mantissa_bits;
-    bits -= exponent << mantissa_bits;
+    const Mask exponent = (Mask)(bits - one_over_sqrt2) >> mantissa_bits;
+    bits -= (Bits)exponent << mantissa_bits;
     Vector m;
     std::memcpy(&m, &bits, sizeof m);
     const Vector e = __builtin_convertvector(exponent, Vector);
