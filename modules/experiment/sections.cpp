@@ -218,29 +218,30 @@ Section output_section(const ReadOptions& options) {
                                    "Quantity that colours the particles.")
                              .of(options.colour_quantities)
                              .standard("speed");
-  return {"output",
-          "output settings",
-          {
-              parameter("metrics_every", Type::integer, "", "Steps between rows of metrics.csv.")
-                  .from(1)
-                  .to(1e9)
-                  .standard(10),
-              parameter("frames", Type::integer, "", "Pictures over the run, first and last included.")
-                  .from(0)
-                  .to(100000)
-                  .standard(0),
-              colour,
-              parameter("vtk", Type::boolean, "", "Write a VTK file beside each frame.").standard(false),
-              parameter("film", Type::boolean, "", "Join the frames to a film.").standard(false),
-              parameter("ledger", Type::boolean, "", "Keep the energy ledger.").standard(true),
-              parameter("checkpoint_every", Type::number, "s", "Wall-clock time between checkpoints; 0: none by the clock.")
-                  .from(0)
-                  .standard(60),
-              parameter("checkpoint_steps", Type::integer, "", "Steps between checkpoints; 0: none by steps.")
-                  .from(0)
-                  .to(1e15)
-                  .standard(0),
-          }};
+  return {
+      "output",
+      "output settings",
+      {
+          parameter("metrics_every", Type::integer, "", "Steps between rows of metrics.csv.")
+              .from(1)
+              .to(1e9)
+              .standard(10),
+          parameter("frames", Type::integer, "", "Pictures over the run, first and last included.")
+              .from(0)
+              .to(100000)
+              .standard(0),
+          colour,
+          parameter("vtk", Type::boolean, "", "Write a VTK file beside each frame.").standard(false),
+          parameter("film", Type::boolean, "", "Join the frames to a film.").standard(false),
+          parameter("ledger", Type::boolean, "", "Keep the energy ledger.").standard(true),
+          parameter("checkpoint_every", Type::number, "s", "Wall-clock time between checkpoints; 0: none by the clock.")
+              .from(0)
+              .standard(60),
+          parameter("checkpoint_steps", Type::integer, "", "Steps between checkpoints; 0: none by steps.")
+              .from(0)
+              .to(1e15)
+              .standard(0),
+      }};
 }
 
 Section compare_section() {
