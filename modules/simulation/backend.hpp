@@ -128,6 +128,12 @@ class Backend {
   virtual void save(ArchiveWriter& archive) const = 0;
   virtual void restore(ArchiveReader& archive) = 0;
 
+  /// Starts (or ends) measuring what the passes over particles spend their time on. Off, it costs nothing.
+  virtual void measure_phases(bool) {}
+  /// Seconds of all threads together by phase ("weights", "gather", "material" ...) since measuring began; empty when
+  /// the backend does not measure.
+  virtual std::map<std::string, double> phase_seconds() const { return {}; }
+
   /// Bytes of particle and grid storage in use.
   virtual std::uint64_t particle_bytes() const = 0;
   virtual std::uint64_t grid_bytes() const = 0;
