@@ -9,6 +9,10 @@
 
 #include "kernel/math.hpp"
 
+#if defined(__AVX512F__) || defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
 namespace mpm {
 
 #if defined(__AVX512F__)
@@ -49,11 +53,9 @@ struct Lanes {
   MPM_HD Lanes(T x) : v(x - Vector{}) {}
 
   MPM_HD static Lanes load(const T* p) {
-    Lanes r;
-    std::memcpy(&r.v, __builtin_assume_aligned(p, lane_bytes), sizeof(Vector));
-    return r;
+    return Lanes(*reinterpret_cast<const Vector*>(p));  // a vector aliases its scalars, nothing else
   }
-  MPM_HD void store(T* p) const { std::memcpy(__builtin_assume_aligned(p, lane_bytes), &v, sizeof(Vector)); }
+  MPM_HD void store(T* p) const { *reinterpret_cast<Vector*>(p) = v; }
 
   MPM_HD friend Lanes operator+(Lanes a, Lanes b) { return Lanes(a.v + b.v); }
   MPM_HD friend Lanes operator-(Lanes a, Lanes b) { return Lanes(a.v - b.v); }
@@ -141,6 +143,18 @@ struct Lanes {
     return Lanes(x.v == x.v ? result : x.v);
   }
 };
+
+/// Whether any lane of a comparison holds.
+template <class T>
+inline bool any_lane(typename Lanes<T>::Mask mask) {
+#if defined(__AVX512F__)
+  return _mm512_test_epi32_mask((__m512i)mask, (__m512i)mask) != 0;
+#elif defined(__AVX2__)
+  return _mm256_testz_si256((__m256i)mask, (__m256i)mask) == 0;
+#else
+  return any(mask);
+#endif
+}
 
 template <class T>
 struct scalar_of_trait<Lanes<T>> {

@@ -211,63 +211,65 @@ const typename F::Parameters& parameters_of(const void* block) {
 }
 
 template <class F, class S>
-void shape_batch(const void* parameters, const mpm_shape_batch* q) {
+void shape_batch(const void* parameters, const mpm_shape_batch* request) {
+  const mpm_shape_batch q = *request;  // its own copy: nothing that is stored changes it
   using T = scalar_of<S>;
   const auto& p = parameters_of<F>(parameters);
-  for (std::uint32_t axis = 0; axis < q->dimension; ++axis)
-    for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+  for (std::uint32_t axis = 0; axis < q.dimension; ++axis)
+    for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
       S base, w[F::width], g[F::width];
-      const std::uint32_t at = axis * q->stride + lane;
-      const S x = Access<S>::load(static_cast<const T*>(q->position) + at);
-      S* const slopes = q->gradient ? g : static_cast<S*>(nullptr);
+      const std::uint32_t at = axis * q.stride + lane;
+      const S x = Access<S>::load(static_cast<const T*>(q.position) + at);
+      S* const slopes = q.gradient ? g : static_cast<S*>(nullptr);
       if constexpr (SizedShapeFunctor<F>)
-        F::evaluate(p, x, Access<S>::load(static_cast<const T*>(q->half_size) + at), base, w, slopes);
+        F::evaluate(p, x, Access<S>::load(static_cast<const T*>(q.half_size) + at), base, w, slopes);
       else
         F::evaluate(p, x, base, w, slopes);
       const S offset = x - base;
-      Access<S>::store_index(q->base + at, base);
-      Access<S>::store(static_cast<T*>(q->offset) + at, offset);
-      const std::uint32_t first = axis * F::width * q->stride + lane;
-      for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q->weight) + first + k * q->stride, w[k]);
-      if (q->gradient)
-        for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q->gradient) + first + k * q->stride, g[k]);
-      if (!q->second_moment) continue;
+      Access<S>::store_index(q.base + at, base);
+      Access<S>::store(static_cast<T*>(q.offset) + at, offset);
+      const std::uint32_t first = axis * F::width * q.stride + lane;
+      for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q.weight) + first + k * q.stride, w[k]);
+      if (q.gradient)
+        for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q.gradient) + first + k * q.stride, g[k]);
+      if (!q.second_moment) continue;
       S moment = S(real<S>(0));
       for (int k = 0; k < F::width; ++k) {
         const S d = real<S>(k) - offset;
         moment = moment + w[k] * d * d;
       }
-      Access<S>::store(static_cast<T*>(q->second_moment) + at, moment);
+      Access<S>::store(static_cast<T*>(q.second_moment) + at, moment);
     }
 }
 
 /// Particle by particle: the number of nodes differs from one to the next.
 template <class F, int D, class T>
-void list_batch(const void* parameters, const mpm_list_batch* q) {
+void list_batch(const void* parameters, const mpm_list_batch* request) {
+  const mpm_list_batch q = *request;  // its own copy: nothing that is stored changes it
   using List = NodeList<D, T, F::template capacity<D>>;
   const auto& p = parameters_of<F>(parameters);
-  for (std::uint32_t i = 0; i < q->count; ++i) {
+  for (std::uint32_t i = 0; i < q.count; ++i) {
     Vec<D, T> x;
     Mat<D, T> domain{};
     List list;
-    load_components<D, T>(q->position, q->stride, i, x.v);
-    load_components<D * D, T>(q->domain, q->stride, i, domain.m);
+    load_components<D, T>(q.position, q.stride, i, x.v);
+    load_components<D * D, T>(q.domain, q.stride, i, domain.m);
     F::evaluate(p, x, domain, list);
-    q->node_count[i] = list.count;
+    q.node_count[i] = list.count;
     Mat<D, T> moment{};
     for (int k = 0; k < list.count; ++k) {
-      static_cast<T*>(q->weight)[k * q->stride + i] = list.weight[k];
+      static_cast<T*>(q.weight)[k * q.stride + i] = list.weight[k];
       Vec<D, T> d;
       for (int a = 0; a < D; ++a) {
-        q->node[(k * D + a) * q->stride + i] = list.node[k][a];
-        if (q->gradient) static_cast<T*>(q->gradient)[(k * D + a) * q->stride + i] = list.gradient[k][a];
+        q.node[(k * D + a) * q.stride + i] = list.node[k][a];
+        if (q.gradient) static_cast<T*>(q.gradient)[(k * D + a) * q.stride + i] = list.gradient[k][a];
         d[a] = static_cast<T>(list.node[k][a]) - x[a];
       }
-      if (!q->second_moment) continue;
+      if (!q.second_moment) continue;
       for (int a = 0; a < D; ++a)
         for (int b = 0; b < D; ++b) moment(a, b) += list.weight[k] * d[a] * d[b];
     }
-    if (q->second_moment) store_components<D * D, T>(q->second_moment, q->stride, i, moment.m);
+    if (q.second_moment) store_components<D * D, T>(q.second_moment, q.stride, i, moment.m);
   }
 }
 
@@ -277,74 +279,78 @@ std::int32_t filter_iterations(const void* parameters) {
 }
 
 template <class F, int D, class S>
-void filter_batch(const void* parameters, const mpm_filter_batch* q) {
+void filter_batch(const void* parameters, const mpm_filter_batch* request) {
+  const mpm_filter_batch q = *request;  // its own copy: nothing that is stored changes it
   const auto& p = parameters_of<F>(parameters);
-  for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+  for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
     Vec<D, S> projected, increment, velocity;
-    load_components<D, S>(q->projected, q->stride, lane, projected.v);
-    load_components<D, S>(q->increment, q->stride, lane, increment.v);
-    load_components<D, S>(q->velocity, q->stride, lane, velocity.v);
-    F::update(p, static_cast<int>(q->iteration), projected, increment, velocity);
-    store_components<D, S>(q->increment, q->stride, lane, increment.v);
-    store_components<D, S>(q->velocity, q->stride, lane, velocity.v);
+    load_components<D, S>(q.projected, q.stride, lane, projected.v);
+    load_components<D, S>(q.increment, q.stride, lane, increment.v);
+    load_components<D, S>(q.velocity, q.stride, lane, velocity.v);
+    F::update(p, static_cast<int>(q.iteration), projected, increment, velocity);
+    store_components<D, S>(q.increment, q.stride, lane, increment.v);
+    store_components<D, S>(q.velocity, q.stride, lane, velocity.v);
   }
 }
 
 template <class F, int D, class S>
-void scatter_batch(const void* parameters, const mpm_scatter_batch* q) {
+void scatter_batch(const void* parameters, const mpm_scatter_batch* request) {
+  const mpm_scatter_batch q = *request;  // its own copy: nothing that is stored changes it
   const auto& p = parameters_of<F>(parameters);
-  for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+  for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
     S mass;
     Vec<D, S> v, b;
     Mat<D, S> A;
-    load_components<1, S>(q->mass, q->stride, lane, &mass);
-    load_components<D, S>(q->velocity, q->stride, lane, v.v);
-    F::scatter(p, mass, v, StateAccess<F, D, S>::load(q->state, q->stride, lane), b, A);
-    store_components<D, S>(q->b, q->stride, lane, b.v);
-    if constexpr ((F::traits & MPM_SCATTERS_AFFINE) != 0) store_components<D * D, S>(q->A, q->stride, lane, A.m);
+    load_components<1, S>(q.mass, q.stride, lane, &mass);
+    load_components<D, S>(q.velocity, q.stride, lane, v.v);
+    F::scatter(p, mass, v, StateAccess<F, D, S>::load(q.state, q.stride, lane), b, A);
+    store_components<D, S>(q.b, q.stride, lane, b.v);
+    if constexpr ((F::traits & MPM_SCATTERS_AFFINE) != 0) store_components<D * D, S>(q.A, q.stride, lane, A.m);
   }
 }
 
 template <class F, int D, class S>
-void gather_batch(const void* parameters, const mpm_gather_batch* q) {
+void gather_batch(const void* parameters, const mpm_gather_batch* request) {
+  const mpm_gather_batch q = *request;  // its own copy: nothing that is stored changes it
   const auto& p = parameters_of<F>(parameters);
-  for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+  for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
     GatheredMoments<D, S> moments{};
-    load_components<D, S>(q->velocity, q->stride, lane, moments.velocity.v);
+    load_components<D, S>(q.velocity, q.stride, lane, moments.velocity.v);
     if constexpr ((F::traits & MPM_GATHERS_INCREMENT) != 0)
-      load_components<D, S>(q->velocity_increment, q->stride, lane, moments.velocity_increment.v);
+      load_components<D, S>(q.velocity_increment, q.stride, lane, moments.velocity_increment.v);
     if constexpr ((F::traits & MPM_GATHERS_AFFINE) != 0)
-      load_components<D * D, S>(q->affine, q->stride, lane, moments.affine.m);
+      load_components<D * D, S>(q.affine, q.stride, lane, moments.affine.m);
     if constexpr ((F::traits & MPM_GATHERS_GRADIENT) != 0)
-      load_components<D * D, S>(q->velocity_gradient, q->stride, lane, moments.velocity_gradient.m);
+      load_components<D * D, S>(q.velocity_gradient, q.stride, lane, moments.velocity_gradient.m);
     Vec<D, S> v, advection;
-    load_components<D, S>(q->particle_velocity, q->stride, lane, v.v);
-    auto state = StateAccess<F, D, S>::load(q->state, q->stride, lane);
-    F::gather(p, moments, real<S>(q->dt), v, state, advection);
-    store_components<D, S>(q->particle_velocity, q->stride, lane, v.v);
-    StateAccess<F, D, S>::store(q->state, q->stride, lane, state);
-    store_components<D, S>(q->advection_velocity, q->stride, lane, advection.v);
+    load_components<D, S>(q.particle_velocity, q.stride, lane, v.v);
+    auto state = StateAccess<F, D, S>::load(q.state, q.stride, lane);
+    F::gather(p, moments, real<S>(q.dt), v, state, advection);
+    store_components<D, S>(q.particle_velocity, q.stride, lane, v.v);
+    StateAccess<F, D, S>::store(q.state, q.stride, lane, state);
+    store_components<D, S>(q.advection_velocity, q.stride, lane, advection.v);
   }
 }
 
 template <class F, int D, class S>
-void contact_batch(const void* parameters, const mpm_contact_batch* q) {
+void contact_batch(const void* parameters, const mpm_contact_batch* request) {
+  const mpm_contact_batch q = *request;  // its own copy: nothing that is stored changes it
   const auto& p = parameters_of<F>(parameters);
-  for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+  for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
     ContactPair<D, S> pair;
     ContactResult<D, S> result;
-    load_components<1, S>(q->mass_a, q->stride, lane, &pair.mass_a);
-    load_components<1, S>(q->mass_b, q->stride, lane, &pair.mass_b);
-    load_components<D, S>(q->momentum_a, q->stride, lane, pair.momentum_a.v);
-    load_components<D, S>(q->momentum_b, q->stride, lane, pair.momentum_b.v);
-    load_components<D, S>(q->normal, q->stride, lane, pair.normal.v);
-    load_components<1, S>(q->separation, q->stride, lane, &pair.separation);
-    load_components<1, S>(q->area, q->stride, lane, &pair.area);
-    pair.dt = real<S>(q->dt);
+    load_components<1, S>(q.mass_a, q.stride, lane, &pair.mass_a);
+    load_components<1, S>(q.mass_b, q.stride, lane, &pair.mass_b);
+    load_components<D, S>(q.momentum_a, q.stride, lane, pair.momentum_a.v);
+    load_components<D, S>(q.momentum_b, q.stride, lane, pair.momentum_b.v);
+    load_components<D, S>(q.normal, q.stride, lane, pair.normal.v);
+    load_components<1, S>(q.separation, q.stride, lane, &pair.separation);
+    load_components<1, S>(q.area, q.stride, lane, &pair.area);
+    pair.dt = real<S>(q.dt);
     F::apply(p, pair, result);
-    store_components<D, S>(q->impulse, q->stride, lane, result.impulse.v);
-    store_components<1, S>(q->dissipated, q->stride, lane, &result.dissipated);
-    Access<S>::store_index(q->status + lane, result.status);
+    store_components<D, S>(q.impulse, q.stride, lane, result.impulse.v);
+    store_components<1, S>(q.dissipated, q.stride, lane, &result.dissipated);
+    Access<S>::store_index(q.status + lane, result.status);
   }
 }
 
@@ -354,6 +360,7 @@ std::int32_t first_inadmissible(S J, std::uint32_t lane) {
   if constexpr (Access<S>::width == 1) {
     return J > 0 ? -1 : static_cast<std::int32_t>(lane);
   } else {
+    if (!any_lane<scalar_of<S>>(~(J > real<S>(0)))) return -1;
     for (int i = 0; i < Access<S>::width; ++i)
       if (!(J[i] > 0)) return static_cast<std::int32_t>(lane) + i;
     return -1;
@@ -371,32 +378,33 @@ decltype(auto) prepared_of(const State& state) {
 }
 
 template <class F, int D, class S>
-std::int32_t material_batch(const void* parameters, const mpm_material_batch* q) {
+std::int32_t material_batch(const void* parameters, const mpm_material_batch* request) {
+  const mpm_material_batch q = *request;  // its own copy: nothing that is stored changes it
   using T = scalar_of<S>;
   const typename F::template Constants<T> constants(parameters_of<F>(parameters));
   std::int32_t inadmissible = -1;
-  for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
-    auto state = StateAccess<F, D, S>::load(q->state, q->stride, lane);
+  for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
+    auto state = StateAccess<F, D, S>::load(q.state, q.stride, lane);
     const auto store = [&](void* array, S value) {
-      if (array) store_components<1, S>(array, q->stride, lane, &value);
+      if (array) store_components<1, S>(array, q.stride, lane, &value);
     };
-    if (q->velocity_gradient) {
+    if (q.velocity_gradient) {
       Mat<D, S> L;
-      load_components<D * D, S>(q->velocity_gradient, q->stride, lane, L.m);
-      store(q->dissipated_energy, F::advance(constants, L, real<S>(q->dt), state));
-      StateAccess<F, D, S>::store(q->state, q->stride, lane, state);
+      load_components<D * D, S>(q.velocity_gradient, q.stride, lane, L.m);
+      store(q.dissipated_energy, F::advance(constants, L, real<S>(q.dt), state));
+      StateAccess<F, D, S>::store(q.state, q.stride, lane, state);
     } else {
-      store(q->dissipated_energy, S(real<S>(0)));  // no advance, no heat
+      store(q.dissipated_energy, S(real<S>(0)));  // no advance, no heat
     }
     const S J = F::volume_ratio(state);
     if (inadmissible < 0) inadmissible = first_inadmissible(J, lane);
     const auto& prepared = prepared_of<F>(state);
-    if (q->kirchhoff_stress)
-      store_components<Sym<D, S>::size, S>(q->kirchhoff_stress, q->stride, lane,
+    if (q.kirchhoff_stress)
+      store_components<Sym<D, S>::size, S>(q.kirchhoff_stress, q.stride, lane,
                                            F::kirchhoff_stress(constants, prepared).s);
-    if (q->stored_energy) store(q->stored_energy, F::stored_energy(constants, prepared));
-    if (q->wave_speed) store(q->wave_speed, F::wave_speed(constants, prepared));
-    store(q->volume_ratio, J);
+    if (q.stored_energy) store(q.stored_energy, F::stored_energy(constants, prepared));
+    if (q.wave_speed) store(q.wave_speed, F::wave_speed(constants, prepared));
+    store(q.volume_ratio, J);
   }
   return inadmissible;
 }

@@ -21,6 +21,8 @@ class CpuBackend final : public Backend {
   bool scattered() const override { return scattered_; }
   void save(ArchiveWriter& archive) const override;
   void restore(ArchiveReader& archive) override;
+  void measure_phases(bool on) override { particle_step_->measure_phases(on); }
+  std::map<std::string, double> phase_seconds() const override { return particle_step_->phase_seconds(); }
   std::uint64_t particle_bytes() const override;
   std::uint64_t grid_bytes() const override { return grid_.bytes(); }
 

@@ -17,7 +17,7 @@ ParticleStep<D, T>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std
       grid_(grid),
       particles_(particles),
       bodies_(std::move(bodies)),
-      kernels_(tile_kernels<D, T>(scene.width)) {
+      kernels_(scene.list ? list_kernels<D, T>() : tile_kernels<D, T>(scene.width)) {
   drift_of_thread_.assign(scene.threads, 0.0);
   int transfer_components = 0;
   for (const Particles<D, T>& body : particles)
@@ -27,9 +27,9 @@ ParticleStep<D, T>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std
     work_.push_back(std::make_unique<Work>());
     Work& work = *work_.back();
     for (int c = 0; c < channel_count; ++c)
-      if (grid.has(static_cast<Channel>(c))) work.tile[c].require(std::size_t(kernels_.nodes) * 4);
-    work.velocity_tile.require(std::size_t(kernels_.nodes) * 4);
-    if (scene.has(MPM_GATHERS_INCREMENT)) work.increment_tile.require(std::size_t(kernels_.nodes) * 4);
+      if (grid.has(static_cast<Channel>(c))) work.tile[c].require(kernels_.scatter_scalars);
+    work.velocity_tile.require(kernels_.load_scalars);
+    if (scene.has(MPM_GATHERS_INCREMENT)) work.increment_tile.require(kernels_.load_scalars);
     if (scene.list) {
       work.lists.require(scene.capacity);
       std::fill(work.offset, work.offset + D * chunk_size, T(0));  // lists count from the particle itself
@@ -47,7 +47,10 @@ void ParticleStep<D, T>::for_each_block(int body, bool coloured, Visit&& visit) 
   Particles<D, T>& particles = particles_[body];
   const auto guarded = [&](std::uint32_t first, std::uint32_t last, Work& work) {
     try {
-      for (std::uint32_t b = first; b < last; ++b) visit(particles.blocks[b], work);
+      for (std::uint32_t b = first; b < last; ++b) {
+        work.clock.start();
+        visit(particles.blocks[b], work);
+      }
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!exception_) exception_ = std::current_exception();
@@ -74,11 +77,8 @@ template <class Visit>
 void ParticleStep<D, T>::for_each_chunk_of(int body, Block<D>& block, Visit&& visit) {
   Particles<D, T>& particles = particles_[body];
   for_each_chunk(block, [&](std::uint32_t i, int count) {
-    // The next chunk arrives in the cache while this one is computed.
     const char* const next = reinterpret_cast<const char*>(particles.chunk(std::min(i + 1, particles.chunks - 1)));
-    for (std::size_t byte = 0; byte < particles.components * chunk_size * sizeof(T); byte += 64)
-      __builtin_prefetch(next + byte, 0, 2);
-    visit(Chunk{particles, bodies_[body], block, particles.chunk(i), particles.ids(i), count, padded(count)});
+    visit(Chunk{particles, bodies_[body], block, particles.chunk(i), particles.ids(i), count, padded(count), next});
   });
 }
 
@@ -88,6 +88,27 @@ typename ParticleStep<D, T>::States ParticleStep<D, T>::states(const std::vector
   States result{};
   for (std::size_t f = 0; f < fields.size(); ++f) result.fields[f] = chunk.at(fields[f].first);
   return result;
+}
+
+template <int D, class T>
+void ParticleStep<D, T>::measure_phases(bool on) {
+  for (auto& work : work_) work->clock.measure(on);
+  measured_from_ = PhaseClock::now();
+  measured_since_ = std::chrono::steady_clock::now();
+}
+
+/// Seconds of all threads together; the length of a tick follows from the time since measuring began.
+template <int D, class T>
+std::map<std::string, double> ParticleStep<D, T>::phase_seconds() const {
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - measured_since_;
+  const double second = static_cast<double>(PhaseClock::now() - measured_from_) / elapsed.count();
+  std::map<std::string, double> seconds;
+  for (std::size_t phase = 0; phase < phase_names.size(); ++phase) {
+    PhaseClock::Ticks ticks = 0;
+    for (const auto& work : work_) ticks += work->clock.ticks[phase];
+    if (ticks > 0) seconds[phase_names[phase]] = static_cast<double>(ticks) / second;
+  }
+  return seconds;
 }
 
 template <int D, class T>
@@ -119,28 +140,62 @@ template <int D, class T>
   if (moments) invert_moments(chunk, work);
 }
 
-/// Stencils' first nodes within the tile; the block remembers what part of it they reach. False when one lies outside.
+/// Where stencils begin in the tile to scatter to; the work space gathers what part of it they reach. False when one
+/// lies outside.
 template <int D, class T>
-bool ParticleStep<D, T>::place_in_tile(const Chunk& chunk, Work& work, bool extend_reach) const {
+bool ParticleStep<D, T>::place_to_scatter(const Chunk& chunk, Work& work, bool extend_reach) const {
   if (scene_.list) return place_lists(chunk, work, extend_reach);
   if (extend_reach) {
-    Reach& reach = chunk.block.reach;
     for (int axis = 0; axis < D; ++axis) {
-      int low = reach.lowest[axis], high = reach.highest[axis];
-      for (int p = 0; p < chunk.end; ++p) {
-        const int node = work.base[axis * chunk_size + p] + 1;
-        low = std::min(low, node), high = std::max(high, node);
+      const std::int32_t* const base = work.base + axis * chunk_size;
+      typename Work::Integers low = work.lowest[axis], high = work.highest[axis];
+      for (int p = 0; p < chunk.end; p += Work::integers) {
+        const auto node = *reinterpret_cast<const typename Work::Integers*>(base + p);
+        low = node < low ? node : low, high = node > high ? node : high;
       }
-      if (low < 0 || high > block_side<D> + 1) return false;
-      reach.lowest[axis] = low, reach.highest[axis] = high;
+      if (any_lane<float>((low < -1) | (high > block_side<D>))) return false;
+      work.lowest[axis] = low, work.highest[axis] = high;
     }
   }
-  for (int p = 0; p < chunk.end; ++p) {
-    int node = work.base[p] + 1;
-    for (int axis = 1; axis < D; ++axis) node = node * kernels_.side + work.base[axis * chunk_size + p] + 1;
-    work.tile_node[p] = node;
-  }
+  number_stencils(work, chunk.end, kernels_.first_nodes);
   return true;
+}
+
+/// Before the first chunk of a block extends its reach.
+template <int D, class T>
+void ParticleStep<D, T>::begin_reach(Block<D>& block, Work& work) const {
+  block.reach = {};
+  for (int axis = 0; axis < D; ++axis) {
+    work.lowest[axis] = block.reach.lowest[axis] - typename Work::Integers{};
+    work.highest[axis] = block.reach.highest[axis] - typename Work::Integers{};
+  }
+}
+
+/// After the last one; that of lists is complete already.
+template <int D, class T>
+void ParticleStep<D, T>::end_reach(Block<D>& block, const Work& work) const {
+  for (int axis = 0; !scene_.list && axis < D; ++axis)
+    for (int lane = 0; lane < Work::integers; ++lane) {
+      block.reach.lowest[axis] = std::min(block.reach.lowest[axis], work.lowest[axis][lane] + 1);
+      block.reach.highest[axis] = std::max(block.reach.highest[axis], work.highest[axis][lane] + 1);
+    }
+}
+
+/// Where stencils begin in the tile to gather from.
+template <int D, class T>
+void ParticleStep<D, T>::place_to_gather(const Chunk& chunk, Work& work) const {
+  if (!scene_.list) number_stencils(work, chunk.end, kernels_.side);
+}
+
+/// Number of each stencil's first node, `along_last` of them a row.
+template <int D, class T>
+void ParticleStep<D, T>::number_stencils(Work& work, int count, int along_last) const {
+  for (int p = 0; p < count; ++p) {
+    int node = work.base[p] + 1;
+    for (int axis = 1; axis < D; ++axis)
+      node = node * (axis == D - 1 ? along_last : kernels_.side) + work.base[axis * chunk_size + p] + 1;
+    work.first[p] = node;
+  }
 }
 
 /// D^-1 of each particle: of a diagonal, or of a symmetric matrix by its adjugate.

@@ -17,6 +17,16 @@ void ParticleStep<D, T>::load_velocities(int body, const Block<D>& block, Work& 
   if (scene_.has(MPM_GATHERS_INCREMENT))
     kernels_.load(work.increment_tile.data(), grid_.channel(velocity_before, field), block.neighbours.data(),
                   block.reach);
+  work.clock.lap(Phase::tiles);
+}
+
+/// Adds the thread's tile of a channel to the grid.
+template <int D, class T>
+void ParticleStep<D, T>::flush(int body, const Block<D>& block, Work& work, Channel channel) {
+  work.clock.lap(Phase::other);
+  kernels_.flush(work.tile[channel].data(), grid_.channel(channel, bodies_[body].field), block.neighbours.data(),
+                 block.reach);
+  work.clock.lap(Phase::tiles);
 }
 
 template <int D, class T>
@@ -57,7 +67,7 @@ typename ParticleStep<D, T>::Fused ParticleStep<D, T>::gather_scatter(const Pass
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
       load_velocities(body, block, work);
-      block.reach = {};
+      begin_reach(block, work);
       block.kinetic_energy = block.dissipated = block.scattered_energy = 0;
       double& drift = drift_of_thread_[omp_get_thread_num()];
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
@@ -66,12 +76,12 @@ typename ParticleStep<D, T>::Fused ParticleStep<D, T>::gather_scatter(const Pass
         if (!scatter_chunk(pass, next, chunk, work, next_motion)) abandoned_ = true;
         if (scene_.plan.ledger) block.scattered_energy += kinetic_energy(chunk, work);
       });
+      end_reach(block, work);
       for (const Channel c : channels)
         if (abandoned_)
-          work.clear(c, kernels_.nodes);
+          work.clear(c, kernels_.scatter_scalars);
         else
-          kernels_.flush(work.tile[c].data(), grid_.channel(c, bodies_[body].field), block.neighbours.data(),
-                         block.reach);
+          flush(body, block, work, c);
     });
   Fused result;
   result.gathered = sum_gathered();
@@ -89,6 +99,7 @@ template <int D, class T>
   Wanted wanted;
   wanted.transfer = true, wanted.strain = pass.strain;
   gather_chunk(chunk, work, wanted);
+  work.clock.lap(Phase::coefficients);
   States state = states(chunk.particles.transfer_state, chunk);
   T* const velocity = chunk.at(Particles<D, T>::velocity);
   T* const advection = pass.move ? work.advection : chunk.at(chunk.particles.advection);
@@ -110,11 +121,15 @@ template <int D, class T>
       for (T* const target : {velocity, advection})
         std::copy_n(work.velocity + c * chunk_size, chunk.end, target + c * chunk_size);
   if (scene_.plan.ledger) chunk.block.kinetic_energy += kinetic_energy(chunk, work);
+  work.clock.lap(Phase::transfer);
   if (pass.strain) advance_material(chunk, work, step.dt);
+  work.clock.lap(Phase::material);
   if (!pass.move) return 0;
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
     std::copy_n(chunk.at(chunk.particles.next_domain), D * D * chunk_size, chunk.at(chunk.particles.domain));
-  return advance_position(chunk, advection, step.dt);
+  const double distance = advance_position(chunk, advection, step.dt);
+  work.clock.lap(Phase::move);
+  return distance;
 }
 
 template <int D, class T>
@@ -143,7 +158,7 @@ template <int D, class T>
 void ParticleStep<D, T>::gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment,
                                         bool gradient) {
   if (!scene_.list) {
-    const Stencils<T> stencils{work.tile_node, work.weight, work.gradient};
+    const Stencils<T> stencils{work.first, work.weight, work.gradient, chunk.ahead(true)};
     return kernels_.gather[moment][gradient](tile, stencils, work.quads, chunk.end);
   }
   const auto kernel = kernels_.gather_lists[moment][gradient];
@@ -160,52 +175,71 @@ void ParticleStep<D, T>::gather_chunk(const Chunk& chunk, Work& work, const Want
   const bool moment = affine && !scene_.moment_is_gradient;
   const bool gradient = (wanted.strain && !scene_.has(MPM_STRAIN_BY_AFFINE)) ||
                         (wanted.transfer && scene_.has(MPM_GATHERS_GRADIENT)) || (affine && scene_.moment_is_gradient);
+  work.clock.lap(Phase::other);
   evaluate_shape(chunk, work, gradient);
-  place_in_tile(chunk, work, false);
-  const int groups = quad_groups(D, moment, gradient), n = chunk.end;
+  place_to_gather(chunk, work);
+  work.clock.lap(Phase::weights);
+  const int n = chunk.end;
   gather_moments(chunk, work, work.velocity_tile.data(), wanted.channel, moment, gradient);
-  unpack_quads<D, T>(work.quads, groups,
-                     {work.velocity, work.velocity + chunk_size, work.velocity + (D - 1) * chunk_size}, n);
-  if (moment) affine_from_moments(chunk, work, groups);
-  if (gradient) {
-    T* const L = work.gradient_of_velocity;
-    const T* const quads = work.quads + 4 * (1 + (moment ? D : 0));
-    for (int a = 0; a < D; ++a)
-      unpack_quads<D, T>(quads + 4 * a, groups,
-                         {L + a * chunk_size, L + (D + a) * chunk_size, L + ((D - 1) * D + a) * chunk_size}, n);
-    const T inverse_h = static_cast<T>(1 / scene_.domain.cell_size);
-    for (int k = 0; k < D * D; ++k)
-      for (int p = 0; p < n; ++p) L[k * chunk_size + p] *= inverse_h;
-    if (affine && scene_.moment_is_gradient) std::copy(L, L + D * D * chunk_size, work.affine);
-  }
+  work.clock.lap(Phase::gather);
+  unpack_moments(work, moment, gradient, n);
+  if (moment && scene_.moment_of_particle) apply_inverse_moments(work, n);
+  if (affine && scene_.moment_is_gradient)
+    std::copy(work.gradient_of_velocity, work.gradient_of_velocity + D * D * chunk_size, work.affine);
   if (wanted.transfer && wanted.channel == motion && scene_.has(MPM_GATHERS_INCREMENT)) {
     gather_moments(chunk, work, work.increment_tile.data(), velocity_before, false, false);
-    unpack_quads<D, T>(work.quads, 1,
-                       {work.increment, work.increment + chunk_size, work.increment + (D - 1) * chunk_size}, n);
+    for (int p = 0; p < n; p += Lanes<T>::width) {
+      Lanes<T> increment[4];
+      load_quads<T>(work.quads + 4 * p, 4, increment);
+      for (int c = 0; c < D; ++c) increment[c].store(work.increment + c * chunk_size + p);
+    }
   }
 }
 
-/// C = h (sum k w v - f sum w v) D^-1: the moment about the particle.
+/// Quads to velocity, C = h (sum k w v - f sum w v) D^-1 about the particle (without the D^-1 of moments a particle),
+/// and L.
 template <int D, class T>
-void ParticleStep<D, T>::affine_from_moments(const Chunk& chunk, Work& work, int groups) {
-  const T h = static_cast<T>(scene_.domain.cell_size);
-  const T scale = scene_.moment_of_particle ? h : static_cast<T>(scene_.inverse_moment * scene_.domain.cell_size);
-  T* const C = work.affine;
-  for (int a = 0; a < D; ++a) {
-    unpack_quads<D, T>(work.quads + 4 * (1 + a), groups,
-                       {C + a * chunk_size, C + (D + a) * chunk_size, C + ((D - 1) * D + a) * chunk_size}, chunk.end);
-    const T* const f = work.offset + a * chunk_size;
-    for (int c = 0; c < D; ++c) {
-      T* const Cca = C + (c * D + a) * chunk_size;
-      const T* const v = work.velocity + c * chunk_size;
-      for (int p = 0; p < chunk.end; ++p) Cca[p] = scale * (Cca[p] - f[p] * v[p]);
+template <bool Moment, bool Gradient>
+void ParticleStep<D, T>::unpack_moments(Work& work, int count) {
+  using L = Lanes<T>;
+  const double h = scene_.domain.cell_size;
+  const T scale = static_cast<T>(scene_.moment_of_particle ? h : scene_.inverse_moment * h);
+  const T inverse_h = static_cast<T>(1 / h);
+  constexpr std::size_t step = 4 * quad_groups(D, Moment, Gradient);
+  for (int p = 0; p < count; p += L::width) {
+    const T* quads = work.quads + p * step;
+    L v[4];
+    load_quads<T>(quads, step, v);
+    for (int c = 0; c < D; ++c) v[c].store(work.velocity + c * chunk_size + p);
+#pragma GCC unroll 3
+    for (int a = 0; Moment && a < D; ++a) {
+      const L f = L::load(work.offset + a * chunk_size + p);
+      L sums[4];
+      load_quads<T>(quads += 4, step, sums);
+      for (int c = 0; c < D; ++c) (scale * (sums[c] - f * v[c])).store(work.affine + (c * D + a) * chunk_size + p);
+    }
+#pragma GCC unroll 3
+    for (int a = 0; Gradient && a < D; ++a) {
+      L sums[4];
+      load_quads<T>(quads += 4, step, sums);
+      for (int c = 0; c < D; ++c)
+        (inverse_h * sums[c]).store(work.gradient_of_velocity + (c * D + a) * chunk_size + p);
     }
   }
-  if (!scene_.moment_of_particle) return;
+}
+template <int D, class T>
+void ParticleStep<D, T>::unpack_moments(Work& work, bool moment, bool gradient, int count) {
+  if (moment) return gradient ? unpack_moments<true, true>(work, count) : unpack_moments<true, false>(work, count);
+  return gradient ? unpack_moments<false, true>(work, count) : unpack_moments<false, false>(work, count);
+}
+
+/// C <- C D^-1 of moments a particle.
+template <int D, class T>
+void ParticleStep<D, T>::apply_inverse_moments(Work& work, int count) {
   const T* const inverse = work.inverse_moment;
   for (int c = 0; c < D; ++c) {
-    T* const row = C + c * D * chunk_size;
-    for (int p = 0; p < chunk.end; ++p) {
+    T* const row = work.affine + c * D * chunk_size;
+    for (int p = 0; p < count; ++p) {
       T product[D];
       for (int a = 0; a < D; ++a) {
         if (!scene_.list) {
@@ -229,8 +263,7 @@ void ParticleStep<D, T>::project(const StepInfo& step) {
       kernels_.load(work.velocity_tile.data(), grid_.channel(filter_increment, field), block.neighbours.data(),
                     block.reach);
       for_each_chunk_of(body, block, [&](const Chunk& chunk) { project_chunk(step, chunk, work); });
-      kernels_.flush(work.tile[filter_projection].data(), grid_.channel(filter_projection, field),
-                     block.neighbours.data(), block.reach);
+      flush(body, block, work, filter_projection);
     });
     scatter_far(body, [&](const Chunk& chunk, Work& work) { project_chunk(step, chunk, work); });
   }
@@ -271,6 +304,7 @@ void ParticleStep<D, T>::project_chunk(const StepInfo& step, const Chunk& chunk,
   const mpm_scatter_batch scattered{
       n, chunk_size, D, 0, work.mass, velocity, state.fields, work.b, affine ? work.A : nullptr};
   scene_.transfer_scatter(scene_.transfer_parameters, &scattered);
+  if (!scene_.list) place_to_scatter(chunk, work, false);
   add_to_tile(chunk, work, filter_projection, work.mass, true, affine, false);
 }
 

@@ -126,7 +126,7 @@ bool ParticleStep<D, T>::reaches_too_far(const Chunk& chunk, int p, const int* l
   return true;
 }
 
-/// As place_in_tile: what the lists in the tile reach, as first nodes of stencils of the tile's width.
+/// As place_to_scatter: what the lists in the tile reach, as first nodes of stencils of the tile's width.
 template <int D, class T>
 bool ParticleStep<D, T>::place_lists(const Chunk& chunk, const Work& work, bool extend_reach) const {
   if (!extend_reach) return true;

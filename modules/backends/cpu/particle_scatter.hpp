@@ -36,7 +36,8 @@ double ParticleStep<D, T>::scatter(const Pass& pass, const StepInfo& step) {
   const bool energies = scene_.plan.ledger && pass.momentum && !pass.remap;
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
-      if (pass.momentum && !pass.remap) block.reach = {};
+      const bool extends = pass.momentum && !pass.remap;
+      if (extends) begin_reach(block, work);
       block.scattered_energy = 0;
       block.far = 0;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
@@ -45,9 +46,9 @@ double ParticleStep<D, T>::scatter(const Pass& pass, const StepInfo& step) {
         if (energies) block.scattered_energy += kinetic_energy(chunk, work);
         if (scene_.list) block.far += static_cast<std::uint32_t>(work.lists.far_of_chunk);
       });
+      if (extends) end_reach(block, work);
       for (const Channel c : channels)
-        kernels_.flush(work.tile[c].data(), grid_.channel(c, bodies_[body].field), block.neighbours.data(),
-                       block.reach);
+        flush(body, block, work, c);
     });
     scatter_far(body, [&](const Chunk& chunk, Work& work) { scatter_chunk(pass, step, chunk, work, motion); });
   }
@@ -67,12 +68,14 @@ template <int D, class T>
   const bool separate = grid_.has(force), merged = pass.force && !separate;
   const bool by_gradient = pass.force && !scene_.stress_by_affine;
   evaluate_shape(chunk, work, by_gradient || pass.contact_fields);
-  if (!place_in_tile(chunk, work, pass.momentum && !pass.remap && !work.far_only)) return false;
+  if (!place_to_scatter(chunk, work, pass.momentum && !pass.remap && !work.far_only)) return false;
+  work.clock.lap(Phase::weights);
   if (pass.force || pass.contact_fields) {
     mpm_material_batch request{};
     if (pass.force) request.kirchhoff_stress = work.stress;
     if (pass.contact_fields) request.volume_ratio = work.volume_ratio;
     update_material(chunk, request);
+    work.clock.lap(Phase::material);
   }
   if (pass.momentum) {
     momentum_coefficients(chunk, work);
@@ -134,39 +137,53 @@ void ParticleStep<D, T>::stress_coefficients(const Chunk& chunk, Work& work, dou
     }
 }
 
-/// Packs b (when `constant`), A and S with `last` as the fourth scalar of the constant quad, and scatters them into the
-/// tile.
+/// b (when `constant`), A and S as quads, with `last` as the fourth scalar of the constant one: in cells, and about the
+/// stencil's first node instead of the particle.
+template <int D, class T>
+template <bool Affine, bool Gradient>
+void ParticleStep<D, T>::pack_coefficients(Work& work, const T* last, bool constant, int count) {
+  using L = Lanes<T>;
+  const T h = static_cast<T>(scene_.domain.cell_size), inverse_h = T(1) / h;
+  constexpr std::size_t step = 4 * quad_groups(D, Affine, Gradient);
+  const L zero(T(0));
+  for (int p = 0; p < count; p += L::width) {
+    T* quads = work.quads + p * step;
+    L b[4] = {zero, zero, zero, last ? L::load(last + p) : zero}, q[4] = {zero, zero, zero, zero};
+    for (int c = 0; constant && c < D; ++c) b[c] = L::load(work.b + c * chunk_size + p);
+#pragma GCC unroll 3
+    for (int a = 0; Affine && a < D; ++a) {
+      const L f = L::load(work.offset + a * chunk_size + p);
+      for (int c = 0; c < D; ++c) {
+        q[c] = h * L::load(work.A + (c * D + a) * chunk_size + p);
+        b[c] = b[c] - q[c] * f;
+      }
+      store_quads<T>(quads + 4 * (1 + a), step, q);
+    }
+    store_quads<T>(quads, step, b);
+    quads += 4 * (Affine ? 1 + D : 1);
+#pragma GCC unroll 3
+    for (int a = 0; Gradient && a < D; ++a) {
+      for (int c = 0; c < D; ++c) q[c] = inverse_h * L::load(work.S + (c * D + a) * chunk_size + p);
+      store_quads<T>(quads + 4 * a, step, q);
+    }
+  }
+}
+template <int D, class T>
+void ParticleStep<D, T>::pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient,
+                                           int count) {
+  if (affine)
+    return gradient ? pack_coefficients<true, true>(work, last, constant, count)
+                    : pack_coefficients<true, false>(work, last, constant, count);
+  return gradient ? pack_coefficients<false, true>(work, last, constant, count)
+                  : pack_coefficients<false, false>(work, last, constant, count);
+}
+
+/// Scatters the coefficients of a chunk into the tile of a channel.
 template <int D, class T>
 void ParticleStep<D, T>::add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last, bool constant,
                                      bool affine, bool gradient) {
-  const T h = static_cast<T>(scene_.domain.cell_size), inverse_h = T(1) / h;
-  const int groups = quad_groups(D, affine, gradient), n = chunk.end;
-  T* quads = work.quads;
-  alignas(64) T b[D * chunk_size];
-  for (int c = 0; c < D; ++c) {
-    T* const bc = b + c * chunk_size;
-    for (int p = 0; p < n; ++p) bc[p] = constant ? work.b[c * chunk_size + p] : T(0);
-    for (int a = 0; affine && a < D; ++a) {  // about the stencil's first node instead of the particle, A in cells
-      T* const A = work.A + (c * D + a) * chunk_size;
-      const T* const f = work.offset + a * chunk_size;
-      for (int p = 0; p < n; ++p) {
-        A[p] *= h;
-        bc[p] -= A[p] * f[p];
-      }
-    }
-  }
-  const T* const none = nullptr;
-  pack_quads<T>(quads, groups, b, b + chunk_size, D == 3 ? b + (D - 1) * chunk_size : none, last, n);
-  quads += 4;
-  for (int a = 0; affine && a < D; ++a, quads += 4)
-    pack_quads<T>(quads, groups, work.A + a * chunk_size, work.A + (D + a) * chunk_size,
-                  D == 3 ? work.A + ((D - 1) * D + a) * chunk_size : none, none, n);
-  if (gradient)
-    for (int k = 0; k < D * D; ++k)
-      for (int p = 0; p < n; ++p) work.S[k * chunk_size + p] *= inverse_h;
-  for (int a = 0; gradient && a < D; ++a, quads += 4)
-    pack_quads<T>(quads, groups, work.S + a * chunk_size, work.S + (D + a) * chunk_size,
-                  D == 3 ? work.S + ((D - 1) * D + a) * chunk_size : none, none, n);
+  pack_coefficients(work, last, constant, affine, gradient, chunk.end);
+  work.clock.lap(Phase::coefficients);
   if (scene_.list) {
     const auto kernel = kernels_.scatter_lists[affine][gradient];
     if (work.far_only)
@@ -175,8 +192,9 @@ void ParticleStep<D, T>::add_to_tile(const Chunk& chunk, Work& work, Channel cha
       kernel(work.tile[channel].data(), work.lists.near_lists(), work.quads, chunk.count);
     return;
   }
-  const Stencils<T> stencils{work.tile_node, work.weight, work.gradient};
+  const Stencils<T> stencils{work.first, work.weight, work.gradient, chunk.ahead(false)};
   kernels_.scatter[affine][gradient](work.tile[channel].data(), stencils, work.quads, chunk.count);
+  work.clock.lap(Phase::scatter);
 }
 
 template <int D, class T>

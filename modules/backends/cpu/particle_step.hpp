@@ -5,12 +5,14 @@
 #include <atomic>
 #include <exception>
 #include <limits>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <vector>
 
 #include "grid.hpp"
 #include "kernel/tensor.hpp"
+#include "phase_clock.hpp"
 
 namespace mpm::cpu {
 
@@ -46,24 +48,28 @@ template <int D, class T>
 struct Workspace {
   static constexpr int symmetric = Sym<D, T>::size;
   alignas(64) std::int32_t base[D * chunk_size];
-  alignas(64) std::int32_t tile_node[chunk_size];
+  alignas(64) std::int32_t first[chunk_size];  ///< of the stencils: see Stencils
   alignas(64) T offset[D * chunk_size], weight[D * 4 * chunk_size], gradient[D * 4 * chunk_size];
   alignas(64) T mass[chunk_size], b[D * chunk_size], A[D * D * chunk_size], S[D * D * chunk_size];
   alignas(64) T stress[symmetric * chunk_size], volume_ratio[chunk_size], scalar[chunk_size];
   alignas(64) T velocity[D * chunk_size], increment[D * chunk_size], affine[D * D * chunk_size],
       gradient_of_velocity[D * D * chunk_size];
-  alignas(64) T advection[D * chunk_size], quads[(1 + 2 * D) * 4 * chunk_size];
+  alignas(64) T advection[D * chunk_size], quads[(1 + 2 * D) * 4 * chunk_size + 4];
   /// Of moments a particle: cells^2, and the inverse in 1/m^2. [D] of a tensor product, [D * D] of a list.
   alignas(64) T second_moment[D * D * chunk_size], inverse_moment[D * D * chunk_size];
+  using Integers = typename Lanes<float>::Mask;
+  static constexpr int integers = Lanes<float>::width;
+  Integers lowest[3], highest[3];  ///< first nodes of a block's stencils, lane by lane
   /// Zero between uses, so that the scatter may add.
   AlignedArray<T> tile[channel_count];
   /// Tiles to gather from; only what the block reaches is valid.
   AlignedArray<T> velocity_tile, increment_tile;
   ListWork<D, T> lists;
   AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
+  PhaseClock clock;
   bool far_only = false;  ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
 
-  void clear(Channel c, int nodes) { std::memset(tile[c].data(), 0, std::size_t(nodes) * 4 * sizeof(T)); }
+  void clear(Channel c, int scalars) { std::memset(tile[c].data(), 0, std::size_t(scalars) * sizeof(T)); }
 };
 
 /// A particle that cannot go on; the lowest body, then index, is reported.
@@ -125,6 +131,9 @@ class ParticleStep {
   std::vector<double> second_moments(int body);
   const std::vector<Body<D, T>>& bodies() const { return bodies_; }
 
+  void measure_phases(bool on);
+  std::map<std::string, double> phase_seconds() const;
+
  private:
   using Work = Workspace<D, T>;
   /// One chunk under work.
@@ -134,7 +143,13 @@ class ParticleStep {
     Block<D>& block;
     T* values;
     const std::int32_t* ids;
-    int count, end;  ///< end: count padded to whole lanes
+    int count, end;    ///< end: count padded to whole lanes
+    const char* next;  ///< the chunk that follows
+    /// Its second half arrives in the cache with a gather, its first half with a scatter.
+    Ahead ahead(bool gather) const {
+      const std::size_t share = particles.components * sizeof(T) / 2;
+      return {next + (gather ? share * chunk_size : 0), share};
+    }
     T* at(int component) const { return values + component * chunk_size; }
   };
   struct States {
@@ -153,7 +168,11 @@ class ParticleStep {
   void evaluate_list_batch(const Chunk& chunk, Work& work, int first_lane, bool gradients) const;
   int keep_list(const Chunk& chunk, Work& work, int first_lane, int lane, int entry, bool gradients);
   bool reaches_too_far(const Chunk& chunk, int particle, const int* low, const int* high);
-  bool place_in_tile(const Chunk& chunk, Work& work, bool extend_reach) const;
+  bool place_to_scatter(const Chunk& chunk, Work& work, bool extend_reach) const;
+  void begin_reach(Block<D>& block, Work& work) const;
+  void end_reach(Block<D>& block, const Work& work) const;
+  void place_to_gather(const Chunk& chunk, Work& work) const;
+  void number_stencils(Work& work, int count, int along_last) const;
   bool place_lists(const Chunk& chunk, const Work& work, bool extend_reach) const;
   void invert_moments(const Chunk& chunk, Work& work) const;
   void update_material(const Chunk& chunk, mpm_material_batch request);
@@ -168,11 +187,15 @@ class ParticleStep {
   void stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add);
   void add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last, bool constant, bool affine,
                    bool gradient);
+  template <bool Affine, bool Gradient>
+  void pack_coefficients(Work& work, const T* last, bool constant, int count);
+  void pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient, int count);
   void scatter_stress(const Chunk& chunk, Work& work);
   void scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt);
   void scatter_contact_fields(const Chunk& chunk, Work& work);
 
   void load_velocities(int body, const Block<D>& block, Work& work);
+  void flush(int body, const Block<D>& block, Work& work, Channel channel);
   double gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
   Gathered sum_gathered();
   /// What gather_chunk reads: velocities for the transfer, for the material, or the filter's increment.
@@ -182,7 +205,10 @@ class ParticleStep {
   };
   void gather_chunk(const Chunk& chunk, Work& work, const Wanted& wanted);
   void gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment, bool gradient);
-  void affine_from_moments(const Chunk& chunk, Work& work, int groups);
+  template <bool Moment, bool Gradient>
+  void unpack_moments(Work& work, int count);
+  void unpack_moments(Work& work, bool moment, bool gradient, int count);
+  void apply_inverse_moments(Work& work, int count);
   void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
   void advance_material(const Chunk& chunk, Work& work, double dt);
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const;
@@ -201,6 +227,8 @@ class ParticleStep {
   Failure failure_;
   std::exception_ptr exception_;
   std::mutex mutex_;
+  PhaseClock::Ticks measured_from_ = 0;
+  std::chrono::steady_clock::time_point measured_since_;
   std::atomic<bool> abandoned_{false};  ///< the fused pass does not scatter any more
 };
 

@@ -1,6 +1,10 @@
 #pragma once
 // Four scalars of one node or particle as one register, and the transposes between arrays of components and of quads.
 
+#include <cstddef>
+
+#include "kernel/lanes.hpp"
+
 namespace mpm::cpu {
 
 template <class T>
@@ -44,18 +48,96 @@ inline void pack_quads(T* quads, int groups, const T* x, const T* y, const T* z,
   }
 }
 
-/// One quad a particle -> the first D component arrays.
-template <int D, class T>
-inline void unpack_quads(const T* quads, int groups, T* const (&out)[3], int count) {
-  using Q = Quad<T>;
-  const Q* in = reinterpret_cast<const Q*>(quads);
-  for (int p = 0; p < count; p += 4) {
-    Q a = in[p * groups], b = in[(p + 1) * groups], c = in[(p + 2) * groups], d = in[(p + 3) * groups];
-    transpose<T>(a, b, c, d);
-    *reinterpret_cast<Q*>(out[0] + p) = a;
-    *reinterpret_cast<Q*>(out[1] + p) = b;
-    if constexpr (D == 3) *reinterpret_cast<Q*>(out[2] + p) = c;
+/// Block k of four lanes holds the quad of particle 4 k + i.
+template <class T>
+using QuadLanes = typename Lanes<T>::Vector;
+
+template <class T>
+inline __attribute__((always_inline)) QuadLanes<T> join_quads(const T* first, std::size_t step) {
+  constexpr int blocks = Lanes<T>::width / 4;
+#if defined(__AVX512F__)  // the compiler would load each quad before it joins them
+  if constexpr (blocks == 4) {
+    __m512 joined = _mm512_castps128_ps512(_mm_load_ps(first));
+    joined = _mm512_insertf32x4(joined, _mm_load_ps(first + step), 1);
+    joined = _mm512_insertf32x4(joined, _mm_load_ps(first + 2 * step), 2);
+    return (QuadLanes<T>)_mm512_insertf32x4(joined, _mm_load_ps(first + 3 * step), 3);
+  } else {
+    const __m512d joined = _mm512_castpd256_pd512(_mm256_load_pd(first));
+    return (QuadLanes<T>)_mm512_insertf64x4(joined, _mm256_load_pd(first + step), 1);
   }
+#else
+  const auto quad = [&](int k) { return *reinterpret_cast<const Quad<T>*>(first + k * step); };
+  if constexpr (blocks == 1)
+    return (QuadLanes<T>)quad(0);
+  else
+    return __builtin_shufflevector(quad(0), quad(1), 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
+}
+template <class T>
+inline __attribute__((always_inline)) void part_quads(QuadLanes<T> lanes, T* first, std::size_t step) {
+  constexpr int blocks = Lanes<T>::width / 4;
+#if defined(__AVX512F__)
+  if constexpr (blocks == 4) {
+    const __m512 joined = (__m512)lanes;
+    _mm_store_ps(first, _mm512_castps512_ps128(joined));
+    _mm_store_ps(first + step, _mm512_extractf32x4_ps(joined, 1));
+    _mm_store_ps(first + 2 * step, _mm512_extractf32x4_ps(joined, 2));
+    _mm_store_ps(first + 3 * step, _mm512_extractf32x4_ps(joined, 3));
+  } else {
+    _mm256_store_pd(first, _mm512_castpd512_pd256((__m512d)lanes));
+    _mm256_store_pd(first + step, _mm512_extractf64x4_pd((__m512d)lanes, 1));
+  }
+#else
+  Quad<T>* const low = reinterpret_cast<Quad<T>*>(first);
+  if constexpr (blocks == 1) {
+    *low = (Quad<T>)lanes;
+  } else {
+    *low = (Quad<T>)__builtin_shufflevector(lanes, lanes, 0, 1, 2, 3);
+    *reinterpret_cast<Quad<T>*>(first + step) = (Quad<T>)__builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+  }
+#endif
+}
+
+/// Lanes p0 p1 p2 p3 of each block of four, out of a (0 to 3) or b (4 to 7).
+template <int p0, int p1, int p2, int p3, class T>
+inline __attribute__((always_inline)) QuadLanes<T> pick(QuadLanes<T> a, QuadLanes<T> b) {
+  constexpr int width = Lanes<T>::width, from[4] = {p0, p1, p2, p3};
+  typename Lanes<T>::Mask index{};
+  for (int lane = 0; lane < width; ++lane) {
+    const int source = from[lane % 4];
+    index[lane] = source < 4 ? lane / 4 * 4 + source : width + lane / 4 * 4 + source - 4;
+  }
+  return __builtin_shuffle(a, b, index);
+}
+
+/// Quads of a pack of particles <-> their components: the transpose of every block of 4 x 4.
+template <class T>
+inline __attribute__((always_inline)) void transpose_blocks(QuadLanes<T> (&q)[4]) {
+  if constexpr (sizeof(T) == 4) {  // within registers of 128 bits
+    const QuadLanes<T> ab = pick<0, 4, 1, 5, T>(q[0], q[1]), AB = pick<2, 6, 3, 7, T>(q[0], q[1]);
+    const QuadLanes<T> cd = pick<0, 4, 1, 5, T>(q[2], q[3]), CD = pick<2, 6, 3, 7, T>(q[2], q[3]);
+    q[0] = pick<0, 1, 4, 5, T>(ab, cd), q[1] = pick<2, 3, 6, 7, T>(ab, cd);
+    q[2] = pick<0, 1, 4, 5, T>(AB, CD), q[3] = pick<2, 3, 6, 7, T>(AB, CD);
+  } else {
+    const QuadLanes<T> ab = pick<0, 4, 2, 6, T>(q[0], q[1]), AB = pick<1, 5, 3, 7, T>(q[0], q[1]);
+    const QuadLanes<T> cd = pick<0, 4, 2, 6, T>(q[2], q[3]), CD = pick<1, 5, 3, 7, T>(q[2], q[3]);
+    q[0] = pick<0, 1, 4, 5, T>(ab, cd), q[2] = pick<2, 3, 6, 7, T>(ab, cd);
+    q[1] = pick<0, 1, 4, 5, T>(AB, CD), q[3] = pick<2, 3, 6, 7, T>(AB, CD);
+  }
+}
+template <class T>
+inline __attribute__((always_inline)) void load_quads(const T* quads, std::size_t step, Lanes<T> (&component)[4]) {
+  QuadLanes<T> q[4];
+  for (int i = 0; i < 4; ++i) q[i] = join_quads<T>(quads + i * step, 4 * step);
+  transpose_blocks<T>(q);
+  for (int i = 0; i < 4; ++i) component[i].v = q[i];
+}
+template <class T>
+inline __attribute__((always_inline)) void store_quads(T* quads, std::size_t step, const Lanes<T> (&component)[4]) {
+  QuadLanes<T> q[4];
+  for (int i = 0; i < 4; ++i) q[i] = component[i].v;
+  transpose_blocks<T>(q);
+  for (int i = 0; i < 4; ++i) part_quads<T>(q[i], quads + i * step, 4 * step);
 }
 
 }  // namespace mpm::cpu

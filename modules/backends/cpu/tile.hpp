@@ -7,21 +7,40 @@
 // of its stencil gets
 //   w_i w_j w_k (b' + i Q_x + j Q_y + k Q_z) + grad terms,    b' = b - h A f,  Q_a = h A e_a,  S_a = S e_a / h.
 // The gather returns in the same places  sum w v,  sum k_a w v  and  sum (dw/dx_a) v.
+//
+// Both work on whole rows of nodes along the last axis (row.hpp). The scatter's tile holds a row of its own for every
+// first node along that axis, so that what one particle stores the next one loads at the same address: rows that
+// overlap wait for one another in the store buffer. The flush adds the rows up.
 
 #include <cstdint>
 #include <cstring>
+#ifndef AHEAD_LOC
+#define AHEAD_LOC 3
+#endif
 
 #include "blocks.hpp"
-#include "quad.hpp"
+#include "row.hpp"
 
 namespace mpm::cpu {
+
+/// Memory to bring into the cache while the particles are worked on, a little with each: all at once would fill the
+/// queue of misses and stop the work.
+struct Ahead {
+  const char* from = nullptr;
+  std::size_t bytes_a_particle = 0;
+  MPM_ROW_INLINE void fetch(int particle) const {
+    const char* const begin = from + particle * bytes_a_particle;
+    for (std::size_t byte = 0; byte < bytes_a_particle; byte += 64) __builtin_prefetch(begin + byte, 1, AHEAD_LOC);
+  }
+};
 
 /// Weights of one chunk. Arrays [axis * K + k][chunk_size].
 template <class T>
 struct Stencils {
-  const std::int32_t* tile_node;  ///< first node of the stencil in the tile
+  const std::int32_t* first;  ///< of the gather: first node of the stencil in the tile; of the scatter: its first row
   const T* weight;
   const T* gradient;  ///< per cell
+  Ahead ahead;
 };
 
 /// Lists of nodes of one chunk, one after another: those of particle p are entries first[p] to last[p].
@@ -43,9 +62,12 @@ struct TileKernels {
   using Gather = void (*)(const T* tile, const Stencils<T>&, T* moments, int count);
   using ScatterLists = void (*)(T* nodes, const NodeLists<T>&, const T* coefficients, int count);
   using GatherLists = void (*)(const T* nodes, const NodeLists<T>&, T* moments, int count);
-  int side = 0, nodes = 0;
+  int side = 0;                        ///< nodes an axis
+  int first_nodes = 0;                 ///< along the last axis: rows of the scatter's tile beside one another
+  int load_scalars = 0;                ///< of the tile to gather from
+  int scatter_scalars = 0;             ///< of the tile to scatter to
   Scatter scatter[2][2];               ///< [affine][gradient]
-  Gather gather[2][2];                 ///< [moment][gradient]
+  Gather gather[2][2];                 ///< [moment][gradient]; writes up to one quad beyond the last particle's
   ScatterLists scatter_lists[2][2]{};  ///< of the widest tile; offsets are from the particle: b' = b
   GatherLists gather_lists[2][2]{};    ///< particles without an entry are left alone
   void (*load)(T* tile, const T* channel, const std::int32_t* neighbours, const Reach&);
@@ -55,6 +77,9 @@ struct TileKernels {
 /// Kernels for a stencil of `width` nodes an axis (2, 3 or 4).
 template <int D, class T>
 TileKernels<D, T> tile_kernels(int width);
+/// Kernels for lists of nodes: one tile of nodes serves gather and scatter.
+template <int D, class T>
+TileKernels<D, T> list_kernels();
 
 constexpr int quad_groups(int dimension, bool affine, bool gradient) {
   return 1 + (affine ? dimension : 0) + (gradient ? dimension : 0);
@@ -64,140 +89,163 @@ constexpr int quad_groups(int dimension, bool affine, bool gradient) {
 
 template <int D, int K>
 inline constexpr int tile_side = block_side<D> + K + 1;
+/// First nodes that stencils in a tile may have, an axis.
+template <int D>
+inline constexpr int first_nodes_of_tile = block_side<D> + 2;
 
-/// Weights of one particle along one axis.
-template <int K, bool Gradient, class T>
+/// Weights of one particle along an axis other than the last, each on all of a register: loaded so, before anything is
+/// stored.
+template <int K, class T>
 struct AxisWeights {
-  T w[K], g[K];
-  AxisWeights(const Stencils<T>& stencils, int axis, int particle) {
-    for (int k = 0; k < K; ++k) w[k] = stencils.weight[(axis * K + k) * chunk_size + particle];
-    if constexpr (Gradient)
-      for (int k = 0; k < K; ++k) g[k] = stencils.gradient[(axis * K + k) * chunk_size + particle];
+  typename Row<T, K>::Vector w[K], g[K];
+  MPM_ROW_INLINE AxisWeights(const Stencils<T>& stencils, int axis, int particle, bool gradient) {
+    for (int k = 0; k < K; ++k) w[k] = broadcast<T, K>(stencils.weight[(axis * K + k) * chunk_size + particle]);
+    if (gradient)
+      for (int k = 0; k < K; ++k) g[k] = broadcast<T, K>(stencils.gradient[(axis * K + k) * chunk_size + particle]);
   }
 };
 
-/// One row of nodes along the last axis: node k gets w_k (c + k q) + g_k s.
-template <int K, bool Affine, bool Gradient, class T>
-inline __attribute__((always_inline)) void add_row(Quad<T>* row, const AxisWeights<K, Gradient, T>& last, Quad<T> c,
-                                                   Quad<T> q, Quad<T> s) {
-#pragma GCC unroll 4
-  for (int k = 0; k < K; ++k) {
-    Quad<T> value = row[k] + last.w[k] * c;
-    if constexpr (Affine) {
-      if (k > 0) value += (T(k) * last.w[k]) * q;
-    }
-    if constexpr (Gradient) value += last.g[k] * s;
-    row[k] = value;
+/// Weights along the last axis, one quad a particle.
+template <int D, int K, class T>
+struct LastWeights {
+  alignas(64) T quads[chunk_size * 4];
+  MPM_ROW_INLINE LastWeights(const T* weights, int count) {
+    const T* const w = weights + (D - 1) * K * chunk_size;
+    const auto at = [&](int k) { return k < K ? w + k * chunk_size : nullptr; };
+    pack_quads<T>(quads, 1, at(0), at(1), at(2), at(3), (count + 3) / 4 * 4);
   }
+  MPM_ROW_INLINE Row<T, K> row(int particle) const { return spread<T, K>(quads + 4 * particle); }
+};
+
+template <int K, class T>
+MPM_ROW_INLINE void add_to_row(T* at, const Row<T, K>& value) {
+  store_row(at, load_row<T, K>(at) + value);
 }
 
 template <int D, class T, int K, bool Affine, bool Gradient>
 void scatter_to_tile(T* tile, const Stencils<T>& stencils, const T* coefficients, int count) {
-  using Q = Quad<T>;
-  constexpr int groups = quad_groups(D, Affine, Gradient), side = tile_side<D, K>;
-  constexpr int first_s = 1 + (Affine ? D : 0);
+  using R = Row<T, K>;
+  constexpr int groups = quad_groups(D, Affine, Gradient), first_s = 1 + (Affine ? D : 0);
+  constexpr int line = first_nodes_of_tile<D> * R::scalars;  // from a row to the next along the axis before the last
+  const LastWeights<D, K, T> weights(stencils.weight, count);
+  const LastWeights<D, K, T> slopes(Gradient ? stencils.gradient : stencils.weight, Gradient ? count : 0);
+  const R number = node_numbers<T, K>();
   for (int p = 0; p < count; ++p) {
-    const Q* const c = reinterpret_cast<const Q*>(coefficients) + p * groups;
-    Q* const corner = reinterpret_cast<Q*>(tile) + stencils.tile_node[p];
-    const AxisWeights<K, Gradient, T> x(stencils, 0, p), last(stencils, D - 1, p);
-    Q q[3]{}, s[3]{};
-    if constexpr (Affine)
-      for (int a = 0; a < D; ++a) q[a] = c[1 + a];
-    if constexpr (Gradient)
-      for (int a = 0; a < D; ++a) s[a] = c[first_s + a];
-    Q plane = c[0];  // b' + i Q_x
+    stencils.ahead.fetch(p);
+    const T* const c = coefficients + std::size_t(p) * groups * 4;
+    const auto coefficient = [&](int group) { return repeated<T, K>(c + 4 * group); };
+    T* const corner = tile + std::size_t(stencils.first[p]) * R::scalars;
+    const AxisWeights<K, T> x(stencils, 0, p, Gradient), y(stencils, D - 2, p, Gradient);
+    const R w = weights.row(p);
+    R plane = coefficient(0), step_x{}, step_y{}, slope_x{}, slope_y{};
+    if constexpr (Affine) {
+      plane = w * (plane + number * coefficient(D));
+      step_x = w * coefficient(1);
+      if constexpr (D == 3) step_y = w * coefficient(2);
+    } else {
+      plane = w * plane;
+    }
+    if constexpr (Gradient) {
+      plane = plane + slopes.row(p) * coefficient(first_s + D - 1);
+      slope_x = w * coefficient(first_s);
+      if constexpr (D == 3) slope_y = w * coefficient(first_s + 1);
+    }
 #pragma GCC unroll 4
     for (int i = 0; i < K; ++i) {
-      Q ci = x.w[i] * plane;
-      if constexpr (Gradient) ci += x.g[i] * s[0];
-      if constexpr (Affine) plane += q[0];
+      R row = times<T, K>(x.w[i], plane);
+      if constexpr (Gradient) row = row + times<T, K>(x.g[i], slope_x);
+      if constexpr (Affine) plane = plane + step_x;
       if constexpr (D == 2) {
-        add_row<K, Affine, Gradient, T>(corner + i * side, last, ci, x.w[i] * q[1], x.w[i] * s[1]);
+        add_to_row<K, T>(corner + i * line, row);
       } else {
-        const AxisWeights<K, Gradient, T> y(stencils, 1, p);
-        const Q qy = x.w[i] * q[1], qz = x.w[i] * q[2], sy = x.w[i] * s[1], sz = x.w[i] * s[2];
+        const R step = times<T, K>(x.w[i], step_y), slope = times<T, K>(x.w[i], slope_y);
 #pragma GCC unroll 4
         for (int j = 0; j < K; ++j) {
-          Q cij = y.w[j] * ci;
-          if constexpr (Gradient) cij += y.g[j] * sy;
-          if constexpr (Affine) ci += qy;
-          add_row<K, Affine, Gradient, T>(corner + (i * side + j) * side, last, cij, y.w[j] * qz, y.w[j] * sz);
+          T* const at = corner + (i * tile_side<D, K> + j) * line;
+          R value = load_row<T, K>(at) + times<T, K>(y.w[j], row);
+          if constexpr (Gradient) value = value + times<T, K>(y.g[j], slope);
+          if constexpr (Affine) row = row + step;
+          store_row(at, value);
         }
       }
     }
   }
 }
 
-/// Sums over one row: of w v, k w v and g v.
-template <class T>
-struct RowSums {
-  Quad<T> value{}, moment{}, gradient{};
+/// Sums over all rows of a stencil that its last axis' weights do not yet enter.
+template <int K, class T>
+struct StencilSums {
+  Row<T, K> value{}, moment_x{}, moment_y{}, gradient_x{}, gradient_y{};
 };
-template <int K, bool Moment, bool Gradient, class T>
-inline __attribute__((always_inline)) RowSums<T> row_sums(const Quad<T>* row, const AxisWeights<K, Gradient, T>& last) {
-  RowSums<T> sum;
-  sum.value = last.w[0] * row[0];
-  if constexpr (Gradient) sum.gradient = last.g[0] * row[0];
+
+template <int D, class T, int K, bool Moment, bool Gradient>
+MPM_ROW_INLINE StencilSums<K, T> sum_rows(const T* corner, const Stencils<T>& stencils, int p) {
+  using R = Row<T, K>;
+  constexpr int side = tile_side<D, K>;
+  const AxisWeights<K, T> x(stencils, 0, p, Gradient), y(stencils, D - 2, p, Gradient);
+  StencilSums<K, T> sums;
 #pragma GCC unroll 4
-  for (int k = 1; k < K; ++k) {
-    const Quad<T> term = last.w[k] * row[k];
-    sum.value += term;
-    if constexpr (Moment) sum.moment += T(k) * term;
-    if constexpr (Gradient) sum.gradient += last.g[k] * row[k];
+  for (int i = 0; i < K; ++i) {
+    R plane, plane_moment{}, plane_slope{};
+    if constexpr (D == 2) {
+      plane = load_row<T, K>(corner + i * side * 4);
+    } else {
+#pragma GCC unroll 4
+      for (int j = 0; j < K; ++j) {
+        const R row = load_row<T, K>(corner + (i * side + j) * side * 4), term = times<T, K>(y.w[j], row);
+        plane = j == 0 ? term : plane + term;
+        if constexpr (Moment) {
+          if (j > 0) plane_moment = j == 1 ? term : plane_moment + times<T, K>(broadcast<T, K>(T(j)), term);
+        }
+        if constexpr (Gradient) plane_slope = j == 0 ? times<T, K>(y.g[j], row) : plane_slope + times<T, K>(y.g[j], row);
+      }
+    }
+    const R term = times<T, K>(x.w[i], plane);
+    sums.value = i == 0 ? term : sums.value + term;
+    if constexpr (Moment) {
+      if (i > 0) sums.moment_x = i == 1 ? term : sums.moment_x + times<T, K>(broadcast<T, K>(T(i)), term);
+      if constexpr (D == 3) sums.moment_y = i == 0 ? times<T, K>(x.w[i], plane_moment) : sums.moment_y + times<T, K>(x.w[i], plane_moment);
+    }
+    if constexpr (Gradient) {
+      sums.gradient_x = i == 0 ? times<T, K>(x.g[i], plane) : sums.gradient_x + times<T, K>(x.g[i], plane);
+      if constexpr (D == 3) sums.gradient_y = i == 0 ? times<T, K>(x.w[i], plane_slope) : sums.gradient_y + times<T, K>(x.w[i], plane_slope);
+    }
   }
-  return sum;
+  return sums;
 }
 
 template <int D, class T, int K, bool Moment, bool Gradient>
 void gather_from_tile(const T* tile, const Stencils<T>& stencils, T* moments, int count) {
-  using Q = Quad<T>;
-  constexpr int groups = quad_groups(D, Moment, Gradient), side = tile_side<D, K>;
-  constexpr int first_g = 1 + (Moment ? D : 0);
+  using R = Row<T, K>;
+  constexpr int groups = quad_groups(D, Moment, Gradient), first_g = 1 + (Moment ? D : 0);
+  const LastWeights<D, K, T> weights(stencils.weight, count);
+  const LastWeights<D, K, T> slopes(Gradient ? stencils.gradient : stencils.weight, Gradient ? count : 0);
+  const R number = node_numbers<T, K>();
   for (int p = 0; p < count; ++p) {
-    const Q* const corner = reinterpret_cast<const Q*>(tile) + stencils.tile_node[p];
-    const AxisWeights<K, Gradient, T> x(stencils, 0, p), last(stencils, D - 1, p);
-    Q value{}, m[3]{}, g[3]{};
-#pragma GCC unroll 4
-    for (int i = 0; i < K; ++i) {
-      Q plane, plane_m[3]{}, plane_g[3]{};  // sums over the plane i
-      if constexpr (D == 2) {
-        const RowSums<T> row = row_sums<K, Moment, Gradient, T>(corner + i * side, last);
-        plane = row.value, plane_m[1] = row.moment, plane_g[1] = row.gradient;
-      } else {
-        const AxisWeights<K, Gradient, T> y(stencils, 1, p);
-        plane = Q{};
-#pragma GCC unroll 4
-        for (int j = 0; j < K; ++j) {
-          const RowSums<T> row = row_sums<K, Moment, Gradient, T>(corner + (i * side + j) * side, last);
-          const Q term = y.w[j] * row.value;
-          plane += term;
-          if constexpr (Moment) {
-            if (j > 0) plane_m[1] += T(j) * term;
-            plane_m[2] += y.w[j] * row.moment;
-          }
-          if constexpr (Gradient) {
-            plane_g[1] += y.g[j] * row.value;
-            plane_g[2] += y.w[j] * row.gradient;
-          }
-        }
-      }
-      const Q term = x.w[i] * plane;
-      value += term;
-      if constexpr (Moment) {
-        if (i > 0) m[0] += T(i) * term;
-        for (int a = 1; a < D; ++a) m[a] += x.w[i] * plane_m[a];
-      }
-      if constexpr (Gradient) {
-        g[0] += x.g[i] * plane;
-        for (int a = 1; a < D; ++a) g[a] += x.w[i] * plane_g[a];
-      }
+    stencils.ahead.fetch(p);
+    const StencilSums<K, T> sums =
+        sum_rows<D, T, K, Moment, Gradient>(tile + std::size_t(stencils.first[p]) * 4, stencils, p);
+    const R w = weights.row(p);
+    const auto weighted = [&](const R& sum) { return within_stencil<T, K>(w * sum); };
+    R terms[groups + 3]{};
+    terms[0] = weighted(sums.value);
+    if constexpr (Moment) {
+      terms[1] = weighted(sums.moment_x);
+      if constexpr (D == 3) terms[2] = weighted(sums.moment_y);
+      terms[D] = number * terms[0];
     }
-    Q* const out = reinterpret_cast<Q*>(moments) + p * groups;
-    out[0] = value;
-    if constexpr (Moment)
-      for (int a = 0; a < D; ++a) out[1 + a] = m[a];
-    if constexpr (Gradient)
-      for (int a = 0; a < D; ++a) out[first_g + a] = g[a];
+    if constexpr (Gradient) {
+      terms[first_g] = weighted(sums.gradient_x);
+      if constexpr (D == 3) terms[first_g + 1] = weighted(sums.gradient_y);
+      terms[first_g + D - 1] = within_stencil<T, K>(slopes.row(p) * sums.value);
+    }
+    T* const out = moments + std::size_t(p) * groups * 4;
+    for (int g = 0; g < groups; g += 4) {
+      if (groups - g > 2)
+        store_sums(out + 4 * g, terms[g], terms[g + 1], terms[g + 2], terms[g + 3]);
+      else
+        for (int k = g; k < groups; ++k) reinterpret_cast<Quad<T>*>(out)[k] = sum_of_nodes(terms[k]);
+    }
   }
 }
 
@@ -247,28 +295,39 @@ void gather_lists(const T* nodes, const NodeLists<T>& lists, T* moments, int cou
   }
 }
 
-/// Calls run(tile node, grid node, length) for the runs of consecutive nodes that the reach touches.
-template <int D, int K, class Run>
-inline void for_each_run(const std::int32_t* neighbours, const Reach& reach, Run&& run) {
-  constexpr int B = block_side<D>, side = tile_side<D, K>;
-  const auto row = [&](int tile_row, int neighbour, int block_row) {  // split at the faces of blocks
-    for (int z = reach.lowest[D - 1]; z < reach.highest[D - 1] + K;) {
+/// One row of a tile along the last axis: where it begins, and the grid's blocks and rows that it crosses.
+template <int D>
+struct TileRow {
+  int tile_row = 0;   ///< number of the row in the tile
+  int neighbour = 0;  ///< first of the three blocks it crosses
+  int block_row = 0;  ///< its first node within a block
+
+  /// Calls run(node of the row, grid node, length) for the runs of consecutive nodes from low to below high.
+  template <class Run>
+  MPM_ROW_INLINE void for_each_run(const std::int32_t* neighbours, int low, int high, Run&& run) const {
+    constexpr int B = block_side<D>;
+    for (int z = low; z < high;) {  // split at the faces of blocks
       const int along = z - 1, part = along < 0 ? 0 : along < B ? 1 : 2;
-      const int end = part == 0 ? 1 : part == 1 ? 1 + B : side;
-      const int stop = end < reach.highest[D - 1] + K ? end : reach.highest[D - 1] + K;
-      run(tile_row + z, std::size_t(neighbours[neighbour + part]) * block_nodes + block_row + (along & (B - 1)),
-          stop - z);
+      const int end = part == 0 ? 1 : part == 1 ? 1 + B : high;
+      const int stop = end < high ? end : high;
+      run(z, std::size_t(neighbours[neighbour + part]) * block_nodes + block_row + (along & (B - 1)), stop - z);
       z = stop;
     }
-  };
+  }
+};
+
+/// Calls visit(row) for the rows that the reach touches.
+template <int D, int K, class Visit>
+inline void for_each_row(const Reach& reach, Visit&& visit) {
+  constexpr int B = block_side<D>, side = tile_side<D, K>;
   for (int i = reach.lowest[0]; i < reach.highest[0] + K; ++i) {
     const int x = i - 1, block_x = x < 0 ? 0 : x < B ? 1 : 2, local_x = x & (B - 1);
     if constexpr (D == 2) {
-      row(i * side, block_x * 3, local_x * B);
+      visit(TileRow<D>{i, block_x * 3, local_x * B});
     } else {
       for (int j = reach.lowest[1]; j < reach.highest[1] + K; ++j) {
         const int y = j - 1, block_y = y < 0 ? 0 : y < B ? 1 : 2, local_y = y & (B - 1);
-        row((i * side + j) * side, (block_x * 3 + block_y) * 3, (local_x * B + local_y) * B);
+        visit(TileRow<D>{i * side + j, (block_x * 3 + block_y) * 3, (local_x * B + local_y) * B});
       }
     }
   }
@@ -277,28 +336,65 @@ inline void for_each_run(const std::int32_t* neighbours, const Reach& reach, Run
 template <int D, class T, int K>
 void load_tile(T* tile, const T* channel, const std::int32_t* neighbours, const Reach& reach) {
   using Q = Quad<T>;
-  for_each_run<D, K>(neighbours, reach, [&](int node, std::size_t grid_node, int length) {
-    for (int k = 0; k < length; ++k)
-      reinterpret_cast<Q*>(tile)[node + k] = reinterpret_cast<const Q*>(channel)[grid_node + k];
+  for_each_row<D, K>(reach, [&](const TileRow<D>& row) {
+    Q* const to = reinterpret_cast<Q*>(tile) + row.tile_row * tile_side<D, K>;
+    row.for_each_run(neighbours, reach.lowest[D - 1], reach.highest[D - 1] + K,
+                     [&](int z, std::size_t grid_node, int length) {
+                       const Q* const from = reinterpret_cast<const Q*>(channel) + grid_node;
+                       for (int k = 0; k < length; ++k) to[z + k] = from[k];
+                     });
   });
 }
 
+/// Of lists: the tile's nodes themselves.
 template <int D, class T, int K>
-void flush_tile(T* tile, T* channel, const std::int32_t* neighbours, const Reach& reach) {
+void flush_nodes(T* tile, T* channel, const std::int32_t* neighbours, const Reach& reach) {
   using Q = Quad<T>;
-  for_each_run<D, K>(neighbours, reach, [&](int node, std::size_t grid_node, int length) {
-    for (int k = 0; k < length; ++k) {
-      reinterpret_cast<Q*>(channel)[grid_node + k] += reinterpret_cast<Q*>(tile)[node + k];
-      reinterpret_cast<Q*>(tile)[node + k] = Q{};
-    }
+  for_each_row<D, K>(reach, [&](const TileRow<D>& row) {
+    Q* const from = reinterpret_cast<Q*>(tile) + row.tile_row * tile_side<D, K>;
+    row.for_each_run(neighbours, reach.lowest[D - 1], reach.highest[D - 1] + K,
+                     [&](int z, std::size_t grid_node, int length) {
+                       Q* const to = reinterpret_cast<Q*>(channel) + grid_node;
+                       for (int k = 0; k < length; ++k) {
+                         to[k] += from[z + k];
+                         from[z + k] = Q{};
+                       }
+                     });
   });
+}
+
+/// Adds up the rows of each first node along the last axis.
+template <int D, class T, int K>
+void flush_rows(T* tile, T* channel, const std::int32_t* neighbours, const Reach& reach) {
+  using Q = Quad<T>;
+  using R = Row<T, K>;
+  const int low = reach.lowest[D - 1], high = reach.highest[D - 1];
+  for_each_row<D, K>(reach, [&](const TileRow<D>& row) {
+    Q sums[tile_side<D, K>]{};
+    T* const first = tile + std::size_t(row.tile_row) * first_nodes_of_tile<D> * R::scalars;
+    for (int z = low; z <= high; ++z) {
+      const Q* const nodes = reinterpret_cast<const Q*>(first + z * R::scalars);
+      for (int k = 0; k < K; ++k) sums[z + k] += nodes[k];
+      store_row(first + z * R::scalars, R{});
+    }
+    row.for_each_run(neighbours, low, high + K, [&](int z, std::size_t grid_node, int length) {
+      Q* const to = reinterpret_cast<Q*>(channel) + grid_node;
+      for (int k = 0; k < length; ++k) to[k] += sums[z + k];
+    });
+  });
+}
+
+constexpr int rows_of_tile(int dimension, int side) {
+  return dimension == 3 ? side * side : side;
 }
 
 template <int D, class T, int K>
 TileKernels<D, T> tile_kernels_of_width() {
   TileKernels<D, T> kernels;
   kernels.side = tile_side<D, K>;
-  kernels.nodes = D == 3 ? kernels.side * kernels.side * kernels.side : kernels.side * kernels.side;
+  kernels.first_nodes = first_nodes_of_tile<D>;
+  kernels.load_scalars = rows_of_tile(D, kernels.side) * kernels.side * 4 + Row<T, K>::scalars;  // the last row's end
+  kernels.scatter_scalars = rows_of_tile(D, kernels.side) * kernels.first_nodes * Row<T, K>::scalars;
   kernels.scatter[0][0] = &scatter_to_tile<D, T, K, false, false>;
   kernels.scatter[0][1] = &scatter_to_tile<D, T, K, false, true>;
   kernels.scatter[1][0] = &scatter_to_tile<D, T, K, true, false>;
@@ -307,18 +403,27 @@ TileKernels<D, T> tile_kernels_of_width() {
   kernels.gather[0][1] = &gather_from_tile<D, T, K, false, true>;
   kernels.gather[1][0] = &gather_from_tile<D, T, K, true, false>;
   kernels.gather[1][1] = &gather_from_tile<D, T, K, true, true>;
-  if constexpr (K == 4) {
-    kernels.scatter_lists[0][0] = &scatter_lists<D, T, false, false>;
-    kernels.scatter_lists[0][1] = &scatter_lists<D, T, false, true>;
-    kernels.scatter_lists[1][0] = &scatter_lists<D, T, true, false>;
-    kernels.scatter_lists[1][1] = &scatter_lists<D, T, true, true>;
-    kernels.gather_lists[0][0] = &gather_lists<D, T, false, false>;
-    kernels.gather_lists[0][1] = &gather_lists<D, T, false, true>;
-    kernels.gather_lists[1][0] = &gather_lists<D, T, true, false>;
-    kernels.gather_lists[1][1] = &gather_lists<D, T, true, true>;
-  }
   kernels.load = &load_tile<D, T, K>;
-  kernels.flush = &flush_tile<D, T, K>;
+  kernels.flush = &flush_rows<D, T, K>;
+  return kernels;
+}
+
+template <int D, class T>
+TileKernels<D, T> kernels_of_lists() {
+  constexpr int K = 4;
+  TileKernels<D, T> kernels;
+  kernels.side = kernels.first_nodes = tile_side<D, K>;
+  kernels.load_scalars = kernels.scatter_scalars = rows_of_tile(D, kernels.side) * kernels.side * 4;
+  kernels.scatter_lists[0][0] = &scatter_lists<D, T, false, false>;
+  kernels.scatter_lists[0][1] = &scatter_lists<D, T, false, true>;
+  kernels.scatter_lists[1][0] = &scatter_lists<D, T, true, false>;
+  kernels.scatter_lists[1][1] = &scatter_lists<D, T, true, true>;
+  kernels.gather_lists[0][0] = &gather_lists<D, T, false, false>;
+  kernels.gather_lists[0][1] = &gather_lists<D, T, false, true>;
+  kernels.gather_lists[1][0] = &gather_lists<D, T, true, false>;
+  kernels.gather_lists[1][1] = &gather_lists<D, T, true, true>;
+  kernels.load = &load_tile<D, T, K>;
+  kernels.flush = &flush_nodes<D, T, K>;
   return kernels;
 }
 

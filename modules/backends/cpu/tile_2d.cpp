@@ -12,4 +12,9 @@ TileKernels<2, double> tile_kernels<2, double>(int width) {
   throw std::invalid_argument("the cpu backend takes shapes of 2, 3 or 4 nodes an axis");
 }
 
+template <>
+TileKernels<2, double> list_kernels<2, double>() {
+  return kernels_of_lists<2, double>();
+}
+
 }  // namespace mpm::cpu

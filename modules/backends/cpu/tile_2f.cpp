@@ -12,4 +12,9 @@ TileKernels<2, float> tile_kernels<2, float>(int width) {
   throw std::invalid_argument("the cpu backend takes shapes of 2, 3 or 4 nodes an axis");
 }
 
+template <>
+TileKernels<2, float> list_kernels<2, float>() {
+  return kernels_of_lists<2, float>();
+}
+
 }  // namespace mpm::cpu

@@ -12,4 +12,9 @@ TileKernels<3, double> tile_kernels<3, double>(int width) {
   throw std::invalid_argument("the cpu backend takes shapes of 2, 3 or 4 nodes an axis");
 }
 
+template <>
+TileKernels<3, double> list_kernels<3, double>() {
+  return kernels_of_lists<3, double>();
+}
+
 }  // namespace mpm::cpu

@@ -12,4 +12,9 @@ TileKernels<3, float> tile_kernels<3, float>(int width) {
   throw std::invalid_argument("the cpu backend takes shapes of 2, 3 or 4 nodes an axis");
 }
 
+template <>
+TileKernels<3, float> list_kernels<3, float>() {
+  return kernels_of_lists<3, float>();
+}
+
 }  // namespace mpm::cpu

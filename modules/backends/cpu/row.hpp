@@ -1,0 +1,177 @@
+#pragma once
+// The nodes of one stencil row as vector registers: 2 (K = 2) or 4 quads side by side. A stencil of 3 nodes leaves the
+// fourth quad of its row unused: scatter gives it weight zero, gather masks it.
+
+#include "kernel/lanes.hpp"
+#include "quad.hpp"
+
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
+
+namespace mpm::cpu {
+
+template <class T, int K>
+struct Row {
+  static constexpr int nodes = K == 2 ? 2 : 4, scalars = nodes * 4;
+  static constexpr int row_bytes = scalars * static_cast<int>(sizeof(T));
+  static constexpr int vector_bytes = row_bytes < lane_bytes ? row_bytes : lane_bytes;
+  static constexpr int vectors = row_bytes / vector_bytes;        ///< registers a row
+  static constexpr int width = scalars / vectors;                 ///< scalars a register
+  static constexpr int nodes_a_vector = nodes / vectors;          ///< 1, 2 or 4
+  typedef T Vector __attribute__((vector_size(vector_bytes)));
+  typedef typename Lanes<T>::integer Index __attribute__((vector_size(vector_bytes)));
+  typedef T Unaligned __attribute__((vector_size(vector_bytes), aligned(sizeof(T)), may_alias));
+
+  Vector v[vectors];
+};
+
+#define MPM_ROW_INLINE inline __attribute__((always_inline))
+
+/// One scalar on all of a register.
+template <class T, int K>
+MPM_ROW_INLINE typename Row<T, K>::Vector broadcast(T x) {
+  return x - typename Row<T, K>::Vector{};
+}
+template <class T, int K>
+MPM_ROW_INLINE Row<T, K> load_row(const T* p) {
+  using R = Row<T, K>;
+  R row;
+  for (int i = 0; i < R::vectors; ++i) row.v[i] = *reinterpret_cast<const typename R::Unaligned*>(p + i * R::width);
+  return row;
+}
+template <class T, int K>
+MPM_ROW_INLINE void store_row(T* p, const Row<T, K>& row) {
+  using R = Row<T, K>;
+  for (int i = 0; i < R::vectors; ++i) *reinterpret_cast<typename R::Unaligned*>(p + i * R::width) = row.v[i];
+}
+template <class T, int K>
+MPM_ROW_INLINE Row<T, K> operator+(Row<T, K> a, const Row<T, K>& b) {
+  for (int i = 0; i < Row<T, K>::vectors; ++i) a.v[i] += b.v[i];
+  return a;
+}
+template <class T, int K>
+MPM_ROW_INLINE Row<T, K> operator*(Row<T, K> a, const Row<T, K>& b) {
+  for (int i = 0; i < Row<T, K>::vectors; ++i) a.v[i] *= b.v[i];
+  return a;
+}
+template <class T, int K>
+MPM_ROW_INLINE Row<T, K> times(typename Row<T, K>::Vector a, Row<T, K> b) {
+  for (int i = 0; i < Row<T, K>::vectors; ++i) b.v[i] *= a;
+  return b;
+}
+
+/// The same quad at every node.
+template <class T, int K>
+MPM_ROW_INLINE Row<T, K> repeated(const T* quad) {
+  using R = Row<T, K>;
+  R row;
+  typename R::Vector& first = row.v[0];
+#if defined(__AVX512F__)
+  if constexpr (R::vector_bytes == 64 && sizeof(T) == 4) {
+    first = (typename R::Vector)_mm512_broadcast_f32x4(_mm_load_ps(quad));
+  } else if constexpr (R::vector_bytes == 64) {
+    first = (typename R::Vector)_mm512_broadcast_f64x4(_mm256_load_pd(quad));
+  } else
+#endif
+  {
+    const Quad<T> q = *reinterpret_cast<const Quad<T>*>(quad);
+    if constexpr (R::nodes_a_vector == 1)
+      first = (typename R::Vector)q;
+    else if constexpr (R::nodes_a_vector == 2)
+      first = (typename R::Vector)__builtin_shufflevector(q, q, 0, 1, 2, 3, 0, 1, 2, 3);
+    else
+      first = (typename R::Vector)__builtin_shufflevector(q, q, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3);
+  }
+  for (int i = 1; i < R::vectors; ++i) row.v[i] = first;
+  return row;
+}
+
+/// Scalar k of a quad on all of node k.
+template <class T, int K>
+MPM_ROW_INLINE Row<T, K> spread(const T* quad) {
+  using R = Row<T, K>;
+  // No more than the quad is loaded: it was stored just so, and a longer load would wait for that store.
+  const Quad<T> q = *reinterpret_cast<const Quad<T>*>(quad);
+  typename R::Vector loaded;
+#if defined(__AVX512F__)
+  if constexpr (R::vector_bytes == 64 && sizeof(T) == 4)
+    loaded = (typename R::Vector)_mm512_castps128_ps512((__m128)q);
+  else if constexpr (R::vector_bytes == 64)
+    loaded = (typename R::Vector)_mm512_castpd256_pd512((__m256d)q);
+  else
+#endif
+      if constexpr (R::nodes_a_vector == 1)
+    loaded = (typename R::Vector)q;
+  else
+    loaded = (typename R::Vector)__builtin_shufflevector(q, q, 0, 1, 2, 3, 0, 1, 2, 3);
+  R row;
+  for (int i = 0; i < R::vectors; ++i) {
+    typename R::Index index{};
+    for (int lane = 0; lane < R::width; ++lane) index[lane] = i * R::nodes_a_vector + lane / 4;
+    row.v[i] = __builtin_shuffle(loaded, index);
+  }
+  return row;
+}
+
+/// Number of a node within the row, on all of it.
+template <class T, int K>
+MPM_ROW_INLINE Row<T, K> node_numbers() {
+  using R = Row<T, K>;
+  R row;
+  for (int i = 0; i < R::vectors; ++i)
+    for (int lane = 0; lane < R::width; ++lane) row.v[i][lane] = static_cast<T>(i * R::nodes_a_vector + lane / 4);
+  return row;
+}
+
+/// The product where the stencil has nodes, else zero, whatever lies there.
+template <class T, int K>
+MPM_ROW_INLINE Row<T, K> within_stencil(Row<T, K> row) {
+  using R = Row<T, K>;
+  if constexpr (K != R::nodes) {
+    constexpr int last = R::vectors - 1;
+    typename R::Index inside{};
+    for (int lane = 0; lane < R::width; ++lane) inside[lane] = last * R::nodes_a_vector + lane / 4 < K ? -1 : 0;
+    row.v[last] = inside ? row.v[last] : typename R::Vector{};
+  }
+  return row;
+}
+
+/// Sum over the nodes of a row.
+template <class T, int K>
+MPM_ROW_INLINE Quad<T> sum_of_nodes(const Row<T, K>& row) {
+  using R = Row<T, K>;
+  typename R::Vector sum = row.v[0];
+  for (int i = 1; i < R::vectors; ++i) sum += row.v[i];
+  if constexpr (R::nodes_a_vector == 1) {
+    return (Quad<T>)sum;
+  } else if constexpr (R::nodes_a_vector == 2) {
+    return (Quad<T>)__builtin_shufflevector(sum, sum, 0, 1, 2, 3) +
+           (Quad<T>)__builtin_shufflevector(sum, sum, 4, 5, 6, 7);
+  } else {
+    const auto half = __builtin_shufflevector(sum, sum, 0, 1, 2, 3, 4, 5, 6, 7) +
+                      __builtin_shufflevector(sum, sum, 8, 9, 10, 11, 12, 13, 14, 15);
+    return (Quad<T>)__builtin_shufflevector(half, half, 0, 1, 2, 3) +
+           (Quad<T>)__builtin_shufflevector(half, half, 4, 5, 6, 7);
+  }
+}
+
+/// Sums over the nodes of four rows, one quad after another.
+template <class T, int K>
+MPM_ROW_INLINE void store_sums(T* out, const Row<T, K>& a, const Row<T, K>& b, const Row<T, K>& c,
+                               const Row<T, K>& d) {
+#if defined(__AVX512F__)
+  if constexpr (Row<T, K>::nodes_a_vector == 4) {
+    const auto pairs = [](__m512 x, __m512 y) {
+      return _mm512_add_ps(_mm512_shuffle_f32x4(x, y, 0x88), _mm512_shuffle_f32x4(x, y, 0xdd));
+    };
+    const __m512 ab = pairs((__m512)a.v[0], (__m512)b.v[0]), cd = pairs((__m512)c.v[0], (__m512)d.v[0]);
+    _mm512_storeu_ps(out, pairs(ab, cd));
+    return;
+  }
+#endif
+  Quad<T>* const quads = reinterpret_cast<Quad<T>*>(out);
+  quads[0] = sum_of_nodes(a), quads[1] = sum_of_nodes(b), quads[2] = sum_of_nodes(c), quads[3] = sum_of_nodes(d);
+}
+
+}  // namespace mpm::cpu
