@@ -72,12 +72,32 @@ void ParticleStep<D, T>::for_each_block(int body, bool coloured, Visit&& visit) 
   if (exception_) std::rethrow_exception(std::exchange(exception_, nullptr));
 }
 
+/// Brings a share of the nodes that the next block meets first into the cache, with chunk number `share` of this one:
+/// blocks are in order along the last axis, so these lie ahead on it.
+template <int D, class T>
+void ParticleStep<D, T>::fetch_nodes_of_next(int body, const Block<D>& block, int share) {
+  const std::vector<Block<D>>& blocks = particles_[body].blocks;
+  const std::size_t next = static_cast<std::size_t>(&block - blocks.data()) + 1;
+  if (next >= blocks.size()) return;
+  constexpr int columns = neighbour_count<D> / 3, bytes = block_nodes * 4 * static_cast<int>(sizeof(T));
+  const int chunks = static_cast<int>((block.count + chunk_size - 1) / chunk_size);
+  for (int column = columns * share / chunks; column < columns * (share + 1) / chunks; ++column) {
+    const std::size_t first = std::size_t(blocks[next].neighbours[3 * column + 2]) * block_nodes * 4;
+    for (const Channel c : {motion, next_motion})
+      if (grid_.has(c)) {
+        const char* const nodes = reinterpret_cast<const char*>(grid_.channel(c, bodies_[body].field) + first);
+        for (int byte = 0; byte < bytes; byte += 64) __builtin_prefetch(nodes + byte, 1, 2);
+      }
+  }
+}
+
 template <int D, class T>
 template <class Visit>
 void ParticleStep<D, T>::for_each_chunk_of(int body, Block<D>& block, Visit&& visit) {
   Particles<D, T>& particles = particles_[body];
   for_each_chunk(block, [&](std::uint32_t i, int count) {
     const char* const next = reinterpret_cast<const char*>(particles.chunk(std::min(i + 1, particles.chunks - 1)));
+    fetch_nodes_of_next(body, block, static_cast<int>(i - block.first_chunk));
     visit(Chunk{particles, bodies_[body], block, particles.chunk(i), particles.ids(i), count, padded(count), next});
   });
 }

@@ -158,6 +158,7 @@ class ParticleStep {
 
   template <class Visit>
   void for_each_block(int body, bool coloured, Visit&& visit);
+  void fetch_nodes_of_next(int body, const Block<D>& block, int share);
   template <class Visit>
   void for_each_chunk_of(int body, Block<D>& block, Visit&& visit);
   States states(const std::vector<StateField>& fields, const Chunk& chunk) const;

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 #ifndef AHEAD_LOC
 #define AHEAD_LOC 3
 #endif
@@ -295,25 +296,12 @@ void gather_lists(const T* nodes, const NodeLists<T>& lists, T* moments, int cou
   }
 }
 
-/// One row of a tile along the last axis: where it begins, and the grid's blocks and rows that it crosses.
+/// One row of a tile along the last axis, and the rows of three blocks in a line that it crosses.
 template <int D>
 struct TileRow {
-  int tile_row = 0;   ///< number of the row in the tile
-  int neighbour = 0;  ///< first of the three blocks it crosses
-  int block_row = 0;  ///< its first node within a block
-
-  /// Calls run(node of the row, grid node, length) for the runs of consecutive nodes from low to below high.
-  template <class Run>
-  MPM_ROW_INLINE void for_each_run(const std::int32_t* neighbours, int low, int high, Run&& run) const {
-    constexpr int B = block_side<D>;
-    for (int z = low; z < high;) {  // split at the faces of blocks
-      const int along = z - 1, part = along < 0 ? 0 : along < B ? 1 : 2;
-      const int end = part == 0 ? 1 : part == 1 ? 1 + B : high;
-      const int stop = end < high ? end : high;
-      run(z, std::size_t(neighbours[neighbour + part]) * block_nodes + block_row + (along & (B - 1)), stop - z);
-      z = stop;
-    }
-  }
+  int number = 0;     ///< in the tile
+  int neighbour = 0;  ///< first of the three blocks
+  int block_row = 0;  ///< first node of the row within a block
 };
 
 /// Calls visit(row) for the rows that the reach touches.
@@ -333,16 +321,37 @@ inline void for_each_row(const Reach& reach, Visit&& visit) {
   }
 }
 
+/// Which of the three blocks in a line a tile's rows share nodes with, and the grid's nodes there. A row is the last node
+/// of the first block, all of the second's and the first K of the third's.
+template <int D, int K>
+struct Line {
+  bool first, third;
+  explicit Line(const Reach& reach)
+      : first(reach.lowest[D - 1] == 0), third(reach.highest[D - 1] + K - 1 > block_side<D>) {}
+
+  /// Calls run(node of the row, node of the grid, number of nodes as a constant).
+  template <class Run>
+  MPM_ROW_INLINE void for_each_run(const TileRow<D>& row, const std::int32_t* neighbours, Run&& run) const {
+    constexpr int B = block_side<D>;
+    const auto node = [&](int part) {
+      return std::size_t(neighbours[row.neighbour + part]) * block_nodes + row.block_row;
+    };
+    if (first) run(0, node(0) + B - 1, std::integral_constant<int, 1>());
+    run(1, node(1), std::integral_constant<int, B>());
+    if (third) run(B + 1, node(2), std::integral_constant<int, K>());
+  }
+};
+
 template <int D, class T, int K>
 void load_tile(T* tile, const T* channel, const std::int32_t* neighbours, const Reach& reach) {
   using Q = Quad<T>;
+  const Line<D, K> line(reach);
   for_each_row<D, K>(reach, [&](const TileRow<D>& row) {
-    Q* const to = reinterpret_cast<Q*>(tile) + row.tile_row * tile_side<D, K>;
-    row.for_each_run(neighbours, reach.lowest[D - 1], reach.highest[D - 1] + K,
-                     [&](int z, std::size_t grid_node, int length) {
-                       const Q* const from = reinterpret_cast<const Q*>(channel) + grid_node;
-                       for (int k = 0; k < length; ++k) to[z + k] = from[k];
-                     });
+    Q* const to = reinterpret_cast<Q*>(tile) + row.number * tile_side<D, K>;
+    line.for_each_run(row, neighbours, [&](int z, std::size_t grid_node, auto length) {
+      const Q* const from = reinterpret_cast<const Q*>(channel) + grid_node;
+      for (int k = 0; k < length; ++k) to[z + k] = from[k];
+    });
   });
 }
 
@@ -350,16 +359,16 @@ void load_tile(T* tile, const T* channel, const std::int32_t* neighbours, const 
 template <int D, class T, int K>
 void flush_nodes(T* tile, T* channel, const std::int32_t* neighbours, const Reach& reach) {
   using Q = Quad<T>;
+  const Line<D, K> line(reach);
   for_each_row<D, K>(reach, [&](const TileRow<D>& row) {
-    Q* const from = reinterpret_cast<Q*>(tile) + row.tile_row * tile_side<D, K>;
-    row.for_each_run(neighbours, reach.lowest[D - 1], reach.highest[D - 1] + K,
-                     [&](int z, std::size_t grid_node, int length) {
-                       Q* const to = reinterpret_cast<Q*>(channel) + grid_node;
-                       for (int k = 0; k < length; ++k) {
-                         to[k] += from[z + k];
-                         from[z + k] = Q{};
-                       }
-                     });
+    Q* const from = reinterpret_cast<Q*>(tile) + row.number * tile_side<D, K>;
+    line.for_each_run(row, neighbours, [&](int z, std::size_t grid_node, auto length) {
+      Q* const to = reinterpret_cast<Q*>(channel) + grid_node;
+      for (int k = 0; k < length; ++k) {
+        to[k] += from[z + k];
+        from[z + k] = Q{};
+      }
+    });
   });
 }
 
@@ -368,19 +377,21 @@ template <int D, class T, int K>
 void flush_rows(T* tile, T* channel, const std::int32_t* neighbours, const Reach& reach) {
   using Q = Quad<T>;
   using R = Row<T, K>;
-  const int low = reach.lowest[D - 1], high = reach.highest[D - 1];
+  constexpr int rows = first_nodes_of_tile<D>;
+  const Line<D, K> line(reach);
   for_each_row<D, K>(reach, [&](const TileRow<D>& row) {
-    Q sums[tile_side<D, K>]{};
-    T* const first = tile + std::size_t(row.tile_row) * first_nodes_of_tile<D> * R::scalars;
-    for (int z = low; z <= high; ++z) {
-      const Q* const nodes = reinterpret_cast<const Q*>(first + z * R::scalars);
-      for (int k = 0; k < K; ++k) sums[z + k] += nodes[k];
-      store_row(first + z * R::scalars, R{});
-    }
-    row.for_each_run(neighbours, low, high + K, [&](int z, std::size_t grid_node, int length) {
+    T* const first = tile + std::size_t(row.number) * rows * R::scalars;
+    line.for_each_run(row, neighbours, [&](int z, std::size_t grid_node, auto length) {
       Q* const to = reinterpret_cast<Q*>(channel) + grid_node;
-      for (int k = 0; k < length; ++k) to[k] += sums[z + k];
+      for (int n = 0; n < length; ++n) {
+        Q sum = to[n];
+#pragma GCC unroll 4
+        for (int k = 0; k < K; ++k)
+          if (z + n - k >= 0 && z + n - k < rows) sum += reinterpret_cast<const Q*>(first + (z + n - k) * R::scalars)[k];
+        to[n] = sum;
+      }
     });
+    for (int z = 0; z < rows; ++z) store_row(first + z * R::scalars, R{});
   });
 }
 
