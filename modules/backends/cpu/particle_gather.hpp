@@ -73,7 +73,7 @@ typename ParticleStep<D, T>::Fused ParticleStep<D, T>::gather_scatter(const Pass
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         drift = std::max(drift, gather_one(pass, step, chunk, work));
         if (abandoned_) return;
-        if (!scatter_chunk(pass, next, chunk, work, next_motion)) abandoned_ = true;
+        if (!scatter_chunk(pass, next, chunk, work, next_motion, evaluates_for_scatter(pass))) abandoned_ = true;
         if (scene_.plan.ledger) block.scattered_energy += kinetic_energy(chunk, work);
       });
       end_reach(block, work);
@@ -122,7 +122,7 @@ template <int D, class T>
         std::copy_n(work.velocity + c * chunk_size, chunk.end, target + c * chunk_size);
   if (scene_.plan.ledger) chunk.block.kinetic_energy += kinetic_energy(chunk, work);
   work.clock.lap(Phase::transfer);
-  if (pass.strain) advance_material(chunk, work, step.dt);
+  if (pass.strain) advance_material(chunk, work, step.dt, evaluates_for_scatter(pass) ? &pass : nullptr);
   work.clock.lap(Phase::material);
   if (!pass.move) return 0;
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
@@ -143,7 +143,7 @@ double ParticleStep<D, T>::strain(const StepInfo& step) {
       block.dissipated = 0;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         gather_chunk(chunk, work, wanted);
-        advance_material(chunk, work, step.dt);
+        advance_material(chunk, work, step.dt, nullptr);
       });
     });
   throw_failure();
@@ -308,14 +308,16 @@ void ParticleStep<D, T>::project_chunk(const StepInfo& step, const Chunk& chunk,
   add_to_tile(chunk, work, filter_projection, work.mass, true, affine, false);
 }
 
+/// Strains the particles; with the pass that scatters them next, also gives what that wants of the material.
 template <int D, class T>
-void ParticleStep<D, T>::advance_material(const Chunk& chunk, Work& work, double dt) {
+void ParticleStep<D, T>::advance_material(const Chunk& chunk, Work& work, double dt, const Pass* scatters) {
   const bool dissipation = scene_.plan.ledger && chunk.body.dissipates;
   mpm_material_batch request{};
   request.dt = dt;
   const T* const velocity_gradient = scene_.has(MPM_STRAIN_BY_AFFINE) ? work.affine : work.gradient_of_velocity;
   request.velocity_gradient = velocity_gradient;
   if (dissipation) request.dissipated_energy = work.scalar;
+  if (scatters) want_of_material(*scatters, work, request);
   update_material(chunk, request);
   if (chunk.particles.domain >= 0) advance_domain(chunk, velocity_gradient, dt);
   if (!dissipation) return;

@@ -41,7 +41,7 @@ double ParticleStep<D, T>::scatter(const Pass& pass, const StepInfo& step) {
       block.scattered_energy = 0;
       block.far = 0;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
-        if (!scatter_chunk(pass, step, chunk, work, motion))
+        if (!scatter_chunk(pass, step, chunk, work, motion, false))
           throw std::logic_error("a particle left the tile of its block");
         if (energies) block.scattered_energy += kinetic_energy(chunk, work);
         if (scene_.list) block.far += static_cast<std::uint32_t>(work.lists.far_of_chunk);
@@ -50,7 +50,7 @@ double ParticleStep<D, T>::scatter(const Pass& pass, const StepInfo& step) {
       for (const Channel c : channels)
         flush(body, block, work, c);
     });
-    scatter_far(body, [&](const Chunk& chunk, Work& work) { scatter_chunk(pass, step, chunk, work, motion); });
+    scatter_far(body, [&](const Chunk& chunk, Work& work) { scatter_chunk(pass, step, chunk, work, motion, false); });
   }
   throw_failure();
   double sum = 0;
@@ -60,20 +60,27 @@ double ParticleStep<D, T>::scatter(const Pass& pass, const StepInfo& step) {
   return sum;
 }
 
-/// What a chunk gives its tiles; false, and nothing given, when a particle is outside of them. Called by the scatter
+/// What a pass that scatters wants of the material.
+template <int D, class T>
+void ParticleStep<D, T>::want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const {
+  if (pass.force) request.kirchhoff_stress = work.stress;
+  if (pass.contact_fields) request.volume_ratio = work.volume_ratio;
+}
+
+/// What a chunk gives its tiles; false, and nothing given, when a particle is outside of them. `evaluated`: what is
+/// wanted of the material is at hand. Called by the scatter
 /// and by the fused pass, which must agree to the last bit, so it is compiled once.
 template <int D, class T>
 [[gnu::noinline]] bool ParticleStep<D, T>::scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk,
-                                                         Work& work, Channel momentum) {
+                                                         Work& work, Channel momentum, bool evaluated) {
   const bool separate = grid_.has(force), merged = pass.force && !separate;
   const bool by_gradient = pass.force && !scene_.stress_by_affine;
   evaluate_shape(chunk, work, by_gradient || pass.contact_fields);
   if (!place_to_scatter(chunk, work, pass.momentum && !pass.remap && !work.far_only)) return false;
   work.clock.lap(Phase::weights);
-  if (pass.force || pass.contact_fields) {
+  if (!evaluated && (pass.force || pass.contact_fields)) {
     mpm_material_batch request{};
-    if (pass.force) request.kirchhoff_stress = work.stress;
-    if (pass.contact_fields) request.volume_ratio = work.volume_ratio;
+    want_of_material(pass, work, request);
     update_material(chunk, request);
     work.clock.lap(Phase::material);
   }

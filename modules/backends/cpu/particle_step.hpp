@@ -181,7 +181,11 @@ class ParticleStep {
   double kinetic_energy(const Chunk& chunk, const Work& work) const;
 
   std::vector<Channel> scattered_channels(const Pass& pass, Channel momentum) const;
-  bool scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work, Channel momentum);
+  bool scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work, Channel momentum,
+                     bool evaluated);
+  /// A fused pass asks its material for the strained state and for the stress that it scatters at once.
+  static bool evaluates_for_scatter(const Pass& pass) { return pass.kind == PassKind::gather_scatter && pass.strain; }
+  void want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const;
   template <class Visit>
   void scatter_far(int body, Visit&& visit);
   void momentum_coefficients(const Chunk& chunk, Work& work);
@@ -211,7 +215,7 @@ class ParticleStep {
   void unpack_moments(Work& work, bool moment, bool gradient, int count);
   void apply_inverse_moments(Work& work, int count);
   void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
-  void advance_material(const Chunk& chunk, Work& work, double dt);
+  void advance_material(const Chunk& chunk, Work& work, double dt, const Pass* scatters);
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const;
   double advance_position(const Chunk& chunk, const T* advection, double dt);
   double margin(int axis, int side) const;
