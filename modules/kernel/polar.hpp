@@ -5,7 +5,8 @@
 //
 // 3-D: x = tr(R^T F), the sum of the signed singular values, is the largest root of the quartic
 //   (x^2 - I)^2 - 8 J x - 4 II = 0,   I = tr b,  II = (I^2 - tr b^2)/2,  b = F F^T,
-// and R = dx/dF (Franca, Comput. Math. Appl. 18 (1989) 459; Lin, Chen & Nocedal, SIGGRAPH Asia 2022, sec. 4):
+// and R = dx/dF (Franca, Comput. Math. Appl. 18 (1989) 459; Lin, Chitalu & Komura, ACM Trans. Graph. 41 (2022),
+// Isotropic ARAP energy):
 //   R = ((x^2 + I) F + 2 x cof F - 2 b F) / (x^3 - I x - 2 J).
 // The denominator is 2 (s1 + s2)(s2 + s3)(s3 + s1): zero where R is not unique, and only there.
 

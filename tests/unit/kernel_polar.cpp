@@ -102,7 +102,7 @@ void check(const std::vector<Mat<D, T>>& all) {
   for (const Mat<D, T>& F : all) judge(F, nearest_rotation(F), errors);
   CAPTURE(D, sizeof(T));
   CHECK(errors.turned <= 12);
-  CHECK(errors.of_svd <= 24);
+  CHECK(errors.of_svd <= 45);  // the bound of svd.hpp itself
   CHECK(errors.skew <= 24);
   CHECK(errors.proper);
 }

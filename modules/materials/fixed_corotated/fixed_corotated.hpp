@@ -1,6 +1,6 @@
 #pragma once
 // Fixed corotated solid: psi = mu |F - R|^2 + lambda/2 (J - 1)^2, R the rotation of F's polar decomposition. Stomakhin,
-// Howes, Schroeder & Teran (2012), Energetically consistent invertible elasticity, eq. 9 on.
+// Howes, Schroeder & Teran (2012), Energetically consistent invertible elasticity: the fixed corotated energy.
 //   P = 2 mu (F - R) + lambda (J - 1) J F^-T,   tau = P F^T = 2 mu (F - R) F^T + lambda (J - 1) J I
 // Plane strain keeps zz: a stretch of 1 there adds tau_zz = lambda (J - 1) J.
 
