@@ -34,23 +34,27 @@ MPM_HD Mat<3, S> cofactor(const Mat<3, S>& a) {
   return r;
 }
 
-/// The largest root by Newton. sqrt(3 I) is at or above it, and the quartic convex there, so that steps go down only. A
-/// lane keeps its root once its step says that the next would not change it, whatever the lanes beside it need. Zero
-/// where the root is nearly a double one and steps stay slow.
+/// The largest root by Halley's method. sqrt(3 I) is at or above it and all four roots are real, so that steps go down
+/// only. A lane keeps its root once its step says that the next would not change it, whatever the lanes beside it need.
+/// Zero where the root is nearly a double one and steps stay slow.
 template <class S>
 MPM_HD S largest_root(S first, S second, S J) {
   const S zero = S(real<S>(0)), twice = J + J, four_second = real<S>(4) * second;
-  S x = sqrt(real<S>(3) * first), scale = S(real<S>(1));
+  S x = sqrt(real<S>(3) * first), active = S(real<S>(1));
   for (int step = 0; step < 12; ++step) {
-    const S gap = x * x - first, eight = real<S>(4) * twice;
-    const S value = gap * gap - (eight * x + four_second), slope = real<S>(4) * (x * gap - twice);
-    const S down = scale * (value / slope);
+    // Value, slope / 4 and curvature / 8.
+    const S square = x * x, gap = square - first;
+    const S value = gap * gap - (real<S>(4) * (twice * x) + four_second), slope = x * gap - twice;
+    const S curvature = real<S>(0.5) * gap + square;
+    const S down =
+        select(active > real<S>(0.5), value * slope / (real<S>(4) * (slope * slope) - value * curvature), zero);
     x = x - down;
-    // Quadratic convergence: the error left is about down^2 / x.
-    scale = select(down * down > real<S>(0.25) * epsilon<S>() * (x * x), scale, zero);
-    if (!any(scale > real<S>(0.5))) break;
+    // The error left is below down^3 (f''/2f')^2, which is not small beside a second root that is near.
+    const S left = down * down * abs(down) * (curvature * curvature);
+    active = select(left > real<S>(0.25) * epsilon<S>() * x * (slope * slope), active, zero);
+    if (!any(active > real<S>(0.5))) break;
   }
-  return select(scale > real<S>(0.5), zero, x);
+  return select(active > real<S>(0.5), zero, x);
 }
 
 /// (A + A^-T)/2, one step of Newton towards the rotation (Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160).
@@ -83,8 +87,8 @@ MPM_HD void orthogonalise(Mat<3, S>& R, S active) {
 /// 0. Where two such rotations are equally near (a reflection of equal stretches, zero) it is one of them.
 template <class S>
 MPM_HD Mat<2, S> nearest_rotation(const Mat<2, S>& F) {
-  const S scale = svd::largest_entry(F), one = S(real<S>(1));
-  const S c = F(0, 0) / scale + F(1, 1) / scale, s = F(1, 0) / scale - F(0, 1) / scale;
+  const S one = S(real<S>(1)), scale = one / svd::largest_entry(F);
+  const S c = scale * F(0, 0) + scale * F(1, 1), s = scale * F(1, 0) - scale * F(0, 1);
   const S squared = c * c + s * s;
   const auto unique = squared > svd::smallest_square<S>();
   const S inverse = one / sqrt(select(unique, squared, one));
@@ -103,13 +107,13 @@ MPM_HD Mat<3, S> nearest_rotation(const Mat<3, S>& F) {
   const S x = polar::largest_root(first, second, J);
   const S divisor = x * (x * x - first) - (J + J);
 
-  // How far R is from not being unique: 16/27 at equal stretches, 0 there. The root's rounding error, as seen in R, is
-  // epsilon / (2 q^2), in the directions that Newton's steps correct.
+  // divisor / x^3 says how far R is from not being unique: 16/27 at equal stretches, 0 there. Where it is q, the root's
+  // rounding error as seen in R is epsilon / (2 q^2), in the directions that Newton's steps correct.
   constexpr T uncertain = sizeof(T) == 4 ? T(2e-3) : T(1e-7), rounded = T(0.3);
   constexpr T largest = sizeof(T) == 4 ? T(1e8) : T(1e70);  // x^4 stays in range
   const S in_range = select(x < largest, select(x > real<S>(1) / largest, one, zero), zero);
-  const S q = select(in_range > real<S>(0.5), divisor / (x * x * x), zero);
-  const S certain = select(q > uncertain, one, zero);  // zero for NaN
+  const S cube = x * x * x;
+  const S certain = select(divisor > uncertain * cube, in_range, zero);  // zero for NaN
 
   const S inverse = one / select(certain > real<S>(0.5), divisor, one), twice = x + x, sum = x * x + first;
   Sym<3, S> weight;  // (x^2 + I) I - 2 b
@@ -121,7 +125,7 @@ MPM_HD Mat<3, S> nearest_rotation(const Mat<3, S>& F) {
       for (int k = 0; k < 3; ++k) t = t + weight(i, k) * F(k, j);
       R(i, j) = t * inverse;
     }
-  polar::orthogonalise(R, select(q < rounded, certain, zero));
+  polar::orthogonalise(R, select(divisor < rounded * cube, certain, zero));
   if (any(certain < real<S>(0.5))) {
     const Mat<3, S> other = polar_rotation(F);
     for (int k = 0; k < 9; ++k) R.m[k] = select(certain > real<S>(0.5), R.m[k], other.m[k]);
