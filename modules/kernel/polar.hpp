@@ -69,7 +69,7 @@ MPM_HD Mat<3, S> orthogonalised(const Mat<3, S>& A) {
 /// Newton until rounding, where `active` is 1; elsewhere R stays as it is to the last bit.
 template <class S>
 MPM_HD void orthogonalise(Mat<3, S>& R, S active) {
-  for (int step = 0; step < 5 && any(active > real<S>(0.5)); ++step) {
+  for (int step = 0; step < 4 && any(active > real<S>(0.5)); ++step) {
     const Mat<3, S> next = orthogonalised(R);
     S change = S(real<S>(0));
     for (int k = 0; k < 9; ++k) {
@@ -107,10 +107,11 @@ MPM_HD Mat<3, S> nearest_rotation(const Mat<3, S>& F) {
   const S x = polar::largest_root(first, second, J);
   const S divisor = x * (x * x - first) - (J + J);
 
-  // divisor / x^3 says how far R is from not being unique: 16/27 at equal stretches, 0 there. Where it is q, the root's
-  // rounding error as seen in R is epsilon / (2 q^2), in the directions that Newton's steps correct.
-  constexpr T uncertain = sizeof(T) == 4 ? T(2e-3) : T(1e-7), rounded = T(0.3);
-  constexpr T largest = sizeof(T) == 4 ? T(1e8) : T(1e70);  // x^4 stays in range
+  // divisor / x^3 says how far R is from not being unique: 16/27 at equal stretches, 0 there. Where it is q, rounding
+  // of the root shows in R as epsilon / (2 q^2), in the directions that Newton's steps correct, and that of R's own sum
+  // as epsilon / q. At 0.02 one stretch is 200 times the others, or the particle nearly a reflection.
+  constexpr T uncertain = T(0.02), rounded = T(0.3);
+  constexpr T largest = sizeof(T) == 4 ? T(1e4) : T(1e40);  // x^7, which is the most that is formed, stays in range
   const S in_range = select(x < largest, select(x > real<S>(1) / largest, one, zero), zero);
   const S cube = x * x * x;
   const S certain = select(divisor > uncertain * cube, in_range, zero);  // zero for NaN

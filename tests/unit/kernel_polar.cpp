@@ -103,7 +103,7 @@ void check(const std::vector<Mat<D, T>>& all) {
   CAPTURE(D, sizeof(T));
   CHECK(errors.turned <= 12);
   CHECK(errors.of_svd <= 45);  // the bound of svd.hpp itself
-  CHECK(errors.skew <= 24);
+  CHECK(errors.skew <= 32);    // that of svd.hpp, where it takes over
   CHECK(errors.proper);
 }
 
@@ -182,7 +182,7 @@ void check_lanes() {
   }
   CAPTURE(D, sizeof(T));
   CHECK(errors.turned <= 12);
-  CHECK(errors.skew <= 24);
+  CHECK(errors.skew <= 32);  // that of svd.hpp, where it takes over
   CHECK(errors.proper);
   CHECK(same);
 }
