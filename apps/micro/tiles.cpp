@@ -59,22 +59,27 @@ struct TileCase {
 template <int D, class T>
 struct QuadCase {
   bool packs;
-  Buffer components, quads;
+  alignas(64) T components[4 * batch];
+  alignas(64) T quads[4 * batch];
 
   explicit QuadCase(bool pack) : packs(pack) {
     Random random(1);
-    components = filled<T>(random, 4, -1, 1), quads = filled<T>(random, 4, -1, 1);
+    for (T& entry : components) entry = static_cast<T>(random.uniform(-1, 1));
+    for (T& entry : quads) entry = static_cast<T>(random.uniform(-1, 1));
   }
   void run() {
-    T* const c = static_cast<T*>(components.data());
-    T* const q = static_cast<T*>(quads.data());
-    T* const out[3] = {c, c + batch, D == 3 ? c + 2 * batch : nullptr};
+    T* const x = components;
+    T* const out[3] = {x, x + batch, x + 2 * batch};
     if (packs)
-      cpu::pack_quads<T>(q, 1, c, c + batch, D == 3 ? c + 2 * batch : nullptr, c + 3 * batch, batch);
+      cpu::pack_quads<T>(quads, 1, x, x + batch, D == 3 ? x + 2 * batch : nullptr, x + 3 * batch, batch);
     else
-      cpu::unpack_quads<D, T>(q, 1, out, batch);
+      cpu::unpack_quads<D, T>(quads, 1, out, batch);
   }
-  std::string problem() { return components.finite() && quads.finite() ? "" : "a result is not a number"; }
+  std::string problem() {
+    for (int k = 0; k < 4 * batch; ++k)
+      if (!std::isfinite(components[k]) || !std::isfinite(quads[k])) return "a result is not a number";
+    return {};
+  }
 };
 
 template <int D, class T>
