@@ -1,0 +1,113 @@
+#pragma once
+// Fixed corotated solid: psi = mu |F - R|^2 + lambda/2 (J - 1)^2, R the rotation of F's polar decomposition. Stomakhin,
+// Howes, Schroeder & Teran (2012), Energetically consistent invertible elasticity: the fixed corotated energy.
+//   P = 2 mu (F - R) + lambda (J - 1) J F^-T,   tau = P F^T = 2 mu (F - R) F^T + lambda (J - 1) J I
+// Plane strain keeps zz: a stretch of 1 there adds tau_zz = lambda (J - 1) J.
+
+#include "kernel/elasticity.hpp"
+#include "kernel/functor.hpp"
+#include "kernel/polar.hpp"
+
+namespace mpm {
+
+struct FixedCorotated {
+  struct Parameters {
+    double youngs_modulus, poisson_ratio, density;
+  };
+  template <class T>
+  struct Constants {
+    T mu, lambda, inverse_density;
+    MPM_HD explicit Constants(const Parameters& p)
+        : mu(T(shear_modulus(p.youngs_modulus, p.poisson_ratio))),
+          lambda(T(lame_lambda(p.youngs_modulus, p.poisson_ratio))),
+          inverse_density(T(1 / p.density)) {}
+  };
+  template <int D, class S>
+  struct State {
+    Mat<D, S> deformation_gradient;
+  };
+
+  /// Returns the energy dissipated, J/m^3: none.
+  template <int D, class S>
+  MPM_HD static S advance(const Constants<scalar_of<S>>&, const Mat<D, S>& L, scalar_of<S> dt, State<D, S>& state) {
+    state.deformation_gradient = advanced(state.deformation_gradient, L, dt);
+    return S(real<S>(0));
+  }
+
+  /// F - R: of the size of the strain, so that little is lost where strains are small.
+  template <int D, class S>
+  MPM_HD static Mat<D, S> distortion(const Mat<D, S>& F) {
+    Mat<D, S> r = nearest_rotation(F);
+    for (int k = 0; k < D * D; ++k) r.m[k] = F.m[k] - r.m[k];
+    return r;
+  }
+
+  template <int D, class S>
+  MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+    const Mat<D, S>& F = state.deformation_gradient;
+    const S J = determinant(F), pressure = c.lambda * ((J - real<S>(1)) * J);
+    const Mat<D, S> H = distortion(F);
+    const scalar_of<S> two_mu = real<S>(2) * c.mu;
+    Sym<D, S> tau{};
+    for (int i = 0; i < D; ++i)
+      for (int j = i; j < D; ++j) {
+        S t = H(i, 0) * F(j, 0);
+        for (int k = 1; k < D; ++k) t = t + H(i, k) * F(j, k);
+        tau(i, j) = two_mu * t;
+      }
+    for (int i = 0; i < 3; ++i) tau.s[i] = tau.s[i] + pressure;
+    return tau;
+  }
+
+  template <int D, class S>
+  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+    const S change = determinant(state.deformation_gradient) - real<S>(1);
+    const Mat<D, S> H = distortion(state.deformation_gradient);
+    S squared = H.m[0] * H.m[0];
+    for (int k = 1; k < D * D; ++k) squared = squared + H.m[k] * H.m[k];
+    return c.mu * squared + real<S>(0.5) * c.lambda * (change * change);
+  }
+
+  /// Along F + s a (x) F^T n, a and n unit vectors, J is linear in s and tr(R^T F), a sum of singular values, convex
+  /// where J > 0: rho0 c^2 = d2 psi/ds2 <= 2 mu n.b.n + lambda J^2 (a.n)^2. The longitudinal wave along the largest
+  /// stretch attains it, so rho0 c^2 = 2 mu max(n.b.n) + lambda J^2 is exact but for the bound of the eigenvalue in
+  /// 3-D.
+  template <int D, class S>
+  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+    const S J = determinant(state.deformation_gradient);
+    const S largest = largest_in_space(left_cauchy_green(state.deformation_gradient));
+    return sqrt(c.inverse_density * (real<S>(2) * c.mu * largest + c.lambda * (J * J)));
+  }
+
+  /// The largest n.b.n with n in the space of D dimensions; in 3-D its bound.
+  template <class S>
+  MPM_HD static S largest_in_space(const Sym<2, S>& b) {
+    const S mean = real<S>(0.5) * (b.s[0] + b.s[1]), half = real<S>(0.5) * (b.s[0] - b.s[1]);
+    return mean + sqrt(half * half + b.s[3] * b.s[3]);
+  }
+  template <class S>
+  MPM_HD static S largest_in_space(const Sym<3, S>& b) {
+    return largest_eigenvalue_bound(b);
+  }
+
+  template <int D, class S>
+  MPM_HD static S volume_ratio(const State<D, S>& state) {
+    return determinant(state.deformation_gradient);
+  }
+
+#if MPM_HOST
+  static constexpr unsigned traits = MPM_HYPERELASTIC | MPM_OBJECTIVE;
+  static constexpr mpm_parameter parameters[] = {
+      MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
+                           "Young's modulus at small strain"),
+      MPM_NUMBER_PARAMETER(poisson_ratio, "", required, -1.0, 0.5, MPM_ABOVE_MINIMUM | MPM_BELOW_MAXIMUM,
+                           "Poisson's ratio at small strain"),
+      MPM_NUMBER_PARAMETER(density, "kg/m^3", required, 0.0, unbounded, MPM_ABOVE_MINIMUM, "initial density"),
+  };
+  static constexpr mpm_state state[] = {
+      {"deformation_gradient", "", "deformation gradient F", MPM_STATE_MATRIX, MPM_INITIAL_IDENTITY},
+  };
+#endif
+};
+
+}  // namespace mpm
