@@ -96,10 +96,11 @@ inline double cells_from_corner(const Domain& domain, const Block<D>& block, int
 
 /// What a sort works in, kept from one to the next so that its pages are touched once.
 struct SortSpace {
-  std::vector<std::uint16_t> key;               ///< of a particle: where it goes among the blocks around, and its cell
-  std::array<std::vector<std::byte>, 3> rows;   ///< particles on their way to another block, of three layers of blocks
-  std::vector<std::byte> far_rows;              ///< of those that go farther than to a neighbour
-  std::vector<std::vector<std::byte*>> unused;  ///< chunks at hand, a thread each
+  std::vector<std::uint16_t> key;                ///< of a particle: where it goes among the blocks around, and its cell
+  std::array<std::vector<std::byte>, 3> rows;    ///< particles on their way to another block, of three layers of blocks
+  std::vector<std::byte> far_rows;               ///< of those that go farther than to a neighbour
+  std::vector<std::vector<std::byte*>> unused;   ///< chunks at hand, a thread each
+  std::vector<AlignedArray<std::byte>> nowhere;  ///< a chunk a thread that nobody reads
   std::uint64_t bytes() const {
     std::uint64_t total = key.capacity() * sizeof(key[0]) + far_rows.capacity();
     for (const auto& layer : rows) total += layer.capacity();

@@ -314,8 +314,12 @@ class Sorter {
     std::iota(in_layers_.begin(), in_layers_.end(), 0u);
     std::stable_sort(in_layers_.begin(), in_layers_.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return targets_[a].at[axis] < targets_[b].at[axis]; });
-    for (std::uint32_t i = 0; i < in_layers_.size(); ++i)
-      if (i == 0 || targets_[in_layers_[i]].at[axis] != targets_[in_layers_[i - 1]].at[axis]) layers_.push_back(i);
+    // Few thick layers: threads meet after each, and rows of three are held at once.
+    const std::size_t thick = in_layers_.size() / 16;
+    for (std::uint32_t i = 0; i < in_layers_.size(); ++i) {
+      const bool begins = i == 0 || targets_[in_layers_[i]].at[axis] != targets_[in_layers_[i - 1]].at[axis];
+      if (begins && (i == 0 || i - layers_.back() >= thick)) layers_.push_back(i);
+    }
     layers_.push_back(static_cast<std::uint32_t>(in_layers_.size()));
   }
 
@@ -348,6 +352,8 @@ class Sorter {
     space_.unused.resize(std::max(space_.unused.size(), std::size_t(threads_)));
     for (auto& unused : space_.unused) unused.reserve(4 * largest);
     at_hand_ = 2 * largest;
+    space_.nowhere.resize(std::max(space_.nowhere.size(), std::size_t(threads_)));
+    for (auto& chunk : space_.nowhere) chunk.require(particles_.chunk_bytes());
   }
 
   /// Rows of a layer's blocks, those for one neighbour side by side.
@@ -378,6 +384,7 @@ class Sorter {
     std::array<std::uint32_t, neighbour_count<D>> next = sources_[b].first_row;
     for_each_chunk(particles_.blocks[b], [&](std::uint32_t chunk, int count) {
       const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size;
+      prefetch(chunk + 1);
       for (int lane = 0; lane < count; ++lane) {
         const int k = key[lane] / block_nodes;
         if (k == here || key[lane] == far_key) continue;
@@ -523,29 +530,39 @@ class Sorter {
     particles_.ids_at(chunk)[to % chunk_size] = tail.id;
   }
 
-  /// Component by component, so that the old chunk is read in its own order.
+  /// Component by component, so that the old chunk is read in its own order; what leaves goes to where nobody looks.
   template <class TakeFar>
   void take_stayers(const Block<D>& left, const Block<D>& block, std::uint32_t* place, TakeFar&& take_far_before) {
     T* to[chunk_size];
     std::int32_t* id_to[chunk_size];
-    std::uint8_t lanes[chunk_size];
+    std::byte* const nowhere = space_.nowhere[omp_get_thread_num()].data();
     for_each_chunk(left, [&](std::uint32_t chunk, int count) {
       const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size;
-      int n = 0;
-      for (int lane = 0; lane < count; ++lane) {
-        if (key[lane] / block_nodes != here) continue;
-        take_far_before(chunk * chunk_size + lane);
-        const std::uint32_t at = place[key[lane] % block_nodes]++;
-        std::byte* const target = places_[block.first_chunk + at / chunk_size];
-        to[n] = particles_.values_at(target) + at % chunk_size;
-        id_to[n] = particles_.ids_at(target) + at % chunk_size;
-        lanes[n++] = static_cast<std::uint8_t>(lane);
+      prefetch(chunk + 1);
+      for (int lane = 0; lane < chunk_size; ++lane) {
+        std::byte* target = nowhere;
+        std::uint32_t at = static_cast<std::uint32_t>(lane);
+        if (lane < count && key[lane] / block_nodes == here) {
+          take_far_before(chunk * chunk_size + lane);
+          at = place[key[lane] % block_nodes]++;
+          target = places_[block.first_chunk + at / chunk_size];
+        }
+        to[lane] = particles_.values_at(target) + at % chunk_size;
+        id_to[lane] = particles_.ids_at(target) + at % chunk_size;
       }
       const T* from = particles_.chunk(chunk);
-      for (int c = 0; c < particles_.components; ++c, from += chunk_size)
-        for (int i = 0; i < n; ++i) to[i][c * chunk_size] = from[lanes[i]];
-      for (int i = 0; i < n; ++i) *id_to[i] = particles_.ids(chunk)[lanes[i]];
+      const int components = particles_.components;
+      for (int c = 0; c < components; ++c, from += chunk_size) {
+#pragma GCC unroll 16
+        for (int lane = 0; lane < chunk_size; ++lane) to[lane][c * chunk_size] = from[lane];
+      }
+      for (int lane = 0; lane < count; ++lane) *id_to[lane] = particles_.ids(chunk)[lane];
     });
+  }
+  void prefetch(std::uint32_t chunk) const {
+    if (chunk >= particles_.chunks) return;
+    const std::byte* const place = particles_.places[chunk];
+    for (std::size_t byte = 0; byte < particles_.chunk_bytes(); byte += 64) __builtin_prefetch(place + byte, 0, 2);
   }
 
   /// The lanes after the last particle hold copies of it.
