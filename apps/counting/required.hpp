@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "counting/single_step.hpp"
 #include "simulation/simulation.hpp"
 
 namespace mpm::counting {
@@ -31,12 +32,13 @@ struct RequiredRow {
   long steps = 0;                                            ///< that were counted
   std::size_t particles = 0;
   /// Of the counted steps of the same scene in 2-D; none where the machine refuses to single-step.
-  std::optional<long> instructions;
+  std::optional<Instructions> instructions;
   std::size_t stepped_particles = 0;  ///< of that scene
   /// Of one particle in one step.
   std::optional<double> instructions_per_particle_step() const {
     if (!instructions) return std::nullopt;
-    return static_cast<double>(*instructions) / (static_cast<double>(steps) * static_cast<double>(stepped_particles));
+    return static_cast<double>(instructions->all) /
+           (static_cast<double>(steps) * static_cast<double>(stepped_particles));
   }
 };
 
