@@ -206,6 +206,9 @@ VectorExpression::VectorExpression(std::span<const Term> terms, const Expression
     uses_position_ |= any_of(checked.used, "xyz");
     uses_initial_position_ |= any_of(checked.used, "XYZ");
     uses_time_ |= any_of(checked.used, "t");
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      varies_[i][axis] = any_of(checked.used, variable_letters.substr(axis, 1)) ||
+                         any_of(checked.used, variable_letters.substr(3 + axis, 1));
   }
   if (!uses_position_ && !uses_initial_position_ && !uses_time_) return;
   static std::atomic<std::uint64_t> next_id{1};
@@ -240,6 +243,19 @@ Vector3 VectorExpression::operator()(const Vector3& x, const Vector3& X, double 
     if (instance.parsers[i]) result[i] = instance.parsers[i]->Eval();
   }
   return result;
+}
+
+void VectorExpression::evaluate(int component, std::span<const Vector3> x, double t, double* result) const {
+  Instance* const instance = program_ ? &instance_of_this_thread(program_) : nullptr;
+  if (!instance || !instance->parsers[component]) {
+    std::fill_n(result, x.size(), constant_[component]);
+    return;
+  }
+  const mu::Parser& parser = *instance->parsers[component];
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    instance->values = {x[i][0], x[i][1], x[i][2], x[i][0], x[i][1], x[i][2], t};
+    result[i] = parser.Eval();
+  }
 }
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 #pragma once
 // Formulas of position and time in experiment files, evaluated by muParser.
 
+#include <array>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -44,11 +45,15 @@ class VectorExpression {
   VectorExpression(std::span<const Term> terms, const ExpressionScope& scope);
 
   Vector3 operator()(const Vector3& x, const Vector3& X, double t) const;
+  /// One component at many positions, which are the initial ones too.
+  void evaluate(int component, std::span<const Vector3> x, double t, double* result) const;
 
   bool is_constant() const { return !program_; }
   bool uses_position() const { return uses_position_; }
   bool uses_initial_position() const { return uses_initial_position_; }
   bool uses_time() const { return uses_time_; }
+  /// Whether one component changes along an axis when position and initial position do.
+  bool varies(int component, int axis) const { return varies_[component][axis]; }
 
  private:
   struct Program;
@@ -58,6 +63,7 @@ class VectorExpression {
   Vector3 constant_{};                      ///< the components that are constant
   std::shared_ptr<const Program> program_;  ///< null when all are
   bool uses_position_ = false, uses_initial_position_ = false, uses_time_ = false;
+  std::array<std::array<bool, 3>, 3> varies_{};
 };
 
 }  // namespace mpm

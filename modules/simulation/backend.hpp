@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -16,18 +17,47 @@
 
 namespace mpm {
 
-/// The particles of one body as seeded: all of one volume and mass.
-struct SeededBody {
-  std::vector<double> position;  ///< n*dimension, m, particle-major
-  std::vector<double> velocity;  ///< n*dimension, m/s
-  /// n*dimension*dimension, 1/s, row = component: gradient of the initial velocity. Starts the affine velocity of
-  /// transfers that carry one (MPM_AFFINE_CARRIES_ENERGY: state 0), so that no spin is lost in the first step; empty
+/// Some particles of a body as seeded, one after another.
+struct SeedBatch {
+  std::size_t first = 0, count = 0;  ///< in the order of seeding
+  const double* position = nullptr;  ///< count*dimension, m, particle-major
+  const double* velocity = nullptr;  ///< count*dimension, m/s
+  /// count*dimension*dimension, 1/s, row = component: gradient of the initial velocity. Starts the affine velocity of
+  /// transfers that carry one (MPM_AFFINE_CARRIES_ENERGY: state 0), so that no spin is lost in the first step; null
   /// otherwise.
-  std::vector<double> velocity_gradient;
+  const double* velocity_gradient = nullptr;
+};
+
+/// All of them: position, velocity, velocity_gradient as in SeedBatch.
+struct SeedArrays {
+  std::vector<double> position, velocity, velocity_gradient;
+};
+
+/// The particles of one body as seeded: all of one volume and mass. They are made batch by batch when a backend asks,
+/// so that no second copy of a large body is ever held.
+struct SeededBody {
   double volume = 0;  ///< initial, m^3 (m^2 per metre of depth in 2-D)
   double mass = 0;    ///< kg
-  std::size_t count() const { return dimension ? position.size() / dimension : 0; }
-  std::size_t dimension = 2;
+  std::size_t dimension = 2, particles = 0;
+  bool with_gradient = false;  ///< batches carry the gradient of the velocity
+  std::function<void(const std::function<void(const SeedBatch&)>&)> make;
+
+  std::size_t count() const { return particles; }
+  /// Calls visit(batch) in the order of seeding; the same batches each time.
+  void for_each_batch(const std::function<void(const SeedBatch&)>& visit) const { make(visit); }
+  /// For backends that keep doubles anyway.
+  SeedArrays arrays() const {
+    SeedArrays all;
+    for_each_batch([&](const SeedBatch& batch) {
+      const auto append = [&](std::vector<double>& values, const double* first, std::size_t components) {
+        if (first) values.insert(values.end(), first, first + batch.count * components);
+      };
+      append(all.position, batch.position, dimension);
+      append(all.velocity, batch.velocity, dimension);
+      append(all.velocity_gradient, batch.velocity_gradient, dimension * dimension);
+    });
+    return all;
+  }
 };
 
 /// State of one body in doubles, particle-major, in the order of seeding, whatever the backend's own order and

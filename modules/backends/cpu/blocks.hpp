@@ -1,6 +1,7 @@
 #pragma once
 // Blocks of cells: 4^3 in 3-D and 8^2 in 2-D, found by hash so that an empty domain costs no memory.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -49,10 +50,10 @@ constexpr int neighbour_index(int dx, int dy, int dz) {
 /// Open-addressing map from block coordinates to a number.
 class BlockTable {
  public:
-  BlockTable() { clear(); }
-  void clear() {
-    keys_.assign(64, empty);
-    values_.assign(64, -1);
+  BlockTable() : keys_(64, empty), values_(64, -1) {}
+  void clear() {  // its size stays: it is filled again with about as many
+    std::fill(keys_.begin(), keys_.end(), empty);
+    std::fill(values_.begin(), values_.end(), -1);
     count_ = 0;
   }
   /// -1 when absent.

@@ -30,9 +30,7 @@ class CpuBackend final : public Backend {
   void plan_channels();
   std::vector<Body<D, T>> make_bodies(std::vector<SeededBody>& seeds);
   void lay_out_state(Particles<D, T>& particles, const Component& material) const;
-  void set_half_size(Particles<D, T>& particles, int particles_per_cell_axis) const;
-  void initialise_state(Particles<D, T>& particles, const Component& material,
-                        const std::vector<double>& velocity_gradient) const;
+  std::vector<T> first_values(const Particles<D, T>& particles, const Component& material, T half_size) const;
   void sort_all();
   void sort_when_moved();
   void scatter(const Pass& pass, const StepInfo& step);
@@ -45,7 +43,8 @@ class CpuBackend final : public Backend {
   Scene<D, T> scene_;
   Grid<D, T> grid_;
   std::vector<Particles<D, T>> particles_;
-  Particles<D, T> spare_;  ///< the other buffer of a sort
+  SortSpace sort_space_;
+  bool grid_built_ = false;
   std::vector<int> field_of_body_;
   Ledger ledger_;
   ContactRecord contact_;
@@ -62,14 +61,10 @@ template <int D, class T>
 CpuBackend<D, T>::CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds, int threads)
     : scene_(experiment, plan, threads), grid_(scene_), particles_(seeds.size()) {
   plan_channels();
-  std::vector<std::vector<double>> gradients;
-  for (SeededBody& seed : seeds) gradients.push_back(std::move(seed.velocity_gradient));
   std::vector<Body<D, T>> bodies = make_bodies(seeds);
   particle_step_ = std::make_unique<ParticleStep<D, T>>(scene_, grid_, particles_, std::move(bodies));
   grid_step_ = std::make_unique<GridStep<D, T>>(scene_, grid_, ledger_, contact_, filter_);
   sort_all();
-  for (std::size_t body = 0; body < particles_.size(); ++body)
-    initialise_state(particles_[body], *particle_step_->bodies()[body].material, gradients[body]);
 }
 
 template <int D, class T>
@@ -111,9 +106,12 @@ std::vector<Body<D, T>> CpuBackend<D, T>::make_bodies(std::vector<SeededBody>& s
     body.dissipates = (material.traits & MPM_DISSIPATES) != 0;
     field_of_body_.push_back(body.field);
     lay_out_state(particles_[i], *body.material);
-    seed_particles(particles_[i], seeds[i], scene_.domain);
-    set_half_size(particles_[i], experiment.bodies[i].particles_per_cell_axis);
-    if (scene_.plan.initial_position) body.initial_position = std::move(seeds[i].position);
+    const T half = static_cast<T>(0.5 / experiment.bodies[i].particles_per_cell_axis);
+    particles_[i].half_size.require(std::size_t(D) * chunk_size);
+    std::fill_n(particles_[i].half_size.data(), D * chunk_size, half);
+    const int affine = seeds[i].with_gradient ? particles_[i].transfer_state[0].first : -1;
+    seed_particles(particles_[i], seeds[i], scene_.domain, first_values(particles_[i], *body.material, half), affine);
+    if (scene_.plan.initial_position) body.initial_position = seeds[i].arrays().position;
     seeds[i] = {};
   }
   return bodies;
@@ -144,51 +142,43 @@ void CpuBackend<D, T>::lay_out_state(Particles<D, T>& particles, const Component
   particles.components += D * D;
 }
 
-/// Half the undeformed particle's box in cells: constant, and what its domain starts as.
+/// What each component of a chunk starts as; domains start as half the undeformed particle's box in cells.
 template <int D, class T>
-void CpuBackend<D, T>::set_half_size(Particles<D, T>& particles, int particles_per_cell_axis) const {
-  const T half = static_cast<T>(0.5 / particles_per_cell_axis);
-  particles.half_size.require(std::size_t(D) * chunk_size);
-  std::fill_n(particles.half_size.data(), D * chunk_size, half);
-  for (const int first : {particles.domain, particles.next_domain})
-    for (int k = 0; first >= 0 && k < D * D; ++k)
-      for (std::uint32_t i = 0; i < particles.chunks; ++i)
-        std::fill_n(particles.chunk(i) + (first + k) * chunk_size, chunk_size, k % (D + 1) == 0 ? half : T(0));
-}
-
-template <int D, class T>
-void CpuBackend<D, T>::initialise_state(Particles<D, T>& particles, const Component& material,
-                                        const std::vector<double>& velocity_gradient) const {
+std::vector<T> CpuBackend<D, T>::first_values(const Particles<D, T>& particles, const Component& material,
+                                              T half_size) const {
+  std::vector<T> values(particles.components, T(0));
   const auto set = [&](const StateField& field, const mpm_state& declared) {
     const bool symmetric = declared.shape == MPM_STATE_SYMMETRIC;
     const bool plane_strain = declared.shape == MPM_STATE_DEFORMATION && D == 2;  // xx xy yx yy zz
     for (int c = 0; c < field.components; ++c) {
       const bool diagonal = symmetric ? c < 3 : plane_strain ? c == 0 || c >= 3 : c % (D + 1) == 0;
       const bool one = declared.initial == MPM_INITIAL_ONE || (declared.initial == MPM_INITIAL_IDENTITY && diagonal);
-      for (std::uint32_t i = 0; i < particles.chunks; ++i)
-        std::fill_n(particles.chunk(i) + (field.first + c) * chunk_size, chunk_size, one ? T(1) : T(0));
+      values[field.first + c] = one ? T(1) : T(0);
     }
   };
   for (std::size_t f = 0; f < particles.transfer_state.size(); ++f)
     set(particles.transfer_state[f], scene_.experiment.transfer.plugin->state()[f]);
   for (std::size_t f = 0; f < particles.material_state.size(); ++f)
     set(particles.material_state[f], material.plugin->state()[f]);
-  if (velocity_gradient.empty()) return;
-  const StateField& affine = particles.transfer_state[0];
-  for (const Block<D>& block : particles.blocks)
-    for_each_chunk(block, [&](std::uint32_t chunk, int count) {
-      for (int p = 0; p < count; ++p)
-        for (int c = 0; c < D * D; ++c)
-          particles.chunk(chunk)[(affine.first + c) * chunk_size + p] =
-              static_cast<T>(velocity_gradient[std::size_t(particles.ids(chunk)[p]) * D * D + c]);
-    });
+  for (const int first : {particles.domain, particles.next_domain})
+    for (int k = 0; first >= 0 && k < D * D; k += D + 1) values[first + k] = half_size;
+  return values;
 }
 
 template <int D, class T>
 void CpuBackend<D, T>::sort_all() {
-  for (auto& particles : particles_) sort_particles(particles, spare_, scene_);
-  if (scene_.list) particle_step_->widen_active_blocks();
-  grid_.rebuild(particles_, field_of_body_);
+  bool changed = !grid_built_ || scene_.list;
+  for (auto& particles : particles_) changed |= sort_particles(particles, sort_space_, scene_);
+  if (scene_.list) {
+    for (auto& particles : particles_)
+      for (Block<D>& block : particles.blocks) {
+        block.first_active = Block<D>{}.first_active;
+        block.last_active = Block<D>{}.last_active;
+      }
+    particle_step_->widen_active_blocks();
+  }
+  if (changed) grid_.rebuild(particles_, field_of_body_);
+  grid_built_ = true;
   particle_step_->set_drift(0);
 }
 
@@ -353,8 +343,10 @@ void CpuBackend<D, T>::save(ArchiveWriter& archive) const {
     }
     archive.put("blocks", blocks);
     for (const auto& units : particles.units) archive.put("units", units);
-    archive.put("identities", particles.id.data(), std::size_t(particles.chunks) * chunk_size);
-    archive.put("values", particles.data.data(), std::size_t(particles.chunks) * particles.components * chunk_size);
+    for (std::uint32_t i = 0; i < particles.chunks; ++i) {
+      archive.put("identities", particles.ids(i), chunk_size);
+      archive.put("values", particles.chunk(i), std::size_t(particles.components) * chunk_size);
+    }
   }
 }
 
@@ -413,9 +405,14 @@ void CpuBackend<D, T>::restore_particles(ArchiveReader& archive, Particles<D, T>
       if (unit.first > unit.last || unit.last > particles.blocks.size())
         throw ArchiveError("value \"units\" is not of these particles");
   }
-  particles.require_chunks(particles.chunks);
-  archive.get("identities", particles.id.data(), std::size_t(particles.chunks) * chunk_size);
-  archive.get("values", particles.data.data(), std::size_t(particles.chunks) * components * chunk_size);
+  for (std::byte* const place : particles.places) particles.pool.give(place);
+  particles.pool.reserve(particles.chunks);
+  particles.places.resize(particles.chunks);
+  for (std::uint32_t i = 0; i < particles.chunks; ++i) {
+    particles.places[i] = particles.pool.take();
+    archive.get("identities", particles.ids(i), chunk_size);
+    archive.get("values", particles.chunk(i), std::size_t(components) * chunk_size);
+  }
   for (const Block<D>& block : particles.blocks)
     for_each_chunk(block, [&](std::uint32_t chunk, int lanes) {
       for (int lane = 0; lane < lanes; ++lane)
@@ -426,8 +423,10 @@ void CpuBackend<D, T>::restore_particles(ArchiveReader& archive, Particles<D, T>
 
 template <int D, class T>
 std::uint64_t CpuBackend<D, T>::particle_bytes() const {
-  std::uint64_t total = spare_.data.bytes() + spare_.id.bytes();
-  for (const auto& particles : particles_) total += particles.data.bytes() + particles.id.bytes();
+  std::uint64_t total = sort_space_.bytes();
+  for (const auto& particles : particles_)
+    total += particles.pool.bytes() + particles.places.capacity() * sizeof(std::byte*) +
+             particles.blocks.capacity() * sizeof(Block<D>);
   for (const auto& body : particle_step_->bodies()) total += body.initial_position.size() * sizeof(double);
   return total;
 }

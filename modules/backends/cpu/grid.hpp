@@ -96,14 +96,19 @@ class Grid {
   }
 
  private:
-  void activate(const BlockCoordinates& at, std::uint64_t field_bits);
+  int activate(const BlockCoordinates& at, std::uint64_t field_bits);
   void activate_mirrors();
   void list_faces();
   void number_edge_nodes();
   void list_boxes();
+  bool may_touch(const BoxCondition& box, const BlockCoordinates& at) const;
   bool beyond(int axis, int node) const {
     return node < 0 || node > scene_.domain.cells[axis] ||
            (scene_.domain.periodic(axis) && node == scene_.domain.cells[axis]);
+  }
+  /// No node of such a block is on or beyond a wall of this axis.
+  bool inside(int axis, int block) const {
+    return block > 0 && (block + 1) * block_side<D> <= scene_.domain.cells[axis];
   }
   int mirrored(int axis, int node) const;
   /// Particles are wrapped when they are sorted: until then a list may reach a cell farther.
@@ -129,13 +134,14 @@ class Grid {
 // ---- implementation ----------------------------------------------------------------------------------------------
 
 template <int D, class T>
-void Grid<D, T>::activate(const BlockCoordinates& at, std::uint64_t field_bits) {
+int Grid<D, T>::activate(const BlockCoordinates& at, std::uint64_t field_bits) {
   const int next = static_cast<int>(found_.size()), slot = table_.insert(at, next);
   if (slot == next) {
     found_.push_back(at);
     field_bits_.push_back(0);
   }
   field_bits_[slot] |= field_bits;
+  return slot;
 }
 
 /// Node that a node beyond a folding face is folded onto.
@@ -153,7 +159,8 @@ void Grid<D, T>::activate_mirrors() {
     grew = false;
     for (std::size_t slot = 0; slot < found_.size(); ++slot) {
       const BlockCoordinates at = found_[slot];
-      for (int axis = 0; axis < D; ++axis)
+      for (int axis = 0; axis < D; ++axis) {
+        if (inside(axis, at[axis])) continue;
         for (int k = 0; k < block_side<D>; ++k) {
           const int node = at[axis] * block_side<D> + k;
           if (!beyond(axis, node) || !folded_axis(axis, node > 0)) continue;
@@ -165,6 +172,7 @@ void Grid<D, T>::activate_mirrors() {
           activate(image, field_bits_[slot]);
           grew = true;
         }
+      }
     }
   }
 }
@@ -190,8 +198,8 @@ void Grid<D, T>::list_faces() {
     }
   for (std::uint32_t slot = 0; slot < slots(); ++slot) {
     for (int axis = 0; axis < D; ++axis) {
-      const int first = found_[slot][axis] * block_side<D>, cells = scene_.domain.cells[axis];
-      if (first > 0 && first + block_side<D> <= cells) continue;  // no node on or beyond a wall of this axis
+      if (inside(axis, found_[slot][axis])) continue;
+      const int cells = scene_.domain.cells[axis];
       for (int local = 0; local < block_nodes; ++local) {
         std::array<int, 3> node = node_at<D>(found_[slot], local);
         const int index = node[axis];
@@ -226,6 +234,10 @@ void Grid<D, T>::list_faces() {
 template <int D, class T>
 void Grid<D, T>::number_edge_nodes() {
   edge_nodes_.clear();
+  if (std::all_of(faces_.begin(), faces_.end(), [](const FaceNodes& face) { return face.pairs.empty(); })) {
+    for (FaceNodes& face : faces_) face.wall_edge.assign(face.wall.size(), ~0u);
+    return;
+  }
   std::vector<std::uint32_t> number(nodes(), ~0u);
   const auto number_of = [&](std::uint32_t node) {
     if (number[node] == ~0u) {
@@ -243,6 +255,17 @@ void Grid<D, T>::number_edge_nodes() {
     for (const std::uint32_t node : face.wall) face.wall_edge.push_back(number[node]);
 }
 
+/// False where a block is a cell or more away from a box.
+template <int D, class T>
+bool Grid<D, T>::may_touch(const BoxCondition& box, const BlockCoordinates& at) const {
+  const double h = scene_.domain.cell_size;
+  for (int a = 0; a < D; ++a) {
+    const double first = scene_.domain.lower[a] + h * at[a] * block_side<D>;
+    if (first > box.upper[a] + h || first + h * block_side<D> < box.lower[a] - h) return false;
+  }
+  return true;
+}
+
 template <int D, class T>
 void Grid<D, T>::list_boxes() {
   boxes_.clear();
@@ -250,7 +273,8 @@ void Grid<D, T>::list_boxes() {
   for (const BoxCondition& condition : scene_.experiment.boxes) {
     BoxNodes box;
     box.condition = &condition;
-    for (std::uint32_t slot = 0; slot < slots(); ++slot)
+    for (std::uint32_t slot = 0; slot < slots(); ++slot) {
+      if (!may_touch(condition, found_[slot])) continue;
       for (int local = 0; local < block_nodes; ++local) {
         const Vector3 x = scene_.domain.node_position(node_at<D>(found_[slot], local), D);
         bool inside = true;
@@ -260,6 +284,7 @@ void Grid<D, T>::list_boxes() {
         box.nodes.push_back(slot * block_nodes + local);
         box.position.push_back(x);
       }
+    }
     boxes_.push_back(std::move(box));
   }
 }
@@ -282,10 +307,7 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
       const int field = field_of_body[body];  // fields beyond the bits count as shared
       const std::uint64_t bits = field < 62 ? std::uint64_t{1} << field : std::uint64_t{3} << 62;
       int k = 0;
-      around(block.at, below, above, [&](const BlockCoordinates& at) {
-        activate(at, bits);
-        block.neighbours[k++] = table_.find(at);
-      });
+      around(block.at, below, above, [&](const BlockCoordinates& at) { block.neighbours[k++] = activate(at, bits); });
       if (block.first_active != below || block.last_active != above)
         around(block.at, block.first_active, block.last_active,
                [&](const BlockCoordinates& at) { activate(at, bits); });

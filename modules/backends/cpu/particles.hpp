@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "aligned_array.hpp"
+#include "chunk_pool.hpp"
 #include "scene.hpp"
 #include "tile.hpp"
 
@@ -51,21 +52,22 @@ struct Particles {
   AlignedArray<T> half_size;  ///< [D][chunk_size] cells, of shapes that read it
   std::vector<StateField> transfer_state, material_state;
 
-  AlignedArray<T> data;
-  AlignedArray<std::int32_t> id;  ///< index in the order of seeding
+  ChunkPool pool;
+  std::vector<std::byte*> places;  ///< of the chunks: [components][chunk_size] values, then indices of seeding
   std::vector<Block<D>> blocks;
   std::array<std::vector<Unit>, colour_count<D>> units;
   std::uint32_t chunks = 0;
 
-  T* chunk(std::uint32_t i) { return data.data() + std::size_t(i) * components * chunk_size; }
-  const T* chunk(std::uint32_t i) const { return data.data() + std::size_t(i) * components * chunk_size; }
-  std::int32_t* ids(std::uint32_t i) { return id.data() + std::size_t(i) * chunk_size; }
-  const std::int32_t* ids(std::uint32_t i) const { return id.data() + std::size_t(i) * chunk_size; }
+  std::size_t value_bytes() const { return std::size_t(components) * chunk_size * sizeof(T); }
+  std::size_t chunk_bytes() const { return value_bytes() + chunk_size * sizeof(std::int32_t); }
+  T* values_at(std::byte* place) const { return reinterpret_cast<T*>(place); }
+  std::int32_t* ids_at(std::byte* place) const { return reinterpret_cast<std::int32_t*>(place + value_bytes()); }
 
-  void require_chunks(std::uint32_t count) {
-    data.require(std::size_t(count) * components * chunk_size);
-    id.require(std::size_t(count) * chunk_size);
-  }
+  T* chunk(std::uint32_t i) { return values_at(places[i]); }
+  const T* chunk(std::uint32_t i) const { return values_at(places[i]); }
+  /// Indices in the order of seeding.
+  std::int32_t* ids(std::uint32_t i) { return ids_at(places[i]); }
+  const std::int32_t* ids(std::uint32_t i) const { return ids_at(places[i]); }
 };
 
 constexpr int padded(int count) {
@@ -80,20 +82,6 @@ inline void for_each_chunk(const Block<D>& block, Run&& run) {
         static_cast<int>(std::min<std::uint32_t>(chunk_size, block.count - first)));
 }
 
-/// Fills the lanes after the last particle of every block with copies of it.
-template <int D, class T>
-void fill_tails(Particles<D, T>& particles) {
-  for (const Block<D>& block : particles.blocks) {
-    const int used = (block.count - 1) % chunk_size + 1;
-    const std::uint32_t last = block.first_chunk + (block.count - 1) / chunk_size;
-    T* const values = particles.chunk(last);
-    for (int lane = used; lane < padded(used); ++lane) {
-      for (int c = 0; c < particles.components; ++c) values[c * chunk_size + lane] = values[c * chunk_size + used - 1];
-      particles.ids(last)[lane] = particles.ids(last)[used - 1];
-    }
-  }
-}
-
 /// Position of a particle in cells from the domain's lower corner, wrapped on periodic axes.
 template <int D, class T>
 inline double cells_from_corner(const Domain& domain, const Block<D>& block, int axis, T relative) {
@@ -106,13 +94,30 @@ inline double cells_from_corner(const Domain& domain, const Block<D>& block, int
   return x;
 }
 
-/// Places seeded particles into chunks of provisional blocks; sort_particles then makes the real ones.
-template <int D, class T>
-void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain);
+/// What a sort works in, kept from one to the next so that its pages are touched once.
+struct SortSpace {
+  std::vector<std::uint16_t> key;                ///< of a particle: where it goes among the blocks around, and its cell
+  std::array<std::vector<std::byte>, 3> rows;    ///< particles on their way to another block, of three layers of blocks
+  std::vector<std::byte> far_rows;               ///< of those that go farther than to a neighbour
+  std::vector<std::vector<std::byte*>> unused;   ///< chunks at hand, a thread each
+  std::vector<AlignedArray<std::byte>> nowhere;  ///< a chunk a thread that nobody reads
+  std::uint64_t bytes() const {
+    std::uint64_t total = key.capacity() * sizeof(key[0]) + far_rows.capacity();
+    for (const auto& layer : rows) total += layer.capacity();
+    return total;
+  }
+};
 
-/// Sorts stably by block and cell of the stencil's first node (of a list: of the position less half a cell). `spare` is
-/// the other buffer and is swapped in.
+/// Places seeded particles into chunks of provisional blocks; sort_particles then makes the real ones. `first_value`
+/// gives what a component of a chunk starts as; `affine`, where not negative, takes the gradient of the velocity.
 template <int D, class T>
-void sort_particles(Particles<D, T>& particles, Particles<D, T>& spare, const Scene<D, T>& scene);
+void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain,
+                    const std::vector<T>& first_value, int affine);
+
+/// Sorts stably by block and cell of the stencil's first node (of a list: of the position less half a cell); the same
+/// for any number of threads. Blocks that nothing enters or leaves, in order already, are not touched. Whether the
+/// list of blocks has changed.
+template <int D, class T>
+bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene);
 
 }  // namespace mpm::cpu

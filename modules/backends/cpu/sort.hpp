@@ -1,8 +1,17 @@
 #pragma once
-// Sorting particles into blocks: where each goes (parallel), counting (serial, in the old order, so the sort is stable
-// and the same for any number of threads), moving (parallel).
+// Sorting particles into blocks. Where each goes is found first, from positions alone; then blocks are made anew layer
+// by layer, into chunks that blocks before them have left, so that a sort needs little memory beside the particles.
+// Particles that change their block travel in rows. Order is that of (block, cell, old order), and nothing depends on
+// which thread does what.
 
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
 #include <numeric>
+#include <tuple>
+#include <vector>
 
 #include "particles.hpp"
 
@@ -34,60 +43,128 @@ Destination<D, T> destination(const Domain& domain, const Block<D>& from, const 
   return to;
 }
 
+template <int D>
+constexpr BlockCoordinates neighbour_at(BlockCoordinates at, int index) {
+  for (int axis = D - 1; axis >= 0; --axis, index /= 3) at[axis] += index % 3 - 1;
+  return at;
+}
+
 template <int D, class T>
 class Sorter {
  public:
-  Sorter(Particles<D, T>& from, Particles<D, T>& to, const Scene<D, T>& scene) : from_(from), to_(to), scene_(scene) {}
+  Sorter(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene)
+      : particles_(particles),
+        space_(space),
+        scene_(scene),
+        threads_(particles.blocks.size() < 32 ? 1 : scene.threads),
+        row_bytes_((particles.components * sizeof(T) + sizeof(Tail) + 7) / 8 * 8) {}
 
-  void run() {
-    slots_ = std::size_t(from_.chunks) * chunk_size;
-    cell_.resize(slots_);
-    target_.resize(slots_);
+  bool run() {
+    space_.key.resize(std::max(space_.key.size(), std::size_t(particles_.chunks) * chunk_size));
+    sources_.resize(particles_.blocks.size());
+    find_keys();
+    if (nothing_to_do()) return false;
     find_targets();
-    count_cells();
-    order_blocks();
-    assign_places();
+    const bool same = order_targets();
     move();
-    std::swap(from_.data, to_.data);
-    std::swap(from_.id, to_.id);
-    from_.blocks.swap(blocks_);
-    from_.chunks = chunks_;
-    fill_tails(from_);
+    finish();
+    return !same;
   }
 
  private:
-  /// Block among the neighbours of the old one (or `far`) and cell in it.
-  static constexpr std::int32_t far = -1;
+  static constexpr int here = neighbour_count<D> / 2;  ///< the block itself among its neighbours
+  static constexpr std::uint16_t far_key = 0xffff;
 
-  void find_targets() {
-    const int n = static_cast<int>(from_.blocks.size());
-#pragma omp parallel for num_threads(scene_.threads) schedule(static)
+  /// An old block.
+  struct Source {
+    std::array<std::uint32_t, neighbour_count<D>> leavers{}, first_row{};
+    std::uint32_t leaving = 0, far = 0;
+    int rows = 0;         ///< which rows its leavers are among
+    bool ordered = true;  ///< nothing leaves, and all are in order of their cells
+  };
+  /// A block as it will be: the old ones under their old numbers, then those that only receive.
+  struct Target {
+    BlockCoordinates at{};
+    std::array<std::int32_t, neighbour_count<D>> around{};  ///< targets; -1: none
+    std::int32_t number = -1;                               ///< among the blocks; -1: it is empty
+    std::uint32_t count = 0, incoming = 0;
+    std::uint32_t first_far = 0, last_far = 0;
+  };
+  /// A particle that goes farther than to a neighbour, or round a periodic domain.
+  struct Far {
+    std::uint32_t slot, source, cell;
+    std::int32_t target;
+    BlockCoordinates to;
+    int shift[D];
+  };
+  /// What a row holds after the values.
+  struct Tail {
+    std::int32_t id;
+    std::uint32_t cell, slot;
+  };
+
+  // ---- where to
+
+  void find_keys() {
+    const int n = static_cast<int>(sources_.size());
+#pragma omp parallel for num_threads(threads_) schedule(dynamic, 8)
     for (int b = 0; b < n; ++b) {
-      alignas(64) std::int32_t base[D * chunk_size];
-      const Block<D>& block = from_.blocks[b];
-      for_each_chunk(block, [&](std::uint32_t chunk, int count) {
-        first_nodes(chunk, count, base);
-        for (int lane = 0; lane < count; ++lane) {
-          const auto to = destination<D, T>(scene_.domain, block, base, from_.chunk(chunk), lane);
-          int d[3]{};
-          bool near = true;
-          for (int a = 0; a < D; ++a) {
-            d[a] = to.block[a] - block.at[a];
-            near = near && d[a] >= -1 && d[a] <= 1 && to.wrap[a] == 0;
-          }
-          target_[std::size_t(chunk) * chunk_size + lane] = near ? neighbour_index<D>(d[0], d[1], d[2]) : far;
-          cell_[std::size_t(chunk) * chunk_size + lane] = node_in_block<D>(to.node);
-        }
-      });
+      Source& source = sources_[b];
+      source = {};
+      std::uint16_t last = 0;
+      for_each_chunk(particles_.blocks[b],
+                     [&](std::uint32_t chunk, int count) { last = find_keys_of(b, chunk, count, last, source); });
     }
+  }
+
+  std::uint16_t find_keys_of(int b, std::uint32_t chunk, int count, std::uint16_t last, Source& source) {
+    alignas(64) std::int32_t base[D * chunk_size], around[chunk_size], cell[chunk_size], out[chunk_size];
+    const int end = padded(count);
+    first_nodes(chunk, count, base);
+    for (int p = 0; p < end; ++p) around[p] = cell[p] = out[p] = 0;
+    for (int axis = 0; axis < D; ++axis) {
+      const std::int32_t* const node = base + axis * chunk_size;
+      for (int p = 0; p < end; ++p) {
+        const std::int32_t d = (node[p] >> block_bits<D>)+1;
+        out[p] |= (d < 0) | (d > 2);
+        around[p] = around[p] * 3 + d;
+        cell[p] = (cell[p] << block_bits<D>) | (node[p] & (block_side<D> - 1));
+      }
+      if (!scene_.domain.periodic(axis)) continue;
+      const double origin = particles_.blocks[b].at[axis] * block_side<D>, cells = scene_.domain.cells[axis];
+      const T* const x = particles_.chunk(chunk) + axis * chunk_size;
+      for (int p = 0; p < end; ++p) {
+        const double from_corner = origin + static_cast<double>(x[p]);
+        out[p] |= (from_corner < 0) | (from_corner >= cells);
+      }
+    }
+    std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size;
+    std::int32_t elsewhere = 0, disorder = 0;
+    for (int p = 0; p < count; ++p) {
+      key[p] = out[p] ? far_key : static_cast<std::uint16_t>(around[p] * block_nodes + cell[p]);
+      elsewhere |= key[p] / block_nodes != here;
+    }
+    for (int p = 1; p < count; ++p) disorder |= key[p] < key[p - 1];
+    if (!elsewhere) {
+      if (disorder || key[0] < last) source.ordered = false;
+      return key[count - 1];
+    }
+    source.ordered = false;
+    for (int p = 0; p < count; ++p) {
+      const int to = key[p] / block_nodes;
+      if (to == here) continue;
+      ++(key[p] == far_key ? source.far : source.leavers[to]);
+    }
+    source.leaving = std::accumulate(source.leavers.begin(), source.leavers.end(), 0u);
+    return last;
   }
 
   void first_nodes(std::uint32_t chunk, int count, std::int32_t* base) const {
     if (scene_.list) {  // the middle of the list's nodes comes to the middle of the tile
       for (int axis = 0; axis < D; ++axis)
-        for (int p = 0; p < count; ++p)
-          base[axis * chunk_size + p] =
-              static_cast<std::int32_t>(std::floor(from_.chunk(chunk)[axis * chunk_size + p] - T(0.5)));
+        for (int p = 0; p < padded(count); ++p)
+          base[axis * chunk_size + p] = static_cast<std::int32_t>(
+              std::floor(particles_.chunk(chunk)[axis * chunk_size + std::min(p, count - 1)] - T(0.5)));
       return;
     }
     alignas(64) T offset[D * chunk_size], weight[D * 4 * chunk_size];
@@ -95,8 +172,8 @@ class Sorter {
                                 chunk_size,
                                 D,
                                 0,
-                                from_.chunk(chunk),
-                                scene_.half_size ? from_.half_size.data() : nullptr,
+                                particles_.chunk(chunk),
+                                scene_.half_size ? particles_.half_size.data() : nullptr,
                                 nullptr,
                                 base,
                                 offset,
@@ -106,42 +183,76 @@ class Sorter {
     scene_.evaluate_shape(scene_.shape_parameters, &batch);
   }
 
-  /// Numbers the new blocks in order of appearance and counts their cells. target_ becomes the number.
-  void count_cells() {
+  bool nothing_to_do() const {
+    return std::all_of(sources_.begin(), sources_.end(), [](const Source& source) { return source.ordered; });
+  }
+
+  // ---- blocks
+
+  void find_targets() {
+    const std::uint32_t old = static_cast<std::uint32_t>(sources_.size());
+    targets_.resize(old);
+    for (std::uint32_t b = 0; b < old; ++b) {
+      const Block<D>& block = particles_.blocks[b];
+      targets_[b].at = block.at;
+      targets_[b].count = block.count - sources_[b].leaving - sources_[b].far;
+      table_.insert(block.at, static_cast<int>(b));
+    }
+    const auto look_around = [&](std::uint32_t first, std::uint32_t last) {
+#pragma omp parallel for num_threads(threads_) schedule(static)
+      for (std::uint32_t b = first; b < last; ++b)
+        for (int k = 0; k < neighbour_count<D>; ++k)
+          targets_[b].around[k] = table_.find(neighbour_at<D>(targets_[b].at, k));
+    };
+    look_around(0, old);
+    for (std::uint32_t b = 0; b < old; ++b) {
+      if (sources_[b].leaving == 0) continue;
+      for (int k = 0; k < neighbour_count<D>; ++k) {
+        const std::uint32_t leavers = sources_[b].leavers[k];
+        if (leavers == 0) continue;
+        std::int32_t to = targets_[b].around[k];
+        if (to < 0) to = target_at(neighbour_at<D>(targets_[b].at, k));
+        targets_[to].count += leavers;
+        targets_[to].incoming += leavers;
+      }
+    }
+    find_far();
+    look_around(old, static_cast<std::uint32_t>(targets_.size()));
+  }
+
+  int target_at(const BlockCoordinates& at) {
+    const int next = static_cast<int>(targets_.size()), number = table_.insert(at, next);
+    if (number == next) targets_.emplace_back().at = at;
+    return number;
+  }
+
+  /// By target, each in the old order.
+  void find_far() {
     alignas(64) std::int32_t base[D * chunk_size];
-    for (const Block<D>& block : from_.blocks) {
-      std::array<int, neighbour_count<D>> known;
-      known.fill(-1);
+    for (std::uint32_t b = 0; b < sources_.size(); ++b) {
+      if (sources_[b].far == 0) continue;
+      const Block<D>& block = particles_.blocks[b];
       for_each_chunk(block, [&](std::uint32_t chunk, int count) {
-        bool have_base = false;
+        const std::uint32_t first = chunk * chunk_size;
+        first_nodes(chunk, count, base);
         for (int lane = 0; lane < count; ++lane) {
-          std::int32_t& target = target_[std::size_t(chunk) * chunk_size + lane];
-          if (target == far) {
-            if (!have_base) first_nodes(chunk, count, base), have_base = true;
-            target = number_of(destination<D, T>(scene_.domain, block, base, from_.chunk(chunk), lane).block);
-          } else {
-            int& number = known[target];
-            if (number < 0) number = number_of(neighbour_at(block.at, target));
-            target = number;
-          }
-          ++histogram_[std::size_t(target) * block_nodes + cell_[std::size_t(chunk) * chunk_size + lane]];
+          if (space_.key[first + lane] != far_key) continue;
+          const auto to = destination<D, T>(scene_.domain, block, base, particles_.chunk(chunk), lane);
+          Far far{first + lane,        b,        static_cast<std::uint32_t>(node_in_block<D>(to.node)),
+                  target_at(to.block), to.block, {}};
+          for (int a = 0; a < D; ++a) far.shift[a] = (block.at[a] - to.block[a]) * block_side<D> + to.wrap[a];
+          far_.push_back(far);
         }
       });
     }
-  }
-
-  static BlockCoordinates neighbour_at(BlockCoordinates at, int index) {
-    for (int axis = D - 1; axis >= 0; --axis, index /= 3) at[axis] += index % 3 - 1;
-    return at;
-  }
-
-  int number_of(const BlockCoordinates& at) {
-    const int next = static_cast<int>(found_.size()), number = table_.insert(at, next);
-    if (number == next) {
-      found_.push_back(at);
-      histogram_.resize(histogram_.size() + block_nodes, 0);
+    std::sort(far_.begin(), far_.end(),
+              [](const Far& a, const Far& b) { return std::tie(a.target, a.slot) < std::tie(b.target, b.slot); });
+    for (std::uint32_t i = 0; i < far_.size(); ++i) {
+      Target& target = targets_[far_[i].target];
+      if (target.last_far == 0) target.first_far = i;
+      target.last_far = i + 1;
+      ++target.count, ++target.incoming;
     }
-    return number;
   }
 
   /// Columns of two blocks along x (and of two along y in 3-D), one colour in each direction out of two.
@@ -151,133 +262,400 @@ class Sorter {
             at[2] * 4 + (at[0] & 1) * 2 + (at[1] & 1)};
   }
 
-  void order_blocks() {
-    std::vector<std::pair<std::array<int, 4>, int>> order;
-    for (int i = 0; i < static_cast<int>(found_.size()); ++i) order.push_back({order_key(found_[i]), i});
-    std::sort(order.begin(), order.end());
-    for (auto& units : from_.units) units.clear();
+  /// Numbers the blocks; whether they are the old ones.
+  bool order_targets() {
+    const std::size_t old = sources_.size();
+    std::vector<std::pair<std::array<int, 4>, std::uint32_t>> order;
+    order.reserve(targets_.size());
+    for (std::uint32_t i = 0; i < targets_.size(); ++i)
+      if (targets_[i].count > 0) order.push_back({order_key(targets_[i].at), i});
+    // Old blocks are in order already, except those of seeding.
+    if (!std::is_sorted(order.begin(), order.end())) std::sort(order.begin(), order.end());
+    bool same = order.size() == old;
+    for (auto& units : particles_.units) units.clear();
     const std::array<int, 4>* last = nullptr;
     for (const auto& [key, number] : order) {
-      auto& units = from_.units[key[0]];
+      auto& units = particles_.units[key[0]];
       const std::uint32_t index = static_cast<std::uint32_t>(blocks_.size());
       if (!last || !std::equal(key.begin(), key.begin() + 3, last->begin())) units.push_back({index, index});
       units.back().last = index + 1;
       last = &key;
 
-      Block<D> block;
-      block.at = found_[number];
+      same = same && number == index;
+      Block<D>& block = blocks_.emplace_back();
+      block.at = targets_[number].at;
       block.first_chunk = chunks_;
-      std::uint32_t place = chunks_ * chunk_size;
-      for (int cell = 0; cell < block_nodes; ++cell) {
-        std::uint32_t& entry = histogram_[std::size_t(number) * block_nodes + cell];
-        const std::uint32_t here = entry;
-        entry = place;
-        place += here;
-        block.count += here;
-      }
-      chunks_ += (block.count + chunk_size - 1) / chunk_size;
-      blocks_.push_back(block);
+      block.count = targets_[number].count;
+      if (number < old) block.neighbours = particles_.blocks[number].neighbours;
+      targets_[number].number = static_cast<std::int32_t>(index);
+      chunks_ += chunks_of(block.count);
     }
+    return same;
+  }
+  static std::uint32_t chunks_of(std::uint32_t particles) {
+    return (particles + chunk_size - 1) / chunk_size;
   }
 
-  /// cell_ becomes the particle's new place.
-  void assign_places() {
-    for (const Block<D>& block : from_.blocks)
-      for_each_chunk(block, [&](std::uint32_t chunk, int count) {
-        const std::size_t first = std::size_t(chunk) * chunk_size;
-        for (std::size_t i = first; i < first + count; ++i)
-          cell_[i] = static_cast<std::int32_t>(histogram_[std::size_t(target_[i]) * block_nodes + cell_[i]]++);
-      });
+  // ---- moving
+
+  bool untouched(std::uint32_t target) const {
+    return target < sources_.size() && targets_[target].incoming == 0 && sources_[target].ordered;
   }
 
+  /// Blocks by layers across the axis in which there are most.
+  void make_layers() {
+    BlockCoordinates low = targets_[0].at, high = low;
+    for (const Target& target : targets_)
+      for (int a = 0; a < D; ++a) low[a] = std::min(low[a], target.at[a]), high[a] = std::max(high[a], target.at[a]);
+    int axis = 0;
+    for (int a = 1; a < D; ++a)
+      if (high[a] - low[a] > high[axis] - low[axis]) axis = a;
+    in_layers_.resize(targets_.size());
+    std::iota(in_layers_.begin(), in_layers_.end(), 0u);
+    std::stable_sort(in_layers_.begin(), in_layers_.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return targets_[a].at[axis] < targets_[b].at[axis]; });
+    // Few thick layers: threads meet after each, and rows of three are held at once.
+    const std::size_t thick = in_layers_.size() / 16;
+    for (std::uint32_t i = 0; i < in_layers_.size(); ++i) {
+      const bool begins = i == 0 || targets_[in_layers_[i]].at[axis] != targets_[in_layers_[i - 1]].at[axis];
+      if (begins && (i == 0 || i - layers_.back() >= thick)) layers_.push_back(i);
+    }
+    layers_.push_back(static_cast<std::uint32_t>(in_layers_.size()));
+  }
+
+  /// A layer takes what the three layers around it have sent, and leaves its old chunks.
   void move() {
-    to_.components = from_.components;
-    to_.require_chunks(chunks_);
-    const int n = static_cast<int>(from_.blocks.size());
-#pragma omp parallel for num_threads(scene_.threads) schedule(static)
-    for (int b = 0; b < n; ++b) {
-      const Block<D>& block = from_.blocks[b];
-      for_each_chunk(block, [&](std::uint32_t chunk, int count) {
-        const T* const source = from_.chunk(chunk);
-        for (int lane = 0; lane < count; ++lane) {
-          const std::size_t i = std::size_t(chunk) * chunk_size + lane;
-          const std::uint32_t place = static_cast<std::uint32_t>(cell_[i]), lane_to = place % chunk_size;
-          T* const values = to_.chunk(place / chunk_size) + lane_to;
-          for (int c = D; c < from_.components; ++c) values[c * chunk_size] = source[c * chunk_size + lane];
-          move_position(block, found_[target_[i]], source + lane, values);
-          to_.ids(place / chunk_size)[lane_to] = from_.ids(chunk)[lane];
-        }
-      });
+    make_layers();
+    reserve_chunks();
+    places_.resize(chunks_);
+    send_far();
+    const int n = static_cast<int>(layers_.size()) - 1;
+    send(0);
+    for (int layer = 0; layer < n; ++layer) {
+      if (layer + 1 < n) send(layer + 1);
+      const int first = static_cast<int>(layers_[layer]), last = static_cast<int>(layers_[layer + 1]);
+#pragma omp parallel for num_threads(threads_) schedule(dynamic, 4)
+      for (int i = first; i < last; ++i) receive(in_layers_[i]);
     }
   }
 
-  void move_position(const Block<D>& block, const BlockCoordinates& to, const T* source, T* values) const {
-    for (int axis = 0; axis < D; ++axis) {
-      const T x = source[axis * chunk_size];
-      int shift = (block.at[axis] - to[axis]) * block_side<D>;
-      if (scene_.domain.periodic(axis)) {
-        const int cells = scene_.domain.cells[axis];
-        shift -=
-            cells * static_cast<int>(std::floor((block.at[axis] * block_side<D> + static_cast<double>(x)) / cells));
+  /// So that no thread allocates: blocks grow before others have shrunk, and threads keep chunks at hand.
+  void reserve_chunks() {
+    std::size_t growth = 0, largest = 0;
+    for (std::uint32_t i = 0; i < targets_.size(); ++i) {
+      const std::size_t now = i < sources_.size() ? chunks_of(particles_.blocks[i].count) : 0;
+      const std::size_t then = chunks_of(targets_[i].count);
+      growth += then > now ? then - now : 0;
+      largest = std::max({largest, now, then});
+    }
+    particles_.pool.reserve(growth + 4 * largest * threads_);
+    space_.unused.resize(std::max(space_.unused.size(), std::size_t(threads_)));
+    for (auto& unused : space_.unused) unused.reserve(4 * largest);
+    at_hand_ = 2 * largest;
+    space_.nowhere.resize(std::max(space_.nowhere.size(), std::size_t(threads_)));
+    for (auto& chunk : space_.nowhere) chunk.require(particles_.chunk_bytes());
+  }
+
+  /// Rows of a layer's blocks, those for one neighbour side by side.
+  void send(int layer) {
+    std::vector<std::byte>& rows = space_.rows[layer % 3];
+    std::size_t count = 0;
+    const int first = static_cast<int>(layers_[layer]), last = static_cast<int>(layers_[layer + 1]);
+    for (int i = first; i < last; ++i) {
+      if (in_layers_[i] >= sources_.size()) continue;
+      Source& source = sources_[in_layers_[i]];
+      for (int k = 0; k < neighbour_count<D> && source.leaving > 0; ++k) {
+        source.first_row[k] = static_cast<std::uint32_t>(count);
+        count += source.leavers[k];
       }
-      values[axis * chunk_size] = x + static_cast<T>(shift);
+      source.rows = layer % 3;
+    }
+    if (rows.size() < count * row_bytes_) {
+      rows.clear();
+      rows.resize(count * row_bytes_);
+    }
+#pragma omp parallel for num_threads(threads_) schedule(dynamic, 4)
+    for (int i = first; i < last; ++i)
+      if (in_layers_[i] < sources_.size() && sources_[in_layers_[i]].leaving > 0)
+        send_block(in_layers_[i], rows.data());
+  }
+
+  void send_block(std::uint32_t b, std::byte* rows) {
+    std::array<std::uint32_t, neighbour_count<D>> next = sources_[b].first_row;
+    for_each_chunk(particles_.blocks[b], [&](std::uint32_t chunk, int count) {
+      const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size;
+      prefetch(chunk + 1);
+      for (int lane = 0; lane < count; ++lane) {
+        const int k = key[lane] / block_nodes;
+        if (k == here || key[lane] == far_key) continue;
+        const BlockCoordinates d = neighbour_at<D>({}, k);
+        int shift[D];
+        for (int a = 0; a < D; ++a) shift[a] = -d[a] * block_side<D>;
+        write_row(rows + next[k]++ * row_bytes_, chunk, lane, key[lane] % block_nodes, shift);
+      }
+    });
+  }
+
+  void send_far() {
+    if (space_.far_rows.size() < far_.size() * row_bytes_) space_.far_rows.resize(far_.size() * row_bytes_);
+    for (std::size_t i = 0; i < far_.size(); ++i)
+      write_row(space_.far_rows.data() + i * row_bytes_, far_[i].slot / chunk_size,
+                static_cast<int>(far_[i].slot % chunk_size), far_[i].cell, far_[i].shift);
+  }
+
+  void write_row(std::byte* row, std::uint32_t chunk, int lane, std::uint32_t cell, const int* shift) const {
+    const T* const from = particles_.chunk(chunk) + lane;
+    T* const values = reinterpret_cast<T*>(row);
+    for (int a = 0; a < D; ++a) values[a] = from[a * chunk_size] + static_cast<T>(shift[a]);
+    for (int c = D; c < particles_.components; ++c) values[c] = from[c * chunk_size];
+    const Tail tail{particles_.ids(chunk)[lane], cell, chunk * chunk_size + lane};
+    std::memcpy(row + particles_.components * sizeof(T), &tail, sizeof tail);
+  }
+  Tail tail_of(const std::byte* row) const {
+    Tail tail;
+    std::memcpy(&tail, row + particles_.components * sizeof(T), sizeof tail);
+    return tail;
+  }
+
+  /// The rows that a neighbour has sent to a target.
+  struct Sent {
+    std::int32_t source;
+    const std::byte *first, *last;
+  };
+  struct Incoming {
+    std::array<Sent, neighbour_count<D>> sent;  ///< in the order of their blocks; of the block itself, no rows
+    int count = 0;
+  };
+  Incoming incoming(std::uint32_t target) const {
+    Incoming all;
+    for (int k = 0; k < neighbour_count<D>; ++k) {  // the neighbour on the other side sends towards k
+      const std::int32_t from = targets_[target].around[neighbour_count<D> - 1 - k];
+      if (from < 0 || from >= static_cast<std::int32_t>(sources_.size())) continue;
+      const Source& source = sources_[from];
+      if (k != here && source.leavers[k] == 0) continue;
+      const std::byte* const rows = space_.rows[source.rows].data();
+      const std::size_t first = source.first_row[k], last = first + source.leavers[k];
+      all.sent[all.count++] =
+          k == here ? Sent{from, nullptr, nullptr} : Sent{from, rows + first * row_bytes_, rows + last * row_bytes_};
+    }
+    std::sort(all.sent.begin(), all.sent.begin() + all.count,
+              [](const Sent& a, const Sent& b) { return a.source < b.source; });
+    return all;
+  }
+
+  /// Makes a block anew.
+  void receive(std::uint32_t number) {
+    const Target& target = targets_[number];
+    const bool existed = number < sources_.size();
+    if (untouched(number)) {
+      const Block<D>& block = particles_.blocks[number];
+      std::copy_n(particles_.places.begin() + block.first_chunk, chunks_of(block.count),
+                  places_.begin() + blocks_[target.number].first_chunk);
+      return;
+    }
+    std::vector<std::byte*>& unused = space_.unused[omp_get_thread_num()];
+    if (target.number >= 0) {
+      const Block<D>& block = blocks_[target.number];
+      for (std::uint32_t i = 0; i < chunks_of(block.count); ++i) places_[block.first_chunk + i] = take(unused);
+      fill(number);
+    }
+    if (!existed) return;
+    const Block<D>& left = particles_.blocks[number];
+    for (std::uint32_t i = 0; i < chunks_of(left.count); ++i) give(unused, particles_.places[left.first_chunk + i]);
+  }
+
+  std::byte* take(std::vector<std::byte*>& unused) {
+    std::byte* chunk = nullptr;
+    if (!unused.empty()) {
+      chunk = unused.back();
+      unused.pop_back();
+    } else {
+#pragma omp critical(mpm_chunk_pool)
+      chunk = particles_.pool.take();
+    }
+    return chunk;
+  }
+  void give(std::vector<std::byte*>& unused, std::byte* chunk) {
+    if (unused.size() < at_hand_) return unused.push_back(chunk);
+#pragma omp critical(mpm_chunk_pool)
+    particles_.pool.give(chunk);
+  }
+
+  void fill(std::uint32_t number) {
+    const Target& target = targets_[number];
+    const Block<D>& block = blocks_[target.number];
+    const Incoming from = incoming(number);
+    const bool existed = number < sources_.size();
+    std::uint32_t place[block_nodes + 1] = {};  // of the next particle of a cell
+    for (int i = 0; i < from.count; ++i)
+      for (const std::byte* row = from.sent[i].first; row != from.sent[i].last; row += row_bytes_)
+        ++place[tail_of(row).cell + 1];
+    for (std::uint32_t i = target.first_far; i < target.last_far; ++i) ++place[far_[i].cell + 1];
+    if (existed) count_stayers(particles_.blocks[number], place + 1);
+    for (int cell = 0; cell < block_nodes; ++cell) place[cell + 1] += place[cell];
+
+    std::uint32_t far = target.first_far;
+    const auto take_far_before = [&](std::uint32_t slot) {
+      for (; far < target.last_far && far_[far].slot < slot; ++far)
+        read_row(block, space_.far_rows.data() + far * row_bytes_, place);
+    };
+    for (int i = 0; i < from.count; ++i) {
+      const Sent& sent = from.sent[i];
+      if (sent.source == static_cast<std::int32_t>(number))
+        take_stayers(particles_.blocks[number], block, place, take_far_before);
+      for (const std::byte* row = sent.first; row != sent.last; row += row_bytes_) {
+        take_far_before(tail_of(row).slot);
+        read_row(block, row, place);
+      }
+    }
+    take_far_before(~0u);
+    fill_tail(block);
+  }
+
+  void count_stayers(const Block<D>& block, std::uint32_t* counts) const {
+    for_each_chunk(block, [&](std::uint32_t chunk, int count) {
+      const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size;
+      for (int lane = 0; lane < count; ++lane)
+        if (key[lane] / block_nodes == here) ++counts[key[lane] % block_nodes];
+    });
+  }
+
+  void read_row(const Block<D>& block, const std::byte* row, std::uint32_t* place) {
+    const T* const values = reinterpret_cast<const T*>(row);
+    const Tail tail = tail_of(row);
+    const std::uint32_t to = place[tail.cell]++;
+    std::byte* const chunk = places_[block.first_chunk + to / chunk_size];
+    T* const target = particles_.values_at(chunk) + to % chunk_size;
+    for (int c = 0; c < particles_.components; ++c) target[c * chunk_size] = values[c];
+    particles_.ids_at(chunk)[to % chunk_size] = tail.id;
+  }
+
+  /// Component by component, so that the old chunk is read in its own order; what leaves goes to where nobody looks.
+  template <class TakeFar>
+  void take_stayers(const Block<D>& left, const Block<D>& block, std::uint32_t* place, TakeFar&& take_far_before) {
+    T* to[chunk_size];
+    std::int32_t* id_to[chunk_size];
+    std::byte* const nowhere = space_.nowhere[omp_get_thread_num()].data();
+    for_each_chunk(left, [&](std::uint32_t chunk, int count) {
+      const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size;
+      prefetch(chunk + 1);
+      for (int lane = 0; lane < chunk_size; ++lane) {
+        std::byte* target = nowhere;
+        std::uint32_t at = static_cast<std::uint32_t>(lane);
+        if (lane < count && key[lane] / block_nodes == here) {
+          take_far_before(chunk * chunk_size + lane);
+          at = place[key[lane] % block_nodes]++;
+          target = places_[block.first_chunk + at / chunk_size];
+        }
+        to[lane] = particles_.values_at(target) + at % chunk_size;
+        id_to[lane] = particles_.ids_at(target) + at % chunk_size;
+      }
+      const T* from = particles_.chunk(chunk);
+      const int components = particles_.components;
+      for (int c = 0; c < components; ++c, from += chunk_size) {
+#pragma GCC unroll 16
+        for (int lane = 0; lane < chunk_size; ++lane) to[lane][c * chunk_size] = from[lane];
+      }
+      for (int lane = 0; lane < count; ++lane) *id_to[lane] = particles_.ids(chunk)[lane];
+    });
+  }
+  void prefetch(std::uint32_t chunk) const {
+    if (chunk >= particles_.chunks) return;
+    const std::byte* const place = particles_.places[chunk];
+    for (std::size_t byte = 0; byte < particles_.chunk_bytes(); byte += 64) __builtin_prefetch(place + byte, 0, 2);
+  }
+
+  /// The lanes after the last particle hold copies of it.
+  void fill_tail(const Block<D>& block) {
+    const int used = (block.count - 1) % chunk_size + 1;
+    std::byte* const last = places_[block.first_chunk + (block.count - 1) / chunk_size];
+    T* const values = particles_.values_at(last);
+    std::int32_t* const ids = particles_.ids_at(last);
+    for (int lane = used; lane < padded(used); ++lane) {
+      for (int c = 0; c < particles_.components; ++c) values[c * chunk_size + lane] = values[c * chunk_size + used - 1];
+      ids[lane] = ids[used - 1];
     }
   }
 
-  Particles<D, T>&from_, &to_;
+  void finish() {
+    for (auto& unused : space_.unused) {
+      for (std::byte* const chunk : unused) particles_.pool.give(chunk);
+      unused.clear();
+    }
+    particles_.places.swap(places_);
+    particles_.blocks.swap(blocks_);
+    particles_.chunks = chunks_;
+  }
+
+  Particles<D, T>& particles_;
+  SortSpace& space_;
   const Scene<D, T>& scene_;
-  std::size_t slots_ = 0;
-  std::vector<std::int32_t> cell_, target_;
+  int threads_;
+  std::size_t row_bytes_, at_hand_ = 0;
+  std::vector<Source> sources_;
+  std::vector<Target> targets_;
+  std::vector<Far> far_;
   BlockTable table_;
-  std::vector<BlockCoordinates> found_;
-  std::vector<std::uint32_t> histogram_;
+  std::vector<std::uint32_t> in_layers_, layers_;
   std::vector<Block<D>> blocks_;
+  std::vector<std::byte*> places_;
   std::uint32_t chunks_ = 0;
 };
 
 template <int D, class T>
-void sort_particles(Particles<D, T>& particles, Particles<D, T>& spare, const Scene<D, T>& scene) {
-  Sorter<D, T>(particles, spare, scene).run();
+bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene) {
+  return Sorter<D, T>(particles, space, scene).run();
 }
 
+/// Particles as they come, each into the last chunk of its block.
 template <int D, class T>
-void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain) {
-  const int n = static_cast<int>(seeds.position.size() / D);
-  std::vector<double> cells(seeds.position.size());
-  std::vector<BlockCoordinates> at(n);
-  for (int p = 0; p < n; ++p) {
-    at[p] = {};
-    for (int a = 0; a < D; ++a) {
-      cells[p * std::size_t(D) + a] = (seeds.position[p * std::size_t(D) + a] - domain.lower[a]) / domain.cell_size;
-      at[p][a] = static_cast<int>(std::floor(cells[p * std::size_t(D) + a] / block_side<D>));
+void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain,
+                    const std::vector<T>& first_value, int affine) {
+  struct Seeded {
+    BlockCoordinates at{};
+    std::uint32_t count = 0;
+    std::vector<std::byte*> chunks;
+  };
+  std::vector<Seeded> found;
+  BlockTable table;
+  particles.pool.set_chunk_bytes(particles.chunk_bytes());
+  particles.pool.reserve((seeds.count() + chunk_size - 1) / chunk_size);
+  int known = -1;
+  seeds.for_each_batch([&](const SeedBatch& batch) {
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      double cells[D];
+      BlockCoordinates at{};
+      for (int a = 0; a < D; ++a) {
+        cells[a] = (batch.position[i * D + a] - domain.lower[a]) / domain.cell_size;
+        at[a] = static_cast<int>(std::floor(cells[a] / block_side<D>));
+      }
+      if (known < 0 || found[known].at != at) known = table.insert(at, static_cast<int>(found.size()));
+      if (known == static_cast<int>(found.size())) found.emplace_back().at = at;
+      Seeded& block = found[known];
+      const int lane = static_cast<int>(block.count++ % chunk_size);
+      if (lane == 0) {
+        block.chunks.push_back(particles.pool.take());
+        for (int c = 0; c < particles.components; ++c)
+          std::fill_n(particles.values_at(block.chunks.back()) + c * chunk_size, chunk_size, first_value[c]);
+      }
+      T* const values = particles.values_at(block.chunks.back()) + lane;
+      particles.ids_at(block.chunks.back())[lane] = static_cast<std::int32_t>(batch.first + i);
+      for (int a = 0; a < D; ++a) {
+        values[(Particles<D, T>::position + a) * chunk_size] = static_cast<T>(cells[a] - at[a] * block_side<D>);
+        values[(Particles<D, T>::velocity + a) * chunk_size] = static_cast<T>(batch.velocity[i * D + a]);
+      }
+      for (int c = 0; affine >= 0 && c < D * D; ++c)
+        values[(affine + c) * chunk_size] = static_cast<T>(batch.velocity_gradient[i * D * D + c]);
     }
-  }
-  std::vector<int> order(n);
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return at[a] < at[b]; });
-
-  std::vector<std::pair<std::uint32_t, int>> place(n);  // chunk and lane
-  for (int i = 0; i < n; ++i) {
-    if (i == 0 || at[order[i]] != at[order[i - 1]]) {
-      Block<D> block;
-      block.at = at[order[i]];
-      block.first_chunk = particles.chunks;
-      particles.blocks.push_back(block);
-    }
-    Block<D>& block = particles.blocks.back();
-    if (block.count % chunk_size == 0) ++particles.chunks;
-    place[i] = {particles.chunks - 1, static_cast<int>(block.count++ % chunk_size)};
-  }
-  particles.require_chunks(particles.chunks);
-  for (int i = 0; i < n; ++i) {
-    const int p = order[i];
-    T* const values = particles.chunk(place[i].first) + place[i].second;
-    particles.ids(place[i].first)[place[i].second] = p;
-    for (int a = 0; a < D; ++a) {
-      values[(Particles<D, T>::position + a) * chunk_size] =
-          static_cast<T>(cells[p * std::size_t(D) + a] - at[p][a] * block_side<D>);
-      values[(Particles<D, T>::velocity + a) * chunk_size] = static_cast<T>(seeds.velocity[p * std::size_t(D) + a]);
-    }
+  });
+  std::sort(found.begin(), found.end(), [](const Seeded& a, const Seeded& b) { return a.at < b.at; });
+  for (const Seeded& seeded : found) {
+    Block<D>& block = particles.blocks.emplace_back();
+    block.at = seeded.at;
+    block.first_chunk = particles.chunks;
+    block.count = seeded.count;
+    particles.chunks += static_cast<std::uint32_t>(seeded.chunks.size());
+    particles.places.insert(particles.places.end(), seeded.chunks.begin(), seeded.chunks.end());
   }
 }
 

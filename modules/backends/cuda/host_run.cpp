@@ -35,13 +35,14 @@ struct Body {
     const BodySpecification& body = experiment.bodies[index];
     material = &experiment.materials[body.material].component;
     const int D = dimension;
-    field = body.field, material_number = body.material, count = static_cast<int>(seeded.position.size()) / D;
+    field = body.field, material_number = body.material, count = static_cast<int>(seeded.count());
     mass = static_cast<T>(seeded.mass), volume = static_cast<T>(seeded.volume);
     half_size = static_cast<T>(0.5 / body.particles_per_cell_axis);
-    position = columns(seeded.position, D), velocity = columns(seeded.velocity, D);
+    const SeedArrays seeds = seeded.arrays();
+    position = columns(seeds.position, D), velocity = columns(seeds.velocity, D);
     advection.resize(velocity.size());
     transfer_state = initial_state(*transfer->plugin), material_state = initial_state(*material->plugin);
-    const std::vector<T> gradient = columns(seeded.velocity_gradient, D * D);
+    const std::vector<T> gradient = columns(seeds.velocity_gradient, D * D);
     std::copy(gradient.begin(), gradient.end(), transfer_state.begin());  // the affine velocity is the first field
     if (plan.particle_domain) {
       domain.resize(static_cast<std::size_t>(D) * D * count);

@@ -12,17 +12,18 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
       body_(body),
       field_(experiment.bodies[body].field),
       dimension_(experiment.dimension),
-      count_(seeded.position.size() / experiment.dimension),
+      count_(seeded.count()),
       padded_((count_ + MPM_LANES - 1) / MPM_LANES * MPM_LANES),
       mass_(seeded.mass),
       volume_(seeded.volume),
       shape_(experiment, plan) {
   const int D = dimension_;
   position = make(D), velocity = make(D), advection = make(D);
+  const SeedArrays seeds = seeded.arrays();
   for (std::size_t p = 0; p < count_; ++p)
     for (int c = 0; c < D; ++c) {
-      position(c, p) = seeded.position[p * D + c];
-      velocity(c, p) = seeded.velocity[p * D + c];
+      position(c, p) = seeds.position[p * D + c];
+      velocity(c, p) = seeds.velocity[p * D + c];
     }
   pad(position), pad(velocity);
   if (plan.initial_position) initial_position = position;
@@ -36,10 +37,10 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
   }
   initialise(transfer_state_, *transfer_.plugin);
   initialise(material_state_, *material_.plugin);
-  if (!seeded.velocity_gradient.empty()) {
+  if (!seeds.velocity_gradient.empty()) {
     Array& affine = transfer_state_.at(transfer_.plugin->state()[0].name);
     for (std::size_t p = 0; p < count_; ++p)
-      for (int k = 0; k < D * D; ++k) affine(k, p) = seeded.velocity_gradient[p * D * D + k];
+      for (int k = 0; k < D * D; ++k) affine(k, p) = seeds.velocity_gradient[p * D * D + k];
     pad(affine);
   }
 }

@@ -1,0 +1,159 @@
+// What is not asked for costs nothing: bytes, passes, calls at the plugin boundary and machine instructions are counted
+// for scenes that differ in one choice. The recorder of `mpm run` runs along.
+
+#include "counting/required.hpp"
+
+#include <memory>
+
+#include "cli/program.hpp"
+#include "mpm/recorder.hpp"
+#include "support/scene.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+using counting::Calls;
+using counting::RequiredRow;
+using counting::RequiredScene;
+
+namespace {
+
+constexpr std::uint64_t quad = 4 * sizeof(float);  // what a channel holds of a node
+
+/// What `mpm run` does after a step, in a folder that goes away.
+counting::AfterStep recorder_in(const Folder& folder) {
+  return [&folder, number = 0](Simulation& simulation) mutable {
+    struct Recording {
+      Metrics metrics;
+      output::RunFolder folder;
+      app::Recorder recorder;
+      Recording(Simulation& s, const fs::path& place)
+          : metrics(s), folder(output::RunFolder::create(place)), recorder(s, metrics, folder) {
+        recorder.start();
+        recorder.record();
+      }
+    };
+    const auto recording =
+        std::make_shared<Recording>(simulation, folder / (std::to_string(getpid()) + "_" + std::to_string(number++)));
+    return [recording] { recording->recorder.record(); };
+  };
+}
+
+RequiredRow counted(const std::string& name) {
+  static const std::vector<RequiredRow> rows = [] {
+    const Folder folder;
+    return counting::count_required(plugins(), counting::required_scenes(), recorder_in(folder));
+  }();
+  for (const RequiredRow& row : rows)
+    if (row.name == name) return row;
+  throw std::runtime_error("no such scene: " + name);
+}
+
+/// Entries that `row` has and the base has not, or has less of.
+Calls more_than_base(const RequiredRow& row) {
+  const RequiredRow base = counted("base");
+  Calls more;
+  for (const auto& [entry, count] : row.calls) {
+    const auto known = base.calls.find(entry);
+    const long before = known == base.calls.end() ? 0 : known->second;
+    if (count != before) more[entry] = count - before;
+  }
+  for (const auto& [entry, count] : base.calls)
+    if (row.calls.count(entry) == 0) more[entry] = -count;
+  return more;
+}
+
+}  // namespace
+
+TEST_CASE("the base scene asks plugins for nothing but what MLS needs") {
+  const RequiredRow base = counted("base");
+  const long gathers = base.calls.at("transfer: gather");
+  CHECK(gathers == 2 * base.steps);  // each body fills one chunk
+  // Shape twice (gather, and scatter of the next step at the new position), material twice (strain; stress).
+  CHECK(base.calls == Calls{{"shape", 2 * gathers},
+                            {"transfer: scatter", gathers},
+                            {"transfer: scatter, affine", gathers},
+                            {"transfer: gather", gathers},
+                            {"transfer: gather, affine", gathers},
+                            {"material", 2 * gathers},
+                            {"material: advance", gathers},
+                            {"material: stress", gathers}});
+  CHECK(base.bytes_per_particle == 4 * (3 + 3 + 9 + 9 + 1));
+}
+
+TEST_CASE("outputs that are not due change no byte, no pass and no call") {
+  const RequiredRow base = counted("base");
+  for (const char* name : {"+ metrics", "+ frames", "+ vtk", "+ figures", "+ checkpoints"}) {
+    INFO(name);
+    const RequiredRow row = counted(name);
+    CHECK(row.bytes_per_particle == base.bytes_per_particle);
+    CHECK(row.bytes_per_node == base.bytes_per_node);
+    CHECK(row.particle_bytes == base.particle_bytes);
+    CHECK(row.grid_bytes == base.grid_bytes);
+    CHECK(row.channels == base.channels);
+    CHECK(row.passes == base.passes);
+    CHECK(more_than_base(row) == Calls{});
+  }
+}
+
+TEST_CASE("outputs that are not due cost a handful of instructions to look at the clock") {
+  const RequiredRow base = counted("base");
+  if (!base.instructions) {
+    WARN("SKIPPED: this machine refuses to single-step a process (ptrace), so instructions were not counted");
+    SUCCEED();
+    return;
+  }
+  CHECK(base.instructions->own > 1000 * base.steps);
+  CHECK(base.instructions->all > base.instructions->own);
+  constexpr long handful = 40;  // whether a frame is due
+  for (const char* name : {"+ metrics", "+ frames", "+ vtk", "+ figures", "+ checkpoints"}) {
+    const RequiredRow row = counted(name);
+    REQUIRE(row.instructions);
+    INFO(name << ": " << row.instructions->own << " instructions, the base scene " << base.instructions->own);
+    CHECK(std::abs(row.instructions->own - base.instructions->own) <= handful * base.steps);
+  }
+  // The counter sees what is asked for.
+  CHECK(counted("+ ledger").instructions->own > base.instructions->own + 1000 * base.steps);
+}
+
+TEST_CASE("a choice adds what it declares and nothing else") {
+  const RequiredRow base = counted("base");
+  const long gathers = base.calls.at("transfer: gather");  // one a chunk and step
+
+  // neo_hookean dissipates nothing, so the ledger does not ask it; it needs v- beside v+, and forces of their own.
+  const RequiredRow ledger = counted("+ ledger");
+  CHECK(more_than_base(ledger) == Calls{});
+  CHECK(ledger.bytes_per_particle == base.bytes_per_particle);
+  CHECK(ledger.bytes_per_node == base.bytes_per_node + quad);
+  CHECK(ledger.passes == base.passes);
+
+  // No affine velocity to keep, scatter and gather; gradients of the weights for stress and strain, and an increment.
+  const RequiredRow flip = counted("flip");
+  CHECK(more_than_base(flip) == Calls{{"shape: gradients", 2 * gathers},
+                                      {"transfer: gather, increment", gathers},
+                                      {"transfer: scatter, affine", -gathers},
+                                      {"transfer: gather, affine", -gathers}});
+  CHECK(flip.bytes_per_particle == base.bytes_per_particle - 9 * sizeof(float));
+  CHECK(flip.bytes_per_node == base.bytes_per_node + quad);
+  CHECK(flip.passes == base.passes);
+
+  // Order 4 is three more rounds: weights, gather and scatter each.
+  const RequiredRow filter = counted("+ fmpm 4");
+  Calls rounds = more_than_base(filter);
+  CHECK(rounds.erase("filter") == 1);  // batches of nodes
+  CHECK(rounds == Calls{{"shape", 3 * gathers},
+                        {"transfer: scatter", 3 * gathers},
+                        {"transfer: scatter, affine", 3 * gathers},
+                        {"transfer: gather", 3 * gathers},
+                        {"transfer: gather, affine", 3 * gathers}});
+  CHECK(filter.calls.at("filter") % 3 == 0);
+  CHECK(filter.bytes_per_particle == base.bytes_per_particle);
+  CHECK(filter.bytes_per_node == base.bytes_per_node + quad);  // two more, and no second motion: nothing is fused
+
+  // Volume and its gradient, and the surface's position, for the normal and the gap; every channel a field.
+  const RequiredRow contact = counted("+ contact");
+  Calls pairs = more_than_base(contact);
+  CHECK(pairs.erase("contact") == 1);  // batches of nodes, before and after the forces
+  CHECK(pairs == Calls{{"shape: gradients", gathers}, {"material: volume ratio", gathers}});
+  CHECK(contact.bytes_per_particle == base.bytes_per_particle);
+  CHECK(contact.bytes_per_node == 2 * 4 * quad);
+}
