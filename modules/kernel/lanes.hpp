@@ -157,6 +157,16 @@ inline bool any_lane(typename Lanes<T>::Mask mask) {
 }
 
 template <class T>
+inline T largest_lane(Lanes<T> lanes) {
+  for (int step = Lanes<T>::width / 2; step > 0; step /= 2) {
+    typename Lanes<T>::Mask partner{};
+    for (int i = 0; i < Lanes<T>::width; ++i) partner[i] = i ^ step;
+    lanes = max(lanes, Lanes<T>(__builtin_shuffle(lanes.v, partner)));
+  }
+  return lanes[0];
+}
+
+template <class T>
 struct scalar_of_trait<Lanes<T>> {
   using type = T;
 };

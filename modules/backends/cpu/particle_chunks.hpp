@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "flush_denormals.hpp"
 #include "particle_step.hpp"
 
 namespace mpm::cpu {
@@ -58,6 +59,7 @@ void ParticleStep<D, T>::for_each_block(int body, bool coloured, Visit&& visit) 
   };
 #pragma omp parallel num_threads(scene_.threads)
   {
+    const FlushDenormals flush;
     Work& work = *work_[omp_get_thread_num()];
     if (coloured) {
       for (const auto& units : particles.units) {

@@ -374,14 +374,8 @@ double ParticleStep<D, T>::advance_position(const Chunk& chunk, const T* advecti
       outside = select(moved >= low, select(moved <= high, outside, L(T(1))), L(T(1)));  // a NaN is outside
     }
   }
-  T distance = 0;
-  bool any_outside = false;
-  for (int i = 0; i < L::width; ++i) {
-    distance = std::max(distance, largest[i]);
-    any_outside = any_outside || outside[i] != 0;
-  }
-  if (any_outside) note_outside(chunk);
-  return distance;
+  if (any_lane<T>(outside > T(0))) note_outside(chunk);
+  return largest_lane(largest);
 }
 
 template <int D, class T>

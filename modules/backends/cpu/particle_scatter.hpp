@@ -151,28 +151,26 @@ template <bool Affine, bool Gradient>
 void ParticleStep<D, T>::pack_coefficients(Work& work, const T* last, bool constant, int count) {
   using L = Lanes<T>;
   const T h = static_cast<T>(scene_.domain.cell_size), inverse_h = T(1) / h;
-  constexpr std::size_t step = 4 * quad_groups(D, Affine, Gradient);
+  constexpr int groups = quad_groups(D, Affine, Gradient), first_s = 1 + (Affine ? D : 0);
   const L zero(T(0));
   for (int p = 0; p < count; p += L::width) {
-    T* quads = work.quads + p * step;
-    L b[4] = {zero, zero, zero, last ? L::load(last + p) : zero}, q[4] = {zero, zero, zero, zero};
-    for (int c = 0; constant && c < D; ++c) b[c] = L::load(work.b + c * chunk_size + p);
+    L q[groups][4];
+#pragma GCC unroll 7
+    for (int g = 0; g < groups; ++g) q[g][2] = q[g][3] = zero;
+    if (last) q[0][3] = L::load(last + p);
+    for (int c = 0; c < D; ++c) q[0][c] = constant ? L::load(work.b + c * chunk_size + p) : zero;
 #pragma GCC unroll 3
     for (int a = 0; Affine && a < D; ++a) {
       const L f = L::load(work.offset + a * chunk_size + p);
       for (int c = 0; c < D; ++c) {
-        q[c] = h * L::load(work.A + (c * D + a) * chunk_size + p);
-        b[c] = b[c] - q[c] * f;
+        q[1 + a][c] = h * L::load(work.A + (c * D + a) * chunk_size + p);
+        q[0][c] = q[0][c] - q[1 + a][c] * f;
       }
-      store_quads<T>(quads + 4 * (1 + a), step, q);
     }
-    store_quads<T>(quads, step, b);
-    quads += 4 * (Affine ? 1 + D : 1);
 #pragma GCC unroll 3
-    for (int a = 0; Gradient && a < D; ++a) {
-      for (int c = 0; c < D; ++c) q[c] = inverse_h * L::load(work.S + (c * D + a) * chunk_size + p);
-      store_quads<T>(quads + 4 * a, step, q);
-    }
+    for (int a = 0; Gradient && a < D; ++a)
+      for (int c = 0; c < D; ++c) q[first_s + a][c] = inverse_h * L::load(work.S + (c * D + a) * chunk_size + p);
+    store_groups<T, groups>(work.quads + std::size_t(p) * 4 * groups, q);
   }
 }
 template <int D, class T>

@@ -50,10 +50,18 @@ struct Workspace {
   alignas(64) std::int32_t base[D * chunk_size];
   alignas(64) std::int32_t first[chunk_size];  ///< of the stencils: see Stencils
   alignas(64) T offset[D * chunk_size], weight[D * 4 * chunk_size], gradient[D * 4 * chunk_size];
-  alignas(64) T mass[chunk_size], b[D * chunk_size], A[D * D * chunk_size], S[D * D * chunk_size];
+  alignas(64) T mass[chunk_size], b[D * chunk_size];
   alignas(64) T stress[symmetric * chunk_size], volume_ratio[chunk_size], scalar[chunk_size];
-  alignas(64) T velocity[D * chunk_size], increment[D * chunk_size], affine[D * D * chunk_size],
-      gradient_of_velocity[D * D * chunk_size];
+  alignas(64) T velocity[D * chunk_size], increment[D * chunk_size];
+  // What is gathered is used up before anything is scattered: one place for both stays in the first-level cache.
+  union {
+    alignas(64) T affine[D * D * chunk_size];
+    alignas(64) T A[D * D * chunk_size];
+  };
+  union {
+    alignas(64) T gradient_of_velocity[D * D * chunk_size];
+    alignas(64) T S[D * D * chunk_size];
+  };
   alignas(64) T advection[D * chunk_size], quads[(1 + 2 * D) * 4 * chunk_size + 4];
   /// Of moments a particle: cells^2, and the inverse in 1/m^2. [D] of a tensor product, [D * D] of a list.
   alignas(64) T second_moment[D * D * chunk_size], inverse_moment[D * D * chunk_size];

@@ -140,4 +140,34 @@ inline __attribute__((always_inline)) void store_quads(T* quads, std::size_t ste
   for (int i = 0; i < 4; ++i) part_quads<T>(q[i], quads + i * step, 4 * step);
 }
 
+#if defined(__AVX512F__)
+/// Four quads a particle, one after another: whole registers are stored, which takes fewer shuffles than parting each.
+inline __attribute__((always_inline)) void store_four_groups(float* quads, const QuadLanes<float> (&q)[4][4]) {
+  for (int i = 0; i < 4; ++i) {  // the transpose of blocks of 128 bits: group of quads by particle
+    const __m512 a = (__m512)q[0][i], b = (__m512)q[1][i], c = (__m512)q[2][i], d = (__m512)q[3][i];
+    const __m512 ab_low = _mm512_shuffle_f32x4(a, b, 0x44), ab_high = _mm512_shuffle_f32x4(a, b, 0xee);
+    const __m512 cd_low = _mm512_shuffle_f32x4(c, d, 0x44), cd_high = _mm512_shuffle_f32x4(c, d, 0xee);
+    _mm512_store_ps(quads + 16 * i, _mm512_shuffle_f32x4(ab_low, cd_low, 0x88));
+    _mm512_store_ps(quads + 16 * (i + 4), _mm512_shuffle_f32x4(ab_low, cd_low, 0xdd));
+    _mm512_store_ps(quads + 16 * (i + 8), _mm512_shuffle_f32x4(ab_high, cd_high, 0x88));
+    _mm512_store_ps(quads + 16 * (i + 12), _mm512_shuffle_f32x4(ab_high, cd_high, 0xdd));
+  }
+}
+#endif
+/// `groups` quads a particle, one after another.
+template <class T, int groups>
+inline __attribute__((always_inline)) void store_groups(T* quads, const Lanes<T> (&component)[groups][4]) {
+#if defined(__AVX512F__)
+  if constexpr (groups == 4 && sizeof(T) == 4) {
+    QuadLanes<T> q[4][4];
+    for (int g = 0; g < 4; ++g) {
+      for (int i = 0; i < 4; ++i) q[g][i] = component[g][i].v;
+      transpose_blocks<T>(q[g]);
+    }
+    return store_four_groups(quads, q);
+  }
+#endif
+  for (int g = 0; g < groups; ++g) store_quads<T>(quads + 4 * g, 4 * groups, component[g]);
+}
+
 }  // namespace mpm::cpu

@@ -15,9 +15,6 @@
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
-#ifndef AHEAD_LOC
-#define AHEAD_LOC 3
-#endif
 
 #include "blocks.hpp"
 #include "row.hpp"
@@ -31,7 +28,7 @@ struct Ahead {
   std::size_t bytes_a_particle = 0;
   MPM_ROW_INLINE void fetch(int particle) const {
     const char* const begin = from + particle * bytes_a_particle;
-    for (std::size_t byte = 0; byte < bytes_a_particle; byte += 64) __builtin_prefetch(begin + byte, 1, AHEAD_LOC);
+    for (std::size_t byte = 0; byte < bytes_a_particle; byte += 64) __builtin_prefetch(begin + byte, 1, 3);
   }
 };
 
@@ -112,8 +109,11 @@ struct LastWeights {
   alignas(64) T quads[chunk_size * 4];
   MPM_ROW_INLINE LastWeights(const T* weights, int count) {
     const T* const w = weights + (D - 1) * K * chunk_size;
-    const auto at = [&](int k) { return k < K ? w + k * chunk_size : nullptr; };
-    pack_quads<T>(quads, 1, at(0), at(1), at(2), at(3), (count + 3) / 4 * 4);
+    for (int p = 0; p < count; p += Lanes<T>::width) {
+      Lanes<T> components[4];
+      for (int k = 0; k < 4; ++k) components[k] = k < K ? Lanes<T>::load(w + k * chunk_size + p) : Lanes<T>(T(0));
+      store_quads<T>(quads + 4 * p, 4, components);
+    }
   }
   MPM_ROW_INLINE Row<T, K> row(int particle) const { return spread<T, K>(quads + 4 * particle); }
 };
@@ -185,6 +185,8 @@ MPM_ROW_INLINE StencilSums<K, T> sum_rows(const T* corner, const Stencils<T>& st
   constexpr int side = tile_side<D, K>;
   const AxisWeights<K, T> x(stencils, 0, p, Gradient), y(stencils, D - 2, p, Gradient);
   StencilSums<K, T> sums;
+  typename R::Vector moment_y[K];
+  for (int j = 2; D == 3 && Moment && j < K; ++j) moment_y[j] = broadcast<T, K>(T(j)) * y.w[j];
 #pragma GCC unroll 4
   for (int i = 0; i < K; ++i) {
     R plane, plane_moment{}, plane_slope{};
@@ -193,10 +195,10 @@ MPM_ROW_INLINE StencilSums<K, T> sum_rows(const T* corner, const Stencils<T>& st
     } else {
 #pragma GCC unroll 4
       for (int j = 0; j < K; ++j) {
-        const R row = load_row<T, K>(corner + (i * side + j) * side * 4), term = times<T, K>(y.w[j], row);
-        plane = j == 0 ? term : plane + term;
+        const R row = load_row<T, K>(corner + (i * side + j) * side * 4);
+        plane = j == 0 ? times<T, K>(y.w[j], row) : plane + times<T, K>(y.w[j], row);
         if constexpr (Moment) {
-          if (j > 0) plane_moment = j == 1 ? term : plane_moment + times<T, K>(broadcast<T, K>(T(j)), term);
+          if (j > 0) plane_moment = j == 1 ? times<T, K>(y.w[1], row) : plane_moment + times<T, K>(moment_y[j], row);
         }
         if constexpr (Gradient) plane_slope = j == 0 ? times<T, K>(y.g[j], row) : plane_slope + times<T, K>(y.g[j], row);
       }
