@@ -39,9 +39,11 @@ typename ParticleStep<D, T>::Gathered ParticleStep<D, T>::gather(const Pass& pas
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       load_velocities(body, block, work);
       block.kinetic_energy = block.dissipated = 0;
+      block.bounds.clear();
       double& drift = drift_of_thread_[omp_get_thread_num()];
       for_each_chunk_of(body, block,
                         [&](const Chunk& chunk) { drift = std::max(drift, gather_one(pass, step, chunk, work)); });
+      block.bounds.known = scene_.list && pass.move;
     });
   return sum_gathered();
 }
@@ -114,7 +116,9 @@ template <int D, class T>
   if (!pass.move) return 0;
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
     std::copy_n(chunk.at(chunk.particles.next_domain), D * D * chunk_size, chunk.at(chunk.particles.domain));
-  return advance_position(chunk, advection, step.dt);
+  const double drift = advance_position(chunk, advection, step.dt);
+  if (scene_.list) extend_bounds(chunk);
+  return drift;
 }
 
 template <int D, class T>
@@ -126,6 +130,7 @@ double ParticleStep<D, T>::strain(const StepInfo& step) {
       kernels_.load(work.velocity_tile.data(), grid_.channel(motion, bodies_[body].field), block.neighbours.data(),
                     block.reach);
       block.dissipated = 0;
+      block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         gather_chunk(chunk, work, wanted);
         advance_material(chunk, work, step.dt);
@@ -146,8 +151,10 @@ void ParticleStep<D, T>::gather_moments(const Chunk& chunk, Work& work, const T*
     const Stencils<T> stencils{work.tile_node, work.weight, work.gradient};
     return kernels_.gather[moment][gradient](tile, stencils, work.quads, chunk.end);
   }
-  const auto kernel = kernels_.gather_lists[moment][gradient];
-  if (!work.far_only) kernel(tile, work.lists.near_lists(), work.quads, chunk.end);
+  if (scene_.evaluate_box && !work.far_only)
+    list_kernels_.gather_boxes[moment][gradient](tile, work.boxes.boxes(), work.quads, chunk.end);
+  const auto kernel = list_kernels_.gather_lists[moment][gradient];
+  if (work.lists.any && !work.far_only) kernel(tile, work.lists.near_lists(), work.quads, chunk.end);
   if (work.lists.far > 0)
     kernel(grid_.channel(channel, chunk.body.field), work.lists.far_lists(), work.quads, chunk.end);
 }
@@ -202,22 +209,10 @@ void ParticleStep<D, T>::affine_from_moments(const Chunk& chunk, Work& work, int
     }
   }
   if (!scene_.moment_of_particle) return;
-  const T* const inverse = work.inverse_moment;
-  for (int c = 0; c < D; ++c) {
-    T* const row = C + c * D * chunk_size;
-    for (int p = 0; p < chunk.end; ++p) {
-      T product[D];
-      for (int a = 0; a < D; ++a) {
-        if (!scene_.list) {
-          product[a] = row[a * chunk_size + p] * inverse[a * chunk_size + p];
-          continue;
-        }
-        product[a] = 0;
-        for (int b = 0; b < D; ++b) product[a] += row[b * chunk_size + p] * inverse[(b * D + a) * chunk_size + p];
-      }
-      for (int a = 0; a < D; ++a) row[a * chunk_size + p] = product[a];
-    }
-  }
+  if (scene_.list) return multiply_by_inverse_moments(chunk, work);
+  for (int c = 0; c < D; ++c)
+    for (int a = 0; a < D; ++a)
+      for (int p = 0; p < chunk.end; ++p) C[(c * D + a) * chunk_size + p] *= work.inverse_moment[a * chunk_size + p];
 }
 
 /// One pass of the filter's loop on the particles: v* is gathered and scattered again by the transfer itself.
@@ -374,6 +369,7 @@ void ParticleStep<D, T>::move(const StepInfo& step) {
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work&) {
       double& drift = drift_of_thread_[omp_get_thread_num()];
+      block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         drift = std::max(drift, advance_position(chunk, chunk.at(chunk.particles.advection), step.dt));
       });

@@ -24,14 +24,6 @@ struct Stencils {
   const T* gradient;  ///< per cell
 };
 
-/// Lists of nodes of one chunk, one after another: those of particle p are entries first[p] to last[p].
-template <class T>
-struct NodeLists {
-  const std::int32_t *first, *last;
-  const std::int32_t* node;  ///< [entry] in the tile, or in a channel of the grid
-  const T* values;           ///< [entry][8] d (cells, node - particle), w | gradient (per cell), unused
-};
-
 /// What part of a tile its particles reach: first nodes of stencils, from the tile's corner.
 struct Reach {
   int lowest[3] = {1 << 20, 1 << 20, 1 << 20}, highest[3] = {-1, -1, -1};
@@ -41,13 +33,9 @@ template <int D, class T>
 struct TileKernels {
   using Scatter = void (*)(T* tile, const Stencils<T>&, const T* coefficients, int count);
   using Gather = void (*)(const T* tile, const Stencils<T>&, T* moments, int count);
-  using ScatterLists = void (*)(T* nodes, const NodeLists<T>&, const T* coefficients, int count);
-  using GatherLists = void (*)(const T* nodes, const NodeLists<T>&, T* moments, int count);
   int side = 0, nodes = 0;
-  Scatter scatter[2][2];               ///< [affine][gradient]
-  Gather gather[2][2];                 ///< [moment][gradient]
-  ScatterLists scatter_lists[2][2]{};  ///< of the widest tile; offsets are from the particle: b' = b
-  GatherLists gather_lists[2][2]{};    ///< particles without an entry are left alone
+  Scatter scatter[2][2];  ///< [affine][gradient]
+  Gather gather[2][2];    ///< [moment][gradient]
   void (*load)(T* tile, const T* channel, const std::int32_t* neighbours, const Reach&);
   void (*flush)(T* tile, T* channel, const std::int32_t* neighbours, const Reach&);  ///< adds, and clears the tile
 };
@@ -201,52 +189,6 @@ void gather_from_tile(const T* tile, const Stencils<T>& stencils, T* moments, in
   }
 }
 
-/// A list's nodes get  w (b + d_x Q_x + d_y Q_y + d_z Q_z) + g_x S_x + g_y S_y + g_z S_z.
-template <int D, class T, bool Affine, bool Gradient>
-void scatter_lists(T* nodes, const NodeLists<T>& lists, const T* coefficients, int count) {
-  using Q = Quad<T>;
-  constexpr int groups = quad_groups(D, Affine, Gradient), first_s = 1 + (Affine ? D : 0);
-  for (int p = 0; p < count; ++p) {
-    const Q* const c = reinterpret_cast<const Q*>(coefficients) + p * groups;
-    for (std::int32_t e = lists.first[p]; e < lists.last[p]; ++e) {
-      const T* const entry = lists.values + std::size_t(e) * 8;
-      Q sum = c[0];
-      if constexpr (Affine)
-        for (int a = 0; a < D; ++a) sum += entry[a] * c[1 + a];
-      Q value = entry[3] * sum;
-      if constexpr (Gradient)
-        for (int a = 0; a < D; ++a) value += entry[4 + a] * c[first_s + a];
-      reinterpret_cast<Q*>(nodes)[lists.node[e]] += value;
-    }
-  }
-}
-
-/// The sums of a list: of w v, d_a w v and g_a v.
-template <int D, class T, bool Moment, bool Gradient>
-void gather_lists(const T* nodes, const NodeLists<T>& lists, T* moments, int count) {
-  using Q = Quad<T>;
-  constexpr int groups = quad_groups(D, Moment, Gradient), first_g = 1 + (Moment ? D : 0);
-  for (int p = 0; p < count; ++p) {
-    if (lists.first[p] == lists.last[p]) continue;
-    Q value{}, m[3]{}, g[3]{};
-    for (std::int32_t e = lists.first[p]; e < lists.last[p]; ++e) {
-      const T* const entry = lists.values + std::size_t(e) * 8;
-      const Q v = reinterpret_cast<const Q*>(nodes)[lists.node[e]], term = entry[3] * v;
-      value += term;
-      if constexpr (Moment)
-        for (int a = 0; a < D; ++a) m[a] += entry[a] * term;
-      if constexpr (Gradient)
-        for (int a = 0; a < D; ++a) g[a] += entry[4 + a] * v;
-    }
-    Q* const out = reinterpret_cast<Q*>(moments) + p * groups;
-    out[0] = value;
-    if constexpr (Moment)
-      for (int a = 0; a < D; ++a) out[1 + a] = m[a];
-    if constexpr (Gradient)
-      for (int a = 0; a < D; ++a) out[first_g + a] = g[a];
-  }
-}
-
 /// Calls run(tile node, grid node, length) for the runs of consecutive nodes that the reach touches.
 template <int D, int K, class Run>
 inline void for_each_run(const std::int32_t* neighbours, const Reach& reach, Run&& run) {
@@ -307,16 +249,6 @@ TileKernels<D, T> tile_kernels_of_width() {
   kernels.gather[0][1] = &gather_from_tile<D, T, K, false, true>;
   kernels.gather[1][0] = &gather_from_tile<D, T, K, true, false>;
   kernels.gather[1][1] = &gather_from_tile<D, T, K, true, true>;
-  if constexpr (K == 4) {
-    kernels.scatter_lists[0][0] = &scatter_lists<D, T, false, false>;
-    kernels.scatter_lists[0][1] = &scatter_lists<D, T, false, true>;
-    kernels.scatter_lists[1][0] = &scatter_lists<D, T, true, false>;
-    kernels.scatter_lists[1][1] = &scatter_lists<D, T, true, true>;
-    kernels.gather_lists[0][0] = &gather_lists<D, T, false, false>;
-    kernels.gather_lists[0][1] = &gather_lists<D, T, false, true>;
-    kernels.gather_lists[1][0] = &gather_lists<D, T, true, false>;
-    kernels.gather_lists[1][1] = &gather_lists<D, T, true, true>;
-  }
   kernels.load = &load_tile<D, T, K>;
   kernels.flush = &flush_tile<D, T, K>;
   return kernels;
