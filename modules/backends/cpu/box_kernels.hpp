@@ -1,7 +1,7 @@
 #pragma once
 // Scatter and gather of list shapes: dense boxes of weights in the tile of a block (particles whose nodes fit), and
 // lists of nodes in the tile or on the grid (the others). A node's weight is a broadcast from memory beside one quad:
-// wider stores would shift from particle to particle against each other, which stalls the loads that follow.
+// wider stores overlap by a shift from one particle to the next, which stalls the loads that follow.
 
 #include <cstdint>
 

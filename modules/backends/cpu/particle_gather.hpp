@@ -290,18 +290,21 @@ template <int D, class T>
 void ParticleStep<D, T>::advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const {
   const T* const from = chunk.at(chunk.particles.domain);
   T* const to = chunk.at(chunk.particles.next_domain < 0 ? chunk.particles.domain : chunk.particles.next_domain);
+  using V = Lanes<T>;
   const T step = static_cast<T>(dt);
-  for (int k = 0; k < D; ++k)  // column by column
-    for (int p = 0; p < chunk.end; ++p) {
-      T advanced[D];
+  for (int p = 0; p < chunk.end; p += V::width) {
+    V L[D * D];
+    for (int c = 0; c < D * D; ++c) L[c] = V::load(velocity_gradient + c * chunk_size + p);
+    for (int k = 0; k < D; ++k) {  // column by column
+      V side[D];
+      for (int b = 0; b < D; ++b) side[b] = V::load(from + (b * D + k) * chunk_size + p);
       for (int a = 0; a < D; ++a) {
-        T rate = 0;
-        for (int b = 0; b < D; ++b)
-          rate += velocity_gradient[(a * D + b) * chunk_size + p] * from[(b * D + k) * chunk_size + p];
-        advanced[a] = from[(a * D + k) * chunk_size + p] + step * rate;
+        V rate = L[a * D] * side[0];
+        for (int b = 1; b < D; ++b) rate = rate + L[a * D + b] * side[b];
+        (side[a] + step * rate).store(to + (a * D + k) * chunk_size + p);
       }
-      for (int a = 0; a < D; ++a) to[(a * D + k) * chunk_size + p] = advanced[a];
     }
+  }
 }
 
 /// Room beyond a face that cannot be folded away, in cells: half a cell at a separating wall, rounding elsewhere.
