@@ -56,9 +56,11 @@ ListKernels<D, T> list_kernels();
 /// Node (i, j, k) gets  w (b' + i Q_x + j Q_y + k Q_z) + g_x S_x + g_y S_y + g_z S_z.
 template <int D, class T, int W, bool Affine, bool Gradient>
 inline __attribute__((always_inline)) void scatter_box(Quad<T>* corner, const T* weight, const T* gradient,
-                                                       const Quad<T>* c) {
+                                                       const Quad<T>* coefficients) {
   using Q = Quad<T>;
   constexpr int side = list_tile_side<D>, rows = D == 2 ? 1 : W, first_s = 1 + (Affine ? D : 0);
+  Q c[quad_groups(D, Affine, Gradient)];  // in registers, whatever the stores to the tile may reach
+  for (int k = 0; k < quad_groups(D, Affine, Gradient); ++k) c[k] = coefficients[k];
   Q plane = c[0];
   for (int i = 0; i < W; ++i) {
     Q row = plane;
@@ -111,20 +113,23 @@ inline __attribute__((always_inline)) void gather_box(const Quad<T>* corner, con
     for (int j = 0; j < rows; ++j) {
       const Q* const nodes = corner + (i * (D == 2 ? 1 : side) + j) * side;
       const int first = (i * (D == 2 ? 1 : box_width) + j) * box_width * chunk_size;
-      Q row{};
+      Q row{}, row_m{}, row_g[3]{};  // short chains of additions
 #pragma GCC unroll 4
       for (int k = 0; k < W; ++k) {
         const int at = first + k * chunk_size;
         const Q v = nodes[k], term = weight[at] * v;
         row += term;
         if constexpr (Moment) {
-          if (k > 0) m[D - 1] += T(k) * term;
+          if (k > 0) row_m += T(k) * term;
         }
         if constexpr (Gradient)
 #pragma GCC unroll 4
-          for (int a = 0; a < D; ++a) g[a] += gradient[a * box_nodes<D> * chunk_size + at] * v;
+          for (int a = 0; a < D; ++a) row_g[a] += gradient[a * box_nodes<D> * chunk_size + at] * v;
       }
       plane += row;
+      if constexpr (Moment) m[D - 1] += row_m;
+      if constexpr (Gradient)
+        for (int a = 0; a < D; ++a) g[a] += row_g[a];
       if constexpr (Moment && D == 3) {
         if (j > 0) m[1] += T(j) * row;
       }
