@@ -15,3 +15,12 @@
 #else
 #define MPM_HOST 1
 #endif
+
+// Before a loop with few steps, whose number is a constant: writes them all out.
+#if defined(__CUDACC__)
+#define MPM_UNROLL _Pragma("unroll")
+#elif defined(MPM_DEVICE_PASS) || defined(__clang__)
+#define MPM_UNROLL
+#else
+#define MPM_UNROLL _Pragma("GCC unroll 64")
+#endif

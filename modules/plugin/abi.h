@@ -25,9 +25,10 @@ extern "C" {
  * revision. A host takes plugins of its version and of its revision or an older one: it reads an older, shorter table
  * as if the missing fields were zero. */
 #define MPM_ABI_VERSION 1u
-#define MPM_ABI_REVISION 0u
-#define MPM_BATCH 64u /* particles or nodes in a full batch */
-#define MPM_LANES 16u /* counts are padded to a multiple of this */
+#define MPM_ABI_REVISION 1u
+#define MPM_BATCH 64u    /* particles or nodes in a full batch */
+#define MPM_LANES 16u    /* counts are padded to a multiple of this */
+#define MPM_BOX_WIDTH 4u /* nodes an axis of mpm_box_batch */
 
 enum mpm_kind { MPM_SHAPE = 1, MPM_TRANSFER = 2, MPM_FILTER = 3, MPM_CONTACT = 4, MPM_MATERIAL = 5 };
 
@@ -111,6 +112,22 @@ typedef struct mpm_list_batch {
   void* gradient;        /* [capacity][D][stride] out: by position; null when the plan needs none */
   void* second_moment;   /* [D*D][stride] out: sum w d d^T, row-major; null unless per particle and needed */
 } mpm_list_batch;
+/* The same particles' nodes as dense boxes, for hosts that take rows of nodes at once. A particle's nodes lie within
+ * `extent` nodes an axis from `base`; a node (i, j, k) of the box has entry (i * MPM_BOX_WIDTH + j) * MPM_BOX_WIDTH +
+ * k, zero where the list has none. Entries with i, j or k from `extent` on are undefined. Extent 0: no box holds the
+ * particle's nodes (or its gradients, when these are wanted), and its list counts; all else but `base` is undefined. */
+typedef struct mpm_box_batch {
+  uint32_t count, stride, dimension, reserved;
+  const void* position; /* as in mpm_list_batch, as are the next two */
+  const void* half_size;
+  const void* domain;
+  int32_t* base;       /* [D][stride] out: first node of the box */
+  int32_t* extent;     /* [stride] out: 0, or at most MPM_BOX_WIDTH */
+  void* offset;        /* [D][stride] out: position - base */
+  void* weight;        /* [MPM_BOX_WIDTH^D][stride] out */
+  void* gradient;      /* [D][MPM_BOX_WIDTH^D][stride] out: by position; null when the plan needs none */
+  void* second_moment; /* [D*D][stride] out: as in mpm_list_batch */
+} mpm_box_batch;
 typedef struct mpm_shape {
   uint32_t form, width, second_moment_kind, reserved; /* width: nodes an axis of a tensor product, 2 to 4 */
   double second_moment;                               /* cells^2, of MPM_MOMENT_CONSTANT */
@@ -119,6 +136,8 @@ typedef struct mpm_shape {
   uint32_t capacity[2];                                           /* most nodes of a list, [dimension - 2] */
   double reach;                                                   /* of a list: see mpm_list_batch */
   void (*evaluate_list[MPM_PRECISIONS][2])(const void* parameters, const mpm_list_batch* batch); /* list, else null */
+  /* Since revision 1. Of a list, null when it has no boxes. */
+  void (*evaluate_box[MPM_PRECISIONS][2])(const void* parameters, const mpm_box_batch* batch);
 } mpm_shape;
 
 /* ---- transfer ------------------------------------------------------------------------------------------------

@@ -1,5 +1,5 @@
 // Checks of shapes that list their nodes: the identities of reference case A1 under random domains, each node once,
-// and agreement of all instantiations.
+// agreement of all instantiations, and of boxes with lists.
 
 #include <algorithm>
 #include <array>
@@ -323,6 +323,206 @@ void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample
                    "counts of 16 to 64, with and without optional outputs" + where);
 }
 
+// ---- boxes
+
+int places_of(int dimension) {
+  constexpr int width = MPM_BOX_WIDTH;
+  return dimension == 2 ? width * width : width * width * width;
+}
+
+/// The entries of boxes, for the same particles.
+struct BoxBatch {
+  Variant variant;
+  int count;
+  Array base, extent, offset, weight, gradient, second_moment;
+
+  BoxBatch(const Variant& v, int entries, int outputs) : variant(v), count(entries) {
+    const Element element = element_of(v);
+    const std::uint32_t n = static_cast<std::uint32_t>(entries);
+    const int D = v.dimension;
+    base = Array(Element::index, D, n);
+    extent = Array(Element::index, 1, n);
+    offset = Array(element, D, n);
+    weight = Array(element, places_of(D), n);
+    if (outputs & gradients) gradient = Array(element, D * places_of(D), n);
+    if (outputs & moments) second_moment = Array(element, D * D, n);
+  }
+
+  void evaluate(const Plugin& plugin, const ParameterSample& parameters, const ListBatch& particles) {
+    mpm_box_batch batch{};
+    batch.count = static_cast<std::uint32_t>(count);
+    batch.stride = weight.stride();
+    batch.dimension = static_cast<std::uint32_t>(variant.dimension);
+    batch.position = particles.position.data();
+    batch.half_size = particles.half_size.data();
+    batch.domain = particles.domain.data();
+    batch.base = static_cast<std::int32_t*>(base.data());
+    batch.extent = static_cast<std::int32_t*>(extent.data());
+    batch.offset = offset.data();
+    batch.weight = weight.data();
+    batch.gradient = gradient.data();
+    batch.second_moment = second_moment.data();
+    plugin.shape().evaluate_box[variant.precision][variant.dimension - 2](parameters.data(), &batch);
+  }
+
+  int nodes(int lane) const {
+    return std::clamp(static_cast<int>(extent(0, lane)), 0, static_cast<int>(MPM_BOX_WIDTH));
+  }
+  /// Entry of the node at `node` nodes from the box's first, or -1 when it is outside of the box.
+  int place(const std::array<int, 3>& node, int lane) const {
+    int entry = 0;
+    for (int a = 0; a < variant.dimension; ++a) {
+      if (node[a] < 0 || node[a] >= nodes(lane)) return -1;
+      entry = entry * static_cast<int>(MPM_BOX_WIDTH) + node[a];
+    }
+    return entry;
+  }
+  bool same_particle(int lane, const BoxBatch& other, int shift) const {
+    const int D = variant.dimension, n = nodes(lane);
+    bool same = extent(0, lane) == other.extent(0, lane);
+    for (int a = 0; a < D; ++a)
+      same = same && other.base(a, lane) - base(a, lane) == shift && offset(a, lane) == other.offset(a, lane);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        for (int k = 0; k < (D == 2 ? 1 : n) && same; ++k) {
+          const int entry = place({i, j, k}, lane);
+          same = weight(entry, lane) == other.weight(entry, lane);
+          for (int a = 0; a < D && gradient.components() && other.gradient.components(); ++a) {
+            const int slope = a * places_of(D) + entry;
+            same = same && gradient(slope, lane) == other.gradient(slope, lane);
+          }
+        }
+    return same;
+  }
+};
+
+BoxBatch boxes(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const ListInput& input,
+               int count = full, int outputs = all) {
+  BoxBatch batch(v, count, outputs);
+  batch.evaluate(plugin, parameters, loaded(plugin, v, input, count, outputs));
+  return batch;
+}
+
+/// The nodes of the list are those of the box: nowhere else, and with the same weights, gradients and moment.
+void check_box_agrees(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const ListInput& input,
+                      int outputs, const std::string& where, Findings& findings) {
+  const BoxBatch box = boxes(plugin, v, parameters, input, full, outputs);
+  const ListBatch list = evaluated(plugin, v, parameters, input, full, outputs);
+  const int D = v.dimension, places = places_of(D);
+  Worst weight, gradient, moment, offset;
+  bool extents = true, held = true;
+  int lists = 0;
+  for (int lane = 0; lane < full; ++lane) {
+    extents &= box.extent(0, lane) >= 0 && box.extent(0, lane) <= MPM_BOX_WIDTH;
+    if (!box.nodes(lane)) ++lists;
+    if (!box.nodes(lane)) continue;
+    const double steep = steepness(input, D, lane);
+    double reach = 1;
+    for (int a = 0; a < D; ++a) {
+      reach = std::max(reach, reach_of(plugin, input, a, lane));
+      offset.add(std::abs(box.offset(a, lane) - (list.position(a, lane) - box.base(a, lane))), lane);
+    }
+    std::vector<bool> listed(static_cast<std::size_t>(places));
+    for (int k = 0; k < list.nodes(lane); ++k) {
+      std::array<int, 3> node{};
+      for (int a = 0; a < D; ++a) node[a] = static_cast<int>(list.coordinate(k, a, lane) - box.base(a, lane));
+      const int entry = box.place(node, lane);
+      held &= entry >= 0;
+      if (entry < 0) continue;
+      listed[static_cast<std::size_t>(entry)] = true;
+      weight.add(std::abs(list.weight(k, lane) - box.weight(entry, lane)), lane);
+      for (int a = 0; a < D && (outputs & gradients); ++a)
+        gradient.add(std::abs(list.slope(k, a, lane) - box.gradient(a * places + entry, lane)) / steep, lane);
+    }
+    for (int i = 0; i < box.nodes(lane); ++i)
+      for (int j = 0; j < box.nodes(lane); ++j)
+        for (int k = 0; k < (D == 2 ? 1 : box.nodes(lane)); ++k) {
+          const int entry = box.place({i, j, k}, lane);
+          if (listed[static_cast<std::size_t>(entry)]) continue;
+          weight.add(std::abs(box.weight(entry, lane)), lane);
+          for (int a = 0; a < D && (outputs & gradients); ++a)
+            gradient.add(std::abs(box.gradient(a * places + entry, lane)) / steep, lane);
+        }
+    for (int c = 0; c < D * D && (outputs & moments); ++c)
+      moment.add(std::abs(box.second_moment(c, lane) - list.second_moment(c, lane)) / (reach * reach), lane);
+  }
+  const double bound = v.single() ? 2e-6 : 1e-14;
+  findings.require("box_extent [" + v.name() + "]", extents, "0 to MPM_BOX_WIDTH nodes an axis" + where);
+  findings.require("box_holds_list [" + v.name() + "]", held, "every node of the list lies in the box" + where);
+  findings.at_most("box_offset", v, offset, v.epsilon(), "|offset - (position - base)|" + where);
+  findings.at_most("box_agrees_with_list", v, weight, bound, "|w - w of the list|" + where);
+  findings.at_most("box_gradient_agrees_with_list", v, gradient, bound,
+                   "|g - g of the list| over the inverse domain" + where);
+  findings.at_most("box_second_moment_agrees_with_list", v, moment, bound,
+                   "|D - D of the list| over the reach squared" + where);
+  findings.report("without_box [" + v.name() + "]", lists, "particles of 64 that take their lists" + where);
+}
+
+/// Neither the number nor the size of the other particles matters, nor which outputs are wanted, nor whole cells.
+void check_box_batches(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
+                       const ListInput& input, const std::string& where, Findings& findings) {
+  const BoxBatch reference = boxes(plugin, v, parameters, input);
+  bool guards = true, same = true, neighbours = true, translated = true;
+  for (int count = MPM_LANES; count <= full; count += MPM_LANES)
+    for (int outputs : {none, gradients, moments, all}) {
+      const BoxBatch b = boxes(plugin, v, parameters, input, count, outputs);
+      for (int lane = 0; lane < count; ++lane) same &= !reference.nodes(lane) || b.same_particle(lane, reference, 0);
+      for (const Array* out : {&b.base, &b.extent, &b.offset, &b.weight, &b.gradient, &b.second_moment})
+        guards &= out->guards_intact();
+      guards &= b.base.all_written() && b.extent.all_written();
+    }
+  constexpr int cells = 23;
+  ListInput narrow = input, still = input, moved = input;
+  for (int lane = 0; lane < full; ++lane) {
+    if (reference.nodes(lane) != 3) {  // make all neighbours alike
+      narrow.position[lane] = {};
+      narrow.domain[lane] = scaled(Matrix3::identity(), 0.25);
+    }
+    for (int a = 0; a < v.dimension; ++a) {
+      still.position[lane][a] = std::floor(input.position[lane][a] * 4096) / 4096;
+      moved.position[lane][a] = still.position[lane][a] + cells;
+    }
+  }
+  const BoxBatch alone = boxes(plugin, v, parameters, narrow), here = boxes(plugin, v, parameters, still),
+                 there = boxes(plugin, v, parameters, moved);
+  for (int lane = 0; lane < full; ++lane) {
+    neighbours &= reference.nodes(lane) != 3 || alone.same_particle(lane, reference, 0);
+    translated &=
+        here.extent(0, lane) == there.extent(0, lane) && (!here.nodes(lane) || here.same_particle(lane, there, cells));
+  }
+  findings.require("box_writes_inside_arrays [" + v.name() + "]", guards, "guards around the outputs" + where);
+  findings.require("box_independent_of_batch [" + v.name() + "]", same,
+                   "counts of 16 to 64, with and without optional outputs" + where);
+  findings.require("box_independent_of_neighbours [" + v.name() + "]", neighbours,
+                   "wide ones beside narrow ones" + where);
+  findings.require("box_translation [" + v.name() + "]", translated, "a shift by whole cells moves the base" + where);
+}
+
+/// What no box can hold must take its list: a particle that is not a number or reaches far.
+void check_box_refuses(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, ListInput input,
+                       const std::string& where, Findings& findings) {
+  const bool domain = plugin.descriptor->needs & MPM_NEEDS_DOMAIN;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  input.position[0][0] = nan;
+  input.position[17][1] = nan;
+  input.domain[34](1, 0) = nan;
+  input.domain[51](0, 1) = 1e9;
+  const BoxBatch b = boxes(plugin, v, parameters, input);
+  bool refused = !b.extent(0, 0) && !b.extent(0, 17);
+  if (domain) refused = refused && !b.extent(0, 34) && !b.extent(0, 51);
+  findings.require("box_refuses [" + v.name() + "]", refused,
+                   "no box of a particle that is not a number or far" + where);
+}
+
+void check_boxes(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const ListInput& input,
+                 const std::string& where, Findings& findings) {
+  findings.running("boxes", v, where);
+  for (int outputs : {static_cast<int>(moments), static_cast<int>(all)})
+    check_box_agrees(plugin, v, parameters, input, outputs, where, findings);
+  check_box_batches(plugin, v, parameters, input, where, findings);
+  check_box_refuses(plugin, v, parameters, input, where, findings);
+}
+
 }  // namespace
 
 void check_list_shape(const Plugin& plugin, Findings& findings) {
@@ -346,6 +546,7 @@ void check_list_shape(const Plugin& plugin, Findings& findings) {
       check_translation(plugin, v, parameters, input, where, findings);
       findings.running("batches", v, where);
       check_batches(plugin, v, parameters, input, where, findings);
+      if (shape.evaluate_box[v.precision][v.dimension - 2]) check_boxes(plugin, v, parameters, input, where, findings);
       if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
       findings.running("agreement with scalar", v, where);
       check_agreement(b, evaluated(plugin, {MPM_SCALAR_DOUBLE, v.dimension}, parameters, input), input, where,

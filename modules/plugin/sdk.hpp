@@ -56,6 +56,20 @@ concept ListShapeFunctorIn = requires(const typename F::Parameters& p, const Vec
 };
 template <class F>
 concept ListShapeFunctor = ListShapeFunctorIn<F, 2> && ListShapeFunctorIn<F, 3>;
+/// The same nodes as a box of `extent` nodes an axis from `base` (mpm_box_batch), over lanes: `box` returns the extent,
+/// 0 where the list must be taken. Rows of W nodes, the last axis along the row, come from what `prepare_rows` computes
+/// once; they are undefined in lanes of other extents than 1 to W. The second moment is the matrix sum w d d^T.
+template <class F, int D>
+concept BoxShapeFunctorIn = requires(const typename F::Parameters& p, const Vec<D, double>& x,
+                                     const Mat<D, double>& domain, Vec<D, double>& base,
+                                     typename F::template Rows<4, D, double>& rows, double* w, double (*g)[4]) {
+  { F::template box<D, double>(p, x, domain, true, base) } -> std::convertible_to<double>;
+  F::template prepare_rows<4, D, double>(p, x, domain, base, true, rows);
+  F::template row_in_box<4, D, true, double>(rows, 0, 0, w, g);
+  { F::template moment_of_box<4, D, double>(rows, domain) } -> std::same_as<Mat<D, double>>;
+};
+template <class F>
+concept BoxShapeFunctor = ListShapeFunctor<F> && BoxShapeFunctorIn<F, 2> && BoxShapeFunctorIn<F, 3>;
 
 /// How one pass of the filter's loop changes a node (mpm_filter in abi.h).
 template <class F, int D>
@@ -273,6 +287,59 @@ void list_batch(const void* parameters, const mpm_list_batch* request) {
   }
 }
 
+/// Rows of W nodes into the places of the widest box.
+template <class F, int W, int D, bool Gradients, class S>
+void box_rows(const mpm_box_batch* q, std::uint32_t lane, const typename F::template Rows<W, D, S>& rows) {
+  using T = scalar_of<S>;
+  constexpr std::uint32_t width = MPM_BOX_WIDTH, places = D == 2 ? width * width : width * width * width;
+  for (int i = 0; i < W; ++i)
+    for (int j = 0; j < (D == 2 ? 1 : W); ++j) {
+      S w[W], g[D][W];
+      F::template row_in_box<W, D, Gradients, S>(rows, i, j, w, g);
+      const std::uint32_t first = (D == 2 ? i * width : (i * width + j) * width) * q->stride + lane;
+      MPM_UNROLL
+      for (int k = 0; k < W; ++k) Access<S>::store(static_cast<T*>(q->weight) + first + k * q->stride, w[k]);
+      if constexpr (Gradients) MPM_UNROLL
+      for (int a = 0; a < D; ++a) MPM_UNROLL
+      for (int k = 0; k < W; ++k)
+        Access<S>::store(static_cast<T*>(q->gradient) + first + (a * places + k) * q->stride, g[a][k]);
+    }
+}
+template <class F, int W, int D, class S>
+void box_lanes(const void* parameters, const mpm_box_batch* q, std::uint32_t lane, const Vec<D, S>& x,
+               const Mat<D, S>& domain, const Vec<D, S>& base) {
+  typename F::template Rows<W, D, S> rows;
+  F::template prepare_rows<W, D, S>(parameters_of<F>(parameters), x, domain, base, q->gradient != nullptr, rows);
+  if (q->gradient)
+    box_rows<F, W, D, true, S>(q, lane, rows);
+  else
+    box_rows<F, W, D, false, S>(q, lane, rows);
+  if (q->second_moment)
+    store_components<D * D, S>(q->second_moment, q->stride, lane, F::template moment_of_box<W, D, S>(rows, domain).m);
+}
+
+template <class F, int D, class S>
+void box_batch(const void* parameters, const mpm_box_batch* q) {
+  for (std::uint32_t lane = 0; lane < q->count; lane += Access<S>::width) {
+    Vec<D, S> x, base, offset;
+    Mat<D, S> domain;
+    load_components<D, S>(q->position, q->stride, lane, x.v);
+    load_components<D * D, S>(q->domain, q->stride, lane, domain.m);
+    const S extent = F::template box<D, S>(parameters_of<F>(parameters), x, domain, q->gradient != nullptr, base);
+    for (int a = 0; a < D; ++a) {
+      Access<S>::store_index(q->base + a * q->stride + lane, base[a]);
+      offset[a] = x[a] - base[a];
+    }
+    store_components<D, S>(q->offset, q->stride, lane, offset.v);
+    Access<S>::store_index(q->extent + lane, extent);
+    // Most are narrow; those that are not at the same time wide.
+    if (any(extent > real<S>(3)))
+      box_lanes<F, 4, D, S>(parameters, q, lane, x, domain, base);
+    else
+      box_lanes<F, 3, D, S>(parameters, q, lane, x, domain, base);
+  }
+}
+
 template <class F>
 std::int32_t filter_iterations(const void* parameters) {
   return static_cast<std::int32_t>(F::iterations(parameters_of<F>(parameters)));
@@ -444,21 +511,38 @@ struct ShapeTable<F> {
                                    {&shape_batch<F, LanesFloat>, &shape_batch<F, LanesDouble>, &shape_batch<F, double>},
                                    {0, 0},
                                    0,
+                                   {},
                                    {}};
 };
 template <ListShapeFunctor F>
+inline constexpr mpm_shape list_table{MPM_NODE_LIST,
+                                      0,
+                                      MPM_MOMENT_PER_PARTICLE,
+                                      0,
+                                      0,
+                                      {},
+                                      {F::template capacity<2>, F::template capacity<3>},
+                                      F::reach,
+                                      {{&list_batch<F, 2, float>, &list_batch<F, 3, float>},
+                                       {&list_batch<F, 2, double>, &list_batch<F, 3, double>},
+                                       {&list_batch<F, 2, double>, &list_batch<F, 3, double>}},
+                                      {}};
+template <ListShapeFunctor F>
 struct ShapeTable<F> {
-  static constexpr mpm_shape value{MPM_NODE_LIST,
-                                   0,
-                                   MPM_MOMENT_PER_PARTICLE,
-                                   0,
-                                   0,
-                                   {},
-                                   {F::template capacity<2>, F::template capacity<3>},
-                                   F::reach,
-                                   {{&list_batch<F, 2, float>, &list_batch<F, 3, float>},
-                                    {&list_batch<F, 2, double>, &list_batch<F, 3, double>},
-                                    {&list_batch<F, 2, double>, &list_batch<F, 3, double>}}};
+  static constexpr mpm_shape value = list_table<F>;
+};
+template <BoxShapeFunctor F>
+struct ShapeTable<F> {
+  static constexpr mpm_shape with_boxes(mpm_shape table) {
+    table.evaluate_box[MPM_LANES_FLOAT][0] = &box_batch<F, 2, LanesFloat>;
+    table.evaluate_box[MPM_LANES_FLOAT][1] = &box_batch<F, 3, LanesFloat>;
+    table.evaluate_box[MPM_LANES_DOUBLE][0] = &box_batch<F, 2, LanesDouble>;
+    table.evaluate_box[MPM_LANES_DOUBLE][1] = &box_batch<F, 3, LanesDouble>;
+    table.evaluate_box[MPM_SCALAR_DOUBLE][0] = &box_batch<F, 2, double>;
+    table.evaluate_box[MPM_SCALAR_DOUBLE][1] = &box_batch<F, 3, double>;
+    return table;
+  }
+  static constexpr mpm_shape value = with_boxes(list_table<F>);
 };
 template <FilterFunctor F>
 inline constexpr mpm_filter filter_table{F::traits, 0, &filter_iterations<F>, MPM_ENTRIES(filter_batch)};

@@ -1,5 +1,6 @@
 // The suite must catch wrong plugins: each functor here has one planted mistake, and the check that names it must fail.
 
+#include <limits>
 #include <set>
 
 #include "contacts/coulomb/coulomb.hpp"
@@ -104,6 +105,99 @@ struct OutOfReach : Cpdi {
   static constexpr double reach = 0.5;
 };
 
+struct BoxLosesWeight : Cpdi {
+  template <int W, int D, bool Gradients, class S>
+  MPM_HD static void row_in_box(const Rows<W, D, S>& rows, int i, int j, S* w, S (*g)[W]) {
+    Cpdi::row_in_box<W, D, Gradients, S>(rows, i, j, w, g);
+    w[1] = w[1] * real<S>(0.999);
+  }
+};
+
+struct BoxTurnsGradient : Cpdi {
+  template <int W, int D, bool Gradients, class S>
+  MPM_HD static void row_in_box(const Rows<W, D, S>& rows, int i, int j, S* w, S (*g)[W]) {
+    Cpdi::row_in_box<W, D, Gradients, S>(rows, i, j, w, g);
+    for (int k = 0; Gradients && k < W; ++k) {
+      const S first = g[0][k];
+      g[0][k] = g[1][k], g[1][k] = first;
+    }
+  }
+};
+
+struct BoxCutsNodes : Cpdi {  // says three nodes where there are four
+  template <int D, class S>
+  MPM_HD static S box(const Parameters& p, const Vec<D, S>& x, const Mat<D, S>& domain, bool gradients,
+                      Vec<D, S>& base) {
+    return min(Cpdi::box<D, S>(p, x, domain, gradients, base), S(real<S>(3)));
+  }
+};
+
+struct BoxTakesAll : Cpdi {  // says three nodes where there is no box
+  template <int D, class S>
+  MPM_HD static S box(const Parameters& p, const Vec<D, S>& x, const Mat<D, S>& domain, bool gradients,
+                      Vec<D, S>& base) {
+    return max(Cpdi::box<D, S>(p, x, domain, gradients, base), S(real<S>(3)));
+  }
+};
+
+struct BoxTooWide : Cpdi {
+  template <int D, class S>
+  MPM_HD static S box(const Parameters& p, const Vec<D, S>& x, const Mat<D, S>& domain, bool gradients,
+                      Vec<D, S>& base) {
+    const S extent = Cpdi::box<D, S>(p, x, domain, gradients, base);
+    return select(extent > real<S>(3), S(real<S>(5)), extent);
+  }
+};
+
+struct BoxLosesMoment : Cpdi {  // without the tents' own width
+  template <int W, int D, class S>
+  MPM_HD static Mat<D, S> moment_of_box(const Rows<W, D, S>&, const Mat<D, S>& domain) {
+    Mat<D, S> moment{};
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b)
+        for (int k = 0; k < D; ++k) moment(a, b) = moment(a, b) + domain(a, k) * domain(b, k);
+    return moment;
+  }
+};
+
+struct BoxRoundsCells : Cpdi {  // differently on both sides of zero
+  template <int D, class S>
+  MPM_HD static S box(const Parameters& p, const Vec<D, S>& x, const Mat<D, S>& domain, bool gradients,
+                      Vec<D, S>& base) {
+    const S extent = Cpdi::box<D, S>(p, x, domain, gradients, base);
+    return select(x[0] > real<S>(0), extent, S(real<S>(0)));
+  }
+};
+
+/// A box's weights depend on the particle before, as far as there is one.
+template <int D, class S>
+void leaning_box(const void* parameters, const mpm_box_batch* q) {
+  using T = scalar_of<S>;
+  sdk::box_batch<Cpdi, D, S>(parameters, q);
+  T* const weight = static_cast<T*>(q->weight);
+  for (std::uint32_t lane = 1; lane < q->count; ++lane)
+    if (q->extent[lane - 1] == MPM_BOX_WIDTH) weight[lane] += std::numeric_limits<T>::epsilon();
+}
+/// Writes a base for one particle more than there are.
+template <int D, class S>
+void long_box(const void* parameters, const mpm_box_batch* q) {
+  sdk::box_batch<Cpdi, D, S>(parameters, q);
+  q->base[q->count] = 0;
+}
+constexpr mpm_shape with_box_entries(mpm_shape table, decltype(mpm_shape{}.evaluate_box) const& entries) {
+  for (int precision = 0; precision < MPM_PRECISIONS; ++precision)
+    for (int d = 0; d < 2; ++d) table.evaluate_box[precision][d] = entries[precision][d];
+  return table;
+}
+constexpr mpm_shape leaning_box_table =
+    with_box_entries(sdk::list_table<Cpdi>, {{&leaning_box<2, Lanes<float>>, &leaning_box<3, Lanes<float>>},
+                                             {&leaning_box<2, Lanes<double>>, &leaning_box<3, Lanes<double>>},
+                                             {&leaning_box<2, double>, &leaning_box<3, double>}});
+constexpr mpm_shape long_box_table =
+    with_box_entries(sdk::list_table<Cpdi>, {{&long_box<2, Lanes<float>>, &long_box<3, Lanes<float>>},
+                                             {&long_box<2, Lanes<double>>, &long_box<3, Lanes<double>>},
+                                             {&long_box<2, double>, &long_box<3, double>}});
+
 /// Makes the exported second moment of a box 1 % too large.
 template <class S>
 void large_moment(const void* parameters, const mpm_shape_batch* q) {
@@ -122,6 +216,7 @@ constexpr mpm_shape large_moment_table{
     {&large_moment<Lanes<float>>, &large_moment<Lanes<double>>, &large_moment<double>},
     {0, 0},
     0,
+    {},
     {}};
 
 /// Leaves the off-diagonal of a list's second moment out.
@@ -144,7 +239,8 @@ constexpr mpm_shape diagonal_moment_table{MPM_NODE_LIST,
                                           1,
                                           {{&diagonal_moment<2, float>, &diagonal_moment<3, float>},
                                            {&diagonal_moment<2, double>, &diagonal_moment<3, double>},
-                                           {&diagonal_moment<2, double>, &diagonal_moment<3, double>}}};
+                                           {&diagonal_moment<2, double>, &diagonal_moment<3, double>}},
+                                          {}};
 
 // ---- filters
 
@@ -363,6 +459,18 @@ TEST_CASE("wrong lists of nodes are caught") {
   check_caught(wrong_shape<TurnsListGradient>, "affine_consistency");
   check_caught(wrong_shape<TurnsListGradient>, "affine_slope");
   check_caught(wrong_shape<OutOfReach>, "reach");
+}
+
+TEST_CASE("wrong boxes are caught") {
+  check_caught(wrong_shape<BoxLosesWeight>, "box_agrees_with_list");
+  check_caught(wrong_shape<BoxTurnsGradient>, "box_gradient_agrees_with_list");
+  check_caught(wrong_shape<BoxCutsNodes>, "box_holds_list");
+  check_caught(wrong_shape<BoxTakesAll>, "box_refuses");
+  check_caught(wrong_shape<BoxTooWide>, "box_extent");
+  check_caught(wrong_shape<BoxLosesMoment>, "box_second_moment_agrees_with_list");
+  check_caught(wrong_shape<BoxRoundsCells>, "box_translation");
+  check_caught(with_table(wrong_shape<Cpdi>, leaning_box_table), "box_independent_of_neighbours");
+  check_caught(with_table(wrong_shape<Cpdi>, long_box_table), "box_writes_inside_arrays");
 }
 
 TEST_CASE("wrong filters are caught") {

@@ -27,6 +27,7 @@ std::string boundary() {
   NUMBER(MPM_ABI_REVISION);
   NUMBER(MPM_BATCH);
   NUMBER(MPM_LANES);
+  NUMBER(MPM_BOX_WIDTH);
   NUMBER(MPM_SHAPE);
   NUMBER(MPM_TRANSFER);
   NUMBER(MPM_FILTER);
@@ -120,6 +121,20 @@ std::string boundary() {
   FIELD(mpm_list_batch, weight);
   FIELD(mpm_list_batch, gradient);
   FIELD(mpm_list_batch, second_moment);
+  out << "mpm_box_batch, " << sizeof(mpm_box_batch) << " bytes\n";
+  FIELD(mpm_box_batch, count);
+  FIELD(mpm_box_batch, stride);
+  FIELD(mpm_box_batch, dimension);
+  FIELD(mpm_box_batch, reserved);
+  FIELD(mpm_box_batch, position);
+  FIELD(mpm_box_batch, half_size);
+  FIELD(mpm_box_batch, domain);
+  FIELD(mpm_box_batch, base);
+  FIELD(mpm_box_batch, extent);
+  FIELD(mpm_box_batch, offset);
+  FIELD(mpm_box_batch, weight);
+  FIELD(mpm_box_batch, gradient);
+  FIELD(mpm_box_batch, second_moment);
   out << "mpm_shape, " << sizeof(mpm_shape) << " bytes\n";
   FIELD(mpm_shape, form);
   FIELD(mpm_shape, width);
@@ -130,6 +145,7 @@ std::string boundary() {
   FIELD(mpm_shape, capacity);
   FIELD(mpm_shape, reach);
   FIELD(mpm_shape, evaluate_list);
+  FIELD(mpm_shape, evaluate_box);
   out << "mpm_scatter_batch, " << sizeof(mpm_scatter_batch) << " bytes\n";
   FIELD(mpm_scatter_batch, count);
   FIELD(mpm_scatter_batch, stride);

@@ -111,6 +111,7 @@ TEST_CASE("a plugin with shorter tables loads; what they lack is zero") {
   CHECK(plugin.shape().width == 2);
   CHECK(plugin.shape().capacity[0] == 0);
   CHECK(plugin.shape().evaluate_list[MPM_SCALAR_DOUBLE][1] == nullptr);
+  CHECK(plugin.shape().evaluate_box[MPM_LANES_FLOAT][0] == nullptr);
   for (const mpm::ConformanceFinding& finding : mpm::check_plugin(plugin)) {
     INFO(mpm::to_string(finding));
     CHECK(finding.passed);

@@ -18,7 +18,8 @@ ParticleStep<D, T>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std
       grid_(grid),
       particles_(particles),
       bodies_(std::move(bodies)),
-      kernels_(scene.list ? list_kernels<D, T>() : tile_kernels<D, T>(scene.width)) {
+      kernels_(scene.list ? tile_kernels_of_lists<D, T>() : tile_kernels<D, T>(scene.width)),
+      list_kernels_(list_kernels<D, T>()) {
   drift_of_thread_.assign(scene.threads, 0.0);
   int transfer_components = 0;
   for (const Particles<D, T>& body : particles)
@@ -33,6 +34,7 @@ ParticleStep<D, T>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std
     if (scene.has(MPM_GATHERS_INCREMENT)) work.increment_tile.require(kernels_.load_scalars);
     if (scene.list) {
       work.lists.require(scene.capacity);
+      if (scene.evaluate_box) work.boxes.require();
       std::fill(work.offset, work.offset + D * chunk_size, T(0));  // lists count from the particle itself
     }
     if (!scene.plan.filter) continue;
@@ -144,6 +146,7 @@ void ParticleStep<D, T>::throw_failure() {
 /// the last bit, so it is compiled once.
 template <int D, class T>
 [[gnu::noinline]] void ParticleStep<D, T>::evaluate_shape(const Chunk& chunk, Work& work, bool gradients) {
+  if (scene_.evaluate_box) return evaluate_boxes(chunk, work, gradients);
   if (scene_.list) return evaluate_lists(chunk, work, gradients);
   const bool moments = scene_.plan.second_moment;
   const mpm_shape_batch batch{static_cast<std::uint32_t>(chunk.end),

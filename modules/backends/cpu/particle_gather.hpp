@@ -49,9 +49,11 @@ typename ParticleStep<D, T>::Gathered ParticleStep<D, T>::gather(const Pass& pas
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       load_velocities(body, block, work);
       block.kinetic_energy = block.dissipated = 0;
+      block.bounds.clear();
       double& drift = drift_of_thread_[omp_get_thread_num()];
       for_each_chunk_of(body, block,
                         [&](const Chunk& chunk) { drift = std::max(drift, gather_one(pass, step, chunk, work)); });
+      block.bounds.known = scene_.list && pass.move;
     });
   return sum_gathered();
 }
@@ -128,6 +130,7 @@ template <int D, class T>
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
     std::copy_n(chunk.at(chunk.particles.next_domain), D * D * chunk_size, chunk.at(chunk.particles.domain));
   const double distance = advance_position(chunk, advection, step.dt);
+  if (scene_.list) extend_bounds(chunk);
   work.clock.lap(Phase::move);
   return distance;
 }
@@ -141,6 +144,7 @@ double ParticleStep<D, T>::strain(const StepInfo& step) {
       kernels_.load(work.velocity_tile.data(), grid_.channel(motion, bodies_[body].field), block.neighbours.data(),
                     block.reach);
       block.dissipated = 0;
+      block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         gather_chunk(chunk, work, wanted);
         advance_material(chunk, work, step.dt, nullptr);
@@ -161,8 +165,10 @@ void ParticleStep<D, T>::gather_moments(const Chunk& chunk, Work& work, const T*
     const Stencils<T> stencils{work.first, work.weight, work.gradient, chunk.ahead(true)};
     return kernels_.gather[moment][gradient](tile, stencils, work.quads, chunk.end);
   }
-  const auto kernel = kernels_.gather_lists[moment][gradient];
-  if (!work.far_only) kernel(tile, work.lists.near_lists(), work.quads, chunk.end);
+  if (scene_.evaluate_box && !work.far_only)
+    list_kernels_.gather_boxes[moment][gradient](tile, work.boxes.boxes(), work.quads, chunk.end);
+  const auto kernel = list_kernels_.gather_lists[moment][gradient];
+  if (work.lists.any && !work.far_only) kernel(tile, work.lists.near_lists(), work.quads, chunk.end);
   if (work.lists.far > 0)
     kernel(grid_.channel(channel, chunk.body.field), work.lists.far_lists(), work.quads, chunk.end);
 }
@@ -183,7 +189,7 @@ void ParticleStep<D, T>::gather_chunk(const Chunk& chunk, Work& work, const Want
   gather_moments(chunk, work, work.velocity_tile.data(), wanted.channel, moment, gradient);
   work.clock.lap(Phase::gather);
   unpack_moments(work, moment, gradient, n);
-  if (moment && scene_.moment_of_particle) apply_inverse_moments(work, n);
+  if (moment && scene_.moment_of_particle) apply_inverse_moments(chunk, work);
   if (affine && scene_.moment_is_gradient)
     std::copy(work.gradient_of_velocity, work.gradient_of_velocity + D * D * chunk_size, work.affine);
   if (wanted.transfer && wanted.channel == motion && scene_.has(MPM_GATHERS_INCREMENT)) {
@@ -235,23 +241,12 @@ void ParticleStep<D, T>::unpack_moments(Work& work, bool moment, bool gradient, 
 
 /// C <- C D^-1 of moments a particle.
 template <int D, class T>
-void ParticleStep<D, T>::apply_inverse_moments(Work& work, int count) {
-  const T* const inverse = work.inverse_moment;
-  for (int c = 0; c < D; ++c) {
-    T* const row = work.affine + c * D * chunk_size;
-    for (int p = 0; p < count; ++p) {
-      T product[D];
-      for (int a = 0; a < D; ++a) {
-        if (!scene_.list) {
-          product[a] = row[a * chunk_size + p] * inverse[a * chunk_size + p];
-          continue;
-        }
-        product[a] = 0;
-        for (int b = 0; b < D; ++b) product[a] += row[b * chunk_size + p] * inverse[(b * D + a) * chunk_size + p];
-      }
-      for (int a = 0; a < D; ++a) row[a * chunk_size + p] = product[a];
-    }
-  }
+void ParticleStep<D, T>::apply_inverse_moments(const Chunk& chunk, Work& work) const {
+  if (scene_.list) return multiply_by_inverse_moments(chunk, work);
+  for (int c = 0; c < D; ++c)
+    for (int a = 0; a < D; ++a)
+      for (int p = 0; p < chunk.end; ++p)
+        work.affine[(c * D + a) * chunk_size + p] *= work.inverse_moment[a * chunk_size + p];
 }
 
 /// One pass of the filter's loop on the particles: v* is gathered and scattered again by the transfer itself.
@@ -331,18 +326,21 @@ template <int D, class T>
 void ParticleStep<D, T>::advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const {
   const T* const from = chunk.at(chunk.particles.domain);
   T* const to = chunk.at(chunk.particles.next_domain < 0 ? chunk.particles.domain : chunk.particles.next_domain);
+  using V = Lanes<T>;
   const T step = static_cast<T>(dt);
-  for (int k = 0; k < D; ++k)  // column by column
-    for (int p = 0; p < chunk.end; ++p) {
-      T advanced[D];
+  for (int p = 0; p < chunk.end; p += V::width) {
+    V L[D * D];
+    for (int c = 0; c < D * D; ++c) L[c] = V::load(velocity_gradient + c * chunk_size + p);
+    for (int k = 0; k < D; ++k) {  // column by column
+      V side[D];
+      for (int b = 0; b < D; ++b) side[b] = V::load(from + (b * D + k) * chunk_size + p);
       for (int a = 0; a < D; ++a) {
-        T rate = 0;
-        for (int b = 0; b < D; ++b)
-          rate += velocity_gradient[(a * D + b) * chunk_size + p] * from[(b * D + k) * chunk_size + p];
-        advanced[a] = from[(a * D + k) * chunk_size + p] + step * rate;
+        V rate = L[a * D] * side[0];
+        for (int b = 1; b < D; ++b) rate = rate + L[a * D + b] * side[b];
+        (side[a] + step * rate).store(to + (a * D + k) * chunk_size + p);
       }
-      for (int a = 0; a < D; ++a) to[(a * D + k) * chunk_size + p] = advanced[a];
     }
+  }
 }
 
 /// Room beyond a face that cannot be folded away, in cells: half a cell at a separating wall, rounding elsewhere.
@@ -404,6 +402,7 @@ void ParticleStep<D, T>::move(const StepInfo& step) {
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work&) {
       double& drift = drift_of_thread_[omp_get_thread_num()];
+      block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         drift = std::max(drift, advance_position(chunk, chunk.at(chunk.particles.advection), step.dt));
       });

@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "kernel/lanes.hpp"
 #include "particle_chunks.hpp"
 
 namespace mpm::cpu {
@@ -33,20 +34,27 @@ void ParticleStep<D, T>::evaluate_list_batch(const Chunk& chunk, Work& work, int
                              gradients ? lists.gradient.data() : nullptr,
                              moments ? lists.second_moment : nullptr};
   scene_.evaluate_list(scene_.shape_parameters, &batch);
-  for (int c = 0; moments && c < D * D; ++c)
-    std::copy_n(lists.second_moment + c * lanes, lanes, work.second_moment + c * chunk_size + first_lane);
+}
+
+template <int D, class T>
+void ParticleStep<D, T>::keep_moment(Work& work, int first_lane, int lane) const {
+  if (!scene_.plan.second_moment) return;
+  for (int c = 0; c < D * D; ++c)
+    work.second_moment[c * chunk_size + first_lane + lane] = work.lists.second_moment[c * ListWork<D, T>::lanes + lane];
 }
 
 template <int D, class T>
 void ParticleStep<D, T>::evaluate_lists(const Chunk& chunk, Work& work, bool gradients) {
   ListWork<D, T>& lists = work.lists;
-  lists.far = lists.far_of_chunk = 0;
-  for (int a = 0; a < 3; ++a) lists.lowest[a] = 1 << 20, lists.highest[a] = -(1 << 20);
+  lists.clear();
+  lists.any = true;
   int entry = 0;
   for (int first = 0; first < chunk.end; first += ListWork<D, T>::lanes) {
     evaluate_list_batch(chunk, work, first, gradients);
-    for (int lane = 0; lane < ListWork<D, T>::lanes; ++lane)
+    for (int lane = 0; lane < ListWork<D, T>::lanes; ++lane) {
+      keep_moment(work, first, lane);
       entry = keep_list(chunk, work, first, lane, entry, gradients);
+    }
   }
   if (scene_.plan.second_moment) invert_moments(chunk, work);
 }
@@ -139,24 +147,36 @@ bool ParticleStep<D, T>::place_lists(const Chunk& chunk, const Work& work, bool 
 }
 
 template <int D, class T>
+void ParticleStep<D, T>::extend_bounds(const Chunk& chunk) const {
+  using L = Lanes<T>;
+  const int domain = chunk.particles.domain;
+  ListBounds& bounds = chunk.block.bounds;
+  for (int a = 0; a < D; ++a) {
+    L low(std::numeric_limits<T>::max()), high(std::numeric_limits<T>::lowest());
+    for (int p = 0; p < chunk.end; p += L::width) {
+      L extent(static_cast<T>(scene_.list_reach));
+      for (int k = 0; domain >= 0 && k < D; ++k) extent = extent + abs(L::load(chunk.at(domain + a * D + k) + p));
+      const L x = L::load(chunk.at(Particles<D, T>::position + a) + p);
+      low = min(low, x - extent), high = max(high, x + extent);
+    }
+    for (int i = 0; i < L::width; ++i) {
+      bounds.low[a] = std::min(bounds.low[a], static_cast<double>(low[i]));
+      bounds.high[a] = std::max(bounds.high[a], static_cast<double>(high[i]));
+    }
+  }
+}
+
+template <int D, class T>
 bool ParticleStep<D, T>::widen_active_blocks() {
   std::atomic<bool> grew{false};
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work&) {
-      const int domain = particles_[body].domain;
-      double low[D], high[D];
-      std::fill(low, low + D, std::numeric_limits<double>::max());
-      std::fill(high, high + D, std::numeric_limits<double>::lowest());
-      for_each_chunk_of(body, block, [&](const Chunk& chunk) {
-        for (int a = 0; a < D; ++a)
-          for (int p = 0; p < chunk.count; ++p) {
-            double extent = scene_.list_reach;
-            for (int k = 0; domain >= 0 && k < D; ++k) extent += std::abs(chunk.at(domain + a * D + k)[p]);
-            const double x = chunk.at(Particles<D, T>::position + a)[p];
-            low[a] = low[a] <= x - extent ? low[a] : x - extent;
-            high[a] = high[a] >= x + extent ? high[a] : x + extent;
-          }
-      });
+      if (!block.bounds.known) {
+        block.bounds.clear();
+        for_each_chunk_of(body, block, [&](const Chunk& chunk) { extend_bounds(chunk); });
+      }
+      block.bounds.known = false;
+      const double *const low = block.bounds.low, *const high = block.bounds.high;
       for (int a = 0; a < D; ++a) {
         // What lies beyond is refused by reaches_too_far; so is what is not a number.
         const double origin = block.at[a] * block_side<D>, least = -scene_.padding - 2 - origin,
@@ -182,8 +202,10 @@ std::vector<double> ParticleStep<D, T>::second_moments(int body) {
   for (Block<D>& block : particles_[body].blocks)
     for_each_chunk_of(body, block, [&](const Chunk& chunk) {
       if (scene_.list)
-        for (int first = 0; first < chunk.end; first += ListWork<D, T>::lanes)
+        for (int first = 0; first < chunk.end; first += ListWork<D, T>::lanes) {
           evaluate_list_batch(chunk, work, first, false);  // where its nodes are does not matter
+          for (int lane = 0; lane < ListWork<D, T>::lanes; ++lane) keep_moment(work, first, lane);
+        }
       else
         evaluate_shape(chunk, work, false);
       for (int p = 0; p < chunk.count; ++p)

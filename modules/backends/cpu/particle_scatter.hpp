@@ -2,6 +2,7 @@
 // ParticleStep: particles to grid. Coefficients of a chunk are made as component arrays, then as quads for the tile
 // kernels: what a node gets is w (b + A d) + S grad w, d = node - particle.
 
+#include "particle_boxes.hpp"
 #include "particle_lists.hpp"
 
 namespace mpm::cpu {
@@ -190,11 +191,13 @@ void ParticleStep<D, T>::add_to_tile(const Chunk& chunk, Work& work, Channel cha
   pack_coefficients(work, last, constant, affine, gradient, chunk.end);
   work.clock.lap(Phase::coefficients);
   if (scene_.list) {
-    const auto kernel = kernels_.scatter_lists[affine][gradient];
-    if (work.far_only)
+    T* const tile = work.tile[channel].data();
+    const auto kernel = list_kernels_.scatter_lists[affine][gradient];
+    if (scene_.evaluate_box && !work.far_only)
+      list_kernels_.scatter_boxes[affine][gradient](tile, work.boxes.boxes(), work.quads, chunk.count);
+    if (work.lists.any && !work.far_only) kernel(tile, work.lists.near_lists(), work.quads, chunk.count);
+    if (work.lists.any && work.far_only)
       kernel(grid_.channel(channel, chunk.body.field), work.lists.far_lists(), work.quads, chunk.count);
-    else
-      kernel(work.tile[channel].data(), work.lists.near_lists(), work.quads, chunk.count);
     return;
   }
   const Stencils<T> stencils{work.first, work.weight, work.gradient, chunk.ahead(false)};

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <vector>
 
+#include "box_kernels.hpp"
 #include "grid.hpp"
 #include "kernel/tensor.hpp"
 #include "phase_clock.hpp"
@@ -31,7 +32,13 @@ struct ListWork {
   AlignedArray<T> values;  ///< see NodeLists
   int lowest[3], highest[3];
   int far = 0, far_of_chunk = 0;  ///< particles with a node outside the tile, with the tail's lanes and without
+  bool any = false;               ///< else no particle of the chunk has a list, and the above is not filled
 
+  void clear() {
+    far = far_of_chunk = 0;
+    any = false;
+    for (int a = 0; a < 3; ++a) lowest[a] = 1 << 20, highest[a] = -(1 << 20);
+  }
   void require(int capacity) {
     coordinates.require(std::size_t(capacity) * D * lanes);
     weight.require(std::size_t(capacity) * lanes);
@@ -41,6 +48,18 @@ struct ListWork {
   }
   NodeLists<T> near_lists() const { return {first, near_end, node.data(), values.data()}; }
   NodeLists<T> far_lists() const { return {first, far_end, node.data(), values.data()}; }
+};
+
+/// The boxes of nodes of one chunk.
+template <int D, class T>
+struct BoxWork {
+  alignas(64) std::int32_t base[D * chunk_size], width[chunk_size], tile_node[chunk_size];
+  AlignedArray<T> weight, gradient;
+  Boxes<T> boxes() const { return {width, tile_node, weight.data(), gradient.data()}; }
+  void require() {
+    weight.require(std::size_t(box_nodes<D>) * chunk_size);
+    gradient.require(std::size_t(box_nodes<D>) * D * chunk_size);
+  }
 };
 
 /// What one thread works in.
@@ -73,6 +92,7 @@ struct Workspace {
   /// Tiles to gather from; only what the block reaches is valid.
   AlignedArray<T> velocity_tile, increment_tile;
   ListWork<D, T> lists;
+  BoxWork<D, T> boxes;
   AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
   PhaseClock clock;
   bool far_only = false;  ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
@@ -175,6 +195,10 @@ class ParticleStep {
   void evaluate_shape(const Chunk& chunk, Work& work, bool gradients);
   void evaluate_lists(const Chunk& chunk, Work& work, bool gradients);
   void evaluate_list_batch(const Chunk& chunk, Work& work, int first_lane, bool gradients) const;
+  void keep_moment(Work& work, int first_lane, int lane) const;
+  void evaluate_boxes(const Chunk& chunk, Work& work, bool gradients);
+  bool place_boxes(const Chunk& chunk, Work& work) const;
+  int evaluate_lists_between_boxes(const Chunk& chunk, Work& work, int first_lane, int entry, bool gradients);
   int keep_list(const Chunk& chunk, Work& work, int first_lane, int lane, int entry, bool gradients);
   bool reaches_too_far(const Chunk& chunk, int particle, const int* low, const int* high);
   bool place_to_scatter(const Chunk& chunk, Work& work, bool extend_reach) const;
@@ -182,6 +206,7 @@ class ParticleStep {
   void end_reach(Block<D>& block, const Work& work) const;
   void place_to_gather(const Chunk& chunk, Work& work) const;
   void number_stencils(Work& work, int count, int along_last) const;
+  void extend_bounds(const Chunk& chunk) const;
   bool place_lists(const Chunk& chunk, const Work& work, bool extend_reach) const;
   void invert_moments(const Chunk& chunk, Work& work) const;
   void update_material(const Chunk& chunk, mpm_material_batch request);
@@ -221,7 +246,8 @@ class ParticleStep {
   template <bool Moment, bool Gradient>
   void unpack_moments(Work& work, int count);
   void unpack_moments(Work& work, bool moment, bool gradient, int count);
-  void apply_inverse_moments(Work& work, int count);
+  void apply_inverse_moments(const Chunk& chunk, Work& work) const;
+  void multiply_by_inverse_moments(const Chunk& chunk, Work& work) const;
   void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
   void advance_material(const Chunk& chunk, Work& work, double dt, const Pass* scatters);
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const;
@@ -234,6 +260,7 @@ class ParticleStep {
   std::vector<Particles<D, T>>& particles_;
   std::vector<Body<D, T>> bodies_;
   TileKernels<D, T> kernels_;
+  ListKernels<D, T> list_kernels_;
   std::vector<std::unique_ptr<Work>> work_;
   std::vector<double> drift_of_thread_;
   double drift_ = 0;

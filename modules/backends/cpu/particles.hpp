@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "aligned_array.hpp"
@@ -15,6 +16,16 @@
 
 namespace mpm::cpu {
 
+/// How far the lists of a block's particles may reach, in cells from its first node.
+struct ListBounds {
+  bool known = false;
+  double low[3], high[3];
+  void clear() {
+    std::fill(low, low + 3, std::numeric_limits<double>::max());
+    std::fill(high, high + 3, std::numeric_limits<double>::lowest());
+  }
+};
+
 template <int D>
 struct Block {
   BlockCoordinates at{};
@@ -23,6 +34,7 @@ struct Block {
   std::array<std::int32_t, neighbour_count<D>> neighbours{};  ///< slots of the grid
   /// Blocks of the grid, from this one, that its particles' lists may reach: always the neighbours.
   std::array<std::int32_t, 3> first_active{-1, -1, -1}, last_active{1, 1, 1};
+  ListBounds bounds;                          ///< of the particles as the last gather moved them
   std::uint32_t far = 0;                      ///< particles whose lists leave the tile
   double kinetic_energy = 0, dissipated = 0;  ///< partial sums of the ledger, J
   double scattered_energy = 0;                ///< the same of the particles when they scatter, J

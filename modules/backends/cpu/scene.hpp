@@ -15,7 +15,7 @@ template <class T>
 inline constexpr int lane_precision = sizeof(T) == 4 ? MPM_LANES_FLOAT : MPM_LANES_DOUBLE;
 
 /// Width of the tile that lists of nodes are scattered to: the widest.
-inline constexpr int list_width = 4;
+inline constexpr int list_width = MPM_BOX_WIDTH;
 
 /// Domain in cells.
 struct Domain {
@@ -48,6 +48,7 @@ struct Scene {
       capacity = static_cast<int>(shape.capacity[D - 2]);
       list_reach = shape.reach;
       evaluate_list = shape.evaluate_list[lane_precision<T>][D - 2];
+      evaluate_box = shape.evaluate_box[lane_precision<T>][D - 2];
     } else {
       evaluate_shape = shape.evaluate[lane_precision<T>];
     }
@@ -82,8 +83,9 @@ struct Scene {
   const void* shape_parameters = nullptr;
   bool list = false;  ///< the shape gives lists of nodes
   void (*evaluate_list)(const void*, const mpm_list_batch*) = nullptr;
-  int capacity = 0;       ///< most nodes of a list
-  double list_reach = 0;  ///< cells, of nodes beyond the particle's domain
+  void (*evaluate_box)(const void*, const mpm_box_batch*) = nullptr;  ///< null: lists only
+  int capacity = 0;                                                   ///< most nodes of a list
+  double list_reach = 0;                                              ///< cells, of nodes beyond the particle's domain
   int padding = grid_padding;
   bool half_size = false;  ///< the shape reads it
   bool moment_is_gradient = false, moment_of_particle = false;

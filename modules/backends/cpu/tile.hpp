@@ -41,14 +41,6 @@ struct Stencils {
   Ahead ahead;
 };
 
-/// Lists of nodes of one chunk, one after another: those of particle p are entries first[p] to last[p].
-template <class T>
-struct NodeLists {
-  const std::int32_t *first, *last;
-  const std::int32_t* node;  ///< [entry] in the tile, or in a channel of the grid
-  const T* values;           ///< [entry][8] d (cells, node - particle), w | gradient (per cell), unused
-};
-
 /// What part of a tile its particles reach: first nodes of stencils, from the tile's corner.
 struct Reach {
   int lowest[3] = {1 << 20, 1 << 20, 1 << 20}, highest[3] = {-1, -1, -1};
@@ -58,16 +50,12 @@ template <int D, class T>
 struct TileKernels {
   using Scatter = void (*)(T* tile, const Stencils<T>&, const T* coefficients, int count);
   using Gather = void (*)(const T* tile, const Stencils<T>&, T* moments, int count);
-  using ScatterLists = void (*)(T* nodes, const NodeLists<T>&, const T* coefficients, int count);
-  using GatherLists = void (*)(const T* nodes, const NodeLists<T>&, T* moments, int count);
-  int side = 0;                        ///< nodes an axis
-  int first_nodes = 0;                 ///< along the last axis: rows of the scatter's tile beside one another
-  int load_scalars = 0;                ///< of the tile to gather from
-  int scatter_scalars = 0;             ///< of the tile to scatter to
-  Scatter scatter[2][2];               ///< [affine][gradient]
-  Gather gather[2][2];                 ///< [moment][gradient]; writes up to one quad beyond the last particle's
-  ScatterLists scatter_lists[2][2]{};  ///< of the widest tile; offsets are from the particle: b' = b
-  GatherLists gather_lists[2][2]{};    ///< particles without an entry are left alone
+  int side = 0;                ///< nodes an axis
+  int first_nodes = 0;         ///< along the last axis: rows of the scatter's tile beside one another
+  int load_scalars = 0;        ///< of the tile to gather from
+  int scatter_scalars = 0;     ///< of the tile to scatter to
+  Scatter scatter[2][2]{};     ///< [affine][gradient]
+  Gather gather[2][2]{};       ///< [moment][gradient]; writes up to one quad beyond the last particle's
   void (*load)(T* tile, const T* channel, const std::int32_t* neighbours, const Reach&);
   void (*flush)(T* tile, T* channel, const std::int32_t* neighbours, const Reach&);  ///< adds, and clears the tile
 };
@@ -75,9 +63,9 @@ struct TileKernels {
 /// Kernels for a stencil of `width` nodes an axis (2, 3 or 4).
 template <int D, class T>
 TileKernels<D, T> tile_kernels(int width);
-/// Kernels for lists of nodes: one tile of nodes serves gather and scatter.
+/// Tiles for lists of nodes (box_kernels.hpp), which are scattered to nodes and not to rows; no kernels.
 template <int D, class T>
-TileKernels<D, T> list_kernels();
+TileKernels<D, T> tile_kernels_of_lists();
 
 constexpr int quad_groups(int dimension, bool affine, bool gradient) {
   return 1 + (affine ? dimension : 0) + (gradient ? dimension : 0);
@@ -252,52 +240,6 @@ void gather_from_tile(const T* tile, const Stencils<T>& stencils, T* moments, in
   }
 }
 
-/// A list's nodes get  w (b + d_x Q_x + d_y Q_y + d_z Q_z) + g_x S_x + g_y S_y + g_z S_z.
-template <int D, class T, bool Affine, bool Gradient>
-void scatter_lists(T* nodes, const NodeLists<T>& lists, const T* coefficients, int count) {
-  using Q = Quad<T>;
-  constexpr int groups = quad_groups(D, Affine, Gradient), first_s = 1 + (Affine ? D : 0);
-  for (int p = 0; p < count; ++p) {
-    const Q* const c = reinterpret_cast<const Q*>(coefficients) + p * groups;
-    for (std::int32_t e = lists.first[p]; e < lists.last[p]; ++e) {
-      const T* const entry = lists.values + std::size_t(e) * 8;
-      Q sum = c[0];
-      if constexpr (Affine)
-        for (int a = 0; a < D; ++a) sum += entry[a] * c[1 + a];
-      Q value = entry[3] * sum;
-      if constexpr (Gradient)
-        for (int a = 0; a < D; ++a) value += entry[4 + a] * c[first_s + a];
-      reinterpret_cast<Q*>(nodes)[lists.node[e]] += value;
-    }
-  }
-}
-
-/// The sums of a list: of w v, d_a w v and g_a v.
-template <int D, class T, bool Moment, bool Gradient>
-void gather_lists(const T* nodes, const NodeLists<T>& lists, T* moments, int count) {
-  using Q = Quad<T>;
-  constexpr int groups = quad_groups(D, Moment, Gradient), first_g = 1 + (Moment ? D : 0);
-  for (int p = 0; p < count; ++p) {
-    if (lists.first[p] == lists.last[p]) continue;
-    Q value{}, m[3]{}, g[3]{};
-    for (std::int32_t e = lists.first[p]; e < lists.last[p]; ++e) {
-      const T* const entry = lists.values + std::size_t(e) * 8;
-      const Q v = reinterpret_cast<const Q*>(nodes)[lists.node[e]], term = entry[3] * v;
-      value += term;
-      if constexpr (Moment)
-        for (int a = 0; a < D; ++a) m[a] += entry[a] * term;
-      if constexpr (Gradient)
-        for (int a = 0; a < D; ++a) g[a] += entry[4 + a] * v;
-    }
-    Q* const out = reinterpret_cast<Q*>(moments) + p * groups;
-    out[0] = value;
-    if constexpr (Moment)
-      for (int a = 0; a < D; ++a) out[1 + a] = m[a];
-    if constexpr (Gradient)
-      for (int a = 0; a < D; ++a) out[first_g + a] = g[a];
-  }
-}
-
 /// One row of a tile along the last axis, and the rows of three blocks in a line that it crosses.
 template <int D>
 struct TileRow {
@@ -422,19 +364,11 @@ TileKernels<D, T> tile_kernels_of_width() {
 }
 
 template <int D, class T>
-TileKernels<D, T> kernels_of_lists() {
+TileKernels<D, T> tiles_of_lists() {
   constexpr int K = 4;
   TileKernels<D, T> kernels;
   kernels.side = kernels.first_nodes = tile_side<D, K>;
   kernels.load_scalars = kernels.scatter_scalars = rows_of_tile(D, kernels.side) * kernels.side * 4;
-  kernels.scatter_lists[0][0] = &scatter_lists<D, T, false, false>;
-  kernels.scatter_lists[0][1] = &scatter_lists<D, T, false, true>;
-  kernels.scatter_lists[1][0] = &scatter_lists<D, T, true, false>;
-  kernels.scatter_lists[1][1] = &scatter_lists<D, T, true, true>;
-  kernels.gather_lists[0][0] = &gather_lists<D, T, false, false>;
-  kernels.gather_lists[0][1] = &gather_lists<D, T, false, true>;
-  kernels.gather_lists[1][0] = &gather_lists<D, T, true, false>;
-  kernels.gather_lists[1][1] = &gather_lists<D, T, true, true>;
   kernels.load = &load_tile<D, T, K>;
   kernels.flush = &flush_nodes<D, T, K>;
   return kernels;

@@ -13,8 +13,8 @@ TileKernels<2, double> tile_kernels<2, double>(int width) {
 }
 
 template <>
-TileKernels<2, double> list_kernels<2, double>() {
-  return kernels_of_lists<2, double>();
+TileKernels<2, double> tile_kernels_of_lists<2, double>() {
+  return tiles_of_lists<2, double>();
 }
 
 }  // namespace mpm::cpu

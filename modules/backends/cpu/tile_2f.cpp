@@ -13,8 +13,8 @@ TileKernels<2, float> tile_kernels<2, float>(int width) {
 }
 
 template <>
-TileKernels<2, float> list_kernels<2, float>() {
-  return kernels_of_lists<2, float>();
+TileKernels<2, float> tile_kernels_of_lists<2, float>() {
+  return tiles_of_lists<2, float>();
 }
 
 }  // namespace mpm::cpu

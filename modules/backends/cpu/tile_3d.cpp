@@ -13,8 +13,8 @@ TileKernels<3, double> tile_kernels<3, double>(int width) {
 }
 
 template <>
-TileKernels<3, double> list_kernels<3, double>() {
-  return kernels_of_lists<3, double>();
+TileKernels<3, double> tile_kernels_of_lists<3, double>() {
+  return tiles_of_lists<3, double>();
 }
 
 }  // namespace mpm::cpu

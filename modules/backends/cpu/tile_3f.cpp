@@ -13,8 +13,8 @@ TileKernels<3, float> tile_kernels<3, float>(int width) {
 }
 
 template <>
-TileKernels<3, float> list_kernels<3, float>() {
-  return kernels_of_lists<3, float>();
+TileKernels<3, float> tile_kernels_of_lists<3, float>() {
+  return tiles_of_lists<3, float>();
 }
 
 }  // namespace mpm::cpu

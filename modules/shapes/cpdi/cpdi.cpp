@@ -22,5 +22,8 @@ particle. Corners that share a node are merged: at most 16 (64) nodes a particle
 A domain that has collapsed (|det R| within 64 rounding errors of 0 against the product of its sides) has no R^-1. Its gradients
 are then the mean of the tents' own gradients at the corners, which is also exact for affine fields; nothing divides by zero.
 
-The second moment is a full matrix a particle, summed from the weights, for APIC and MLS-MPM.)",
+The second moment is a full matrix a particle, summed from the weights, for APIC and MLS-MPM.
+
+Particles whose nodes fit a box of 4 an axis, nearly all in practice, are computed together on the cpu backend; each of the others
+takes a list of its nodes, at some ten times the cost.)",
      "Cpdi"})

@@ -27,28 +27,35 @@ struct Cpdi {
     T side[D];    ///< R^-T s / n
   };
 
-  /// R^-T, and whether R is far enough from singular for it: |det| above 64 epsilon times the product of the sides.
-  template <class T>
-  MPM_HD static bool inverse_transposed(const Mat<2, T>& R, Mat<2, T>& out) {
-    const T det = determinant(R);
-    const T lengths = sqrt((R(0, 0) * R(0, 0) + R(1, 0) * R(1, 0)) * (R(0, 1) * R(0, 1) + R(1, 1) * R(1, 1)));
-    out(0, 0) = R(1, 1) / det, out(0, 1) = -R(1, 0) / det;
-    out(1, 0) = -R(0, 1) / det, out(1, 1) = R(0, 0) / det;
-    return abs(det) > smallest_ratio<T>() * lengths;
+  /// det R and the product of the lengths of the sides.
+  template <class S>
+  MPM_HD static void det_and_lengths(const Mat<2, S>& R, S& det, S& lengths) {
+    det = determinant(R);
+    lengths = sqrt((R(0, 0) * R(0, 0) + R(1, 0) * R(1, 0)) * (R(0, 1) * R(0, 1) + R(1, 1) * R(1, 1)));
   }
-  template <class T>
-  MPM_HD static bool inverse_transposed(const Mat<3, T>& R, Mat<3, T>& out) {
-    const T det = determinant(R);
-    T lengths = 1;
-    for (int j = 0; j < 3; ++j) {
-      lengths = lengths * sqrt(R(0, j) * R(0, j) + R(1, j) * R(1, j) + R(2, j) * R(2, j));
+  template <class S>
+  MPM_HD static void det_and_lengths(const Mat<3, S>& R, S& det, S& lengths) {
+    det = determinant(R);
+    lengths = S(real<S>(1));
+    for (int j = 0; j < 3; ++j) lengths = lengths * sqrt(R(0, j) * R(0, j) + R(1, j) * R(1, j) + R(2, j) * R(2, j));
+  }
+  /// R^-T.
+  template <class S>
+  MPM_HD static void inverse_transposed(const Mat<2, S>& R, S det, Mat<2, S>& out) {
+    const S over_det = real<S>(1) / det;
+    out(0, 0) = R(1, 1) * over_det, out(0, 1) = -R(1, 0) * over_det;
+    out(1, 0) = -R(0, 1) * over_det, out(1, 1) = R(0, 0) * over_det;
+  }
+  template <class S>
+  MPM_HD static void inverse_transposed(const Mat<3, S>& R, S det, Mat<3, S>& out) {
+    const S over_det = real<S>(1) / det;
+    for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) {
         const int p = (i + 1) % 3, q = (i + 2) % 3, s = (j + 1) % 3, t = (j + 2) % 3;
-        out(i, j) = (R(p, s) * R(q, t) - R(p, t) * R(q, s)) / det;
+        out(i, j) = (R(p, s) * R(q, t) - R(p, t) * R(q, s)) * over_det;
       }
-    }
-    return abs(det) > smallest_ratio<T>() * lengths;
   }
+  /// Whether R is far enough from singular for its inverse: |det| above 64 epsilon times the product of the sides.
   template <class T>
   MPM_HD static constexpr T smallest_ratio() {
     return sizeof(T) == 4 ? T(64 * 1.1920929e-7) : T(64 * 2.220446049250313e-16);
@@ -169,7 +176,10 @@ struct Cpdi {
   template <int D, class T>
   MPM_HD static void evaluate(const Parameters&, const Vec<D, T>& x, const Mat<D, T>& domain, List<D, T>& out) {
     Mat<D, T> sides;
-    const bool flat = !inverse_transposed(domain, sides);
+    T det, lengths;
+    det_and_lengths(domain, det, lengths);
+    const bool flat = !(abs(det) > smallest_ratio<T>() * lengths);
+    inverse_transposed(domain, det, sides);
     Corner<D, T> corners[1 << D];
     int low[D], extent[D];
     bool close = true;
@@ -187,6 +197,134 @@ struct Cpdi {
       merge_in_box<D, T>(corners, low, extent, flat, out);
     else
       merge_by_search<D, T>(corners, flat, out);
+  }
+
+  // ---- boxes of W nodes an axis, over lanes ------------------------------------------------------------------------
+
+  /// First node of the box that holds the particle's nodes, and how many there are along its longest axis. The first
+  /// node is that of the quadratic B-spline unless the domain reaches below it: neighbours in a cell then share it.
+  /// 0 for more than 4 nodes, what is not a number, and, with gradients, a domain that has collapsed.
+  template <int D, class S>
+  MPM_HD static S box(const Parameters&, const Vec<D, S>& x, const Mat<D, S>& domain, bool gradients, Vec<D, S>& base) {
+    S extent(real<S>(2)), fits(real<S>(1));
+    for (int a = 0; a < D; ++a) {
+      const S cell = floor(x[a]), at = x[a] - cell;
+      S low = at, high = at;
+      for (int k = 0; k < D; ++k) low = low - abs(domain(a, k)), high = high + abs(domain(a, k));
+      const S first = min(floor(low), floor(at - real<S>(0.5))), span = floor(high) - first + real<S>(2);
+      base[a] = cell + first;
+      extent = max(extent, span);
+      fits = select(span <= real<S>(4), fits, S(real<S>(0)));
+    }
+    if (gradients) {
+      S det, lengths;
+      det_and_lengths(domain, det, lengths);
+      fits = select(abs(det) > smallest_ratio<scalar_of<S>>() * lengths, fits, S(real<S>(0)));
+    }
+    for (int a = 0; a < D; ++a) base[a] = select(fits > real<S>(0), base[a], S(real<S>(0)));
+    return select(fits > real<S>(0), extent, S(real<S>(0)));
+  }
+
+  /// Tents of a corner along one axis that lies 1 - d from the box's first node, none of them below zero when the box
+  /// holds the corner. W makes no difference to those that both have.
+  template <int W, class S>
+  MPM_HD static void tents(S d, S* w) {
+    const S none(real<S>(0));
+    w[0] = max(d, none);
+    const S beyond = w[0] - d;  // max(-d, 0)
+    if constexpr (W == 3) {
+      w[1] = real<S>(1) - (w[0] + beyond);
+      w[2] = beyond;
+    } else {
+      w[1] = max(real<S>(1) - (w[0] + beyond), none);
+      w[2] = min(beyond, d + real<S>(2));
+      w[3] = max(real<S>(-1) - d, none);
+    }
+  }
+
+  /// What the rows of a box are made from: the corners' tents along each axis, and R^-T s / n.
+  template <int W, int D, class S>
+  struct Rows {
+    S tent[D][1 << D][W], side[D][1 << D];
+  };
+
+  /// from + R s along axis a for all corners, added up as in corner_of.
+  template <int D, class S>
+  MPM_HD static void corners_from(S from, const Mat<D, S>& R, int a, S* corner) {
+    corner[0] = from;
+    MPM_UNROLL
+    for (int k = 0; k < D; ++k) MPM_UNROLL
+    for (int c = 0; c < 1 << k; ++c) {
+      corner[c + (1 << k)] = corner[c] + R(a, k);
+      corner[c] = corner[c] - R(a, k);
+    }
+  }
+
+  /// `base` as `box` gave it; the sides only with gradients.
+  template <int W, int D, class S>
+  MPM_HD static void prepare_rows(const Parameters&, const Vec<D, S>& x, const Mat<D, S>& domain, const Vec<D, S>& base,
+                                  bool gradients, Rows<W, D, S>& rows) {
+    S corner[1 << D];
+    for (int a = 0; a < D; ++a) {
+      const S cell = floor(x[a]), second = base[a] - cell + real<S>(1);
+      corners_from<D, S>(x[a] - cell, domain, a, corner);
+      MPM_UNROLL
+      for (int c = 0; c < 1 << D; ++c) tents<W, S>(second - corner[c], rows.tent[a][c]);
+    }
+    if (!gradients) return;
+    Mat<D, S> sides;
+    inverse_transposed(domain, determinant(domain) * real<S>(1 << D), sides);
+    for (int a = 0; a < D; ++a) corners_from<D, S>(S(real<S>(0)), sides, a, rows.side[a]);
+  }
+
+  /// Nodes (i, j, k), k < W, of the box, in 2-D (i, k): weights, and gradients [D][W].
+  template <int W, int D, bool Gradients, class S>
+  MPM_HD static void row_in_box(const Rows<W, D, S>& rows, int i, int j, S* w, S (*g)[W]) {
+    S sum[W], slope[D][W];
+    MPM_UNROLL
+    for (int c = 0; c < 1 << D; ++c) {
+      S xy = rows.tent[0][c][i];
+      if constexpr (D == 3) xy = xy * rows.tent[1][c][j];
+      MPM_UNROLL
+      for (int k = 0; k < W; ++k) {
+        const S term = xy * rows.tent[D - 1][c][k];
+        sum[k] = c == 0 ? term : sum[k] + term;
+      }
+      if constexpr (Gradients) MPM_UNROLL
+      for (int a = 0; a < D; ++a) {
+        const S vector = xy * rows.side[a][c];
+        MPM_UNROLL
+        for (int k = 0; k < W; ++k) {
+          const S term = vector * rows.tent[D - 1][c][k];
+          slope[a][k] = c == 0 ? term : slope[a][k] + term;
+        }
+      }
+    }
+    MPM_UNROLL
+    for (int k = 0; k < W; ++k) w[k] = sum[k] * real<S>(1.0 / (1 << D));
+    if constexpr (Gradients) MPM_UNROLL
+    for (int a = 0; a < D; ++a) MPM_UNROLL
+    for (int k = 0; k < W; ++k) g[a][k] = slope[a][k];
+  }
+
+  /// sum w d d^T: of the corners, R R^T, and of each tent, the product of its two weights.
+  template <int W, int D, class S>
+  MPM_HD static Mat<D, S> moment_of_box(const Rows<W, D, S>& rows, const Mat<D, S>& domain) {
+    Mat<D, S> moment;
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b <= a; ++b) {
+        S sum = domain(a, 0) * domain(b, 0);
+        for (int k = 1; k < D; ++k) sum = sum + domain(a, k) * domain(b, k);
+        moment(a, b) = moment(b, a) = sum;
+      }
+    for (int a = 0; a < D; ++a) {
+      S sum(real<S>(0));
+      MPM_UNROLL
+      for (int c = 0; c < 1 << D; ++c) MPM_UNROLL
+      for (int k = 1; k < W; ++k) sum = sum + rows.tent[a][c][k - 1] * rows.tent[a][c][k];
+      moment(a, a) = moment(a, a) + sum * real<S>(1.0 / (1 << D));
+    }
+    return moment;
   }
 
 #if MPM_HOST
