@@ -44,7 +44,7 @@ Rates run_in_turns(const std::vector<Contender*>& contenders, const Protocol& pr
   rates.by_contender.resize(n);
   for (Contender* contender : contenders) {
     const double seconds = seconds_of(*contender, protocol.warm_up) / protocol.warm_up;
-    const int cycle = contender->steps_a_cycle();
+    const int cycle = protocol.whole_cycles ? contender->steps_a_cycle() : 1;
     const double cycles = std::max(1.0, std::round(protocol.window_seconds / (seconds * cycle)));
     rates.steps.push_back(cycle * static_cast<int>(cycles));
   }

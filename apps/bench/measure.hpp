@@ -26,6 +26,7 @@ struct Protocol {
   int repeats = 5;               ///< rounds
   int warm_up = 4;               ///< steps of each contender before the first round
   double window_seconds = 0.35;  ///< that a contender runs in a round, about
+  bool whole_cycles = true;      ///< windows hold whole cycles of a contender (Contender::steps_a_cycle)
 };
 
 /// Rates of each contender, particle-steps/s, one a round.

@@ -45,7 +45,7 @@ BenchContext::BenchContext(const Registry& registry, const BenchOptions& bench_o
       suite(registry, bench_options.quick),
       threads(bench_options.threads > 0 ? bench_options.threads
                                         : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))) {
-  if (options.quick) protocol = {2, 1, 0.01};
+  if (options.quick) protocol = {2, 1, 0.005, false};
   if (options.repeats > 0) protocol.repeats = options.repeats;
 }
 
