@@ -39,36 +39,39 @@ void multiply_add(long repetitions, T seed) {
 }
 
 template <class T>
-double peak(int threads, double seconds) {
-  constexpr double flops = 2.0 * chains * Lanes<T>::width;
+double peak(int threads, int windows) {
+  constexpr double flops = 2.0 * chains * Lanes<T>::width, window_seconds = 2e-3;
   volatile T one = 1;
-  long repetitions = 100000;
+  long repetitions = 20000;
   double best = 0;
-  for (int window = 0; window < 6; ++window) {
+  for (int window = 0; window < windows; ++window) {
     const auto start = Clock::now();
 #pragma omp parallel num_threads(threads)
     multiply_add<T>(repetitions, one);
     const double elapsed = seconds_since(start);
     const double rate = flops * static_cast<double>(repetitions) * threads / elapsed;
-    if (window > 0) best = std::max(best, rate);  // the first one wakes threads and finds the length
-    if (window == 0) repetitions = std::max(1000L, static_cast<long>(repetitions * seconds / elapsed));
+    if (rate > best) repetitions = std::max(1000L, static_cast<long>(repetitions * window_seconds / elapsed));
+    if (window > 0) best = std::max(best, rate);  // the first one wakes threads
   }
   return best / 1e9;
 }
 
-/// Best bytes a second of one loop over [first, last) of every thread.
+/// Best bytes a second of one loop, piece by piece through `length` elements of 4 bytes; `streams` arrays are named.
 template <class Loop>
-double best_rate(int threads, std::size_t length, double bytes, int repeats, Loop loop) {
+double best_rate(int threads, std::size_t length, int streams, int repeats, Loop loop) {
+  const std::size_t piece = std::min(length, std::size_t{4} << 20);
   double best = 0;
-  for (int repeat = 0; repeat < repeats; ++repeat) {
-    const auto start = Clock::now();
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    for (std::size_t begin = 0; begin + piece <= length; begin += piece) {
+      const auto start = Clock::now();
 #pragma omp parallel num_threads(threads)
-    {
-      const std::size_t share = length / omp_get_num_threads(), first = share * omp_get_thread_num();
-      loop(first, first + share);
+      {
+        const std::size_t lines = piece / 64, thread = static_cast<std::size_t>(omp_get_thread_num());
+        const std::size_t workers = static_cast<std::size_t>(omp_get_num_threads());
+        loop(begin + 64 * (lines * thread / workers), begin + 64 * (lines * (thread + 1) / workers));
+      }
+      best = std::max(best, 4.0 * streams * static_cast<double>(piece) / seconds_since(start));
     }
-    best = std::max(best, bytes / seconds_since(start));
-  }
   return best / 1e9;
 }
 
@@ -92,13 +95,13 @@ int lanes_of_double() {
   return Lanes<double>::width;
 }
 
-double peak_gflops(bool single, int threads, double seconds) {
-  return single ? peak<float>(threads, seconds) : peak<double>(threads, seconds);
+double peak_gflops(bool single, int threads, int windows) {
+  return single ? peak<float>(threads, windows) : peak<double>(threads, windows);
 }
 
 MemoryBandwidth memory_bandwidth(int threads, std::size_t bytes, int repeats) {
   using L = Lanes<float>;
-  const std::size_t length = bytes / sizeof(float) / (64 * threads) * (64 * threads);
+  const std::size_t length = bytes / sizeof(float) / 64 * 64;
   const auto make = [&] {
     auto* const array = static_cast<float*>(::operator new[](length * sizeof(float), std::align_val_t{64}));
     std::fill_n(array, length, 1.0f);
@@ -106,15 +109,14 @@ MemoryBandwidth memory_bandwidth(int threads, std::size_t bytes, int repeats) {
                                                       [](float* p) { ::operator delete[](p, std::align_val_t{64}); });
   };
   const auto a = make(), b = make(), c = make();
-  const double stream = static_cast<double>(length) * sizeof(float);
   MemoryBandwidth result;
-  result.triad = best_rate(threads, length, 3 * stream, repeats, [&](std::size_t first, std::size_t last) {
+  result.triad = best_rate(threads, length, 3, repeats, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; i += L::width) (L::load(&b[i]) + 0.5f * L::load(&c[i])).store(&a[i]);
   });
-  result.update = best_rate(threads, length, 2 * stream, repeats, [&](std::size_t first, std::size_t last) {
+  result.update = best_rate(threads, length, 2, repeats, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; i += L::width) (0.999f * L::load(&a[i])).store(&a[i]);
   });
-  result.read = best_rate(threads, length, stream, repeats, [&](std::size_t first, std::size_t last) {
+  result.read = best_rate(threads, length, 1, repeats, [&](std::size_t first, std::size_t last) {
     L sum[4]{L(0.f), L(0.f), L(0.f), L(0.f)};
     for (std::size_t i = first; i + 4 * L::width <= last; i += 4 * L::width)
       for (int k = 0; k < 4; ++k) sum[k] = sum[k] + L::load(&b[i + k * L::width]);

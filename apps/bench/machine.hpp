@@ -11,14 +11,14 @@ int lanes_of_float();
 int lanes_of_double();
 
 /// GFLOP/s of independent chains of multiply-adds in the widest vectors of the build (2 a multiply-add), all threads
-/// together; the best of several windows of `seconds`.
-double peak_gflops(bool single, int threads, double seconds);
+/// together. The best of `windows` windows of 2 ms, short so that some are undisturbed on a busy machine too.
+double peak_gflops(bool single, int threads, int windows);
 
 struct MemoryBandwidth {
   double triad = 0, update = 0, read = 0;  ///< GB/s: a = b + s c (3 streams), a = s a (2 streams), sum of a
 };
-/// On arrays of `bytes` each, far beyond the caches where they are the machine's alone; best of `repeats`. Bytes are
-/// those that the program names: a store's read of its line is not counted.
+/// On arrays of `bytes` each, far beyond the caches where they are the machine's alone, passed through `repeats` times;
+/// the best piece of 16 MB. Bytes are those that the program names: a store's read of its line is not counted.
 MemoryBandwidth memory_bandwidth(int threads, std::size_t bytes, int repeats);
 
 }  // namespace mpm::bench

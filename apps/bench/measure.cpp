@@ -1,5 +1,7 @@
 #include "bench/measure.hpp"
 
+#include <time.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,13 +12,20 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_of(Contender& contender, int steps) {
-  const auto start = Clock::now();
-  for (int s = 0; s < steps; ++s) contender.step();
-  return std::chrono::duration<double>(Clock::now() - start).count();
+double processor_seconds() {
+  timespec time{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 }  // namespace
+
+Seconds Contender::run(int steps) {
+  const auto start = Clock::now();
+  const double before = processor_seconds();
+  for (int s = 0; s < steps; ++s) step();
+  return {std::chrono::duration<double>(Clock::now() - start).count(), processor_seconds() - before};
+}
 
 double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -40,10 +49,16 @@ double Rates::spread(std::size_t contender) const {
 
 Rates run_in_turns(const std::vector<Contender*>& contenders, const Protocol& protocol) {
   const std::size_t n = contenders.size();
+  const auto seconds_of = [&](Contender& contender, int steps, Seconds& taken) {
+    taken = contender.run(steps);
+    return protocol.processor_time && contender.threads() == 1 ? taken.processor : taken.wall;
+  };
   Rates rates;
   rates.by_contender.resize(n);
+  Seconds taken;
+  double given = 0, wanted = 0;
   for (Contender* contender : contenders) {
-    const double seconds = seconds_of(*contender, protocol.warm_up) / protocol.warm_up;
+    const double seconds = seconds_of(*contender, protocol.warm_up, taken) / protocol.warm_up;
     const int cycle = protocol.whole_cycles ? contender->steps_a_cycle() : 1;
     const double cycles = std::max(1.0, std::round(protocol.window_seconds / (seconds * cycle)));
     rates.steps.push_back(cycle * static_cast<int>(cycles));
@@ -51,9 +66,12 @@ Rates run_in_turns(const std::vector<Contender*>& contenders, const Protocol& pr
   for (int round = 0; round < protocol.repeats; ++round)
     for (std::size_t turn = 0; turn < n; ++turn) {
       const std::size_t c = (turn + static_cast<std::size_t>(round)) % n;
-      const double seconds = seconds_of(*contenders[c], rates.steps[c]);
+      const double seconds = seconds_of(*contenders[c], rates.steps[c], taken);
       rates.by_contender[c].push_back(rates.steps[c] * static_cast<double>(contenders[c]->particle_count()) / seconds);
+      given += taken.processor;
+      wanted += taken.wall * contenders[c]->threads();
     }
+  rates.given = given / wanted;
   return rates;
 }
 

@@ -34,6 +34,7 @@ bench::Json head_of_document(const BenchOptions& options, int threads, int repea
   document["quick"] = options.quick;
   document["repeats"] = repeats;
   document["threads"] = threads;
+  document["clock"] = options.processor_time ? "processor" : "wall";
   document["sections"] = bench::Json::object();
   return document;
 }
@@ -45,8 +46,15 @@ BenchContext::BenchContext(const Registry& registry, const BenchOptions& bench_o
       suite(registry, bench_options.quick),
       threads(bench_options.threads > 0 ? bench_options.threads
                                         : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))) {
-  if (options.quick) protocol = {2, 1, 0.005, false};
+  if (options.quick) protocol = {2, 1, 0.005, false, false};
   if (options.repeats > 0) protocol.repeats = options.repeats;
+  protocol.processor_time = options.processor_time;
+}
+
+bench::Rates BenchContext::run_in_turns(const std::vector<bench::Contender*>& contenders) {
+  bench::Rates rates = bench::run_in_turns(contenders, protocol);
+  given_.push_back(rates.given);
+  return rates;
 }
 
 void BenchContext::say(const std::string& what) const {
@@ -95,15 +103,32 @@ int bench(const BenchOptions& options) {
     std::cout
         << "--quick: 1/64 of the particles and 2 rounds; shows that everything runs, its numbers mean nothing\n\n";
   for (const BenchSection* section : sections) {
-    bench::SectionResult result = section->run(context);
+    bench::SectionResult result;
+    try {
+      result = section->run(context);
+    } catch (const RunFailure& failure) {
+      std::cerr << "mpm bench " << section->name << ": a scene became unstable: particle " << failure.particle << " "
+                << failure.cause << "; fewer --repeats end before\n";
+      return run_failed;
+    }
     result.name = section->name;
     for (const bench::Target& target : result.targets) all_held = all_held && target.held();
     document["sections"][result.name] = result.json();
     if (!options.json) std::cout << result.text() << "\n" << std::flush;
     results.push_back(std::move(result));
+    // After every section: what is measured is kept when a later one ends the program.
+    if (!options.out.empty()) write_bench_report(options.out, document, results, context);
+  }
+  if (!context.given().empty()) {
+    const double given = bench::median(context.given());
+    document["processor_time_given"] = given;
+    if (given < 0.95)
+      std::cerr << "warning: other programs were running: the machine gave " << bench::short_number(100 * given)
+                << " % of the processor time wanted; rates are too low, and ratios of threads mean nothing"
+                << (options.processor_time ? "" : " (--processor-time helps those of one thread)") << "\n";
   }
   if (options.json) std::cout << document.dump(2) << "\n";
-  if (!options.out.empty()) write_bench_report(options.out, document, results, context);
+  if (!options.out.empty()) write_bench_report(options.out, document, results, context);  // with the share given
   return options.strict && !all_held ? expectation_failed : done;
 }
 

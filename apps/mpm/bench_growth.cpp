@@ -71,7 +71,7 @@ void measure_points(BenchContext& context, bench::SectionResult& result) {
     contenders.push_back(remote.back().get());
   }
   context.say("growth: rounds");
-  const bench::Rates rates = bench::run_in_turns(contenders, context.protocol);
+  const bench::Rates rates = context.run_in_turns(contenders);
   std::vector<double> peak;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Json report = remote[k]->report();
@@ -103,7 +103,8 @@ void measure_start(BenchContext& context, bench::SectionResult& result) {
     context.say("growth: start " + std::to_string(round + 1));
     RemotePoint point(
         {{"quick", context.options.quick}, {"scene", "cube_3d"}, {"motion", "deforming"}, {"set", Json::object()}});
-    seconds.push_back(point.report().at("startup_seconds"));
+    const Json report = point.report();
+    seconds.push_back(report.at(context.protocol.processor_time ? "startup_processor_seconds" : "startup_seconds"));
   }
   bench::Table table{"startup",
                      "Start of the deforming cube: plugins, file, particles, first step (1 thread)",

@@ -8,12 +8,12 @@ namespace mpm::app {
 const MachineLimits& BenchContext::limits() {
   if (limits_) return *limits_;
   say("machine: peak and memory");
-  const double seconds = options.quick ? 0.005 : 0.1;
+  const int windows = options.quick ? 5 : 200;
   const std::size_t bytes = options.quick ? std::size_t{16} << 20 : std::size_t{512} << 20;
   const auto measure = [&](int count) {
-    return MachineLimits::OfThreads{count, bench::peak_gflops(true, count, seconds),
-                                    bench::peak_gflops(false, count, seconds),
-                                    bench::memory_bandwidth(count, bytes, options.quick ? 2 : 6)};
+    return MachineLimits::OfThreads{count, bench::peak_gflops(true, count, windows),
+                                    bench::peak_gflops(false, count, windows),
+                                    bench::memory_bandwidth(count, bytes, options.quick ? 1 : 4)};
   };
   limits_ = MachineLimits{measure(1), measure(threads)};
   return *limits_;
@@ -32,7 +32,7 @@ bench::SectionResult bench_machine(BenchContext& context) {
                                  " float or " + std::to_string(bench::lanes_of_double()) + " double lanes"});
 
   bench::Table peaks{"peaks",
-                     "Peaks (best of several windows)",
+                     "Peaks (best of many short windows)",
                      {{"threads", "threads"},
                       {"gflops_float", "FMA float (GFLOP/s)"},
                       {"gflops_double", "FMA double (GFLOP/s)"},

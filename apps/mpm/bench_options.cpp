@@ -69,7 +69,7 @@ void run_group(BenchContext& context, const BenchScene& scene, const std::vector
         std::make_unique<Product>(context.suite.experiment(scene, motion, option->edits(scene.name)), 1));
   std::vector<bench::Contender*> contenders;
   for (const auto& product : products) contenders.push_back(product.get());
-  const bench::Rates rates = bench::run_in_turns(contenders, context.protocol);
+  const bench::Rates rates = context.run_in_turns(contenders);
 
   for (std::size_t k = 0; k < options.size(); ++k) {
     const BenchOption& option = *options[k];

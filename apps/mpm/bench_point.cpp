@@ -32,12 +32,22 @@ double state_bytes(const Experiment& experiment) {
   return (2 * D + 2 * D * D) * scalar;
 }
 
+double processor_seconds() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
 void answer(const Json& json) {
   std::cout << json.dump() << "\n" << std::flush;
 }
 
 }  // namespace
 
+/// Answers questions until its input ends: a number of steps to run, or "report".
 int bench_point(const std::string& description) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const auto start = std::chrono::steady_clock::now();
@@ -50,14 +60,16 @@ int bench_point(const std::string& description) {
   Product product(suite.experiment(suite.scene(point.at("scene")), point.at("motion"), edits), 1);
   product.step();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double processor = processor_seconds();
   answer({{"particles", product.particle_count()}});
   for (std::string question; std::getline(std::cin, question);) {
-    if (question == "step") {
-      product.step();
-      answer(Json::object());
+    if (question != "report") {
+      const bench::Seconds taken = product.run(std::stoi(question));
+      answer({{"wall", taken.wall}, {"processor", taken.processor}});
     } else {
       const Backend& backend = product.simulation().backend();
       answer({{"startup_seconds", seconds},
+              {"startup_processor_seconds", processor},
               {"peak_bytes", peak_bytes() - before},
               {"particle_bytes", backend.particle_bytes()},
               {"grid_bytes", backend.grid_bytes()},
@@ -92,6 +104,11 @@ RemotePoint::~RemotePoint() {
   std::fclose(answers_);
   while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }
+}
+
+bench::Seconds RemotePoint::run(int steps) {
+  const Json taken = ask(std::to_string(steps));
+  return {taken.at("wall"), taken.at("processor")};
 }
 
 Json RemotePoint::ask(const std::string& what) {

@@ -19,7 +19,8 @@ class RemotePoint final : public bench::Contender {
   RemotePoint(const RemotePoint&) = delete;
   RemotePoint& operator=(const RemotePoint&) = delete;
 
-  void step() override { ask("step"); }
+  void step() override { run(1); }
+  bench::Seconds run(int steps) override;
   std::size_t particle_count() const override { return particles_; }
   int steps_a_cycle() const override { return cycle_; }
   /// startup_seconds, peak_bytes (growth of the resident set), particle_bytes, grid_bytes, state_bytes.

@@ -46,11 +46,16 @@ class BenchContext {
 
   /// Measured once, when first asked for.
   const MachineLimits& limits();
+  /// By the protocol; notes how busy the machine was.
+  bench::Rates run_in_turns(const std::vector<bench::Contender*>& contenders);
+  /// Shares of the processor time wanted that the groups were given.
+  const std::vector<double>& given() const { return given_; }
   /// A line on standard error, so that the tables stay clean.
   void say(const std::string& what) const;
 
  private:
   std::optional<MachineLimits> limits_;
+  std::vector<double> given_;
 };
 
 /// Rate, operations, bytes and shares of the roofs of one contender.

@@ -146,7 +146,7 @@ class Group {
 
   bench::Rates run(const std::vector<bench::Contender*>& contenders) const {
     context_.say("standard: " + scene_.name + ", " + material_.name + ", " + precision_name());
-    return bench::run_in_turns(contenders, context_.protocol);
+    return context_.run_in_turns(contenders);
   }
 
   void target(Findings& findings, std::size_t motion, const std::string& id, const std::string& meaning,

@@ -42,6 +42,8 @@ void add_bench(CLI::App& verb, BenchOptions& options, std::string& point) {
       ->check(CLI::Range(1, 1000));
   verb.add_option("--threads", options.threads, "of the parallel contenders; default all processors")
       ->check(CLI::Range(1, 1024));
+  verb.add_flag("--processor-time", options.processor_time,
+                "rates of one thread by the processor's time, not the wall's: for a busy machine");
   verb.add_option("--out", options.out, "folder for bench.json, tables as CSV, report.md and the roofline figure");
   verb.add_flag("--strict", options.strict, "exit code 4 when a target is missed");
   verb.add_option("--point", point, "of the program itself: one point of the section growth")->group("");

@@ -94,6 +94,27 @@ TEST_CASE("bench --quick measures every section", "[bench]") {
     CHECK(fs::file_size(folder / "out" / file) > 100);
 }
 
+TEST_CASE("the standard scenes hold a million particles and run by themselves", "[bench]") {
+  const fs::path scenes = fs::path(MPM_SOURCE_DIR) / "experiments/benchmarks";
+  for (const char* name : {"cube_3d_rest", "cube_3d_deforming", "block_2d_rest", "block_2d_deforming"}) {
+    INFO(name);
+    const Folder folder;
+    const std::string file = (scenes / (std::string(name) + ".json")).string();
+    Result result = call(folder, {"check", file});
+    REQUIRE(result.code == 0);
+    CHECK(has(result.out, "about 1000000 particles"));
+    const bool three = has(name, "3d");
+    const std::string cell = three ? "0.03125" : "0.0078125", step = three ? "4e-4" : "1e-4";
+    result = call(folder, {"run", file, "--set", "/grid/cell_size=" + cell, "--set", "/solver/time_step=" + step,
+                           "--set", "/output/metrics_every=10", "--out", "out"});
+    INFO(result.err);
+    REQUIRE(result.code == 0);
+    const Json stability = json_in(folder / "out/summary.json")["stability"];
+    CHECK(stability["smallest_volume_ratio"] > 0.2);
+    CHECK(stability["smallest_volume_ratio"] < (has(name, "rest") ? 1.001 : 0.8));  // deforms where it should
+  }
+}
+
 TEST_CASE("bench prints tables, a line a row", "[bench]") {
   const Folder folder;
   const Result result = call(folder, {"bench", "machine", "--quick"});

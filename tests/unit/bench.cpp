@@ -143,7 +143,7 @@ TEST_CASE("a ratio is the median of the rounds' ratios", "[bench]") {
 
 TEST_CASE("contenders run the same number of rounds in whole cycles", "[bench]") {
   Sleeper a(7), b(1);
-  const Rates rates = run_in_turns({&a, &b}, {5, 3, 1e-9});
+  const Rates rates = run_in_turns({&a, &b}, {5, 3, 1e-9, false, true});
   CHECK(rates.by_contender[0].size() == 5);
   CHECK(rates.by_contender[1].size() == 5);
   CHECK(rates.steps[0] % 7 == 0);
