@@ -82,8 +82,8 @@ void run_group(BenchContext& context, const BenchScene& scene, const std::vector
                           counted(100 * account.gflops() / peak),
                           100 * account.gigabytes() / context.limits().one.memory.update});
     if (scene.name != "cube_3d") continue;
-    if (account.flops && option.group != "precision")
-      context.roofline.push_back({option.name, option.group, *account.flops / account.bytes, account.gflops()});
+    if (account.flops && option.figure && option.group != "precision")
+      context.roofline.push_back({option.name, *account.flops / account.bytes, account.gflops()});
     if (option.name == "cpdi") targets.push_back({"cpdi", "cube_3d cpdi float, one thread (M/s)", rate / 1e6, 8, true});
     if (option.name == "ledger")
       targets.push_back({"ledger", "cube_3d cost of the ledger over none", cost, 1.1, false});

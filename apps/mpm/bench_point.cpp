@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <fstream>
 #include <iostream>
 
 #include "mpm/bench_suite.hpp"
@@ -20,10 +21,14 @@ namespace {
 
 using bench::Json;
 
+/// Largest resident set of this program so far. Not getrusage's: that is handed on by the program that started this
+/// one.
 double peak_bytes() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024;
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (unsigned long long kilobytes = 0; std::sscanf(line.c_str(), "VmHWM: %llu kB", &kilobytes) == 1)
+      return static_cast<double>(kilobytes) * 1024;
+  return 0;
 }
 
 /// Bytes of position, velocity, C and F a particle: what the state is without anything else.
@@ -80,6 +85,7 @@ int bench_point(const std::string& description) {
 }
 
 RemotePoint::RemotePoint(const Json& description) : name_(description.dump()), cycle_(description.value("cycle", 1)) {
+  ::signal(SIGPIPE, SIG_IGN);  // a process that died is an error of writing
   int to[2], from[2];
   if (::pipe2(to, O_CLOEXEC) != 0 || ::pipe2(from, O_CLOEXEC) != 0)
     throw output::MachineError::from_errno("open a pipe for", "mpm bench", errno);
@@ -96,10 +102,19 @@ RemotePoint::RemotePoint(const Json& description) : name_(description.dump()), c
   ::close(from[1]);
   questions_ = to[1];
   answers_ = ::fdopen(from[0], "r");
-  particles_ = hear().at("particles");
+  try {
+    particles_ = hear().at("particles");
+  } catch (...) {
+    end();
+    throw;
+  }
 }
 
 RemotePoint::~RemotePoint() {
+  end();
+}
+
+void RemotePoint::end() {
   ::close(questions_);  // the end of its input ends it
   std::fclose(answers_);
   while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {

@@ -29,6 +29,7 @@ class RemotePoint final : public bench::Contender {
  private:
   bench::Json ask(const std::string& what);
   bench::Json hear();
+  void end();
 
   std::string name_;
   std::FILE* answers_ = nullptr;

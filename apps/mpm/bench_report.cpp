@@ -15,7 +15,7 @@ namespace {
 render::Series roof(const MachineLimits::OfThreads& limits, double from, double to) {
   render::Series series;
   series.label = std::to_string(limits.threads) + (limits.threads == 1 ? " thread" : " threads");
-  series.kind = limits.threads == 1 ? render::SeriesKind::exact : render::SeriesKind::exact;
+  series.kind = render::SeriesKind::exact;
   const double ridge = limits.gflops_float / limits.memory.update;
   for (const double x : {from, std::clamp(ridge, from, to), to}) {
     series.x.push_back(x);
@@ -41,20 +41,12 @@ void write_roofline(const std::filesystem::path& folder, BenchContext& context) 
     most = std::max(most, point.flops_per_byte);
   }
   const double ridge = limits.all.gflops_float / limits.all.memory.update;
-  const double from = 0.5 * least, to = 1.5 * std::max(most, 2 * ridge);
+  const double from = 0.7 * least, to = 1.4 * std::max(most, ridge);
   plot.series.push_back(roof(limits.one, from, to));
   if (context.threads > 1) plot.series.push_back(roof(limits.all, from, to));
-  for (const RooflinePoint& point : context.roofline) {
-    auto group = std::find_if(plot.series.begin(), plot.series.end(),
-                              [&](const render::Series& series) { return series.label == point.group; });
-    if (group == plot.series.end()) {
-      plot.series.push_back({point.group, {}, {}, {}, render::SeriesKind::point, {}});
-      group = plot.series.end() - 1;
-    }
-    group->x.push_back(point.flops_per_byte);
-    group->y.push_back(point.gflops);
-    group->point_labels.push_back(point.name);
-  }
+  // Names in the legend: beside the points, which crowd, they would lie on one another.
+  for (const RooflinePoint& point : context.roofline)
+    plot.series.push_back({point.name, {point.flops_per_byte}, {point.gflops}, {}, render::SeriesKind::point, {}});
   render::write_figure(plot, folder / "roofline");
 }
 

@@ -30,7 +30,7 @@ struct MachineLimits {
 
 /// A variant as a point under the roofs.
 struct RooflinePoint {
-  std::string name, group;
+  std::string name;
   double flops_per_byte = 0, gflops = 0;
 };
 

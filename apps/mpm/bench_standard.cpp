@@ -179,7 +179,7 @@ class Group {
     findings.rates.rows.push_back(std::move(row));
     if (account.flops && plain && scene_.name == "cube_3d" && precision_ == Precision::single)
       context_.roofline.push_back(
-          {std::string(motions[m]) + (k == 0 ? "" : ", " + std::to_string(context_.threads) + " threads"), "standard",
+          {std::string(motions[m]) + (k == 0 ? "" : ", " + std::to_string(context_.threads) + " threads"),
            *account.flops / account.bytes, account.gflops()});
     if (!plain || scene_.name != "cube_3d") return;
     if (k == 0 && account.flops)

@@ -44,7 +44,8 @@ BenchSuite::BenchSuite(const Registry& registry, bool quick) : registry_(registr
     scenes_.push_back({name, scene.at("rest"), scene.at("deforming"), scene.at("quick")});
   for (const auto& [name, edits] : file.at("materials").items()) materials_.push_back({name, edits_in(edits)});
   for (const Json& option : file.at("options")) {
-    BenchOption read{option.at("name"), option.at("group"), option.value("motion", "deforming"), {}};
+    BenchOption read{
+        option.at("name"), option.at("group"), option.value("motion", "deforming"), option.value("figure", true), {}};
     for (const BenchScene& scene : scenes_) {
       Edits edits = edits_in(option.at("set"));
       if (option.contains("set_in"))

@@ -35,6 +35,7 @@ struct BenchMaterial {
 
 struct BenchOption {
   std::string name, group, motion;
+  bool figure = true;                                         ///< a point of the roofline
   std::vector<std::pair<std::string, Edits>> edits_of_scene;  ///< by name of the scene
 
   const Edits& edits(const std::string& scene) const;
