@@ -32,6 +32,23 @@ void add_experiment(CLI::App& verb, RunOptions& options) {
   verb.add_option("--backend", options.backend, "reference or cpu, in place of the file's");
 }
 
+void add_bench(CLI::App& verb, BenchOptions& options, std::string& point) {
+  verb.add_option("SECTION", options.sections, "what to measure; default all");
+  verb.footer("Sections:\n" + bench_section_list() +
+              "Exit codes: 0 also where a target is missed, which is printed; 4 then with --strict.");
+  verb.add_flag("--json", options.json, "one JSON document in place of the tables");
+  verb.add_flag("--quick", options.quick, "1/64 of the particles, 2 rounds: shows that everything runs, not how fast");
+  verb.add_option("--repeats", options.repeats, "rounds; at least 5 unless --quick; default 5")
+      ->check(CLI::Range(1, 1000));
+  verb.add_option("--threads", options.threads, "of the parallel contenders; default all processors")
+      ->check(CLI::Range(1, 1024));
+  verb.add_flag("--processor-time", options.processor_time,
+                "rates of one thread by the processor's time, not the wall's: for a busy machine");
+  verb.add_option("--out", options.out, "folder for bench.json, tables as CSV, report.md and the roofline figure");
+  verb.add_flag("--strict", options.strict, "exit code 4 when a target is missed");
+  verb.add_option("--point", point, "of the program itself: one point of the section growth")->group("");
+}
+
 std::string quoted_for_a_shell(const std::string& word) {
   const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
     return c >= 128 || std::isalnum(c) ||
@@ -190,6 +207,14 @@ int run_command_line(int argc, char** argv) {
                           "folder for the figures; default figures/ of the run, or runs/overlay for several");
   figure_verb->callback(
       [&] { code = guarded([&] { return figure(runs, specification, figure_out); }, "nothing was drawn"); });
+
+  BenchOptions bench_options;
+  bench_options.command = options.command;
+  std::string point;
+  auto* bench_verb = app.add_subcommand("bench", "measure the speed on the standard scenes (docs/benchmarks)");
+  add_bench(*bench_verb, bench_options, point);
+  bench_verb->callback(
+      [&] { code = guarded([&] { return point.empty() ? bench(bench_options) : bench_point(point); }); });
 
   auto* new_verb = app.add_subcommand("new", "write a project for a plugin of your own, with an experiment and a test");
   new_verb->add_option("KIND", kind, "shape, transfer, filter, contact or material")->required();

@@ -31,6 +31,18 @@ struct RunOptions {
   std::string command;        ///< as typed, for the manifest
 };
 
+struct BenchOptions {
+  std::vector<std::string> sections;  ///< empty: all
+  bool json = false;
+  bool quick = false;           ///< tiny scenes: shows that everything runs
+  bool strict = false;          ///< a target that is missed gives exit code 4
+  int repeats = 0;              ///< rounds; 0: the protocol's 5 (2 under --quick)
+  int threads = 0;              ///< of the parallel contenders; 0: all processors
+  bool processor_time = false;  ///< contenders of one thread by the processor's time: for a busy machine
+  std::filesystem::path out;
+  std::string command;  ///< as typed
+};
+
 int run_command_line(int argc, char** argv);
 
 /// What the program offers to the reader: names of exact solutions, figures, quantities.
@@ -50,6 +62,12 @@ int schema();
 int new_plugin(const std::string& kind, const std::string& id, const std::filesystem::path& folder);
 /// Runs the conformance suite on a plugin's file in a process of its own, for at most `seconds`.
 int test_plugin(const std::filesystem::path& file, double seconds, bool verbose, bool json);
+/// Speed on the standard scenes. Throws InputError for a section that does not exist.
+int bench(const BenchOptions& options);
+/// One line a section, for the help.
+std::string bench_section_list();
+/// The child process of a point of the section `growth`: answers questions on standard input.
+int bench_point(const std::string& description);
 int figure(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& specification,
            const std::filesystem::path& out);
 

@@ -1,0 +1,279 @@
+#include "bench/costs.hpp"
+
+#include <cmath>
+#include <string_view>
+
+#include "bench/counting.hpp"
+#include "materials/neo_hookean/neo_hookean.hpp"
+#include "materials/von_mises/von_mises.hpp"
+#include "shapes/bspline_quadratic/bspline_quadratic.hpp"
+#include "shapes/cpdi/cpdi.hpp"
+#include "shapes/gimp/gimp.hpp"
+#include "shapes/linear/linear.hpp"
+#include "transfers/apic/apic.hpp"
+#include "transfers/flip/flip.hpp"
+#include "transfers/mls/mls.hpp"
+#include "transfers/pic/pic.hpp"
+#include "transfers/tpic/tpic.hpp"
+#if __has_include("materials/fixed_corotated/fixed_corotated.hpp")
+#include "materials/fixed_corotated/fixed_corotated.hpp"
+#endif
+
+namespace mpm::bench {
+namespace {
+
+/// What the step asks of the stencil, of one experiment.
+struct Wanted {
+  int D = 3;
+  unsigned traits = 0;
+  bool separate_force = false, contact = false, moment_is_gradient = false, moment_of_particle = false;
+  bool has(unsigned trait) const { return (traits & trait) != 0; }
+  bool stress_by_affine() const { return has(MPM_STRESS_BY_AFFINE); }
+  bool affine() const { return has(MPM_GATHERS_AFFINE | MPM_STRAIN_BY_AFFINE); }
+  bool moment() const { return affine() && !moment_is_gradient; }
+  bool gather_gradient() const {
+    return !has(MPM_STRAIN_BY_AFFINE) || has(MPM_GATHERS_GRADIENT) || (affine() && moment_is_gradient);
+  }
+  bool scatter_gradient() const { return !stress_by_affine() || contact; }
+};
+
+// ---- plugins -----------------------------------------------------------------------------------------------------
+
+template <class F>
+const typename F::Parameters& parameters_of(const Component& component) {
+  return *reinterpret_cast<const typename F::Parameters*>(component.parameters.data());
+}
+
+/// Evaluations of one stencil, and nodes of a list.
+struct ShapeCost {
+  double plain = 0, with_gradient = 0;
+  int width = 0;     ///< 0: a list
+  double nodes = 0;  ///< of a list
+};
+
+constexpr int samples = 64;
+double sample(int k, int axis) {
+  const double u = 0.5 + (k + 1) * (axis == 0   ? 0.8191725133961645
+                                    : axis == 1 ? 0.6710436067037893
+                                                : 0.5497004779019703);
+  return 5 + u - std::floor(u);
+}
+
+template <class F, int D, class T>
+ShapeCost tensor_cost(const Component& component, double half_size, bool moment_of_particle) {
+  using S = Counted<T>;
+  const auto& p = parameters_of<F>(component);
+  const auto one_axis = [&](bool gradient) {
+    S base, w[F::width], g[F::width];
+    const long evaluation = count_operations([&] {
+      if constexpr (requires { F::evaluate(p, S(5.2), S(half_size), base, w, g); })
+        F::evaluate(p, S(5.2), S(half_size), base, w, gradient ? g : nullptr);
+      else
+        F::evaluate(p, S(5.2), base, w, gradient ? g : nullptr);
+    });
+    const int moments = moment_of_particle ? 3 * F::width + 1 : 0;  // sum w d^2 and its inverse
+    return static_cast<double>(evaluation + 1 + moments);           // the offset from the first node
+  };
+  return {D * one_axis(false), D * one_axis(true), F::width, 0};
+}
+
+template <int D, class T>
+ShapeCost cpdi_cost(const Component& component, double half_size, bool moment_of_particle) {
+  using S = Counted<T>;
+  const auto& p = parameters_of<Cpdi>(component);
+  ShapeCost cost;
+  Mat<D, S> domain{};
+  for (int a = 0; a < D; ++a) domain(a, a) = S(half_size);
+  for (int k = 0; k < samples; ++k) {
+    Vec<D, S> x;
+    for (int a = 0; a < D; ++a) x[a] = S(sample(k, a));
+    NodeList<D, S, Cpdi::capacity<D>> list;
+    cost.plain += static_cast<double>(count_operations([&] { Cpdi::evaluate(p, x, domain, list); })) / samples;
+    cost.nodes += static_cast<double>(list.count) / samples;
+  }
+  cost.plain += cost.nodes * (D + (moment_of_particle ? 3 * D * D : 0));  // distances, and the moment's sum
+  cost.with_gradient = cost.plain;
+  return cost;
+}
+
+template <int D, class T>
+std::optional<ShapeCost> shape_cost(const Component& component, double half_size, const Wanted& wanted) {
+  const std::string_view id = component.plugin->id();
+  const bool moment = wanted.moment_of_particle && wanted.affine();
+  if (id == "linear") return tensor_cost<Linear, D, T>(component, half_size, false);
+  if (id == "bspline_quadratic") return tensor_cost<BsplineQuadratic, D, T>(component, half_size, false);
+  if (id == "gimp") return tensor_cost<Gimp, D, T>(component, half_size, moment);
+  if (id == "cpdi") return cpdi_cost<D, T>(component, half_size, moment);
+  return std::nullopt;
+}
+
+template <class F, int D, class T>
+double transfer_round_trip(const Component& component) {
+  using S = Counted<T>;
+  const auto& p = parameters_of<F>(component);
+  Vec<D, S> v{}, out{};
+  Mat<D, S> A{};
+  typename F::template State<D, S> state{};
+  GatheredMoments<D, S> moments{};
+  return static_cast<double>(count_operations([&] {
+    F::gather(p, moments, S(1e-4), v, state, out);
+    F::scatter(p, S(1), v, state, out, A);
+  }));
+}
+
+template <int D, class T>
+std::optional<double> transfer_cost(const Component& component) {
+  const std::string_view id = component.plugin->id();
+  if (id == "pic") return transfer_round_trip<Pic, D, T>(component);
+  if (id == "flip") return transfer_round_trip<Flip, D, T>(component);
+  if (id == "apic") return transfer_round_trip<Apic, D, T>(component);
+  if (id == "mls") return transfer_round_trip<Mls, D, T>(component);
+  if (id == "tpic") return transfer_round_trip<Tpic, D, T>(component);
+  return std::nullopt;
+}
+
+/// Strain with the check of J, and stress; a second J of the same state is the compiler's to share.
+template <class F, int D, class T>
+double material_step(const Component& component, bool deforming) {
+  using S = Counted<T>;
+  const typename F::template Constants<S> constants(parameters_of<F>(component));
+  typename F::template State<D, S> state{};
+  const auto set = [&](auto& tensor) { tensor = std::decay_t<decltype(tensor)>::identity(); };
+  if constexpr (requires { state.deformation_gradient; }) set(state.deformation_gradient);
+  if constexpr (requires { state.elastic_left_cauchy_green; }) set(state.elastic_left_cauchy_green);
+  if constexpr (requires { state.volume_ratio; }) state.volume_ratio = S(1);
+  Mat<D, S> L{};
+  L(0, 1) = deforming ? S(1) : S(0);  // a shear of 1: far beyond any yield stress that the scenes use
+  return static_cast<double>(count_operations([&] {
+    F::advance(constants, L, S(1), state);
+    F::volume_ratio(state);
+    F::kirchhoff_stress(constants, state);
+  }));
+}
+
+template <int D, class T>
+std::optional<double> material_cost(const Component& component, bool deforming) {
+  const std::string_view id = component.plugin->id();
+  if (id == "neo_hookean") return material_step<NeoHookean, D, T>(component, deforming);
+  if (id == "von_mises") return material_step<VonMises, D, T>(component, deforming);
+#if __has_include("materials/fixed_corotated/fixed_corotated.hpp")
+  if (id == "fixed_corotated") return material_step<FixedCorotated, D, T>(component, deforming);
+#endif
+  return std::nullopt;
+}
+
+// ---- the host's part ---------------------------------------------------------------------------------------------
+
+/// One scatter of a particle: `stress` coefficients into A or S, the move of b to the first node, the rows.
+double scatter_cost(const Wanted& w, const ShapeCost& shape, bool affine, bool gradient, bool stress) {
+  const double DD = w.D * w.D;
+  double cost = stress ? 2 * DD : 0;
+  if (affine) cost += 3 * DD;
+  if (gradient) cost += DD;
+  if (shape.width > 0) return cost + scatter_rows(w.D, shape.width, affine, gradient);
+  const double lanes = w.D + 1;
+  return cost + shape.nodes * (2 * lanes + (affine ? 2 * DD : 0) + (gradient ? 2 * DD : 0));
+}
+
+double gather_cost(const Wanted& w, const ShapeCost& shape, bool moment, bool gradient) {
+  const double DD = w.D * w.D;
+  double cost = 0;
+  if (moment) cost += (3 + (w.moment_of_particle ? (shape.width > 0 ? 1 : 2 * w.D) : 0)) * DD;
+  if (gradient) cost += DD;
+  if (shape.width > 0) return cost + gather_rows(w.D, shape.width, moment, gradient);
+  return cost + shape.nodes * (2 * w.D + (moment ? 2 * DD : 0) + (gradient ? 2 * DD : 0));
+}
+
+template <int D, class T>
+std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, double nodes_per_particle,
+                              bool deforming) {
+  const mpm_shape& shape_table = experiment.shape.plugin->shape();
+  Wanted w;
+  w.D = D;
+  w.traits = experiment.transfer.plugin->transfer().traits;
+  w.separate_force = plan.separate_force;
+  w.contact = plan.contact;
+  w.moment_is_gradient = shape_table.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
+  w.moment_of_particle = shape_table.second_moment_kind == MPM_MOMENT_PER_PARTICLE;
+  const BodySpecification& body = experiment.bodies[0];
+  const auto shape = shape_cost<D, T>(experiment.shape, 0.5 / body.particles_per_cell_axis, w);
+  const auto transfer = transfer_cost<D, T>(experiment.transfer);
+  const auto material = material_cost<D, T>(experiment.materials[body.material].component, deforming);
+  if (!shape || !transfer || !material || plan.ledger) return std::nullopt;
+
+  const double loops =
+      plan.filter ? experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data()) : 0;
+  const bool scatters_affine = w.has(MPM_SCATTERS_AFFINE);
+  const bool gathers_affine = w.has(MPM_GATHERS_AFFINE) && !w.moment_is_gradient;
+  const bool gathers_gradient = w.has(MPM_GATHERS_GRADIENT) || (w.has(MPM_GATHERS_AFFINE) && w.moment_is_gradient);
+  Flops flops;
+  flops.shape = (w.gather_gradient() ? shape->with_gradient : shape->plain) +
+                (w.scatter_gradient() ? shape->with_gradient : shape->plain) +
+                loops * (gathers_gradient ? shape->with_gradient : shape->plain);
+  flops.transfer = (1 + loops) * *transfer;
+  flops.material = *material;
+  flops.gather = gather_cost(w, *shape, w.moment(), w.gather_gradient()) + 2 * D +
+                 loops * gather_cost(w, *shape, gathers_affine, gathers_gradient);
+  if (w.has(MPM_GATHERS_INCREMENT)) flops.gather += gather_cost(w, *shape, false, false);
+  if (plan.particle_domain) flops.gather += D * D * (2 * D + 2);
+  flops.scatter = loops * scatter_cost(w, *shape, scatters_affine, false, false);
+  if (w.separate_force)
+    flops.scatter += scatter_cost(w, *shape, scatters_affine, false, false) +
+                     scatter_cost(w, *shape, w.stress_by_affine(), !w.stress_by_affine(), true);
+  else
+    flops.scatter += scatter_cost(w, *shape, scatters_affine || w.stress_by_affine(), !w.stress_by_affine(), true);
+  if (w.contact)
+    flops.scatter += scatter_cost(w, *shape, false, true, false) + scatter_cost(w, *shape, true, false, false);
+  flops.grid = (4 + loops * 3) * D * experiment.field_count *
+               nodes_per_particle;  // p / m, + dt f / m, + dt g; a loop's p / m and update
+  return flops;
+}
+
+}  // namespace
+
+/// Each product and each sum of a useful lane: the D momenta and, in the scatter, the mass.
+double scatter_rows(int dimension, int width, bool affine, bool gradient) {
+  const int D = dimension, K = width, lanes = D + 1;
+  double row = 0;  // along the last axis: w_k c, + k w_k q, + g_k s
+  for (int k = 0; k < K; ++k) row += 2 * lanes + (affine && k > 0 ? 2 * D : 0) + (gradient ? 2 * D : 0);
+  double plane = row;
+  if (D == 3) plane = K * (row + lanes + (affine ? 2 * D : 0) + (gradient ? 3 * D : 0));
+  const double head = lanes + (affine ? D + (D - 1) * D : 0) + (gradient ? 2 * D + (D - 1) * D : 0);
+  return K * (head + plane);
+}
+
+double gather_rows(int dimension, int width, bool moment, bool gradient) {
+  const int D = dimension, K = width;
+  double row = D + (gradient ? D : 0);  // k = 0
+  for (int k = 1; k < K; ++k) row += 2 * D + (moment ? (k > 1 ? 2 : 1) * D : 0) + (gradient ? 2 * D : 0);
+  double plane = D == 3 ? 0 : row;
+  if (D == 3)
+    for (int j = 0; j < K; ++j)
+      plane += row + 2 * D + (moment ? (j > 1 ? 2 : j) * D + 2 * D : 0) + (gradient ? 4 * D : 0);
+  double total = 0;
+  for (int i = 0; i < K; ++i)
+    total += plane + 2 * D + (moment ? (i > 1 ? 2 : i) * D + 2 * (D - 1) * D : 0) + (gradient ? 2 * D * D : 0);
+  return total;
+}
+
+std::optional<Flops> flops_per_particle(const Experiment& experiment, const Plan& plan, double nodes_per_particle,
+                                        bool deforming) {
+  const bool single = experiment.precision == Precision::single;
+  if (experiment.dimension == 2)
+    return single ? flops_of<2, float>(experiment, plan, nodes_per_particle, deforming)
+                  : flops_of<2, double>(experiment, plan, nodes_per_particle, deforming);
+  return single ? flops_of<3, float>(experiment, plan, nodes_per_particle, deforming)
+                : flops_of<3, double>(experiment, plan, nodes_per_particle, deforming);
+}
+
+double bytes_per_particle(const Experiment& experiment, const Plan& plan, double nodes_per_particle) {
+  const double state = static_cast<double>(plan.bytes_per_particle(0)) - 4;  // the identity is read by sorts alone
+  const double loops =
+      plan.filter ? experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data()) : 0;
+  const double visits = 2 + (plan.fused ? 0 : 1);  // read and written; read again where the scatter is apart
+  const double scalar = experiment.precision == Precision::single ? 4 : 8;
+  return visits * state + loops * experiment.dimension * scalar +
+         2 * static_cast<double>(plan.bytes_per_node()) * nodes_per_particle;
+}
+
+}  // namespace mpm::bench

@@ -1,0 +1,32 @@
+#pragma once
+// What a step has to do, counted: floating-point operations and bytes a particle. Of the algorithm as the cpu backend
+// does it, useful lanes only: padded lanes, tile copies, address arithmetic and sorting are overhead, not work.
+
+#include <optional>
+
+#include "experiment/plan.hpp"
+
+namespace mpm::bench {
+
+struct Flops {
+  double shape = 0, transfer = 0, material = 0;  ///< in the plugins
+  double scatter = 0, gather = 0;                ///< rows of the stencil, coefficients and moments
+  double grid = 0;                               ///< the particle's share of the nodes
+  double total() const { return shape + transfer + material + scatter + gather + grid; }
+};
+
+/// Operations a particle-step; nothing where a plugin is not known to the counter or the ledger adds its sums.
+/// Nodes count once, whatever the number of velocity fields. `deforming`: the material flows where it can.
+std::optional<Flops> flops_per_particle(const Experiment& experiment, const Plan& plan, double nodes_per_particle,
+                                        bool deforming);
+
+/// Bytes that must cross memory in a step, a particle: its state is read and written once in a fused pass (read once
+/// more where gather and scatter are apart, and once a pass of a filter's loop), and each channel of its nodes
+/// likewise.
+double bytes_per_particle(const Experiment& experiment, const Plan& plan, double nodes_per_particle);
+
+/// Rows of the tensor-product scatter and gather, `width` nodes an axis (modules/backends/cpu/tile.hpp).
+double scatter_rows(int dimension, int width, bool affine, bool gradient);
+double gather_rows(int dimension, int width, bool moment, bool gradient);
+
+}  // namespace mpm::bench

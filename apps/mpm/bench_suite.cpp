@@ -1,0 +1,89 @@
+#include "mpm/bench_suite.hpp"
+
+#include <stdexcept>
+#include <string_view>
+
+#include "backends/make_backend.hpp"
+#include "mpm/cli.hpp"
+
+namespace mpm::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Embedded {
+  std::string_view name, text;
+};
+constexpr Embedded embedded[] = {
+#include "benchmarks.inc"
+};
+
+std::string_view text_of(std::string_view name) {
+  for (const Embedded& file : embedded)
+    if (file.name == name) return file.text;
+  throw std::out_of_range("no benchmark file " + std::string(name) + " is compiled in");
+}
+
+Edits edits_in(const Json& object) {
+  Edits edits;
+  for (const auto& [pointer, value] : object.items()) edits.push_back({pointer, value});
+  return edits;
+}
+
+}  // namespace
+
+const Edits& BenchOption::edits(const std::string& scene) const {
+  for (const auto& [name, edits] : edits_of_scene)
+    if (name == scene) return edits;
+  throw std::out_of_range("option " + name + " has no scene " + scene);
+}
+
+BenchSuite::BenchSuite(const Registry& registry, bool quick) : registry_(registry), quick_(quick) {
+  const Json file = Json::parse(text_of("standard.json"), nullptr, true, true);
+  for (const auto& [name, scene] : file.at("scenes").items())
+    scenes_.push_back({name, scene.at("rest"), scene.at("deforming"), scene.at("quick")});
+  for (const auto& [name, edits] : file.at("materials").items()) materials_.push_back({name, edits_in(edits)});
+  for (const Json& option : file.at("options")) {
+    BenchOption read{
+        option.at("name"), option.at("group"), option.value("motion", "deforming"), option.value("figure", true), {}};
+    for (const BenchScene& scene : scenes_) {
+      Edits edits = edits_in(option.at("set"));
+      if (option.contains("set_in"))
+        for (Edit& edit : edits_in(option.at("set_in").at(scene.name))) edits.push_back(std::move(edit));
+      read.edits_of_scene.emplace_back(scene.name, std::move(edits));
+    }
+    options_.push_back(std::move(read));
+  }
+}
+
+const BenchScene& BenchSuite::scene(const std::string& name) const {
+  for (const BenchScene& scene : scenes_)
+    if (scene.name == name) return scene;
+  throw std::out_of_range("no benchmark scene " + name);
+}
+
+Experiment BenchSuite::experiment(const BenchScene& scene, const std::string& motion, const Edits& edits) const {
+  const std::string& file = scene.file(motion);
+  const std::string_view text = text_of(file);
+  const auto set = [](const std::string& pointer, const Json& value) { return pointer + "=" + value.dump(); };
+  ReadOptions options = read_options(registry_, {});
+  if (quick_) {
+    const Json plain = Json::parse(text, nullptr, true, true);
+    for (const char* pointer : {"/grid/cell_size", "/solver/time_step"})
+      options.overrides.push_back(set(pointer, scene.quick * plain.at(Json::json_pointer(pointer)).get<double>()));
+  }
+  options.overrides.push_back(set("/solver/end_time", 1e6));
+  for (const Edit& edit : edits) options.overrides.push_back(set(edit.pointer, edit.value));
+  return read_experiment_text(text, "experiments/benchmarks/" + file, ComponentLookup(registry_), options);
+}
+
+Product::Product(Experiment experiment, int threads)
+    : experiment_(std::move(experiment)), threads_(threads), simulation_(experiment_, backend_factory(threads)) {}
+
+double Product::nodes_per_particle() const {
+  const double bytes_per_node = static_cast<double>(simulation_.plan().bytes_per_node());
+  return static_cast<double>(simulation_.backend().grid_bytes()) / bytes_per_node /
+         static_cast<double>(simulation_.particle_count());
+}
+
+}  // namespace mpm::app
