@@ -145,13 +145,14 @@ PlainMls<D, T>::PlainMls(const Experiment& experiment, const SeededBody& body)
     size *= static_cast<std::size_t>(cells_[a] + 3);
   }
   nodes_.resize(size);
+  const SeedArrays seeds = body.arrays();
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     Particle<D, T>& p = particles_[i];
     for (int a = 0; a < D; ++a) {
-      p.x[a] = static_cast<T>((body.position[i * D + a] - lower_[a]) / cell_size_);
-      p.v[a] = static_cast<T>(body.velocity[i * D + a]);
+      p.x[a] = static_cast<T>((seeds.position[i * D + a] - lower_[a]) / cell_size_);
+      p.v[a] = static_cast<T>(seeds.velocity[i * D + a]);
       for (int b = 0; b < D; ++b) {
-        p.C[a][b] = static_cast<T>(body.velocity_gradient[(i * D + a) * D + b]);
+        p.C[a][b] = static_cast<T>(seeds.velocity_gradient[(i * D + a) * D + b]);
         p.F[a][b] = a == b ? T(1) : T(0);
       }
     }

@@ -26,25 +26,27 @@ template <int D, class T>
 struct TileCase {
   cpu::TileKernels<D, T> kernels;
   bool gathers, affine, with_gradient;
-  Buffer tile_node{Element::index, 1}, weight, gradient, quads, tile;
+  Buffer first{Element::index, 1}, weight, gradient, quads, tile;
 
   TileCase(int width, bool gather, bool is_affine, bool has_gradient)
       : kernels(cpu::tile_kernels<D, T>(width)), gathers(gather), affine(is_affine), with_gradient(has_gradient) {
     Random random(1);
     weight = filled<T>(random, D * width, 0, 1), gradient = filled<T>(random, D * width, -1, 1);
     // Four scalars a quad: 64 of a component fill as many quads as sixteen components of a batch.
-    quads = filled<T>(random, 4 * (1 + 2 * D), -1e-3, 1e-3);
-    tile = filled<T>(random, (4 * kernels.nodes + batch - 1) / batch, -1, 1);
+    quads = filled<T>(random, 4 * (1 + 2 * D) + 1, -1e-3, 1e-3);
+    tile = filled<T>(random, ((gather ? kernels.load_scalars : kernels.scatter_scalars) + batch - 1) / batch, -1, 1);
     for (int lane = 0; lane < batch; ++lane) {
-      int node = 0;
-      for (int a = 0; a < D; ++a)
-        node = node * kernels.side + 1 + static_cast<int>(random.uniform(0, cpu::block_side<D>)) % cpu::block_side<D>;
-      static_cast<std::int32_t*>(tile_node.data())[lane] = node;
+      int number = 0;
+      for (int a = 0; a < D; ++a) {
+        const int side = a == D - 1 && !gather ? kernels.first_nodes : kernels.side;
+        number = number * side + 1 + static_cast<int>(random.uniform(0, cpu::block_side<D>)) % cpu::block_side<D>;
+      }
+      static_cast<std::int32_t*>(first.data())[lane] = number;
     }
   }
   void run() {
     cpu::Stencils<T> stencils{};
-    stencils.tile_node = static_cast<const std::int32_t*>(tile_node.data());
+    stencils.first = static_cast<const std::int32_t*>(first.data());
     stencils.weight = static_cast<const T*>(weight.data()), stencils.gradient = static_cast<const T*>(gradient.data());
     T* const nodes = static_cast<T*>(tile.data());
     T* const particles = static_cast<T*>(quads.data());
@@ -56,7 +58,7 @@ struct TileCase {
   std::string problem() { return tile.finite() && quads.finite() ? "" : "a result is not a number"; }
 };
 
-template <int D, class T>
+template <class T>
 struct QuadCase {
   bool packs;
   alignas(64) T components[4 * batch];
@@ -68,12 +70,16 @@ struct QuadCase {
     for (T& entry : quads) entry = static_cast<T>(random.uniform(-1, 1));
   }
   void run() {
-    T* const x = components;
-    T* const out[3] = {x, x + batch, x + 2 * batch};
-    if (packs)
-      cpu::pack_quads<T>(quads, 1, x, x + batch, D == 3 ? x + 2 * batch : nullptr, x + 3 * batch, batch);
-    else
-      cpu::unpack_quads<D, T>(quads, 1, out, batch);
+    for (int p = 0; p < batch; p += Lanes<T>::width) {
+      Lanes<T> lanes[4];
+      if (packs) {
+        for (int c = 0; c < 4; ++c) lanes[c] = Lanes<T>::load(components + c * batch + p);
+        cpu::store_quads<T>(quads + 4 * p, 4, lanes);
+      } else {
+        cpu::load_quads<T>(quads + 4 * p, 4, lanes);
+        for (int c = 0; c < 4; ++c) lanes[c].store(components + c * batch + p);
+      }
+    }
   }
   std::string problem() {
     for (int k = 0; k < 4 * batch; ++k)
@@ -92,9 +98,10 @@ void add_variant() {
           add(std::string("tile/") + (gather ? "gather" : "scatter") + "/" + variant + "/width_" +
                   std::to_string(width) + (affine ? "/affine" : "") + (gradient ? "/gradient" : ""),
               "particle", [=] { return TileCase<D, T>(width, gather, affine, gradient); });
+  if (D == 2) return;
   for (const bool pack : {true, false})
-    add(std::string("quads/") + (pack ? "pack/" : "unpack/") + variant, "particle",
-        [=] { return QuadCase<D, T>(pack); });
+    add(std::string("quads/") + (pack ? "pack/" : "unpack/") + (sizeof(T) == 4 ? "float" : "double"), "particle",
+        [=] { return QuadCase<T>(pack); });
 }
 
 }  // namespace

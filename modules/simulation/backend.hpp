@@ -45,6 +45,15 @@ struct SeededBody {
   std::size_t count() const { return particles; }
   /// Calls visit(batch) in the order of seeding; the same batches each time.
   void for_each_batch(const std::function<void(const SeedBatch&)>& visit) const { make(visit); }
+  /// Particles in place of those that it had.
+  void replace(SeedArrays all) {
+    particles = all.position.size() / dimension;
+    with_gradient = !all.velocity_gradient.empty();
+    make = [all = std::move(all), count = particles](const std::function<void(const SeedBatch&)>& visit) {
+      visit({0, count, all.position.data(), all.velocity.data(),
+             all.velocity_gradient.empty() ? nullptr : all.velocity_gradient.data()});
+    };
+  }
   /// For backends that keep doubles anyway.
   SeedArrays arrays() const {
     SeedArrays all;

@@ -26,12 +26,14 @@ class LineScene {
       : line_(line),
         experiment_(experiment_from(text(line))),
         simulation_(experiment_, [&](const Experiment& e, const Plan& p, std::vector<SeededBody> bodies) {
+          SeedArrays seeds = bodies[0].arrays();
           for (std::size_t k = 0; k < bodies[0].count(); ++k) {
-            const double x = bodies[0].position[2 * k];
-            bodies[0].velocity[2 * k] = velocity ? velocity(x) : mode(x);
-            bodies[0].position[2 * k] =
+            const double x = seeds.position[2 * k];
+            seeds.velocity[2 * k] = velocity ? velocity(x) : mode(x);
+            seeds.position[2 * k] =
                 std::fmod(x + line.offset + line.jitter * std::sin(1e4 * std::sin(7.7 * x)), line.cells);
           }
+          bodies[0].replace(std::move(seeds));
           return backend_factory(1)(e, p, std::move(bodies));
         }) {}
 

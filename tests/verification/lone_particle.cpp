@@ -30,7 +30,9 @@ std::string text(const std::string& shape, const std::string& transfer, const st
 
 BackendFactory placed_at(double f) {
   return [f](const Experiment& e, const Plan& p, std::vector<SeededBody> bodies) {
-    bodies[0].position[0] = 4 + f;
+    SeedArrays seeds = bodies[0].arrays();
+    seeds.position[0] = 4 + f;
+    bodies[0].replace(std::move(seeds));
     return backend_factory(1)(e, p, std::move(bodies));
   };
 }

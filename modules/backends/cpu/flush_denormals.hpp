@@ -1,6 +1,6 @@
 #pragma once
-// Numbers below the smallest normal one (1e-38 in float) count as zero while particles and nodes are worked on: a body at
-// rest makes many, and each costs the processor a hundred cycles.
+// Numbers below the smallest normal one (1e-38 in float) count as zero while particles and nodes are worked on: a body
+// at rest makes many, and each costs the processor a hundred cycles.
 
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -12,8 +12,12 @@ namespace mpm::cpu {
 class FlushDenormals {
  public:
 #if defined(__SSE2__)
-  FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040); }  // results, operands
-  ~FlushDenormals() { _mm_setcsr(before_); }
+  FlushDenormals() : before_(_mm_getcsr()) {
+    _mm_setcsr(before_ | 0x8040);
+  }  // results, operands
+  ~FlushDenormals() {
+    _mm_setcsr(before_);
+  }
 
  private:
   unsigned before_;

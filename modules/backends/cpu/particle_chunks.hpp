@@ -82,7 +82,7 @@ template <int D, class T>
 void ParticleStep<D, T>::fetch_nodes_of_next(int body, const Block<D>& block, int share) {
   const std::vector<Block<D>>& blocks = particles_[body].blocks;
   const std::size_t next = static_cast<std::size_t>(&block - blocks.data()) + 1;
-  if (next >= blocks.size()) return;
+  if (next >= blocks.size() || grid_.slots() == 0) return;
   constexpr int columns = neighbour_count<D> / 3, bytes = block_nodes * 4 * static_cast<int>(sizeof(T));
   const int chunks = static_cast<int>((block.count + chunk_size - 1) / chunk_size);
   for (int column = columns * share / chunks; column < columns * (share + 1) / chunks; ++column) {

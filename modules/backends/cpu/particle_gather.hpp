@@ -228,8 +228,7 @@ void ParticleStep<D, T>::unpack_moments(Work& work, int count) {
     for (int a = 0; Gradient && a < D; ++a) {
       L sums[4];
       load_quads<T>(quads += 4, step, sums);
-      for (int c = 0; c < D; ++c)
-        (inverse_h * sums[c]).store(work.gradient_of_velocity + (c * D + a) * chunk_size + p);
+      for (int c = 0; c < D; ++c) (inverse_h * sums[c]).store(work.gradient_of_velocity + (c * D + a) * chunk_size + p);
     }
   }
 }

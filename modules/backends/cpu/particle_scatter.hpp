@@ -48,8 +48,7 @@ double ParticleStep<D, T>::scatter(const Pass& pass, const StepInfo& step) {
         if (scene_.list) block.far += static_cast<std::uint32_t>(work.lists.far_of_chunk);
       });
       if (extends) end_reach(block, work);
-      for (const Channel c : channels)
-        flush(body, block, work, c);
+      for (const Channel c : channels) flush(body, block, work, c);
     });
     scatter_far(body, [&](const Chunk& chunk, Work& work) { scatter_chunk(pass, step, chunk, work, motion, false); });
   }

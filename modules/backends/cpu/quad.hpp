@@ -20,34 +20,6 @@ struct QuadOf<double> {
 template <class T>
 using Quad = typename QuadOf<T>::Vector;
 
-template <class T>
-inline void transpose(Quad<T>& a, Quad<T>& b, Quad<T>& c, Quad<T>& d) {
-  const Quad<T> ab_low = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_high = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Quad<T> cd_low = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_high = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
-  c = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
-  b = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
-  d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
-}
-
-/// Component arrays -> one quad a particle, `groups` quads apart. A null component is zero. `count` a multiple of 4.
-template <class T>
-inline void pack_quads(T* quads, int groups, const T* x, const T* y, const T* z, const T* w, int count) {
-  using Q = Quad<T>;
-  Q* out = reinterpret_cast<Q*>(quads);
-  const auto load = [](const T* component, int p) {
-    return component ? *reinterpret_cast<const Q*>(component + p) : Q{};
-  };
-  for (int p = 0; p < count; p += 4) {
-    Q a = load(x, p), b = load(y, p), c = load(z, p), d = load(w, p);
-    transpose<T>(a, b, c, d);
-    out[(p + 0) * groups] = a;
-    out[(p + 1) * groups] = b;
-    out[(p + 2) * groups] = c;
-    out[(p + 3) * groups] = d;
-  }
-}
-
 /// Block k of four lanes holds the quad of particle 4 k + i.
 template <class T>
 using QuadLanes = typename Lanes<T>::Vector;

@@ -16,9 +16,9 @@ struct Row {
   static constexpr int nodes = K == 2 ? 2 : 4, scalars = nodes * 4;
   static constexpr int row_bytes = scalars * static_cast<int>(sizeof(T));
   static constexpr int vector_bytes = row_bytes < lane_bytes ? row_bytes : lane_bytes;
-  static constexpr int vectors = row_bytes / vector_bytes;        ///< registers a row
-  static constexpr int width = scalars / vectors;                 ///< scalars a register
-  static constexpr int nodes_a_vector = nodes / vectors;          ///< 1, 2 or 4
+  static constexpr int vectors = row_bytes / vector_bytes;  ///< registers a row
+  static constexpr int width = scalars / vectors;           ///< scalars a register
+  static constexpr int nodes_a_vector = nodes / vectors;    ///< 1, 2 or 4
   typedef T Vector __attribute__((vector_size(vector_bytes)));
   typedef typename Lanes<T>::integer Index __attribute__((vector_size(vector_bytes)));
   typedef T Unaligned __attribute__((vector_size(vector_bytes), aligned(sizeof(T)), may_alias));
@@ -158,8 +158,7 @@ MPM_ROW_INLINE Quad<T> sum_of_nodes(const Row<T, K>& row) {
 
 /// Sums over the nodes of four rows, one quad after another.
 template <class T, int K>
-MPM_ROW_INLINE void store_sums(T* out, const Row<T, K>& a, const Row<T, K>& b, const Row<T, K>& c,
-                               const Row<T, K>& d) {
+MPM_ROW_INLINE void store_sums(T* out, const Row<T, K>& a, const Row<T, K>& b, const Row<T, K>& c, const Row<T, K>& d) {
 #if defined(__AVX512F__)
   if constexpr (Row<T, K>::nodes_a_vector == 4) {
     const auto pairs = [](__m512 x, __m512 y) {

@@ -50,12 +50,12 @@ template <int D, class T>
 struct TileKernels {
   using Scatter = void (*)(T* tile, const Stencils<T>&, const T* coefficients, int count);
   using Gather = void (*)(const T* tile, const Stencils<T>&, T* moments, int count);
-  int side = 0;                ///< nodes an axis
-  int first_nodes = 0;         ///< along the last axis: rows of the scatter's tile beside one another
-  int load_scalars = 0;        ///< of the tile to gather from
-  int scatter_scalars = 0;     ///< of the tile to scatter to
-  Scatter scatter[2][2]{};     ///< [affine][gradient]
-  Gather gather[2][2]{};       ///< [moment][gradient]; writes up to one quad beyond the last particle's
+  int side = 0;             ///< nodes an axis
+  int first_nodes = 0;      ///< along the last axis: rows of the scatter's tile beside one another
+  int load_scalars = 0;     ///< of the tile to gather from
+  int scatter_scalars = 0;  ///< of the tile to scatter to
+  Scatter scatter[2][2]{};  ///< [affine][gradient]
+  Gather gather[2][2]{};    ///< [moment][gradient]; writes up to one quad beyond the last particle's
   void (*load)(T* tile, const T* channel, const std::int32_t* neighbours, const Reach&);
   void (*flush)(T* tile, T* channel, const std::int32_t* neighbours, const Reach&);  ///< adds, and clears the tile
 };
@@ -188,18 +188,22 @@ MPM_ROW_INLINE StencilSums<K, T> sum_rows(const T* corner, const Stencils<T>& st
         if constexpr (Moment) {
           if (j > 0) plane_moment = j == 1 ? times<T, K>(y.w[1], row) : plane_moment + times<T, K>(moment_y[j], row);
         }
-        if constexpr (Gradient) plane_slope = j == 0 ? times<T, K>(y.g[j], row) : plane_slope + times<T, K>(y.g[j], row);
+        if constexpr (Gradient)
+          plane_slope = j == 0 ? times<T, K>(y.g[j], row) : plane_slope + times<T, K>(y.g[j], row);
       }
     }
     const R term = times<T, K>(x.w[i], plane);
     sums.value = i == 0 ? term : sums.value + term;
     if constexpr (Moment) {
       if (i > 0) sums.moment_x = i == 1 ? term : sums.moment_x + times<T, K>(broadcast<T, K>(T(i)), term);
-      if constexpr (D == 3) sums.moment_y = i == 0 ? times<T, K>(x.w[i], plane_moment) : sums.moment_y + times<T, K>(x.w[i], plane_moment);
+      if constexpr (D == 3)
+        sums.moment_y = i == 0 ? times<T, K>(x.w[i], plane_moment) : sums.moment_y + times<T, K>(x.w[i], plane_moment);
     }
     if constexpr (Gradient) {
       sums.gradient_x = i == 0 ? times<T, K>(x.g[i], plane) : sums.gradient_x + times<T, K>(x.g[i], plane);
-      if constexpr (D == 3) sums.gradient_y = i == 0 ? times<T, K>(x.w[i], plane_slope) : sums.gradient_y + times<T, K>(x.w[i], plane_slope);
+      if constexpr (D == 3)
+        sums.gradient_y =
+            i == 0 ? times<T, K>(x.w[i], plane_slope) : sums.gradient_y + times<T, K>(x.w[i], plane_slope);
     }
   }
   return sums;
@@ -265,8 +269,8 @@ inline void for_each_row(const Reach& reach, Visit&& visit) {
   }
 }
 
-/// Which of the three blocks in a line a tile's rows share nodes with, and the grid's nodes there. A row is the last node
-/// of the first block, all of the second's and the first K of the third's.
+/// Which of the three blocks in a line a tile's rows share nodes with, and the grid's nodes there. A row is the last
+/// node of the first block, all of the second's and the first K of the third's.
 template <int D, int K>
 struct Line {
   bool first, third;
@@ -331,7 +335,8 @@ void flush_rows(T* tile, T* channel, const std::int32_t* neighbours, const Reach
         Q sum = to[n];
 #pragma GCC unroll 4
         for (int k = 0; k < K; ++k)
-          if (z + n - k >= 0 && z + n - k < rows) sum += reinterpret_cast<const Q*>(first + (z + n - k) * R::scalars)[k];
+          if (z + n - k >= 0 && z + n - k < rows)
+            sum += reinterpret_cast<const Q*>(first + (z + n - k) * R::scalars)[k];
         to[n] = sum;
       }
     });
