@@ -80,6 +80,8 @@ const std::vector<BenchSection>& bench_sections();
 bench::SectionResult bench_machine(BenchContext& context);
 bench::SectionResult bench_standard(BenchContext& context);
 bench::SectionResult bench_options(BenchContext& context);
+bench::SectionResult bench_freedom(BenchContext& context);
+bench::SectionResult bench_required(BenchContext& context);
 bench::SectionResult bench_growth(BenchContext& context);
 bench::SectionResult bench_accuracy(BenchContext& context);
 

@@ -45,6 +45,7 @@ class BenchSuite {
  public:
   BenchSuite(const Registry& registry, bool quick);
 
+  const Registry& registry() const { return registry_; }
   const std::vector<BenchScene>& scenes() const { return scenes_; }
   const std::vector<BenchMaterial>& materials() const { return materials_; }
   const std::vector<BenchOption>& options() const { return options_; }
@@ -66,6 +67,7 @@ class BenchSuite {
 class Product final : public bench::Contender {
  public:
   Product(Experiment experiment, int threads);
+  Product(Experiment experiment, int threads, const BackendFactory& factory);
   void step() override { simulation_.step(); }
   std::size_t particle_count() const override { return simulation_.particle_count(); }
   int steps_a_cycle() const override { return 8; }  ///< of re-sorting: 4 to 8 steps where particles are fast

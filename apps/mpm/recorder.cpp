@@ -1,5 +1,7 @@
 #include "mpm/recorder.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -253,6 +255,25 @@ void Recorder::write_vtk(std::size_t index) {
   vtk_files_.resize(index);  // without what an attempt that failed has left
   vtk_files_.emplace_back(simulation_.time(), name);
   output::write_pvd(folder_.vtk() / "particles.pvd", vtk_files_);
+}
+
+std::function<std::function<void()>(Simulation&)> recording_in(const std::filesystem::path& folder) {
+  return [folder, number = 0](Simulation& simulation) mutable -> std::function<void()> {
+    struct Recording {
+      Metrics metrics;
+      output::RunFolder folder;
+      Recorder recorder;
+      Recording(Simulation& s, const std::filesystem::path& place)
+          : metrics(s), folder(output::RunFolder::create(place)), recorder(s, metrics, folder) {
+        recorder.start();
+        recorder.record();
+      }
+    };
+    // A child process may make one too.
+    const std::string name = std::to_string(getpid()) + "_" + std::to_string(number++);
+    const auto recording = std::make_shared<Recording>(simulation, folder / name);
+    return [recording] { recording->recorder.record(); };
+  };
 }
 
 }  // namespace mpm::app

@@ -2,6 +2,8 @@
 // What a run leaves in its folder while it goes on: rows of metrics.csv, frames, VTK files. Recording reads the state
 // and changes nothing, so its cadence changes no result.
 
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -69,5 +71,8 @@ class Recorder {
   double largest_energy_ = 0, smallest_J_ = 1, largest_J_ = 1, largest_contact_force_ = 0, largest_penetration_ = 0;
   long most_contact_nodes_ = 0;
 };
+
+/// What `mpm run` does after a step: makes, for a simulation, a recorder with a run folder of its own below `folder`.
+std::function<std::function<void()>(Simulation&)> recording_in(const std::filesystem::path& folder);
 
 }  // namespace mpm::app

@@ -3,8 +3,6 @@
 
 #include "counting/required.hpp"
 
-#include <memory>
-
 #include "cli/program.hpp"
 #include "mpm/recorder.hpp"
 #include "support/scene.hpp"
@@ -19,29 +17,10 @@ namespace {
 
 constexpr std::uint64_t quad = 4 * sizeof(float);  // what a channel holds of a node
 
-/// What `mpm run` does after a step, in a folder that goes away.
-counting::AfterStep recorder_in(const Folder& folder) {
-  return [&folder, number = 0](Simulation& simulation) mutable {
-    struct Recording {
-      Metrics metrics;
-      output::RunFolder folder;
-      app::Recorder recorder;
-      Recording(Simulation& s, const fs::path& place)
-          : metrics(s), folder(output::RunFolder::create(place)), recorder(s, metrics, folder) {
-        recorder.start();
-        recorder.record();
-      }
-    };
-    const auto recording =
-        std::make_shared<Recording>(simulation, folder / (std::to_string(getpid()) + "_" + std::to_string(number++)));
-    return [recording] { recording->recorder.record(); };
-  };
-}
-
 RequiredRow counted(const std::string& name) {
   static const std::vector<RequiredRow> rows = [] {
     const Folder folder;
-    return counting::count_required(plugins(), counting::required_scenes(), recorder_in(folder));
+    return counting::count_required(plugins(), counting::required_scenes(), app::recording_in(folder / "runs"));
   }();
   for (const RequiredRow& row : rows)
     if (row.name == name) return row;

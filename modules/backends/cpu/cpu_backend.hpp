@@ -6,8 +6,10 @@
 
 namespace mpm::cpu {
 
-template <int D, class T>
+template <int D, class T, class Components = LoadedComponents<D, T>>
 class CpuBackend final : public Backend {
+  using Step = ParticleStep<D, T, Components>;
+
  public:
   CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds, int threads);
 
@@ -36,7 +38,7 @@ class CpuBackend final : public Backend {
   void scatter(const Pass& pass, const StepInfo& step);
   void gather(const Pass& pass, const StepInfo& step);
   void gather_scatter(const Pass& pass, const StepInfo& step);
-  void account_for_gather(const typename ParticleStep<D, T>::Gathered& gathered);
+  void account_for_gather(const typename Step::Gathered& gathered);
   std::string signature() const;
   void restore_particles(ArchiveReader& archive, Particles<D, T>& particles);
 
@@ -51,24 +53,24 @@ class CpuBackend final : public Backend {
   FilterRecord filter_;
   TimeStepLimit limit_;
   bool scattered_ = false;  ///< the last gather_scatter left the next step's grid
-  std::unique_ptr<ParticleStep<D, T>> particle_step_;
+  std::unique_ptr<Step> particle_step_;
   std::unique_ptr<GridStep<D, T>> grid_step_;
 };
 
 // ---- implementation ----------------------------------------------------------------------------------------------
 
-template <int D, class T>
-CpuBackend<D, T>::CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds, int threads)
+template <int D, class T, class Components>
+CpuBackend<D, T, Components>::CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds, int threads)
     : scene_(experiment, plan, threads), grid_(scene_), particles_(seeds.size()) {
   plan_channels();
   std::vector<Body<D, T>> bodies = make_bodies(seeds);
-  particle_step_ = std::make_unique<ParticleStep<D, T>>(scene_, grid_, particles_, std::move(bodies));
+  particle_step_ = std::make_unique<Step>(scene_, grid_, particles_, std::move(bodies));
   grid_step_ = std::make_unique<GridStep<D, T>>(scene_, grid_, ledger_, contact_, filter_);
   sort_all();
 }
 
-template <int D, class T>
-void CpuBackend<D, T>::plan_channels() {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::plan_channels() {
   const Experiment& experiment = scene_.experiment;
   const Plan& plan = scene_.plan;
   // A separating box decides twice, before and after the forces, so these may not come merged with the momentum.
@@ -90,8 +92,8 @@ void CpuBackend<D, T>::plan_channels() {
   if (plan.kept_velocity) grid_.plan_channel(kept_velocity);
 }
 
-template <int D, class T>
-std::vector<Body<D, T>> CpuBackend<D, T>::make_bodies(std::vector<SeededBody>& seeds) {
+template <int D, class T, class Components>
+std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<SeededBody>& seeds) {
   const Experiment& experiment = scene_.experiment;
   std::vector<Body<D, T>> bodies(seeds.size());
   for (std::size_t i = 0; i < seeds.size(); ++i) {
@@ -117,15 +119,15 @@ std::vector<Body<D, T>> CpuBackend<D, T>::make_bodies(std::vector<SeededBody>& s
   return bodies;
 }
 
-template <int D, class T>
-void CpuBackend<D, T>::lay_out_state(Particles<D, T>& particles, const Component& material) const {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::lay_out_state(Particles<D, T>& particles, const Component& material) const {
   const auto add = [&](std::vector<StateField>& fields, const Plugin& plugin) {
     for (const mpm_state& field : plugin.state()) {
       const int components = state_components(static_cast<mpm_state_shape>(field.shape), D);
       fields.push_back({field.name, particles.components, components});
       particles.components += components;
     }
-    if (fields.size() > ParticleStep<D, T>::max_state_fields)
+    if (fields.size() > Step::max_state_fields)
       throw std::invalid_argument("the cpu backend takes at most 16 state fields a plugin");
   };
   add(particles.transfer_state, *scene_.experiment.transfer.plugin);
@@ -143,8 +145,8 @@ void CpuBackend<D, T>::lay_out_state(Particles<D, T>& particles, const Component
 }
 
 /// What each component of a chunk starts as; domains start as half the undeformed particle's box in cells.
-template <int D, class T>
-std::vector<T> CpuBackend<D, T>::first_values(const Particles<D, T>& particles, const Component& material,
+template <int D, class T, class Components>
+std::vector<T> CpuBackend<D, T, Components>::first_values(const Particles<D, T>& particles, const Component& material,
                                               T half_size) const {
   std::vector<T> values(particles.components, T(0));
   const auto set = [&](const StateField& field, const mpm_state& declared) {
@@ -165,8 +167,8 @@ std::vector<T> CpuBackend<D, T>::first_values(const Particles<D, T>& particles, 
   return values;
 }
 
-template <int D, class T>
-void CpuBackend<D, T>::sort_all() {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::sort_all() {
   bool changed = !grid_built_ || scene_.list;
   for (auto& particles : particles_) changed |= sort_particles(particles, sort_space_, scene_);
   if (scene_.list) {
@@ -182,26 +184,26 @@ void CpuBackend<D, T>::sort_all() {
   particle_step_->set_drift(0);
 }
 
-template <int D, class T>
-void CpuBackend<D, T>::sort_when_moved() {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::sort_when_moved() {
   if (particle_step_->must_sort()) sort_all();
 }
 
-template <int D, class T>
-void CpuBackend<D, T>::scatter(const Pass& pass, const StepInfo& step) {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
   if (pass.remap) grid_.clear(motion);
   const double energy = particle_step_->scatter(pass, step);
   if (pass.momentum && !pass.remap) grid_step_->set_particle_kinetic_energy(energy);
 }
 
-template <int D, class T>
-void CpuBackend<D, T>::gather(const Pass& pass, const StepInfo& step) {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step) {
   account_for_gather(particle_step_->gather(pass, step));
 }
 
 /// Gather, and the scatter of the step that follows, into a second motion channel: that of this step is still read.
-template <int D, class T>
-void CpuBackend<D, T>::gather_scatter(const Pass& pass, const StepInfo& step) {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepInfo& step) {
   for (const Channel c : {next_motion, force, body_force})
     if (grid_.has(c)) grid_.clear(c);
   StepInfo next{step.next_dt, step.time + step.dt, step.step + 1};
@@ -217,15 +219,15 @@ void CpuBackend<D, T>::gather_scatter(const Pass& pass, const StepInfo& step) {
   grid_step_->set_particle_kinetic_energy(fused.kinetic_energy);
 }
 
-template <int D, class T>
-void CpuBackend<D, T>::account_for_gather(const typename ParticleStep<D, T>::Gathered& gathered) {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::account_for_gather(const typename Step::Gathered& gathered) {
   if (!scene_.plan.ledger) return;
   ledger_.gather += gathered.kinetic_energy - grid_step_->kinetic_energy_after();
   ledger_.material += gathered.dissipated;
 }
 
-template <int D, class T>
-void CpuBackend<D, T>::execute(const Pass& pass, const StepInfo& step) {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::execute(const Pass& pass, const StepInfo& step) {
   switch (pass.kind) {
     case PassKind::estimate_time_step:
       limit_ = particle_step_->time_step_limit();
@@ -270,8 +272,8 @@ void CpuBackend<D, T>::execute(const Pass& pass, const StepInfo& step) {
   }
 }
 
-template <int D, class T>
-BodyState CpuBackend<D, T>::body_state(int index) const {
+template <int D, class T, class Components>
+BodyState CpuBackend<D, T, Components>::body_state(int index) const {
   const Particles<D, T>& particles = particles_[index];
   const Body<D, T>& body = particle_step_->bodies()[index];
   std::size_t n = 0;
@@ -314,14 +316,14 @@ BodyState CpuBackend<D, T>::body_state(int index) const {
 }
 
 /// What a state is good for: storage differs between dimensions, precisions and layouts.
-template <int D, class T>
-std::string CpuBackend<D, T>::signature() const {
+template <int D, class T, class Components>
+std::string CpuBackend<D, T, Components>::signature() const {
   return "cpu " + std::to_string(D) + "-D of " + std::to_string(sizeof(T)) + " bytes, chunks of " +
          std::to_string(chunk_size);
 }
 
-template <int D, class T>
-void CpuBackend<D, T>::save(ArchiveWriter& archive) const {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::save(ArchiveWriter& archive) const {
   archive.put("backend", signature());
   archive.put("drift", particle_step_->drift());
   archive.put("ledger", ledger_);
@@ -351,8 +353,8 @@ void CpuBackend<D, T>::save(ArchiveWriter& archive) const {
 }
 
 /// The grid is built for the same blocks in the same order, so that its sums are the same.
-template <int D, class T>
-void CpuBackend<D, T>::restore(ArchiveReader& archive) {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::restore(ArchiveReader& archive) {
   std::string written;
   archive.get("backend", written);
   if (written != signature())
@@ -372,8 +374,8 @@ void CpuBackend<D, T>::restore(ArchiveReader& archive) {
   scattered_ = false;
 }
 
-template <int D, class T>
-void CpuBackend<D, T>::restore_particles(ArchiveReader& archive, Particles<D, T>& particles) {
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::restore_particles(ArchiveReader& archive, Particles<D, T>& particles) {
   int components = 0;
   std::size_t before = 0, count = 0;
   std::vector<std::int32_t> numbers;
@@ -421,8 +423,8 @@ void CpuBackend<D, T>::restore_particles(ArchiveReader& archive, Particles<D, T>
     });
 }
 
-template <int D, class T>
-std::uint64_t CpuBackend<D, T>::particle_bytes() const {
+template <int D, class T, class Components>
+std::uint64_t CpuBackend<D, T, Components>::particle_bytes() const {
   std::uint64_t total = sort_space_.bytes();
   for (const auto& particles : particles_)
     total += particles.pool.bytes() + particles.places.capacity() * sizeof(std::byte*) +

@@ -8,8 +8,8 @@
 namespace mpm::cpu {
 
 /// Boxes of a chunk, and the lists of its particles that have none. As evaluate_lists.
-template <int D, class T>
-void ParticleStep<D, T>::evaluate_boxes(const Chunk& chunk, Work& work, bool gradients) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::evaluate_boxes(const Chunk& chunk, Work& work, bool gradients) {
   BoxWork<D, T>& boxes = work.boxes;
   const mpm_box_batch batch{static_cast<std::uint32_t>(chunk.end),
                             chunk_size,
@@ -35,8 +35,8 @@ void ParticleStep<D, T>::evaluate_boxes(const Chunk& chunk, Work& work, bool gra
 }
 
 /// Widths that the kernels have, places in the tile and what the boxes reach; false when a particle has no box there.
-template <int D, class T>
-bool ParticleStep<D, T>::place_boxes(const Chunk& chunk, Work& work) const {
+template <int D, class T, class Components>
+bool ParticleStep<D, T, Components>::place_boxes(const Chunk& chunk, Work& work) const {
   BoxWork<D, T>& boxes = work.boxes;
   int lowest[D], highest[D];  // nodes that a box may have: of the tile, and not too far beyond the domain
   for (int a = 0; a < D; ++a) {
@@ -77,8 +77,8 @@ bool ParticleStep<D, T>::place_boxes(const Chunk& chunk, Work& work) const {
 }
 
 /// The lists of those of one batch's particles that have no box; returns the next free entry.
-template <int D, class T>
-int ParticleStep<D, T>::evaluate_lists_between_boxes(const Chunk& chunk, Work& work, int first_lane, int entry,
+template <int D, class T, class Components>
+int ParticleStep<D, T, Components>::evaluate_lists_between_boxes(const Chunk& chunk, Work& work, int first_lane, int entry,
                                                      bool gradients) {
   constexpr int lanes = ListWork<D, T>::lanes;
   ListWork<D, T>& lists = work.lists;
@@ -98,8 +98,8 @@ int ParticleStep<D, T>::evaluate_lists_between_boxes(const Chunk& chunk, Work& w
 }
 
 /// C <- C D^-1, both full matrices.
-template <int D, class T>
-void ParticleStep<D, T>::multiply_by_inverse_moments(const Chunk& chunk, Work& work) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::multiply_by_inverse_moments(const Chunk& chunk, Work& work) const {
   using L = Lanes<T>;
   for (int p = 0; p < chunk.end; p += L::width) {
     L inverse[D * D];

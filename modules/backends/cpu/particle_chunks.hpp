@@ -11,8 +11,8 @@
 
 namespace mpm::cpu {
 
-template <int D, class T>
-ParticleStep<D, T>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std::vector<Particles<D, T>>& particles,
+template <int D, class T, class Components>
+ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std::vector<Particles<D, T>>& particles,
                                  std::vector<Body<D, T>> bodies)
     : scene_(scene),
       grid_(grid),
@@ -44,9 +44,9 @@ ParticleStep<D, T>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std
 }
 
 /// Calls visit(block, work) for every block of a body. Coloured: no two blocks in work at once share a node.
-template <int D, class T>
+template <int D, class T, class Components>
 template <class Visit>
-void ParticleStep<D, T>::for_each_block(int body, bool coloured, Visit&& visit) {
+void ParticleStep<D, T, Components>::for_each_block(int body, bool coloured, Visit&& visit) {
   Particles<D, T>& particles = particles_[body];
   const auto guarded = [&](std::uint32_t first, std::uint32_t last, Work& work) {
     try {
@@ -78,8 +78,8 @@ void ParticleStep<D, T>::for_each_block(int body, bool coloured, Visit&& visit) 
 
 /// Brings a share of the nodes that the next block meets first into the cache, with chunk number `share` of this one:
 /// blocks are in order along the last axis, so these lie ahead on it.
-template <int D, class T>
-void ParticleStep<D, T>::fetch_nodes_of_next(int body, const Block<D>& block, int share) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::fetch_nodes_of_next(int body, const Block<D>& block, int share) {
   const std::vector<Block<D>>& blocks = particles_[body].blocks;
   const std::size_t next = static_cast<std::size_t>(&block - blocks.data()) + 1;
   if (next >= blocks.size() || grid_.slots() == 0) return;
@@ -95,9 +95,9 @@ void ParticleStep<D, T>::fetch_nodes_of_next(int body, const Block<D>& block, in
   }
 }
 
-template <int D, class T>
+template <int D, class T, class Components>
 template <class Visit>
-void ParticleStep<D, T>::for_each_chunk_of(int body, Block<D>& block, Visit&& visit) {
+void ParticleStep<D, T, Components>::for_each_chunk_of(int body, Block<D>& block, Visit&& visit) {
   Particles<D, T>& particles = particles_[body];
   for_each_chunk(block, [&](std::uint32_t i, int count) {
     const char* const next = reinterpret_cast<const char*>(particles.chunk(std::min(i + 1, particles.chunks - 1)));
@@ -106,24 +106,24 @@ void ParticleStep<D, T>::for_each_chunk_of(int body, Block<D>& block, Visit&& vi
   });
 }
 
-template <int D, class T>
-typename ParticleStep<D, T>::States ParticleStep<D, T>::states(const std::vector<StateField>& fields,
+template <int D, class T, class Components>
+typename ParticleStep<D, T, Components>::States ParticleStep<D, T, Components>::states(const std::vector<StateField>& fields,
                                                                const Chunk& chunk) const {
   States result{};
   for (std::size_t f = 0; f < fields.size(); ++f) result.fields[f] = chunk.at(fields[f].first);
   return result;
 }
 
-template <int D, class T>
-void ParticleStep<D, T>::measure_phases(bool on) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::measure_phases(bool on) {
   for (auto& work : work_) work->clock.measure(on);
   measured_from_ = PhaseClock::now();
   measured_since_ = std::chrono::steady_clock::now();
 }
 
 /// Seconds of all threads together; the length of a tick follows from the time since measuring began.
-template <int D, class T>
-std::map<std::string, double> ParticleStep<D, T>::phase_seconds() const {
+template <int D, class T, class Components>
+std::map<std::string, double> ParticleStep<D, T, Components>::phase_seconds() const {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - measured_since_;
   const double second = static_cast<double>(PhaseClock::now() - measured_from_) / elapsed.count();
   std::map<std::string, double> seconds;
@@ -135,8 +135,8 @@ std::map<std::string, double> ParticleStep<D, T>::phase_seconds() const {
   return seconds;
 }
 
-template <int D, class T>
-void ParticleStep<D, T>::throw_failure() {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::throw_failure() {
   if (failure_.severity == 2) return;
   const Failure failure = std::exchange(failure_, Failure{});
   throw RunFailure(failure.cause, failure.body, static_cast<std::size_t>(failure.particle));
@@ -144,8 +144,8 @@ void ParticleStep<D, T>::throw_failure() {
 
 /// Weights (and gradients, and what the second moment needs) of a chunk. Called from several passes that must agree to
 /// the last bit, so it is compiled once.
-template <int D, class T>
-[[gnu::noinline]] void ParticleStep<D, T>::evaluate_shape(const Chunk& chunk, Work& work, bool gradients) {
+template <int D, class T, class Components>
+[[gnu::noinline]] void ParticleStep<D, T, Components>::evaluate_shape(const Chunk& chunk, Work& work, bool gradients) {
   if (scene_.evaluate_box) return evaluate_boxes(chunk, work, gradients);
   if (scene_.list) return evaluate_lists(chunk, work, gradients);
   const bool moments = scene_.plan.second_moment;
@@ -161,14 +161,14 @@ template <int D, class T>
                               work.weight,
                               gradients ? work.gradient : nullptr,
                               moments ? work.second_moment : nullptr};
-  scene_.evaluate_shape(scene_.shape_parameters, &batch);
+  Components::evaluate_shape(scene_, batch);
   if (moments) invert_moments(chunk, work);
 }
 
 /// Where stencils begin in the tile to scatter to; the work space gathers what part of it they reach. False when one
 /// lies outside.
-template <int D, class T>
-bool ParticleStep<D, T>::place_to_scatter(const Chunk& chunk, Work& work, bool extend_reach) const {
+template <int D, class T, class Components>
+bool ParticleStep<D, T, Components>::place_to_scatter(const Chunk& chunk, Work& work, bool extend_reach) const {
   if (scene_.list) return place_lists(chunk, work, extend_reach);
   if (extend_reach) {
     for (int axis = 0; axis < D; ++axis) {
@@ -187,8 +187,8 @@ bool ParticleStep<D, T>::place_to_scatter(const Chunk& chunk, Work& work, bool e
 }
 
 /// Before the first chunk of a block extends its reach.
-template <int D, class T>
-void ParticleStep<D, T>::begin_reach(Block<D>& block, Work& work) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::begin_reach(Block<D>& block, Work& work) const {
   block.reach = {};
   for (int axis = 0; axis < D; ++axis) {
     work.lowest[axis] = block.reach.lowest[axis] - typename Work::Integers{};
@@ -197,8 +197,8 @@ void ParticleStep<D, T>::begin_reach(Block<D>& block, Work& work) const {
 }
 
 /// After the last one; that of lists is complete already.
-template <int D, class T>
-void ParticleStep<D, T>::end_reach(Block<D>& block, const Work& work) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::end_reach(Block<D>& block, const Work& work) const {
   for (int axis = 0; !scene_.list && axis < D; ++axis)
     for (int lane = 0; lane < Work::integers; ++lane) {
       block.reach.lowest[axis] = std::min(block.reach.lowest[axis], work.lowest[axis][lane] + 1);
@@ -207,14 +207,14 @@ void ParticleStep<D, T>::end_reach(Block<D>& block, const Work& work) const {
 }
 
 /// Where stencils begin in the tile to gather from.
-template <int D, class T>
-void ParticleStep<D, T>::place_to_gather(const Chunk& chunk, Work& work) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::place_to_gather(const Chunk& chunk, Work& work) const {
   if (!scene_.list) number_stencils(work, chunk.end, kernels_.side);
 }
 
 /// Number of each stencil's first node, `along_last` of them a row.
-template <int D, class T>
-void ParticleStep<D, T>::number_stencils(Work& work, int count, int along_last) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::number_stencils(Work& work, int count, int along_last) const {
   for (int p = 0; p < count; ++p) {
     int node = work.base[p] + 1;
     for (int axis = 1; axis < D; ++axis)
@@ -224,8 +224,8 @@ void ParticleStep<D, T>::number_stencils(Work& work, int count, int along_last) 
 }
 
 /// D^-1 of each particle: of a diagonal, or of a symmetric matrix by its adjugate.
-template <int D, class T>
-void ParticleStep<D, T>::invert_moments(const Chunk& chunk, Work& work) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::invert_moments(const Chunk& chunk, Work& work) const {
   const T scale = static_cast<T>(1 / (scene_.domain.cell_size * scene_.domain.cell_size));
   const T* const m = work.second_moment;
   T* const inverse = work.inverse_moment;
@@ -257,19 +257,19 @@ void ParticleStep<D, T>::invert_moments(const Chunk& chunk, Work& work) const {
   }
 }
 
-template <int D, class T>
-void ParticleStep<D, T>::update_material(const Chunk& chunk, mpm_material_batch request) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::update_material(const Chunk& chunk, mpm_material_batch request) {
   States state = states(chunk.particles.material_state, chunk);
   request.count = static_cast<std::uint32_t>(chunk.end);
   request.stride = chunk_size;
   request.dimension = D;
   request.state = state.fields;
-  if (chunk.body.update_material(chunk.body.material->parameters.data(), &request) >= 0) note_inverted(chunk);
+  if (Components::update_material(chunk.body, request) >= 0) note_inverted(chunk);
 }
 
 /// Finds the lowest index among the inadmissible particles of a chunk.
-template <int D, class T>
-void ParticleStep<D, T>::note_inverted(const Chunk& chunk) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::note_inverted(const Chunk& chunk) {
   alignas(64) T ratio[chunk_size];
   States state = states(chunk.particles.material_state, chunk);
   mpm_material_batch request{};
@@ -278,7 +278,7 @@ void ParticleStep<D, T>::note_inverted(const Chunk& chunk) {
   request.dimension = D;
   request.state = state.fields;
   request.volume_ratio = ratio;
-  chunk.body.update_material(chunk.body.material->parameters.data(), &request);
+  Components::update_material(chunk.body, request);
   const std::lock_guard lock(mutex_);
   for (int p = 0; p < chunk.count; ++p)
     if (!(ratio[p] > 0))
@@ -288,8 +288,8 @@ void ParticleStep<D, T>::note_inverted(const Chunk& chunk) {
 }
 
 /// With the affine part where the transfer carries it; offsets and moments are those of the last shape evaluation.
-template <int D, class T>
-double ParticleStep<D, T>::kinetic_energy(const Chunk& chunk, const Work& work) const {
+template <int D, class T, class Components>
+double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const Work& work) const {
   double sum = 0;
   const T* const v = chunk.at(Particles<D, T>::velocity);
   for (int c = 0; c < D; ++c)

@@ -10,8 +10,8 @@
 namespace mpm::cpu {
 
 /// Copies what a block reaches of the velocities (and of what FLIP takes) into the thread's tiles.
-template <int D, class T>
-void ParticleStep<D, T>::load_velocities(int body, const Block<D>& block, Work& work) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::load_velocities(int body, const Block<D>& block, Work& work) {
   const int field = bodies_[body].field;
   kernels_.load(work.velocity_tile.data(), grid_.channel(motion, field), block.neighbours.data(), block.reach);
   if (scene_.has(MPM_GATHERS_INCREMENT))
@@ -21,16 +21,16 @@ void ParticleStep<D, T>::load_velocities(int body, const Block<D>& block, Work& 
 }
 
 /// Adds the thread's tile of a channel to the grid.
-template <int D, class T>
-void ParticleStep<D, T>::flush(int body, const Block<D>& block, Work& work, Channel channel) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::flush(int body, const Block<D>& block, Work& work, Channel channel) {
   work.clock.lap(Phase::other);
   kernels_.flush(work.tile[channel].data(), grid_.channel(channel, bodies_[body].field), block.neighbours.data(),
                  block.reach);
   work.clock.lap(Phase::tiles);
 }
 
-template <int D, class T>
-typename ParticleStep<D, T>::Gathered ParticleStep<D, T>::sum_gathered() {
+template <int D, class T, class Components>
+typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::sum_gathered() {
   drift_ += *std::max_element(drift_of_thread_.begin(), drift_of_thread_.end());
   throw_failure();
   Gathered sum;
@@ -42,8 +42,8 @@ typename ParticleStep<D, T>::Gathered ParticleStep<D, T>::sum_gathered() {
   return sum;
 }
 
-template <int D, class T>
-typename ParticleStep<D, T>::Gathered ParticleStep<D, T>::gather(const Pass& pass, const StepInfo& step) {
+template <int D, class T, class Components>
+typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::gather(const Pass& pass, const StepInfo& step) {
   std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
@@ -60,8 +60,8 @@ typename ParticleStep<D, T>::Gathered ParticleStep<D, T>::gather(const Pass& pas
 
 /// Every block gathers from the grid and scatters what follows into next_motion and the forces, which nothing reads any
 /// more. The tile's margin may not suffice for the new positions: particles then only gather.
-template <int D, class T>
-typename ParticleStep<D, T>::Fused ParticleStep<D, T>::gather_scatter(const Pass& pass, const StepInfo& step,
+template <int D, class T, class Components>
+typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::gather_scatter(const Pass& pass, const StepInfo& step,
                                                                       const StepInfo& next) {
   const std::vector<Channel> channels = scattered_channels(pass, next_motion);
   std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
@@ -95,8 +95,8 @@ typename ParticleStep<D, T>::Fused ParticleStep<D, T>::gather_scatter(const Pass
 
 /// What one chunk takes from the tiles; returns the largest displacement in cells. Called by the gather and by the
 /// fused pass, which must agree to the last bit, so it is compiled once.
-template <int D, class T>
-[[gnu::noinline]] double ParticleStep<D, T>::gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk,
+template <int D, class T, class Components>
+[[gnu::noinline]] double ParticleStep<D, T, Components>::gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk,
                                                         Work& work) {
   Wanted wanted;
   wanted.transfer = true, wanted.strain = pass.strain;
@@ -117,7 +117,7 @@ template <int D, class T>
                                velocity,
                                state.fields,
                                advection};
-  scene_.transfer_gather(scene_.transfer_parameters, &batch);
+  Components::gather(scene_, batch);
   if (step.filtered)  // the filtered velocity replaces the particle's
     for (int c = 0; c < D; ++c)
       for (T* const target : {velocity, advection})
@@ -135,8 +135,8 @@ template <int D, class T>
   return distance;
 }
 
-template <int D, class T>
-double ParticleStep<D, T>::strain(const StepInfo& step) {
+template <int D, class T, class Components>
+double ParticleStep<D, T, Components>::strain(const StepInfo& step) {
   Wanted wanted;
   wanted.strain = true;
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
@@ -158,8 +158,8 @@ double ParticleStep<D, T>::strain(const StepInfo& step) {
 }
 
 /// Sums over the nodes of a chunk's particles, as quads: in the tile, or on the grid for lists that leave it.
-template <int D, class T>
-void ParticleStep<D, T>::gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment,
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment,
                                         bool gradient) {
   if (!scene_.list) {
     const Stencils<T> stencils{work.first, work.weight, work.gradient, chunk.ahead(true)};
@@ -174,8 +174,8 @@ void ParticleStep<D, T>::gather_moments(const Chunk& chunk, Work& work, const T*
 }
 
 /// Fills velocity, increment, affine and gradient_of_velocity of the work space, as far as they will be read.
-template <int D, class T>
-void ParticleStep<D, T>::gather_chunk(const Chunk& chunk, Work& work, const Wanted& wanted) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::gather_chunk(const Chunk& chunk, Work& work, const Wanted& wanted) {
   const bool affine =
       (wanted.transfer && scene_.has(MPM_GATHERS_AFFINE)) || (wanted.strain && scene_.has(MPM_STRAIN_BY_AFFINE));
   const bool moment = affine && !scene_.moment_is_gradient;
@@ -204,9 +204,9 @@ void ParticleStep<D, T>::gather_chunk(const Chunk& chunk, Work& work, const Want
 
 /// Quads to velocity, C = h (sum k w v - f sum w v) D^-1 about the particle (without the D^-1 of moments a particle),
 /// and L.
-template <int D, class T>
+template <int D, class T, class Components>
 template <bool Moment, bool Gradient>
-void ParticleStep<D, T>::unpack_moments(Work& work, int count) {
+void ParticleStep<D, T, Components>::unpack_moments(Work& work, int count) {
   using L = Lanes<T>;
   const double h = scene_.domain.cell_size;
   const T scale = static_cast<T>(scene_.moment_of_particle ? h : scene_.inverse_moment * h);
@@ -232,15 +232,15 @@ void ParticleStep<D, T>::unpack_moments(Work& work, int count) {
     }
   }
 }
-template <int D, class T>
-void ParticleStep<D, T>::unpack_moments(Work& work, bool moment, bool gradient, int count) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::unpack_moments(Work& work, bool moment, bool gradient, int count) {
   if (moment) return gradient ? unpack_moments<true, true>(work, count) : unpack_moments<true, false>(work, count);
   return gradient ? unpack_moments<false, true>(work, count) : unpack_moments<false, false>(work, count);
 }
 
 /// C <- C D^-1 of moments a particle.
-template <int D, class T>
-void ParticleStep<D, T>::apply_inverse_moments(const Chunk& chunk, Work& work) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::apply_inverse_moments(const Chunk& chunk, Work& work) const {
   if (scene_.list) return multiply_by_inverse_moments(chunk, work);
   for (int c = 0; c < D; ++c)
     for (int a = 0; a < D; ++a)
@@ -249,8 +249,8 @@ void ParticleStep<D, T>::apply_inverse_moments(const Chunk& chunk, Work& work) c
 }
 
 /// One pass of the filter's loop on the particles: v* is gathered and scattered again by the transfer itself.
-template <int D, class T>
-void ParticleStep<D, T>::project(const StepInfo& step) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::project(const StepInfo& step) {
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     const int field = bodies_[body].field;
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
@@ -265,8 +265,8 @@ void ParticleStep<D, T>::project(const StepInfo& step) {
 }
 
 /// The transfer acts on a particle at rest with zero state, so that what it scatters is linear in v*.
-template <int D, class T>
-void ParticleStep<D, T>::project_chunk(const StepInfo& step, const Chunk& chunk, Work& work) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const Chunk& chunk, Work& work) {
   Wanted wanted;
   wanted.transfer = true, wanted.channel = filter_increment;
   gather_chunk(chunk, work, wanted);
@@ -292,19 +292,19 @@ void ParticleStep<D, T>::project_chunk(const StepInfo& step, const Chunk& chunk,
                                   velocity,
                                   state.fields,
                                   work.advection};
-  scene_.transfer_gather(scene_.transfer_parameters, &gathered);
+  Components::gather(scene_, gathered);
   std::fill(work.mass, work.mass + chunk.end, static_cast<T>(chunk.body.mass));
   const bool affine = scene_.has(MPM_SCATTERS_AFFINE);
   const mpm_scatter_batch scattered{
       n, chunk_size, D, 0, work.mass, velocity, state.fields, work.b, affine ? work.A : nullptr};
-  scene_.transfer_scatter(scene_.transfer_parameters, &scattered);
+  Components::scatter(scene_, scattered);
   if (!scene_.list) place_to_scatter(chunk, work, false);
   add_to_tile(chunk, work, filter_projection, work.mass, true, affine, false);
 }
 
 /// Strains the particles; with the pass that scatters them next, also gives what that wants of the material.
-template <int D, class T>
-void ParticleStep<D, T>::advance_material(const Chunk& chunk, Work& work, double dt, const Pass* scatters) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& work, double dt, const Pass* scatters) {
   const bool dissipation = scene_.plan.ledger && chunk.body.dissipates;
   mpm_material_batch request{};
   request.dt = dt;
@@ -321,8 +321,8 @@ void ParticleStep<D, T>::advance_material(const Chunk& chunk, Work& work, double
 }
 
 /// domain <- (I + dt L) domain. USF goes on with the old weights until its gather.
-template <int D, class T>
-void ParticleStep<D, T>::advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const {
   const T* const from = chunk.at(chunk.particles.domain);
   T* const to = chunk.at(chunk.particles.next_domain < 0 ? chunk.particles.domain : chunk.particles.next_domain);
   using V = Lanes<T>;
@@ -343,15 +343,15 @@ void ParticleStep<D, T>::advance_domain(const Chunk& chunk, const T* velocity_gr
 }
 
 /// Room beyond a face that cannot be folded away, in cells: half a cell at a separating wall, rounding elsewhere.
-template <int D, class T>
-double ParticleStep<D, T>::margin(int axis, int side) const {
+template <int D, class T, class Components>
+double ParticleStep<D, T, Components>::margin(int axis, int side) const {
   if (scene_.domain.faces[axis][side] == ConditionType::separate) return 0.5;
   return 1e-9 * scene_.domain.cells[axis] + 8 * static_cast<double>(std::numeric_limits<T>::epsilon());
 }
 
 /// x += dt times the advection velocity; returns the largest displacement in cells.
-template <int D, class T>
-double ParticleStep<D, T>::advance_position(const Chunk& chunk, const T* advection, double dt) {
+template <int D, class T, class Components>
+double ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, const T* advection, double dt) {
   using L = Lanes<T>;
   const T scale = static_cast<T>(dt / scene_.domain.cell_size);
   L largest(T(0)), outside(T(0));
@@ -375,8 +375,8 @@ double ParticleStep<D, T>::advance_position(const Chunk& chunk, const T* advecti
   return largest_lane(largest);
 }
 
-template <int D, class T>
-void ParticleStep<D, T>::note_outside(const Chunk& chunk) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::note_outside(const Chunk& chunk) {
   const std::lock_guard lock(mutex_);
   for (int p = 0; p < chunk.count; ++p)
     for (int axis = D - 1; axis >= 0; --axis) {  // the first axis is noted last and wins
@@ -395,8 +395,8 @@ void ParticleStep<D, T>::note_outside(const Chunk& chunk) {
     }
 }
 
-template <int D, class T>
-void ParticleStep<D, T>::move(const StepInfo& step) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::move(const StepInfo& step) {
   std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work&) {
@@ -410,8 +410,8 @@ void ParticleStep<D, T>::move(const StepInfo& step) {
   throw_failure();
 }
 
-template <int D, class T>
-TimeStepLimit ParticleStep<D, T>::time_step_limit() {
+template <int D, class T, class Components>
+TimeStepLimit ParticleStep<D, T, Components>::time_step_limit() {
   TimeStepLimit best;
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     TimeStepLimit of_body;

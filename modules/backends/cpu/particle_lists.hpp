@@ -9,8 +9,8 @@
 
 namespace mpm::cpu {
 
-template <int D, class T>
-void ParticleStep<D, T>::evaluate_list_batch(const Chunk& chunk, Work& work, int first_lane, bool gradients) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::evaluate_list_batch(const Chunk& chunk, Work& work, int first_lane, bool gradients) const {
   ListWork<D, T>& lists = work.lists;
   constexpr int lanes = ListWork<D, T>::lanes;
   const auto copy = [&](const T* from, int components, T* to) {
@@ -36,15 +36,15 @@ void ParticleStep<D, T>::evaluate_list_batch(const Chunk& chunk, Work& work, int
   scene_.evaluate_list(scene_.shape_parameters, &batch);
 }
 
-template <int D, class T>
-void ParticleStep<D, T>::keep_moment(Work& work, int first_lane, int lane) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::keep_moment(Work& work, int first_lane, int lane) const {
   if (!scene_.plan.second_moment) return;
   for (int c = 0; c < D * D; ++c)
     work.second_moment[c * chunk_size + first_lane + lane] = work.lists.second_moment[c * ListWork<D, T>::lanes + lane];
 }
 
-template <int D, class T>
-void ParticleStep<D, T>::evaluate_lists(const Chunk& chunk, Work& work, bool gradients) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::evaluate_lists(const Chunk& chunk, Work& work, bool gradients) {
   ListWork<D, T>& lists = work.lists;
   lists.clear();
   lists.any = true;
@@ -60,8 +60,8 @@ void ParticleStep<D, T>::evaluate_lists(const Chunk& chunk, Work& work, bool gra
 }
 
 /// Appends one particle's list to those of the chunk; returns the next free entry.
-template <int D, class T>
-int ParticleStep<D, T>::keep_list(const Chunk& chunk, Work& work, int first_lane, int lane, int entry, bool gradients) {
+template <int D, class T, class Components>
+int ParticleStep<D, T, Components>::keep_list(const Chunk& chunk, Work& work, int first_lane, int lane, int entry, bool gradients) {
   ListWork<D, T>& lists = work.lists;
   constexpr int lanes = ListWork<D, T>::lanes;
   const int p = first_lane + lane, count = lists.count[lane];
@@ -115,8 +115,8 @@ int ParticleStep<D, T>::keep_list(const Chunk& chunk, Work& work, int first_lane
 }
 
 /// Whether a list has nodes beyond the padding of the domain; the run then ends after this pass.
-template <int D, class T>
-bool ParticleStep<D, T>::reaches_too_far(const Chunk& chunk, int p, const int* low, const int* high) {
+template <int D, class T, class Components>
+bool ParticleStep<D, T, Components>::reaches_too_far(const Chunk& chunk, int p, const int* low, const int* high) {
   bool beyond = false;
   for (int a = 0; a < D; ++a) {
     int origin = chunk.block.at[a] * block_side<D>;
@@ -135,8 +135,8 @@ bool ParticleStep<D, T>::reaches_too_far(const Chunk& chunk, int p, const int* l
 }
 
 /// As place_to_scatter: what the lists in the tile reach, as first nodes of stencils of the tile's width.
-template <int D, class T>
-bool ParticleStep<D, T>::place_lists(const Chunk& chunk, const Work& work, bool extend_reach) const {
+template <int D, class T, class Components>
+bool ParticleStep<D, T, Components>::place_lists(const Chunk& chunk, const Work& work, bool extend_reach) const {
   if (!extend_reach) return true;
   Reach& reach = chunk.block.reach;
   for (int a = 0; a < D; ++a) {
@@ -146,8 +146,8 @@ bool ParticleStep<D, T>::place_lists(const Chunk& chunk, const Work& work, bool 
   return true;
 }
 
-template <int D, class T>
-void ParticleStep<D, T>::extend_bounds(const Chunk& chunk) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::extend_bounds(const Chunk& chunk) const {
   using L = Lanes<T>;
   const int domain = chunk.particles.domain;
   ListBounds& bounds = chunk.block.bounds;
@@ -166,8 +166,8 @@ void ParticleStep<D, T>::extend_bounds(const Chunk& chunk) const {
   }
 }
 
-template <int D, class T>
-bool ParticleStep<D, T>::widen_active_blocks() {
+template <int D, class T, class Components>
+bool ParticleStep<D, T, Components>::widen_active_blocks() {
   std::atomic<bool> grew{false};
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work&) {
@@ -192,8 +192,8 @@ bool ParticleStep<D, T>::widen_active_blocks() {
   return grew;
 }
 
-template <int D, class T>
-std::vector<double> ParticleStep<D, T>::second_moments(int body) {
+template <int D, class T, class Components>
+std::vector<double> ParticleStep<D, T, Components>::second_moments(int body) {
   std::size_t n = 0;
   for (const Block<D>& block : particles_[body].blocks) n += block.count;
   std::vector<double> moments(n * D * D, 0.0);

@@ -8,8 +8,8 @@
 namespace mpm::cpu {
 
 /// Channels that a scatter pass adds to, its momenta to `momentum`.
-template <int D, class T>
-std::vector<Channel> ParticleStep<D, T>::scattered_channels(const Pass& pass, Channel momentum) const {
+template <int D, class T, class Components>
+std::vector<Channel> ParticleStep<D, T, Components>::scattered_channels(const Pass& pass, Channel momentum) const {
   std::vector<Channel> channels;
   if (pass.momentum || (pass.force && !grid_.has(force))) channels.push_back(momentum);
   for (const Channel c : {force, body_force})
@@ -20,9 +20,9 @@ std::vector<Channel> ParticleStep<D, T>::scattered_channels(const Pass& pass, Ch
 
 /// Calls visit(chunk, work) for the chunks of blocks with particles that no tile holds, in order and on one thread, so
 /// that sums on the grid are the same for any number of threads. What is scattered meanwhile is theirs alone.
-template <int D, class T>
+template <int D, class T, class Components>
 template <class Visit>
-void ParticleStep<D, T>::scatter_far(int body, Visit&& visit) {
+void ParticleStep<D, T, Components>::scatter_far(int body, Visit&& visit) {
   if (!scene_.list || failure_.severity < 2) return;
   Work& work = *work_[0];
   work.far_only = true;
@@ -31,8 +31,8 @@ void ParticleStep<D, T>::scatter_far(int body, Visit&& visit) {
   work.far_only = false;
 }
 
-template <int D, class T>
-double ParticleStep<D, T>::scatter(const Pass& pass, const StepInfo& step) {
+template <int D, class T, class Components>
+double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
   const std::vector<Channel> channels = scattered_channels(pass, motion);
   const bool energies = scene_.plan.ledger && pass.momentum && !pass.remap;
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
@@ -61,8 +61,8 @@ double ParticleStep<D, T>::scatter(const Pass& pass, const StepInfo& step) {
 }
 
 /// What a pass that scatters wants of the material.
-template <int D, class T>
-void ParticleStep<D, T>::want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const {
   if (pass.force) request.kirchhoff_stress = work.stress;
   if (pass.contact_fields) request.volume_ratio = work.volume_ratio;
 }
@@ -70,8 +70,8 @@ void ParticleStep<D, T>::want_of_material(const Pass& pass, Work& work, mpm_mate
 /// What a chunk gives its tiles; false, and nothing given, when a particle is outside of them. `evaluated`: what is
 /// wanted of the material is at hand. Called by the scatter
 /// and by the fused pass, which must agree to the last bit, so it is compiled once.
-template <int D, class T>
-[[gnu::noinline]] bool ParticleStep<D, T>::scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk,
+template <int D, class T, class Components>
+[[gnu::noinline]] bool ParticleStep<D, T, Components>::scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk,
                                                          Work& work, Channel momentum, bool evaluated) {
   const bool separate = grid_.has(force), merged = pass.force && !separate;
   const bool by_gradient = pass.force && !scene_.stress_by_affine;
@@ -101,8 +101,8 @@ template <int D, class T>
   return true;
 }
 
-template <int D, class T>
-void ParticleStep<D, T>::momentum_coefficients(const Chunk& chunk, Work& work) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::momentum_coefficients(const Chunk& chunk, Work& work) {
   std::fill(work.mass, work.mass + chunk.end, static_cast<T>(chunk.body.mass));
   const States state = states(chunk.particles.transfer_state, chunk);
   const mpm_scatter_batch batch{static_cast<std::uint32_t>(chunk.end),
@@ -114,12 +114,12 @@ void ParticleStep<D, T>::momentum_coefficients(const Chunk& chunk, Work& work) {
                                 state.fields,
                                 work.b,
                                 scene_.has(MPM_SCATTERS_AFFINE) ? work.A : nullptr};
-  scene_.transfer_scatter(scene_.transfer_parameters, &batch);
+  Components::scatter(scene_, batch);
 }
 
 /// -factor V0 tau D^-1 into A (added or set), or -factor V0 tau into S.
-template <int D, class T>
-void ParticleStep<D, T>::stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add) {
   const bool by_affine = scene_.stress_by_affine, of_particle = by_affine && scene_.moment_of_particle;
   const T scale =
       static_cast<T>(-factor * chunk.body.volume * (by_affine && !of_particle ? scene_.inverse_moment : 1.0));
@@ -146,9 +146,9 @@ void ParticleStep<D, T>::stress_coefficients(const Chunk& chunk, Work& work, dou
 
 /// b (when `constant`), A and S as quads, with `last` as the fourth scalar of the constant one: in cells, and about the
 /// stencil's first node instead of the particle.
-template <int D, class T>
+template <int D, class T, class Components>
 template <bool Affine, bool Gradient>
-void ParticleStep<D, T>::pack_coefficients(Work& work, const T* last, bool constant, int count) {
+void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last, bool constant, int count) {
   using L = Lanes<T>;
   const T h = static_cast<T>(scene_.domain.cell_size), inverse_h = T(1) / h;
   constexpr int groups = quad_groups(D, Affine, Gradient), first_s = 1 + (Affine ? D : 0);
@@ -173,8 +173,8 @@ void ParticleStep<D, T>::pack_coefficients(Work& work, const T* last, bool const
     store_groups<T, groups>(work.quads + std::size_t(p) * 4 * groups, q);
   }
 }
-template <int D, class T>
-void ParticleStep<D, T>::pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient,
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient,
                                            int count) {
   if (affine)
     return gradient ? pack_coefficients<true, true>(work, last, constant, count)
@@ -184,8 +184,8 @@ void ParticleStep<D, T>::pack_coefficients(Work& work, const T* last, bool const
 }
 
 /// Scatters the coefficients of a chunk into the tile of a channel.
-template <int D, class T>
-void ParticleStep<D, T>::add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last, bool constant,
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last, bool constant,
                                      bool affine, bool gradient) {
   pack_coefficients(work, last, constant, affine, gradient, chunk.end);
   work.clock.lap(Phase::coefficients);
@@ -204,15 +204,15 @@ void ParticleStep<D, T>::add_to_tile(const Chunk& chunk, Work& work, Channel cha
   work.clock.lap(Phase::scatter);
 }
 
-template <int D, class T>
-void ParticleStep<D, T>::scatter_stress(const Chunk& chunk, Work& work) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::scatter_stress(const Chunk& chunk, Work& work) {
   stress_coefficients(chunk, work, 1.0, false);
   add_to_tile(chunk, work, force, nullptr, false, scene_.stress_by_affine, !scene_.stress_by_affine);
 }
 
 /// m b(x, X, t): into its own channel, or times dt onto the momentum's b.
-template <int D, class T>
-void ParticleStep<D, T>::scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt) {
   const VectorExpression& expression = *scene_.experiment.body_force;
   if (!merged) std::fill(work.b, work.b + D * chunk_size, T(0));
   const double factor = chunk.body.mass * (merged ? dt : 1.0);
@@ -232,8 +232,8 @@ void ParticleStep<D, T>::scatter_body_force(const Chunk& chunk, Work& work, doub
 }
 
 /// V grad w with w V beside it, and w m (x_p - x_node), V = J V0.
-template <int D, class T>
-void ParticleStep<D, T>::scatter_contact_fields(const Chunk& chunk, Work& work) {
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, Work& work) {
   const T volume = static_cast<T>(chunk.body.volume), mass = static_cast<T>(chunk.body.mass);
   for (int p = 0; p < chunk.end; ++p) work.scalar[p] = volume * work.volume_ratio[p];
   std::fill(work.S, work.S + D * D * chunk_size, T(0));

@@ -122,7 +122,25 @@ struct Body {
   std::vector<double> initial_position;  ///< m, by index of seeding, particle-major
 };
 
+/// Plugins as they were loaded, called through their tables. Another type with these members may call functors that were
+/// compiled in (apps/bench, which measures the price of the tables).
 template <int D, class T>
+struct LoadedComponents {
+  static void evaluate_shape(const Scene<D, T>& scene, const mpm_shape_batch& batch) {
+    scene.evaluate_shape(scene.shape_parameters, &batch);
+  }
+  static void scatter(const Scene<D, T>& scene, const mpm_scatter_batch& batch) {
+    scene.transfer_scatter(scene.transfer_parameters, &batch);
+  }
+  static void gather(const Scene<D, T>& scene, const mpm_gather_batch& batch) {
+    scene.transfer_gather(scene.transfer_parameters, &batch);
+  }
+  static std::int32_t update_material(const Body<D, T>& body, const mpm_material_batch& batch) {
+    return body.update_material(body.material->parameters.data(), &batch);
+  }
+};
+
+template <int D, class T, class Components = LoadedComponents<D, T>>
 class ParticleStep {
  public:
   static constexpr std::size_t max_state_fields = 16;
