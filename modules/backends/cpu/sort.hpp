@@ -63,7 +63,7 @@ class Sorter {
     space_.key.resize(std::max(space_.key.size(), std::size_t(particles_.chunks) * chunk_size));
     sources_.resize(particles_.blocks.size());
     find_keys();
-    if (nothing_to_do()) return false;
+    if (in_units() && nothing_to_do()) return false;
     find_targets();
     const bool same = order_targets();
     move();
@@ -102,6 +102,11 @@ class Sorter {
     std::int32_t id;
     std::uint32_t cell, slot;
   };
+
+  /// Not before the first sort: the blocks of seeding have no units yet, though their particles may be in order.
+  bool in_units() const {
+    return std::any_of(particles_.units.begin(), particles_.units.end(), [](const auto& u) { return !u.empty(); });
+  }
 
   // ---- where to
 
