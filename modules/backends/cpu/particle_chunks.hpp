@@ -287,31 +287,82 @@ void ParticleStep<D, T>::note_inverted(const Chunk& chunk) {
                                          : "inverted: its volume ratio J is not positive");
 }
 
+/// Doubles of as many particles as a register has.
+using WideLanes = Lanes<double>::Vector;
+template <class T>
+inline WideLanes widen_lanes(const T* p) {
+  typedef T Part __attribute__((vector_size(Lanes<double>::width * sizeof(T)), may_alias));
+  return __builtin_convertvector(*reinterpret_cast<const Part*>(p), WideLanes);
+}
+
+/// Sum over a chunk's particles of what value_of(first particle) gives for as many as a register has. Lanes beyond the
+/// last particle may hold anything.
+template <class Value>
+inline double sum_of_particles(int count, Value&& value_of) {
+  constexpr int width = Lanes<double>::width;
+  Lanes<double>::Mask number{};
+  for (int lane = 0; lane < width; ++lane) number[lane] = lane;
+  WideLanes sums{};
+  int p = 0;
+  for (; p + width <= count; p += width) sums += value_of(p);
+  if (p < count) sums += number < count - p ? value_of(p) : WideLanes{};
+  double sum = 0;
+  for (int lane = 0; lane < width; ++lane) sum += sums[lane];
+  return sum;
+}
+
 /// With the affine part where the transfer carries it; offsets and moments are those of the last shape evaluation.
 template <int D, class T>
 double ParticleStep<D, T>::kinetic_energy(const Chunk& chunk, const Work& work) const {
-  double sum = 0;
   const T* const v = chunk.at(Particles<D, T>::velocity);
-  for (int c = 0; c < D; ++c)
-    for (int p = 0; p < chunk.count; ++p) sum += static_cast<double>(v[c * chunk_size + p]) * v[c * chunk_size + p];
-  if (scene_.has(MPM_AFFINE_CARRIES_ENERGY)) {
-    const T* const C = chunk.at(chunk.particles.transfer_state[0].first);
-    const double square = scene_.domain.cell_size * scene_.domain.cell_size;
-    const bool of_particle = scene_.moment_of_particle;
-    for (int c = 0; c < D; ++c)
+  const auto values = [](const T* first, int component, int p) {
+    return widen_lanes(first + component * chunk_size + p);
+  };
+  double sum = sum_of_particles(chunk.count, [&](int p) {
+    WideLanes squares{};
+    for (int c = 0; c < D; ++c) squares += values(v, c, p) * values(v, c, p);
+    return squares;
+  });
+  if (!scene_.has(MPM_AFFINE_CARRIES_ENERGY)) return 0.5 * chunk.body.mass * sum;
+
+  const T* const C = chunk.at(chunk.particles.transfer_state[0].first);
+  const double cell_area = scene_.domain.cell_size * scene_.domain.cell_size;
+  const auto column = [&](int a, int p) {  // squares of one column of C
+    WideLanes squares{};
+    for (int c = 0; c < D; ++c) squares += values(C, c * D + a, p) * values(C, c * D + a, p);
+    return squares;
+  };
+  const auto add_affine = [&](double factor, auto&& value_of) {
+    sum += factor * sum_of_particles(chunk.count, value_of);
+  };
+  if (scene_.moment_of_particle && scene_.list)  // tr(C D C^T) of a full matrix
+    add_affine(cell_area, [&](int p) {
+      WideLanes squares{};
       for (int a = 0; a < D; ++a)
-        for (int p = 0; p < chunk.count; ++p) {
-          const double value = C[(c * D + a) * chunk_size + p];
-          if (of_particle && scene_.list)  // tr(C D C^T) of a full matrix
-            for (int b = 0; b < D; ++b)
-              sum +=
-                  square * work.second_moment[(a * D + b) * chunk_size + p] * value * C[(c * D + b) * chunk_size + p];
-          else if (of_particle)
-            sum += square * work.second_moment[a * chunk_size + p] * value * value;
-          else
-            sum += scene_.second_moment(work.offset[a * chunk_size + p]) * value * value;
-        }
-  }
+        for (int b = 0; b < D; ++b)
+          for (int c = 0; c < D; ++c)
+            squares += values(work.second_moment, a * D + b, p) * values(C, c * D + a, p) * values(C, c * D + b, p);
+      return squares;
+    });
+  else if (scene_.moment_of_particle)
+    add_affine(cell_area, [&](int p) {
+      WideLanes squares{};
+      for (int a = 0; a < D; ++a) squares += values(work.second_moment, a, p) * column(a, p);
+      return squares;
+    });
+  else if (scene_.moment_is_gradient)
+    add_affine(cell_area, [&](int p) {
+      WideLanes squares{};
+      for (int a = 0; a < D; ++a)
+        squares += values(work.offset, a, p) * (1.0 - values(work.offset, a, p)) * column(a, p);
+      return squares;
+    });
+  else
+    add_affine(scene_.second_moment(0), [&](int p) {
+      WideLanes squares{};
+      for (int a = 0; a < D; ++a) squares += column(a, p);
+      return squares;
+    });
   return 0.5 * chunk.body.mass * sum;
 }
 

@@ -315,9 +315,8 @@ void ParticleStep<D, T>::advance_material(const Chunk& chunk, Work& work, double
   update_material(chunk, request);
   if (chunk.particles.domain >= 0) advance_domain(chunk, velocity_gradient, dt);
   if (!dissipation) return;
-  double sum = 0;
-  for (int p = 0; p < chunk.count; ++p) sum += work.scalar[p];
-  chunk.block.dissipated += chunk.body.volume * sum;
+  const auto energies = [&](int p) { return widen_lanes(work.scalar + p); };
+  chunk.block.dissipated += chunk.body.volume * sum_of_particles(chunk.count, energies);
 }
 
 /// domain <- (I + dt L) domain. USF goes on with the old weights until its gather.
