@@ -287,83 +287,84 @@ void ParticleStep<D, T>::note_inverted(const Chunk& chunk) {
                                          : "inverted: its volume ratio J is not positive");
 }
 
-/// Doubles of as many particles as a register has.
-using WideLanes = Lanes<double>::Vector;
-template <class T>
-inline WideLanes widen_lanes(const T* p) {
-  typedef T Part __attribute__((vector_size(Lanes<double>::width * sizeof(T)), may_alias));
-  return __builtin_convertvector(*reinterpret_cast<const Part*>(p), WideLanes);
-}
-
-/// Sum over a chunk's particles of what value_of(first particle) gives for as many as a register has. Lanes beyond the
-/// last particle may hold anything.
-template <class Value>
+/// Sum over a chunk's particles, in doubles, of what value_of(first particle) gives for a pack of them. Lanes beyond
+/// the last particle may hold anything.
+template <class T, class Value>
 inline double sum_of_particles(int count, Value&& value_of) {
-  constexpr int width = Lanes<double>::width;
-  Lanes<double>::Mask number{};
-  for (int lane = 0; lane < width; ++lane) number[lane] = lane;
-  WideLanes sums{};
+  using L = Lanes<T>;
+  using Sums = typename Lanes<double>::Vector;
+  Sums sums{};
+  const auto add = [&](typename L::Vector values) {
+    if constexpr (sizeof(T) == sizeof(double)) {
+      sums += values;
+    } else if constexpr (L::width == 16) {
+      sums += __builtin_convertvector(__builtin_shufflevector(values, values, 0, 1, 2, 3, 4, 5, 6, 7), Sums);
+      sums += __builtin_convertvector(__builtin_shufflevector(values, values, 8, 9, 10, 11, 12, 13, 14, 15), Sums);
+    } else {
+      sums += __builtin_convertvector(__builtin_shufflevector(values, values, 0, 1, 2, 3), Sums);
+      sums += __builtin_convertvector(__builtin_shufflevector(values, values, 4, 5, 6, 7), Sums);
+    }
+  };
   int p = 0;
-  for (; p + width <= count; p += width) sums += value_of(p);
-  if (p < count) sums += number < count - p ? value_of(p) : WideLanes{};
+  for (; p + L::width <= count; p += L::width) add(value_of(p).v);
+  if (p < count) {
+    typename L::Mask lane{};
+    for (int i = 0; i < L::width; ++i) lane[i] = p + i;
+    add(lane < count ? value_of(p).v : typename L::Vector{});
+  }
   double sum = 0;
-  for (int lane = 0; lane < width; ++lane) sum += sums[lane];
+  for (int i = 0; i < Lanes<double>::width; ++i) sum += sums[i];
   return sum;
 }
 
-/// With the affine part where the transfer carries it; offsets and moments are those of the last shape evaluation.
+/// With the affine part where the transfer carries it; offsets and moments are those of the last shape evaluation. What
+/// a particle's own energy loses to rounding in T is the same where it is gathered and where it is scattered next.
 template <int D, class T>
 double ParticleStep<D, T>::kinetic_energy(const Chunk& chunk, const Work& work) const {
-  const T* const v = chunk.at(Particles<D, T>::velocity);
-  const auto values = [](const T* first, int component, int p) {
-    return widen_lanes(first + component * chunk_size + p);
+  using L = Lanes<T>;
+  const auto load = [](const T* first, int component, int p) { return L::load(first + component * chunk_size + p); };
+  const auto energy_with = [&](auto&& affine_squares) {
+    const T* const v = chunk.at(Particles<D, T>::velocity);
+    const double sum = sum_of_particles<T>(chunk.count, [&](int p) {
+      L squares = affine_squares(p);
+      for (int c = 0; c < D; ++c) squares = squares + load(v, c, p) * load(v, c, p);
+      return squares;
+    });
+    return 0.5 * chunk.body.mass * sum;
   };
-  double sum = sum_of_particles(chunk.count, [&](int p) {
-    WideLanes squares{};
-    for (int c = 0; c < D; ++c) squares += values(v, c, p) * values(v, c, p);
-    return squares;
-  });
-  if (!scene_.has(MPM_AFFINE_CARRIES_ENERGY)) return 0.5 * chunk.body.mass * sum;
+  if (!scene_.has(MPM_AFFINE_CARRIES_ENERGY)) return energy_with([](int) { return L(T(0)); });
 
   const T* const C = chunk.at(chunk.particles.transfer_state[0].first);
-  const double cell_area = scene_.domain.cell_size * scene_.domain.cell_size;
+  const T cell_area = static_cast<T>(scene_.domain.cell_size * scene_.domain.cell_size);
   const auto column = [&](int a, int p) {  // squares of one column of C
-    WideLanes squares{};
-    for (int c = 0; c < D; ++c) squares += values(C, c * D + a, p) * values(C, c * D + a, p);
+    L squares = load(C, a, p) * load(C, a, p);
+    for (int c = 1; c < D; ++c) squares = squares + load(C, c * D + a, p) * load(C, c * D + a, p);
     return squares;
   };
-  const auto add_affine = [&](double factor, auto&& value_of) {
-    sum += factor * sum_of_particles(chunk.count, value_of);
+  const auto energy_of_columns = [&](T factor, auto&& moment) {
+    return energy_with([&](int p) {
+      L squares = moment(0, p) * column(0, p);
+      for (int a = 1; a < D; ++a) squares = squares + moment(a, p) * column(a, p);
+      return factor * squares;
+    });
   };
   if (scene_.moment_of_particle && scene_.list)  // tr(C D C^T) of a full matrix
-    add_affine(cell_area, [&](int p) {
-      WideLanes squares{};
+    return energy_with([&](int p) {
+      L squares(T(0));
       for (int a = 0; a < D; ++a)
         for (int b = 0; b < D; ++b)
           for (int c = 0; c < D; ++c)
-            squares += values(work.second_moment, a * D + b, p) * values(C, c * D + a, p) * values(C, c * D + b, p);
-      return squares;
+            squares = squares + load(work.second_moment, a * D + b, p) * load(C, c * D + a, p) * load(C, c * D + b, p);
+      return cell_area * squares;
     });
-  else if (scene_.moment_of_particle)
-    add_affine(cell_area, [&](int p) {
-      WideLanes squares{};
-      for (int a = 0; a < D; ++a) squares += values(work.second_moment, a, p) * column(a, p);
-      return squares;
+  if (scene_.moment_of_particle)
+    return energy_of_columns(cell_area, [&](int a, int p) { return load(work.second_moment, a, p); });
+  if (scene_.moment_is_gradient)
+    return energy_of_columns(cell_area, [&](int a, int p) {
+      const L offset = load(work.offset, a, p);
+      return offset * (T(1) - offset);
     });
-  else if (scene_.moment_is_gradient)
-    add_affine(cell_area, [&](int p) {
-      WideLanes squares{};
-      for (int a = 0; a < D; ++a)
-        squares += values(work.offset, a, p) * (1.0 - values(work.offset, a, p)) * column(a, p);
-      return squares;
-    });
-  else
-    add_affine(scene_.second_moment(0), [&](int p) {
-      WideLanes squares{};
-      for (int a = 0; a < D; ++a) squares += column(a, p);
-      return squares;
-    });
-  return 0.5 * chunk.body.mass * sum;
+  return energy_of_columns(static_cast<T>(scene_.second_moment(0)), [](int, int) { return T(1); });
 }
 
 }  // namespace mpm::cpu

@@ -315,8 +315,8 @@ void ParticleStep<D, T>::advance_material(const Chunk& chunk, Work& work, double
   update_material(chunk, request);
   if (chunk.particles.domain >= 0) advance_domain(chunk, velocity_gradient, dt);
   if (!dissipation) return;
-  const auto energies = [&](int p) { return widen_lanes(work.scalar + p); };
-  chunk.block.dissipated += chunk.body.volume * sum_of_particles(chunk.count, energies);
+  const auto energies = [&](int p) { return Lanes<T>::load(work.scalar + p); };
+  chunk.block.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
 }
 
 /// domain <- (I + dt L) domain. USF goes on with the old weights until its gather.
