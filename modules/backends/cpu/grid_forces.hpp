@@ -76,17 +76,18 @@ template <int D, class T>
 double GridStep<D, T>::divide_by_mass(bool keeps_before, bool accounted) {
   for_each_block([&](int field, std::uint32_t first, double* partial) {
     Q* const nodes = &motion_at(field, first);
-    T heaviest = 0;
+    Mask heavy{};
     for (int k = 0; k < block_nodes; ++k) {
       const T mass = nodes[k][3];
-      heaviest = mass > heaviest ? mass : heaviest;
       const Q mass4 = mass - Q{};
-      Q velocity = mass > 0 ? nodes[k] / mass4 : Q{};
+      const Mask has_mass = mass4 > 0;
+      heavy |= has_mass;
+      Q velocity = has_mass ? nodes[k] / mass4 : Q{};
       velocity[3] = mass;
       nodes[k] = velocity;
     }
     if (keeps_before) std::memcpy(&grid_.quad(velocity_before, field, first), nodes, block_nodes * sizeof(Q));
-    if (!accounted || heaviest == 0) return;
+    if (!accounted || !heavy[3]) return;
     Wide squares{};
     for (int k = 0; k < block_nodes; ++k) {  // no velocity where there is no mass
       const Wide v = widen(nodes[k]);
@@ -237,21 +238,22 @@ void GridStep<D, T>::accelerate(double dt) {
     Q* const nodes = &motion_at(field, first);
     const Q* const f = grid_.has(force) ? &grid_.quad(force, field, first) : nullptr;
     const Q* const body = grid_.has(body_force) ? &grid_.quad(body_force, field, first) : nullptr;
-    T heaviest = 0;
+    Mask heavy{};
     for (int k = 0; k < block_nodes; ++k) {
       const T mass = nodes[k][3];
-      heaviest = mass > heaviest ? mass : heaviest;
+      const Mask has_mass = mass - Q{} > 0;
+      heavy |= has_mass;
       Q total{};
       if (f) total += f[k];
       if (body) total += body[k];
-      Q velocity = mass > 0 ? nodes[k] + step * (total / mass + gravity_) : Q{};
+      Q velocity = has_mass ? nodes[k] + step * (total / mass + gravity_) : Q{};
       velocity[3] = mass;
       nodes[k] = velocity;
     }
     if (!ledger_on()) return;
     if (constrained_[first / block_nodes])
       std::memset(held_.data() + std::size_t(field) * grid_.nodes() + first, 0, block_nodes);
-    else if (heaviest > 0)
+    else if (heavy[3])
       account_for_block(field, first, dt, nullptr, partial);
   });
 }

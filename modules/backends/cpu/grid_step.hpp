@@ -34,6 +34,7 @@ class GridStep {
 
  private:
   using Q = Quad<T>;
+  using Mask = decltype(Q{} > Q{});
   using Wide = Quad<double>;  ///< sums of the ledger
   /// What imposing a condition leaves for the ledger: its change of energy at once, or a mark for account_for_impulses.
   enum class Account { nothing, change_of_energy, mark };
