@@ -66,6 +66,8 @@ typename ParticleStep<D, T>::Fused ParticleStep<D, T>::gather_scatter(const Pass
   const std::vector<Channel> channels = scattered_channels(pass, next_motion);
   std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
   abandoned_ = false;
+  const bool energy_moves = scene_.plan.ledger && scene_.has(MPM_AFFINE_CARRIES_ENERGY) &&
+                            (scene_.moment_of_particle || scene_.moment_is_gradient);
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
       load_velocities(body, block, work);
@@ -76,8 +78,9 @@ typename ParticleStep<D, T>::Fused ParticleStep<D, T>::gather_scatter(const Pass
         drift = std::max(drift, gather_one(pass, step, chunk, work));
         if (abandoned_) return;
         if (!scatter_chunk(pass, next, chunk, work, next_motion, evaluates_for_scatter(pass))) abandoned_ = true;
-        if (scene_.plan.ledger) block.scattered_energy += kinetic_energy(chunk, work);
+        if (energy_moves) block.scattered_energy += kinetic_energy(chunk, work);
       });
+      if (!energy_moves) block.scattered_energy = block.kinetic_energy;  // of the same velocities and moments
       end_reach(block, work);
       for (const Channel c : channels)
         if (abandoned_)
