@@ -49,8 +49,7 @@ std::unique_ptr<Backend> make_fused_backend(const Experiment& experiment, const 
                                             std::vector<SeededBody> seeds, int threads) {
   bool known = experiment.shape.plugin->id() == "bspline_quadratic" && experiment.transfer.plugin->id() == "mls" &&
                !experiment.filter;
-  for (const auto& material : experiment.materials)
-    known = known && material.component.plugin->id() == "neo_hookean";
+  for (const auto& material : experiment.materials) known = known && material.component.plugin->id() == "neo_hookean";
   if (!known) throw std::invalid_argument("compiled in are only bspline_quadratic, mls and neo_hookean");
   const bool single = experiment.precision == Precision::single;
   if (experiment.dimension == 2)

@@ -1,5 +1,5 @@
-// Section `freedom`: what it costs that shape, transfer and material are plugins, against the same functors compiled into
-// the same kernels.
+// Section `freedom`: what it costs that shape, transfer and material are plugins, against the same functors compiled
+// into the same kernels.
 
 #include "bench/fused.hpp"
 #include "mpm/bench_sections.hpp"

@@ -25,18 +25,19 @@ struct Scratch {
 
 bench::SectionResult bench_required(BenchContext& context) {
   context.say("required: bytes, passes, calls and instructions");
-  bench::Table table{"required",
-                     "What is paid for what is asked (3-D float, MLS, Neo-Hookean; instructions: 2-D)",
-                     {{"scene", "scene"},
-                      {"bytes_per_particle", "bytes a particle"},
-                      {"bytes_per_node", "bytes a node"},
-                      {"passes", "passes a step"},
-                      {"calls", "plugin calls a step"},
-                      {"instructions", "instructions a particle-step"}},
-                     {},
-                     "Counted, not timed: by wrapping the plugins' tables, and by stepping one machine instruction at a "
-                     "time. The C library's own take a few hundred more or less. \"-\": this machine does not let a "
-                     "program be stepped."};
+  bench::Table table{
+      "required",
+      "What is paid for what is asked (3-D float, MLS, Neo-Hookean; instructions: 2-D)",
+      {{"scene", "scene"},
+       {"bytes_per_particle", "bytes a particle"},
+       {"bytes_per_node", "bytes a node"},
+       {"passes", "passes a step"},
+       {"calls", "plugin calls a step"},
+       {"instructions", "instructions a particle-step"}},
+      {},
+      "Counted, not timed: by wrapping the plugins' tables, and by stepping one machine instruction at a "
+      "time. The C library's own take a few hundred more or less. \"-\": this machine does not let a "
+      "program be stepped."};
   std::vector<bench::Target> targets;
   const Scratch scratch;
   const std::vector<counting::RequiredRow> rows =

@@ -60,7 +60,8 @@ class CpuBackend final : public Backend {
 // ---- implementation ----------------------------------------------------------------------------------------------
 
 template <int D, class T, class Components>
-CpuBackend<D, T, Components>::CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds, int threads)
+CpuBackend<D, T, Components>::CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds,
+                                         int threads)
     : scene_(experiment, plan, threads), grid_(scene_), particles_(seeds.size()) {
   plan_channels();
   std::vector<Body<D, T>> bodies = make_bodies(seeds);
@@ -147,7 +148,7 @@ void CpuBackend<D, T, Components>::lay_out_state(Particles<D, T>& particles, con
 /// What each component of a chunk starts as; domains start as half the undeformed particle's box in cells.
 template <int D, class T, class Components>
 std::vector<T> CpuBackend<D, T, Components>::first_values(const Particles<D, T>& particles, const Component& material,
-                                              T half_size) const {
+                                                          T half_size) const {
   std::vector<T> values(particles.components, T(0));
   const auto set = [&](const StateField& field, const mpm_state& declared) {
     const bool symmetric = declared.shape == MPM_STATE_SYMMETRIC;

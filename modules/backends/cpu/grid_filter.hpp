@@ -35,7 +35,7 @@ void GridStep<D, T>::begin_filter(const Pass& pass) {
   if (pass.restores) copy_velocity(motion, kept_velocity);
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = mass_norm_of_increment();
-  if (ledger_on()) kinetic_energy_unfiltered_ = kinetic_energy(false);
+  if (ledger_on()) kinetic_energy_unfiltered_ = kinetic_energy();
 }
 
 /// Folds and divides the momenta that the particles scattered. The first increment is a velocity, which walls mirror
@@ -146,7 +146,7 @@ void GridStep<D, T>::end_filter(const Pass& pass, const StepInfo& step) {
   fill_ghosts(time, false);
   if (pass.remap || pass.restores) return;
   if (ledger_on()) {
-    const double energy = kinetic_energy(false);
+    const double energy = kinetic_energy();
     ledger_.filter += energy - kinetic_energy_unfiltered_;
     kinetic_energy_after_ = energy;
   }
@@ -168,7 +168,7 @@ void GridStep<D, T>::restore_velocity(const Pass& pass) {
 /// v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
 template <int D, class T>
 void GridStep<D, T>::add_correction(const Pass& pass, const StepInfo& step) {
-  const double unfiltered = ledger_on() ? kinetic_energy(false) : 0.0;
+  const double unfiltered = ledger_on() ? kinetic_energy() : 0.0;
   for_each_block([&](int field, std::uint32_t first, double*) {
     Q* const nodes = &motion_at(field, first);
     const Q* const correction = &grid_.quad(kept_velocity, field, first);
@@ -177,7 +177,7 @@ void GridStep<D, T>::add_correction(const Pass& pass, const StepInfo& step) {
   constrain(time_of(pass, step), step);
   fill_ghosts(time_of(pass, step), false);
   if (!ledger_on()) return;
-  kinetic_energy_after_ = kinetic_energy(false);
+  kinetic_energy_after_ = kinetic_energy();
   ledger_.filter += kinetic_energy_after_ - unfiltered;
 }
 

@@ -22,8 +22,15 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
 template <int D, class T>
 template <class Visit>
 void GridStep<D, T>::for_each_block(Visit&& visit) {
+  partials_.assign(std::size_t(partial_count) * grid_.slots() * grid_.fields(), 0.0);
+  visit_blocks(visit);
+}
+
+/// The same, and goes on with the partial sums of the last for_each_block.
+template <int D, class T>
+template <class Visit>
+void GridStep<D, T>::visit_blocks(Visit&& visit) {
   const std::int64_t slots = grid_.slots(), blocks = slots * grid_.fields();
-  partials_.assign(partial_count * blocks, 0.0);
 #pragma omp parallel for num_threads(scene_.threads) schedule(static)
   for (std::int64_t i = 0; i < blocks; ++i)
     visit(static_cast<int>(i / slots), static_cast<std::uint32_t>(i % slots) * block_nodes,
@@ -37,52 +44,102 @@ double GridStep<D, T>::sum_partials(int which) const {
   return sum;
 }
 
+/// Nodes without mass count nothing: folded ghosts have a velocity.
 template <int D, class T>
-double GridStep<D, T>::kinetic_energy(bool of_momenta) {
+double GridStep<D, T>::kinetic_energy() {
   for_each_block([&](int field, std::uint32_t first, double* partial) {
-    for (std::uint32_t node = first; node < first + block_nodes; ++node) {
-      const Q value = motion_at(field, node);
-      const double mass = value[3];
-      double square = 0;
-      for (int c = 0; c < D; ++c) square += static_cast<double>(value[c]) * value[c];
-      if (mass > 0) partial[0] += 0.5 * (of_momenta ? square / mass : square * mass);
+    const Q* const nodes = &motion_at(field, first);
+    Wide squares{};
+    for (int k = 0; k < block_nodes; ++k) {
+      const Wide v = widen(nodes[k]);
+      squares += (v[3] > 0 ? v[3] : 0.0) * (v * v);
     }
+    partial[0] = 0.5 * sum_of_components(squares);
   });
   return sum_partials(0);
 }
 
+/// Of the momenta on the nodes that folding changes.
 template <int D, class T>
-void GridStep<D, T>::divide_by_mass() {
-  for_each_block([&](int field, std::uint32_t first, double*) {
+double GridStep<D, T>::kinetic_energy_of_edges() {
+  double sum = 0;
+  for (int field = 0; field < grid_.fields(); ++field)
+    for (const std::uint32_t node : grid_.edge_nodes()) {
+      const Wide momentum = widen(motion_at(field, node));
+      if (momentum[3] > 0) sum += 0.5 * sum_of_components(momentum * momentum) / momentum[3];
+    }
+  return sum;
+}
+
+/// Momenta to velocities, also into velocity_before where that is kept; returns their energy where that is asked for.
+template <int D, class T>
+double GridStep<D, T>::divide_by_mass(bool keeps_before, bool accounted) {
+  for_each_block([&](int field, std::uint32_t first, double* partial) {
     Q* const nodes = &motion_at(field, first);
+    Mask heavy{};
     for (int k = 0; k < block_nodes; ++k) {
       const T mass = nodes[k][3];
       const Q mass4 = mass - Q{};
-      Q velocity = mass > 0 ? nodes[k] / mass4 : Q{};
+      const Mask has_mass = mass4 > 0;
+      heavy |= has_mass;
+      Q velocity = has_mass ? nodes[k] / mass4 : Q{};
       velocity[3] = mass;
       nodes[k] = velocity;
     }
+    if (keeps_before) std::memcpy(&grid_.quad(velocity_before, field, first), nodes, block_nodes * sizeof(Q));
+    if (!accounted || !heavy[3]) return;
+    Wide squares{};
+    for (int k = 0; k < block_nodes; ++k) {  // no velocity where there is no mass
+      const Wide v = widen(nodes[k]);
+      squares += v[3] * (v * v);
+    }
+    partial[0] = 0.5 * sum_of_components(squares);
   });
+  return accounted ? sum_partials(0) : 0.0;
 }
 
 template <int D, class T>
 void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
-  const bool accounted = ledger_on() && !remap;
+  const bool accounted = ledger_on() && !remap, keeps_before = !remap && grid_.has(velocity_before);
   fold_images(remap, step);
-  const double raw = accounted ? kinetic_energy(true) : 0.0;
-  if (accounted) ledger_.scatter += raw - particle_kinetic_energy_;
+  const double edges_raw = accounted ? kinetic_energy_of_edges() : 0.0;
   fold_walls(remap, step);
-  if (accounted) ledger_.boundary += kinetic_energy(true) - raw;
-
-  divide_by_mass();
+  const double folded = accounted ? kinetic_energy_of_edges() - edges_raw : 0.0;
+  const double energy = divide_by_mass(keeps_before, accounted);
+  if (accounted) {
+    ledger_.scatter += energy - folded - particle_kinetic_energy_;
+    ledger_.boundary += folded;
+  }
   const Account account = accounted ? Account::change_of_energy : Account::nothing;
   impose(step.time, account);
   if (scene_.plan.contact) {
     resolve_contact(step, remap ? Recorded::remap : Recorded::before_forces);
     impose(step.time, account);
   }
-  if (!remap && grid_.has(velocity_before)) copy_velocity(motion, velocity_before);
+  if (keeps_before) copy_constrained_velocity();
   fill_ghosts(step.time, false);
+}
+
+/// Marks the slots where a condition or contact may change a velocity.
+template <int D, class T>
+void GridStep<D, T>::find_constrained_slots() {
+  constrained_.assign(grid_.slots(), 0);
+  for (const FaceNodes& face : grid_.faces())
+    for (const std::uint32_t node : face.wall) constrained_[node / block_nodes] = 1;
+  for (const BoxNodes& box : grid_.boxes())
+    for (const std::uint32_t node : box.nodes) constrained_[node / block_nodes] = 1;
+  if (!scene_.plan.contact) return;
+  for (const std::uint32_t slot : grid_.shared_slots()) constrained_[slot] = 1;
+}
+
+/// What conditions and contact have changed since divide_by_mass, into velocity_before.
+template <int D, class T>
+void GridStep<D, T>::copy_constrained_velocity() {
+  find_constrained_slots();
+  for_each_block([&](int field, std::uint32_t first, double*) {
+    if (constrained_[first / block_nodes])
+      std::memcpy(&grid_.quad(velocity_before, field, first), &motion_at(field, first), block_nodes * sizeof(Q));
+  });
 }
 
 /// What separates a folded weight from the folded mass's weight, before the forces.
@@ -120,59 +177,84 @@ void GridStep<D, T>::account_gravity_corrections(double dt) {
     }
 }
 
-/// Work of every impulse between v- and v+ at their mean. What the forces do not explain is the reaction of a condition
-/// on held components and of contact on the others.
+/// Work of every impulse between v- and v+ at their mean, and the energy of v+. With `held`, bits of the block's nodes,
+/// what the forces do not explain is the reaction of a condition on held components and of contact on the others.
+/// Without mass there is no velocity, before or after.
 template <int D, class T>
-void GridStep<D, T>::account_for_node(int field, std::uint32_t node, double dt, double* partial) {
-  const Q v = motion_at(field, node), before = grid_.quad(velocity_before, field, node);
-  const double mass = v[3];
-  if (!(mass > 0)) return;
-  const std::uint8_t held = held_[std::size_t(field) * grid_.nodes() + node];
-  for (int c = 0; c < D; ++c) {
-    const double f = grid_.quad(force, field, node)[c];
-    const double body = grid_.has(body_force) ? grid_.quad(body_force, field, node)[c] : T(0);
-    const double weight = mass * gravity_[c];
-    const double mean = 0.5 * (static_cast<double>(before[c]) + v[c]);
-    partial[0] += dt * f * mean;
-    partial[1] += dt * body * mean;
-    partial[2] += dt * weight * mean;
-    const double reaction = mass * (static_cast<double>(v[c]) - before[c]) - dt * (f + body + weight);
-    if (held & (1u << c))
-      partial[3] += reaction * mean;
-    else if (scene_.plan.contact)
-      partial[4] += reaction * mean;
+void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt, const std::uint8_t* held,
+                                       double* partial) {
+  const Q *const after = &motion_at(field, first), *const before = &grid_.quad(velocity_before, field, first),
+                 *const forces = &grid_.quad(force, field, first);
+  const Q* const bodies = grid_.has(body_force) ? &grid_.quad(body_force, field, first) : nullptr;
+  const Wide gravity = widen(gravity_);
+  Wide internal{}, external{}, momentum{}, squares{}, contact{};
+  for (int k = 0; k < block_nodes; ++k) {
+    const Wide v = widen(after[k]), old = widen(before[k]), f = widen(forces[k]), mean = 0.5 * (old + v);
+    const Wide body = bodies ? widen(bodies[k]) : Wide{};
+    const double mass = v[3];
+    internal += f * mean;
+    external += body * mean;
+    momentum += mass * mean;
+    squares += mass * (v * v);
+    if (!held || (held[k] == 0 && !scene_.plan.contact)) continue;
+    const Wide work = (mass * (v - old) - dt * (f + body + mass * gravity)) * mean;
+    if (held[k] == 0)
+      contact += work;
+    else
+      for (int c = 0; c < D; ++c) partial[held[k] & (1u << c) ? at_conditions : at_contact] += work[c];
   }
+  partial[of_internal_force] += dt * sum_of_components(internal);
+  partial[of_body_force] += dt * sum_of_components(external);
+  partial[of_gravity] += dt * sum_of_components(momentum * gravity);
+  if (scene_.plan.contact) partial[at_contact] += sum_of_components(contact);
+  partial[of_motion] += 0.5 * sum_of_components(squares);
 }
 
+/// After conditions and contact: the blocks that accelerate has left to them, and the sums of all.
 template <int D, class T>
 void GridStep<D, T>::account_for_impulses(double dt) {
-  for_each_block([&](int field, std::uint32_t first, double* partial) {
-    for (int k = 0; k < block_nodes; ++k) account_for_node(field, first + k, dt, partial);
+  visit_blocks([&](int field, std::uint32_t first, double* partial) {
+    if (constrained_[first / block_nodes])
+      account_for_block(field, first, dt, held_.data() + std::size_t(field) * grid_.nodes() + first, partial);
   });
-  ledger_.internal_force += sum_partials(0);
-  ledger_.body_force += sum_partials(1);
-  ledger_.gravity += sum_partials(2);
-  ledger_.boundary += sum_partials(3);
-  ledger_.contact += sum_partials(4);
+  ledger_.internal_force += sum_partials(of_internal_force);
+  ledger_.body_force += sum_partials(of_body_force);
+  ledger_.gravity += sum_partials(of_gravity);
+  ledger_.boundary += sum_partials(at_conditions);
+  if (scene_.plan.contact) ledger_.contact += sum_partials(at_contact);
+  kinetic_energy_after_ = sum_partials(of_motion);
   account_gravity_corrections(dt);
 }
 
+/// Accounts for the blocks that neither condition nor contact concerns while they are in the cache.
 template <int D, class T>
 void GridStep<D, T>::accelerate(double dt) {
   const T step = static_cast<T>(dt);
-  for_each_block([&](int field, std::uint32_t first, double*) {
+  if (ledger_on()) {
+    find_constrained_slots();
+    held_.resize(std::size_t(grid_.fields()) * grid_.nodes());
+  }
+  for_each_block([&](int field, std::uint32_t first, double* partial) {
     Q* const nodes = &motion_at(field, first);
     const Q* const f = grid_.has(force) ? &grid_.quad(force, field, first) : nullptr;
     const Q* const body = grid_.has(body_force) ? &grid_.quad(body_force, field, first) : nullptr;
+    Mask heavy{};
     for (int k = 0; k < block_nodes; ++k) {
       const T mass = nodes[k][3];
+      const Mask has_mass = mass - Q{} > 0;
+      heavy |= has_mass;
       Q total{};
       if (f) total += f[k];
       if (body) total += body[k];
-      Q velocity = mass > 0 ? nodes[k] + step * (total / mass + gravity_) : Q{};
+      Q velocity = has_mass ? nodes[k] + step * (total / mass + gravity_) : Q{};
       velocity[3] = mass;
       nodes[k] = velocity;
     }
+    if (!ledger_on()) return;
+    if (constrained_[first / block_nodes])
+      std::memset(held_.data() + std::size_t(field) * grid_.nodes() + first, 0, block_nodes);
+    else if (heavy[3])
+      account_for_block(field, first, dt, nullptr, partial);
   });
 }
 
@@ -192,16 +274,12 @@ void GridStep<D, T>::apply_forces(const StepInfo& step) {
   add_gravity_corrections(step.dt);
   accelerate(step.dt);
   const Account account = ledger_on() ? Account::mark : Account::nothing;
-  if (ledger_on()) held_.assign(std::size_t(grid_.fields()) * grid_.nodes(), 0);
   impose(end, account);
   if (scene_.plan.contact) {
     resolve_contact(step, Recorded::after_forces);
     impose(end, account);
   }
-  if (ledger_on()) {
-    account_for_impulses(step.dt);
-    kinetic_energy_after_ = kinetic_energy(false);
-  }
+  if (ledger_on()) account_for_impulses(step.dt);
   if (scene_.plan.velocity_increment) subtract_velocity_before();
   fill_ghosts(end, scene_.plan.velocity_increment);
 }

@@ -34,6 +34,8 @@ class GridStep {
 
  private:
   using Q = Quad<T>;
+  using Mask = decltype(Q{} > Q{});
+  using Wide = Quad<double>;  ///< sums of the ledger
   /// What imposing a condition leaves for the ledger: its change of energy at once, or a mark for account_for_impulses.
   enum class Account { nothing, change_of_energy, mark };
 
@@ -43,8 +45,13 @@ class GridStep {
   Q wall_velocity(const std::optional<VectorExpression>& velocity, const Vector3& x, double time) const;
   template <class Visit>
   void for_each_block(Visit&& visit);
+  template <class Visit>
+  void visit_blocks(Visit&& visit);
   double sum_partials(int which) const;
-  double kinetic_energy(bool of_momenta);
+  static Wide widen(Q quad) { return __builtin_convertvector(quad, Wide); }
+  static double sum_of_components(Wide quad) { return quad[0] + quad[1] + (D == 3 ? quad[2] : 0.0); }
+  double kinetic_energy();
+  double kinetic_energy_of_edges();
 
   void fold_images(bool remap, const StepInfo& step);
   void fold_walls(bool remap, const StepInfo& step);
@@ -56,12 +63,14 @@ class GridStep {
 
   void impose(double time, Account account);
   void hold(int field, std::uint32_t node, int component, T velocity, Account account);
-  void divide_by_mass();
+  double divide_by_mass(bool keeps_before, bool accounted);
+  void find_constrained_slots();
+  void copy_constrained_velocity();
   void add_gravity_corrections(double dt);
   void account_gravity_corrections(double dt);
   void accelerate(double dt);
   void account_for_impulses(double dt);
-  void account_for_node(int field, std::uint32_t node, double dt, double* partial);
+  void account_for_block(int field, std::uint32_t first, double dt, const std::uint8_t* held, double* partial);
   void subtract_velocity_before();
 
   static double time_of(const Pass& pass, const StepInfo& step) {
@@ -90,9 +99,12 @@ class GridStep {
   Q gravity_{};
   bool has_gravity_ = false;
   std::vector<EdgeModel> edges_;
-  static constexpr int partial_count = 5;
-  std::vector<double> partials_;    ///< partial_count a block of a field, summed in order
-  std::vector<std::uint8_t> held_;  ///< [field][node] bit per component that a condition gives now; the ledger's
+  /// Partial sums of account_for_block.
+  enum Partial { of_internal_force, of_body_force, of_gravity, at_conditions, at_contact, of_motion, partial_count };
+  std::vector<double> partials_;           ///< partial_count a block of a field, summed in order
+  std::vector<std::uint8_t> constrained_;  ///< [slot] find_constrained_slots
+  std::vector<std::uint8_t> held_;  ///< [field][node] bit per component that a condition gives now, of constrained
+                                    ///< slots; the ledger's
   std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
   double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0, kinetic_energy_unfiltered_ = 0;
 };

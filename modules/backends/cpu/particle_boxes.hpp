@@ -78,8 +78,8 @@ bool ParticleStep<D, T, Components>::place_boxes(const Chunk& chunk, Work& work)
 
 /// The lists of those of one batch's particles that have no box; returns the next free entry.
 template <int D, class T, class Components>
-int ParticleStep<D, T, Components>::evaluate_lists_between_boxes(const Chunk& chunk, Work& work, int first_lane, int entry,
-                                                     bool gradients) {
+int ParticleStep<D, T, Components>::evaluate_lists_between_boxes(const Chunk& chunk, Work& work, int first_lane,
+                                                                 int entry, bool gradients) {
   constexpr int lanes = ListWork<D, T>::lanes;
   ListWork<D, T>& lists = work.lists;
   const std::int32_t* const width = work.boxes.width + first_lane;

@@ -12,8 +12,8 @@
 namespace mpm::cpu {
 
 template <int D, class T, class Components>
-ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std::vector<Particles<D, T>>& particles,
-                                 std::vector<Body<D, T>> bodies)
+ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid,
+                                             std::vector<Particles<D, T>>& particles, std::vector<Body<D, T>> bodies)
     : scene_(scene),
       grid_(grid),
       particles_(particles),
@@ -107,8 +107,8 @@ void ParticleStep<D, T, Components>::for_each_chunk_of(int body, Block<D>& block
 }
 
 template <int D, class T, class Components>
-typename ParticleStep<D, T, Components>::States ParticleStep<D, T, Components>::states(const std::vector<StateField>& fields,
-                                                               const Chunk& chunk) const {
+typename ParticleStep<D, T, Components>::States ParticleStep<D, T, Components>::states(
+    const std::vector<StateField>& fields, const Chunk& chunk) const {
   States result{};
   for (std::size_t f = 0; f < fields.size(); ++f) result.fields[f] = chunk.at(fields[f].first);
   return result;
@@ -287,32 +287,84 @@ void ParticleStep<D, T, Components>::note_inverted(const Chunk& chunk) {
                                          : "inverted: its volume ratio J is not positive");
 }
 
-/// With the affine part where the transfer carries it; offsets and moments are those of the last shape evaluation.
+/// Sum over a chunk's particles, in doubles, of what value_of(first particle) gives for a pack of them. Lanes beyond
+/// the last particle may hold anything.
+template <class T, class Value>
+inline double sum_of_particles(int count, Value&& value_of) {
+  using L = Lanes<T>;
+  using Sums = typename Lanes<double>::Vector;
+  Sums sums{};
+  const auto add = [&](typename L::Vector values) {
+    if constexpr (sizeof(T) == sizeof(double)) {
+      sums += values;
+    } else if constexpr (L::width == 16) {
+      sums += __builtin_convertvector(__builtin_shufflevector(values, values, 0, 1, 2, 3, 4, 5, 6, 7), Sums);
+      sums += __builtin_convertvector(__builtin_shufflevector(values, values, 8, 9, 10, 11, 12, 13, 14, 15), Sums);
+    } else {
+      sums += __builtin_convertvector(__builtin_shufflevector(values, values, 0, 1, 2, 3), Sums);
+      sums += __builtin_convertvector(__builtin_shufflevector(values, values, 4, 5, 6, 7), Sums);
+    }
+  };
+  int p = 0;
+  for (; p + L::width <= count; p += L::width) add(value_of(p).v);
+  if (p < count) {
+    typename L::Mask lane{};
+    for (int i = 0; i < L::width; ++i) lane[i] = p + i;
+    add(lane < count ? value_of(p).v : typename L::Vector{});
+  }
+  double sum = 0;
+  for (int i = 0; i < Lanes<double>::width; ++i) sum += sums[i];
+  return sum;
+}
+
+/// With the affine part where the transfer carries it; offsets and moments are those of the last shape evaluation. What
+/// a particle's own energy loses to rounding in T is the same where it is gathered and where it is scattered next.
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const Work& work) const {
-  double sum = 0;
-  const T* const v = chunk.at(Particles<D, T>::velocity);
-  for (int c = 0; c < D; ++c)
-    for (int p = 0; p < chunk.count; ++p) sum += static_cast<double>(v[c * chunk_size + p]) * v[c * chunk_size + p];
-  if (scene_.has(MPM_AFFINE_CARRIES_ENERGY)) {
-    const T* const C = chunk.at(chunk.particles.transfer_state[0].first);
-    const double square = scene_.domain.cell_size * scene_.domain.cell_size;
-    const bool of_particle = scene_.moment_of_particle;
-    for (int c = 0; c < D; ++c)
+  using L = Lanes<T>;
+  const auto load = [](const T* first, int component, int p) { return L::load(first + component * chunk_size + p); };
+  const auto energy_with = [&](auto&& affine_squares) {
+    const T* const v = chunk.at(Particles<D, T>::velocity);
+    const double sum = sum_of_particles<T>(chunk.count, [&](int p) {
+      L squares = affine_squares(p);
+      for (int c = 0; c < D; ++c) squares = squares + load(v, c, p) * load(v, c, p);
+      return squares;
+    });
+    return 0.5 * chunk.body.mass * sum;
+  };
+  if (!scene_.has(MPM_AFFINE_CARRIES_ENERGY)) return energy_with([](int) { return L(T(0)); });
+
+  const T* const C = chunk.at(chunk.particles.transfer_state[0].first);
+  const T cell_area = static_cast<T>(scene_.domain.cell_size * scene_.domain.cell_size);
+  const auto column = [&](int a, int p) {  // squares of one column of C
+    L squares = load(C, a, p) * load(C, a, p);
+    for (int c = 1; c < D; ++c) squares = squares + load(C, c * D + a, p) * load(C, c * D + a, p);
+    return squares;
+  };
+  const auto energy_of_columns = [&](T factor, auto&& moment) {
+    return energy_with([&](int p) {
+      L squares = moment(0, p) * column(0, p);
+      for (int a = 1; a < D; ++a) squares = squares + moment(a, p) * column(a, p);
+      return factor * squares;
+    });
+  };
+  if (scene_.moment_of_particle && scene_.list)  // tr(C D C^T) of a full matrix
+    return energy_with([&](int p) {
+      L squares(T(0));
       for (int a = 0; a < D; ++a)
-        for (int p = 0; p < chunk.count; ++p) {
-          const double value = C[(c * D + a) * chunk_size + p];
-          if (of_particle && scene_.list)  // tr(C D C^T) of a full matrix
-            for (int b = 0; b < D; ++b)
-              sum +=
-                  square * work.second_moment[(a * D + b) * chunk_size + p] * value * C[(c * D + b) * chunk_size + p];
-          else if (of_particle)
-            sum += square * work.second_moment[a * chunk_size + p] * value * value;
-          else
-            sum += scene_.second_moment(work.offset[a * chunk_size + p]) * value * value;
-        }
-  }
-  return 0.5 * chunk.body.mass * sum;
+        for (int b = 0; b < D; ++b)
+          for (int c = 0; c < D; ++c)
+            squares = squares + load(work.second_moment, a * D + b, p) * load(C, c * D + a, p) * load(C, c * D + b, p);
+      return cell_area * squares;
+    });
+  if (scene_.moment_of_particle)
+    return energy_of_columns(cell_area, [&](int a, int p) { return load(work.second_moment, a, p); });
+  if (scene_.moment_is_gradient)
+    return energy_of_columns(cell_area, [&](int a, int p) {
+      const L offset = load(work.offset, a, p);
+      return offset * (T(1) - offset);
+    });
+  return energy_of_columns(static_cast<T>(scene_.second_moment(0)), [](int, int) { return T(1); });
 }
 
 }  // namespace mpm::cpu

@@ -43,7 +43,8 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
 }
 
 template <int D, class T, class Components>
-typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::gather(const Pass& pass, const StepInfo& step) {
+typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::gather(const Pass& pass,
+                                                                                         const StepInfo& step) {
   std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
@@ -61,11 +62,14 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
 /// Every block gathers from the grid and scatters what follows into next_motion and the forces, which nothing reads any
 /// more. The tile's margin may not suffice for the new positions: particles then only gather.
 template <int D, class T, class Components>
-typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::gather_scatter(const Pass& pass, const StepInfo& step,
-                                                                      const StepInfo& next) {
+typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::gather_scatter(const Pass& pass,
+                                                                                              const StepInfo& step,
+                                                                                              const StepInfo& next) {
   const std::vector<Channel> channels = scattered_channels(pass, next_motion);
   std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
   abandoned_ = false;
+  const bool energy_moves = scene_.plan.ledger && scene_.has(MPM_AFFINE_CARRIES_ENERGY) &&
+                            (scene_.moment_of_particle || scene_.moment_is_gradient);
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
       load_velocities(body, block, work);
@@ -76,8 +80,9 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
         drift = std::max(drift, gather_one(pass, step, chunk, work));
         if (abandoned_) return;
         if (!scatter_chunk(pass, next, chunk, work, next_motion, evaluates_for_scatter(pass))) abandoned_ = true;
-        if (scene_.plan.ledger) block.scattered_energy += kinetic_energy(chunk, work);
+        if (energy_moves) block.scattered_energy += kinetic_energy(chunk, work);
       });
+      if (!energy_moves) block.scattered_energy = block.kinetic_energy;  // of the same velocities and moments
       end_reach(block, work);
       for (const Channel c : channels)
         if (abandoned_)
@@ -96,8 +101,8 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
 /// What one chunk takes from the tiles; returns the largest displacement in cells. Called by the gather and by the
 /// fused pass, which must agree to the last bit, so it is compiled once.
 template <int D, class T, class Components>
-[[gnu::noinline]] double ParticleStep<D, T, Components>::gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk,
-                                                        Work& work) {
+[[gnu::noinline]] double ParticleStep<D, T, Components>::gather_one(const Pass& pass, const StepInfo& step,
+                                                                    const Chunk& chunk, Work& work) {
   Wanted wanted;
   wanted.transfer = true, wanted.strain = pass.strain;
   gather_chunk(chunk, work, wanted);
@@ -159,8 +164,8 @@ double ParticleStep<D, T, Components>::strain(const StepInfo& step) {
 
 /// Sums over the nodes of a chunk's particles, as quads: in the tile, or on the grid for lists that leave it.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment,
-                                        bool gradient) {
+void ParticleStep<D, T, Components>::gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel,
+                                                    bool moment, bool gradient) {
   if (!scene_.list) {
     const Stencils<T> stencils{work.first, work.weight, work.gradient, chunk.ahead(true)};
     return kernels_.gather[moment][gradient](tile, stencils, work.quads, chunk.end);
@@ -315,9 +320,8 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   update_material(chunk, request);
   if (chunk.particles.domain >= 0) advance_domain(chunk, velocity_gradient, dt);
   if (!dissipation) return;
-  double sum = 0;
-  for (int p = 0; p < chunk.count; ++p) sum += work.scalar[p];
-  chunk.block.dissipated += chunk.body.volume * sum;
+  const auto energies = [&](int p) { return Lanes<T>::load(work.scalar + p); };
+  chunk.block.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
 }
 
 /// domain <- (I + dt L) domain. USF goes on with the old weights until its gather.

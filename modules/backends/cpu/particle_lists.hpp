@@ -10,7 +10,8 @@
 namespace mpm::cpu {
 
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::evaluate_list_batch(const Chunk& chunk, Work& work, int first_lane, bool gradients) const {
+void ParticleStep<D, T, Components>::evaluate_list_batch(const Chunk& chunk, Work& work, int first_lane,
+                                                         bool gradients) const {
   ListWork<D, T>& lists = work.lists;
   constexpr int lanes = ListWork<D, T>::lanes;
   const auto copy = [&](const T* from, int components, T* to) {
@@ -61,7 +62,8 @@ void ParticleStep<D, T, Components>::evaluate_lists(const Chunk& chunk, Work& wo
 
 /// Appends one particle's list to those of the chunk; returns the next free entry.
 template <int D, class T, class Components>
-int ParticleStep<D, T, Components>::keep_list(const Chunk& chunk, Work& work, int first_lane, int lane, int entry, bool gradients) {
+int ParticleStep<D, T, Components>::keep_list(const Chunk& chunk, Work& work, int first_lane, int lane, int entry,
+                                              bool gradients) {
   ListWork<D, T>& lists = work.lists;
   constexpr int lanes = ListWork<D, T>::lanes;
   const int p = first_lane + lane, count = lists.count[lane];

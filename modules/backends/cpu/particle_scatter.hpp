@@ -71,8 +71,9 @@ void ParticleStep<D, T, Components>::want_of_material(const Pass& pass, Work& wo
 /// wanted of the material is at hand. Called by the scatter
 /// and by the fused pass, which must agree to the last bit, so it is compiled once.
 template <int D, class T, class Components>
-[[gnu::noinline]] bool ParticleStep<D, T, Components>::scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk,
-                                                         Work& work, Channel momentum, bool evaluated) {
+[[gnu::noinline]] bool ParticleStep<D, T, Components>::scatter_chunk(const Pass& pass, const StepInfo& step,
+                                                                     const Chunk& chunk, Work& work, Channel momentum,
+                                                                     bool evaluated) {
   const bool separate = grid_.has(force), merged = pass.force && !separate;
   const bool by_gradient = pass.force && !scene_.stress_by_affine;
   evaluate_shape(chunk, work, by_gradient || pass.contact_fields);
@@ -174,8 +175,8 @@ void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last
   }
 }
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient,
-                                           int count) {
+void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last, bool constant, bool affine,
+                                                       bool gradient, int count) {
   if (affine)
     return gradient ? pack_coefficients<true, true>(work, last, constant, count)
                     : pack_coefficients<true, false>(work, last, constant, count);
@@ -185,8 +186,8 @@ void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last
 
 /// Scatters the coefficients of a chunk into the tile of a channel.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last, bool constant,
-                                     bool affine, bool gradient) {
+void ParticleStep<D, T, Components>::add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last,
+                                                 bool constant, bool affine, bool gradient) {
   pack_coefficients(work, last, constant, affine, gradient, chunk.end);
   work.clock.lap(Phase::coefficients);
   if (scene_.list) {
@@ -212,7 +213,8 @@ void ParticleStep<D, T, Components>::scatter_stress(const Chunk& chunk, Work& wo
 
 /// m b(x, X, t): into its own channel, or times dt onto the momentum's b.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt) {
+void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged,
+                                                        double dt) {
   const VectorExpression& expression = *scene_.experiment.body_force;
   if (!merged) std::fill(work.b, work.b + D * chunk_size, T(0));
   const double factor = chunk.body.mass * (merged ? dt : 1.0);

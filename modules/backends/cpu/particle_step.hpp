@@ -122,8 +122,8 @@ struct Body {
   std::vector<double> initial_position;  ///< m, by index of seeding, particle-major
 };
 
-/// Plugins as they were loaded, called through their tables. Another type with these members may call functors that were
-/// compiled in (apps/bench, which measures the price of the tables).
+/// Plugins as they were loaded, called through their tables. Another type with these members may call functors that
+/// were compiled in (apps/bench, which measures the price of the tables).
 template <int D, class T>
 struct LoadedComponents {
   static void evaluate_shape(const Scene<D, T>& scene, const mpm_shape_batch& batch) {
