@@ -170,16 +170,16 @@ TEST_CASE("a single elastic body with MLS holds nothing that it does not use") {
   CHECK(fields(half) == Words{"mass and momentum 16", "mass and momentum of the next step 16"});
 }
 
-TEST_CASE("the backend holds what the plan says, twice for the sort, and the padding of its last batches") {
+TEST_CASE("the backend holds what the plan says, and the padding of its last batches") {
   Json scene = without_ledger(ball());
   scene["grid"]["cell_size"] = 0.005;
   const double bytes = held(scene);
-  CHECK(bytes >= 200);
-  CHECK(bytes < 220);
+  CHECK(bytes >= 100);
+  CHECK(bytes < 126);
   scene["precision"] = "float";
   const double half = held(scene);
-  CHECK(half >= 104);
-  CHECK(half < 115);
+  CHECK(half >= 52);
+  CHECK(half < 68);
 }
 
 TEST_CASE("what is switched on adds its own rows, and each names the line that asked for it") {

@@ -73,7 +73,7 @@ TEST_CASE("mpm_micro measures the kernels of the host") {
   if (!built()) return;
   CHECK(count_of("tile/scatter/") == 4 * 12);  // dimensions and precisions; widths, affine, gradient
   CHECK(count_of("tile/gather/") == 4 * 12);
-  CHECK(count_of("quads/") == 8);
+  CHECK(count_of("quads/") == 4);
   CHECK(count_of("function/nearest_rotation/") == 4);
   CHECK(count_of("function/polar_rotation/") == 4);
   CHECK(count_of("function/log/") == 2);

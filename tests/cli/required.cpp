@@ -47,13 +47,13 @@ TEST_CASE("the base scene asks plugins for nothing but what MLS needs") {
   const RequiredRow base = counted("base");
   const long gathers = base.calls.at("transfer: gather");
   CHECK(gathers == 2 * base.steps);  // each body fills one chunk
-  // Shape twice (gather, and scatter of the next step at the new position), material twice (strain; stress).
+  // Shape twice (gather, and scatter of the next step at the new position), material once (strain, and the stress that follows from it).
   CHECK(base.calls == Calls{{"shape", 2 * gathers},
                             {"transfer: scatter", gathers},
                             {"transfer: scatter, affine", gathers},
                             {"transfer: gather", gathers},
                             {"transfer: gather, affine", gathers},
-                            {"material", 2 * gathers},
+                            {"material", gathers},
                             {"material: advance", gathers},
                             {"material: stress", gathers}});
   CHECK(base.bytes_per_particle == 4 * (3 + 3 + 9 + 9 + 1));
@@ -123,7 +123,8 @@ TEST_CASE("a choice adds what it declares and nothing else") {
                         {"transfer: scatter", 3 * gathers},
                         {"transfer: scatter, affine", 3 * gathers},
                         {"transfer: gather", 3 * gathers},
-                        {"transfer: gather, affine", 3 * gathers}});
+                        {"transfer: gather, affine", 3 * gathers},
+                        {"material", gathers}});  // nothing is fused: stress and strain are apart
   CHECK(filter.calls.at("filter") % 3 == 0);
   CHECK(filter.bytes_per_particle == base.bytes_per_particle);
   CHECK(filter.bytes_per_node == base.bytes_per_node + quad);  // two more, and no second motion: nothing is fused
@@ -132,7 +133,7 @@ TEST_CASE("a choice adds what it declares and nothing else") {
   const RequiredRow contact = counted("+ contact");
   Calls pairs = more_than_base(contact);
   CHECK(pairs.erase("contact") == 1);  // batches of nodes, before and after the forces
-  CHECK(pairs == Calls{{"shape: gradients", gathers}, {"material: volume ratio", gathers}});
+  CHECK(pairs == Calls{{"shape: gradients", gathers}, {"material", gathers}, {"material: volume ratio", gathers}});
   CHECK(contact.bytes_per_particle == base.bytes_per_particle);
   CHECK(contact.bytes_per_node == 2 * 4 * quad);
 }
