@@ -369,7 +369,8 @@ class Planner {
     const double rim = 12 * D * std::pow(occupied_cells, (D - 1.0) / D) * (D == 2 ? 8 : 4) / 4 + 4096;
     const double nodes =
         experiment_.backend == "reference" ? domain_nodes : std::min(domain_nodes * 2, 1.3 * occupied_cells + rim);
-    if (experiment_.backend == "cpu") particle_bytes += particle_bytes * 3 / 10;  // of batches that are not full, and of those that a sort is moving
+    if (experiment_.backend == "cpu")
+      particle_bytes += particle_bytes * 3 / 10;  // of batches that are not full, and of those that a sort is moving
     // The reference backend keeps stencils and all moments of a particle, and every value of a node side by side.
     const bool list = shape_.form == MPM_NODE_LIST;
     const double stencil = (list ? shape_.capacity[D - 2] * (100.0 + 12 * D) : std::pow(shape_.width, D) * 88.0) + 700;

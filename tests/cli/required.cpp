@@ -47,7 +47,8 @@ TEST_CASE("the base scene asks plugins for nothing but what MLS needs") {
   const RequiredRow base = counted("base");
   const long gathers = base.calls.at("transfer: gather");
   CHECK(gathers == 2 * base.steps);  // each body fills one chunk
-  // Shape twice (gather, and scatter of the next step at the new position), material once (strain, and the stress that follows from it).
+  // Shape twice (gather, and scatter of the next step at the new position), material once (strain, and the stress that
+  // follows from it).
   CHECK(base.calls == Calls{{"shape", 2 * gathers},
                             {"transfer: scatter", gathers},
                             {"transfer: scatter, affine", gathers},

@@ -205,13 +205,18 @@ void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step
 /// Gather, and the scatter of the step that follows, into a second motion channel: that of this step is still read.
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepInfo& step) {
+  scattered_ = false;
+  if (particle_step_->must_sort_soon()) {
+    Pass gathers = pass;
+    gathers.kind = PassKind::gather;
+    return gather(gathers, step);
+  }
   for (const Channel c : {next_motion, force, body_force})
     if (grid_.has(c)) grid_.clear(c);
   StepInfo next{step.next_dt, step.time + step.dt, step.step + 1};
   // The very time that the simulation gives the next step: fixed steps are multiplied, not summed.
   const auto& fixed = scene_.experiment.solver.time_step;
   if (fixed && step.dt == *fixed) next.time = static_cast<double>(step.step + 1) * step.dt;
-  scattered_ = false;
   const auto fused = particle_step_->gather_scatter(pass, step, next);
   account_for_gather(fused.gathered);
   scattered_ = fused.scattered;

@@ -31,7 +31,8 @@ void ParticleStep<D, T, Components>::flush(int body, const Block<D>& block, Work
 
 template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::sum_gathered() {
-  drift_ += *std::max_element(drift_of_thread_.begin(), drift_of_thread_.end());
+  last_drift_ = *std::max_element(drift_of_thread_.begin(), drift_of_thread_.end());
+  drift_ += last_drift_;
   throw_failure();
   Gathered sum;
   for (const auto& particles : particles_)

@@ -171,6 +171,8 @@ class ParticleStep {
   void set_drift(double drift) { drift_ = drift; }
   /// Tiles have a margin of one cell for particles that moved since they were sorted.
   bool must_sort() const { return drift_ > 0.99; }
+  /// Whether they must be sorted after one more move like the last: what is scattered at once would be scattered again.
+  bool must_sort_soon() const { return drift_ + last_drift_ > 0.99; }
   /// Widens the range of grid blocks that the lists of each block of particles may reach; whether any grew.
   bool widen_active_blocks();
   /// n*D*D, m^2, of every particle at its position, by index of seeding.
@@ -281,7 +283,7 @@ class ParticleStep {
   ListKernels<D, T> list_kernels_;
   std::vector<std::unique_ptr<Work>> work_;
   std::vector<double> drift_of_thread_;
-  double drift_ = 0;
+  double drift_ = 0, last_drift_ = 0;  ///< since the last sort, and of the last move, in cells
   Failure failure_;
   std::exception_ptr exception_;
   std::mutex mutex_;
