@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "kernel/math.hpp"
 
@@ -144,6 +145,12 @@ struct Lanes {
   }
 };
 
+/// Lane i of the result is lane source(i) of a, or of b beyond a's last.
+template <auto source, class Vector, std::size_t... lane>
+inline __attribute__((always_inline)) Vector shuffled(Vector a, Vector b, std::index_sequence<lane...>) {
+  return __builtin_shufflevector(a, b, source(static_cast<int>(lane))...);
+}
+
 /// Whether any lane of a comparison holds.
 template <class T>
 inline bool any_lane(typename Lanes<T>::Mask mask) {
@@ -158,11 +165,12 @@ inline bool any_lane(typename Lanes<T>::Mask mask) {
 
 template <class T>
 inline T largest_lane(Lanes<T> lanes) {
-  for (int step = Lanes<T>::width / 2; step > 0; step /= 2) {
-    typename Lanes<T>::Mask partner{};
-    for (int i = 0; i < Lanes<T>::width; ++i) partner[i] = i ^ step;
-    lanes = max(lanes, Lanes<T>(__builtin_shuffle(lanes.v, partner)));
-  }
+  constexpr auto all = std::make_index_sequence<Lanes<T>::width>();
+  const auto with = [&](auto partner) { lanes = max(lanes, Lanes<T>(shuffled<partner>(lanes.v, lanes.v, all))); };
+  if constexpr (Lanes<T>::width > 8) with([](int lane) { return lane ^ 8; });
+  if constexpr (Lanes<T>::width > 4) with([](int lane) { return lane ^ 4; });
+  with([](int lane) { return lane ^ 2; });
+  with([](int lane) { return lane ^ 1; });
   return lanes[0];
 }
 

@@ -73,13 +73,11 @@ inline __attribute__((always_inline)) void part_quads(QuadLanes<T> lanes, T* fir
 /// Lanes p0 p1 p2 p3 of each block of four, out of a (0 to 3) or b (4 to 7).
 template <int p0, int p1, int p2, int p3, class T>
 inline __attribute__((always_inline)) QuadLanes<T> pick(QuadLanes<T> a, QuadLanes<T> b) {
-  constexpr int width = Lanes<T>::width, from[4] = {p0, p1, p2, p3};
-  typename Lanes<T>::Mask index{};
-  for (int lane = 0; lane < width; ++lane) {
-    const int source = from[lane % 4];
-    index[lane] = source < 4 ? lane / 4 * 4 + source : width + lane / 4 * 4 + source - 4;
-  }
-  return __builtin_shuffle(a, b, index);
+  constexpr auto source = [](int lane) {
+    const int from[4] = {p0, p1, p2, p3}, place = lane / 4 * 4 + from[lane % 4] % 4;
+    return from[lane % 4] < 4 ? place : Lanes<T>::width + place;
+  };
+  return shuffled<source>(a, b, std::make_index_sequence<Lanes<T>::width>());
 }
 
 /// Quads of a pack of particles <-> their components: the transpose of every block of 4 x 4.

@@ -87,30 +87,39 @@ MPM_ROW_INLINE Row<T, K> repeated(const T* quad) {
   return row;
 }
 
+/// A quad in the first lanes of a register, anything in the others. No more than the quad is loaded: it was stored just
+/// so, and a longer load would wait for that store.
+template <class T, int K>
+MPM_ROW_INLINE typename Row<T, K>::Vector load_quad(const T* quad) {
+  using R = Row<T, K>;
+  using Vector = typename R::Vector;
+  const Quad<T> q = *reinterpret_cast<const Quad<T>*>(quad);
+#if defined(__AVX512F__)
+  if constexpr (R::vector_bytes == 64 && sizeof(T) == 4) return (Vector)_mm512_castps128_ps512((__m128)q);
+  if constexpr (R::vector_bytes == 64 && sizeof(T) == 8) return (Vector)_mm512_castpd256_pd512((__m256d)q);
+#endif
+  if constexpr (R::nodes_a_vector == 1) return (Vector)q;
+  if constexpr (R::nodes_a_vector == 2)
+    return (Vector)__builtin_shufflevector(q, q, 0, 1, 2, 3, 0, 1, 2, 3);
+  else
+    return Vector{};
+}
+
 /// Scalar k of a quad on all of node k.
 template <class T, int K>
 MPM_ROW_INLINE Row<T, K> spread(const T* quad) {
   using R = Row<T, K>;
-  // No more than the quad is loaded: it was stored just so, and a longer load would wait for that store.
-  const Quad<T> q = *reinterpret_cast<const Quad<T>*>(quad);
-  typename R::Vector loaded;
-#if defined(__AVX512F__)
-  if constexpr (R::vector_bytes == 64 && sizeof(T) == 4)
-    loaded = (typename R::Vector)_mm512_castps128_ps512((__m128)q);
-  else if constexpr (R::vector_bytes == 64)
-    loaded = (typename R::Vector)_mm512_castpd256_pd512((__m256d)q);
-  else
-#endif
-      if constexpr (R::nodes_a_vector == 1)
-    loaded = (typename R::Vector)q;
-  else
-    loaded = (typename R::Vector)__builtin_shufflevector(q, q, 0, 1, 2, 3, 0, 1, 2, 3);
+  const typename R::Vector loaded = load_quad<T, K>(quad);
   R row;
-  for (int i = 0; i < R::vectors; ++i) {
-    typename R::Index index{};
-    for (int lane = 0; lane < R::width; ++lane) index[lane] = i * R::nodes_a_vector + lane / 4;
-    row.v[i] = __builtin_shuffle(loaded, index);
-  }
+  const auto all = std::make_index_sequence<R::width>();
+  const auto part = [&]<int i>(std::integral_constant<int, i>) {
+    if constexpr (i < R::vectors)
+      row.v[i] = shuffled<[](int lane) { return i * R::nodes_a_vector + lane / 4; }>(loaded, loaded, all);
+  };
+  part(std::integral_constant<int, 0>());
+  part(std::integral_constant<int, 1>());
+  part(std::integral_constant<int, 2>());
+  part(std::integral_constant<int, 3>());
   return row;
 }
 
@@ -120,7 +129,10 @@ MPM_ROW_INLINE Row<T, K> node_numbers() {
   using R = Row<T, K>;
   R row;
   for (int i = 0; i < R::vectors; ++i)
-    for (int lane = 0; lane < R::width; ++lane) row.v[i][lane] = static_cast<T>(i * R::nodes_a_vector + lane / 4);
+    for (int lane = 0; lane < R::width; ++lane) {
+      const int node = i * R::nodes_a_vector + lane / 4;
+      row.v[i][lane] = static_cast<T>(node);
+    }
   return row;
 }
 

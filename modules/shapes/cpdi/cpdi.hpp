@@ -320,8 +320,10 @@ struct Cpdi {
     for (int a = 0; a < D; ++a) {
       S sum(real<S>(0));
       MPM_UNROLL
-      for (int c = 0; c < 1 << D; ++c) MPM_UNROLL
-      for (int k = 1; k < W; ++k) sum = sum + rows.tent[a][c][k - 1] * rows.tent[a][c][k];
+      for (int c = 0; c < 1 << D; ++c) {
+        MPM_UNROLL
+        for (int k = 1; k < W; ++k) sum = sum + rows.tent[a][c][k - 1] * rows.tent[a][c][k];
+      }
       moment(a, a) = moment(a, a) + sum * real<S>(1.0 / (1 << D));
     }
     return moment;
