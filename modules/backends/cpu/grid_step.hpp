@@ -91,13 +91,12 @@ class GridStep {
   ContactFieldNode contact_node(int field, std::uint32_t node);
   static int rows_per_cell(const Experiment& experiment, int field);
 
+  Q gravity_{};
   const Scene<D, T>& scene_;
   Grid<D, T>& grid_;
   Ledger& ledger_;
   ContactRecord& record_;
   FilterRecord& filter_;
-  Q gravity_{};
-  bool has_gravity_ = false;
   std::vector<EdgeModel> edges_;
   /// Partial sums of account_for_block.
   enum Partial { of_internal_force, of_body_force, of_gravity, at_conditions, at_contact, of_motion, partial_count };
@@ -107,6 +106,7 @@ class GridStep {
                                     ///< slots; the ledger's
   std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
   double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0, kinetic_energy_unfiltered_ = 0;
+  bool has_gravity_ = false;
 };
 
 }  // namespace mpm::cpu
