@@ -41,7 +41,9 @@ struct Wanted {
 
 template <class F>
 const typename F::Parameters& parameters_of(const Component& component) {
-  return *reinterpret_cast<const typename F::Parameters*>(component.parameters.data());
+  using P = typename F::Parameters;
+  static const P none{};  // a functor without parameters has no block to point at
+  return component.parameters.empty() ? none : *reinterpret_cast<const P*>(component.parameters.data());
 }
 
 /// Evaluations of one stencil, and nodes of a list.
