@@ -268,12 +268,27 @@ std::optional<Flops> flops_per_particle(const Experiment& experiment, const Plan
                 : flops_of<3, double>(experiment, plan, nodes_per_particle, deforming);
 }
 
+namespace {
+
+/// Scalars of velocity and the transfer's state, where these go from gather to scatter without being stored.
+double passed_scalars(const Experiment& experiment, const Plan& plan) {
+  const Plugin& transfer = *experiment.transfer.plugin;
+  if (!plan.fused || !(transfer.transfer().traits & MPM_REPLACES_MOTION)) return 0;
+  double scalars = experiment.dimension;
+  for (const mpm_state& field : transfer.state())
+    scalars += state_components(static_cast<mpm_state_shape>(field.shape), experiment.dimension);
+  return scalars;
+}
+
+}  // namespace
+
 double bytes_per_particle(const Experiment& experiment, const Plan& plan, double nodes_per_particle) {
-  const double state = static_cast<double>(plan.bytes_per_particle(0)) - 4;  // the identity is read by sorts alone
+  const double scalar = experiment.precision == Precision::single ? 4 : 8;
+  // The identity is read by sorts alone.
+  const double state = static_cast<double>(plan.bytes_per_particle(0)) - 4 - scalar * passed_scalars(experiment, plan);
   const double loops =
       plan.filter ? experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data()) : 0;
   const double visits = 2 + (plan.fused ? 0 : 1);  // read and written; read again where the scatter is apart
-  const double scalar = experiment.precision == Precision::single ? 4 : 8;
   return visits * state + loops * experiment.dimension * scalar +
          2 * static_cast<double>(plan.bytes_per_node()) * nodes_per_particle;
 }

@@ -22,7 +22,7 @@ std::optional<Flops> flops_per_particle(const Experiment& experiment, const Plan
 
 /// Bytes that must cross memory in a step, a particle: its state is read and written once in a fused pass (read once
 /// more where gather and scatter are apart, and once a pass of a filter's loop), and each channel of its nodes
-/// likewise.
+/// likewise. Of steps that nobody looks at: what a fused pass need not store (MPM_REPLACES_MOTION) is not counted.
 double bytes_per_particle(const Experiment& experiment, const Plan& plan, double nodes_per_particle);
 
 /// Rows of the tensor-product scatter and gather, `width` nodes an axis (modules/backends/cpu/tile.hpp).

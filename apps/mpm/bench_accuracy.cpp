@@ -32,6 +32,7 @@ double rms_of(const std::vector<double>& values) {
 BodyState state_after(BenchContext& context, const BenchScene& scene, const std::string& motion,
                       const std::string& precision, int steps) {
   Product product(context.suite.experiment(scene, motion, {{"/precision", precision}}), context.threads);
+  product.simulation().observe_when({});  // velocities are compared too
   for (int s = 0; s < steps; ++s) product.step();
   return product.simulation().backend().body_state(0);
 }

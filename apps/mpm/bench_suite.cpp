@@ -80,7 +80,9 @@ Experiment BenchSuite::experiment(const BenchScene& scene, const std::string& mo
 Product::Product(Experiment experiment, int threads)
     : Product(std::move(experiment), threads, backend_factory(threads)) {}
 Product::Product(Experiment experiment, int threads, const BackendFactory& factory)
-    : experiment_(std::move(experiment)), threads_(threads), simulation_(experiment_, factory) {}
+    : experiment_(std::move(experiment)), threads_(threads), simulation_(experiment_, factory) {
+  simulation_.observe_when([](double, long) { return false; });
+}
 
 double Product::nodes_per_particle() const {
   const double bytes_per_node = static_cast<double>(simulation_.plan().bytes_per_node());

@@ -63,7 +63,8 @@ class BenchSuite {
   std::vector<BenchOption> options_;
 };
 
-/// The sandbox on one experiment.
+/// The sandbox on one experiment, as between two outputs of a run: no step is observed unless the simulation is told
+/// so.
 class Product final : public bench::Contender {
  public:
   Product(Experiment experiment, int threads);

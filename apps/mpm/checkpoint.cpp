@@ -229,12 +229,16 @@ Checkpoints::Checkpoints(const Simulation& simulation, Recorder& recorder, const
       last_(Clock::now()),
       last_step_(earlier_.resumed_from_steps.empty() ? -1 : earlier_.resumed_from_steps.back()) {}
 
-void Checkpoints::write_if_due() {
+bool Checkpoints::due(long steps) const {
   const OutputSpecification& output = simulation_.experiment().output;
-  const bool by_steps = output.checkpoint_steps > 0 && simulation_.steps() % output.checkpoint_steps == 0;
-  const bool by_clock = output.checkpoint_seconds > 0 &&
-                        std::chrono::duration<double>(Clock::now() - last_).count() >= output.checkpoint_seconds;
-  if ((by_steps || by_clock) && !simulation_.finished()) write();
+  const bool by_steps = output.checkpoint_steps > 0 && steps % output.checkpoint_steps == 0;
+  return by_steps || (output.checkpoint_seconds > 0 &&
+                      std::chrono::duration<double>(Clock::now() - last_).count() >= output.checkpoint_seconds);
+}
+
+void Checkpoints::write_if_due() {
+  // By the clock it may fall due after a step that was not to be observed: the next one then is.
+  if (due(simulation_.steps()) && simulation_.observed() && !simulation_.finished()) write();
 }
 
 bool Checkpoints::write() {

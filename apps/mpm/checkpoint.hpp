@@ -41,6 +41,8 @@ class Checkpoints {
 
   /// After each step: writes when so many steps or seconds have passed as the experiment says.
   void write_if_due();
+  /// Whether that would write after so many steps.
+  bool due(long steps) const;
   /// Now, unless this step has one. False when it could not be written; a warning says why.
   bool write();
   /// The run has ended and needs none any more.

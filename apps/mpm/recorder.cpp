@@ -117,20 +117,24 @@ void Recorder::restore(ArchiveReader& archive) {
   start();
 }
 
-bool Recorder::frame_due() const {
+bool Recorder::frame_due(double time) const {
   const OutputSpecification& output = simulation_.experiment().output;
   if (output.frames <= 0) return false;
   // Frame k belongs to the first step at or after k / (frames - 1) of the end time: the step is never cut to fit.
   const double next = output.frames == 1 ? 0.0
                                          : simulation_.experiment().solver.end_time *
                                                static_cast<double>(frames_taken_) / (output.frames - 1);
-  return frames_taken_ < static_cast<std::size_t>(output.frames) && simulation_.time() >= next * (1 - 1e-12);
+  return frames_taken_ < static_cast<std::size_t>(output.frames) && time >= next * (1 - 1e-12);
+}
+
+bool Recorder::due(double time, long steps) const {
+  return steps % simulation_.experiment().output.metrics_every == 0 || frame_due(time);
 }
 
 void Recorder::record(bool last) {
   const bool row_due = simulation_.steps() % simulation_.experiment().output.metrics_every == 0 || last;
   if (row_due && last_row_ != simulation_.steps()) record_row();
-  if (frame_due()) record_frame();
+  if (frame_due(simulation_.time())) record_frame();
 }
 
 void Recorder::record_row() {

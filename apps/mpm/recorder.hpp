@@ -33,6 +33,8 @@ class Recorder {
   /// Records what is due after a step (or before the first). `last`: the run ends here, whatever is due. Recording the
   /// same step again does nothing, or what failed the first time (output::MachineError).
   void record(bool last = false);
+  /// Whether that is anything at `time` (s) after so many steps.
+  bool due(double time, long steps) const;
   /// Draws the frames, with one colour scale over all of them, and the film when asked for.
   void draw_frames();
 
@@ -51,7 +53,7 @@ class Recorder {
     std::vector<float> positions, values;
     std::vector<float> domain_axes;  ///< of 2-D particles that carry their domain: four a particle
   };
-  bool frame_due() const;
+  bool frame_due(double time) const;
   void record_row();
   void record_frame();
   void write_vtk(std::size_t frame);

@@ -193,7 +193,9 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints&
                         const RunOptions& options) {
   Progress progress(simulation);
   recorder.record();
-  while (!simulation.finished() && !stop_requested) {
+  simulation.observe_when(
+      [&](double time, long steps) { return stop_requested || recorder.due(time, steps) || checkpoints.due(steps); });
+  while (!simulation.finished() && !(stop_requested && simulation.observed())) {
     try {
       simulation.step();
     } catch (const RunFailure& failure) {

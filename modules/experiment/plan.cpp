@@ -101,7 +101,7 @@ class Planner {
         plan_.filter && (filters_before_forces() || experiment_.solver.stress_update == StressUpdate::first);
     decide_fusion();
     plan_.separate_force = plan_.velocity_increment || plan_.contact || plan_.ledger ||
-                           experiment_.body_force.has_value() || any_separating_wall() ||
+                           experiment_.body_force.has_value() || any_face(ConditionType::separate) ||
                            experiment_.solver.stress_update == StressUpdate::first ||
                            (plan_.filter && filters_before_forces());
     plan_.kept_advection = experiment_.solver.stress_update == StressUpdate::modified_last;
@@ -115,9 +115,7 @@ class Planner {
   void decide_fusion() {
     const PassChoice choice = experiment_.solver.passes;
     std::string& why = plan_.why_not_fused;
-    if (choice == PassChoice::separate)
-      why = "/solver/passes \"separate\"";
-    else if (experiment_.solver.stress_update != StressUpdate::last)
+    if (experiment_.solver.stress_update != StressUpdate::last)
       why = "/solver/stress_update: only USL strains and scatters at the same particle state";
     else if (plan_.filter)
       why = experiment_.filter->pointer + ": the filter reads the grid between gather and scatter";
@@ -127,14 +125,18 @@ class Planner {
       why = experiment_.shape.pointer + ": a list of nodes takes two passes";
     else if (experiment_.backend != "cpu")
       why = "/backend \"" + experiment_.backend + "\" keeps passes apart, as the textbook does";
+    // Separate passes sort where fused ones do, so that both add up in the same order. Images of a periodic axis may be
+    // missing on the other side until a scatter has found them.
+    plan_.sorts_before_gather = why.empty() && !any_face(ConditionType::periodic);
+    if (choice == PassChoice::separate) why = "/solver/passes \"separate\"";
     plan_.fused = why.empty();
     if (choice == PassChoice::fused && !plan_.fused) refuse("/solver/passes", "passes cannot be fused: " + why);
   }
 
-  bool any_separating_wall() const {
+  bool any_face(ConditionType type) const {
     for (int axis = 0; axis < experiment_.dimension; ++axis)
       for (const FaceCondition& face : experiment_.faces[axis])
-        if (face.type == ConditionType::separate) return true;
+        if (face.type == type) return true;
     return false;
   }
 
@@ -314,6 +316,9 @@ class Planner {
       if (last) pass(PassKind::strain, order + " \"last\", by the unfiltered velocity");
       filtered_only(PassKind::add_correction, named(*experiment_.filter) + ": what the particles take");
     }
+    if (plan_.sorts_before_gather)
+      pass(PassKind::sort, "/backend \"cpu\": particles that are about to leave the nodes around their block")
+          .keeps_grid = true;
     Pass& gather = pass(plan_.fused ? PassKind::gather_scatter : PassKind::gather, transfer);
     gather.strain = last && !particles_only;
     gather.move = experiment_.solver.stress_update != StressUpdate::modified_last;

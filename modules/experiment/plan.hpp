@@ -30,7 +30,7 @@ struct PlannedChannel {
 
 enum class PassKind {
   estimate_time_step,    ///< wave and particle speeds -> dt, the limiting particle named
-  sort,                  ///< particles into blocks of cells, when they have moved
+  sort,                  ///< particles into blocks of cells, when they have moved (or will have, see keeps_grid)
   reset_grid,            ///< all channels to zero
   scatter,               ///< particles -> grid, what `momentum`, `force`, `contact_fields` say
   momentum_to_velocity,  ///< fold walls and periodic images, v- = p / m, contact before the forces
@@ -66,6 +66,7 @@ struct Pass {
   bool remap = false;             ///< scatter and momentum_to_velocity of MUSL: updated velocities, no forces follow
   bool before_forces = false;     ///< filter passes: they act on v-, before the forces
   bool restores = false;          ///< begin_filter: restore_velocity follows
+  bool keeps_grid = false;        ///< sort: the grid holds this step's velocities, which the gather reads next
   bool keeps_correction = false;  ///< restore_velocity: what the filter added is kept for add_correction
   int every_steps = 1;
   PassCondition condition = PassCondition::always;
@@ -95,6 +96,7 @@ struct Plan {
   bool strained_domain = false;           ///< and its strained copy: a later pass of the step needs the old weights
   bool second_moment = false;             ///< the shape's second moment is evaluated a particle
   bool velocity_gradient_moment = false;  ///< the transfer gathers L
+  bool sorts_before_gather = false;       ///< velocities that the gather replaces need not travel with the particles
   bool fused = false;                     ///< a pass is gather_scatter
   std::string why_not_fused;              ///< empty when fused
 

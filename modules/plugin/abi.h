@@ -150,7 +150,10 @@ enum mpm_transfer_trait {
   MPM_STRESS_BY_AFFINE = 8,       /* stress enters as -V0 tau D^-1 in A, not as -V0 tau in S (MLS-MPM) */
   MPM_STRAIN_BY_AFFINE = 16,      /* the velocity gradient that strains the particle is the affine moment itself */
   MPM_AFFINE_CARRIES_ENERGY = 32, /* the kinetic energy of state 0 (affine velocity) is m/2 tr(C D C^T) */
-  MPM_GATHERS_GRADIENT = 64       /* reads velocity_gradient */
+  MPM_GATHERS_GRADIENT = 64,      /* reads velocity_gradient */
+  /* Velocity and state after a gather follow from what is gathered alone (neither is read), and the particle moves with
+   * the gathered velocity: the host need not keep them from one step to the next. */
+  MPM_REPLACES_MOTION = 1024
 };
 typedef struct mpm_scatter_batch {
   uint32_t count, stride, dimension, reserved;

@@ -427,6 +427,31 @@ void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample
   findings.require("inputs_untouched [" + v.name() + "]", inputs, "mass, velocity, moments; state by scatter" + where);
 }
 
+/// The promise of MPM_REPLACES_MOTION.
+void check_replaced_motion(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
+                           const Particles& particles, const std::string& where, Findings& findings) {
+  if (!(traits_of(plugin) & MPM_REPLACES_MOTION)) return;
+  TransferBatch one = loaded(plugin, v, particles, full), other = one;
+  Random random(12);
+  for (int lane = 0; lane < full; ++lane) {
+    for (int c = 0; c < v.dimension; ++c) other.particle_velocity.set(c, lane, random.uniform(-1, 1));
+    for (Array& field : other.state)
+      for (int c = 0; c < field.components(); ++c) field.set(c, lane, random.uniform(-1, 1));
+  }
+  for (TransferBatch* batch : {&one, &other}) {
+    set_random_moments(*batch, Random(11));
+    batch->gather(plugin, parameters, 0x1p-8);
+  }
+  bool moves_with_gathered = true;
+  for (int lane = 0; lane < full; ++lane)
+    for (int c = 0; c < v.dimension; ++c) moves_with_gathered &= one.advection(c, lane) == one.gathered(c, lane);
+  findings.require("replaces_motion [" + v.name() + "]",
+                   one.particle_velocity == other.particle_velocity && one.state == other.state,
+                   "velocity and state after a gather do not depend on those before" + where);
+  findings.require("moves_with_gathered_velocity [" + v.name() + "]", moves_with_gathered,
+                   "advection velocity is the gathered one" + where);
+}
+
 }  // namespace
 
 void check_transfer(const Plugin& plugin, Findings& findings) {
@@ -443,6 +468,8 @@ void check_transfer(const Plugin& plugin, Findings& findings) {
       check_affine(plugin, v, parameters, particles, random, where, findings);
       findings.running("batches", v, where);
       check_batches(plugin, v, parameters, particles, where, findings);
+      findings.running("replaced motion", v, where);
+      check_replaced_motion(plugin, v, parameters, particles, where, findings);
       if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
       findings.running("agreement with scalar", v, where);
       const Variant oracle{MPM_SCALAR_DOUBLE, v.dimension};

@@ -74,6 +74,7 @@ struct SeededBody {
 struct BodyState {
   std::vector<double> position, velocity, initial_position;                   ///< m, m/s, m (empty unless planned)
   std::map<std::string, std::vector<double>> transfer_state, material_state;  ///< by declared field name
+  // velocity and transfer_state may be empty after a step that is not observed
   double volume = 0, mass = 0;
   std::vector<double> domain;  ///< n*dimension*dimension, m, columns are semi-sides; empty unless Plan::particle_domain
   /// n*dimension*dimension, m^2: second moment of the shape at the particle's position; empty unless
@@ -139,6 +140,7 @@ struct StepInfo {
   long step = 0;
   bool filtered = false;  ///< the filter acts in this step: gathered velocities replace those of the particles
   double next_dt = 0;     ///< of the following step, for gather_scatter
+  bool observed = true;   ///< the state of the particles is read after this step
 };
 
 class Backend {

@@ -115,6 +115,7 @@ void Simulation::step() {
     time_ = end_time();
     info.next_dt = next_time_step();
     const bool fuse = may_fuse();
+    observed_ = info.observed = !fuse || !wanted_ || wanted_(time_, steps_ + 1);
     time_ = begin;
     if (fuse) {
       execute(pass, info);
@@ -132,6 +133,7 @@ void Simulation::step() {
 }
 
 void Simulation::save(ArchiveWriter& archive) const {
+  if (!observed_) throw std::logic_error("the last step was not to be observed: its state cannot be saved");
   for (const auto& [tag, value] : {std::pair{"time", &time_}, std::pair{"dt", &dt_}, std::pair{"estimate", &estimate_},
                                    std::pair{"smallest", &smallest_}, std::pair{"largest", &largest_},
                                    std::pair{"speed", &estimated_speed_}, std::pair{"filter_clock", &filter_clock_}})
@@ -153,6 +155,7 @@ void Simulation::restore(ArchiveReader& archive) {
   if (particles != particles_) throw ArchiveError("it holds another number of particles");
   backend_->restore(archive);
   scattered_ = false;
+  observed_ = true;
 }
 
 std::string Simulation::limiting_particle() const {

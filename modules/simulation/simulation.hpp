@@ -24,6 +24,11 @@ class Simulation {
   /// One time step: dt is chosen here, every pass of the plan is executed. Throws RunFailure; the state is then the
   /// broken one.
   void step();
+  /// Says which steps will be looked at: wanted(time in s, number of steps) of the end of each. After another one,
+  /// velocities and the transfer's state need not be there (see `observed`); results are the same. All are, at first.
+  void observe_when(std::function<bool(double, long)> wanted) { wanted_ = std::move(wanted); }
+  /// Whether the state after the last step may be read and saved.
+  bool observed() const { return observed_; }
 
   double time() const { return time_; }          ///< s
   double last_time_step() const { return dt_; }  ///< s
@@ -63,7 +68,9 @@ class Simulation {
   double estimated_speed_ = 0;  ///< m/s, of the last estimate
   double filter_clock_ = 0;     ///< time or cells since the filter last acted
   bool chosen_ = false;         ///< dt of this step is known
-  bool scattered_ = false;      ///< the grid holds this step's scatter already
+  std::function<bool(double, long)> wanted_;
+  bool observed_ = true;
+  bool scattered_ = false;  ///< the grid holds this step's scatter already
   long steps_ = 0;
   std::size_t particles_ = 0;
   std::map<std::string, double> seconds_;

@@ -329,6 +329,19 @@ struct TransposesAffine : Apic {
   }
 };
 
+struct KeepsMotionSecretly : Flip {
+  static constexpr unsigned traits = Flip::traits | MPM_REPLACES_MOTION;
+};
+
+struct MovesTwiceAsFar : Apic {
+  template <int D, class S>
+  static void gather(const Parameters& p, const GatheredMoments<D, S>& moments, scalar_of<S> dt, Vec<D, S>& v,
+                     State<D, S>& state, Vec<D, S>& advection) {
+    Apic::gather(p, moments, dt, v, state, advection);
+    for (int i = 0; i < D; ++i) advection[i] = advection[i] + advection[i];
+  }
+};
+
 struct ForgetsVelocity : Flip {
   template <int D, class S>
   MPM_HD static void gather(const Parameters&, const GatheredMoments<D, S>& moments, scalar_of<S>, Vec<D, S>& v,
@@ -488,6 +501,8 @@ TEST_CASE("wrong transfers are caught") {
   check_caught(wrong_transfer<TransposesAffine>, "angular_momentum");
   check_caught(wrong_transfer<TransposesAffine>, "round_trip_velocity");
   check_caught(wrong_transfer<ForgetsVelocity>, "zero_increment_keeps_velocity");
+  check_caught(wrong_transfer<KeepsMotionSecretly>, "replaces_motion");
+  check_caught(wrong_transfer<MovesTwiceAsFar>, "moves_with_gathered_velocity");
 }
 
 TEST_CASE("wrong contact laws are caught") {

@@ -11,17 +11,27 @@ namespace {
 struct Outcome {
   std::vector<double> results;
   long scattered = 0, refused = 0;  ///< steps whose end left the next grid, or not
+  long passed = 0;                  ///< steps after which particles had no velocity of their own
+  double farthest = 0;              ///< way of a particle along an axis, cells
 };
 
+/// `observed`: every so many steps, and the last.
 Outcome run(const std::string& text, std::vector<std::string> overrides, const std::string& passes, int threads,
-            long steps) {
+            long steps, long observed = 1) {
   overrides.push_back(set("/solver/passes", passes));
   CpuRun run(text, overrides, threads);
+  run.simulation.observe_when([=](double, long step) { return step % observed == 0 || step == steps; });
   Outcome outcome;
+  const std::vector<double> start = run.simulation.backend().body_state(0).position;
   for (long k = 0; k < steps; ++k) {
     run.simulation.step();
     ++(run.simulation.backend().scattered() ? outcome.scattered : outcome.refused);
+    const bool passed = run.simulation.backend().body_state(0).velocity.empty();
+    CHECK_FALSE((passed && run.simulation.observed()));
+    outcome.passed += passed;
   }
+  const std::vector<double> end = run.simulation.backend().body_state(0).position;
+  outcome.farthest = difference(start, end, run.experiment.grid.cell_size);
   outcome.results = all_results(run.simulation);
   return outcome;
 }
@@ -34,7 +44,12 @@ void check_fused(const std::string& text, const std::vector<std::string>& overri
     const Outcome fused = run(text, overrides, "fused", threads, steps);
     CHECK(different(separate.results, fused.results) == 0);
     CHECK(fused.scattered > steps / 2);
-    CHECK(fused.refused > 0);  // the scene sorts
+    CHECK(fused.farthest > 1);  // the scene sorts
+    const Outcome unobserved = run(text, overrides, "fused", threads, steps, 9);
+    CHECK(different(separate.results, unobserved.results) == 0);
+    const Experiment experiment = experiment_from(text, overrides);
+    const bool may_pass = experiment.transfer.plugin->transfer().traits & MPM_REPLACES_MOTION;
+    CHECK((unobserved.passed > 0) == may_pass);
   }
 }
 

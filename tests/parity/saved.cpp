@@ -74,6 +74,20 @@ TEST_CASE("a restored run of stretched lists goes on bit for bit", "[parity]") {
   for (const std::string precision : {"double", "float"}) check_saved(text, {set("/precision", precision)});
 }
 
+TEST_CASE("the state after a step that nobody looks at cannot be saved", "[parity]") {
+  Mix mix;
+  mix.transfer = R"({"type": "mls"})";
+  CpuRun run(mix.text(), {}, 1);
+  run.simulation.observe_when([](double, long step) { return step != 2; });
+  run.steps(2);
+  CHECK_FALSE(run.simulation.observed());
+  ArchiveWriter archive;
+  CHECK_THROWS_AS(run.simulation.save(archive), std::logic_error);
+  run.steps(1);
+  CHECK(run.simulation.observed());
+  CHECK_NOTHROW(run.simulation.save(archive));
+}
+
 TEST_CASE("a state of another kind is refused", "[parity]") {
   Mix mix;
   CpuRun written(mix.text(), {set("/precision", "double")}, 1);

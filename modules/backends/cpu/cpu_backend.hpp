@@ -35,9 +35,11 @@ class CpuBackend final : public Backend {
   std::vector<T> first_values(const Particles<D, T>& particles, const Component& material, T half_size) const;
   void sort_all();
   void sort_when_moved();
+  void sort_between();
   void scatter(const Pass& pass, const StepInfo& step);
   void gather(const Pass& pass, const StepInfo& step);
   void gather_scatter(const Pass& pass, const StepInfo& step);
+  bool may_pass_motion(const StepInfo& step) const;
   void account_for_gather(const typename Step::Gathered& gathered);
   std::string signature() const;
   void restore_particles(ArchiveReader& archive, Particles<D, T>& particles);
@@ -52,7 +54,8 @@ class CpuBackend final : public Backend {
   ContactRecord contact_;
   FilterRecord filter_;
   TimeStepLimit limit_;
-  bool scattered_ = false;  ///< the last gather_scatter left the next step's grid
+  bool scattered_ = false;   ///< the last gather_scatter left the next step's grid
+  bool motion_kept_ = true;  ///< particles have the velocity and the transfer's state of the last step
   std::unique_ptr<Step> particle_step_;
   std::unique_ptr<GridStep<D, T>> grid_step_;
 };
@@ -132,6 +135,7 @@ void CpuBackend<D, T, Components>::lay_out_state(Particles<D, T>& particles, con
       throw std::invalid_argument("the cpu backend takes at most 16 state fields a plugin");
   };
   add(particles.transfer_state, *scene_.experiment.transfer.plugin);
+  particles.motion_components = particles.components - Particles<D, T>::velocity;
   add(particles.material_state, *material.plugin);
   if (scene_.plan.kept_advection) {
     particles.advection = particles.components;
@@ -171,7 +175,8 @@ std::vector<T> CpuBackend<D, T, Components>::first_values(const Particles<D, T>&
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::sort_all() {
   bool changed = !grid_built_ || scene_.list;
-  for (auto& particles : particles_) changed |= sort_particles(particles, sort_space_, scene_);
+  if (!motion_kept_) throw std::logic_error("particles must be sorted, but their velocities were not kept");
+  for (auto& particles : particles_) changed |= sort_particles(particles, sort_space_, scene_, true);
   if (scene_.list) {
     for (auto& particles : particles_)
       for (Block<D>& block : particles.blocks) {
@@ -190,6 +195,19 @@ void CpuBackend<D, T, Components>::sort_when_moved() {
   if (particle_step_->must_sort()) sort_all();
 }
 
+/// Between scatter and gather, when the move that follows would, by the last one, lead out of the tiles. What the
+/// gather replaces does not travel.
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::sort_between() {
+  if (particle_step_->drift() == 0 || !particle_step_->must_sort_soon()) return;
+  bool changed = false;
+  motion_kept_ = !scene_.has(MPM_REPLACES_MOTION);
+  for (auto& particles : particles_) changed |= sort_particles(particles, sort_space_, scene_, motion_kept_);
+  if (changed) grid_.rebuild(particles_, field_of_body_, {motion, velocity_before});
+  particle_step_->reach_own_cells();
+  particle_step_->set_drift(0);
+}
+
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
   if (pass.remap) grid_.clear(motion);
@@ -199,7 +217,16 @@ void CpuBackend<D, T, Components>::scatter(const Pass& pass, const StepInfo& ste
 
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step) {
+  motion_kept_ = true;
   account_for_gather(particle_step_->gather(pass, step));
+}
+
+/// Whether a fused pass may leave velocities and the transfer's state behind: nobody reads them, and no particle can
+/// leave its tile, since none moves faster than the fastest node.
+template <int D, class T, class Components>
+bool CpuBackend<D, T, Components>::may_pass_motion(const StepInfo& step) const {
+  return !step.observed && scene_.has(MPM_REPLACES_MOTION) &&
+         particle_step_->stays_within_tiles(step.dt * grid_.largest_component(motion) / scene_.domain.cell_size);
 }
 
 /// Gather, and the scatter of the step that follows, into a second motion channel: that of this step is still read.
@@ -217,7 +244,10 @@ void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepIn
   // The very time that the simulation gives the next step: fixed steps are multiplied, not summed.
   const auto& fixed = scene_.experiment.solver.time_step;
   if (fixed && step.dt == *fixed) next.time = static_cast<double>(step.step + 1) * step.dt;
-  const auto fused = particle_step_->gather_scatter(pass, step, next);
+  StepInfo now = step;
+  now.observed = !may_pass_motion(step);
+  motion_kept_ = now.observed;
+  const auto fused = particle_step_->gather_scatter(pass, now, next);
   account_for_gather(fused.gathered);
   scattered_ = fused.scattered;
   if (!scattered_) return;
@@ -239,7 +269,7 @@ void CpuBackend<D, T, Components>::execute(const Pass& pass, const StepInfo& ste
       limit_ = particle_step_->time_step_limit();
       return;
     case PassKind::sort:
-      return sort_when_moved();
+      return pass.keeps_grid ? sort_between() : sort_when_moved();
     case PassKind::reset_grid:
       sort_when_moved();  // a plan without a sort pass
       if (scene_.list && particle_step_->widen_active_blocks()) grid_.rebuild(particles_, field_of_body_);
@@ -310,9 +340,9 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
           scene_.domain.lower[a] +
           scene_.domain.cell_size * cells_from_corner(scene_.domain, block, a, values[a * chunk_size]);
   });
-  state.velocity = copy(Particles<D, T>::velocity, D);
+  if (motion_kept_) state.velocity = copy(Particles<D, T>::velocity, D);
   for (const StateField& field : particles.transfer_state)
-    state.transfer_state[field.name] = copy(field.first, field.components);
+    if (motion_kept_) state.transfer_state[field.name] = copy(field.first, field.components);
   for (const StateField& field : particles.material_state)
     state.material_state[field.name] = copy(field.first, field.components);
   if (particles.domain >= 0) state.domain = copy(particles.domain, D * D);
@@ -332,6 +362,7 @@ template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::save(ArchiveWriter& archive) const {
   archive.put("backend", signature());
   archive.put("drift", particle_step_->drift());
+  archive.put("last_drift", particle_step_->last_drift());
   archive.put("ledger", ledger_);
   archive.put("contact", contact_);
   archive.put("filter", filter_);
@@ -365,8 +396,9 @@ void CpuBackend<D, T, Components>::restore(ArchiveReader& archive) {
   archive.get("backend", written);
   if (written != signature())
     throw ArchiveError("the state is of backend \"" + written + "\", not of \"" + signature() + "\"");
-  double drift = 0;
+  double drift = 0, last_drift = 0;
   archive.get("drift", drift);
+  archive.get("last_drift", last_drift);
   archive.get("ledger", ledger_);
   archive.get("contact", contact_);
   archive.get("filter", filter_);
@@ -376,8 +408,9 @@ void CpuBackend<D, T, Components>::restore(ArchiveReader& archive) {
   archive.get("limiting_particle", limit_.particle);
   for (Particles<D, T>& particles : particles_) restore_particles(archive, particles);
   grid_.rebuild(particles_, field_of_body_);
-  particle_step_->set_drift(drift);
+  particle_step_->set_drift(drift, last_drift);
   scattered_ = false;
+  motion_kept_ = true;
 }
 
 template <int D, class T, class Components>

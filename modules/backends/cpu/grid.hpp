@@ -69,10 +69,14 @@ class Grid {
 
   /// Active blocks are those of particles, their neighbours (and what their lists reach), and what folding needs;
   /// field_bits of a slot says which velocity fields may have mass there.
-  void rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body);
+  /// The others hold anything afterwards; `kept` channels keep their values where blocks stay, and get zeros elsewhere.
+  void rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body,
+               std::initializer_list<Channel> kept = {});
   /// Zero for what is scattered in a step.
   void clear();
   void clear(Channel c);
+  /// Of all nodes and fields, along any axis.
+  T largest_component(Channel c) const;
   void swap(Channel a, Channel b) { std::swap(data_[a], data_[b]); }
 
   /// Number of a node from its coordinates; -1 where no block is active.
@@ -90,7 +94,7 @@ class Grid {
   /// Slots where two fields or more may meet.
   const std::vector<std::uint32_t>& shared_slots() const { return shared_; }
   std::uint64_t bytes() const {
-    std::uint64_t total = 0;
+    std::uint64_t total = renumbered_.bytes();
     for (const auto& data : data_) total += data.bytes();
     return total;
   }
@@ -98,6 +102,7 @@ class Grid {
  private:
   int activate(const BlockCoordinates& at, std::uint64_t field_bits);
   void activate_mirrors();
+  void renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before);
   void list_faces();
   void number_edge_nodes();
   void list_boxes();
@@ -122,6 +127,7 @@ class Grid {
   int fields_;
   bool planned_[channel_count]{};
   AlignedArray<T> data_[channel_count];
+  AlignedArray<T> renumbered_;  ///< see renumber
   BlockTable table_;
   std::vector<BlockCoordinates> found_;
   std::vector<std::uint64_t> field_bits_;
@@ -290,7 +296,9 @@ void Grid<D, T>::list_boxes() {
 }
 
 template <int D, class T>
-void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body) {
+void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body,
+                         std::initializer_list<Channel> kept) {
+  const std::vector<BlockCoordinates> before = found_;
   table_.clear();
   found_.clear();
   field_bits_.clear();
@@ -316,16 +324,54 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
   shared_.clear();
   for (std::uint32_t slot = 0; slot < slots(); ++slot)
     if ((field_bits_[slot] & (field_bits_[slot] - 1)) != 0) shared_.push_back(slot);
+  for (const Channel c : kept)
+    if (planned_[c]) renumber(c, before);
   for (int c = 0; c < channel_count; ++c)
     if (planned_[c]) data_[c].require(std::size_t(fields_) * nodes() * 4);
   list_faces();
   list_boxes();
 }
 
+/// Brings a channel's values from the old numbers of their blocks to the new ones.
+template <int D, class T>
+void Grid<D, T>::renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before) {
+  AlignedArray<T>& before = planned_[next_motion] ? data_[next_motion] : renumbered_;  // nothing reads it meanwhile
+  std::swap(data_[channel], before);
+  data_[channel].require(std::size_t(fields_) * nodes() * 4);
+  clear(channel);
+  constexpr std::size_t scalars = block_nodes * 4;
+  const std::int64_t count = static_cast<std::int64_t>(blocks_before.size());
+#pragma omp parallel for num_threads(scene_.threads) schedule(static)
+  for (std::int64_t block = 0; block < count; ++block) {
+    const int slot = table_.find(blocks_before[block]);
+    for (int field = 0; slot >= 0 && field < fields_; ++field)
+      std::copy_n(before.data() + (std::size_t(field) * count + block) * scalars, scalars,
+                  data_[channel].data() + (std::size_t(field) * slots() + slot) * scalars);
+  }
+}
+
 template <int D, class T>
 void Grid<D, T>::clear() {
   for (const Channel c : {motion, velocity_before, force, body_force, volume_gradient, mass_position})
     if (planned_[c]) clear(c);
+}
+
+template <int D, class T>
+T Grid<D, T>::largest_component(Channel c) const {
+  using L = Lanes<T>;
+  const std::int64_t scalars = std::int64_t(fields_) * nodes() * 4;
+  T largest = 0;
+#pragma omp parallel for num_threads(scene_.threads) schedule(static) reduction(max : largest)
+  for (std::int64_t block = 0; block < scalars; block += block_nodes * 4) {
+    L of_block(T(0));
+    for (int s = 0; s < block_nodes * 4; s += L::width) {
+      const L values = L::load(data_[c].data() + block + s);
+      of_block = max(of_block, max(values, -values));
+    }
+    for (int i = 0; i < L::width; ++i)
+      if (i % 4 < D) largest = std::max(largest, of_block.v[i]);
+  }
+  return largest;
 }
 
 template <int D, class T>

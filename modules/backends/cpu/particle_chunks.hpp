@@ -23,8 +23,7 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
   drift_of_thread_.assign(scene.threads, 0.0);
   int transfer_components = 0;
   for (const Particles<D, T>& body : particles)
-    for (const StateField& field : body.transfer_state)
-      transfer_components = std::max(transfer_components, field.first + field.components - 2 * D);
+    transfer_components = std::max(transfer_components, body.motion_components - D);
   for (int thread = 0; thread < scene.threads; ++thread) {
     work_.push_back(std::make_unique<Work>());
     Work& work = *work_.back();
@@ -37,6 +36,8 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
       if (scene.evaluate_box) work.boxes.require();
       std::fill(work.offset, work.offset + D * chunk_size, T(0));  // lists count from the particle itself
     }
+    if (scene.plan.fused && scene.has(MPM_REPLACES_MOTION))
+      work.passing_motion.require(std::size_t(D + transfer_components) * chunk_size);
     if (!scene.plan.filter) continue;
     work.scratch_velocity.require(std::size_t(D) * chunk_size);
     work.scratch_state.require(std::size_t(std::max(transfer_components, 1)) * chunk_size);
@@ -97,20 +98,32 @@ void ParticleStep<D, T, Components>::fetch_nodes_of_next(int body, const Block<D
 
 template <int D, class T, class Components>
 template <class Visit>
-void ParticleStep<D, T, Components>::for_each_chunk_of(int body, Block<D>& block, Visit&& visit) {
+void ParticleStep<D, T, Components>::for_each_chunk_of(int body, Block<D>& block, Visit&& visit, T* motion) {
   Particles<D, T>& particles = particles_[body];
   for_each_chunk(block, [&](std::uint32_t i, int count) {
     const char* const next = reinterpret_cast<const char*>(particles.chunk(std::min(i + 1, particles.chunks - 1)));
     fetch_nodes_of_next(body, block, static_cast<int>(i - block.first_chunk));
-    visit(Chunk{particles, bodies_[body], block, particles.chunk(i), particles.ids(i), count, padded(count), next});
+    T* const values = particles.chunk(i);
+    T* const kept = values + Particles<D, T>::velocity * chunk_size;
+    visit(Chunk{particles, bodies_[body], block, values, motion ? motion : kept, particles.ids(i), count, padded(count),
+                next});
   });
 }
 
 template <int D, class T, class Components>
-typename ParticleStep<D, T, Components>::States ParticleStep<D, T, Components>::states(
-    const std::vector<StateField>& fields, const Chunk& chunk) const {
+typename ParticleStep<D, T, Components>::States ParticleStep<D, T, Components>::material_states(
+    const Chunk& chunk) const {
   States result{};
+  const std::vector<StateField>& fields = chunk.particles.material_state;
   for (std::size_t f = 0; f < fields.size(); ++f) result.fields[f] = chunk.at(fields[f].first);
+  return result;
+}
+template <int D, class T, class Components>
+typename ParticleStep<D, T, Components>::States ParticleStep<D, T, Components>::transfer_states(
+    const Chunk& chunk) const {
+  States result{};
+  const std::vector<StateField>& fields = chunk.particles.transfer_state;
+  for (std::size_t f = 0; f < fields.size(); ++f) result.fields[f] = chunk.motion_at(fields[f].first);
   return result;
 }
 
@@ -196,6 +209,13 @@ void ParticleStep<D, T, Components>::begin_reach(Block<D>& block, Work& work) co
   }
 }
 
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::reach_own_cells() {
+  for (auto& particles : particles_)
+    for (Block<D>& block : particles.blocks)
+      for (int axis = 0; axis < D; ++axis) block.reach.lowest[axis] = 1, block.reach.highest[axis] = block_side<D>;
+}
+
 /// After the last one; that of lists is complete already.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::end_reach(Block<D>& block, const Work& work) const {
@@ -259,7 +279,7 @@ void ParticleStep<D, T, Components>::invert_moments(const Chunk& chunk, Work& wo
 
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::update_material(const Chunk& chunk, mpm_material_batch request) {
-  States state = states(chunk.particles.material_state, chunk);
+  States state = material_states(chunk);
   request.count = static_cast<std::uint32_t>(chunk.end);
   request.stride = chunk_size;
   request.dimension = D;
@@ -271,7 +291,7 @@ void ParticleStep<D, T, Components>::update_material(const Chunk& chunk, mpm_mat
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::note_inverted(const Chunk& chunk) {
   alignas(64) T ratio[chunk_size];
-  States state = states(chunk.particles.material_state, chunk);
+  States state = material_states(chunk);
   mpm_material_batch request{};
   request.count = static_cast<std::uint32_t>(chunk.end);
   request.stride = chunk_size;
@@ -324,7 +344,7 @@ double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const 
   using L = Lanes<T>;
   const auto load = [](const T* first, int component, int p) { return L::load(first + component * chunk_size + p); };
   const auto energy_with = [&](auto&& affine_squares) {
-    const T* const v = chunk.at(Particles<D, T>::velocity);
+    const T* const v = chunk.motion;
     const double sum = sum_of_particles<T>(chunk.count, [&](int p) {
       L squares = affine_squares(p);
       for (int c = 0; c < D; ++c) squares = squares + load(v, c, p) * load(v, c, p);
@@ -334,7 +354,7 @@ double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const 
   };
   if (!scene_.has(MPM_AFFINE_CARRIES_ENERGY)) return energy_with([](int) { return L(T(0)); });
 
-  const T* const C = chunk.at(chunk.particles.transfer_state[0].first);
+  const T* const C = chunk.motion_at(chunk.particles.transfer_state[0].first);
   const T cell_area = static_cast<T>(scene_.domain.cell_size * scene_.domain.cell_size);
   const auto column = [&](int a, int p) {  // squares of one column of C
     L squares = load(C, a, p) * load(C, a, p);

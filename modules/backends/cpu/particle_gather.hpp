@@ -61,7 +61,8 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
 }
 
 /// Every block gathers from the grid and scatters what follows into next_motion and the forces, which nothing reads any
-/// more. The tile's margin may not suffice for the new positions: particles then only gather.
+/// more. The tile's margin may not suffice for the new positions: particles then only gather. Velocities and the
+/// transfer's state are kept where the step is observed; else nothing reads them any more.
 template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::gather_scatter(const Pass& pass,
                                                                                               const StepInfo& step,
@@ -77,12 +78,15 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
       begin_reach(block, work);
       block.kinetic_energy = block.dissipated = block.scattered_energy = 0;
       double& drift = drift_of_thread_[omp_get_thread_num()];
-      for_each_chunk_of(body, block, [&](const Chunk& chunk) {
-        drift = std::max(drift, gather_one(pass, step, chunk, work));
-        if (abandoned_) return;
-        if (!scatter_chunk(pass, next, chunk, work, next_motion, evaluates_for_scatter(pass))) abandoned_ = true;
-        if (energy_moves) block.scattered_energy += kinetic_energy(chunk, work);
-      });
+      for_each_chunk_of(
+          body, block,
+          [&](const Chunk& chunk) {
+            drift = std::max(drift, gather_one(pass, step, chunk, work));
+            if (abandoned_) return;
+            if (!scatter_chunk(pass, next, chunk, work, next_motion, evaluates_for_scatter(pass))) abandoned_ = true;
+            if (energy_moves) block.scattered_energy += kinetic_energy(chunk, work);
+          },
+          step.observed ? nullptr : work.passing_motion.data());
       if (!energy_moves) block.scattered_energy = block.kinetic_energy;  // of the same velocities and moments
       end_reach(block, work);
       for (const Channel c : channels)
@@ -94,6 +98,8 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
   Fused result;
   result.gathered = sum_gathered();
   result.scattered = !abandoned_ && !must_sort();
+  if (!result.scattered && !step.observed)
+    throw std::logic_error("particles moved farther than the nodes around them, and their velocities were not kept");
   for (const auto& particles : particles_)
     for (const Block<D>& block : particles.blocks) result.kinetic_energy += block.scattered_energy;
   return result;
@@ -108,8 +114,8 @@ template <int D, class T, class Components>
   wanted.transfer = true, wanted.strain = pass.strain;
   gather_chunk(chunk, work, wanted);
   work.clock.lap(Phase::coefficients);
-  States state = states(chunk.particles.transfer_state, chunk);
-  T* const velocity = chunk.at(Particles<D, T>::velocity);
+  States state = transfer_states(chunk);
+  T* const velocity = chunk.motion;
   T* const advection = pass.move ? work.advection : chunk.at(chunk.particles.advection);
   const mpm_gather_batch batch{static_cast<std::uint32_t>(chunk.end),
                                chunk_size,

@@ -105,13 +105,13 @@ template <int D, class T, class Components>
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::momentum_coefficients(const Chunk& chunk, Work& work) {
   std::fill(work.mass, work.mass + chunk.end, static_cast<T>(chunk.body.mass));
-  const States state = states(chunk.particles.transfer_state, chunk);
+  const States state = transfer_states(chunk);
   const mpm_scatter_batch batch{static_cast<std::uint32_t>(chunk.end),
                                 chunk_size,
                                 D,
                                 0,
                                 work.mass,
-                                chunk.at(Particles<D, T>::velocity),
+                                chunk.motion,
                                 state.fields,
                                 work.b,
                                 scene_.has(MPM_SCATTERS_AFFINE) ? work.A : nullptr};

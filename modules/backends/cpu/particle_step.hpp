@@ -94,6 +94,7 @@ struct Workspace {
   ListWork<D, T> lists;
   BoxWork<D, T> boxes;
   AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
+  AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
   PhaseClock clock;
   bool far_only = false;  ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
 
@@ -168,11 +169,17 @@ class ParticleStep {
 
   /// Bound of the distance any particle has moved since it was last reset, in cells.
   double drift() const { return drift_; }
+  double last_drift() const { return last_drift_; }
   void set_drift(double drift) { drift_ = drift; }
+  void set_drift(double drift, double last) { drift_ = drift, last_drift_ = last; }
+  /// The reach of particles that have just been sorted: first nodes lie in their own block.
+  void reach_own_cells();
   /// Tiles have a margin of one cell for particles that moved since they were sorted.
   bool must_sort() const { return drift_ > 0.99; }
   /// Whether they must be sorted after one more move like the last: what is scattered at once would be scattered again.
   bool must_sort_soon() const { return drift_ + last_drift_ > 0.99; }
+  /// Whether they need not be after a move of at most `cells`.
+  bool stays_within_tiles(double cells) const { return drift_ + cells * (1 + 1e-6) < 0.99; }
   /// Widens the range of grid blocks that the lists of each block of particles may reach; whether any grew.
   bool widen_active_blocks();
   /// n*D*D, m^2, of every particle at its position, by index of seeding.
@@ -190,15 +197,21 @@ class ParticleStep {
     Body<D, T>& body;
     Block<D>& block;
     T* values;
+    T* motion;  ///< velocity and the transfer's state, of the chunk or (see `passing`) of the work space
     const std::int32_t* ids;
     int count, end;    ///< end: count padded to whole lanes
     const char* next;  ///< the chunk that follows
-    /// Its second half arrives in the cache with a gather, its first half with a scatter.
+    /// What of it is read arrives in the cache, one half with a gather, the other with a scatter.
     Ahead ahead(bool gather) const {
-      const std::size_t share = particles.components * sizeof(T) / 2;
-      return {next + (gather ? share * chunk_size : 0), share};
+      const bool passes = motion != at(Particles<D, T>::velocity);
+      const int left_out = passes ? particles.motion_components : 0;
+      const std::size_t share = (particles.components - left_out) * sizeof(T) / 2;
+      return {next, gather ? share * chunk_size : 0, share,
+              passes ? Particles<D, T>::velocity * chunk_size * sizeof(T) : ~std::size_t(0),
+              left_out * chunk_size * sizeof(T)};
     }
     T* at(int component) const { return values + component * chunk_size; }
+    T* motion_at(int component) const { return motion + (component - Particles<D, T>::velocity) * chunk_size; }
   };
   struct States {
     void* fields[max_state_fields];
@@ -208,8 +221,9 @@ class ParticleStep {
   void for_each_block(int body, bool coloured, Visit&& visit);
   void fetch_nodes_of_next(int body, const Block<D>& block, int share);
   template <class Visit>
-  void for_each_chunk_of(int body, Block<D>& block, Visit&& visit);
-  States states(const std::vector<StateField>& fields, const Chunk& chunk) const;
+  void for_each_chunk_of(int body, Block<D>& block, Visit&& visit, T* motion = nullptr);
+  States material_states(const Chunk& chunk) const;
+  States transfer_states(const Chunk& chunk) const;
   void throw_failure();
 
   void evaluate_shape(const Chunk& chunk, Work& work, bool gradients);

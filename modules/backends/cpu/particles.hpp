@@ -61,6 +61,7 @@ struct Particles {
   int domain = -1;       ///< semi-side vectors in cells, row-major, columns are vectors
   int next_domain = -1;  ///< where a step strains before its last use of the weights (Plan::strained_domain)
   int components = 2 * D;
+  int motion_components = D;  ///< from `velocity` on: it and the transfer's state
   AlignedArray<T> half_size;  ///< [D][chunk_size] cells, of shapes that read it
   std::vector<StateField> transfer_state, material_state;
 
@@ -128,8 +129,9 @@ void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const D
 
 /// Sorts stably by block and cell of the stencil's first node (of a list: of the position less half a cell); the same
 /// for any number of threads. Blocks that nothing enters or leaves, in order already, are not touched. Whether the
-/// list of blocks has changed.
+/// list of blocks has changed. Unless `with_motion`, velocities and the transfer's state stay behind: they hold
+/// anything afterwards.
 template <int D, class T>
-bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene);
+bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion);
 
 }  // namespace mpm::cpu

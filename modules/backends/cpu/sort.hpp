@@ -52,11 +52,12 @@ constexpr BlockCoordinates neighbour_at(BlockCoordinates at, int index) {
 template <int D, class T>
 class Sorter {
  public:
-  Sorter(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene)
+  Sorter(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion)
       : particles_(particles),
         space_(space),
         scene_(scene),
         threads_(particles.blocks.size() < 32 ? 1 : scene.threads),
+        left_behind_(with_motion ? 0 : particles.motion_components),
         row_bytes_((particles.components * sizeof(T) + sizeof(Tail) + 7) / 8 * 8) {}
 
   bool run() {
@@ -106,6 +107,14 @@ class Sorter {
   /// Not before the first sort: the blocks of seeding have no units yet, though their particles may be in order.
   bool in_units() const {
     return std::any_of(particles_.units.begin(), particles_.units.end(), [](const auto& u) { return !u.empty(); });
+  }
+
+  /// Calls use(component) for what travels with a particle.
+  template <class Use>
+  void for_each_component(Use&& use) const {
+    constexpr int gap = Particles<D, T>::velocity;
+    for (int c = 0; c < gap; ++c) use(c);
+    for (int c = gap + left_behind_; c < particles_.components; ++c) use(c);
   }
 
   // ---- where to
@@ -411,8 +420,8 @@ class Sorter {
   void write_row(std::byte* row, std::uint32_t chunk, int lane, std::uint32_t cell, const int* shift) const {
     const T* const from = particles_.chunk(chunk) + lane;
     T* const values = reinterpret_cast<T*>(row);
-    for (int a = 0; a < D; ++a) values[a] = from[a * chunk_size] + static_cast<T>(shift[a]);
-    for (int c = D; c < particles_.components; ++c) values[c] = from[c * chunk_size];
+    for_each_component([&](int c) { values[c] = from[c * chunk_size]; });
+    for (int a = 0; a < D; ++a) values[a] += static_cast<T>(shift[a]);
     const Tail tail{particles_.ids(chunk)[lane], cell, chunk * chunk_size + lane};
     std::memcpy(row + particles_.components * sizeof(T), &tail, sizeof tail);
   }
@@ -531,7 +540,7 @@ class Sorter {
     const std::uint32_t to = place[tail.cell]++;
     std::byte* const chunk = places_[block.first_chunk + to / chunk_size];
     T* const target = particles_.values_at(chunk) + to % chunk_size;
-    for (int c = 0; c < particles_.components; ++c) target[c * chunk_size] = values[c];
+    for_each_component([&](int c) { target[c * chunk_size] = values[c]; });
     particles_.ids_at(chunk)[to % chunk_size] = tail.id;
   }
 
@@ -555,19 +564,21 @@ class Sorter {
         to[lane] = particles_.values_at(target) + at % chunk_size;
         id_to[lane] = particles_.ids_at(target) + at % chunk_size;
       }
-      const T* from = particles_.chunk(chunk);
-      const int components = particles_.components;
-      for (int c = 0; c < components; ++c, from += chunk_size) {
+      for_each_component([&](int c) {
+        const T* const from = particles_.chunk(chunk) + c * chunk_size;
 #pragma GCC unroll 16
         for (int lane = 0; lane < chunk_size; ++lane) to[lane][c * chunk_size] = from[lane];
-      }
+      });
       for (int lane = 0; lane < count; ++lane) *id_to[lane] = particles_.ids(chunk)[lane];
     });
   }
   void prefetch(std::uint32_t chunk) const {
     if (chunk >= particles_.chunks) return;
     const std::byte* const place = particles_.places[chunk];
-    for (std::size_t byte = 0; byte < particles_.chunk_bytes(); byte += 64) __builtin_prefetch(place + byte, 0, 2);
+    constexpr std::size_t component = chunk_size * sizeof(T), gap = Particles<D, T>::velocity * component;
+    for (std::size_t byte = 0; byte < gap; byte += 64) __builtin_prefetch(place + byte, 0, 2);
+    for (std::size_t byte = gap + left_behind_ * component; byte < particles_.chunk_bytes(); byte += 64)
+      __builtin_prefetch(place + byte, 0, 2);
   }
 
   /// The lanes after the last particle hold copies of it.
@@ -577,7 +588,7 @@ class Sorter {
     T* const values = particles_.values_at(last);
     std::int32_t* const ids = particles_.ids_at(last);
     for (int lane = used; lane < padded(used); ++lane) {
-      for (int c = 0; c < particles_.components; ++c) values[c * chunk_size + lane] = values[c * chunk_size + used - 1];
+      for_each_component([&](int c) { values[c * chunk_size + lane] = values[c * chunk_size + used - 1]; });
       ids[lane] = ids[used - 1];
     }
   }
@@ -596,6 +607,7 @@ class Sorter {
   SortSpace& space_;
   const Scene<D, T>& scene_;
   int threads_;
+  int left_behind_;  ///< components from the velocity on that do not travel
   std::size_t row_bytes_, at_hand_ = 0;
   std::vector<Source> sources_;
   std::vector<Target> targets_;
@@ -608,8 +620,8 @@ class Sorter {
 };
 
 template <int D, class T>
-bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene) {
-  return Sorter<D, T>(particles, space, scene).run();
+bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion) {
+  return Sorter<D, T>(particles, space, scene, with_motion).run();
 }
 
 /// Particles as they come, each into the last chunk of its block.

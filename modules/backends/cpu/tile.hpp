@@ -25,10 +25,12 @@ namespace mpm::cpu {
 /// queue of misses and stop the work.
 struct Ahead {
   const char* from = nullptr;
-  std::size_t bytes_a_particle = 0;
+  std::size_t first = 0, bytes_a_particle = 0;
+  std::size_t gap_at = ~std::size_t(0), gap = 0;  ///< bytes that are left out, and where
   MPM_ROW_INLINE void fetch(int particle) const {
-    const char* const begin = from + particle * bytes_a_particle;
-    for (std::size_t byte = 0; byte < bytes_a_particle; byte += 64) __builtin_prefetch(begin + byte, 1, 3);
+    const std::size_t begin = first + particle * bytes_a_particle;
+    for (std::size_t byte = begin; byte < begin + bytes_a_particle; byte += 64)
+      __builtin_prefetch(from + byte + (byte < gap_at ? 0 : gap), 1, 3);
   }
 };
 

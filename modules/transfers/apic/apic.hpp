@@ -32,7 +32,8 @@ struct Apic {
   }
 
 #if MPM_HOST
-  static constexpr unsigned traits = MPM_SCATTERS_AFFINE | MPM_GATHERS_AFFINE | MPM_AFFINE_CARRIES_ENERGY;
+  static constexpr unsigned traits =
+      MPM_SCATTERS_AFFINE | MPM_GATHERS_AFFINE | MPM_AFFINE_CARRIES_ENERGY | MPM_REPLACES_MOTION;
   static constexpr mpm_state state[] = {
       {"affine_velocity", "1/s", "affine velocity matrix C = B D^-1", MPM_STATE_MATRIX, MPM_INITIAL_ZERO},
   };

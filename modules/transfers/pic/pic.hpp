@@ -27,7 +27,7 @@ struct Pic {
   }
 
 #if MPM_HOST
-  static constexpr unsigned traits = 0;
+  static constexpr unsigned traits = MPM_REPLACES_MOTION;
 #endif
 };
 

@@ -31,7 +31,8 @@ struct Tpic {
   }
 
 #if MPM_HOST
-  static constexpr unsigned traits = MPM_SCATTERS_AFFINE | MPM_GATHERS_GRADIENT | MPM_AFFINE_CARRIES_ENERGY;
+  static constexpr unsigned traits =
+      MPM_SCATTERS_AFFINE | MPM_GATHERS_GRADIENT | MPM_AFFINE_CARRIES_ENERGY | MPM_REPLACES_MOTION;
   static constexpr mpm_state state[] = {
       {"velocity_gradient", "1/s", "velocity gradient L of the grid at the particle", MPM_STATE_MATRIX,
        MPM_INITIAL_ZERO},
