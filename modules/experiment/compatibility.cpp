@@ -36,7 +36,8 @@ std::vector<Mix> all_mixes(const Registry& registry) {
       for (const Plugin* filter : filters)
         for (const bool every_step : {true, false})
           for (const Plugin* law : laws)
-            for (const StressUpdate update : {StressUpdate::first, StressUpdate::last, StressUpdate::modified_last})
+            for (const StressUpdate update :
+                 {StressUpdate::first, StressUpdate::last, StressUpdate::modified_last, StressUpdate::averaged})
               if (filter || every_step) mixes.push_back({shape, transfer, filter, law, update, every_step});
   return mixes;
 }

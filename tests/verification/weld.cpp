@@ -40,8 +40,8 @@ double largest_difference(const Scene& a, const Scene& b) {
 
 TEST_CASE("D4 a welded interface is transparent to rounding", "[D][D4]") {
   for (const std::string shape : {"linear", "bspline_quadratic"})
-    for (const std::string transfer : {"pic", "flip", "apic", "mls"})
-      for (const std::string order : {"last", "first", "modified_last"})
+    for (const std::string transfer : {"pic", "flip", "apic", "mls", "rpic", "aflip", "asflip"})
+      for (const std::string order : {"last", "first", "modified_last", "averaged"})
         for (const std::string backend : {"reference", "cpu"}) {
           if (backend == "reference" && order != "last") continue;
           const std::vector<std::string> common{set("/shape/type", shape), set("/transfer/type", transfer),

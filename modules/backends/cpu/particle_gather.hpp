@@ -130,7 +130,7 @@ template <int D, class T, class Components>
         std::copy_n(work.velocity + c * chunk_size, chunk.end, target + c * chunk_size);
   if (scene_.plan.ledger) chunk.block.kinetic_energy += kinetic_energy(chunk, work);
   work.clock.lap(Phase::transfer);
-  if (pass.strain) advance_material(chunk, work, step.dt, evaluates_for_scatter(pass) ? &pass : nullptr);
+  if (pass.strain) advance_material(chunk, work, step.dt, pass);
   work.clock.lap(Phase::material);
   if (!pass.move) return 0;
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
@@ -142,7 +142,7 @@ template <int D, class T, class Components>
 }
 
 template <int D, class T, class Components>
-double ParticleStep<D, T, Components>::strain(const StepInfo& step) {
+double ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& step) {
   Wanted wanted;
   wanted.strain = true;
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
@@ -153,7 +153,7 @@ double ParticleStep<D, T, Components>::strain(const StepInfo& step) {
       block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         gather_chunk(chunk, work, wanted);
-        advance_material(chunk, work, step.dt, nullptr);
+        advance_material(chunk, work, step.dt, pass);
       });
     });
   throw_failure();
@@ -308,18 +308,19 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
   add_to_tile(chunk, work, filter_projection, work.mass, true, affine, false);
 }
 
-/// Strains the particles; with the pass that scatters them next, also gives what that wants of the material.
+/// Strains the particles by the pass's share of the step; where the pass scatters them too, also gives what that wants
+/// of the material.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& work, double dt, const Pass* scatters) {
+void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass) {
   const bool dissipation = scene_.plan.ledger && chunk.body.dissipates;
   mpm_material_batch request{};
-  request.dt = dt;
+  request.dt = pass.strain_share * dt;
   const T* const velocity_gradient = scene_.has(MPM_STRAIN_BY_AFFINE) ? work.affine : work.gradient_of_velocity;
   request.velocity_gradient = velocity_gradient;
   if (dissipation) request.dissipated_energy = work.scalar;
-  if (scatters) want_of_material(*scatters, work, request);
+  if (evaluates_for_scatter(pass)) want_of_material(pass, work, request);
   update_material(chunk, request);
-  if (chunk.particles.domain >= 0) advance_domain(chunk, velocity_gradient, dt);
+  if (chunk.particles.domain >= 0) advance_domain(chunk, velocity_gradient, request.dt, pass.strains_again);
   if (!dissipation) return;
   const auto energies = [&](int p) { return Lanes<T>::load(work.scalar + p); };
   chunk.block.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
@@ -327,9 +328,11 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
 
 /// domain <- (I + dt L) domain. USF goes on with the old weights until its gather.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const {
-  const T* const from = chunk.at(chunk.particles.domain);
-  T* const to = chunk.at(chunk.particles.next_domain < 0 ? chunk.particles.domain : chunk.particles.next_domain);
+void ParticleStep<D, T, Components>::advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt,
+                                                    bool again) const {
+  const int strained = chunk.particles.next_domain < 0 ? chunk.particles.domain : chunk.particles.next_domain;
+  const T* const from = chunk.at(again ? strained : chunk.particles.domain);
+  T* const to = chunk.at(strained);
   using V = Lanes<T>;
   const T step = static_cast<T>(dt);
   for (int p = 0; p < chunk.end; p += V::width) {

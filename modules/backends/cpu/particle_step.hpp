@@ -162,7 +162,7 @@ class ParticleStep {
   Fused gather_scatter(const Pass& pass, const StepInfo& step, const StepInfo& next);
   /// Momentum of the filter's increment, gathered and scattered again, into filter_projection.
   void project(const StepInfo& step);
-  double strain(const StepInfo& step);  ///< energy dissipated, J
+  double strain(const Pass& pass, const StepInfo& step);  ///< energy dissipated, J
   void move(const StepInfo& step);
   TimeStepLimit time_step_limit();
 
@@ -269,8 +269,8 @@ class ParticleStep {
   void apply_inverse_moments(const Chunk& chunk, Work& work) const;
   void multiply_by_inverse_moments(const Chunk& chunk, Work& work) const;
   void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
-  void advance_material(const Chunk& chunk, Work& work, double dt, const Pass* scatters);
-  void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const;
+  void advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass);
+  void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
   double advance_position(const Chunk& chunk, const T* advection, double dt);
   double margin(int axis, int side) const;
   void note_outside(const Chunk& chunk);
