@@ -122,7 +122,8 @@ template <int D, class T, class Components>
                                scene_.has(MPM_GATHERS_GRADIENT) ? work.gradient_of_velocity : nullptr,
                                velocity,
                                state.fields,
-                               advection};
+                               advection,
+                               moments_for_transfer(chunk, work)};
   Components::gather(scene_, batch);
   if (step.filtered)  // the filtered velocity replaces the particle's
     for (int c = 0; c < D; ++c)
@@ -254,6 +255,22 @@ void ParticleStep<D, T, Components>::apply_inverse_moments(const Chunk& chunk, W
         work.affine[(c * D + a) * chunk_size + p] *= work.inverse_moment[a * chunk_size + p];
 }
 
+/// D of the last shape evaluation as the transfer reads it, cells^2; null where it is a multiple of the identity.
+template <int D, class T, class Components>
+const T* ParticleStep<D, T, Components>::moments_for_transfer(const Chunk& chunk, Work& work) const {
+  const bool varies = scene_.moment_of_particle || scene_.moment_is_gradient;
+  if (!varies || !scene_.has(MPM_READS_SECOND_MOMENT)) return nullptr;
+  if (scene_.list) return work.second_moment;
+  std::fill_n(work.transfer_moment, D * D * chunk_size, T(0));
+  for (int a = 0; a < D; ++a)
+    for (int p = 0; p < chunk.end; ++p) {
+      const T f = work.offset[a * chunk_size + p];
+      work.transfer_moment[a * (D + 1) * chunk_size + p] =
+          scene_.moment_of_particle ? work.second_moment[a * chunk_size + p] : f * (T(1) - f);
+    }
+  return work.transfer_moment;
+}
+
 /// One pass of the filter's loop on the particles: v* is gathered and scattered again by the transfer itself.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::project(const StepInfo& step) {
@@ -297,7 +314,8 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
                                   scene_.has(MPM_GATHERS_GRADIENT) ? work.gradient_of_velocity : nullptr,
                                   velocity,
                                   state.fields,
-                                  work.advection};
+                                  work.advection,
+                                  moments_for_transfer(chunk, work)};
   Components::gather(scene_, gathered);
   std::fill(work.mass, work.mass + chunk.end, static_cast<T>(chunk.body.mass));
   const bool affine = scene_.has(MPM_SCATTERS_AFFINE);
@@ -326,7 +344,8 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   chunk.block.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
 }
 
-/// domain <- (I + dt L) domain. USF goes on with the old weights until its gather.
+/// domain <- (I + dt L) domain. USF goes on with the old weights until its gather; `again`: what was strained in this
+/// step already is strained further.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt,
                                                     bool again) const {

@@ -93,7 +93,8 @@ struct Workspace {
   AlignedArray<T> velocity_tile, increment_tile;
   ListWork<D, T> lists;
   BoxWork<D, T> boxes;
-  AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
+  AlignedArray<T> scratch_velocity, scratch_state;    ///< of the filter's projections
+  alignas(64) T transfer_moment[D * D * chunk_size];  ///< as the transfer reads it, where it is not second_moment
   PhaseClock clock;
   bool far_only = false;  ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
 
@@ -268,6 +269,7 @@ class ParticleStep {
   void unpack_moments(Work& work, bool moment, bool gradient, int count);
   void apply_inverse_moments(const Chunk& chunk, Work& work) const;
   void multiply_by_inverse_moments(const Chunk& chunk, Work& work) const;
+  const T* moments_for_transfer(const Chunk& chunk, Work& work) const;
   void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
   void advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass);
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
