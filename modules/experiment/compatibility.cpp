@@ -22,7 +22,8 @@ std::optional<Refusal> refusal_of(const Mix& mix) {
                    named("filter", *mix.filter) + " at every step leaves nothing of " +
                        named("transfer", *mix.transfer) +
                        ", whose increments it would replace each time; filter periodically (\"every_steps\": 4) or "
-                       "choose transfer \"pic\""};
+                       "choose transfer " +
+                       (mix.transfer->transfer().traits & MPM_SCATTERS_AFFINE ? "\"apic\"" : "\"pic\"")};
   return std::nullopt;
 }
 

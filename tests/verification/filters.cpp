@@ -14,7 +14,7 @@ namespace {
 
 const std::vector<std::string> backends{"reference", "cpu"};
 const std::vector<std::string> shapes{"linear", "bspline_quadratic", "gimp", "cpdi"};
-const std::vector<std::string> filtered_transfers{"pic", "apic", "mls", "tpic"};  // flip: periodically
+const std::vector<std::string> filtered_transfers{"pic", "apic", "mls", "tpic", "rpic"};  // flip: periodically
 
 // Random places, and velocities that the grid cannot hold.
 const char* rough = R"J({

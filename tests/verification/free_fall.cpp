@@ -66,7 +66,7 @@ TEST_CASE("A7 free flight in 2-D crosses 40 cells exactly", "[A][A7]") {
 
 TEST_CASE("A7 free flight in 3-D crosses 25 cells exactly", "[A][A7]") {
   for (const std::string shape : {"linear", "bspline_quadratic"})
-    for (const std::string transfer : {"pic", "flip", "apic", "mls"}) {
+    for (const std::string transfer : {"pic", "flip", "apic", "mls", "rpic", "aflip", "asflip"}) {
       INFO(shape << " " << transfer);
       check_flight(flight_3d, {set("/backend", "cpu"), set("/shape/type", shape), set("/transfer/type", transfer)}, 10);
     }
