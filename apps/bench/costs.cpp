@@ -10,10 +10,13 @@
 #include "shapes/cpdi/cpdi.hpp"
 #include "shapes/gimp/gimp.hpp"
 #include "shapes/linear/linear.hpp"
+#include "transfers/aflip/aflip.hpp"
 #include "transfers/apic/apic.hpp"
+#include "transfers/asflip/asflip.hpp"
 #include "transfers/flip/flip.hpp"
 #include "transfers/mls/mls.hpp"
 #include "transfers/pic/pic.hpp"
+#include "transfers/rpic/rpic.hpp"
 #include "transfers/tpic/tpic.hpp"
 #if __has_include("materials/fixed_corotated/fixed_corotated.hpp")
 #include "materials/fixed_corotated/fixed_corotated.hpp"
@@ -131,6 +134,9 @@ std::optional<double> transfer_cost(const Component& component) {
   if (id == "apic") return transfer_round_trip<Apic, D, T>(component);
   if (id == "mls") return transfer_round_trip<Mls, D, T>(component);
   if (id == "tpic") return transfer_round_trip<Tpic, D, T>(component);
+  if (id == "rpic") return transfer_round_trip<Rpic, D, T>(component);
+  if (id == "aflip") return transfer_round_trip<Aflip, D, T>(component);
+  if (id == "asflip") return transfer_round_trip<Asflip, D, T>(component);
   return std::nullopt;
 }
 

@@ -155,7 +155,7 @@ int list(bool json) {
 
 namespace {
 
-constexpr const char* update_names[] = {"first", "last", "modified_last"};
+constexpr const char* update_names[] = {"first", "last", "modified_last", "averaged"};
 
 std::string id_of(const Plugin* plugin) {
   return plugin ? std::string(plugin->id()) : "none";

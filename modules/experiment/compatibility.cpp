@@ -22,7 +22,8 @@ std::optional<Refusal> refusal_of(const Mix& mix) {
                    named("filter", *mix.filter) + " at every step leaves nothing of " +
                        named("transfer", *mix.transfer) +
                        ", whose increments it would replace each time; filter periodically (\"every_steps\": 4) or "
-                       "choose transfer \"pic\""};
+                       "choose transfer " +
+                       (mix.transfer->transfer().traits & MPM_SCATTERS_AFFINE ? "\"apic\"" : "\"pic\"")};
   return std::nullopt;
 }
 
@@ -36,7 +37,8 @@ std::vector<Mix> all_mixes(const Registry& registry) {
       for (const Plugin* filter : filters)
         for (const bool every_step : {true, false})
           for (const Plugin* law : laws)
-            for (const StressUpdate update : {StressUpdate::first, StressUpdate::last, StressUpdate::modified_last})
+            for (const StressUpdate update :
+                 {StressUpdate::first, StressUpdate::last, StressUpdate::modified_last, StressUpdate::averaged})
               if (filter || every_step) mixes.push_back({shape, transfer, filter, law, update, every_step});
   return mixes;
 }

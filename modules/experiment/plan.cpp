@@ -94,19 +94,32 @@ class Planner {
     plan_.filter = experiment_.filter.has_value();
     // The reference backend keeps the stencils of a step; the cpu backend evaluates them anew in every pass.
     const bool strains_before_gather =
-        experiment_.solver.stress_update == StressUpdate::first ||
-        (plan_.filter && filters_before_forces() && experiment_.solver.stress_update == StressUpdate::last);
+        strains_before_forces() || (plan_.filter && filters_before_forces() && strains_after_forces());
     plan_.strained_domain = plan_.particle_domain && strains_before_gather && experiment_.backend == "cpu";
-    plan_.kept_velocity =
-        plan_.filter && (filters_before_forces() || experiment_.solver.stress_update == StressUpdate::first);
+    plan_.kept_velocity = plan_.filter && (filters_before_forces() || strains_before_forces());
     decide_fusion();
     plan_.separate_force = plan_.velocity_increment || plan_.contact || plan_.ledger ||
                            experiment_.body_force.has_value() || any_face(ConditionType::separate) ||
-                           experiment_.solver.stress_update == StressUpdate::first ||
-                           (plan_.filter && filters_before_forces());
+                           strains_before_forces() || (plan_.filter && filters_before_forces());
     plan_.kept_advection = experiment_.solver.stress_update == StressUpdate::modified_last;
     plan_.initial_position = experiment_.exact.has_value() || experiment_.output.colour_by == "displacement" ||
                              (experiment_.body_force && experiment_.body_force->uses_initial_position());
+  }
+
+  /// By the gradient of v-: USF, and half of USAVG.
+  bool strains_before_forces() const {
+    const StressUpdate update = experiment_.solver.stress_update;
+    return update == StressUpdate::first || update == StressUpdate::averaged;
+  }
+  /// By the gradient of v+ as it stands after the forces: USL, and half of USAVG.
+  bool strains_after_forces() const {
+    const StressUpdate update = experiment_.solver.stress_update;
+    return update == StressUpdate::last || update == StressUpdate::averaged;
+  }
+  /// The order as the file says it.
+  std::string named_order() const {
+    return std::string("/solver/stress_update ") +
+           (experiment_.solver.stress_update == StressUpdate::averaged ? "\"averaged\"" : "\"first\"");
   }
 
   bool filters_before_forces() const { return experiment_.filter->plugin->filter().traits & MPM_FILTERS_BEFORE_FORCES; }
@@ -172,8 +185,8 @@ class Planner {
         attribute(body, "domain", D * D, named(experiment_.shape) + ": semi-side vectors of the particle's domain");
       if (plan_.strained_domain)
         attribute(body, "strained_domain", D * D,
-                  experiment_.solver.stress_update == StressUpdate::first
-                      ? "/solver/stress_update \"first\": the weights of a step stay those before its strain"
+                  strains_before_forces()
+                      ? named_order() + ": the weights of a step stay those before its strain"
                       : named(*experiment_.filter) + ": the weights of a step stay those before its strain");
       state(body, experiment_.transfer);
       state(body, experiment_.materials[specification.material].component);
@@ -210,8 +223,7 @@ class Planner {
     if (plan_.contact) return named(*experiment_.contact) + ": acts before and after the forces";
     if (plan_.ledger) return "/output/ledger: work of the forces";
     if (experiment_.body_force) return experiment_.body_force_pointer + ": work of the forces";
-    if (experiment_.solver.stress_update == StressUpdate::first)
-      return "/solver/stress_update \"first\": stress after the momenta";
+    if (strains_before_forces()) return named_order() + ": stress after the momenta";
     if (plan_.filter && filters_before_forces()) return named(*experiment_.filter) + ": filters before the forces";
     return "/grid/boundaries \"separate\": the wall predicts with the forces";
   }
@@ -274,8 +286,10 @@ class Planner {
     Pass& scatter = pass(PassKind::scatter, transfer);
     scatter.momentum = true;
     scatter.contact_fields = plan_.contact;
-    const bool first = experiment_.solver.stress_update == StressUpdate::first;
-    scatter.force = !first;
+    const bool averaged = experiment_.solver.stress_update == StressUpdate::averaged;
+    const double share = averaged ? 0.5 : 1;
+    const bool before = strains_before_forces(), after = strains_after_forces();
+    scatter.force = !before;
     if (plan_.fused) {
       outer.swap(plan_.passes);
       Pass& group = pass(PassKind::group, "/solver/passes: the step before has scattered already, as a rule");
@@ -302,25 +316,29 @@ class Planner {
     } else if (plan_.kept_velocity) {
       filter_loop(true, false, true);
     }
-    if (first) {
-      pass(PassKind::strain, order + " \"first\"");
-      pass(PassKind::scatter, order + " \"first\": stress at the new strain").force = true;
+    if (before) {
+      pass(PassKind::strain, named_order()).strain_share = share;
+      pass(PassKind::scatter, named_order() + ": stress at the new strain").force = true;
     }
     if (plan_.kept_velocity && !particles_only)
       filtered_only(PassKind::restore_velocity, named(*experiment_.filter) + ": filters once more after the forces");
     pass(PassKind::apply_forces,
          plan_.contact ? named(*experiment_.contact) + " after the forces; boundaries" : "boundaries");
     if (plan_.filter && !particles_only) filter_loop(false);
-    const bool last = experiment_.solver.stress_update == StressUpdate::last;
+    const auto strains = [&](Pass& pass) {
+      pass.strain_share = share;
+      pass.strains_again = averaged;
+    };
     if (particles_only) {
-      if (last) pass(PassKind::strain, order + " \"last\", by the unfiltered velocity");
+      if (after) strains(pass(PassKind::strain, order + ": by the unfiltered velocity"));
       filtered_only(PassKind::add_correction, named(*experiment_.filter) + ": what the particles take");
     }
     if (plan_.sorts_before_gather)
       pass(PassKind::sort, "/backend \"cpu\": particles that are about to leave the nodes around their block")
           .keeps_grid = true;
     Pass& gather = pass(plan_.fused ? PassKind::gather_scatter : PassKind::gather, transfer);
-    gather.strain = last && !particles_only;
+    gather.strain = after && !particles_only;
+    if (gather.strain) strains(gather);
     gather.move = experiment_.solver.stress_update != StressUpdate::modified_last;
     if (plan_.fused) gather.momentum = gather.force = true;
     if (gather.move) return;

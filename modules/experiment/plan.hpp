@@ -63,6 +63,8 @@ struct Pass {
   bool contact_fields = false;    ///< scatter: volume gradient and surface position
   bool strain = false;            ///< gather: also advance the material with the gathered velocity gradient
   bool move = false;              ///< gather: also move the particles
+  double strain_share = 1;        ///< strain: of the step
+  bool strains_again = false;     ///< strain: the second one of the step
   bool remap = false;             ///< scatter and momentum_to_velocity of MUSL: updated velocities, no forces follow
   bool before_forces = false;     ///< filter passes: they act on v-, before the forces
   bool restores = false;          ///< begin_filter: restore_velocity follows

@@ -29,9 +29,9 @@ std::string Pass::name() const {
     case PassKind::apply_forces:
       return "apply forces";
     case PassKind::gather:
-      return strain ? "gather and strain" : "gather";
+      return !strain ? "gather" : strain_share < 1 ? "gather and half strain" : "gather and strain";
     case PassKind::strain:
-      return "strain";
+      return strain_share < 1 ? "half strain" : "strain";
     case PassKind::move:
       return "move";
     case PassKind::gather_scatter:

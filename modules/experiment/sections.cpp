@@ -189,9 +189,11 @@ Section solver_section() {
       "a solver",
       {
           parameter("type", Type::choice, "", "Time integration.").of({"explicit"}).standard("explicit"),
-          parameter("stress_update", Type::choice, "",
-                    "When a step updates stress: first (USF), last (USL), or last from mapped-back velocities (MUSL).")
-              .of({"first", "last", "modified_last"})
+          parameter(
+              "stress_update", Type::choice, "",
+              "When a step updates stress: first (USF), last (USL), last from mapped-back velocities (MUSL), or half "
+              "first and half last (averaged, USAVG).")
+              .of({"first", "last", "modified_last", "averaged"})
               .standard("last"),
           parameter("time_step", Type::number, "s", "Fixed time step, or \"auto\" by the wave speed.")
               .above(0)

@@ -12,6 +12,7 @@ struct GatheredMoments {
   Vec<D, S> velocity_increment;  ///< sum w (v+ - v-), m/s
   Mat<D, S> affine;              ///< sum v+ (x) w D^-1 d, 1/s
   Mat<D, S> velocity_gradient;   ///< sum v+ (x) grad w, 1/s
+  Mat<D, S> second_moment;       ///< D = sum w d d^T, cells^2, or any multiple of the identity that it is
 };
 
 /// The nodes of one particle, each once; lengths in cells. `T` is a plain scalar: lists are made particle by particle.

@@ -25,7 +25,7 @@ extern "C" {
  * revision. A host takes plugins of its version and of its revision or an older one: it reads an older, shorter table
  * as if the missing fields were zero. */
 #define MPM_ABI_VERSION 1u
-#define MPM_ABI_REVISION 1u
+#define MPM_ABI_REVISION 2u
 #define MPM_BATCH 64u    /* particles or nodes in a full batch */
 #define MPM_LANES 16u    /* counts are padded to a multiple of this */
 #define MPM_BOX_WIDTH 4u /* nodes an axis of mpm_box_batch */
@@ -151,6 +151,11 @@ enum mpm_transfer_trait {
   MPM_STRAIN_BY_AFFINE = 16,      /* the velocity gradient that strains the particle is the affine moment itself */
   MPM_AFFINE_CARRIES_ENERGY = 32, /* the kinetic energy of state 0 (affine velocity) is m/2 tr(C D C^T) */
   MPM_GATHERS_GRADIENT = 64,      /* reads velocity_gradient */
+  /* Since revision 2. */
+  MPM_READS_SECOND_MOMENT = 128,  /* reads second_moment */
+  MPM_KEEPS_SPIN_ONLY = 256,      /* state 0 (affine velocity) is antisymmetric; the host starts it so */
+  MPM_STARTS_WITH_GRADIENT = 512, /* state 0, a matrix, starts as the gradient of the first velocity field, as it does
+                                    with MPM_AFFINE_CARRIES_ENERGY; its energy and momentum do not count */
   /* Velocity and state after a gather follow from what is gathered alone (neither is read), and the particle moves with
    * the gathered velocity: the host need not keep them from one step to the next. */
   MPM_REPLACES_MOTION = 1024
@@ -173,6 +178,8 @@ typedef struct mpm_gather_batch {
   void* particle_velocity;        /* [D][stride] in: before, out: after */
   void* const* state;             /* in and out */
   void* advection_velocity;       /* [D][stride] out: velocity that moves the particle */
+  /* Since revision 2. [D*D][stride] D = sum w d d^T, cells^2; null where it is a multiple of the identity. */
+  const void* second_moment;
 } mpm_gather_batch;
 typedef struct mpm_transfer {
   uint32_t traits, reserved;

@@ -389,6 +389,10 @@ void gather_batch(const void* parameters, const mpm_gather_batch* request) {
       load_components<D * D, S>(q.affine, q.stride, lane, moments.affine.m);
     if constexpr ((F::traits & MPM_GATHERS_GRADIENT) != 0)
       load_components<D * D, S>(q.velocity_gradient, q.stride, lane, moments.velocity_gradient.m);
+    if constexpr ((F::traits & MPM_READS_SECOND_MOMENT) != 0) {
+      moments.second_moment = Mat<D, S>::identity();
+      if (q.second_moment) load_components<D * D, S>(q.second_moment, q.stride, lane, moments.second_moment.m);
+    }
     Vec<D, S> v, advection;
     load_components<D, S>(q.particle_velocity, q.stride, lane, v.v);
     auto state = StateAccess<F, D, S>::load(q.state, q.stride, lane);

@@ -23,8 +23,8 @@ struct SeedBatch {
   const double* position = nullptr;  ///< count*dimension, m, particle-major
   const double* velocity = nullptr;  ///< count*dimension, m/s
   /// count*dimension*dimension, 1/s, row = component: gradient of the initial velocity. Starts the affine velocity of
-  /// transfers that carry one (MPM_AFFINE_CARRIES_ENERGY: state 0), so that no spin is lost in the first step; null
-  /// otherwise.
+  /// transfers that carry one (MPM_AFFINE_CARRIES_ENERGY, MPM_STARTS_WITH_GRADIENT: state 0), so that no spin is lost
+  /// in the first step; its antisymmetric part with MPM_KEEPS_SPIN_ONLY; null otherwise.
   const double* velocity_gradient = nullptr;
 };
 

@@ -92,6 +92,7 @@ class Seeder {
       for (std::size_t p = 0; p < n; ++p) velocity_[p * D + c] = values_[p];
     }
     if (affine_) differentiate();
+    if (affine_ && (experiment_.transfer.plugin->transfer().traits & MPM_KEEPS_SPIN_ONLY)) keep_spin();
     visit({given_, n, position_.data(), velocity_.data(), affine_ ? gradient_.data() : nullptr});
     given_ += n;
     points_.clear();
@@ -120,6 +121,17 @@ class Seeder {
     }
   }
 
+  /// The antisymmetric part of the gradients.
+  void keep_spin() {
+    const std::size_t D = static_cast<std::size_t>(experiment_.dimension);
+    for (std::size_t first = 0; first < gradient_.size(); first += D * D)
+      for (std::size_t i = 0; i < D; ++i)
+        for (std::size_t j = 0; j <= i; ++j) {
+          double &below = gradient_[first + i * D + j], &above = gradient_[first + j * D + i];
+          below = 0.5 * (below - above), above = -below;
+        }
+  }
+
   const Experiment& experiment_;
   const BodySpecification& body_;
   bool affine_;
@@ -135,7 +147,8 @@ SeededBody seed_body(const Experiment& experiment, int index) {
   const BodySpecification& body = experiment.bodies[index];
   SeededBody seeded;
   seeded.dimension = static_cast<std::size_t>(experiment.dimension);
-  seeded.with_gradient = experiment.transfer.plugin->transfer().traits & MPM_AFFINE_CARRIES_ENERGY;
+  seeded.with_gradient =
+      experiment.transfer.plugin->transfer().traits & (MPM_AFFINE_CARRIES_ENERGY | MPM_STARTS_WITH_GRADIENT);
   const auto runs = std::make_shared<const std::vector<Run>>(runs_inside(experiment, body));
   for (const Run& run : *runs) seeded.particles += static_cast<std::size_t>(run.count);
   seeded.make = [&experiment, index, runs, affine = seeded.with_gradient](const auto& visit) {

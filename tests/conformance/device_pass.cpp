@@ -131,6 +131,7 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
   load<D>(t.in[3], lane, moments.velocity_increment.v);
   load<D * D>(t.in[4], lane, moments.affine.m);
   load<D * D>(t.in[5], lane, moments.velocity_gradient.m);
+  moments.second_moment = Mat<D, S>::identity();  // as for a batch without one
   Functor::gather(p, moments, real<S>(t.dt), v, state, advection);
   store<scalars<State, S>>(t.out[0], lane, reinterpret_cast<const S*>(&state));
   store<D>(t.out[1], lane, b.v);
@@ -390,7 +391,8 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
                                     in[5].data(),
                                     out[3].data(),
                                     state.data(),
-                                    out[4].data()};
+                                    out[4].data(),
+                                    nullptr};
       plugin.transfer().scatter[MPM_SCALAR_DOUBLE][axis](parameters.data(), &scatter);
       plugin.transfer().gather[MPM_SCALAR_DOUBLE][axis](parameters.data(), &gather);
       break;

@@ -12,8 +12,11 @@
 #include "shapes/cpdi/cpdi.hpp"
 #include "shapes/gimp/gimp.hpp"
 #include "support/catch.hpp"
+#include "transfers/aflip/aflip.hpp"
 #include "transfers/apic/apic.hpp"
+#include "transfers/asflip/asflip.hpp"
 #include "transfers/flip/flip.hpp"
+#include "transfers/rpic/rpic.hpp"
 #include "transfers/tpic/tpic.hpp"
 
 namespace mpm {  // so that functors find mpm::floor and its like, as those of the modules do
@@ -310,6 +313,25 @@ struct HalvesGradient : Tpic {
   }
 };
 
+struct HalvesSpin : Rpic {
+  template <int D, class S>
+  MPM_HD static void gather(const Parameters& p, const GatheredMoments<D, S>& moments, scalar_of<S> dt, Vec<D, S>& v,
+                            State<D, S>& state, Vec<D, S>& advection) {
+    Rpic::gather(p, moments, dt, v, state, advection);
+    for (S& entry : state.spin.m) entry = real<S>(0.5) * entry;
+  }
+};
+
+/// Moves with all of the particle's own velocity, as if nothing had been given to the grid.
+struct AdvectsByTwice : Asflip {
+  template <int D, class S>
+  MPM_HD static void gather(const Parameters& p, const GatheredMoments<D, S>& moments, scalar_of<S> dt, Vec<D, S>& v,
+                            State<D, S>& state, Vec<D, S>& advection) {
+    Asflip::gather(p, moments, dt, v, state, advection);
+    for (int i = 0; i < D; ++i) advection[i] = moments.velocity[i] + v[i];
+  }
+};
+
 struct LosesMomentum : Apic {
   template <int D, class S>
   MPM_HD static void scatter(const Parameters& p, S mass, const Vec<D, S>& v, const State<D, S>& state, Vec<D, S>& b,
@@ -447,6 +469,9 @@ TEST_CASE("the plugins that the wrong ones are made from pass") {
   CHECK(failures(wrong_filter<Fmpm>).empty());
   CHECK(failures(wrong_transfer<Tpic>).empty());
   CHECK(failures(wrong_transfer<Apic>).empty());
+  CHECK(failures(wrong_transfer<Rpic>).empty());
+  CHECK(failures(wrong_transfer<Aflip>).empty());
+  CHECK(failures(wrong_transfer<Asflip>).empty());
   CHECK(failures(wrong_transfer<Flip>).empty());
   CHECK(failures(wrong_contact<Coulomb>).empty());
   CHECK(failures(wrong_material<NeoHookean>).empty());
@@ -497,6 +522,9 @@ TEST_CASE("wrong filters are caught") {
 
 TEST_CASE("wrong transfers are caught") {
   check_caught(wrong_transfer<HalvesGradient>, "round_trip_velocity");
+  check_caught(wrong_transfer<HalvesSpin>, "angular_momentum");
+  check_caught(wrong_transfer<HalvesSpin>, "round_trip_velocity");
+  check_caught(wrong_transfer<AdvectsByTwice>, "round_trip_advection");
   check_caught(wrong_transfer<LosesMomentum>, "scattered_momentum");
   check_caught(wrong_transfer<TransposesAffine>, "angular_momentum");
   check_caught(wrong_transfer<TransposesAffine>, "round_trip_velocity");

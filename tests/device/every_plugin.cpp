@@ -34,7 +34,7 @@ TEST_CASE("every plugin runs on the host-run device as on the reference backend"
 
 TEST_CASE("every shape runs with every transfer on the host-run device", "[device]") {
   std::vector<Mix> mixes;
-  const std::vector<std::string> orders{"last", "first", "modified_last"};
+  const std::vector<std::string> orders{"last", "first", "modified_last", "averaged"};
   for (const Plugin* shape : plugins().of_kind(MPM_SHAPE))
     for (const Plugin* transfer : plugins().of_kind(MPM_TRANSFER))
       for (const int dimension : {2, 3}) {

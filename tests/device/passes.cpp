@@ -14,7 +14,7 @@ const Plugin& plugin(mpm_kind kind, const std::string& id) {
 }
 
 const std::string ledger_off = R"(, "output": {"ledger": false})";
-const std::vector<std::string> orders{"last", "first", "modified_last"};
+const std::vector<std::string> orders{"last", "first", "modified_last", "averaged"};
 
 }  // namespace
 

@@ -13,7 +13,7 @@ void check_boundaries(const std::string& boundaries, const std::string& more) {
     for (const std::string& shape : variants(MPM_SHAPE))
       for (const std::string transfer : {"flip", "mls"})
         for (const std::string contact : {"", R"({"type": "coulomb", "friction": 0.2})"})
-          for (const std::string order : {"last", "first", "modified_last"}) {
+          for (const std::string order : {"last", "first", "modified_last", "averaged"}) {
             Mix mix;
             mix.dimension = dimension;
             mix.shape = shape, mix.contact = contact, mix.stress_update = order;
@@ -52,7 +52,7 @@ TEST_CASE("parity of boxes of nodes", "[parity]") {
          {R"("type": "stick")", R"("type": "slip", "axis": "y")", R"("type": "separate", "axis": "x", "side": "+")",
           R"("type": "separate", "axis": "y", "side": "-")"})
       for (const std::string contact : {"", R"({"type": "coulomb", "friction": 0.2})"})
-        for (const std::string order : {"last", "first", "modified_last"}) {
+        for (const std::string order : {"last", "first", "modified_last", "averaged"}) {
           Mix mix;
           mix.dimension = dimension;
           mix.contact = contact, mix.stress_update = order;

@@ -63,7 +63,7 @@ TEST_CASE("parity of filters with walls and orders of a step", "[parity]") {
        {R"({"all": "slip"})", R"({"all": "stick"})", R"({"all": "separate"})", R"({"all": "free"})",
         R"({"all": "periodic"})",
         R"({"all": "slip", "y_min": {"type": "prescribed", "velocity": ["0.3+t", "0.1*x"]}})"})
-    for (const std::string order : {"last", "first", "modified_last"})
+    for (const std::string order : {"last", "first", "modified_last", "averaged"})
       for (const std::string contact : {"", R"({"type": "coulomb", "friction": 0.2})"})
         for (const std::string transfer : {R"({"type": "flip"})", R"({"type": "apic"})"})
           for (const std::string& filter : filters(transfer)) {

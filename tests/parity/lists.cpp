@@ -152,7 +152,7 @@ TEST_CASE("a plugin of before boxes gives the same results by its lists", "[pari
 }
 
 TEST_CASE("parity of lists that leave their tile at walls and in every order of a step", "[parity]") {
-  for (const std::string order : {"first", "modified_last"})
+  for (const std::string order : {"first", "modified_last", "averaged"})
     for (const std::string boundaries : {R"({"all": "slip"})", R"({"all": "periodic"})"}) {
       Stretch stretch;
       stretch.stress_update = order, stretch.boundaries = boundaries;

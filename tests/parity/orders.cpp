@@ -12,7 +12,7 @@ TEST_CASE("parity of the orders of a step", "[parity]") {
     for (const std::string& shape : variants(MPM_SHAPE))
       for (const std::string& transfer : variants(MPM_TRANSFER))
         for (const std::string& contact : dimension == 2 ? laws : std::vector<std::string>{laws[1]})
-          for (const std::string order : {"last", "first", "modified_last"}) {
+          for (const std::string order : {"last", "first", "modified_last", "averaged"}) {
             Mix mix;
             mix.dimension = dimension;
             mix.shape = shape, mix.transfer = transfer, mix.contact = contact, mix.stress_update = order;
@@ -23,7 +23,7 @@ TEST_CASE("parity of the orders of a step", "[parity]") {
 TEST_CASE("parity of body forces", "[parity]") {
   for (const int dimension : {2, 3})
     for (const std::string& transfer : variants(MPM_TRANSFER))
-      for (const std::string order : {"last", "first", "modified_last"})
+      for (const std::string order : {"last", "first", "modified_last", "averaged"})
         for (const std::string output : {"", R"(, "output": {"ledger": false})"}) {
           Mix mix;
           mix.dimension = dimension;

@@ -53,7 +53,7 @@ TEST_CASE("a restored run goes on bit for bit", "[parity]") {
       check_saved(mix.text(), overrides);
       mix.transfer = R"({"type": "tpic"})", mix.shape = R"({"type": "cpdi"})";
       mix.filter = R"({"type": "xpic", "order": 2, "every_courant": 0.4})";
-      for (const std::string order : {"last", "first", "modified_last"}) {
+      for (const std::string order : {"last", "first", "modified_last", "averaged"}) {
         mix.stress_update = order;
         check_saved(mix.text(), overrides);
       }

@@ -64,6 +64,9 @@ std::string boundary() {
   NUMBER(MPM_STRAIN_BY_AFFINE);
   NUMBER(MPM_AFFINE_CARRIES_ENERGY);
   NUMBER(MPM_GATHERS_GRADIENT);
+  NUMBER(MPM_READS_SECOND_MOMENT);
+  NUMBER(MPM_KEEPS_SPIN_ONLY);
+  NUMBER(MPM_STARTS_WITH_GRADIENT);
   NUMBER(MPM_REPLACES_MOTION);
   NUMBER(MPM_FILTERS_BEFORE_FORCES);
   NUMBER(MPM_BYPASSES_DETECTION);
@@ -170,6 +173,7 @@ std::string boundary() {
   FIELD(mpm_gather_batch, particle_velocity);
   FIELD(mpm_gather_batch, state);
   FIELD(mpm_gather_batch, advection_velocity);
+  FIELD(mpm_gather_batch, second_moment);
   out << "mpm_transfer, " << sizeof(mpm_transfer) << " bytes\n";
   FIELD(mpm_transfer, traits);
   FIELD(mpm_transfer, reserved);

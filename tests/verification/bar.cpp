@@ -71,29 +71,42 @@ TEST_CASE("C1 velocity of the centre of mass", "[C][C1]") {
   CHECK(end.momentum[0] / mass == Approx(0.0636619772 * std::cos(0.6283185307 * end.time)).epsilon(0.01));
 }
 
-TEST_CASE("the ledger's residual shrinks with the step at first order", "[C][ledger]") {
-  // Smooth motion without crossings, well resolved, of a hyperelastic body (small-strain elasticity has no energy whose
-  // derivative is its stress): what is left is time integration alone.
+namespace {
+
+/// Order in dt of the ledger's largest residual. Smooth motion without crossings, well resolved, of a hyperelastic body
+/// (small-strain elasticity has no energy whose derivative is its stress): what is left is time integration alone.
+double order_of_residual(const std::string& backend, const std::string& shape, const std::string& update,
+                         const std::string& speed) {
+  const std::vector<double> steps{0.02, 0.01, 0.005};
+  std::vector<double> residuals;
+  for (const double step : steps) {
+    Scene scene(
+        bar, {set("/backend", backend), set("/solver/stress_update", update), set("/materials/m/type", "neo_hookean"),
+              set("/shape/type", shape), set("/bodies/0/particles_per_cell_axis", "2"), set("/constants/v", speed),
+              set("/solver/time_step", digits(step)), set("/solver/end_time", "4")});
+    residuals.push_back(0);  // the largest of the run: at single times it passes through zero
+    while (!scene.simulation.finished()) {
+      scene.simulation.step();
+      residuals.back() = std::max(residuals.back(), std::abs(scene.metrics.ledger_residual(scene.metrics.measure())));
+    }
+    CHECK(residuals.back() < 0.01 * scene.metrics.initial().total_energy());
+  }
+  INFO(residuals[0] << " " << residuals[1] << " " << residuals[2]);
+  return observed_order(steps, residuals);
+}
+
+}  // namespace
+
+TEST_CASE("the ledger's residual shrinks with the step at first order, with USAVG at second", "[C][ledger]") {
   for (const std::string backend : {"reference", "cpu"})
-    for (const std::string order : {"last", "first", "modified_last"})
-      for (const std::string shape : {"linear", "bspline_quadratic"}) {
-        std::vector<double> steps{0.02, 0.01, 0.005}, residuals;
-        for (const double step : steps) {
-          Scene scene(bar, {set("/backend", backend), set("/solver/stress_update", order),
-                            set("/materials/m/type", "neo_hookean"), set("/shape/type", shape),
-                            set("/bodies/0/particles_per_cell_axis", "2"), set("/solver/time_step", digits(step)),
-                            set("/solver/end_time", "4")});
-          residuals.push_back(0);  // the largest of the run: at single times it passes through zero
-          while (!scene.simulation.finished()) {
-            scene.simulation.step();
-            residuals.back() =
-                std::max(residuals.back(), std::abs(scene.metrics.ledger_residual(scene.metrics.measure())));
-          }
-          CHECK(residuals.back() < 0.01 * scene.metrics.initial().total_energy());
-        }
-        INFO(backend << " " << order << " " << shape << ": " << residuals[0] << " " << residuals[1] << " "
-                     << residuals[2]);
-        CHECK(observed_order(steps, residuals) > 0.9);
-        CHECK(observed_order(steps, residuals) < 1.1);
-      }
+    for (const std::string shape : {"linear", "bspline_quadratic"}) {
+      INFO(backend << " " << shape);
+      for (const std::string update : {"last", "first", "modified_last"})
+        CHECK(std::abs(order_of_residual(backend, shape, update, "0.1") - 1) < 0.1);
+      // USAVG's stress lies between the two halves of its strain: the work of its forces, dt f (v- + v+) / 2, misses
+      // the change of the stored energy by O(dt^3) a step. At large strain F <- (I + dt L) F adds O(dt^2) a step with
+      // the cube of the amplitude, so the wave is small here.
+      CHECK(std::abs(order_of_residual(backend, shape, "averaged", "0.001") - 2) < 0.1);
+      CHECK(std::abs(order_of_residual(backend, shape, "first", "0.001") - 1) < 0.1);
+    }
 }

@@ -14,7 +14,7 @@ namespace {
 
 const std::vector<std::string> backends{"reference", "cpu"};
 const std::vector<std::string> shapes{"linear", "bspline_quadratic", "gimp", "cpdi"};
-const std::vector<std::string> filtered_transfers{"pic", "apic", "mls", "tpic"};  // flip: periodically
+const std::vector<std::string> filtered_transfers{"pic", "apic", "mls", "tpic", "rpic"};  // flip: periodically
 
 // Random places, and velocities that the grid cannot hold.
 const char* rough = R"J({
@@ -90,7 +90,7 @@ const std::vector<std::pair<std::string, std::string>> walls{
 TEST_CASE("order 1 of either filter is PIC", "[filters]") {
   for (const std::string& backend : backends)
     for (const std::string& shape : shapes)
-      for (const std::string order : {"last", "first", "modified_last"}) {
+      for (const std::string order : {"last", "first", "modified_last", "averaged"}) {
         const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
                                               set("/solver/stress_update", order), set("/grid/boundaries/all", "slip")};
         Scene pic(rough, common), fmpm(rough, common + filter("fmpm", 1)), xpic(rough, common + filter("xpic", 1));
@@ -149,7 +149,7 @@ TEST_CASE("a field that moves with its walls is no business of a filter", "[filt
     for (const std::string& shape : shapes)
       for (const std::string& transfer : filtered_transfers)
         for (const std::string type : {"fmpm", "xpic"})
-          for (const std::string order : {"last", "first", "modified_last"}) {
+          for (const std::string order : {"last", "first", "modified_last", "averaged"}) {
             Scene scene(rough, uniform + set("/backend", backend) + set("/shape/type", shape) +
                                    set("/transfer/type", transfer) + set("/solver/stress_update", order) +
                                    filter(type, 5));
@@ -199,7 +199,7 @@ TEST_CASE("A7 filters do not act on free flight", "[filters][A][A7]") {
     for (const std::string& shape : shapes)
       for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic"})
         for (const auto& [type, order] : {std::pair{"fmpm", 4}, std::pair{"xpic", 3}})
-          for (const std::string update : {"last", "first", "modified_last"}) {
+          for (const std::string update : {"last", "first", "modified_last", "averaged"}) {
             if (update == "first" && transfer != "pic") continue;
             const std::string interval = transfer == "flip" ? R"(,"every_steps":3)" : "";
             Scene scene(flight, {set("/backend", backend), set("/shape/type", shape), set("/transfer/type", transfer),
@@ -304,7 +304,7 @@ TEST_CASE("the ledger accounts for the filter", "[filters][ledger]") {
   for (const std::string& backend : backends)
     for (const std::string& shape : shapes)
       for (const std::string type : {"fmpm", "xpic"})
-        for (const std::string update : {"last", "first", "modified_last"}) {
+        for (const std::string update : {"last", "first", "modified_last", "averaged"}) {
           Scene scene(rough, {set("/backend", backend), set("/shape/type", shape), filter(type, 4),
                               set("/materials/m/youngs_modulus", "1e-9"), set("/solver/stress_update", update),
                               set("/grid/boundaries/all", "slip")});

@@ -220,6 +220,8 @@ TEST_CASE("A5 the largest stable step, found by running: particles at cell centr
     limits.push_back({shape, "flip", "", "modified_last", 0, 2.0});
     limits.push_back({shape, "flip", "", "first", 0, 2.0});
     limits.push_back({shape, "pic", "", "modified_last", 0, std::sqrt(3.0)});
+    limits.push_back({shape, "flip", "", "averaged", 0, 1.0});  // z = 2 C: see transfer_damping.cpp
+    limits.push_back({shape, "pic", "", "averaged", 0, 1.0});
     limits.push_back({shape, "pic", filter("xpic", 2), "last", 0, root_half});
     limits.push_back({shape, "pic", filter("fmpm", 2), "last", 0, 0.5});
     limits.push_back({shape, "pic", filter("fmpm", 4), "last", 0, std::sqrt(0.125)});
@@ -234,6 +236,8 @@ TEST_CASE("A5 the largest stable step, found by running: particles on nodes", "[
     limits.push_back({shape, "pic", "", "last", 0.5, 1.768});
     limits.push_back({shape, "flip", "", "modified_last", 0.5, 2.560});
     limits.push_back({shape, "pic", "", "first", 0.5, 2.357});
+    limits.push_back({shape, "flip", "", "averaged", 0.5, 2.0});  // z = C sin(theta)
+    limits.push_back({shape, "pic", "", "averaged", 0.5, 2.0});
     limits.push_back({shape, "pic", filter("xpic", 2), "last", 0.5, 1.704});
     limits.push_back({shape, "pic", filter("fmpm", 2), "last", 0.5, 1.579});
     limits.push_back({shape, "pic", filter("fmpm", 4), "last", 0.5, 1.458});

@@ -9,6 +9,7 @@
 
 namespace mpm::test {
 
+/// `transfer` is an id, or an object with parameters.
 struct Line {
   std::string shape = "linear", transfer = "pic", filter = {}, stress_update = "last", backend = "reference";
   int cells = 32, particles_per_cell = 1, mode = 1;
@@ -46,6 +47,13 @@ class LineScene {
     for (std::size_t k = 0; k < state.velocity.size(); k += 2) v.push_back(state.velocity[k]);
     return v;
   }
+  /// Along the line, cells.
+  std::vector<double> positions() const {
+    const BodyState state = simulation_.backend().body_state(0);
+    std::vector<double> x;
+    for (std::size_t k = 0; k < state.position.size(); k += 2) x.push_back(state.position[k]);
+    return x;
+  }
   /// sum v sin(2 pi mode x / length).
   double amplitude() const {
     const BodyState state = simulation_.backend().body_state(0);
@@ -76,7 +84,8 @@ class LineScene {
            length +
            R"(, 1]], "boundaries": {"x_min": "periodic", "x_max": "periodic", "y_min": "periodic", "y_max": "periodic"}},
       "shape": {"type": ")" +
-           line.shape + R"("}, "transfer": {"type": ")" + line.transfer + "\"}," +
+           line.shape + R"("}, "transfer": )" +
+           (line.transfer[0] == '{' ? line.transfer : "{\"type\": \"" + line.transfer + "\"}") + "," +
            (line.filter.empty() ? "" : "\"filter\": " + line.filter + ",") + R"(
       "materials": {"m": {"type": "linear_elastic", "youngs_modulus": 1, "poisson_ratio": 0, "density": 1}},
       "bodies": [{"name": "line", "material": "m", "particles_per_cell_axis": )" +

@@ -13,7 +13,7 @@ namespace {
 
 const std::vector<std::string> backends{"reference", "cpu"};
 const std::vector<std::string> sized_shapes{"gimp", "cpdi"};
-const std::vector<std::string> transfers{"pic", "flip", "apic", "mls", "tpic"};
+const std::vector<std::string> transfers{"pic", "flip", "apic", "mls", "tpic", "rpic", "aflip", "asflip"};
 
 const char* flight = R"J({
   "title": "flight", "dimension": 2, "precision": "double", "backend": "reference",

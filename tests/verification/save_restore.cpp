@@ -59,7 +59,7 @@ TEST_CASE("a restored run goes on bit for bit", "[restore]") {
   const std::vector<std::string> filters{"/filter=null", R"(/filter={"type":"fmpm","order":3,"every_steps":2})",
                                          R"(/filter={"type":"xpic","order":3,"every_courant":1.5})"};
   for (const std::string backend : {"reference", "cpu"})
-    for (const std::string order : {"last", "first", "modified_last"})
+    for (const std::string order : {"last", "first", "modified_last", "averaged"})
       for (const std::string contact : {"/contact=null", R"(/contact={"type":"coulomb","friction":0.3})"})
         for (const std::string& filter : filters)
           for (const std::string shape : {"linear", "cpdi"}) {

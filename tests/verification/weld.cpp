@@ -40,8 +40,8 @@ double largest_difference(const Scene& a, const Scene& b) {
 
 TEST_CASE("D4 a welded interface is transparent to rounding", "[D][D4]") {
   for (const std::string shape : {"linear", "bspline_quadratic"})
-    for (const std::string transfer : {"pic", "flip", "apic", "mls"})
-      for (const std::string order : {"last", "first", "modified_last"})
+    for (const std::string transfer : {"pic", "flip", "apic", "mls", "rpic", "aflip", "asflip"})
+      for (const std::string order : {"last", "first", "modified_last", "averaged"})
         for (const std::string backend : {"reference", "cpu"}) {
           if (backend == "reference" && order != "last") continue;
           const std::vector<std::string> common{set("/shape/type", shape), set("/transfer/type", transfer),
@@ -60,7 +60,7 @@ TEST_CASE("D4 a welded interface is transparent to rounding", "[D][D4]") {
 TEST_CASE("D4 the weld is transparent to sized shapes and Taylor transfer", "[D][D4]") {
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string shape : {"linear", "bspline_quadratic", "gimp", "cpdi"})
-      for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic"})
+      for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic", "rpic", "aflip", "asflip"})
         for (const std::string order : {"last", "modified_last"}) {
           if ((shape == "linear" || shape == "bspline_quadratic") && transfer != "tpic") continue;  // above
           const std::vector<std::string> common{set("/shape/type", shape), set("/transfer/type", transfer),
@@ -80,11 +80,11 @@ TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the
   const std::string rough = R"J(["1+0.3*sin(40*x)","0.4*x+0.3*cos(31*x*y)"])J";
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string shape : {"linear", "bspline_quadratic", "gimp", "cpdi"})
-      for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic"})
+      for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic", "rpic", "aflip", "asflip"})
         for (const auto& [type, order] : {std::pair{"fmpm", "4"}, std::pair{"xpic", "3"}}) {
           const auto run = [&, type = type, order = order](const std::string& constraints, bool weld) {
             const std::string interval =
-                transfer == "flip" ? R"("every_steps":2,)" : "";  // FLIP at every step is refused
+                transfer.find("flip") != transfer.npos ? R"("every_steps":2,)" : "";  // FLIP at every step is refused
             std::vector<std::string> overrides{set("/shape/type", shape), set("/transfer/type", transfer),
                                                set("/backend", backend),
                                                std::string(R"(/filter={"type":")") + type + R"(","order":)" + order +
@@ -100,7 +100,8 @@ TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the
           const auto step_all = [&](int steps) {
             for (Scene* scene : {one.get(), always.get(), at_end.get()}) scene->run_steps(steps);
           };
-          step_all(transfer == "flip" ? 2 : 1);
+          const bool periodic = transfer.find("flip") != transfer.npos;
+          step_all(periodic ? 2 : 1);
           double exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
           INFO(backend << " " << shape << " " << transfer << " " << type << ": every increment " << exact
                        << ", at the end " << late);
@@ -110,6 +111,6 @@ TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the
           exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
           INFO("after 20 more: every increment " << exact << ", at the end " << late);
           CHECK(exact < 1e-13);
-          CHECK(late > 1e-3);
+          CHECK(late > (periodic && transfer != "flip" ? 1e-4 : 1e-3));  // an affine field brings some of it along
         }
 }

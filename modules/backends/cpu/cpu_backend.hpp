@@ -283,7 +283,7 @@ void CpuBackend<D, T, Components>::execute(const Pass& pass, const StepInfo& ste
     case PassKind::gather:
       return gather(pass, step);
     case PassKind::strain:
-      ledger_.material += particle_step_->strain(step);
+      ledger_.material += particle_step_->strain(pass, step);
       return;
     case PassKind::move:
       return particle_step_->move(step);

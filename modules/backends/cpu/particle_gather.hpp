@@ -128,7 +128,8 @@ template <int D, class T, class Components>
                                scene_.has(MPM_GATHERS_GRADIENT) ? work.gradient_of_velocity : nullptr,
                                velocity,
                                state.fields,
-                               advection};
+                               advection,
+                               moments_for_transfer(chunk, work)};
   Components::gather(scene_, batch);
   if (step.filtered)  // the filtered velocity replaces the particle's
     for (int c = 0; c < D; ++c)
@@ -136,7 +137,7 @@ template <int D, class T, class Components>
         std::copy_n(work.velocity + c * chunk_size, chunk.end, target + c * chunk_size);
   if (scene_.plan.ledger) chunk.block.kinetic_energy += kinetic_energy(chunk, work);
   work.clock.lap(Phase::transfer);
-  if (pass.strain) advance_material(chunk, work, step.dt, evaluates_for_scatter(pass) ? &pass : nullptr);
+  if (pass.strain) advance_material(chunk, work, step.dt, pass);
   work.clock.lap(Phase::material);
   if (!pass.move) return 0;
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
@@ -148,7 +149,7 @@ template <int D, class T, class Components>
 }
 
 template <int D, class T, class Components>
-double ParticleStep<D, T, Components>::strain(const StepInfo& step) {
+double ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& step) {
   Wanted wanted;
   wanted.strain = true;
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
@@ -159,7 +160,7 @@ double ParticleStep<D, T, Components>::strain(const StepInfo& step) {
       block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         gather_chunk(chunk, work, wanted);
-        advance_material(chunk, work, step.dt, nullptr);
+        advance_material(chunk, work, step.dt, pass);
       });
     });
   throw_failure();
@@ -260,6 +261,22 @@ void ParticleStep<D, T, Components>::apply_inverse_moments(const Chunk& chunk, W
         work.affine[(c * D + a) * chunk_size + p] *= work.inverse_moment[a * chunk_size + p];
 }
 
+/// D of the last shape evaluation as the transfer reads it, cells^2; null where it is a multiple of the identity.
+template <int D, class T, class Components>
+const T* ParticleStep<D, T, Components>::moments_for_transfer(const Chunk& chunk, Work& work) const {
+  const bool varies = scene_.moment_of_particle || scene_.moment_is_gradient;
+  if (!varies || !scene_.has(MPM_READS_SECOND_MOMENT)) return nullptr;
+  if (scene_.list) return work.second_moment;
+  std::fill_n(work.transfer_moment, D * D * chunk_size, T(0));
+  for (int a = 0; a < D; ++a)
+    for (int p = 0; p < chunk.end; ++p) {
+      const T f = work.offset[a * chunk_size + p];
+      work.transfer_moment[a * (D + 1) * chunk_size + p] =
+          scene_.moment_of_particle ? work.second_moment[a * chunk_size + p] : f * (T(1) - f);
+    }
+  return work.transfer_moment;
+}
+
 /// One pass of the filter's loop on the particles: v* is gathered and scattered again by the transfer itself.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::project(const StepInfo& step) {
@@ -303,7 +320,8 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
                                   scene_.has(MPM_GATHERS_GRADIENT) ? work.gradient_of_velocity : nullptr,
                                   velocity,
                                   state.fields,
-                                  work.advection};
+                                  work.advection,
+                                  moments_for_transfer(chunk, work)};
   Components::gather(scene_, gathered);
   std::fill(work.mass, work.mass + chunk.end, static_cast<T>(chunk.body.mass));
   const bool affine = scene_.has(MPM_SCATTERS_AFFINE);
@@ -314,28 +332,32 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
   add_to_tile(chunk, work, filter_projection, work.mass, true, affine, false);
 }
 
-/// Strains the particles; with the pass that scatters them next, also gives what that wants of the material.
+/// Strains the particles by the pass's share of the step; where the pass scatters them too, also gives what that wants
+/// of the material.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& work, double dt, const Pass* scatters) {
+void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass) {
   const bool dissipation = scene_.plan.ledger && chunk.body.dissipates;
   mpm_material_batch request{};
-  request.dt = dt;
+  request.dt = pass.strain_share * dt;
   const T* const velocity_gradient = scene_.has(MPM_STRAIN_BY_AFFINE) ? work.affine : work.gradient_of_velocity;
   request.velocity_gradient = velocity_gradient;
   if (dissipation) request.dissipated_energy = work.scalar;
-  if (scatters) want_of_material(*scatters, work, request);
+  if (evaluates_for_scatter(pass)) want_of_material(pass, work, request);
   update_material(chunk, request);
-  if (chunk.particles.domain >= 0) advance_domain(chunk, velocity_gradient, dt);
+  if (chunk.particles.domain >= 0) advance_domain(chunk, velocity_gradient, request.dt, pass.strains_again);
   if (!dissipation) return;
   const auto energies = [&](int p) { return Lanes<T>::load(work.scalar + p); };
   chunk.block.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
 }
 
-/// domain <- (I + dt L) domain. USF goes on with the old weights until its gather.
+/// domain <- (I + dt L) domain. USF goes on with the old weights until its gather; `again`: what was strained in this
+/// step already is strained further.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const {
-  const T* const from = chunk.at(chunk.particles.domain);
-  T* const to = chunk.at(chunk.particles.next_domain < 0 ? chunk.particles.domain : chunk.particles.next_domain);
+void ParticleStep<D, T, Components>::advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt,
+                                                    bool again) const {
+  const int strained = chunk.particles.next_domain < 0 ? chunk.particles.domain : chunk.particles.next_domain;
+  const T* const from = chunk.at(again ? strained : chunk.particles.domain);
+  T* const to = chunk.at(strained);
   using V = Lanes<T>;
   const T step = static_cast<T>(dt);
   for (int p = 0; p < chunk.end; p += V::width) {

@@ -95,6 +95,7 @@ struct Workspace {
   BoxWork<D, T> boxes;
   AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
   AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
+  alignas(64) T transfer_moment[D * D * chunk_size];  ///< as the transfer reads it, where it is not second_moment
   PhaseClock clock;
   bool far_only = false;  ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
 
@@ -163,7 +164,7 @@ class ParticleStep {
   Fused gather_scatter(const Pass& pass, const StepInfo& step, const StepInfo& next);
   /// Momentum of the filter's increment, gathered and scattered again, into filter_projection.
   void project(const StepInfo& step);
-  double strain(const StepInfo& step);  ///< energy dissipated, J
+  double strain(const Pass& pass, const StepInfo& step);  ///< energy dissipated, J
   void move(const StepInfo& step);
   TimeStepLimit time_step_limit();
 
@@ -282,9 +283,10 @@ class ParticleStep {
   void unpack_moments(Work& work, bool moment, bool gradient, int count);
   void apply_inverse_moments(const Chunk& chunk, Work& work) const;
   void multiply_by_inverse_moments(const Chunk& chunk, Work& work) const;
+  const T* moments_for_transfer(const Chunk& chunk, Work& work) const;
   void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
-  void advance_material(const Chunk& chunk, Work& work, double dt, const Pass* scatters);
-  void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt) const;
+  void advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass);
+  void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
   double advance_position(const Chunk& chunk, const T* advection, double dt);
   double margin(int axis, int side) const;
   void note_outside(const Chunk& chunk);

@@ -129,6 +129,7 @@ std::string scene_text(const Choice& choice) {
       << "  static constexpr bool affine = " << yes(affine) << ";  // D^-1 is wanted\n"
       << "  static constexpr bool scatters_affine = " << yes(traits & (MPM_SCATTERS_AFFINE))
       << ", gathers_increment = " << yes(traits & MPM_GATHERS_INCREMENT)
+      << ", reads_second_moment = " << yes(traits & MPM_READS_SECOND_MOMENT)
       << ", stress_by_affine = " << yes(traits & MPM_STRESS_BY_AFFINE)
       << ", strain_by_affine = " << yes(traits & MPM_STRAIN_BY_AFFINE) << ";\n};\n";
   for (std::size_t k = 0; k < choice.materials.size(); ++k)

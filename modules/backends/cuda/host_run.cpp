@@ -188,7 +188,7 @@ class HostRun final : public Backend {
       case PassKind::gather:
         return gather(pass, step);
       case PassKind::strain:
-        return strain();
+        return strain(pass);
       case PassKind::move:
         return move();
       case PassKind::begin_filter:
@@ -346,9 +346,15 @@ class HostRun final : public Backend {
     if (first_failed_ != INT_MAX)
       throw RunFailure(cause, static_cast<int>(&body - bodies_.data()), static_cast<std::size_t>(first_failed_));
   }
-  void run_material(const std::string& phase, Body<T>& body) {
-    run(phase + "_" + std::to_string(body.material_number), arguments_of(body), teams(body.count), body,
+  void run_material(const std::string& phase, Body<T>& body) { run_material(phase, arguments_of(body), body); }
+  void run_material(const std::string& phase, const Arguments<T>& a, Body<T>& body) {
+    run(phase + "_" + std::to_string(body.material_number), a, teams(body.count), body,
         "inverted: its volume ratio J is not positive");
+  }
+  void run_strain(const Pass& pass, Body<T>& body) {
+    Arguments<T> a = arguments_of(body);
+    a.dt *= static_cast<T>(pass.strain_share);
+    run_material("strain", a, body);
   }
   static constexpr const char* outside_grid = "its stencil reaches beyond the grid, or its position is not a number";
 
@@ -412,15 +418,15 @@ class HostRun final : public Backend {
       Arguments<T> a = arguments_of(body);
       a.update_particles = true, a.filtered = step.filtered;
       run("gather", a, teams(body.count), body, outside_grid);
-      if (pass.strain) run_material("strain", body);
+      if (pass.strain) run_strain(pass, body);
     }
     if (pass.move) move();
   }
 
-  void strain() {
+  void strain(const Pass& pass) {
     for (Body<T>& body : bodies_) {
       run("gather", arguments_of(body), teams(body.count), body, outside_grid);
-      run_material("strain", body);
+      run_strain(pass, body);
     }
   }
 

@@ -199,9 +199,22 @@ double Particles::strain(double dt) {
   return volume_ * dissipated.leftCols(count_).sum();
 }
 
+Array Particles::moments_for_transfer() const {
+  const bool constant = experiment_.shape.plugin->shape().second_moment_kind == MPM_MOMENT_CONSTANT;
+  if (constant || !(transfer_.plugin->transfer().traits & MPM_READS_SECOND_MOMENT)) return {};
+  const double h = experiment_.grid.cell_size;
+  Array moments = make(dimension_ * dimension_);
+  for (std::size_t p = 0; p < count_; ++p)
+    for (int i = 0; i < dimension_; ++i)
+      for (int j = 0; j < dimension_; ++j) moments(i * dimension_ + j, p) = second_moments_[p](i, j) / (h * h);
+  pad(moments);
+  return moments;
+}
+
 void Particles::call_gather(double dt, const Array& increments, Array& velocities, Fields& states, Array& advections) {
   const mpm_transfer& transfer = transfer_.plugin->transfer();
   for (Array* array : {&gathered_velocity, &gathered_increment, &gathered_affine, &gathered_gradient}) pad(*array);
+  const Array moments = moments_for_transfer();
   const auto state = pointers(states, *transfer_.plugin);
   const auto n = static_cast<std::uint32_t>(padded_);
   const mpm_gather_batch batch{n,
@@ -215,7 +228,8 @@ void Particles::call_gather(double dt, const Array& increments, Array& velocitie
                                gathered_gradient.data(),
                                velocities.data(),
                                state.data(),
-                               advections.data()};
+                               advections.data(),
+                               moments.size() ? moments.data() : nullptr};
   transfer.gather[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
 }
 

@@ -70,6 +70,8 @@ class Particles {
   /// What saving writes and restoring reads, in order.
   template <class Self, class Visit>
   static void visit_saved(Self& self, Visit visit);
+  /// D as the transfer reads it, cells^2; empty where it does not or where D is a multiple of the identity.
+  Array moments_for_transfer() const;
   std::vector<void*> pointers(Fields& fields, const Plugin& plugin);
   void initialise(Fields& fields, const Plugin& plugin);
   std::int32_t update_material(const mpm_material_batch& outputs);

@@ -33,7 +33,7 @@ void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
     case PassKind::gather:
       return gather(pass, step);
     case PassKind::strain:
-      return strain(step);
+      return strain(pass, step);
     case PassKind::move:
       return move(step);
     case PassKind::begin_filter:

@@ -46,7 +46,7 @@ class ReferenceBackend final : public Backend {
   void scatter_contact_fields(Particles& body);
   void gather(const Pass& pass, const StepInfo& step);
   void gather_moments(Particles& body, Vector Node::*velocity);
-  void strain(const StepInfo& step);
+  void strain(const Pass& pass, const StepInfo& step);
 
   // ---- grid_step.cpp
   void momentum_to_velocity(const Pass& pass, const StepInfo& step);

@@ -72,7 +72,7 @@ void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
     gather_moments(body, &Node::velocity);
     body.gather(step.dt);
     if (step.filtered) body.take_gathered_velocity();
-    if (pass.strain) ledger_.material += body.strain(step.dt);
+    if (pass.strain) ledger_.material += body.strain(pass.strain_share * step.dt);
   }
   if (plan_.ledger) ledger_.gather += particle_kinetic_energy() - kinetic_energy_after_;
   if (pass.move) move(step);
@@ -100,10 +100,10 @@ void ReferenceBackend::gather_moments(Particles& body, Vector Node::*velocity_of
   }
 }
 
-void ReferenceBackend::strain(const StepInfo& step) {
+void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {
   for (Particles& body : bodies_) {
     gather_moments(body, &Node::velocity);
-    ledger_.material += body.strain(step.dt);
+    ledger_.material += body.strain(pass.strain_share * step.dt);
   }
 }
 

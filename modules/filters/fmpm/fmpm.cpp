@@ -19,8 +19,8 @@ mass norm of v* is the convergence monitor: with weights that are not negative i
 negative weights) the run says so.
 
 With a transfer: S+S is the transfer's own round trip of v*. `pic` and `flip` give the series above (`flip` keeps its particle
-velocity only in steps that are not filtered, so filter every few steps to mix the two). `apic`, `mls` and `tpic` round-trip affine
-parts too, so S+S is nearer to I and a low order is enough.
+velocity only in steps that are not filtered, so filter every few steps to mix the two; so do `aflip` and `asflip`). `apic`, `mls`
+and `tpic` round-trip affine parts too, `rpic` rigid ones, so S+S is nearer to I and a low order is enough.
 
 Stability is lost with order: at one particle in the middle of each cell the longest step is h/(c sqrt(2 k)) (0.707, 0.5, 0.354 h/c
 at k = 1, 2, 4); other layouts lose less. Dissipation does not fall steadily with the order: in impacts, orders below 4 may

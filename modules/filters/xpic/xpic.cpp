@@ -18,8 +18,8 @@ mass norm of v* is the convergence monitor: with weights that are not negative i
 negative weights) the run says so.
 
 With a transfer: S+S is the transfer's own round trip of v*. `pic` and `flip` give the series above (`flip` keeps its particle
-velocity only in steps that are not filtered, so filter every few steps to mix the two). `apic`, `mls` and `tpic` round-trip affine
-parts too, so S+S is nearer to I and a low order is enough.
+velocity only in steps that are not filtered, so filter every few steps to mix the two; so do `aflip` and `asflip`). `apic`, `mls`
+and `tpic` round-trip affine parts too, `rpic` rigid ones, so S+S is nearer to I and a low order is enough.
 
 Dissipation does not fall steadily with the order: in impacts, orders below 4 may dissipate more than FLIP. The longest stable step
 at order 2 is that of PIC or a little less: 1/sqrt(2) h/c at one particle a cell in the middle of it.)",

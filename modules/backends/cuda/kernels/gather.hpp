@@ -13,6 +13,7 @@ MPM_HD GatheredMoments<Scene::dimension, typename Scene::Scalar> gathered_moment
   using T = typename Scene::Scalar;
   constexpr int D = Scene::dimension;
   GatheredMoments<D, T> moments{};
+  if constexpr (Scene::reads_second_moment) moments.second_moment = stencil.second_moment();
   stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
     const int node = node_index<D>(a, s.node);
     for (int i = 0; i < D; ++i) {

@@ -87,6 +87,14 @@ class StencilOf<Scene, false> {
   /// Whether all nodes are in the grid and the position is a number.
   MPM_HD bool inside() const { return inside_; }
 
+  /// D = sum w d d^T, cells^2: diagonal, since sum w d = 0 along each axis.
+  MPM_HD Mat<D, T> second_moment() const {
+    Mat<D, T> moment{};
+    for (int c = 0; c < D; ++c)
+      for (int k = 0; k < width; ++k) moment(c, c) += weight_[c][k] * (T(k) - offset_[c]) * (T(k) - offset_[c]);
+    return moment;
+  }
+
   template <class Body>
   MPM_HD void for_each_node(const Arguments<T>& a, Body body) const {
     constexpr int count = D == 2 ? width * width : width * width * width;
@@ -132,18 +140,24 @@ class StencilOf<Scene, true> {
     if (!inside_) return;
     const Mat<D, T> domain = load_matrix<D>(a.particles.stencil_domain, a.particles.stride, p);
     Shape::evaluate(parameters_of<Shape>(a.shape_parameters), position_, domain, list_);
-    Mat<D, T> moment{};
     for (int k = 0; k < list_.count; ++k)
       for (int i = 0; i < D; ++i) {
         const int node = list_.node[k][i];
         inside_ = inside_ && node >= -a.padding[i] && node <= a.cells[i] + a.padding[i];
-        for (int j = 0; j < D; ++j)
-          moment(i, j) += list_.weight[k] * (T(node) - position_[i]) * (T(list_.node[k][j]) - position_[j]);
       }
-    if constexpr (Scene::affine) inverse_moment_ = inverse(moment);
+    if constexpr (Scene::affine) inverse_moment_ = inverse(second_moment());
   }
 
   MPM_HD bool inside() const { return inside_; }
+
+  MPM_HD Mat<D, T> second_moment() const {
+    Mat<D, T> moment{};
+    for (int k = 0; k < list_.count; ++k)
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j)
+          moment(i, j) += list_.weight[k] * (T(list_.node[k][i]) - position_[i]) * (T(list_.node[k][j]) - position_[j]);
+    return moment;
+  }
 
   template <class Body>
   MPM_HD void for_each_node(const Arguments<T>& a, Body body) const {
