@@ -15,6 +15,7 @@ struct Line {
   double offset = 0;         ///< cells by which the lattice is moved along the line
   double jitter = 0;         ///< largest shift of a particle, cells: couples modes that a perfect lattice keeps apart
   double time_step = 1e-13;  ///< s; with unit cells and unit wave speed, also the Courant number
+  double pic_fraction = 0;   ///< of flip
 };
 
 /// Wave speed, cell size and density are one. Periodic across the line too: both rows of nodes are one, so that no
@@ -76,7 +77,8 @@ class LineScene {
            length +
            R"(, 1]], "boundaries": {"x_min": "periodic", "x_max": "periodic", "y_min": "periodic", "y_max": "periodic"}},
       "shape": {"type": ")" +
-           line.shape + R"("}, "transfer": {"type": ")" + line.transfer + "\"}," +
+           line.shape + R"("}, "transfer": {"type": ")" + line.transfer + "\"" +
+           (line.pic_fraction > 0 ? ", \"pic_fraction\": " + digits(line.pic_fraction) : "") + "}," +
            (line.filter.empty() ? "" : "\"filter\": " + line.filter + ",") + R"(
       "materials": {"m": {"type": "linear_elastic", "youngs_modulus": 1, "poisson_ratio": 0, "density": 1}},
       "bodies": [{"name": "line", "material": "m", "particles_per_cell_axis": )" +
@@ -91,5 +93,27 @@ class LineScene {
   Experiment experiment_;
   Simulation simulation_;
 };
+
+/// Factor on the velocity of a mode in one step. The first step brings affine velocities to the mode's own.
+inline double factor(const Line& line) {
+  LineScene scene(line);
+  scene.step();
+  const double before = scene.amplitude();
+  scene.step();
+  return scene.amplitude() / before;
+}
+
+/// The `filter` of an experiment.
+inline std::string filter(const std::string& type, int order) {
+  return R"({"type": ")" + type + R"(", "order": )" + std::to_string(order) + "}";
+}
+
+/// Those of `names` that this build has: tables also name shapes that a build may lack.
+inline std::vector<std::string> shapes_present(const std::vector<std::string>& names) {
+  std::vector<std::string> found;
+  for (const std::string& name : names)
+    if (plugins().find(MPM_SHAPE, name) != nullptr) found.push_back(name);
+  return found;
+}
 
 }  // namespace mpm::test
