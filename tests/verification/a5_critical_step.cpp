@@ -147,11 +147,11 @@ bool stable(const Line& line) {
   LineScene scene(line, noise);
   double middle = 0, last = 0;
   try {
-    for (int part = 0; part < 20; ++part) {
-      scene.step(100);
+    for (int part = 0; part < 100; ++part) {
+      scene.step(20);
       last = scene.largest_disturbance();
       if (last > 1e-5) return false;  // a thousand times the noise; beyond, it moves the particles and levels off
-      if (part == 9) middle = last;
+      if (part == 49) middle = last;
     }
   } catch (const RunFailure&) {
     return false;
