@@ -47,6 +47,13 @@ class LineScene {
     for (std::size_t k = 0; k < state.velocity.size(); k += 2) v.push_back(state.velocity[k]);
     return v;
   }
+  /// On the line, cells from its start.
+  std::vector<double> places() const {
+    const BodyState state = simulation_.backend().body_state(0);
+    std::vector<double> x;
+    for (std::size_t k = 0; k < state.position.size(); k += 2) x.push_back(state.position[k]);
+    return x;
+  }
   /// sum v sin(2 pi mode x / length).
   double amplitude() const {
     const BodyState state = simulation_.backend().body_state(0);
