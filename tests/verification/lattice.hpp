@@ -16,6 +16,7 @@ struct Line {
   double offset = 0;         ///< cells by which the lattice is moved along the line
   double jitter = 0;         ///< largest shift of a particle, cells: couples modes that a perfect lattice keeps apart
   double time_step = 1e-13;  ///< s; with unit cells and unit wave speed, also the Courant number
+  double pic_fraction = 0;   ///< of flip
 };
 
 /// Wave speed, cell size and density are one. Periodic across the line too: both rows of nodes are one, so that no
@@ -47,8 +48,8 @@ class LineScene {
     for (std::size_t k = 0; k < state.velocity.size(); k += 2) v.push_back(state.velocity[k]);
     return v;
   }
-  /// Along the line, cells.
-  std::vector<double> positions() const {
+  /// On the line, cells from its start.
+  std::vector<double> places() const {
     const BodyState state = simulation_.backend().body_state(0);
     std::vector<double> x;
     for (std::size_t k = 0; k < state.position.size(); k += 2) x.push_back(state.position[k]);
@@ -78,14 +79,18 @@ class LineScene {
 
  private:
   double mode(double x) const { return std::sin(2 * std::numbers::pi * line_.mode * x / line_.cells); }
+  static std::string transfer_of(const Line& line) {
+    if (line.transfer[0] == '{') return line.transfer;
+    return "{\"type\": \"" + line.transfer + "\"" +
+           (line.pic_fraction > 0 ? ", \"pic_fraction\": " + digits(line.pic_fraction) : "") + "}";
+  }
   static std::string text(const Line& line) {
     const std::string length = std::to_string(line.cells);
     return R"({"dimension": 2, "backend": ")" + line.backend + R"(", "grid": {"cell_size": 1, "domain": [[0, 0], [)" +
            length +
            R"(, 1]], "boundaries": {"x_min": "periodic", "x_max": "periodic", "y_min": "periodic", "y_max": "periodic"}},
       "shape": {"type": ")" +
-           line.shape + R"("}, "transfer": )" +
-           (line.transfer[0] == '{' ? line.transfer : "{\"type\": \"" + line.transfer + "\"}") + "," +
+           line.shape + R"("}, "transfer": )" + transfer_of(line) + "," +
            (line.filter.empty() ? "" : "\"filter\": " + line.filter + ",") + R"(
       "materials": {"m": {"type": "linear_elastic", "youngs_modulus": 1, "poisson_ratio": 0, "density": 1}},
       "bodies": [{"name": "line", "material": "m", "particles_per_cell_axis": )" +
@@ -100,5 +105,27 @@ class LineScene {
   Experiment experiment_;
   Simulation simulation_;
 };
+
+/// Factor on the velocity of a mode in one step. The first step brings affine velocities to the mode's own.
+inline double factor(const Line& line) {
+  LineScene scene(line);
+  scene.step();
+  const double before = scene.amplitude();
+  scene.step();
+  return scene.amplitude() / before;
+}
+
+/// The `filter` of an experiment.
+inline std::string filter(const std::string& type, int order) {
+  return R"({"type": ")" + type + R"(", "order": )" + std::to_string(order) + "}";
+}
+
+/// Those of `names` that this build has: tables also name shapes that a build may lack.
+inline std::vector<std::string> shapes_present(const std::vector<std::string>& names) {
+  std::vector<std::string> found;
+  for (const std::string& name : names)
+    if (plugins().find(MPM_SHAPE, name) != nullptr) found.push_back(name);
+  return found;
+}
 
 }  // namespace mpm::test

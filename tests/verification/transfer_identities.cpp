@@ -180,11 +180,11 @@ TEST_CASE("A4 AFLIP keeps the null space, RPIC removes it, and ASFLIP's particle
       CHECK(run("rpic", 1)->largest_speed() <= 1e-14);
       const auto kept = run(aflip_without_pic, 10);
       CHECK(kept->velocities().front() == Approx(1.0).epsilon(1e-12));
-      const auto start = run(aflip_without_pic, 0)->positions();
-      CHECK(largest_difference(kept->positions(), start) <= 1e-13);  // nothing moves: the grid is at rest
+      const auto start = run(aflip_without_pic, 0)->places();
+      CHECK(largest_difference(kept->places(), start) <= 1e-13);  // nothing moves: the grid is at rest
       // The grid is at rest, no volume changes: beta_max moves them, each with its own velocity.
       const std::string parting = R"({"type": "asflip", "pic_fraction": 0, "beta_max": 0.5})";
-      const auto parted = run(parting, 1)->positions();
+      const auto parted = run(parting, 1)->places();
       for (std::size_t k = 0; k < start.size(); ++k)
         CHECK(parted[k] - start[k] == Approx(0.5 * 0.01 * alternating(start[k])).epsilon(1e-11));
     }

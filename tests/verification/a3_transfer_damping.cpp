@@ -1,0 +1,109 @@
+// Case A3: the table of what one step does to a wave of 32 / n cells, for every transfer and shape that has a row, on
+// both backends. `ctest -V` shows it. Factors of other orders of filters and of FLIP are in lattice.cpp.
+
+#include <array>
+#include <cstdio>
+
+#include "lattice.hpp"
+#include "support/catch.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+constexpr std::array modes{1, 2, 4, 8};
+
+struct Row {
+  std::vector<std::string> shapes;     // that coincide with the first where particles are boxes of one cell
+  std::vector<std::string> transfers;  // that coincide with the first on this lattice
+  double offset = 0;                   // 0: at cell centres, or at 1/4 and 3/4 with two a cell; 1/2: on nodes
+  int particles_per_cell = 1;
+  std::array<double, 4> factors;  // of modes 1, 2, 4, 8
+  double tolerance = 1e-10;
+  bool is_quotient = false;  // one step of the seeded mode, v'Mv / v'v: it is no mode of the lattice
+};
+
+/// What one step leaves of the mode; of an affine transfer, once its affine velocities are the mode's own.
+double one_step(const Row& row, const Line& line) {
+  if (!row.is_quotient) return factor(line);
+  LineScene scene(line);
+  const double before = scene.amplitude();
+  scene.step();
+  return scene.amplitude() / before;
+}
+
+void check_row(const Row& row) {
+  for (const std::string& shape : shapes_present(row.shapes))
+    for (const std::string& transfer : row.transfers)
+      for (const std::string backend : {"reference", "cpu"}) {
+        std::printf("  %-17s %-5s %-10s %s, %d a cell ", shape.c_str(), transfer.c_str(), backend.c_str(),
+                    row.offset == 0 ? "centre" : "node  ", row.particles_per_cell);
+        for (std::size_t k = 0; k < modes.size(); ++k) {
+          const double found = one_step(row, {.shape = shape,
+                                              .transfer = transfer,
+                                              .backend = backend,
+                                              .particles_per_cell = row.particles_per_cell,
+                                              .mode = modes[k],
+                                              .offset = row.offset});
+          std::printf(" %.10f", found);
+          INFO(shape << " " << transfer << " " << backend << " mode " << modes[k] << ": " << digits(found) << ", exact "
+                     << row.factors[k]);
+          CHECK(std::abs(found - row.factors[k]) <= row.tolerance);
+        }
+        std::printf("\n");
+      }
+}
+
+}  // namespace
+
+TEST_CASE("A3 the table of damping factors", "[A][A3]") {
+  const std::vector<std::string> quadratic{"bspline_quadratic", "gimp", "gimp_contiguous"},
+      cubic{"bspline_cubic", "b2gimp"}, affine{"apic", "mls"};
+  const std::vector<std::string> centre{"linear", "bspline_quadratic", "gimp", "gimp_contiguous", "cpdi"};
+  std::printf("A3, factor on the velocity of modes 1, 2, 4, 8 of 32 cells in one step\n");
+  for (const Row& row : std::vector<Row>{
+           {centre, {"pic"}, 0, 1, {.9903926402, .9619397663, .8535533906, .5}},
+           {quadratic, {"pic"}, .5, 1, {.9904157155, .9623019116, .8589150429, .5625}},
+           {cubic, {"pic"}, .5, 1, {.9872312098, .9498968356, .8142696805, .4444444444}},
+           {quadratic, affine, .5, 1, {.9999307740, .9989135640, .9839150429, .8125}},
+           {{"bspline_quadratic"}, affine, 0, 2, {.99996431, .99943981, .99170619, .90332031}, 1e-6},
+           // The case gives eight digits of these two rows.
+           {cubic, affine, .5, 1, {.99991795, .99871237, .98093635, .77777778}, 5.1e-9},
+           {{"bspline_cubic"}, affine, 0, 2, {.99993099, .99891967, .98415701, .82108222}, 1e-6},
+           {{"linear"}, {"pic"}, 0, 2, {.99279447, .97145394, .89010991, .62185922}, 1e-6, true},
+       })
+    check_row(row);
+}
+
+TEST_CASE("A3 FLIP with a share of PIC damps by that share", "[A][A3]") {
+  for (const double share : {0.01, 0.1, 0.5})
+    for (const int mode : modes) {
+      const double s2 = std::pow(std::cos(std::numbers::pi * mode / 32), 2);
+      const Line line{.transfer = "flip", .mode = mode, .pic_fraction = share};
+      INFO("share " << share << " mode " << mode);
+      CHECK(factor(line) == Approx(1 - share + share * s2).epsilon(1e-10));
+    }
+}
+
+TEST_CASE("A3 the order of dissipation: 2 of PIC, 4 of APIC, 2 m of XPIC(m) and FMPM(m)", "[A][A3]") {
+  // The loss of the longest wave over that of half its length is 2^-order as both go to zero.
+  std::printf("A3, order of dissipation from waves of 64 and 32 cells\n");
+  const auto check_order = [](const std::string& transfer, const std::string& with_filter, double order) {
+    const auto loss = [&](int cells) {
+      return 1 - factor({.shape = "bspline_quadratic",
+                         .transfer = transfer,
+                         .filter = with_filter,
+                         .cells = cells,
+                         .offset = 0.5});
+    };
+    const double found = std::log2(loss(32) / loss(64));
+    std::printf("  %-5s %-32s %.3f\n", transfer.c_str(), with_filter.c_str(), found);
+    INFO(transfer << " " << with_filter << ": " << found);
+    CHECK(std::abs(found - order) <= 0.02 * order);
+  };
+  check_order("pic", "", 2);
+  for (const char* transfer : {"apic", "mls", "tpic"}) check_order(transfer, "", 4);
+  for (const int m : {2, 3})
+    for (const char* type : {"xpic", "fmpm"}) check_order("pic", filter(type, m), 2 * m);
+}
