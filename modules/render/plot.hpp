@@ -44,6 +44,7 @@ struct StackedPlot {
 struct OutcomeMap {
   std::string title = {}, x_label = {}, y_label = {}, footnote = {};
   std::vector<double> x = {}, y = {};      // centres of the cells, increasing
+  std::vector<std::string> y_names = {};   // empty, or one a row: written in place of the numbers of y
   std::vector<int> outcome = {};           // y.size() rows of x.size(): index into `outcomes`, -1 where nothing was run
   std::vector<std::string> outcomes = {};  // "bounded", "gained energy", "stopped: particle left the grid"
   std::vector<Series> limits = {};         // theoretical limits, drawn over the cells in black
