@@ -6,6 +6,7 @@
 #include "bench/counting.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
 #include "materials/von_mises/von_mises.hpp"
+#include "shapes/bspline_cubic/bspline_cubic.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
 #include "shapes/cpdi/cpdi.hpp"
 #include "shapes/gimp/gimp.hpp"
@@ -103,6 +104,7 @@ std::optional<ShapeCost> shape_cost(const Component& component, double half_size
   const std::string_view id = component.plugin->id();
   const bool moment = wanted.moment_of_particle && wanted.affine();
   if (id == "linear") return tensor_cost<Linear, D, T>(component, half_size, false);
+  if (id == "bspline_cubic") return tensor_cost<BsplineCubic, D, T>(component, half_size, false);
   if (id == "bspline_quadratic") return tensor_cost<BsplineQuadratic, D, T>(component, half_size, false);
   if (id == "gimp") return tensor_cost<Gimp, D, T>(component, half_size, moment);
   if (id == "cpdi") return cpdi_cost<D, T>(component, half_size, moment);

@@ -16,10 +16,11 @@ namespace {
 constexpr int kSamples = 3;  // samples a pixel in each direction
 constexpr double kLineSpacing = 1.35;
 
-void draw_value_numbers(Canvas& canvas, const Theme& theme, const Scales& s) {
+void draw_value_numbers(Canvas& canvas, const Theme& theme, const Scales& s, bool show_numbers) {
   for (std::size_t i = 0; i < s.y.ticks.major.size(); ++i) {
     const double y = s.at(s.x.lo, s.y.ticks.major[i]).y;
     canvas.line({s.box.x0, y}, {s.box.x1, y}, {kGrid, 1.5 * theme.unit});
+    if (!show_numbers) continue;
     canvas.text({s.box.x0 - 12 * theme.unit, y}, s.y.ticks.labels[i], theme.style(kInk, Anchor::end, Baseline::middle));
   }
   for (const double value : s.y.ticks.minor) {
@@ -72,6 +73,18 @@ std::vector<std::string> wrapped(const Canvas& canvas, std::string_view text, do
   }
   if (!line.empty()) lines.push_back(line);
   return lines;
+}
+
+std::string shortened(const Canvas& canvas, std::string_view text, double size, double width, bool bold) {
+  if (canvas.measure_text(text, size, bold) <= width) return std::string(text);
+  for (std::size_t end = text.size(); end > 0;) {
+    do --end;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80);  // never inside a code point
+    const std::size_t last = text.substr(0, end).find_last_not_of(' ');
+    const std::string result = std::string(text.substr(0, last == std::string_view::npos ? 0 : last + 1)) + "…";
+    if (canvas.measure_text(result, size, bold) <= width) return result;
+  }
+  return "…";
 }
 
 Box draw_page(Canvas& canvas, const Theme& theme, const std::string& title, const std::string& footnote) {
@@ -139,14 +152,18 @@ double widest_label(const Canvas& canvas, const Theme& theme, const Ticks& ticks
   return widest;
 }
 
-void draw_axes(Canvas& canvas, const Theme& theme, const Scales& s, const std::string& x_label,
-               const std::string& y_label, double label_left, bool show_x_numbers) {
-  draw_value_numbers(canvas, theme, s);
+void draw_scales(Canvas& canvas, const Theme& theme, const Scales& s, bool show_x_numbers, bool show_y_numbers) {
+  draw_value_numbers(canvas, theme, s, show_y_numbers);
   draw_x_axis(canvas, theme, s, show_x_numbers);
   if (!s.y.is_log && s.y.lo < 0 && s.y.hi > 0) {
     const double y = s.at(s.x.lo, 0).y;
     canvas.line({s.box.x0, y}, {s.box.x1, y}, {kQuiet, 2 * theme.unit});
   }
+}
+
+void draw_axes(Canvas& canvas, const Theme& theme, const Scales& s, const std::string& x_label,
+               const std::string& y_label, double label_left, bool show_x_numbers) {
+  draw_scales(canvas, theme, s, show_x_numbers, true);
   canvas.text({label_left, s.box.y0 - 0.9 * theme.text}, with_factor(y_label, s.y.ticks.exponent), theme.style());
   if (!show_x_numbers) return;
   const Point below{s.box.centre().x, s.box.y1 + 16 * theme.unit + 1.5 * theme.text};

@@ -72,6 +72,12 @@ double widest_label(const Canvas& canvas, const Theme& theme, const Ticks& ticks
 void draw_axes(Canvas& canvas, const Theme& theme, const Scales& scales, const std::string& x_label,
                const std::string& y_label, double label_left, bool show_x_numbers = true);
 
+/// The same without names; numbers where asked for.
+void draw_scales(Canvas& canvas, const Theme& theme, const Scales& scales, bool show_x_numbers, bool show_y_numbers);
+
+/// The text, or as much of its beginning as fits `width` with "…" after it.
+std::string shortened(const Canvas& canvas, std::string_view text, double size, double width, bool bold = false);
+
 /// Moves intervals along a line as little as possible so that none overlap, within [lo, hi].
 /// @param centres wanted centres. @param sizes lengths. @returns new centres, or nothing when they cannot all fit.
 std::optional<std::vector<double>> spread(std::span<const double> centres, std::span<const double> sizes, double lo,

@@ -67,6 +67,11 @@ Colour readable_text(const Colour& colour) {
   return result;
 }
 
+Colour text_upon(const Colour& ground) {
+  // Contrasts are ratios of luminances raised by 0.05; black and white tie where that is the root of 1.05 x 0.05.
+  return relative_luminance(ground) + 0.05 > std::sqrt(1.05 * 0.05) ? kBlack : kWhite;
+}
+
 std::string hex(const Colour& colour) {
   const auto byte = [](double v) { return static_cast<int>(std::lround(std::clamp(v, 0.0, 1.0) * 255)); };
   char text[8];

@@ -33,6 +33,9 @@ Colour mix(const Colour& a, const Colour& b, double t);
 /// The same hue, dark enough to be read as text on white.
 Colour readable_text(const Colour& colour);
 
+/// Black or white, whichever is easier to read upon `ground`.
+Colour text_upon(const Colour& ground);
+
 /// "#rrggbb", opacity left out.
 std::string hex(const Colour& colour);
 

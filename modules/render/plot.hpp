@@ -1,4 +1,5 @@
-// Curves, points and stacked areas as figures: STEM.png, STEM.svg and STEM.csv with exactly what is shown.
+// Curves, points, areas, maps and small multiples as figures: STEM.png, STEM.svg and STEM.csv with exactly what is
+// shown.
 #pragma once
 
 #include <filesystem>
@@ -52,6 +53,34 @@ struct OutcomeMap {
   int width = 1600, height = 1000;
 };
 
+/// A table of numbers as colours, one cell for each pair of categories, its number written in it.
+struct HeatMap {
+  std::string title = {}, x_label = {}, y_label = {}, value_label = {}, footnote = {};
+  std::vector<std::string> x_names = {}, y_names = {};  // columns from the left, rows from the top
+  std::vector<double> values = {};                      // y_names.size() rows of x_names.size(); NaN: not run
+  std::vector<std::string> notes = {};  // empty, or one a cell: beside its number, or in place of "not run"
+  bool log_scale = false;               // of the colours
+  int digits = 3;                       // significant ones of the numbers in the cells
+  int width = 1600, height = 1000;
+};
+
+/// One of small multiples.
+struct Panel {
+  std::string title = {};
+  std::vector<Series> series = {};
+};
+
+/// Small multiples: a grid of panels with the same axes, so that they can be compared. Series of one label and kind
+/// look alike in all panels and stand once in the legend.
+struct Multiples {
+  std::string title = {}, x_label = {}, y_label = {}, footnote = {};
+  bool log_x = false, log_y = false;
+  std::vector<Panel> panels = {};                      // row by row
+  int columns = 0;                                     // 0: chosen so that panels are a little wider than high
+  bool slope_triangles = false, pareto_front = false;  // as in Plot, a panel each
+  int width = 1600, height = 1000;
+};
+
 /// Points that are not finite, and on a logarithmic axis those that are not positive, are left out; the footnote says
 /// so.
 /// @param stem path without extension; its folder exists.
@@ -60,5 +89,8 @@ struct OutcomeMap {
 void write_figure(const Plot& plot, const std::filesystem::path& stem);
 void write_figure(const StackedPlot& plot, const std::filesystem::path& stem);
 void write_figure(const OutcomeMap& map, const std::filesystem::path& stem);
+/// A value that is not finite, or on a logarithmic scale not positive, is written without a colour.
+void write_figure(const HeatMap& map, const std::filesystem::path& stem);
+void write_figure(const Multiples& multiples, const std::filesystem::path& stem);
 
 }  // namespace mpm::render

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernel/lanes.hpp"
+#include "shapes/bspline_cubic/bspline_cubic.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
 #include "shapes/cpdi/cpdi.hpp"
 #include "shapes/gimp/gimp.hpp"
@@ -33,12 +34,23 @@ double quadratic(double d) {
   return d <= 0.5 ? 0.75 - d * d : d <= 1.5 ? (1.5 - d) * (1.5 - d) / 2 : 0;
 }
 
+double cubic(double d) {
+  d = std::abs(d);
+  return d <= 1 ? d * d * d / 2 - d * d + 2.0 / 3 : d <= 2 ? (2 - d) * (2 - d) * (2 - d) / 6 : 0;
+}
+
+double cubic_slope(double d) {
+  const double a = std::abs(d), sign = d < 0 ? -1 : 1;
+  return sign * (a <= 1 ? 1.5 * a * a - 2 * a : a <= 2 ? -(2 - a) * (2 - a) / 2 : 0);
+}
+
 }  // namespace
 
 TEST_CASE("A1: kernels equal their piecewise formulas") {
   for (int k = -250; k <= 250; ++k) {
     const double d = k / 125.0;
     CHECK(std::abs(weight_of_origin<mpm::BsplineQuadratic>(d) - quadratic(d)) <= 1e-15);
+    CHECK(std::abs(weight_of_origin<mpm::BsplineCubic>(d) - cubic(d)) <= 1e-15);
     CHECK(std::abs(weight_of_origin<mpm::Linear>(d) - std::max(0.0, 1 - std::abs(d))) <= 1e-15);
   }
 }
@@ -48,15 +60,45 @@ TEST_CASE("A1: values at a node are exact") {
   CHECK(weight_of_origin<mpm::BsplineQuadratic>(0) == 3.0 / 4);
   CHECK(weight_of_origin<mpm::BsplineQuadratic>(1) == 1.0 / 8);
   CHECK(weight_of_origin<mpm::BsplineQuadratic>(0.5) == 0.5);
+  CHECK(std::abs(weight_of_origin<mpm::BsplineCubic>(-1) - 1.0 / 6) <= 0x1p-53);  // 2/3 - 1/2 rounds once
+  CHECK(weight_of_origin<mpm::BsplineCubic>(0) == 2.0 / 3);
+  CHECK(weight_of_origin<mpm::BsplineCubic>(1) == 1.0 / 6);
+  CHECK(weight_of_origin<mpm::BsplineCubic>(2) == 0);
   CHECK(weight_of_origin<mpm::Linear>(0) == 1);
   CHECK(weight_of_origin<mpm::Linear>(0.25) == 0.75);
   CHECK(weight_of_origin<mpm::Linear>(1) == 0);
 }
 
-TEST_CASE("A1: second moments are 1/4 for the quadratic spline, f (1 - f) for the tent") {
+TEST_CASE("A1: the cubic spline is C2, and its gradient is that of the formula") {
+  for (int k = -250; k <= 250; ++k) {
+    const double x = k / 77.0;
+    double base, w[4], g[4];
+    mpm::BsplineCubic::evaluate({}, x, base, w, g);
+    for (int node = 0; node < 4; ++node) CHECK(std::abs(g[node] - cubic_slope(x - (base + node))) <= 1e-14);
+  }
+  // Across a node the stencil moves by one: value, slope and slope of the slope arrive where they left.
+  constexpr double step = 0x1p-20;
+  const auto near = [&](double x, int node, double(&value)[3]) {
+    double base, w[4], g[4], next_g[4];
+    mpm::BsplineCubic::evaluate({}, x, base, w, g);
+    mpm::BsplineCubic::evaluate({}, x + step / 2, base, w, next_g);  // the same piece
+    const int k = node - static_cast<int>(base);
+    const bool inside = k >= 0 && k < 4;
+    value[0] = inside ? w[k] : 0, value[1] = inside ? g[k] : 0, value[2] = inside ? (next_g[k] - g[k]) * 2 / step : 0;
+  };
+  for (int node = -2; node <= 3; ++node) {
+    double below[3], above[3];
+    near(-step, node, below);
+    near(0, node, above);
+    for (int order = 0; order < 3; ++order) CHECK(std::abs(below[order] - above[order]) <= 8 * step);
+  }
+}
+
+TEST_CASE("A1: second moments are 1/4 for the quadratic spline, 1/3 for the cubic, f (1 - f) for the tent") {
   for (int k = -40; k < 40; ++k) {
     const double x = k / 7.0, f = x - std::floor(x);
     CHECK(std::abs(second_moment<mpm::BsplineQuadratic>(x) - 0.25) <= 1e-14);
+    CHECK(std::abs(second_moment<mpm::BsplineCubic>(x) - 1.0 / 3) <= 1e-14);
     CHECK(std::abs(second_moment<mpm::Linear>(x) - f * (1 - f)) <= 1e-14);
   }
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "render/colours.hpp"
 #include "render/files.hpp"
 #include "render/frame.hpp"
 #include "render/image.hpp"
@@ -272,6 +273,109 @@ TEST_CASE("a map of stability colours its cells and refuses outcomes without a n
   CHECK(static_cast<double>(bounded) / static_cast<double>(gained) == Approx(1.5).epsilon(0.1));
   map.outcome[0] = 2;
   CHECK_THROWS_WITH(write_figure(map, folder.path / "map"), "the map has an outcome 2 without a name");
+}
+
+TEST_CASE("a heat map writes each number in its cell and says what it does not show", "[figures]") {
+  const Folder folder;
+  HeatMap map;
+  map.title = "Which pair is the most exact?";
+  map.x_label = "transfer";
+  map.y_label = "shape";
+  map.value_label = "error e (m)";
+  map.x_names = {"pic", "flip", "apic"};
+  map.y_names = {"linear", "gimp"};
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  map.values = {0.25, 2.5, nan, nan, -1, 25};
+  map.notes = {"", "gained energy", "refused", "", "", ""};
+  map.log_scale = true;
+  map.width = 800;
+  map.height = 500;
+  write_figure(map, folder.path / "heat");
+  const auto lines = lines_of(folder.path / "heat.csv");
+  CHECK(lines == std::vector<std::string>{"shape,transfer,error e (m),note", "linear,pic,0.25,",
+                                          "linear,flip,2.5,gained energy", "linear,apic,,refused", "gimp,pic,,not run",
+                                          "gimp,flip,-1,", "gimp,apic,25,"});
+  const std::string svg = text_of(folder.path / "heat.svg");
+  CHECK(is_balanced_xml(svg));
+  for (const char* words : {">0.25<", ">2.5<", ">gained energy<", ">refused<", ">not run<", ">−1<", ">25<",
+                            ">error e (m)<", ">1 cell not above zero or not finite, without colour<"})
+    CHECK(svg.find(words) != std::string::npos);
+  CHECK(svg.find("nan") == std::string::npos);
+  // Least and greatest have the ends of the colours, the geometric mean the middle.
+  const Image image = read_png(folder.path / "heat.png");
+  for (const double t : {0.0, 0.5, 1.0}) {
+    const Colour c = viridis(t);
+    CHECK(count_pixels(image, int(255 * c.r), int(255 * c.g), int(255 * c.b)) > 10000);
+  }
+  map.values.pop_back();
+  CHECK_THROWS_WITH(write_figure(map, folder.path / "heat"), "a heat map of 3 x 2 cells has 5 values");
+}
+
+TEST_CASE("a heat map takes out a power of ten, and never shows a part of a number", "[figures]") {
+  const Folder folder;
+  HeatMap map;
+  map.value_label = "error e (m)";
+  map.width = 800;
+  map.height = 500;
+  map.x_names = {"a", "b"};
+  map.y_names = {"c"};
+  map.values = {2e-5, 4.56789e-6};
+  write_figure(map, folder.path / "small");
+  const std::string svg = text_of(folder.path / "small.svg");
+  for (const char* words : {">20<", ">4.57<", ">error e (10⁻⁶ m)<"}) CHECK(svg.find(words) != std::string::npos);
+  // Far more cells than text fits.
+  map.x_names.assign(60, "a long name of a column");
+  map.y_names.assign(60, "a long name of a row");
+  map.values.assign(3600, 0.125);
+  map.values[0] = 1;
+  write_figure(map, folder.path / "many");
+  const std::string many = text_of(folder.path / "many.svg");
+  CHECK(many.find("3600 cells without room for the whole text") != std::string::npos);
+  CHECK(many.find(">0.1<") == std::string::npos);
+  map.x_names.clear();
+  map.values.clear();
+  write_figure(map, folder.path / "none");
+  CHECK(text_of(folder.path / "none.svg").find("no data to show") != std::string::npos);
+}
+
+TEST_CASE("small multiples share axes, looks and one legend", "[figures]") {
+  const Folder folder;
+  Multiples m;
+  m.title = "How fast?";
+  m.x_label = "cell size h (m)";
+  m.y_label = "error e (m)";
+  m.log_x = m.log_y = m.slope_triangles = true;
+  m.width = 1200;
+  m.height = 800;
+  const auto line = [](const char* label, double order) {
+    Series s{label, {}, {}};
+    for (const double x : {0.1, 0.05, 0.025}) s.x.push_back(x), s.y.push_back(std::pow(x, order));
+    return s;
+  };
+  m.panels = {{"linear", {line("PIC", 1), line("FLIP", 2)}}, {"cubic", {line("FLIP", 3)}}, {"none", {}}};
+  m.panels[0].series[0].y[1] = -1;
+  write_figure(m, folder.path / "multiples");
+  const auto rows = lines_of(folder.path / "multiples.csv");
+  REQUIRE(rows.size() == 1 + 2 + 3 + 3);
+  CHECK(rows[0] == "panel,series,kind,cell size h (m),error e (m),error,point");
+  CHECK(rows[6].substr(0, 20) == "cubic,FLIP,computed,");
+  const std::string svg = text_of(folder.path / "multiples.svg");
+  CHECK(is_balanced_xml(svg));
+  for (const char* words : {">linear<", ">cubic<", ">none<", ">PIC<", ">FLIP<", ">cell size h (m)<", ">error e (m)<",
+                            ">2.00<", ">3.00<", ">no data to show<"}) {
+    const auto at = svg.find(words);
+    REQUIRE(at != std::string::npos);
+    CHECK(svg.find(words, at + 1) == std::string::npos);  // once
+  }
+  CHECK(svg.find("1 point not above zero, left out") != std::string::npos);
+  m.panels[1].series[0].y.pop_back();
+  CHECK_THROWS_WITH(write_figure(m, folder.path / "multiples"),
+                    "panel 'cubic', series 'FLIP': 3 values of x, but 2 of y");
+  m.panels.assign(500, {"one", {line("FLIP", 2)}});
+  CHECK_THROWS_AS(write_figure(m, folder.path / "multiples"), std::invalid_argument);
+  m.panels.clear();
+  write_figure(m, folder.path / "multiples");
+  CHECK(text_of(folder.path / "multiples.svg").find("no data to show") != std::string::npos);
 }
 
 TEST_CASE("a particle is drawn at its true size and place", "[figures]") {

@@ -84,6 +84,24 @@ TEST_CASE("wrapped text fits its width and loses no word", "[figures]") {
   CHECK(all == "one two three four five six seven");
 }
 
+TEST_CASE("shortened text fits, and is cut between letters", "[figures]") {
+  const SvgCanvas canvas(1600, 1000, "");
+  CHECK(shortened(canvas, "short", 20, 400) == "short");
+  for (double width = 30; width < 200; width += 7) {
+    const std::string text = shortened(canvas, "αβγ δεζ ηθι αβγ δεζ", 20, width);
+    CHECK(canvas.measure_text(text, 20) <= width);
+    for (const char32_t c : decode_utf8(text)) CHECK(c != U'\uFFFD');
+    CHECK(text.find(" …") == std::string::npos);
+  }
+}
+
+TEST_CASE("text upon a colour keeps its contrast", "[figures]") {
+  CHECK(text_upon(kWhite) == kBlack);
+  CHECK(text_upon(kBlack) == kWhite);
+  CHECK(text_upon(viridis(0)) == kWhite);
+  CHECK(text_upon(viridis(1)) == kBlack);
+}
+
 TEST_CASE("axes: zero is kept when near, a constant gets a span, log positions are even", "[figures]") {
   CHECK(make_axis({0.5, 2.5}, false, 0.05, true, 6).lo == 0);
   CHECK(make_axis({2.4, 2.5}, false, 0.05, true, 6).lo > 2);

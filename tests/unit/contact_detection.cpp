@@ -34,7 +34,7 @@ TEST_CASE("the offset depends on where the edge lies in the cell", "[contact]") 
 }
 
 TEST_CASE("the edge model inverts itself", "[contact]") {
-  for (const char* id : {"linear", "bspline_quadratic"})
+  for (const char* id : {"linear", "bspline_quadratic", "bspline_cubic"})
     for (const int rows : {1, 2, 3, 4}) {
       const EdgeModel model(shape(id), rows);
       for (double edge = -0.9; edge < 0.45; edge += 0.05) {

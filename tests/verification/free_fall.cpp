@@ -51,7 +51,7 @@ void check_flight(const char* text, const std::vector<std::string>& overrides, d
 
 TEST_CASE("A7 free flight in 2-D crosses 40 cells exactly", "[A][A7]") {
   for (const std::string backend : {"reference", "cpu"})
-    for (const std::string shape : {"linear", "bspline_quadratic"})
+    for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic"})
       for (const std::string transfer : {"pic", "flip", "apic", "mls"})
         for (const std::string order : {"last", "first", "modified_last"}) {
           if (backend == "reference" && order == "first")
@@ -65,7 +65,7 @@ TEST_CASE("A7 free flight in 2-D crosses 40 cells exactly", "[A][A7]") {
 }
 
 TEST_CASE("A7 free flight in 3-D crosses 25 cells exactly", "[A][A7]") {
-  for (const std::string shape : {"linear", "bspline_quadratic"})
+  for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic"})
     for (const std::string transfer : {"pic", "flip", "apic", "mls"}) {
       INFO(shape << " " << transfer);
       check_flight(flight_3d, {set("/backend", "cpu"), set("/shape/type", shape), set("/transfer/type", transfer)}, 10);

@@ -27,6 +27,10 @@ double factor(const Line& line) {
 /// |symbol of S|^2 of a particle at the middle of a cell (offset 0) or on a node (1/2). The domain of a cpdi particle
 /// on a node straddles it: weights 1/4, 1/2, 1/4.
 double symbol_squared(const std::string& shape, double offset, double theta) {
+  if (shape == "bspline_cubic") {
+    if (offset == 0) return std::pow((23 * std::cos(theta / 2) + std::cos(1.5 * theta)) / 24, 2);
+    return std::pow((2 + std::cos(theta)) / 3, 2);
+  }
   if (offset == 0) return std::pow(std::cos(theta / 2), 2);
   if (shape == "cpdi") return std::pow(std::cos(theta / 2), 4);
   return std::pow(0.75 + std::cos(theta) / 4, 2);
@@ -39,7 +43,8 @@ constexpr int modes[] = {1, 2, 4, 8};
 TEST_CASE("A3 damping of a mode by PIC, XPIC, FMPM and FLIP is that of the symbol", "[A][A3]") {
   for (const auto& [shape, offset] :
        {std::pair{"linear", 0.0}, std::pair{"bspline_quadratic", 0.0}, std::pair{"gimp", 0.0}, std::pair{"cpdi", 0.0},
-        std::pair{"bspline_quadratic", 0.5}, std::pair{"gimp", 0.5}, std::pair{"cpdi", 0.5}})
+        std::pair{"bspline_quadratic", 0.5}, std::pair{"gimp", 0.5}, std::pair{"cpdi", 0.5},
+        std::pair{"bspline_cubic", 0.0}, std::pair{"bspline_cubic", 0.5}})
     for (const int mode : modes) {
       const double s2 = symbol_squared(shape, offset, 2 * std::numbers::pi * mode / 32);
       Line line{.shape = shape, .mode = mode, .offset = offset};
@@ -70,6 +75,9 @@ TEST_CASE("A3 the table of damping factors", "[A][A3]") {
       {"bspline_quadratic", "pic", .5, 1, {{1, .9904157155}, {2, .9623019116}, {4, .8589150429}, {8, .5625}}, 1e-10},
       {"bspline_quadratic", "apic", .5, 1, {{1, .9999307740}, {2, .9989135640}, {4, .9839150429}, {8, .8125}}, 1e-10},
       {"bspline_quadratic", "apic", 0, 2, {{1, .99996431}, {2, .99943981}, {4, .99170619}, {8, .90332031}}, 1e-6},
+      {"bspline_cubic", "pic", .5, 1, {{1, .9872312098}, {2, .9498968356}, {4, .8142696805}, {8, .4444444444}}, 1e-10},
+      {"bspline_cubic", "apic", .5, 1, {{1, .99991795}, {2, .99871237}, {4, .98093635}, {8, .77777778}}, 1e-8},
+      {"bspline_cubic", "apic", 0, 2, {{1, .99993099}, {2, .99891967}, {4, .98415701}, {8, .82108222}}, 1e-6},
       // gimp is the quadratic spline at one particle a cell; its second moment there is the spline's, found a particle.
       {"gimp", "pic", .5, 1, {{1, .9904157155}, {2, .9623019116}, {4, .8589150429}, {8, .5625}}, 1e-10},
       {"gimp", "apic", .5, 1, {{1, .9999307740}, {2, .9989135640}, {4, .9839150429}, {8, .8125}}, 1e-10},
@@ -113,7 +121,7 @@ TEST_CASE("A3 affine transfers damp by the fourth power of the wave number", "[A
 TEST_CASE("A4 the null space: FLIP keeps it, every other transfer and filter order removes it", "[A][A4]") {
   // Particles at 1/4 and 3/4 of their cell, with velocities +1 and -1: no node sees anything.
   const auto alternating = [](double x) { return x - std::floor(x) < 0.5 ? 1.0 : -1.0; };
-  for (const char* shape : {"linear", "bspline_quadratic", "gimp", "cpdi"}) {
+  for (const char* shape : {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "cpdi"}) {
     const auto run = [&](const std::string& transfer, const std::string& with_filter, int steps) {
       auto scene = std::make_unique<LineScene>(
           Line{.shape = shape, .transfer = transfer, .filter = with_filter, .particles_per_cell = 2}, alternating);
@@ -224,6 +232,14 @@ TEST_CASE("A5 the largest stable step, found by running: particles at cell centr
     limits.push_back({shape, "pic", filter("fmpm", 2), "last", 0, 0.5});
     limits.push_back({shape, "pic", filter("fmpm", 4), "last", 0, std::sqrt(0.125)});
   }
+  const char* const cubic = "bspline_cubic";
+  limits.push_back({cubic, "flip", "", "last", 0, 1.373});
+  limits.push_back({cubic, "pic", "", "last", 0, 1.405});
+  limits.push_back({cubic, "flip", "", "first", 0, 2.699});
+  limits.push_back({cubic, "pic", "", "modified_last", 0, 2.430});
+  limits.push_back({cubic, "pic", filter("xpic", 2), "last", 0, 1.399});
+  limits.push_back({cubic, "pic", filter("fmpm", 2), "last", 0, 1.0});
+  limits.push_back({cubic, "pic", filter("fmpm", 4), "last", 0, std::sqrt(0.5)});
   check_limits(limits);
 }
 
@@ -238,5 +254,10 @@ TEST_CASE("A5 the largest stable step, found by running: particles on nodes", "[
     limits.push_back({shape, "pic", filter("fmpm", 2), "last", 0.5, 1.579});
     limits.push_back({shape, "pic", filter("fmpm", 4), "last", 0.5, 1.458});
   }
+  const char* const cubic = "bspline_cubic";
+  limits.push_back({cubic, "flip", "", "last", 0.5, 1.604});
+  limits.push_back({cubic, "pic", "", "first", 0.5, 2.461});
+  limits.push_back({cubic, "pic", filter("xpic", 2), "last", 0.5, 1.647});
+  limits.push_back({cubic, "pic", filter("fmpm", 4), "last", 0.5, 1.262});
   check_limits(limits);
 }

@@ -46,7 +46,7 @@ const std::vector<double> sizes{1.0 / 8, 1.0 / 16, 1.0 / 32};
 }  // namespace
 
 TEST_CASE("C2 second order without crossings, every shape and transfer", "[C][C2]") {
-  for (const std::string shape : {"linear", "bspline_quadratic"})
+  for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic"})
     for (const std::string transfer : {"flip", "apic", "mls"}) {
       const auto e = errors(shape, transfer, 0.0001);
       INFO(shape << " " << transfer << ": " << e[0] << " " << e[1] << " " << e[2]);

@@ -136,7 +136,7 @@ TEST_CASE("A2 an affine field comes back exactly", "[A][A2]") {
   // The first affine velocity is a central difference over 2e-4 cells of velocities up to 20 m/s: no better than this.
   const double seeded = 2.2e-16 * 20 / (1e-4 * 0.1);
   for (const std::string& backend : backends)
-    for (const std::string shape : {"gimp", "cpdi", "linear", "bspline_quadratic"})
+    for (const std::string shape : {"gimp", "cpdi", "linear", "bspline_quadratic", "bspline_cubic"})
       for (const std::string transfer : {"apic", "mls", "tpic"}) {
         Scene scene(affine_field,
                     {set("/backend", backend), set("/shape/type", shape), set("/transfer/type", transfer)});

@@ -64,7 +64,7 @@ TEST_CASE("C5 ten turns of APIC and FLIP", "[C][C5][slow]") {
 TEST_CASE("A2 angular momentum of an affine transfer survives to rounding on every grid position", "[A][A2]") {
   for (const std::string transfer : {"apic", "mls"})
     for (const std::string shape :
-         {"bspline_quadratic"})  // on `linear` D varies, and the affine part with it as particles move
+         {"bspline_quadratic", "bspline_cubic"})  // on `linear` D varies, and the affine part with it as particles move
       for (const std::string backend : {"reference", "cpu"}) {
         Scene scene(disc, {set("/transfer/type", transfer), set("/shape/type", shape), set("/backend", backend),
                            set("/bodies/0/jitter", "0.4")});

@@ -1,0 +1,69 @@
+// What a plot and each panel of small multiples draw inside their axes: lines, marks, error bars, slopes, a front.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/chart.hpp"
+#include "render/plot.hpp"
+
+namespace mpm::render {
+
+struct Look {
+  Colour colour;
+  Stroke line;  // width 0: no line
+  Marker marker = Marker::circle;
+  bool has_marker = false, is_hollow = false;
+};
+
+struct Shown {
+  Series data;
+  Look look;
+  std::vector<bool> is_faded;  // Pareto: dominated
+};
+
+struct Content {
+  std::vector<Shown> series;
+  std::size_t not_finite = 0, not_positive = 0;  // points left out
+  std::string empty;                             // names of series that nothing is left of
+  bool has_long_lines = false;
+};
+
+/// "computed", "exact", "published" or "point".
+const char* name_of(SeriesKind kind);
+
+/// Colour, dash and mark of each series by its turn among those of its kind. @param u one pixel of the theme.
+std::vector<Look> looks_of(std::span<const Series> series, double u);
+
+/// @throws std::invalid_argument naming the series whose arrays differ in length.
+void check_series(std::span<const Series> series);
+
+/// The points that can be shown, in the order given. @param looks one a series.
+Content select(std::span<const Series> series, std::span<const Look> looks, bool log_x, bool log_y);
+
+/// What was left out, for the footnote.
+std::string remark_of(const Content& content);
+
+/// Axes that hold all of the contents. @param count_x,count_y how many numbers fit along them.
+Scales axes_of(std::span<const Content> contents, bool log_x, bool log_y, int count_x, int count_y);
+
+/// Least squares of log y over log x; nothing for an exact series, or where x does not vary.
+/// @pre all values are positive.
+std::optional<double> order_of(const Shown& shown);
+
+/// Everything inside the axes. @param labels_to how far to the right a point's label may reach.
+struct CurveOptions {
+  bool slopes = false, front = false;
+  double labels_to = 0;
+};
+void draw_curves(Canvas& canvas, const Theme& theme, const Scales& scales, Content& content,
+                 const CurveOptions& options);
+
+void draw_mark(Canvas& canvas, const Look& look, Point at, double radius, double u, double strength = 1);
+
+/// A piece of the line with the mark on it. @pre `shown` outlives the entry.
+LegendEntry legend_entry(const Shown& shown, double u);
+
+}  // namespace mpm::render
