@@ -113,6 +113,18 @@ Results empty_results(const study::Study& plan, const std::string& command) {
   return results;
 }
 
+/// A study of which nothing can be run leaves no folder that was not there.
+Results run_or_leave_nothing(const study::Study& plan, const Registry& registry,
+                             const study::ExecutionOptions& execution, bool is_new) {
+  try {
+    return study::run_study(plan, registry, read_options(registry, {}), execution);
+  } catch (const InputError&) {
+    std::error_code ignored;
+    if (is_new) fs::remove_all(execution.folder, ignored);
+    throw;
+  }
+}
+
 // ---- advise ------------------------------------------------------------------------------------------------------
 
 constexpr std::size_t most_alternatives = 4;
@@ -224,7 +236,8 @@ int study(const StudyOptions& options) {
   const fs::path folder = folder_for(options);
   const output::FolderLock lock(folder);
   const Json machine = output::machine_description();
-  if (study_json_in(folder).is_null()) write_study_json(empty_results(plan, options.command), machine, folder);
+  const bool is_new = study_json_in(folder).is_null();
+  if (is_new) write_study_json(empty_results(plan, options.command), machine, folder);
   remove_temporary_files(folder);
 
   const StopOnSignal signals;
@@ -237,7 +250,7 @@ int study(const StudyOptions& options) {
   execution.command = options.command;
   execution.stop_requested = stop_requested;
   execution.say = [](const std::string& line) { std::cerr << line << "\n"; };
-  const Results results = study::run_study(plan, registry, read_options(registry, {}), execution);
+  const Results results = run_or_leave_nothing(plan, registry, execution, is_new);
   write_study_json(results, machine, folder);
   const auto troubles = write_outputs(results, machine, folder);
   for (const std::string& trouble : troubles) std::cerr << trouble << "\n";

@@ -38,13 +38,9 @@ std::string footnote(const Results& results, const FigureRequest& figure, bool f
   return text;
 }
 
-std::string title_or(const FigureRequest& figure, const std::string& words, const Results& results) {
-  return figure.title.empty() ? words + ": " + results.study.title : figure.title;
-}
-
-std::string capital(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text;
+/// The axes say what is shown.
+std::string title_of(const Results& results, const FigureRequest& figure) {
+  return figure.title.empty() ? results.study.title : figure.title;
 }
 
 /// One value against the numbers of an axis.
@@ -111,17 +107,18 @@ void draw_lines(const Results& results, const FigureRequest& figure, const fs::p
   const Axis& x = *study.axis(figure.x);
   const bool convergence = figure.type == FigureType::convergence;
   Plot plot;
-  plot.title = title_or(figure, capital(measure.label) + " over " + x.label, results);
+  plot.title = title_of(results, figure);
   plot.x_label = x.title();
   plot.y_label = measure.title();
-  plot.footnote = footnote(results, figure, true) + (convergence ? " · numbers on triangles: observed order" : "");
+  plot.footnote = footnote(results, figure, true);
   plot.log_x = figure.log_x || convergence;
   plot.log_y = figure.log_y || convergence;
   plot.slope_triangles = convergence;
   draw(results, figure, plot, stem, [&](const FigureRequest& one) {
     std::vector<Series> series;
     std::vector<std::string> within{figure.x};
-    for (const Group& group_ : group(results, one, within)) series.push_back(line_of(results, figure, group_));
+    for (const Group& alone : group(results, one, within)) series.push_back(line_of(results, figure, alone));
+    std::erase_if(series, [](const Series& line) { return line.x.empty(); });
     return series;
   });
 }
@@ -169,10 +166,11 @@ void draw_pareto(const Results& results, const FigureRequest& figure, const std:
   }
   if (costs.empty()) return;  // a measure that no summary has, such as a count of operations
   Plot plot;
-  plot.title = title_or(figure, capital(y.label) + " against " + x.label, results);
+  plot.title = title_of(results, figure);
   plot.x_label = x.title();
   plot.y_label = y.title();
-  plot.footnote = footnote(results, figure, true) + " · pale: dominated, named in the table";
+  plot.footnote = footnote(results, figure, true) +
+                  (figure.panels.empty() ? " · pale: dominated" : " · pale: dominated in its panel");
   plot.log_x = spans_a_decade(costs);
   plot.log_y = spans_a_decade(errors);
   plot.pareto_front = true;
@@ -186,7 +184,7 @@ std::string unit_in(const std::string& header) {
 
 void draw_curves(const Results& results, const FigureRequest& figure, const fs::path& folder, const fs::path& stem) {
   Plot plot;
-  plot.title = title_or(figure, capital(figure.column), results);
+  plot.title = title_of(results, figure);
   plot.x_label = "time t (s)";
   plot.y_label = figure.column;
   plot.log_y = figure.log_y;
@@ -217,17 +215,30 @@ void draw_curves(const Results& results, const FigureRequest& figure, const fs::
   draw(results, figure, plot, stem, series_of);
 }
 
+/// "filter none, grid 32 cells": what tells one heat map of a figure from the next.
+std::string layer_words(const Study& study, const FigureRequest& figure, const Result& result) {
+  std::string words;
+  for (const Axis& axis : study.axes) {
+    const bool fixed = std::any_of(figure.where.begin(), figure.where.end(), [&](const auto& condition) {
+      return condition.first == axis.name && condition.second.size() == 1;
+    });
+    if (axis.name == figure.x || axis.name == figure.y || axis.choices.size() == 1 || fixed) continue;
+    words += (words.empty() ? "" : ", ") + axis.label + " " + label_on(study, result, axis.name);
+  }
+  return words;
+}
+
 void draw_heat_map(const Results& results, const FigureRequest& figure, const fs::path& stem, const Group& layer,
                    bool alone) {
   const Study& study = results.study;
   const Axis &x = *study.axis(figure.x), &y = *study.axis(figure.y);
   const Measure& measure = *study.measure(figure.value);
   render::HeatMap map;
-  map.title = title_or(figure, capital(measure.label), results) + (alone ? "" : ", " + layer.label);
+  map.title = title_of(results, figure) + (alone ? "" : ", " + layer_words(study, figure, *layer.results.front()));
   map.x_label = x.title();
   map.y_label = y.title();
   map.value_label = measure.title();
-  map.footnote = footnote(results, figure, false);
+  map.footnote = "study " + study.file.filename().string() + " · " + count_of(layer.results.size(), "runs");
   map.log_scale = figure.log_x;
   const auto labels_shown = [&](const Axis& axis) {
     std::vector<std::string> labels;
@@ -265,7 +276,7 @@ void draw_heat_maps(const Results& results, const FigureRequest& figure, const f
 void draw_outcome_map(const Results& results, const FigureRequest& figure, const fs::path& stem) {
   const Study& study = results.study;
   render::OutcomeMap map;
-  map.title = title_or(figure, "What became of the runs", results);
+  map.title = title_of(results, figure);
   map.x_label = study.axis(figure.x)->title();
   map.footnote = footnote(results, figure, false);
   map.log_x = figure.log_x;
@@ -324,7 +335,8 @@ std::string outcome_words(const Result& result) {
       const auto place = result.outcome.reason.find(") m ");
       if (place == std::string::npos) return "stopped";
       const std::string cause = result.outcome.reason.substr(place + 4);
-      return "stopped: " + cause.substr(0, std::min({cause.find(':'), cause.find(','), cause.find(" (")}));
+      return "stopped: " +
+             cause.substr(0, std::min({cause.find(':'), cause.find(','), cause.find(" ("), cause.find(" at ")}));
     }
     default:
       return name_of(result.outcome.status);

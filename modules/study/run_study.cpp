@@ -96,11 +96,8 @@ class Task {
 /// Without the file's name in front of each line: all come from the same one.
 std::string reason_of(const InputError& error) {
   std::string text;
-  for (Problem problem : error.problems()) {
-    problem.file.clear();
-    problem.line = problem.column = 0;
-    text += (text.empty() ? "" : "; ") + problem.text();
-  }
+  for (const Problem& problem : error.problems())
+    text += (text.empty() ? "" : "; ") + problem.pointer + (problem.pointer.empty() ? "" : ": ") + problem.message;
   return text;
 }
 
