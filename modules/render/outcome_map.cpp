@@ -102,7 +102,9 @@ std::vector<LegendEntry> legend_of(const OutcomeMap& map, const Theme& theme) {
     entries.push_back(
         {name, [outcome, &theme](Canvas& c, const Box& b) { draw_cell(c, b, outcome, 0.24 * theme.text); }, false});
   };
-  for (std::size_t k = 0; k < map.outcomes.size(); ++k) add_cell(map.outcomes[k], static_cast<int>(k));
+  for (int k = 0; k < static_cast<int>(map.outcomes.size()); ++k)
+    if (std::count(map.outcome.begin(), map.outcome.end(), k) > 0)
+      add_cell(map.outcomes[static_cast<std::size_t>(k)], k);
   if (std::count(map.outcome.begin(), map.outcome.end(), -1) > 0) add_cell("not run", -1);
   for (std::size_t k = 0; k < map.limits.size(); ++k) {
     entries.push_back(

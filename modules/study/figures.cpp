@@ -131,8 +131,34 @@ std::string axis_of_series(const Study& study, const FigureRequest& figure) {
   return "";
 }
 
-/// Points of one colour; those on the front carry the rest of their names.
-std::vector<Series> points_by_series(const Results& results, const FigureRequest& figure, const std::string& cost) {
+/// The points of the front that have room for their names, the most exact first.
+std::vector<const Result*> with_room(const std::vector<ParetoPoint>& points, const Plot& plot) {
+  const auto place = [](double value, bool is_log) { return is_log ? std::log(value) : value; };
+  double lo[2] = {1e300, 1e300}, hi[2] = {-1e300, -1e300};
+  const auto at = [&](const ParetoPoint& point, int axis) {
+    return axis == 0 ? place(point.cost, plot.log_x) : place(point.error, plot.log_y);
+  };
+  for (const ParetoPoint& point : points)
+    for (const int axis : {0, 1}) {
+      lo[axis] = std::min(lo[axis], at(point, axis));
+      hi[axis] = std::max(hi[axis], at(point, axis));
+    }
+  std::vector<const ParetoPoint*> named;
+  for (auto point = points.rbegin(); point != points.rend(); ++point) {
+    const bool is_close = std::any_of(named.begin(), named.end(), [&](const ParetoPoint* other) {
+      return std::abs(at(*other, 0) - at(*point, 0)) <= 0.2 * (hi[0] - lo[0]) &&
+             std::abs(at(*other, 1) - at(*point, 1)) <= 0.05 * (hi[1] - lo[1]);
+    });
+    if (!point->dominated_by && !is_close) named.push_back(&*point);
+  }
+  std::vector<const Result*> results;
+  for (const ParetoPoint* point : named) results.push_back(point->result);
+  return results;
+}
+
+/// Points of one colour; those on the front carry the rest of their names, where there is room.
+std::vector<Series> points_by_series(const Results& results, const FigureRequest& figure, const std::string& cost,
+                                     const Plot& plot) {
   const Study& study = results.study;
   const std::string by = axis_of_series(study, figure);
   std::vector<std::string> without{by, figure.panels};
@@ -147,11 +173,14 @@ std::vector<Series> points_by_series(const Results& results, const FigureRequest
   };
   if (!by.empty())  // in the order of the axis, the same in every panel
     for (const Choice& choice : study.axis(by)->choices) add_to(choice.label);
-  for (const ParetoPoint& point : pareto(results, figure, cost, figure.value)) {
+  const auto points = pareto(results, figure, cost, figure.value);
+  const auto named = with_room(points, plot);
+  for (const ParetoPoint& point : points) {
     Series& series = add_to(by.empty() ? study.title : label_on(study, *point.result, by));
     series.x.push_back(point.cost);
     series.y.push_back(point.error);
-    series.point_labels.push_back(point.dominated_by ? "" : label_of(study, point.result->combination, without));
+    const bool is_named = std::find(named.begin(), named.end(), point.result) != named.end();
+    series.point_labels.push_back(is_named ? label_of(study, point.result->combination, without) : "");
   }
   std::erase_if(all, [](const Series& series) { return series.x.empty(); });
   return all;
@@ -174,7 +203,8 @@ void draw_pareto(const Results& results, const FigureRequest& figure, const std:
   plot.log_x = spans_a_decade(costs);
   plot.log_y = spans_a_decade(errors);
   plot.pareto_front = true;
-  draw(results, figure, plot, stem, [&](const FigureRequest& one) { return points_by_series(results, one, cost); });
+  draw(results, figure, plot, stem,
+       [&](const FigureRequest& one) { return points_by_series(results, one, cost, plot); });
 }
 
 std::string unit_in(const std::string& header) {
@@ -273,6 +303,23 @@ void draw_heat_maps(const Results& results, const FigureRequest& figure, const f
                   layers[k], layers.size() == 1);
 }
 
+/// Names of what can become of a run. The order gives the colours: the common ones have the same in every map, and what
+/// stopped does not look good.
+std::vector<std::string> outcomes_of(const std::vector<Group>& rows) {
+  std::vector<std::string> seen;
+  for (const Group& row : rows)
+    for (const Result* result : row.results)
+      if (result->outcome.status != Status::not_run && result->outcome.status != Status::interrupted)
+        seen.push_back(outcome_words(*result));
+  const auto stopped =
+      std::find_if(seen.begin(), seen.end(), [](const std::string& word) { return word.starts_with("stopped"); });
+  std::vector<std::string> words{"bounded", stopped == seen.end() ? "stopped" : *stopped, "refused", "gained energy",
+                                 "volume ratio out of range"};
+  for (const std::string& word : seen)
+    if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+  return words;
+}
+
 void draw_outcome_map(const Results& results, const FigureRequest& figure, const fs::path& stem) {
   const Study& study = results.study;
   render::OutcomeMap map;
@@ -280,23 +327,21 @@ void draw_outcome_map(const Results& results, const FigureRequest& figure, const
   map.x_label = study.axis(figure.x)->title();
   map.footnote = footnote(results, figure, false);
   map.log_x = figure.log_x;
-  map.outcomes = {"bounded"};
   const auto rows = group(results, figure, {figure.x});
   for (const Group& row : rows)
     for (const Result* result : row.results) map.x.push_back(number_on(study, *result, figure.x));
   std::sort(map.x.begin(), map.x.end());
   map.x.erase(std::unique(map.x.begin(), map.x.end()), map.x.end());
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    map.y.push_back(static_cast<double>(k));
+    map.y.push_back(static_cast<double>(k + 1));
     map.y_names.push_back(rows[rows.size() - 1 - k].label);  // the first row on top
   }
   map.outcome.assign(map.x.size() * map.y.size(), -1);
+  map.outcomes = outcomes_of(rows);
   for (std::size_t k = 0; k < rows.size(); ++k)
     for (const Result* result : rows[k].results) {
-      if (result->outcome.status == Status::not_run || result->outcome.status == Status::interrupted) continue;
-      const std::string words = outcome_words(*result);
-      auto known = std::find(map.outcomes.begin(), map.outcomes.end(), words);
-      if (known == map.outcomes.end()) known = map.outcomes.insert(known, words);
+      const auto known = std::find(map.outcomes.begin(), map.outcomes.end(), outcome_words(*result));
+      if (known == map.outcomes.end()) continue;  // not run yet
       const auto column = std::find(map.x.begin(), map.x.end(), number_on(study, *result, figure.x)) - map.x.begin();
       const std::size_t row = rows.size() - 1 - k;
       map.outcome[row * map.x.size() + static_cast<std::size_t>(column)] =
