@@ -49,6 +49,32 @@ void add_bench(CLI::App& verb, BenchOptions& options, std::string& point) {
   verb.add_option("--point", point, "of the program itself: one point of the section growth")->group("");
 }
 
+void add_study(CLI::App& verb, StudyOptions& options) {
+  verb.add_option("FILE", options.file, "study file (JSON, comments allowed)")->required();
+  verb.add_option("--set", options.overrides,
+                  "/json/pointer=value: replaces a value of the base experiment in every run; may be repeated")
+      ->allow_extra_args(false);
+  verb.add_option("--out", options.out, "study folder; default runs/<name of the file>");
+  verb.add_option("--jobs", options.jobs, "runs at a time; default all processors; 1 for undisturbed seconds")
+      ->check(CLI::Range(1, 1024));
+  verb.add_option("--threads", options.threads, "of each run; default 1")->check(CLI::Range(1, 1024));
+  verb.footer(
+      "Exit codes: 0 all combinations finished, stopped with a reason or were refused; 2 bad input, or every "
+      "combination "
+      "is refused; 4 a run gained energy, left the range of volume ratios, failed an expectation or crashed; 5 the "
+      "machine failed; 130 stopped by Ctrl-C. Calling it again runs only what is missing or has changed.");
+}
+
+void add_advise(CLI::App& verb, AdviseOptions& options) {
+  verb.add_option("STUDY", options.study, "folder of a study, or its file when it ran into the default folder")
+      ->required();
+  verb.add_option("--error", options.error, "largest error, such as 1% or \"0.1 mm\": the cheapest that reaches it");
+  verb.add_option("--time", options.time, "largest time of stepping, such as 10s: the most exact within it");
+  verb.add_option("--by", options.by, "with --error: measure that is to be small, such as particle_steps");
+  verb.add_flag("--json", options.json, "as JSON");
+  verb.footer("Exit code 4 when no combination reaches the target; the nearest are then listed.");
+}
+
 std::string quoted_for_a_shell(const std::string& word) {
   const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
     return c >= 128 || std::isalnum(c) ||
@@ -207,6 +233,18 @@ int run_command_line(int argc, char** argv) {
                           "folder for the figures; default figures/ of the run, or runs/overlay for several");
   figure_verb->callback(
       [&] { code = guarded([&] { return figure(runs, specification, figure_out); }, "nothing was drawn"); });
+
+  StudyOptions study_options;
+  study_options.command = options.command;
+  auto* study_verb = app.add_subcommand("study", "run every combination of a study's axes; tables, figures, report");
+  add_study(*study_verb, study_options);
+  study_verb->callback([&] { code = guarded([&] { return study(study_options); }); });
+
+  AdviseOptions advise_options;
+  auto* advise_verb =
+      app.add_subcommand("advise", "the best combination that a study measured, for an error or a time");
+  add_advise(*advise_verb, advise_options);
+  advise_verb->callback([&] { code = guarded([&] { return advise(advise_options); }, "no advice was given"); });
 
   BenchOptions bench_options;
   bench_options.command = options.command;

@@ -43,6 +43,22 @@ struct BenchOptions {
   std::string command;  ///< as typed
 };
 
+struct StudyOptions {
+  std::filesystem::path file;
+  std::vector<std::string> overrides;  ///< of the base experiment
+  std::filesystem::path out;           ///< empty: runs/<name of the file>
+  int jobs = 0;                        ///< runs at a time; 0: all processors
+  int threads = 1;                     ///< of each run
+  std::string command;                 ///< as typed
+};
+
+struct AdviseOptions {
+  std::filesystem::path study;  ///< its folder, or its file when it ran into the default folder
+  std::string error, time;      ///< one of them, as typed
+  std::string by;               ///< measure that ranks; empty: the study's cost
+  bool json = false;
+};
+
 int run_command_line(int argc, char** argv);
 
 /// What the program offers to the reader: names of exact solutions, figures, quantities.
@@ -68,6 +84,10 @@ int bench(const BenchOptions& options);
 std::string bench_section_list();
 /// The child process of a point of the section `growth`: answers questions on standard input.
 int bench_point(const std::string& description);
+/// Runs every combination of a study. Throws InputError when nothing of it can be run.
+int study(const StudyOptions& options);
+/// The best measured combination for an error or a time; exit code 4 when there is none. Throws InputError.
+int advise(const AdviseOptions& options);
 int figure(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& specification,
            const std::filesystem::path& out);
 

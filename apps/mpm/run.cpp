@@ -3,11 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <thread>
@@ -17,6 +14,7 @@
 #include "mpm/checkpoint.hpp"
 #include "mpm/cli.hpp"
 #include "mpm/run_figures.hpp"
+#include "mpm/stop_on_signal.hpp"
 #include "mpm/summary.hpp"
 #include "output/atomic_file.hpp"
 #include "output/manifest.hpp"
@@ -26,39 +24,6 @@ namespace mpm::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
-
-extern "C" void request_stop(int) {
-  stop_requested = true;
-}
-
-/// Ctrl-C and a polite kill end the run at the next step boundary; a second one ends the program at once. A signal that
-/// the caller ignores stays ignored. A reader of the progress lines that goes away does not end the run.
-class StopOnSignal {
- public:
-  StopOnSignal() {
-    stop_requested = false;
-    struct sigaction action {};
-    sigemptyset(&action.sa_mask);
-    for (std::size_t k = 0; k < signals.size(); ++k) {
-      action.sa_handler = signals[k] == SIGPIPE ? SIG_IGN : request_stop;
-      action.sa_flags = SA_RESTART | (signals[k] == SIGPIPE ? 0 : static_cast<int>(SA_RESETHAND));
-      sigaction(signals[k], nullptr, &before_[k]);
-      if (before_[k].sa_handler != SIG_IGN) sigaction(signals[k], &action, nullptr);
-    }
-  }
-  ~StopOnSignal() {
-    for (std::size_t k = 0; k < signals.size(); ++k) sigaction(signals[k], &before_[k], nullptr);
-  }
-  StopOnSignal(const StopOnSignal&) = delete;
-  StopOnSignal& operator=(const StopOnSignal&) = delete;
-
- private:
-  static constexpr std::array signals{SIGINT, SIGTERM, SIGPIPE};
-  std::array<struct sigaction, signals.size()> before_{};
-};
 
 /// One line that is rewritten on a terminal, a plain line every tenth of the run elsewhere.
 class Progress {
@@ -194,8 +159,8 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints&
   Progress progress(simulation);
   recorder.record();
   simulation.observe_when(
-      [&](double time, long steps) { return stop_requested || recorder.due(time, steps) || checkpoints.due(steps); });
-  while (!simulation.finished() && !(stop_requested && simulation.observed())) {
+      [&](double time, long steps) { return stop_requested() || recorder.due(time, steps) || checkpoints.due(steps); });
+  while (!simulation.finished() && !(stop_requested() && simulation.observed())) {
     try {
       simulation.step();
     } catch (const RunFailure& failure) {

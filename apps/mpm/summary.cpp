@@ -126,6 +126,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
   }
   json["performance"] = {{"wall_seconds", earlier.wall_seconds + wall_seconds},
                          {"stepping_seconds", stepping},
+                         {"particle_steps", particles * static_cast<double>(simulation.steps())},
                          {"particle_steps_per_second",
                           stepping > 0 ? particles * static_cast<double>(simulation.steps()) / stepping : 0.0},
                          {"bytes_per_particle", static_cast<double>(simulation.backend().particle_bytes()) / particles},

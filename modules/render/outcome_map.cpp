@@ -34,6 +34,10 @@ void check(const OutcomeMap& map) {
     throw std::invalid_argument("a map of " + std::to_string(map.x.size()) + " x " + std::to_string(map.y.size()) +
                                 " cells has " + std::to_string(map.outcome.size()) + " outcomes");
   }
+  if (!map.y_names.empty() && map.y_names.size() != map.y.size()) {
+    throw std::invalid_argument("a map of " + std::to_string(map.y.size()) + " rows has " +
+                                std::to_string(map.y_names.size()) + " names for them");
+  }
   for (const int k : map.outcome) {
     if (k >= -1 && k < static_cast<int>(map.outcomes.size())) continue;
     throw std::invalid_argument("the map has an outcome " + std::to_string(k) + " without a name");
@@ -98,7 +102,9 @@ std::vector<LegendEntry> legend_of(const OutcomeMap& map, const Theme& theme) {
     entries.push_back(
         {name, [outcome, &theme](Canvas& c, const Box& b) { draw_cell(c, b, outcome, 0.24 * theme.text); }, false});
   };
-  for (std::size_t k = 0; k < map.outcomes.size(); ++k) add_cell(map.outcomes[k], static_cast<int>(k));
+  for (int k = 0; k < static_cast<int>(map.outcomes.size()); ++k)
+    if (std::count(map.outcome.begin(), map.outcome.end(), k) > 0)
+      add_cell(map.outcomes[static_cast<std::size_t>(k)], k);
   if (std::count(map.outcome.begin(), map.outcome.end(), -1) > 0) add_cell("not run", -1);
   for (std::size_t k = 0; k < map.limits.size(); ++k) {
     entries.push_back(
@@ -115,6 +121,7 @@ void draw_map(Canvas& canvas, const OutcomeMap& map, const Theme& theme) {
   const double legend_height = lay_legend(canvas, theme, legend, page, &canvas);
   const auto x = borders(map.x, map.log_x), y = borders(map.y, map.log_y);
   Scales s{{}, cell_axis(x, map.log_x, 8), cell_axis(y, map.log_y, 7)};
+  if (!map.y_names.empty()) s.y.ticks = {map.y, {}, map.y_names, 0};
   const double left = page.x0 + widest_label(canvas, theme, s.y.ticks) + 12 * theme.unit;
   s.box = {left, page.y0 + legend_height + 2.4 * theme.text, page.x1 - theme.text,
            page.y1 - 16 * theme.unit - 2.6 * theme.text};

@@ -44,10 +44,12 @@ struct StackedPlot {
 /// A map of stability: one cell for each pair of x and y, coloured and marked by what became of the run.
 struct OutcomeMap {
   std::string title = {}, x_label = {}, y_label = {}, footnote = {};
-  std::vector<double> x = {}, y = {};      // centres of the cells, increasing
-  std::vector<int> outcome = {};           // y.size() rows of x.size(): index into `outcomes`, -1 where nothing was run
-  std::vector<std::string> outcomes = {};  // "bounded", "gained energy", "stopped: particle left the grid"
-  std::vector<Series> limits = {};         // theoretical limits, drawn over the cells in black
+  std::vector<double> x = {}, y = {};     // centres of the cells, increasing
+  std::vector<std::string> y_names = {};  // empty, or one a row: written in place of the numbers of y
+  std::vector<int> outcome = {};          // y.size() rows of x.size(): index into `outcomes`, -1 where nothing was run
+  // "bounded", "gained energy", "stopped: particle left the grid"; one without a cell keeps its colour for other maps
+  std::vector<std::string> outcomes = {};
+  std::vector<Series> limits = {};  // theoretical limits, drawn over the cells in black
   bool log_x = false, log_y = false;
   int width = 1600, height = 1000;
 };

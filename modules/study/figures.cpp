@@ -1,0 +1,406 @@
+#include "study/figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "output/csv.hpp"
+#include "render/plot.hpp"
+#include "study/analysis.hpp"
+
+namespace mpm::study {
+namespace {
+
+namespace fs = std::filesystem;
+using render::Plot;
+using render::Series;
+using render::SeriesKind;
+
+/// Whether a logarithmic axis shows all and tells more than a linear one.
+bool spans_a_decade(const std::vector<double>& values) {
+  if (values.empty()) return false;
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return *least > 0 && *most >= 10 * *least;
+}
+
+std::string count_of(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what;
+}
+
+/// Where the figure comes from, and what it leaves out.
+std::string footnote(const Results& results, const FigureRequest& figure, bool finished_only) {
+  std::size_t shown = 0, missing = 0;
+  for (const Result& result : results.results)
+    if (is_shown(results.study, figure, result))
+      (!finished_only || is_finished(result.outcome.status) ? shown : missing)++;
+  std::string text =
+      "study " + results.study.file.filename().string() + " · " + count_of(shown, shown == 1 ? "run" : "runs");
+  if (missing > 0) text += " · " + count_of(missing, "not shown: refused, stopped or not run");
+  return text;
+}
+
+/// The axes say what is shown.
+std::string title_of(const Results& results, const FigureRequest& figure) {
+  return figure.title.empty() ? results.study.title : figure.title;
+}
+
+/// One value against the numbers of an axis.
+Series line_of(const Results& results, const FigureRequest& figure, const Group& one) {
+  std::vector<std::pair<double, double>> points;
+  for (const Result* result : one.results)
+    if (const double y = result->value(figure.value); std::isfinite(y))
+      points.emplace_back(number_on(results.study, *result, figure.x), y);
+  std::sort(points.begin(), points.end());
+  Series series;
+  series.label = one.label.empty() ? results.study.measure(figure.value)->label : one.label;
+  for (const auto& [x, y] : points) {
+    series.x.push_back(x);
+    series.y.push_back(y);
+  }
+  return series;
+}
+
+/// The figure with the results of one panel alone.
+FigureRequest for_panel(const FigureRequest& figure, const std::string& label) {
+  FigureRequest panel = figure;
+  std::erase_if(panel.where, [&](const auto& condition) { return condition.first == figure.panels; });
+  panel.where.emplace_back(figure.panels, std::vector<std::string>{label});
+  return panel;
+}
+
+/// Labels of the panels that hold a result.
+std::vector<std::string> panels_of(const Results& results, const FigureRequest& figure) {
+  std::vector<std::string> labels;
+  for (const Choice& choice : results.study.axis(figure.panels)->choices)
+    for (const Result& result : results.results)
+      if (is_shown(results.study, figure, result) && label_on(results.study, result, figure.panels) == choice.label) {
+        labels.push_back(choice.label);
+        break;
+      }
+  return labels;
+}
+
+/// Draws a plot, or its panels when the figure has an axis of panels. `series_of` makes the series of one panel.
+template <class SeriesOf>
+void draw(const Results& results, const FigureRequest& figure, Plot plot, const fs::path& stem, SeriesOf series_of) {
+  if (figure.panels.empty()) {
+    plot.series = series_of(figure);
+    return render::write_figure(plot, stem);
+  }
+  render::Multiples multiples;
+  multiples.title = plot.title;
+  multiples.x_label = plot.x_label;
+  multiples.y_label = plot.y_label;
+  multiples.footnote = plot.footnote;
+  multiples.log_x = plot.log_x;
+  multiples.log_y = plot.log_y;
+  multiples.slope_triangles = plot.slope_triangles;
+  multiples.pareto_front = plot.pareto_front;
+  const std::string axis = results.study.axis(figure.panels)->label;
+  for (const std::string& label : panels_of(results, figure))
+    multiples.panels.push_back({axis + ": " + label, series_of(for_panel(figure, label))});
+  render::write_figure(multiples, stem);
+}
+
+void draw_lines(const Results& results, const FigureRequest& figure, const fs::path& stem) {
+  const Study& study = results.study;
+  const Measure& measure = *study.measure(figure.value);
+  const Axis& x = *study.axis(figure.x);
+  const bool convergence = figure.type == FigureType::convergence;
+  Plot plot;
+  plot.title = title_of(results, figure);
+  plot.x_label = x.title();
+  plot.y_label = measure.title();
+  plot.footnote = footnote(results, figure, true);
+  plot.log_x = figure.log_x || convergence;
+  plot.log_y = figure.log_y || convergence;
+  plot.slope_triangles = convergence;
+  draw(results, figure, plot, stem, [&](const FigureRequest& one) {
+    std::vector<Series> series;
+    std::vector<std::string> within{figure.x};
+    for (const Group& alone : group(results, one, within)) series.push_back(line_of(results, figure, alone));
+    std::erase_if(series, [](const Series& line) { return line.x.empty(); });
+    return series;
+  });
+}
+
+/// The axis whose values have colours: the one that is named, else the first with several.
+std::string axis_of_series(const Study& study, const FigureRequest& figure) {
+  if (!figure.series.empty()) return figure.series;
+  for (const Axis& axis : study.axes)
+    if (axis.choices.size() > 1 && axis.name != figure.panels) return axis.name;
+  return "";
+}
+
+/// The points of the front that have room for their names, the most exact first.
+std::vector<const Result*> with_room(const std::vector<ParetoPoint>& points, const Plot& plot) {
+  const auto place = [](double value, bool is_log) { return is_log ? std::log(value) : value; };
+  double lo[2] = {1e300, 1e300}, hi[2] = {-1e300, -1e300};
+  const auto at = [&](const ParetoPoint& point, int axis) {
+    return axis == 0 ? place(point.cost, plot.log_x) : place(point.error, plot.log_y);
+  };
+  for (const ParetoPoint& point : points)
+    for (const int axis : {0, 1}) {
+      lo[axis] = std::min(lo[axis], at(point, axis));
+      hi[axis] = std::max(hi[axis], at(point, axis));
+    }
+  std::vector<const ParetoPoint*> named;
+  for (auto point = points.rbegin(); point != points.rend(); ++point) {
+    const bool is_close = std::any_of(named.begin(), named.end(), [&](const ParetoPoint* other) {
+      return std::abs(at(*other, 0) - at(*point, 0)) <= 0.2 * (hi[0] - lo[0]) &&
+             std::abs(at(*other, 1) - at(*point, 1)) <= 0.05 * (hi[1] - lo[1]);
+    });
+    if (!point->dominated_by && !is_close) named.push_back(&*point);
+  }
+  std::vector<const Result*> results;
+  for (const ParetoPoint* point : named) results.push_back(point->result);
+  return results;
+}
+
+/// Points of one colour; those on the front carry the rest of their names, where there is room.
+std::vector<Series> points_by_series(const Results& results, const FigureRequest& figure, const std::string& cost,
+                                     const Plot& plot) {
+  const Study& study = results.study;
+  const std::string by = axis_of_series(study, figure);
+  std::vector<std::string> without{by, figure.panels};
+  for (const Axis& axis : study.axes)
+    if (axis.choices.size() == 1) without.push_back(axis.name);
+  std::vector<Series> all;
+  const auto add_to = [&](const std::string& label) -> Series& {
+    for (Series& series : all)
+      if (series.label == label) return series;
+    all.push_back({label, {}, {}, {}, SeriesKind::point, {}});
+    return all.back();
+  };
+  if (!by.empty())  // in the order of the axis, the same in every panel
+    for (const Choice& choice : study.axis(by)->choices) add_to(choice.label);
+  const auto points = pareto(results, figure, cost, figure.value);
+  const auto named = with_room(points, plot);
+  for (const ParetoPoint& point : points) {
+    Series& series = add_to(by.empty() ? study.title : label_on(study, *point.result, by));
+    series.x.push_back(point.cost);
+    series.y.push_back(point.error);
+    const bool is_named = std::find(named.begin(), named.end(), point.result) != named.end();
+    series.point_labels.push_back(is_named ? label_of(study, point.result->combination, without) : "");
+  }
+  std::erase_if(all, [](const Series& series) { return series.x.empty(); });
+  return all;
+}
+
+void draw_pareto(const Results& results, const FigureRequest& figure, const std::string& cost, const fs::path& stem) {
+  const Measure &x = *results.study.measure(cost), &y = *results.study.measure(figure.value);
+  std::vector<double> costs, errors;
+  for (const ParetoPoint& point : pareto(results, figure, cost, figure.value)) {
+    costs.push_back(point.cost);
+    errors.push_back(point.error);
+  }
+  if (costs.empty()) return;  // a measure that no summary has, such as a count of operations
+  Plot plot;
+  plot.title = title_of(results, figure);
+  plot.x_label = x.title();
+  plot.y_label = y.title();
+  plot.footnote = footnote(results, figure, true) +
+                  (figure.panels.empty() ? " · pale: dominated" : " · pale: dominated in its panel");
+  plot.log_x = spans_a_decade(costs);
+  plot.log_y = spans_a_decade(errors);
+  plot.pareto_front = true;
+  draw(results, figure, plot, stem,
+       [&](const FigureRequest& one) { return points_by_series(results, one, cost, plot); });
+}
+
+std::string unit_in(const std::string& header) {
+  const auto at = header.find(" (");
+  return at == std::string::npos ? "" : header.substr(at);
+}
+
+void draw_curves(const Results& results, const FigureRequest& figure, const fs::path& folder, const fs::path& stem) {
+  Plot plot;
+  plot.title = title_of(results, figure);
+  plot.x_label = "time t (s)";
+  plot.y_label = figure.column;
+  plot.log_y = figure.log_y;
+  std::size_t missing = 0;
+  std::vector<std::string> without;
+  if (!figure.panels.empty()) without.push_back(figure.panels);
+  const auto series_of = [&](const FigureRequest& one) {
+    std::vector<Series> all;
+    for (const Group& alone : group(results, one, {}, without)) {
+      const fs::path file = folder / alone.results.front()->folder / "metrics.csv";
+      std::error_code ignored;
+      if (alone.results.front()->folder.empty() || !fs::is_regular_file(file, ignored)) continue;
+      const output::Table table = output::read_csv(file);
+      const auto *time = table.find("time"), *column = table.find(figure.column);
+      if (!time || !column) {
+        ++missing;
+        continue;
+      }
+      for (const std::string& header : table.header)
+        if (header.substr(0, header.find(" (")) == figure.column) plot.y_label = figure.column + unit_in(header);
+      all.push_back({alone.label, *time, *column, {}, SeriesKind::computed, {}});
+    }
+    return all;
+  };
+  series_of(figure);  // finds the unit
+  if (missing > 0) throw std::runtime_error(std::to_string(missing) + " runs have no column \"" + figure.column + "\"");
+  plot.footnote = footnote(results, figure, false);
+  draw(results, figure, plot, stem, series_of);
+}
+
+/// "filter none, grid 32 cells": what tells one heat map of a figure from the next.
+std::string layer_words(const Study& study, const FigureRequest& figure, const Result& result) {
+  std::string words;
+  for (const Axis& axis : study.axes) {
+    const bool fixed = std::any_of(figure.where.begin(), figure.where.end(), [&](const auto& condition) {
+      return condition.first == axis.name && condition.second.size() == 1;
+    });
+    if (axis.name == figure.x || axis.name == figure.y || axis.choices.size() == 1 || fixed) continue;
+    words += (words.empty() ? "" : ", ") + axis.label + " " + label_on(study, result, axis.name);
+  }
+  return words;
+}
+
+void draw_heat_map(const Results& results, const FigureRequest& figure, const fs::path& stem, const Group& layer,
+                   bool alone) {
+  const Study& study = results.study;
+  const Axis &x = *study.axis(figure.x), &y = *study.axis(figure.y);
+  const Measure& measure = *study.measure(figure.value);
+  render::HeatMap map;
+  map.title = title_of(results, figure) + (alone ? "" : ", " + layer_words(study, figure, *layer.results.front()));
+  map.x_label = x.title();
+  map.y_label = y.title();
+  map.value_label = measure.title();
+  map.footnote = "study " + study.file.filename().string() + " · " + count_of(layer.results.size(), "runs");
+  map.log_scale = figure.log_x;
+  const auto labels_shown = [&](const Axis& axis) {
+    std::vector<std::string> labels;
+    for (const Choice& choice : axis.choices)
+      if (std::any_of(layer.results.begin(), layer.results.end(),
+                      [&](const Result* r) { return label_on(study, *r, axis.name) == choice.label; }))
+        labels.push_back(choice.label);
+    return labels;
+  };
+  map.x_names = labels_shown(x);
+  map.y_names = labels_shown(y);
+  map.values.assign(map.x_names.size() * map.y_names.size(), not_measured);
+  map.notes.assign(map.values.size(), "");
+  for (const Result* result : layer.results) {
+    const auto column = std::find(map.x_names.begin(), map.x_names.end(), label_on(study, *result, figure.x));
+    const auto row = std::find(map.y_names.begin(), map.y_names.end(), label_on(study, *result, figure.y));
+    const auto index = static_cast<std::size_t>(
+        (row - map.y_names.begin()) * static_cast<std::ptrdiff_t>(map.x_names.size()) + (column - map.x_names.begin()));
+    map.values[index] = result->value(figure.value);
+    if (!std::isfinite(map.values[index])) map.notes[index] = outcome_words(*result);
+    if (!result->flags.empty()) map.notes[index] = "!";
+    if (study.bisection && figure.value == critical_measure && result->stable && !result->unstable)
+      map.notes[index] = "or more";
+  }
+  render::write_figure(map, stem);
+}
+
+void draw_heat_maps(const Results& results, const FigureRequest& figure, const fs::path& stem) {
+  const auto layers = group(results, figure, {figure.x, figure.y});
+  for (std::size_t k = 0; k < layers.size(); ++k)
+    draw_heat_map(results, figure, layers.size() == 1 ? stem : fs::path(stem.string() + "_" + std::to_string(k + 1)),
+                  layers[k], layers.size() == 1);
+}
+
+/// Names of what can become of a run. The order gives the colours: the common ones have the same in every map, and what
+/// stopped does not look good.
+std::vector<std::string> outcomes_of(const std::vector<Group>& rows) {
+  std::vector<std::string> seen;
+  for (const Group& row : rows)
+    for (const Result* result : row.results)
+      if (result->outcome.status != Status::not_run && result->outcome.status != Status::interrupted)
+        seen.push_back(outcome_words(*result));
+  const auto stopped =
+      std::find_if(seen.begin(), seen.end(), [](const std::string& word) { return word.starts_with("stopped"); });
+  std::vector<std::string> words{"bounded", stopped == seen.end() ? "stopped" : *stopped, "refused", "gained energy",
+                                 "volume ratio out of range"};
+  for (const std::string& word : seen)
+    if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+  return words;
+}
+
+void draw_outcome_map(const Results& results, const FigureRequest& figure, const fs::path& stem) {
+  const Study& study = results.study;
+  render::OutcomeMap map;
+  map.title = title_of(results, figure);
+  map.x_label = study.axis(figure.x)->title();
+  map.footnote = footnote(results, figure, false);
+  map.log_x = figure.log_x;
+  const auto rows = group(results, figure, {figure.x});
+  for (const Group& row : rows)
+    for (const Result* result : row.results) map.x.push_back(number_on(study, *result, figure.x));
+  std::sort(map.x.begin(), map.x.end());
+  map.x.erase(std::unique(map.x.begin(), map.x.end()), map.x.end());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    map.y.push_back(static_cast<double>(k + 1));
+    map.y_names.push_back(rows[rows.size() - 1 - k].label);  // the first row on top
+  }
+  map.outcome.assign(map.x.size() * map.y.size(), -1);
+  map.outcomes = outcomes_of(rows);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (const Result* result : rows[k].results) {
+      const auto known = std::find(map.outcomes.begin(), map.outcomes.end(), outcome_words(*result));
+      if (known == map.outcomes.end()) continue;  // not run yet
+      const auto column = std::find(map.x.begin(), map.x.end(), number_on(study, *result, figure.x)) - map.x.begin();
+      const std::size_t row = rows.size() - 1 - k;
+      map.outcome[row * map.x.size() + static_cast<std::size_t>(column)] =
+          static_cast<int>(known - map.outcomes.begin());
+    }
+  render::write_figure(map, stem);
+}
+
+void draw_one(const Results& results, const FigureRequest& figure, const fs::path& folder) {
+  const fs::path stem = folder / "figures" / figure.name;
+  switch (figure.type) {
+    case FigureType::convergence:
+    case FigureType::small_multiples:
+      return draw_lines(results, figure, stem);
+    case FigureType::pareto:
+      for (const std::string& cost : figure.costs)
+        draw_pareto(results, figure, cost, fs::path(stem.string() + "_" + cost));
+      return;
+    case FigureType::heat_map:
+      return draw_heat_maps(results, figure, stem);
+    case FigureType::curves:
+      return draw_curves(results, figure, folder, stem);
+    case FigureType::outcome_map:
+      return draw_outcome_map(results, figure, stem);
+  }
+}
+
+}  // namespace
+
+std::string outcome_words(const Result& result) {
+  switch (result.outcome.status) {
+    case Status::done:
+      break;
+    case Status::failed: {
+      // "step 3, t = 0.1 s: particle 4 of body "b" at (0, 0) m inverted: its volume ratio …" -> "inverted"
+      const auto place = result.outcome.reason.find(") m ");
+      if (place == std::string::npos) return "stopped";
+      const std::string cause = result.outcome.reason.substr(place + 4);
+      return "stopped: " +
+             cause.substr(0, std::min({cause.find(':'), cause.find(','), cause.find(" ("), cause.find(" at ")}));
+    }
+    default:
+      return name_of(result.outcome.status);
+  }
+  if (result.flags.empty()) return "bounded";
+  return result.flags.front().starts_with("energy") ? "gained energy" : "volume ratio out of range";
+}
+
+std::vector<std::string> draw_figures(const Results& results, const fs::path& folder) {
+  std::vector<std::string> troubles;
+  fs::create_directories(folder / "figures");
+  for (const FigureRequest& figure : results.study.figures) {
+    try {
+      draw_one(results, figure, folder);
+    } catch (const std::exception& error) {
+      troubles.push_back("figure \"" + figure.name + "\": " + error.what());
+    }
+  }
+  return troubles;
+}
+
+}  // namespace mpm::study

@@ -1,0 +1,231 @@
+#include "study/run_study.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <thread>
+
+#include "experiment/diagnostics.hpp"
+#include "experiment/located_json.hpp"
+#include "study/bisection.hpp"
+#include "study/runner.hpp"
+
+namespace mpm::study {
+namespace {
+
+constexpr auto pause = std::chrono::milliseconds(5);  // between looks at the runs
+
+/// What one combination still has to run: a single experiment, or the next of a bisection.
+class Task {
+ public:
+  Task(const Study& study, Result& result) : study_(study), result_(result) {
+    if (const auto& b = study.bisection) search_.emplace(b->from, b->to, b->relative_tolerance);
+  }
+
+  Result& result() { return result_; }
+  /// Nothing is left to run.
+  bool is_over() const { return over_ || (search_ && !search_->next()); }
+
+  std::string run_name() const {
+    return search_ ? result_.combination.name + "@" + number_text(*search_->next()) : result_.combination.name;
+  }
+  std::vector<std::string> overrides() const {
+    std::vector<std::string> all = result_.combination.overrides;
+    if (search_)
+      all.push_back(study_.bisection->pointer + "=" + Json(*search_->next() * study_.bisection->scale).dump());
+    return all;
+  }
+
+  void finish(const Outcome& outcome, const Json& summary) {
+    if (!search_) {
+      over_ = true;
+      result_.outcome = outcome;
+      if (outcome.status != Status::refused) result_.folder = "runs/" + result_.combination.name;
+      if (is_finished(outcome.status)) measure(summary);
+      return;
+    }
+    const Status status = outcome.status;
+    if (status == Status::refused || status == Status::machine_failed || status == Status::interrupted) {
+      over_ = true;  // says nothing about stability
+      result_.outcome = outcome;
+      result_.outcome.reason = "at " + number_text(*search_->next()) + ": " + outcome.reason;
+      return;
+    }
+    probe(outcome, summary);
+  }
+
+ private:
+  void probe(const Outcome& outcome, const Json& summary) {
+    std::vector<std::string> broken;
+    if (outcome.status != Status::done)
+      broken.push_back(outcome.reason.empty() ? name_of(outcome.status) : outcome.reason);
+    const bool stable = broken.empty() && all_hold(study_.bisection->stable_while, summary, broken);
+    result_.probes.push_back({*search_->next(), stable, "runs/" + run_name(), stable ? "" : broken.front()});
+    result_.outcome.reused = (result_.probes.size() == 1 || result_.outcome.reused) && outcome.reused;
+    if (stable) {
+      result_.folder = result_.probes.back().folder;
+      measure(summary);
+    }
+    search_->answer(stable);
+    result_.stable = search_->stable();
+    result_.unstable = search_->unstable();
+    if (result_.stable) result_.measures[critical_measure] = *result_.stable;
+    if (search_->next()) return;
+    if (!result_.stable) {
+      result_.outcome.status = Status::failed;
+      result_.outcome.reason = "unstable already at " + number_text(study_.bisection->from) + ": " + broken.front();
+      return;
+    }
+    result_.outcome.status = Status::done;
+    if (!result_.unstable) result_.outcome.reason = "stable up to the end of the range";
+  }
+
+  void measure(const Json& summary) {
+    result_.measures.clear();
+    for (const Measure& measure : study_.measures)
+      if (const double value = evaluate(measure, summary); std::isfinite(value)) result_.measures[measure.name] = value;
+    result_.flags = flags_of(study_.limits, summary);
+  }
+
+  const Study& study_;
+  Result& result_;
+  std::optional<BisectionSearch> search_;
+  bool over_ = false;
+};
+
+/// Without the file's name in front of each line: all come from the same one.
+std::string reason_of(const InputError& error) {
+  std::string text;
+  for (const Problem& problem : error.problems())
+    text += (text.empty() ? "" : "; ") + problem.pointer + (problem.pointer.empty() ? "" : ": ") + problem.message;
+  return text;
+}
+
+class Execution {
+ public:
+  Execution(const Study& study, const Registry& registry, const ReadOptions& read, const ExecutionOptions& options)
+      : study_(study),
+        registry_(registry),
+        read_(read),
+        options_(options),
+        keys_(options.program),
+        runner_(options.program, options.folder, options.threads) {
+    results_.study = study;
+    results_.command = options.command;
+    for (Combination& combination : expand(study))
+      results_.results.push_back({std::move(combination), {}, {}, {}, "", {}, {}, {}});
+    for (Result& result : results_.results) waiting_.emplace_back(study_, result);
+  }
+
+  Results run() {
+    while (!waiting_.empty() || runner_.running() > 0) {
+      if (options_.stop_requested()) {
+        results_.interrupted = true;
+        waiting_.clear();
+        runner_.stop();
+      }
+      while (!waiting_.empty() && runner_.running() < static_cast<std::size_t>(options_.jobs) &&
+             !options_.stop_requested())
+        begin_next();
+      if (const auto ended = runner_.poll())
+        end(*ended);
+      else if (runner_.running() > 0)
+        std::this_thread::sleep_for(pause);
+    }
+    refuse_when_all_are();
+    return std::move(results_);
+  }
+
+ private:
+  /// Takes the next combination as far as it goes without a process.
+  void begin_next() {
+    Task task = std::move(waiting_.front());
+    waiting_.pop_front();
+    go_on(std::move(task));
+  }
+
+  void go_on(Task task) {
+    while (!task.is_over()) {
+      PreparedRun run{task.run_name(), {}, ""};
+      try {
+        prepare(task, run);
+      } catch (const InputError& error) {
+        task.finish({Status::refused, reason_of(error)}, {});
+        continue;
+      }
+      if (const auto earlier = runner_.earlier(run)) {
+        task.finish(*earlier, runner_.summary(run.name));
+        continue;
+      }
+      runner_.start(run);
+      active_.emplace(run.name, std::move(task));
+      return;
+    }
+    report(task.result());
+  }
+
+  void prepare(const Task& task, PreparedRun& run) {
+    ReadOptions read = read_;
+    read.overrides = task.overrides();
+    const Experiment experiment = read_experiment(study_.base, registry_, read);
+    run.experiment = experiment.resolved;
+    run.key = keys_(experiment);
+  }
+
+  void end(const Runner::Ended& ended) {
+    auto found = active_.find(ended.name);
+    Task task = std::move(found->second);
+    active_.erase(found);
+    task.finish(ended.outcome, runner_.summary(ended.name));
+    if (!task.is_over() && options_.stop_requested()) {
+      task.result().outcome = {Status::interrupted, "the bisection was stopped"};
+      return report(task.result());
+    }
+    go_on(std::move(task));
+  }
+
+  void report(const Result& result) {
+    ++reported_;
+    std::string line = "[" + std::to_string(reported_) + "/" + std::to_string(results_.results.size()) + "] " +
+                       result.combination.name + ": " + name_of(result.outcome.status);
+    if (result.stable) line += ", " + study_.bisection->label + " " + number_text(*result.stable);
+    if (!result.outcome.reason.empty()) line += ": " + result.outcome.reason;
+    for (const std::string& flag : result.flags) line += ", " + flag;
+    options_.say(line + (result.outcome.reused ? " (reused)" : ""));
+  }
+
+  void refuse_when_all_are() const {
+    if (results_.interrupted) return;
+    for (const Result& result : results_.results)
+      if (result.outcome.status != Status::refused) return;
+    std::vector<Problem> problems;
+    std::string last;
+    for (const Result& result : results_.results) {
+      if (result.outcome.reason == last) continue;
+      last = result.outcome.reason;
+      problems.push_back({study_.base.string(), 0, 0, "", result.combination.name + ": " + last});
+    }
+    throw InputError(std::move(problems));
+  }
+
+  const Study& study_;
+  const Registry& registry_;
+  const ReadOptions& read_;
+  const ExecutionOptions& options_;
+  KeyMaker keys_;
+  Runner runner_;
+  Results results_;
+  std::deque<Task> waiting_;
+  std::map<std::string, Task> active_;
+  std::size_t reported_ = 0;
+};
+
+}  // namespace
+
+Results run_study(const Study& study, const Registry& registry, const ReadOptions& read,
+                  const ExecutionOptions& options) {
+  read_located(study.base);  // a base that is no JSON is one mistake, not one a combination
+  return Execution(study, registry, read, options).run();
+}
+
+}  // namespace mpm::study

@@ -1,0 +1,28 @@
+#pragma once
+// A study from its file to its results.
+
+#include <functional>
+#include <string>
+
+#include "experiment/read.hpp"
+#include "plugin/registry.hpp"
+#include "study/results.hpp"
+
+namespace mpm::study {
+
+struct ExecutionOptions {
+  std::filesystem::path program;  ///< that `run` is a verb of
+  std::filesystem::path folder;   ///< of the study, existing; absolute
+  int jobs = 1;                   ///< runs at a time
+  int threads = 1;                ///< of each
+  std::string command;            ///< as typed
+  std::function<bool()> stop_requested;
+  std::function<void(const std::string&)> say;  ///< progress, a line a call
+};
+
+/// Makes, runs or takes over every combination. `read` carries what experiments may name; its overrides are not used.
+/// @throws InputError when the base is no JSON, or when every combination is refused; output::MachineError.
+Results run_study(const Study& study, const Registry& registry, const ReadOptions& read,
+                  const ExecutionOptions& options);
+
+}  // namespace mpm::study

@@ -1,0 +1,117 @@
+#pragma once
+// A study as read from its file: which experiments it makes, what it measures of them and what it draws.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mpm::study {
+
+/// One value of an axis.
+struct Choice {
+  std::string label;                   ///< in tables, legends and names of folders
+  std::optional<double> number;        ///< its place on the axis of a figure, in the axis' unit
+  std::vector<std::string> overrides;  ///< "/json/pointer=value", applied to the base experiment
+};
+
+struct Axis {
+  std::string name;  ///< what figures and study.json call it: the pointer, unless it has a name
+  std::string label, unit;
+  std::vector<Choice> choices;        ///< at least one, each label once
+  std::vector<std::string> pointers;  ///< all that its choices set
+
+  /// Every choice has a number.
+  bool is_numeric() const;
+  /// "cell size (m)".
+  std::string title() const;
+};
+
+/// A number of summary.json, x, or a formula of it.
+struct Measure {
+  std::string name;
+  std::string path;  ///< JSON pointer or dotted path into summary.json
+  std::string label, unit;
+  std::string formula;  ///< of x; empty: x itself
+
+  std::string title() const;
+};
+
+/// A condition on a number of summary.json; one that is missing or not finite does not hold.
+struct Bound {
+  std::string path;
+  std::optional<double> at_least, at_most;
+};
+
+/// The search for the last stable value between one that is stable and one that is not.
+struct Bisection {
+  std::string pointer;
+  std::string label, unit;
+  double from = 0, to = 0;  ///< the end that should be stable, the end that should not, both over `scale`
+  double relative_tolerance = 0.02;
+  double scale = 1;  ///< the experiment gets value * scale
+  std::vector<Bound> stable_while;
+
+  std::string title() const;
+};
+
+/// What a finished run must respect, else it is flagged.
+struct Limits {
+  std::optional<double> energy_gain;  ///< share of the initial energy; of isolated scenes only
+  std::optional<double> least_volume_ratio, most_volume_ratio;  ///< of any particle at any recorded time
+};
+
+enum class FigureType { convergence, pareto, heat_map, small_multiples, curves, outcome_map };
+
+/// Which figure and of what; names are those of axes and measures, checked when read.
+struct FigureRequest {
+  FigureType type = FigureType::convergence;
+  std::string name;  ///< of its files
+  std::string title;
+  std::string x, y, panels, series;  ///< axes; empty: not given
+  std::string value;                 ///< measure; empty: the study's error
+  std::vector<std::string> costs;    ///< of a Pareto figure
+  std::string column;                ///< of metrics.csv, for curves
+  bool log_x = false, log_y = false;
+  std::vector<std::pair<std::string, std::vector<std::string>>> where;  ///< axis and the labels that are shown
+};
+
+struct Study {
+  std::filesystem::path file, base;
+  std::string title, description;
+  std::vector<std::string> overrides;  ///< of "set", then of the command line
+  std::vector<Axis> axes;
+  std::optional<Bisection> bisection;
+  std::vector<Measure> measures;  ///< the file's, then the built-in ones
+  std::string error, cost;        ///< names of measures; `error` may be empty
+  Limits limits;
+  std::vector<FigureRequest> figures;
+
+  const Axis* axis(const std::string& name) const;        ///< null when there is none
+  const Measure* measure(const std::string& name) const;  ///< null when there is none
+  std::size_t axis_index(const std::string& name) const;  ///< axes.size() when there is none
+};
+
+/// "label (unit)", or the label alone.
+std::string with_unit(const std::string& label, const std::string& unit);
+
+/// Name of the measure that a bisection finds.
+inline constexpr const char* critical_measure = "critical";
+
+/// Reads and checks a study; `more_overrides` are those of the command line. Throws InputError with every mistake.
+Study read_study(const std::filesystem::path& file, const std::vector<std::string>& more_overrides = {});
+/// The same from text; `file` names it in messages and is what `base` is relative to.
+Study read_study_text(std::string_view text, const std::filesystem::path& file,
+                      const std::vector<std::string>& more_overrides = {});
+
+/// One experiment of the study.
+struct Combination {
+  std::string name;                    ///< of its folder; unique in the study
+  std::vector<std::size_t> choices;    ///< index into each axis' choices
+  std::vector<std::string> overrides;  ///< the study's, then each axis', in order
+};
+
+/// All combinations, the first axis slowest.
+std::vector<Combination> expand(const Study& study);
+
+}  // namespace mpm::study

@@ -1,0 +1,91 @@
+#include "study/summary_value.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "experiment/diagnostics.hpp"
+#include "experiment/expression.hpp"
+
+namespace mpm::study {
+namespace {
+
+std::string three_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+const Json* at(const Json& summary, const std::string& path) {
+  if (path.starts_with('/')) {
+    try {
+      return &summary.at(Json::json_pointer(path));
+    } catch (const Json::exception&) {  // no such place, or no pointer
+      return nullptr;
+    }
+  }
+  const Json* value = &summary;
+  std::stringstream names(path);
+  for (std::string name; std::getline(names, name, '.');) {
+    if (!value->is_object() || !value->contains(name)) return nullptr;
+    value = &(*value)[name];
+  }
+  return value;
+}
+
+/// Gain of the largest recorded total energy over the energies the scene began with; NaN when it began with none.
+double energy_gain(const Json& summary) {
+  const double start = number_at(summary, "energy.total.initial"), largest = number_at(summary, "energy.total.largest");
+  const double scale = number_at(summary, "energy.kinetic.initial") + number_at(summary, "energy.strain.initial") +
+                       std::abs(number_at(summary, "energy.gravitational.initial"));
+  return scale > 0 ? (largest - start) / scale : not_measured;
+}
+
+}  // namespace
+
+double number_at(const Json& summary, const std::string& path) {
+  const Json* value = path.empty() ? nullptr : at(summary, path);
+  return value && value->is_number() ? value->get<double>() : not_measured;
+}
+
+double evaluate(const Measure& measure, const Json& summary) {
+  const double x = number_at(summary, measure.path);
+  if (measure.formula.empty() || !std::isfinite(x)) return x;
+  const VectorExpression::Term term = measure.formula;
+  const VectorExpression formula(std::span(&term, 1), {"x", {}});
+  return formula({x, 0, 0}, {x, 0, 0}, 0)[0];
+}
+
+bool all_hold(const std::vector<Bound>& bounds, const Json& summary, std::vector<std::string>& broken) {
+  const std::size_t before = broken.size();
+  for (const Bound& bound : bounds) {
+    const double value = number_at(summary, bound.path);
+    if (!std::isfinite(value))
+      broken.push_back(bound.path + " is no number in summary.json");
+    else if (bound.at_least && value < *bound.at_least)
+      broken.push_back(bound.path + " is " + three_digits(value) + ", below " + number_text(*bound.at_least));
+    else if (bound.at_most && value > *bound.at_most)
+      broken.push_back(bound.path + " is " + three_digits(value) + ", above " + number_text(*bound.at_most));
+  }
+  return broken.size() == before;
+}
+
+std::vector<std::string> flags_of(const Limits& limits, const Json& summary) {
+  std::vector<std::string> flags;
+  // Not a number compares false with everything: written so that it is flagged.
+  if (const double gain = energy_gain(summary); limits.energy_gain && !(gain <= *limits.energy_gain))
+    flags.push_back(std::isnan(gain) ? "energy gain unknown: no initial energy"
+                                     : "energy gain of " + three_digits(100 * gain) + " % (limit " +
+                                           number_text(100 * *limits.energy_gain) + " %)");
+  const double smallest = number_at(summary, "stability.smallest_volume_ratio");
+  const double largest = number_at(summary, "stability.largest_volume_ratio");
+  if (limits.least_volume_ratio && !(smallest >= *limits.least_volume_ratio))
+    flags.push_back("smallest volume ratio J " + three_digits(smallest) + " (limit " +
+                    number_text(*limits.least_volume_ratio) + ")");
+  if (limits.most_volume_ratio && !(largest <= *limits.most_volume_ratio))
+    flags.push_back("largest volume ratio J " + three_digits(largest) + " (limit " +
+                    number_text(*limits.most_volume_ratio) + ")");
+  return flags;
+}
+
+}  // namespace mpm::study

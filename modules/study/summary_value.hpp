@@ -1,0 +1,29 @@
+#pragma once
+// Numbers out of summary.json, and what they say of a run.
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "study/study.hpp"
+
+namespace mpm::study {
+
+using Json = nlohmann::ordered_json;
+
+inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+
+/// The number at a JSON pointer ("/error/position/rms") or dotted path ("error.position.rms"); NaN when there is none.
+double number_at(const Json& summary, const std::string& path);
+
+/// The measure's value, its formula applied; NaN when the summary lacks it.
+double evaluate(const Measure& measure, const Json& summary);
+
+/// Whether every bound holds; `broken` gets a sentence for each that does not.
+bool all_hold(const std::vector<Bound>& bounds, const Json& summary, std::vector<std::string>& broken);
+
+/// Names of the limits a finished run breaks: "energy gain of 3.2 % (limit 1 %)". Empty when it respects all.
+std::vector<std::string> flags_of(const Limits& limits, const Json& summary);
+
+}  // namespace mpm::study

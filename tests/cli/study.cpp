@@ -1,0 +1,225 @@
+// `mpm study` and `mpm advise`: every combination a run of its own, whatever becomes of it.
+
+#include "cli/program.hpp"
+
+using namespace mpm::test;
+
+namespace {
+
+/// A ball that breathes: 52 particles, 25 steps.
+Json breathing() {
+  Json scene = ball();
+  scene["bodies"][0]["velocity"] = {"0.3*(x-0.5)", "0.3*(y-0.5)"};
+  scene["solver"] = {{"time_step", 0.01}, {"end_time", 0.25}};
+  scene["output"] = {{"metrics_every", 1}, {"ledger", false}};
+  return scene;
+}
+
+Json small_study() {
+  return Json::parse(R"J({
+    "title": "Small study", "base": "scene.json",
+    "axes": {"/transfer/type": ["pic", "flip"], "/grid/cell_size": [0.1, 0.05]},
+    "measure": {"loss": {"value": "/energy/total/final_over_initial", "formula": "abs(1-x)", "label": "energy lost"}},
+    "error": "loss"
+  })J");
+}
+
+void write_inputs(const Folder& folder, const Json& scene, const Json& study) {
+  spill(folder / "scene.json", scene.dump(1));
+  spill(folder / "s.json", study.dump(1));
+}
+
+Result run_study(const Folder& folder, Words more = {}) {
+  Words words{"study", "s.json", "--out", "out", "--jobs", "2"};
+  words.insert(words.end(), more.begin(), more.end());
+  return call(folder, words);
+}
+
+Json run_named(const Json& study, const std::string& name) {
+  for (const Json& run : study["runs"])
+    if (run["name"] == name) return run;
+  FAIL("no run is called " << name);
+  return {};
+}
+
+std::vector<pid_t> children_of(pid_t id) {
+  std::istringstream list(slurp("/proc/" + std::to_string(id) + "/task/" + std::to_string(id) + "/children"));
+  std::vector<pid_t> children;
+  for (pid_t child = 0; list >> child;) children.push_back(child);
+  return children;
+}
+
+}  // namespace
+
+TEST_CASE("a study runs every combination once, and only what changed again; advice comes from what it measured") {
+  const Folder folder;
+  Json study = small_study();
+  study["figures"] = {{{"type", "convergence"}, {"x", "/grid/cell_size"}}, "pareto"};
+  write_inputs(folder, breathing(), study);
+  const Result first = run_study(folder);
+  INFO(first.err);
+  REQUIRE(first.code == 0);
+  CHECK(has(first.out, "4 combinations: 4 done\nreport: out/report.html"));
+  const Json json = json_in(folder / "out/study.json");
+  CHECK(json["status"] == "complete");
+  REQUIRE(json["runs"].size() == 4);
+  const Json pic = run_named(json, "pic-0.1"), flip = run_named(json, "flip-0.1");
+  CHECK(pic["measures"]["loss"].get<double>() > flip["measures"]["loss"].get<double>());
+  CHECK(pic["measures"]["particle_steps"] == 52 * 25);
+  const Json summary = json_in(folder / "out/runs/pic-0.1/summary.json");
+  CHECK(pic["measures"]["loss"] == std::abs(1 - summary["energy"]["total"]["final_over_initial"].get<double>()));
+  const std::string report = slurp(folder / "out/report.html");
+  for (const char* part :
+       {"Small study", "Observed orders", "Pareto fronts", "runs/pic-0.1/report.html", "data:image/svg"})
+    CHECK(has(report, part));
+  CHECK(!has(report, "src=\"http"));
+  CHECK(has(slurp(folder / "out/table.csv"), "\npic-0.1,pic,0.1,done,"));
+  for (const char* figure : {"convergence", "pareto_seconds", "pareto_particle_steps"})
+    for (const char* ending : {".png", ".svg", ".csv"})
+      CHECK(fs::is_regular_file(folder / "out/figures" / (std::string(figure) + ending)));
+
+  const Result again = run_study(folder);
+  CHECK(again.code == 0);
+  CHECK(has(again.out, "4 done; 4 reused from an earlier call"));
+  study["axes"]["/grid/cell_size"] = {0.1, 0.04};
+  write_inputs(folder, breathing(), study);
+  const Result changed = run_study(folder);
+  INFO(changed.err);
+  CHECK(has(changed.out, "4 done; 2 reused from an earlier call"));
+  const Result other = run_study(folder, {"--set", "/solver/end_time=0.1"});
+  CHECK(has(other.out, "4 combinations: 4 done\n"));
+  CHECK(run_named(json_in(folder / "out/study.json"), "pic-0.1")["measures"]["particle_steps"] == 52 * 10);
+
+  const Result advice = call(folder, {"advise", "out", "--error", "50%", "--by", "particle_steps"});
+  INFO(advice.out << advice.err);
+  CHECK(advice.code == 0);
+  CHECK(has(advice.out, "take flip, 0.1: energy lost "));
+  CHECK(has(advice.out, "particle-steps 520\n"));
+  CHECK(has(advice.out, "evidence: out/runs/flip-0.1\n"));
+  const Result best = call(folder, {"advise", "out", "--time", "10 min", "--json"});
+  CHECK(best.code == 0);
+  const Json ranked = Json::parse(best.out);
+  REQUIRE(ranked["good"].size() == 4);
+  for (std::size_t k = 1; k < 4; ++k) CHECK(ranked["good"][k - 1]["error"] <= ranked["good"][k]["error"]);
+  const Result none = call(folder, {"advise", "out", "--error", "1e-9"});
+  CHECK(none.code == 4);
+  CHECK(has(none.out, "no combination has energy lost of at most 1e-9\nnearest: "));
+  CHECK(call(folder, {"advise", "out"}).code == 2);
+  CHECK(call(folder, {"advise", "out", "--error", "1 mm"}).code == 2);
+  CHECK(call(folder, {"advise", "nowhere", "--error", "1"}).code == 2);
+}
+
+TEST_CASE("refused, unstable and flagged combinations are recorded by name") {
+  const Folder folder;
+  Json study = small_study();
+  study["axes"] = {{"/transfer/type", {"flip", "flop"}}, {"/solver/time_step", {0.01, 5}}};
+  study["limits"] = {{"isolated", true}, {"volume_ratio", {0.9999, 1.0001}}};
+  study["figures"] = {{{"type", "outcome_map"}, {"x", "/solver/time_step"}},
+                      {{"type", "heat_map"}, {"x", "/solver/time_step"}, {"y", "/transfer/type"}}};
+  Json scene = breathing();
+  scene["solver"]["end_time"] = 100;  // 20 steps of 5 s
+  scene["solver"]["max_steps"] = 100;
+  write_inputs(folder, scene, study);
+  Result result = run_study(folder, {"--set", "/solver/end_time=20", "--set", "/solver/max_steps=2500"});
+  INFO(result.err);
+  CHECK(result.code == 4);
+  CHECK(has(result.out, "4 combinations: 1 done, 1 failed, 2 refused"));
+  CHECK(has(result.err, "flip-0.01: smallest volume ratio J 0."));
+  const Json json = json_in(folder / "out/study.json");
+  const Json refused = run_named(json, "flop-0.01");
+  CHECK(refused["status"] == "refused");
+  CHECK(has(refused["reason"], "unknown transfer \"flop\"; did you mean \"flip\"?"));
+  const Json failed = run_named(json, "flip-5");
+  CHECK(failed["status"] == "failed");
+  CHECK(has(failed["reason"], "particle"));
+  CHECK(failed["measures"].empty());
+  CHECK(has(slurp(folder / "out/report.html"), "flagged"));
+  CHECK(fs::is_regular_file(folder / "out/figures/outcome_map.png"));
+  CHECK(fs::is_regular_file(folder / "out/figures/heat_map.png"));
+}
+
+TEST_CASE("bisection finds the largest stable step") {
+  const Folder folder;
+  Json study = small_study();
+  study["axes"] = {{"/transfer/type", {"flip"}}};
+  study["bisect"] = {{"pointer", "/solver/time_step"},
+                     {"from", 0.02},
+                     {"to", 2},
+                     {"relative_tolerance", 0.2},
+                     {"stable_while", {{{"value", "/energy/total/largest_over_initial"}, {"at_most", 1.5}}}}};
+  write_inputs(folder, breathing(), study);
+  const Result result = run_study(folder, {"--set", "/solver/end_time=4"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const Json run = run_named(json_in(folder / "out/study.json"), "flip");
+  const double stable = run["bisection"]["stable"], unstable = run["bisection"]["unstable"];
+  CHECK(stable < unstable);
+  CHECK(unstable <= 1.2 * stable);
+  CHECK(stable > 0.03);  // cell size over wave speed: 0.086 s
+  CHECK(unstable < 0.4);
+  CHECK(run["measures"]["critical"] == stable);
+  for (const Json& probe : run["bisection"]["runs"]) CHECK(probe["stable"] == (probe["value"] <= stable));
+  const Result again = run_study(folder, {"--set", "/solver/end_time=4"});
+  CHECK(has(again.out, "1 reused"));
+}
+
+TEST_CASE("a run that is killed is recorded, and run again by the next call") {
+  const Folder folder;
+  Json study = small_study();
+  study["axes"] = {{"/transfer/type", {"flip", "pic"}}};
+  write_inputs(folder, endless_ball(), study);
+  Process process(folder, program({"study", "s.json", "--out", "out", "--jobs", "1"}));
+  const fs::path rows = folder / "out/runs/flip/metrics.csv";
+  REQUIRE(process.wait_until([&] { return rows_written(rows, 20); }));
+  REQUIRE(children_of(process.id()).size() == 1);
+  ::kill(children_of(process.id())[0], SIGKILL);
+  REQUIRE(process.wait_until([&] { return rows_written(folder / "out/runs/pic/metrics.csv", 20); }));
+  process.send(SIGINT);
+  const Result stopped = process.finish();
+  INFO(stopped.err);
+  CHECK(stopped.code == 130);
+  const Json json = json_in(folder / "out/study.json");
+  CHECK(json["status"] == "interrupted");
+  CHECK(run_named(json, "flip")["status"] == "crashed");
+  CHECK(has(run_named(json, "flip")["reason"], "SIGKILL"));
+  CHECK(run_named(json, "pic")["status"] == "interrupted");
+  CHECK(fs::is_regular_file(folder / "out/report.html"));
+
+  Process more(folder, program({"study", "s.json", "--out", "out", "--jobs", "2"}));
+  CHECK(more.wait_until([&] { return has(slurp(folder / "out/records/pic.log"), "resumed from step"); }));
+  more.send(SIGKILL);
+  CHECK(more.finish().signal == SIGKILL);
+  // Its runs end with it: nothing is written any more.
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const auto size = fs::file_size(folder / "out/runs/pic/metrics.csv");
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  CHECK(fs::file_size(folder / "out/runs/pic/metrics.csv") == size);
+}
+
+TEST_CASE("2: studies that cannot be run leave nothing behind") {
+  const Folder folder;
+  Json study = small_study();
+  write_inputs(folder, breathing(), study);
+  CHECK(has(call(folder, {"study", "missing.json"}).err, "missing.json: there is no such file"));
+  spill(folder / "bad.json", "{\"base\": \"scene.json\",\n \"axis\": {}}");
+  const Result bad = call(folder, {"study", "bad.json"});
+  CHECK(bad.code == 2);
+  CHECK(has(bad.err, "bad.json:2:2: /axis: unknown key \"axis\"; did you mean \"axes\"?"));
+  CHECK(has(bad.err, "bad.json:1:1: /axes: missing key"));
+  CHECK(!fs::exists(folder / "runs"));
+
+  study["axes"] = {{"/transfer/typ", {"pic", "flip"}}};
+  write_inputs(folder, breathing(), study);
+  const Result refused = run_study(folder);
+  INFO(refused.err);
+  CHECK(refused.code == 2);
+  CHECK(has(refused.err, "scene.json: pic: /transfer/typ: unknown key \"typ\"; did you mean \"type\"?"));
+  CHECK(!fs::exists(folder / "out"));
+
+  fs::create_directory(folder / "thesis");
+  spill(folder / "thesis/chapter.tex", "years of work");
+  const Result foreign = call(folder, {"study", "s.json", "--out", "thesis"});
+  CHECK(foreign.code == 2);
+  CHECK(has(foreign.err, "not an earlier study (no study.json)"));
+  CHECK(slurp(folder / "thesis/chapter.tex") == "years of work");
+}
