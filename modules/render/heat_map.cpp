@@ -185,8 +185,9 @@ void draw_cells(Canvas& canvas, const Theme& theme, const HeatMap& map, const La
   const std::size_t columns = map.x_names.size();
   const double gap = std::min(1.5 * theme.unit, 0.05 * std::min(at.column_width, at.row_height));
   for (std::size_t cell = 0; cell < map.values.size(); ++cell) {
-    const double x = at.cells.x0 + static_cast<double>(cell % columns) * at.column_width;
-    const double y = at.cells.y0 + static_cast<double>(cell / columns) * at.row_height;
+    const std::size_t column = cell % columns, row = cell / columns;
+    const double x = at.cells.x0 + static_cast<double>(column) * at.column_width;
+    const double y = at.cells.y0 + static_cast<double>(row) * at.row_height;
     const Box box{x + gap, y + gap, x + at.column_width - gap, y + at.row_height - gap};
     const Colour ground = colour_of(map, at, map.values[cell]);
     canvas.rectangle(box, ground);

@@ -1,5 +1,5 @@
 #pragma once
-// A periodic line of particles on one row of cells: the layout of cases A3, A4 and A5, whose factors and limits are
+// A periodic line of particles on one row of cells: the layout of cases A3 to A6, whose factors and limits are
 // exact.
 
 #include <functional>

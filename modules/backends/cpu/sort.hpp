@@ -49,6 +49,18 @@ constexpr BlockCoordinates neighbour_at(BlockCoordinates at, int index) {
   return at;
 }
 
+/// The lanes after the last of a block's `count` particles hold copies of it.
+template <int D, class T>
+void fill_tail(const Particles<D, T>& particles, std::uint32_t count, std::byte* last_chunk) {
+  const int used = static_cast<int>((count - 1) % chunk_size) + 1;
+  T* const values = particles.values_at(last_chunk);
+  std::int32_t* const ids = particles.ids_at(last_chunk);
+  for (int lane = used; lane < padded(used); ++lane) {
+    for (int c = 0; c < particles.components; ++c) values[c * chunk_size + lane] = values[c * chunk_size + used - 1];
+    ids[lane] = ids[used - 1];
+  }
+}
+
 template <int D, class T>
 class Sorter {
  public:
@@ -523,7 +535,7 @@ class Sorter {
       }
     }
     take_far_before(~0u);
-    fill_tail(block);
+    fill_tail(particles_, block.count, places_[block.first_chunk + (block.count - 1) / chunk_size]);
   }
 
   void count_stayers(const Block<D>& block, std::uint32_t* counts) const {
@@ -579,18 +591,6 @@ class Sorter {
     for (std::size_t byte = 0; byte < gap; byte += 64) __builtin_prefetch(place + byte, 0, 2);
     for (std::size_t byte = gap + left_behind_ * component; byte < particles_.chunk_bytes(); byte += 64)
       __builtin_prefetch(place + byte, 0, 2);
-  }
-
-  /// The lanes after the last particle hold copies of it.
-  void fill_tail(const Block<D>& block) {
-    const int used = (block.count - 1) % chunk_size + 1;
-    std::byte* const last = places_[block.first_chunk + (block.count - 1) / chunk_size];
-    T* const values = particles_.values_at(last);
-    std::int32_t* const ids = particles_.ids_at(last);
-    for (int lane = used; lane < padded(used); ++lane) {
-      for_each_component([&](int c) { values[c * chunk_size + lane] = values[c * chunk_size + used - 1]; });
-      ids[lane] = ids[used - 1];
-    }
   }
 
   void finish() {
@@ -671,6 +671,7 @@ void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const D
     block.at = seeded.at;
     block.first_chunk = particles.chunks;
     block.count = seeded.count;
+    fill_tail(particles, seeded.count, seeded.chunks.back());
     particles.chunks += static_cast<std::uint32_t>(seeded.chunks.size());
     particles.places.insert(particles.places.end(), seeded.chunks.begin(), seeded.chunks.end());
   }
