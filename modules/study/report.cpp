@@ -44,6 +44,11 @@ class HtmlTable {
   std::size_t rows_ = 0;
 };
 
+/// Folded away but complete; "" for an empty body.
+std::string folded(const char* title, const std::string& body) {
+  return body.empty() ? "" : std::string("<details><summary>") + title + "</summary>" + body + "</details>";
+}
+
 std::string number_or_nothing(double value) {
   return std::isfinite(value) ? number_html(value) : "";
 }
@@ -131,8 +136,8 @@ std::string orders(const Results& results) {
         table.row({escape_html(order.label), std::to_string(order.points),
                    number_or_nothing(std::round(100 * order.fitted) / 100),
                    number_or_nothing(std::round(100 * order.finest) / 100), number_or_nothing(order.y)});
-    html +=
-        "<h3>" + escape_html(measure.label + " over " + results.study.axis(figure.x)->label) + "</h3>" + table.html();
+    html += "<h3>" + escape_html(measure.label + " against " + results.study.axis(figure.x)->label) + "</h3>" +
+            table.html();
   }
   return output::report::section("Observed orders", html);
 }
@@ -155,7 +160,8 @@ std::string fronts(const Results& results) {
         else
           front.row({name, number_html(point.cost), number_html(point.error)});
       }
-      html += "<h3>" + escape_html(y.label + " against " + x.label) + "</h3>" + front.html() + rest.html();
+      html += "<h3>" + escape_html(y.label + " against " + x.label) + "</h3>" + front.html() +
+              folded("What is dominated, and by what", rest.html());
     }
   }
   return output::report::section("Pareto fronts", html);
@@ -169,9 +175,7 @@ std::string probes(const Results& results) {
     for (const Probe& probe : result.probes)
       table.row({escape_html(result.combination.name), number_html(probe.value), probe.is_stable ? "yes" : "no",
                  escape_html(probe.reason)});
-  const std::string body = table.html();
-  return output::report::section(
-      "Bisection", body.empty() ? "" : "<details><summary>Every run of the search</summary>" + body + "</details>");
+  return output::report::section("Bisection", folded("Every run of the search", table.html()));
 }
 
 std::string reproduction(const Results& results, const Json& machine, const std::string& version) {

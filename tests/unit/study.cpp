@@ -295,3 +295,13 @@ TEST_CASE("what became of a run, in few words", "[study]") {
   result.flags = {"energy gain of 3 % (limit 1 %)"};
   CHECK(outcome_words(result) == "gained energy");
 }
+
+TEST_CASE("the shipped studies are studies of experiments that exist", "[study]") {
+  for (const char* name : {"studies/transfer_trade", "extremes/time_step", "extremes/largest_step"}) {
+    INFO(name);
+    const Study study = read_study(std::string(MPM_SOURCE_DIR "/experiments/") + name + ".json");
+    CHECK(std::filesystem::is_regular_file(study.base));
+    CHECK(expand(study).size() >= 15);
+    CHECK(!study.figures.empty());
+  }
+}
