@@ -65,7 +65,11 @@ TEST_CASE("fused and separate passes agree on every shape and transfer", "[parit
           mix.dimension = dimension;
           mix.shape = "{\"type\": \"" + std::string(shape->id()) + "\"}", mix.transfer = transfer;
           mix.more = precision == "double" ? "" : R"(, "output": {"ledger": false})";
-          const std::vector<std::string> overrides{set("/precision", precision), "/solver/end_time=1"};
+          std::vector<std::string> overrides{set("/precision", precision), "/solver/end_time=1"};
+          // With the tent in 3-D affine FLIP inverts a particle at the step of these scenes, on either backend.
+          const bool tent = shape->shape().second_moment_kind == MPM_MOMENT_IS_GRADIENT;
+          if (dimension == 3 && tent && transfer.find("aflip") != transfer.npos)
+            overrides.emplace_back("/solver/time_step=0.0045");
           check_fused(mix.text(), overrides, 50);
         }
 }

@@ -21,6 +21,10 @@ void check_all_mixes(int dimension) {
           Mix mix;
           mix.dimension = dimension;
           mix.shape = shape, mix.transfer = transfer, mix.contact = contact, mix.material = material;
+          // With the tent and their default fraction the affine FLIPs invert a particle here, on either backend.
+          for (const std::string affine : {"aflip", "asflip"})
+            if (shape.find("linear") != shape.npos && transfer.find("\"" + affine + "\"") != transfer.npos)
+              mix.transfer = R"({"type": ")" + affine + R"(", "pic_fraction": 0.2})";
           check_parity(mix);
           ++count;
         }

@@ -14,5 +14,5 @@ they do. beta_min = beta_max = 0 is `aflip`.
 ln J is the transfer's own state, the sum of dt tr C; the paper takes J of the elastic deformation. A material that has flowed open
 therefore counts as open until the motion closes it. The paper sets beta to zero inside colliders as well; here walls hold the grid
 alone, and a particle that r carries through one leaves the domain, which stops the run: keep beta_min at 0 where bodies press
-against walls. What is conserved: as `aflip`; positions move with a velocity of the same momentum only where beta is uniform.)",
+against walls. Energy at walls, and what v- is: see `aflip`. What is conserved: as `aflip`; positions move with a velocity of the same momentum only where beta is uniform.)",
      "Asflip"})
