@@ -350,7 +350,8 @@ class HostRun final : public Backend {
     run(phase + "_" + std::to_string(body.material_number), arguments_of(body), teams(body.count), body,
         "inverted: its volume ratio J is not positive");
   }
-  static constexpr const char* outside_grid = "its stencil reaches beyond the grid, or its position is not a number";
+  static constexpr const char* outside_grid =
+      "its stencil reaches beyond the grid or does not hold its domain, or its position is not a number";
 
   // ---- passes ------------------------------------------------------------------------------------------------------
 
