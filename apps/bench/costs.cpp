@@ -6,10 +6,12 @@
 #include "bench/counting.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
 #include "materials/von_mises/von_mises.hpp"
+#include "shapes/b2gimp/b2gimp.hpp"
 #include "shapes/bspline_cubic/bspline_cubic.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
 #include "shapes/cpdi/cpdi.hpp"
 #include "shapes/gimp/gimp.hpp"
+#include "shapes/gimp_contiguous/gimp_contiguous.hpp"
 #include "shapes/linear/linear.hpp"
 #include "transfers/aflip/aflip.hpp"
 #include "transfers/apic/apic.hpp"
@@ -83,6 +85,19 @@ ShapeCost tensor_cost(const Component& component, double half_size, bool moment_
   return {D * one_axis(false), D * one_axis(true), F::width, 0};
 }
 
+/// The same of a box that follows the domain: its lengths are found once for all axes.
+template <class F, int D, class T>
+ShapeCost deformed_cost(const Component& component, double half_size, bool moment_of_particle) {
+  using S = Counted<T>;
+  ShapeCost cost = tensor_cost<F, D, T>(component, half_size, moment_of_particle);
+  Mat<D, S> domain{};
+  for (int a = 0; a < D; ++a) domain(a, a) = S(half_size);
+  const double lengths = static_cast<double>(
+      count_operations([&] { F::template half_lengths<D, S>(parameters_of<F>(component), domain); }));
+  cost.plain += lengths, cost.with_gradient += lengths;
+  return cost;
+}
+
 template <int D, class T>
 ShapeCost cpdi_cost(const Component& component, double half_size, bool moment_of_particle) {
   using S = Counted<T>;
@@ -109,6 +124,8 @@ std::optional<ShapeCost> shape_cost(const Component& component, double half_size
   if (id == "linear") return tensor_cost<Linear, D, T>(component, half_size, false);
   if (id == "bspline_cubic") return tensor_cost<BsplineCubic, D, T>(component, half_size, false);
   if (id == "bspline_quadratic") return tensor_cost<BsplineQuadratic, D, T>(component, half_size, false);
+  if (id == "b2gimp") return tensor_cost<B2Gimp, D, T>(component, half_size, moment);
+  if (id == "gimp_contiguous") return deformed_cost<GimpContiguous, D, T>(component, half_size, moment);
   if (id == "gimp") return tensor_cost<Gimp, D, T>(component, half_size, moment);
   if (id == "cpdi") return cpdi_cost<D, T>(component, half_size, moment);
   return std::nullopt;

@@ -50,6 +50,7 @@ bench::Table remarks(const bench::Table& options) {
     add("2 nodes an axis (linear / quadratic, at rest)", cost(name, "linear"), "");
     add("3 nodes an axis, other weights (gimp / quadratic)", cost(name, "gimp"), "");
     add("4 nodes an axis (bspline_cubic / quadratic)", cost(name, "bspline_cubic"), "");
+    add("4 nodes an axis, box follows F (gimp_contiguous / quadratic)", cost(name, "gimp_contiguous"), "");
     add("list of about 3 nodes an axis (cpdi / quadratic)", cost(name, "cpdi"), "");
   }
   return table;

@@ -98,6 +98,9 @@ typedef struct mpm_shape_batch {
   void* gradient;        /* [D][width][stride] out: derivative by position; null when the plan needs none */
   void* second_moment;   /* [D][stride] out: sum w d^2 along each axis; null unless per particle and needed */
 } mpm_shape_batch;
+/* A shape with MPM_NEEDS_DOMAIN gives all weights zero along an axis on which `width` nodes do not hold the particle's
+ * domain; the run then stops with that particle's number. Its `base` depends on the position alone: hosts sort by it.
+ */
 /* A particle's nodes, each once: `node_count` of them, at most `capacity`. Entries beyond a particle's count are
  * undefined. No node lies farther from the particle than sum_k |domain_ak| + reach along an axis a. */
 typedef struct mpm_list_batch {

@@ -14,7 +14,7 @@ constexpr int full = MPM_BATCH;
 struct ShapeBatch {
   Variant variant;
   int width, count;
-  Array position, half_size, base, offset, weight, gradient, second_moment;
+  Array position, half_size, domain, base, offset, weight, gradient, second_moment;
 
   ShapeBatch(const Plugin& plugin, const Variant& v, int entries, bool gradients)
       : variant(v), width(static_cast<int>(plugin.shape().width)), count(entries) {
@@ -22,6 +22,7 @@ struct ShapeBatch {
     const std::uint32_t n = static_cast<std::uint32_t>(entries);
     position = Array(element, v.dimension, n);
     if (plugin.descriptor->needs & MPM_NEEDS_HALF_SIZE) half_size = Array(element, v.dimension, n);
+    if (plugin.descriptor->needs & MPM_NEEDS_DOMAIN) domain = Array(element, v.dimension * v.dimension, n);
     base = Array(Element::index, v.dimension, n);
     offset = Array(element, v.dimension, n);
     weight = Array(element, v.dimension * width, n);
@@ -37,6 +38,7 @@ struct ShapeBatch {
     batch.dimension = static_cast<std::uint32_t>(variant.dimension);
     batch.position = position.data();
     batch.half_size = half_size.data();
+    batch.domain = domain.data();
     batch.base = static_cast<std::int32_t*>(base.data());
     batch.offset = offset.data();
     batch.weight = weight.data();
@@ -47,12 +49,37 @@ struct ShapeBatch {
 
   double w(int axis, int k, int lane) const { return weight(axis * width + k, lane); }
   double g(int axis, int k, int lane) const { return gradient(axis * width + k, lane); }
+  /// Whether the stencil holds the particle's domain: no weight says that it does not.
+  bool holds(int lane) const {
+    for (int a = 0; a < variant.dimension; ++a) {
+      bool none = domain.components() > 0;
+      for (int k = 0; k < width; ++k) none &= w(a, k, lane) == 0;
+      if (none) return false;
+    }
+    return true;
+  }
 };
 
 /// Positions and particle boxes of a batch, the same for every precision: representable as float.
 struct ShapeInput {
   std::array<Vector3, full> position{}, half_size{};
+  std::array<Matrix3, full> domain{};  ///< D*D in its upper left corner
 };
+
+/// Semi-side vectors in cells, as float numbers: boxes as they were, stretched, sheared, turned, turned by 90 degrees.
+Matrix3 random_domain(Random& random, int lane, int dimension) {
+  const double half = lane % 5 == 0 ? 0.5 : random.logarithmic(0.01, 0.5);
+  Matrix3 domain{};
+  for (int a = 0; a < dimension; ++a)
+    for (int b = 0; b < dimension; ++b) {
+      double entry = a == b ? half : 0;
+      if (lane % 4 == 1) entry = a == b ? half * random.uniform(0.1, 2) : 0;
+      if (lane % 4 == 2) entry = half * random.uniform(-1, 1);
+      if (lane % 4 == 3) entry = a == 1 && b == 0 ? half : a == 0 && b == 1 ? -half : a == b && a == 2 ? half : 0;
+      domain(a, b) = static_cast<float>(entry);
+    }
+  return domain;
+}
 
 ShapeInput shape_input(Random& random, int dimension) {
   ShapeInput input;
@@ -69,17 +96,24 @@ ShapeInput shape_input(Random& random, int dimension) {
                                  : lane % 5 == 1 ? random.logarithmic(0.01, 0.5)
                                                  : random.uniform(0.1, 0.5);
     }
+  for (int lane = 0; lane < full; ++lane) input.domain[lane] = random_domain(random, lane, dimension);
   return input;
+}
+
+void set_input(ShapeBatch& batch, const ShapeInput& input, int lane) {
+  const int D = batch.variant.dimension;
+  for (int a = 0; a < D; ++a) {
+    batch.position.set(a, lane, input.position[lane][a]);
+    if (batch.half_size.components()) batch.half_size.set(a, lane, input.half_size[lane][a]);
+    for (int b = 0; b < D && batch.domain.components(); ++b)
+      batch.domain.set(a * D + b, lane, input.domain[lane](a, b));
+  }
 }
 
 ShapeBatch evaluated(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const ShapeInput& input,
                      int count = full, bool gradients = true) {
   ShapeBatch batch(plugin, v, count, gradients);
-  for (int lane = 0; lane < count; ++lane)
-    for (int a = 0; a < v.dimension; ++a) {
-      batch.position.set(a, lane, input.position[lane][a]);
-      if (batch.half_size.components()) batch.half_size.set(a, lane, input.half_size[lane][a]);
-    }
+  for (int lane = 0; lane < count; ++lane) set_input(batch, input, lane);
   batch.evaluate(plugin, parameters);
   return batch;
 }
@@ -135,6 +169,7 @@ void check_sums(const Plugin& plugin, const ShapeBatch& b, const std::string& wh
   Worst unity, gradient, linear, affine, constant, identity;
   double least = 1;
   for (int lane = 0; lane < full; ++lane) {
+    if (!b.holds(lane)) continue;
     const StencilSums s = stencil_sums(b, lane);
     unity.add(std::abs(s.weight - 1), lane);
     for (int i = 0; i < v.dimension; ++i) {
@@ -169,7 +204,7 @@ void check_moment(const ShapeBatch& b, const std::string& where, Findings& findi
   for (int lane = 0; lane < full; ++lane)
     for (int a = 0; a < v.dimension; ++a) {
       error.add(std::abs(b.second_moment(a, lane) - axis_moment(b, a, lane)), lane);
-      positive &= b.second_moment(a, lane) > 0;
+      positive &= b.second_moment(a, lane) > 0 || !b.holds(lane);
     }
   findings.at_most("second_moment_summed", v, error, v.single() ? 1e-6 : 1e-14,
                    "|D - sum w d^2| along an axis, cells^2" + where);
@@ -269,25 +304,48 @@ void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample
     for (bool gradients : {true, false}) {
       ShapeBatch untouched(plugin, v, count, gradients);
       const ShapeBatch b = evaluated(plugin, v, parameters, input, count, gradients);
-      for (int lane = 0; lane < count; ++lane)
-        for (int a = 0; a < v.dimension; ++a) {
-          untouched.position.set(a, lane, input.position[lane][a]);
-          if (b.half_size.components()) untouched.half_size.set(a, lane, input.half_size[lane][a]);
+      for (int lane = 0; lane < count; ++lane) {
+        set_input(untouched, input, lane);
+        for (int a = 0; a < v.dimension; ++a)
           for (int k = 0; k < b.width; ++k)
             same &= b.w(a, k, lane) == reference.w(a, k, lane) &&
                     (!gradients || b.g(a, k, lane) == reference.g(a, k, lane));
-        }
+      }
       for (const Array* out : {&b.base, &b.offset, &b.weight, &b.gradient, &b.second_moment}) {
         guards &= out->guards_intact();
         written &= out->all_written();
       }
-      inputs &= b.position == untouched.position && b.half_size == untouched.half_size;
+      inputs &= b.position == untouched.position && b.half_size == untouched.half_size && b.domain == untouched.domain;
     }
   findings.require("writes_inside_arrays [" + v.name() + "]", guards, "guards around the outputs" + where);
   findings.require("writes_every_output [" + v.name() + "]", written, "no output element is left out" + where);
   findings.require("inputs_untouched [" + v.name() + "]", inputs, "positions and boxes" + where);
   findings.require("independent_of_batch [" + v.name() + "]", same,
                    "counts of 16 to 64, with and without gradients" + where);
+}
+
+/// Of shapes that read the domain: undeformed boxes are held, endless ones are held or have no weight at all, and the
+/// first node is that of the position whatever the domain.
+void check_domains(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const ShapeInput& input,
+                   const std::string& where, Findings& findings) {
+  if (!(plugin.descriptor->needs & MPM_NEEDS_DOMAIN)) return;
+  ShapeInput undeformed = input, endless = input;
+  for (int lane = 0; lane < full; ++lane) {
+    undeformed.domain[lane] = endless.domain[lane] = {};
+    for (int a = 0; a < v.dimension; ++a)
+      undeformed.domain[lane](a, a) = 0.5 / (1 + lane % 8), endless.domain[lane](a, a) = 3 + lane;
+  }
+  const ShapeBatch b = evaluated(plugin, v, parameters, input), u = evaluated(plugin, v, parameters, undeformed),
+                   e = evaluated(plugin, v, parameters, endless);
+  bool held = true, honest = true;
+  for (int lane = 0; lane < full; ++lane) {
+    held &= u.holds(lane);
+    honest &= !e.holds(lane) || std::abs(stencil_sums(e, lane).weight - 1) < 1e-5;
+  }
+  findings.require("holds_undeformed_boxes [" + v.name() + "]", held, "1 to 8 particles a cell and axis" + where);
+  findings.require("holds_or_has_no_weight [" + v.name() + "]", honest, "domains of 3 cells and more" + where);
+  findings.require("base_of_position_alone [" + v.name() + "]", b.base == u.base && b.base == e.base,
+                   "the same first node for every domain" + where);
 }
 
 }  // namespace
@@ -308,6 +366,7 @@ void check_shape(const Plugin& plugin, Findings& findings) {
       check_sums(plugin, b, where, findings);
       check_moment(b, where, findings);
       check_stencil(b, where, findings);
+      check_domains(plugin, v, parameters, input, where, findings);
       findings.running("translation", v, where);
       check_translation(plugin, v, parameters, input, where, findings);
       findings.running("batches", v, where);

@@ -44,8 +44,25 @@ concept SizedShapeFunctor = (needs_of<F>() == MPM_NEEDS_HALF_SIZE) &&
   F::second_moment_kind;
   F::evaluate(p, x, half_size, base, w, g);
 };
+/// The same of a particle whose box follows its deformation: `half_lengths` of the box along the axes, in cells, from
+/// the semi-side vectors of its domain (the columns, see mpm_list_batch). The first node depends on x alone. Where the
+/// stencil does not hold the box, weights are zero and the run stops.
+template <class F, int D>
+concept DeformedShapeFunctorIn = requires(const typename F::Parameters& p, const Mat<D, double>& domain) {
+  { F::template half_lengths<D, double>(p, domain) } -> std::same_as<Vec<D, double>>;
+};
 template <class F>
-concept ShapeFunctor = PlainShapeFunctor<F> || SizedShapeFunctor<F>;
+concept HalfLengthsFunctor = (needs_of<F>() == MPM_NEEDS_DOMAIN) &&
+                             DeformedShapeFunctorIn<F, 1>&& DeformedShapeFunctorIn<F, 2>&& DeformedShapeFunctorIn<F, 3>;
+template <class F>
+concept DeformedShapeFunctor = HalfLengthsFunctor<F> &&
+    requires(const typename F::Parameters& p, double x, double half_length, double& base, double* w, double* g) {
+  { F::width } -> std::convertible_to<int>;
+  F::second_moment_kind;
+  F::evaluate(p, x, half_length, base, w, g);
+};
+template <class F>
+concept ShapeFunctor = PlainShapeFunctor<F> || SizedShapeFunctor<F> || DeformedShapeFunctor<F>;
 
 /// The nodes of one particle whose domain has the columns of `domain` as semi-side vectors, all in cells.
 template <class F, int D>
@@ -224,36 +241,62 @@ const typename F::Parameters& parameters_of(const void* block) {
   }
 }
 
+/// One axis of one pack of particles; `half_length`, of shapes that take one, is that of their boxes along the axis.
+template <class F, class S>
+inline __attribute__((always_inline)) void shape_axis(const typename F::Parameters& p, const mpm_shape_batch& q,
+                                                      std::uint32_t axis, std::uint32_t lane, S half_length) {
+  using T = scalar_of<S>;
+  S base, w[F::width], g[F::width];
+  const std::uint32_t at = axis * q.stride + lane;
+  const S x = Access<S>::load(static_cast<const T*>(q.position) + at);
+  S* const slopes = q.gradient ? g : static_cast<S*>(nullptr);
+  if constexpr (SizedShapeFunctor<F> || DeformedShapeFunctor<F>)
+    F::evaluate(p, x, half_length, base, w, slopes);
+  else
+    F::evaluate(p, x, base, w, slopes);
+  const S offset = x - base;
+  Access<S>::store_index(q.base + at, base);
+  Access<S>::store(static_cast<T*>(q.offset) + at, offset);
+  const std::uint32_t first = axis * F::width * q.stride + lane;
+  for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q.weight) + first + k * q.stride, w[k]);
+  if (q.gradient)
+    for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q.gradient) + first + k * q.stride, g[k]);
+  if (!q.second_moment) return;
+  S moment = S(real<S>(0));
+  for (int k = 0; k < F::width; ++k) {
+    const S d = real<S>(k) - offset;
+    moment = moment + w[k] * d * d;
+  }
+  Access<S>::store(static_cast<T*>(q.second_moment) + at, moment);
+}
+
+template <class F, class S, int D>
+void deformed_shape_batch(const typename F::Parameters& p, const mpm_shape_batch& q) {
+  for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
+    Mat<D, S> domain;
+    load_components<D * D, S>(q.domain, q.stride, lane, domain.m);
+    const Vec<D, S> half_length = F::template half_lengths<D, S>(p, domain);
+    for (int axis = 0; axis < D; ++axis) shape_axis<F, S>(p, q, axis, lane, half_length[axis]);
+  }
+}
+
 template <class F, class S>
 void shape_batch(const void* parameters, const mpm_shape_batch* request) {
   const mpm_shape_batch q = *request;  // its own copy: nothing that is stored changes it
-  using T = scalar_of<S>;
   const auto& p = parameters_of<F>(parameters);
-  for (std::uint32_t axis = 0; axis < q.dimension; ++axis)
-    for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
-      S base, w[F::width], g[F::width];
-      const std::uint32_t at = axis * q.stride + lane;
-      const S x = Access<S>::load(static_cast<const T*>(q.position) + at);
-      S* const slopes = q.gradient ? g : static_cast<S*>(nullptr);
-      if constexpr (SizedShapeFunctor<F>)
-        F::evaluate(p, x, Access<S>::load(static_cast<const T*>(q.half_size) + at), base, w, slopes);
-      else
-        F::evaluate(p, x, base, w, slopes);
-      const S offset = x - base;
-      Access<S>::store_index(q.base + at, base);
-      Access<S>::store(static_cast<T*>(q.offset) + at, offset);
-      const std::uint32_t first = axis * F::width * q.stride + lane;
-      for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q.weight) + first + k * q.stride, w[k]);
-      if (q.gradient)
-        for (int k = 0; k < F::width; ++k) Access<S>::store(static_cast<T*>(q.gradient) + first + k * q.stride, g[k]);
-      if (!q.second_moment) continue;
-      S moment = S(real<S>(0));
-      for (int k = 0; k < F::width; ++k) {
-        const S d = real<S>(k) - offset;
-        moment = moment + w[k] * d * d;
+  if constexpr (DeformedShapeFunctor<F>) {
+    if (q.dimension == 1) return deformed_shape_batch<F, S, 1>(p, q);
+    if (q.dimension == 2) return deformed_shape_batch<F, S, 2>(p, q);
+    return deformed_shape_batch<F, S, 3>(p, q);
+  } else {
+    for (std::uint32_t axis = 0; axis < q.dimension; ++axis)
+      for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
+        S half_length{};
+        if constexpr (SizedShapeFunctor<F>)
+          half_length = Access<S>::load(static_cast<const scalar_of<S>*>(q.half_size) + axis * q.stride + lane);
+        shape_axis<F, S>(p, q, axis, lane, half_length);
       }
-      Access<S>::store(static_cast<T*>(q.second_moment) + at, moment);
-    }
+  }
 }
 
 /// Particle by particle: the number of nodes differs from one to the next.

@@ -66,9 +66,27 @@ TEST_CASE("bench --quick measures every section", "[bench]") {
     for (const char* key : {"gflops_float", "gflops_double", "triad", "update", "read"}) CHECK(is_rate(row, key));
   check_standard(sections["standard"], document);
   for (const char* scene : {"cube_3d", "block_2d"})
-    for (const char* option :
-         {"pic", "flip", "apic", "tpic", "rpic", "aflip", "asflip", "linear", "bspline_cubic", "gimp", "cpdi", "fmpm 2",
-          "fmpm 4", "xpic 2", "xpic 4", "contact", "ledger", "double", "separate passes"}) {
+    for (const char* option : {"pic",
+                               "flip",
+                               "apic",
+                               "tpic",
+                               "rpic",
+                               "aflip",
+                               "asflip",
+                               "linear",
+                               "bspline_cubic",
+                               "gimp",
+                               "gimp_contiguous",
+                               "b2gimp",
+                               "cpdi",
+                               "fmpm 2",
+                               "fmpm 4",
+                               "xpic 2",
+                               "xpic 4",
+                               "contact",
+                               "ledger",
+                               "double",
+                               "separate passes"}) {
       INFO(scene << " " << option);
       const Json* row = row_with(sections["options"]["options"], {{"scene", scene}, {"option", option}});
       REQUIRE(row);

@@ -76,6 +76,23 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
 }
 )";
 
+constexpr const char* deformed_shape_body = R"(
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
+  Mat<D, S> domain;
+  load<D * D>(t.in[1], lane, domain.m);
+  const Vec<D, S> half_length = Functor::template half_lengths<D, S>(p, domain);
+  for (int axis = 0; axis < D; ++axis) {
+    S x, base, w[Functor::width], g[Functor::width];
+    load<1>(t.in[0], axis * 64 + lane, &x);
+    Functor::evaluate(p, x, half_length[axis], base, w, g);
+    store<1>(t.out[0], axis * 64 + lane, &base);
+    store<Functor::width>(t.out[1], axis * Functor::width * 64 + lane, w);
+    store<Functor::width>(t.out[2], axis * Functor::width * 64 + lane, g);
+  }
+}
+)";
+
 /// Entries beyond a particle's count are stored as zero, so that whole arrays compare.
 constexpr const char* list_shape_body = R"(
 template <int D, class S> MPM_HD void run(const Task& t, int lane) {
@@ -200,10 +217,15 @@ bool is_list(const Plugin& plugin) {
   return plugin.descriptor->kind == MPM_SHAPE && plugin.shape().form == MPM_NODE_LIST;
 }
 
+bool is_deformed(const Plugin& plugin) {
+  return !is_list(plugin) && (plugin.descriptor->needs & MPM_NEEDS_DOMAIN);
+}
+
 const char* body_of(const Plugin& plugin) {
   switch (plugin.descriptor->kind) {
     case MPM_SHAPE:
       if (is_list(plugin)) return list_shape_body;
+      if (is_deformed(plugin)) return deformed_shape_body;
       return plugin.descriptor->needs & MPM_NEEDS_HALF_SIZE ? sized_shape_body : shape_body;
     case MPM_TRANSFER:
       return transfer_body;
@@ -283,7 +305,8 @@ Call inputs(const Plugin& plugin, int D, Random& random) {
         call.out = {zeros(capacity * D), zeros(capacity), zeros(capacity * D), zeros(1)};
         break;
       }
-      call.in = {random_column(random, D, -10, 30), random_column(random, D, 0.1, 0.5)};
+      call.in = {random_column(random, D, -10, 30),
+                 is_deformed(plugin) ? domains(random, D) : random_column(random, D, 0.1, 0.5)};
       call.out = {zeros(D), zeros(D * width), zeros(D * width)};
       break;
     case MPM_TRANSFER:
@@ -364,8 +387,8 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
                                   dimension,
                                   0,
                                   in[0].data(),
-                                  in[1].data(),
-                                  nullptr,
+                                  is_deformed(plugin) ? nullptr : in[1].data(),
+                                  is_deformed(plugin) ? in[1].data() : nullptr,
                                   indices.data(),
                                   offset.data(),
                                   out[1].data(),

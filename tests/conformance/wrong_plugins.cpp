@@ -11,6 +11,7 @@
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
 #include "shapes/cpdi/cpdi.hpp"
 #include "shapes/gimp/gimp.hpp"
+#include "shapes/gimp_contiguous/gimp_contiguous.hpp"
 #include "support/catch.hpp"
 #include "transfers/aflip/aflip.hpp"
 #include "transfers/apic/apic.hpp"
@@ -200,6 +201,30 @@ constexpr mpm_shape long_box_table =
     with_box_entries(sdk::list_table<Cpdi>, {{&long_box<2, Lanes<float>>, &long_box<3, Lanes<float>>},
                                              {&long_box<2, Lanes<double>>, &long_box<3, Lanes<double>>},
                                              {&long_box<2, double>, &long_box<3, double>}});
+
+struct CutsLongBoxes : GimpContiguous {  // keeps half of the weight of a box that its nodes do not hold
+  template <class S>
+  MPM_HD static void evaluate(const Parameters& p, S x, S l, S& base, S* w, S* g) {
+    const S one(real<S>(1)), kept = select(l > real<S>(1), S(real<S>(0.5)), one);
+    GimpContiguous::evaluate(p, x, min(l, one), base, w, g);
+    for (int k = 0; k < width; ++k) w[k] = kept * w[k];
+  }
+};
+
+struct BaseFollowsBox : GimpContiguous {
+  template <class S>
+  MPM_HD static void evaluate(const Parameters& p, S x, S l, S& base, S* w, S* g) {
+    GimpContiguous::evaluate(p, x, l, base, w, g);
+    base = base - select(l > real<S>(0.3), S(real<S>(1)), S(real<S>(0)));
+  }
+};
+
+struct HoldsNarrowBoxes : GimpContiguous {
+  template <class S>
+  MPM_HD static void evaluate(const Parameters& p, S x, S l, S& base, S* w, S* g) {
+    GimpContiguous::evaluate(p, x, select(l > real<S>(0.3), S(real<S>(2)), l), base, w, g);
+  }
+};
 
 /// Makes the exported second moment of a box 1 % too large.
 template <class S>
@@ -465,6 +490,7 @@ void check_caught(const mpm_descriptor& descriptor, const char* check) {
 TEST_CASE("the plugins that the wrong ones are made from pass") {
   CHECK(failures(wrong_shape<BsplineQuadratic>).empty());
   CHECK(failures(wrong_shape<Gimp>).empty());
+  CHECK(failures(wrong_shape<GimpContiguous>).empty());
   CHECK(failures(wrong_shape<Cpdi>).empty());
   CHECK(failures(wrong_filter<Fmpm>).empty());
   CHECK(failures(wrong_transfer<Tpic>).empty());
@@ -488,6 +514,12 @@ TEST_CASE("wrong shapes are caught") {
 TEST_CASE("wrong exported second moments are caught") {
   check_caught(with_table(wrong_shape<Gimp>, large_moment_table), "second_moment_summed");
   check_caught(with_table(wrong_shape<Cpdi>, diagonal_moment_table), "second_moment_summed");
+}
+
+TEST_CASE("wrong boxes that follow the deformation are caught") {
+  check_caught(wrong_shape<CutsLongBoxes>, "holds_or_has_no_weight");
+  check_caught(wrong_shape<BaseFollowsBox>, "base_of_position_alone");
+  check_caught(wrong_shape<HoldsNarrowBoxes>, "holds_undeformed_boxes");
 }
 
 TEST_CASE("wrong lists of nodes are caught") {

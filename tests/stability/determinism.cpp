@@ -61,7 +61,7 @@ TEST_CASE("results are the same bits for any number of threads", "[stability][de
 TEST_CASE("filters and lists of nodes give the same bits for any number of threads", "[stability][determinism]") {
   for (const char* text : {flat, solid})
     for (const std::string precision : {"double", "float"})
-      for (const std::string shape : {"bspline_cubic", "gimp", "cpdi"})
+      for (const std::string shape : {"bspline_cubic", "gimp", "gimp_contiguous", "cpdi"})
         for (const char* filter : {R"({"type": "fmpm", "order": 3, "every_steps": 2})",
                                    R"({"type": "xpic", "order": 2, "every_courant": 0.5, "constraints": "at_end"})"}) {
           const std::vector<std::string> overrides{set("/precision", precision), set("/shape/type", shape),

@@ -13,7 +13,8 @@ using namespace mpm::test;
 namespace {
 
 const std::vector<std::string> backends{"reference", "cpu"};
-const std::vector<std::string> shapes{"linear", "bspline_quadratic", "bspline_cubic", "gimp", "cpdi"};
+const std::vector<std::string> shapes{
+    "linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi"};
 const std::vector<std::string> filtered_transfers{"pic", "apic", "mls", "tpic", "rpic"};  // flip: periodically
 
 // Random places, and velocities that the grid cannot hold.

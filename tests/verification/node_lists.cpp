@@ -1,5 +1,6 @@
-// Shapes that need more than a position: GIMP (the undeformed particle's box) and CPDI (its deformed domain, a list of
-// nodes), with every transfer. Free flight (A7), conserved momenta, affine fields (A2), what the domain becomes.
+// Shapes that need more than a position: GIMP and B2GIMP (the undeformed particle's box), cpGIMP (its box stretched
+// along the axes) and CPDI (its deformed domain, a list of nodes), with every transfer. Free flight (A7), conserved
+// momenta, affine fields (A2), what the domain becomes.
 
 #include <cmath>
 
@@ -12,7 +13,7 @@ using namespace mpm::test;
 namespace {
 
 const std::vector<std::string> backends{"reference", "cpu"};
-const std::vector<std::string> sized_shapes{"gimp", "cpdi"};
+const std::vector<std::string> sized_shapes{"gimp", "gimp_contiguous", "b2gimp", "cpdi"};
 const std::vector<std::string> transfers{"pic", "flip", "apic", "mls", "tpic", "rpic", "aflip", "asflip"};
 
 const char* flight = R"J({
@@ -78,7 +79,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 
 TEST_CASE("A7 free flight with sized shapes and Taylor transfer", "[A][A7]") {
   for (const std::string& backend : backends)
-    for (const std::string shape : {"gimp", "cpdi", "linear"})
+    for (const std::string shape : {"gimp", "gimp_contiguous", "b2gimp", "cpdi", "linear"})
       for (const std::string& transfer : transfers)
         for (const std::string order : {"last", "first", "modified_last"}) {
           if (shape == "linear" && transfer != "tpic") continue;  // free_fall.cpp
@@ -136,7 +137,8 @@ TEST_CASE("A2 an affine field comes back exactly", "[A][A2]") {
   // The first affine velocity is a central difference over 2e-4 cells of velocities up to 20 m/s: no better than this.
   const double seeded = 2.2e-16 * 20 / (1e-4 * 0.1);
   for (const std::string& backend : backends)
-    for (const std::string shape : {"gimp", "cpdi", "linear", "bspline_quadratic", "bspline_cubic"})
+    for (const std::string shape :
+         {"gimp", "gimp_contiguous", "b2gimp", "cpdi", "linear", "bspline_quadratic", "bspline_cubic"})
       for (const std::string transfer : {"apic", "mls", "tpic"}) {
         Scene scene(affine_field,
                     {set("/backend", backend), set("/shape/type", shape), set("/transfer/type", transfer)});
@@ -213,6 +215,27 @@ TEST_CASE("GIMP with a box of one cell is the quadratic B-spline", "[B][gimp]") 
       INFO(backend << " " << transfer);
       CHECK(largest_difference(a.body().velocity, b.body().velocity) < 1e-10);
       CHECK(largest_difference(a.body().position, b.body().position) < 1e-12);
+    }
+}
+
+TEST_CASE("B2GIMP with a box of one cell is the cubic B-spline, cpGIMP of a body at rest is GIMP", "[B][gimp]") {
+  for (const std::string& backend : backends)
+    for (const std::string& transfer : transfers) {
+      const auto end = [&](const std::string& shape, const std::string& velocity, const std::string& particles) {
+        Scene scene(free_body,
+                    {set("/backend", backend), set("/transfer/type", transfer), set("/shape/type", shape),
+                     set("/bodies/0/velocity", velocity), set("/bodies/0/particles_per_cell_axis", particles)});
+        scene.run_steps(20);
+        return scene.body();
+      };
+      const std::string vibrating = R"J(["1+0.5*sin(9*x)","-2+0.5*cos(7*y)"])J";
+      const BodyState a = end("b2gimp", vibrating, "1"), b = end("bspline_cubic", vibrating, "1");
+      const BodyState c = end("gimp_contiguous", "[1,-2]", "2"), d = end("gimp", "[1,-2]", "2");
+      INFO(backend << " " << transfer);
+      CHECK(largest_difference(a.velocity, b.velocity) < 1e-10);
+      CHECK(largest_difference(a.position, b.position) < 1e-12);
+      CHECK(largest_difference(c.velocity, d.velocity) < 1e-10);
+      CHECK(largest_difference(c.position, d.position) < 1e-12);
     }
 }
 

@@ -40,7 +40,7 @@ double height_of(const Scene& scene, int body) {
 }  // namespace
 
 TEST_CASE("D4 the contacts of a resting stack carry what lies above them", "[D][D4]") {
-  for (const char* shape : {"bspline_quadratic", "bspline_cubic", "gimp", "cpdi"}) {
+  for (const char* shape : {"bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi"}) {
     Scene scene(stack(frictionless, shape, 0));
     while (scene.simulation.time() < 1) scene.simulation.step();
     double force = 0;

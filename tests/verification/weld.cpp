@@ -59,10 +59,11 @@ TEST_CASE("D4 a welded interface is transparent to rounding", "[D][D4]") {
 
 TEST_CASE("D4 the weld is transparent to sized shapes and Taylor transfer", "[D][D4]") {
   for (const std::string backend : {"reference", "cpu"})
-    for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "cpdi"})
+    for (const std::string shape :
+         {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi"})
       for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic", "rpic", "aflip", "asflip"})
         for (const std::string order : {"last", "modified_last"}) {
-          if (shape != "gimp" && shape != "cpdi" && transfer != "tpic") continue;  // above
+          if ((shape == "linear" || shape.rfind("bspline", 0) == 0) && transfer != "tpic") continue;  // above
           const std::vector<std::string> common{set("/shape/type", shape), set("/transfer/type", transfer),
                                                 set("/solver/stress_update", order), set("/backend", backend)};
           auto single = common;
@@ -79,7 +80,8 @@ TEST_CASE("D4 the weld is transparent to sized shapes and Taylor transfer", "[D]
 TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the end is not", "[D][D4][filters]") {
   const std::string rough = R"J(["1+0.3*sin(40*x)","0.4*x+0.3*cos(31*x*y)"])J";
   for (const std::string backend : {"reference", "cpu"})
-    for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "cpdi"})
+    for (const std::string shape :
+         {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi"})
       for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic", "rpic", "aflip", "asflip"})
         for (const auto& [type, order] : {std::pair{"fmpm", "4"}, std::pair{"xpic", "3"}}) {
           const auto run = [&, type = type, order = order](const std::string& constraints, bool weld) {

@@ -8,6 +8,7 @@
 
 #include "flush_denormals.hpp"
 #include "particle_step.hpp"
+#include "simulation/domain_too_long.hpp"
 
 namespace mpm::cpu {
 
@@ -176,6 +177,32 @@ template <int D, class T, class Components>
                               moments ? work.second_moment : nullptr};
   Components::evaluate_shape(scene_, batch);
   if (moments) invert_moments(chunk, work);
+}
+
+template <int D, class T, class Components>
+T ParticleStep<D, T, Components>::weight_along(const Work& work, int width, int axis, int particle) {
+  T sum = 0;
+  for (int k = 0; k < width; ++k) sum += work.weight[(axis * width + k) * chunk_size + particle];
+  return sum;
+}
+
+/// False when a domain has outgrown its stencil, which then has no weight (mpm_shape_batch); only domains grow.
+template <int D, class T, class Components>
+bool ParticleStep<D, T, Components>::stencils_hold(const Chunk& chunk, const Work& work) const {
+  if (scene_.list || chunk.particles.domain < 0) return true;
+  int beyond = 0;
+  for (int axis = 0; axis < D; ++axis)
+    for (int p = 0; p < chunk.end; ++p) beyond |= !(weight_along(work, scene_.width, axis, p) > T(0.5));
+  return beyond == 0;
+}
+
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::note_too_long(const Chunk& chunk, const Work& work) {
+  const std::lock_guard lock(mutex_);
+  for (int p = 0; p < chunk.count; ++p)
+    for (int axis = 0; axis < D; ++axis)
+      if (!(weight_along(work, scene_.width, axis, p) > T(0.5)))
+        failure_.note(-1, chunk.body.index, chunk.ids[p], domain_too_long(*scene_.experiment.shape.plugin));
 }
 
 /// Where stencils begin in the tile to scatter to; the work space gathers what part of it they reach. False when one

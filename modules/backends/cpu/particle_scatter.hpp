@@ -42,8 +42,10 @@ double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo&
       block.scattered_energy = 0;
       block.far = 0;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
-        if (!scatter_chunk(pass, step, chunk, work, motion, false))
-          throw std::logic_error("a particle left the tile of its block");
+        if (!scatter_chunk(pass, step, chunk, work, motion, false)) {
+          if (stencils_hold(chunk, work)) throw std::logic_error("a particle left the tile of its block");
+          return note_too_long(chunk, work);
+        }
         if (energies) block.scattered_energy += kinetic_energy(chunk, work);
         if (scene_.list) block.far += static_cast<std::uint32_t>(work.lists.far_of_chunk);
       });
@@ -67,8 +69,8 @@ void ParticleStep<D, T, Components>::want_of_material(const Pass& pass, Work& wo
   if (pass.contact_fields) request.volume_ratio = work.volume_ratio;
 }
 
-/// What a chunk gives its tiles; false, and nothing given, when a particle is outside of them. `evaluated`: what is
-/// wanted of the material is at hand. Called by the scatter
+/// What a chunk gives its tiles; false, and nothing given, when a particle is outside of them or of its stencil.
+/// `evaluated`: what is wanted of the material is at hand. Called by the scatter
 /// and by the fused pass, which must agree to the last bit, so it is compiled once.
 template <int D, class T, class Components>
 [[gnu::noinline]] bool ParticleStep<D, T, Components>::scatter_chunk(const Pass& pass, const StepInfo& step,
@@ -77,6 +79,7 @@ template <int D, class T, class Components>
   const bool separate = grid_.has(force), merged = pass.force && !separate;
   const bool by_gradient = pass.force && !scene_.stress_by_affine;
   evaluate_shape(chunk, work, by_gradient || pass.contact_fields);
+  if (!stencils_hold(chunk, work)) return false;
   if (!place_to_scatter(chunk, work, pass.momentum && !pass.remap && !work.far_only)) return false;
   work.clock.lap(Phase::weights);
   if (!evaluated && (pass.force || pass.contact_fields)) {

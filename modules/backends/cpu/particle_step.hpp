@@ -237,6 +237,9 @@ class ParticleStep {
   int keep_list(const Chunk& chunk, Work& work, int first_lane, int lane, int entry, bool gradients);
   bool reaches_too_far(const Chunk& chunk, int particle, const int* low, const int* high);
   bool place_to_scatter(const Chunk& chunk, Work& work, bool extend_reach) const;
+  bool stencils_hold(const Chunk& chunk, const Work& work) const;
+  void note_too_long(const Chunk& chunk, const Work& work);
+  static T weight_along(const Work& work, int width, int axis, int particle);
   void begin_reach(Block<D>& block, Work& work) const;
   void end_reach(Block<D>& block, const Work& work) const;
   void place_to_gather(const Chunk& chunk, Work& work) const;

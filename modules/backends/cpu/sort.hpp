@@ -194,13 +194,14 @@ class Sorter {
       return;
     }
     alignas(64) T offset[D * chunk_size], weight[D * 4 * chunk_size];
+    const T* const domain = particles_.domain < 0 ? nullptr : particles_.chunk(chunk) + particles_.domain * chunk_size;
     const mpm_shape_batch batch{static_cast<std::uint32_t>(padded(count)),
                                 chunk_size,
                                 D,
                                 0,
                                 particles_.chunk(chunk),
                                 scene_.half_size ? particles_.half_size.data() : nullptr,
-                                nullptr,
+                                domain,
                                 base,
                                 offset,
                                 weight,

@@ -119,7 +119,8 @@ std::string scene_text(const Choice& choice) {
   if (choice.filter) out << "  using Filter = " << type(choice.filter) << ";\n";
   if (choice.contact) out << "  using Contact = " << type(choice.contact) << ";\n";
   out << "  static constexpr bool contact = " << yes(choice.contact) << ", list = " << yes(list)
-      << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE)) << ";\n"
+      << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
+      << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
       << "  static constexpr int width = " << (list ? 1 : shape.width)
       << ", list_capacity = " << (list ? shape.capacity[choice.dimension - 2] : 1) << ";\n"
       << "  static constexpr bool moment_is_gradient = " << yes(shape.second_moment_kind == MPM_MOMENT_IS_GRADIENT)

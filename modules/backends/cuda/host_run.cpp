@@ -356,7 +356,8 @@ class HostRun final : public Backend {
     a.dt *= static_cast<T>(pass.strain_share);
     run_material("strain", a, body);
   }
-  static constexpr const char* outside_grid = "its stencil reaches beyond the grid, or its position is not a number";
+  static constexpr const char* outside_grid =
+      "its stencil reaches beyond the grid or does not hold its domain, or its position is not a number";
 
   // ---- passes ------------------------------------------------------------------------------------------------------
 

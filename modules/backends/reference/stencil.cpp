@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "simulation/domain_too_long.hpp"
+
 namespace mpm::reference {
 namespace {
 
@@ -146,6 +148,9 @@ Stencil Shape::stencil(const ShapeValues& values, const ShapeArguments& at, std:
     return stencil;
   }
   const int K = static_cast<int>(shape_.width);
+  for (int c = 0; c < D; ++c)
+    if (!(values.weight.col(static_cast<Eigen::Index>(p)).segment(c * K, K).sum() > 0.5))
+      throw RunFailure(domain_too_long(*experiment_.shape.plugin), body, p);
   for (int k = 0; k < (D == 3 ? K : 1); ++k)
     for (int j = 0; j < K; ++j)
       for (int i = 0; i < K; ++i) {

@@ -14,8 +14,8 @@ l = 0.5 / particles_per_cell_axis cells:
 
 with d the distance to the node in cells. The gradient is continuous, so particles cross cells without the jump of `linear`.
 At one particle a cell (l = 1/2) it is `bspline_quadratic` to rounding; with more particles it is sharper, and tends to `linear`.
-The box does not deform: in a large stretch boxes overlap or part and numerical fracture follows; see `cpdi` for domains that
-deform.
+The box does not deform: in a large stretch boxes overlap or part and numerical fracture follows; see `gimp_contiguous` and
+`cpdi` for domains that deform.
 
 The second moment depends on the place in the cell, so APIC and MLS-MPM use one a particle, summed from the weights.)",
                    "Gimp"})

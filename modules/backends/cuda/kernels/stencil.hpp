@@ -63,15 +63,26 @@ class StencilOf<Scene, false> {
   MPM_HD StencilOf(const Arguments<T>& a, int p) : inside_(true) {
     const auto parameters = parameters_of<Shape>(a.shape_parameters);
     const Vec<D, T> x = position_in_cells<D>(a, p);
+    Vec<D, T> half_length{};
+    if constexpr (Scene::deformed)
+      half_length = Shape::template half_lengths<D, T>(
+          parameters, load_matrix<D>(a.particles.stencil_domain, a.particles.stride, p));
     for (int c = 0; c < D; ++c) {
       T first;
-      if constexpr (Scene::sized)
+      if constexpr (Scene::deformed)
+        Shape::evaluate(parameters, x[c], half_length[c], first, weight_[c], gradient_[c]);
+      else if constexpr (Scene::sized)
         Shape::evaluate(parameters, x[c], a.particles.half_size, first, weight_[c], gradient_[c]);
       else
         Shape::evaluate(parameters, x[c], first, weight_[c], gradient_[c]);
       // False for NaN too; only then is the cast to int safe.
       const bool inside = first >= T(-a.padding[c]) && first <= T(a.cells[c] + a.padding[c] - (width - 1));
       inside_ = inside_ && inside;
+      if constexpr (Scene::deformed) {  // no weight: the domain has outgrown the stencil
+        T sum = 0;
+        for (int k = 0; k < width; ++k) sum += weight_[c][k];
+        inside_ = inside_ && sum > T(0.5);
+      }
       base_[c] = inside ? static_cast<int>(first) : 0;
       offset_[c] = x[c] - first;
       if constexpr (Scene::moment_per_particle) {
@@ -84,7 +95,7 @@ class StencilOf<Scene, false> {
     }
   }
 
-  /// Whether all nodes are in the grid and the position is a number.
+  /// Whether all nodes are in the grid, the position is a number, and the stencil holds the domain.
   MPM_HD bool inside() const { return inside_; }
 
   /// D = sum w d d^T, cells^2: diagonal, since sum w d = 0 along each axis.
