@@ -222,10 +222,10 @@ void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step
 }
 
 /// Whether a fused pass may leave velocities and the transfer's state behind: nobody reads them, and no particle can
-/// leave its tile, since none moves faster than the fastest node.
+/// leave its tile, since none moves faster than the fastest node (a domain may outgrow its stencil, though).
 template <int D, class T, class Components>
 bool CpuBackend<D, T, Components>::may_pass_motion(const StepInfo& step) const {
-  return !step.observed && scene_.has(MPM_REPLACES_MOTION) &&
+  return !step.observed && scene_.has(MPM_REPLACES_MOTION) && !scene_.plan.particle_domain &&
          particle_step_->stays_within_tiles(step.dt * grid_.largest_component(motion) / scene_.domain.cell_size);
 }
 
