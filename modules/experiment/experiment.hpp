@@ -20,7 +20,7 @@ namespace mpm {
 
 enum class Precision { single, double_ };
 enum class StressUpdate { first, last, modified_last, averaged };  ///< USF, USL, MUSL, USAVG
-enum class PassChoice { automatic, separate, fused };    ///< whether a gather may also scatter for the next step
+enum class PassChoice { automatic, separate, fused };  ///< whether a gather may also scatter for the next step
 
 /// A plugin chosen in the file, with its filled parameter block.
 struct Component {
