@@ -139,9 +139,9 @@ class Execution {
  private:
   /// Takes the next combination as far as it goes without a process.
   void begin_next() {
-    Task task = std::move(waiting_.front());
+    Task task = waiting_.front();
     waiting_.pop_front();
-    go_on(std::move(task));
+    go_on(task);
   }
 
   void go_on(Task task) {
@@ -158,7 +158,7 @@ class Execution {
         continue;
       }
       runner_.start(run);
-      active_.emplace(run.name, std::move(task));
+      active_.emplace(run.name, task);
       return;
     }
     report(task.result());
@@ -174,14 +174,14 @@ class Execution {
 
   void end(const Runner::Ended& ended) {
     auto found = active_.find(ended.name);
-    Task task = std::move(found->second);
+    Task task = found->second;
     active_.erase(found);
     task.finish(ended.outcome, runner_.summary(ended.name));
     if (!task.is_over() && options_.stop_requested()) {
       task.result().outcome = {Status::interrupted, "the bisection was stopped"};
       return report(task.result());
     }
-    go_on(std::move(task));
+    go_on(task);
   }
 
   void report(const Result& result) {
