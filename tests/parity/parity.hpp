@@ -21,7 +21,7 @@ inline double required_value(const mpm_parameter& parameter) {
   return found->second;
 }
 
-/// Every choice of a plugin's parameters, as JSON objects; numbers are the required ones, and friction.
+/// Every choice of a plugin's parameters, as JSON objects; numbers are the required ones, friction, and thresholds.
 inline std::vector<std::string> variants(const Plugin& plugin) {
   std::vector<std::string> texts{"{\"type\": \"" + std::string(plugin.id()) + "\""};
   for (const mpm_parameter& parameter : plugin.parameters()) {
@@ -33,6 +33,10 @@ inline std::vector<std::string> variants(const Plugin& plugin) {
       values = {digits(required_value(parameter))};
     } else if (std::string(parameter.name) == "friction") {
       values = {"0.2"};
+    } else if (std::string(parameter.name) == "beta_max") {
+      values = {"0.3"};  // with 1, where nothing counts as pressed together, particles leave through the walls
+    } else if (std::string(parameter.name) == "threshold") {
+      values = {"-1", "1"};  // either side of a jump, which float and double may take in different steps
     } else {
       continue;
     }
