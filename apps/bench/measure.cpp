@@ -63,6 +63,12 @@ Rates run_in_turns(const std::vector<Contender*>& contenders, const Protocol& pr
     const double cycles = std::max(1.0, std::round(protocol.window_seconds / (seconds * cycle)));
     rates.steps.push_back(cycle * static_cast<int>(cycles));
   }
+  // Scenes with cycles change on their way: a ratio compares the same steps of them.
+  int most = 0;
+  for (std::size_t c = 0; c < n; ++c)
+    if (contenders[c]->steps_a_cycle() > 1) most = std::max(most, rates.steps[c]);
+  for (std::size_t c = 0; c < n && protocol.whole_cycles; ++c)
+    if (contenders[c]->steps_a_cycle() > 1) rates.steps[c] = most;
   for (int round = 0; round < protocol.repeats; ++round)
     for (std::size_t turn = 0; turn < n; ++turn) {
       const std::size_t c = (turn + static_cast<std::size_t>(round)) % n;

@@ -35,7 +35,8 @@ struct Protocol {
   int warm_up = 4;               ///< steps of each contender before the first round
   double window_seconds = 0.35;  ///< that a contender runs in a round, about
   bool processor_time = false;   ///< rates of contenders of one thread by the processor's time instead of the wall's
-  bool whole_cycles = true;      ///< windows hold whole cycles of a contender (Contender::steps_a_cycle)
+  bool whole_cycles =
+      true;  ///< windows hold whole cycles (Contender::steps_a_cycle), the same steps for all that have any
 };
 
 /// Rates of each contender, particle-steps/s, one a round.
