@@ -84,6 +84,7 @@ struct Workspace {
   alignas(64) T advection[D * chunk_size], quads[(1 + 2 * D) * 4 * chunk_size + 4];
   /// Of moments a particle: cells^2, and the inverse in 1/m^2. [D] of a tensor product, [D * D] of a list.
   alignas(64) T second_moment[D * D * chunk_size], inverse_moment[D * D * chunk_size];
+  alignas(64) T transfer_moment[D * D * chunk_size];  ///< as the transfer reads it, where it is not second_moment
   using Integers = typename Lanes<float>::Mask;
   static constexpr int integers = Lanes<float>::width;
   Integers lowest[3], highest[3];  ///< first nodes of a block's stencils, lane by lane
@@ -95,7 +96,6 @@ struct Workspace {
   BoxWork<D, T> boxes;
   AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
   AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
-  alignas(64) T transfer_moment[D * D * chunk_size];  ///< as the transfer reads it, where it is not second_moment
   PhaseClock clock;
   bool far_only = false;  ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
 
