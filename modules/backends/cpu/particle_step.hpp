@@ -81,21 +81,22 @@ struct Workspace {
     alignas(64) T gradient_of_velocity[D * D * chunk_size];
     alignas(64) T S[D * D * chunk_size];
   };
-  alignas(64) T advection[D * chunk_size], quads[(1 + 2 * D) * 4 * chunk_size + 4];
+  alignas(64) T advection[D * chunk_size];
   /// Of moments a particle: cells^2, and the inverse in 1/m^2. [D] of a tensor product, [D * D] of a list.
   alignas(64) T second_moment[D * D * chunk_size], inverse_moment[D * D * chunk_size];
   alignas(64) T transfer_moment[D * D * chunk_size];  ///< as the transfer reads it, where it is not second_moment
   using Integers = typename Lanes<float>::Mask;
   static constexpr int integers = Lanes<float>::width;
   Integers lowest[3], highest[3];  ///< first nodes of a block's stencils, lane by lane
+  ListWork<D, T> lists;
+  BoxWork<D, T> boxes;
+  alignas(64) T quads[(1 + 2 * D) * 4 * chunk_size + 4];
   /// Zero between uses, so that the scatter may add.
   AlignedArray<T> tile[channel_count];
   /// Tiles to gather from; only what the block reaches is valid.
   AlignedArray<T> velocity_tile, increment_tile;
-  ListWork<D, T> lists;
-  BoxWork<D, T> boxes;
-  AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
   AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
+  AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
   PhaseClock clock;
   bool far_only = false;  ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
 
