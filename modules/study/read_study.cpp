@@ -13,7 +13,7 @@ using Type = ParameterType;
 
 constexpr std::size_t most_combinations = 100000;
 
-ParameterSpec nested(std::string name, std::string doc) {
+ParameterSpec nested(const std::string& name, std::string doc) {
   return parameter(name, Type::nested, "", std::move(doc)).defined_as(name);
 }
 
