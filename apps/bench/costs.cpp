@@ -4,6 +4,9 @@
 #include <string_view>
 
 #include "bench/counting.hpp"
+#include "materials/drucker_prager/drucker_prager.hpp"
+#include "materials/fixed_corotated/fixed_corotated.hpp"
+#include "materials/linear_elastic/linear_elastic.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
 #include "materials/von_mises/von_mises.hpp"
 #include "shapes/b2gimp/b2gimp.hpp"
@@ -21,9 +24,6 @@
 #include "transfers/pic/pic.hpp"
 #include "transfers/rpic/rpic.hpp"
 #include "transfers/tpic/tpic.hpp"
-#if __has_include("materials/fixed_corotated/fixed_corotated.hpp")
-#include "materials/fixed_corotated/fixed_corotated.hpp"
-#endif
 
 namespace mpm::bench {
 namespace {
@@ -183,9 +183,9 @@ std::optional<double> material_cost(const Component& component, bool deforming) 
   const std::string_view id = component.plugin->id();
   if (id == "neo_hookean") return material_step<NeoHookean, D, T>(component, deforming);
   if (id == "von_mises") return material_step<VonMises, D, T>(component, deforming);
-#if __has_include("materials/fixed_corotated/fixed_corotated.hpp")
   if (id == "fixed_corotated") return material_step<FixedCorotated, D, T>(component, deforming);
-#endif
+  if (id == "linear_elastic") return material_step<LinearElastic, D, T>(component, deforming);
+  if (id == "drucker_prager") return material_step<DruckerPrager, D, T>(component, deforming);
   return std::nullopt;
 }
 
@@ -211,9 +211,40 @@ double gather_cost(const Wanted& w, const ShapeCost& shape, bool moment, bool gr
   return cost + shape.nodes * (2 * w.D + (moment ? 2 * DD : 0) + (gradient ? 2 * DD : 0));
 }
 
+/// Passes over the particles besides the gather and the scatter that every step has.
+struct ExtraPasses {
+  int strains = 0;                ///< that gather a velocity gradient on their own
+  int advances = 0;               ///< of the material
+  int remaps = 0;                 ///< scatters of mass and momentum again (MUSL)
+  bool strain_in_gather = false;  ///< the gather strains as well
+};
+
+void count_passes(const std::vector<Pass>& passes, ExtraPasses& count) {
+  for (const Pass& pass : passes) {
+    if (pass.condition != PassCondition::when_filtered) count_passes(pass.children, count);
+    if (pass.kind == PassKind::strain) ++count.strains, ++count.advances;
+    if (pass.kind == PassKind::scatter && pass.remap) ++count.remaps;
+    if ((pass.kind == PassKind::gather && pass.strain) || pass.kind == PassKind::gather_scatter)
+      count.strain_in_gather = true, ++count.advances;
+  }
+}
+
+/// Mean over the bodies by their shares of the particles.
 template <int D, class T>
-std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, double nodes_per_particle,
-                              bool deforming) {
+std::optional<double> mean_material_cost(const Experiment& experiment, const RunFacts& run) {
+  double mean = 0;
+  for (std::size_t b = 0; b < experiment.bodies.size(); ++b) {
+    const double share = run.body_shares.empty() ? (b == 0 ? 1 : 0) : run.body_shares[b];
+    if (share == 0) continue;
+    const auto cost = material_cost<D, T>(experiment.materials[experiment.bodies[b].material].component, run.deforming);
+    if (!cost) return std::nullopt;
+    mean += share * *cost;
+  }
+  return mean;
+}
+
+template <int D, class T>
+std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, const RunFacts& run) {
   const mpm_shape& shape_table = experiment.shape.plugin->shape();
   Wanted w;
   w.D = D;
@@ -222,28 +253,36 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, do
   w.contact = plan.contact;
   w.moment_is_gradient = shape_table.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
   w.moment_of_particle = shape_table.second_moment_kind == MPM_MOMENT_PER_PARTICLE;
-  const BodySpecification& body = experiment.bodies[0];
-  const auto shape = shape_cost<D, T>(experiment.shape, 0.5 / body.particles_per_cell_axis, w);
+  const auto shape = shape_cost<D, T>(experiment.shape, 0.5 / experiment.bodies[0].particles_per_cell_axis, w);
   const auto transfer = transfer_cost<D, T>(experiment.transfer);
-  const auto material = material_cost<D, T>(experiment.materials[body.material].component, deforming);
-  if (!shape || !transfer || !material || plan.ledger) return std::nullopt;
+  const auto material = mean_material_cost<D, T>(experiment, run);
+  if (!shape || !transfer || !material || (plan.ledger && !run.without_ledger)) return std::nullopt;
+  const auto stencil = [&](bool gradient) { return gradient ? shape->with_gradient : shape->plain; };
 
-  const double loops =
-      plan.filter ? experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data()) : 0;
+  const double loops = !plan.filter ? 0
+                       : run.filter_passes
+                           ? *run.filter_passes
+                           : experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data());
+  ExtraPasses extra;
+  count_passes(plan.passes, extra);
   const bool scatters_affine = w.has(MPM_SCATTERS_AFFINE);
   const bool gathers_affine = w.has(MPM_GATHERS_AFFINE) && !w.moment_is_gradient;
   const bool gathers_gradient = w.has(MPM_GATHERS_GRADIENT) || (w.has(MPM_GATHERS_AFFINE) && w.moment_is_gradient);
+  const bool strains_by_affine = w.has(MPM_STRAIN_BY_AFFINE) && !w.moment_is_gradient;
+  // A gather that leaves the strain to a pass of its own takes what the transfer reads and no more.
+  const bool moment = extra.strain_in_gather ? w.moment() : gathers_affine;
+  const bool gradient = extra.strain_in_gather ? w.gather_gradient() : gathers_gradient;
   Flops flops;
-  flops.shape = (w.gather_gradient() ? shape->with_gradient : shape->plain) +
-                (w.scatter_gradient() ? shape->with_gradient : shape->plain) +
-                loops * (gathers_gradient ? shape->with_gradient : shape->plain);
+  flops.shape = stencil(gradient) + stencil(w.scatter_gradient()) + extra.strains * stencil(!strains_by_affine) +
+                extra.remaps * stencil(false) + loops * stencil(gathers_gradient);
   flops.transfer = (1 + loops) * *transfer;
-  flops.material = *material;
-  flops.gather = gather_cost(w, *shape, w.moment(), w.gather_gradient()) + 2 * D +
+  flops.material = extra.advances * *material;
+  flops.gather = gather_cost(w, *shape, moment, gradient) + 2 * D +
+                 extra.strains * gather_cost(w, *shape, strains_by_affine, !strains_by_affine) +
                  loops * gather_cost(w, *shape, gathers_affine, gathers_gradient);
   if (w.has(MPM_GATHERS_INCREMENT)) flops.gather += gather_cost(w, *shape, false, false);
-  if (plan.particle_domain) flops.gather += D * D * (2 * D + 2);
-  flops.scatter = loops * scatter_cost(w, *shape, scatters_affine, false, false);
+  if (plan.particle_domain) flops.gather += extra.advances * D * D * (2 * D + 2);
+  flops.scatter = (loops + extra.remaps) * scatter_cost(w, *shape, scatters_affine, false, false);
   if (w.separate_force)
     flops.scatter += scatter_cost(w, *shape, scatters_affine, false, false) +
                      scatter_cost(w, *shape, w.stress_by_affine(), !w.stress_by_affine(), true);
@@ -251,8 +290,8 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, do
     flops.scatter += scatter_cost(w, *shape, scatters_affine || w.stress_by_affine(), !w.stress_by_affine(), true);
   if (w.contact)
     flops.scatter += scatter_cost(w, *shape, false, true, false) + scatter_cost(w, *shape, true, false, false);
-  flops.grid = (4 + loops * 3) * D * experiment.field_count *
-               nodes_per_particle;  // p / m, + dt f / m, + dt g; a loop's p / m and update
+  flops.grid = (4 + extra.remaps + loops * 3) * D * experiment.field_count *
+               run.nodes_per_particle;  // p / m, + dt f / m, + dt g; a loop's p / m and update
   return flops;
 }
 
@@ -283,14 +322,26 @@ double gather_rows(int dimension, int width, bool moment, bool gradient) {
   return total;
 }
 
-std::optional<Flops> flops_per_particle(const Experiment& experiment, const Plan& plan, double nodes_per_particle,
-                                        bool deforming) {
+double nodes_per_particle(const Simulation& simulation) {
+  return static_cast<double>(simulation.backend().grid_bytes()) /
+         static_cast<double>(simulation.plan().bytes_per_node()) / static_cast<double>(simulation.particle_count());
+}
+
+RunFacts facts_of(const Simulation& simulation) {
+  RunFacts facts{nodes_per_particle(simulation), true, {}, {}, true};
+  for (std::size_t b = 0; b < simulation.experiment().bodies.size(); ++b)
+    facts.body_shares.push_back(static_cast<double>(simulation.particle_count(static_cast<int>(b))) /
+                                static_cast<double>(simulation.particle_count()));
+  if (simulation.plan().filter && simulation.steps() > 0)
+    facts.filter_passes = static_cast<double>(simulation.filter_passes()) / static_cast<double>(simulation.steps());
+  return facts;
+}
+
+std::optional<Flops> flops_per_particle(const Experiment& experiment, const Plan& plan, const RunFacts& run) {
   const bool single = experiment.precision == Precision::single;
   if (experiment.dimension == 2)
-    return single ? flops_of<2, float>(experiment, plan, nodes_per_particle, deforming)
-                  : flops_of<2, double>(experiment, plan, nodes_per_particle, deforming);
-  return single ? flops_of<3, float>(experiment, plan, nodes_per_particle, deforming)
-                : flops_of<3, double>(experiment, plan, nodes_per_particle, deforming);
+    return single ? flops_of<2, float>(experiment, plan, run) : flops_of<2, double>(experiment, plan, run);
+  return single ? flops_of<3, float>(experiment, plan, run) : flops_of<3, double>(experiment, plan, run);
 }
 
 namespace {

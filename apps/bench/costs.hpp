@@ -3,8 +3,10 @@
 // does it, useful lanes only: padded lanes, tile copies, address arithmetic and sorting are overhead, not work.
 
 #include <optional>
+#include <vector>
 
 #include "experiment/plan.hpp"
+#include "simulation/simulation.hpp"
 
 namespace mpm::bench {
 
@@ -15,10 +17,24 @@ struct Flops {
   double total() const { return shape + transfer + material + scatter + gather + grid; }
 };
 
+/// What a count needs to know of the run itself.
+struct RunFacts {
+  double nodes_per_particle = 0;
+  bool deforming = true;                 ///< materials flow where they can
+  std::vector<double> body_shares = {};  ///< of the particles, by body; empty: the first body has all
+  std::optional<double> filter_passes;   ///< of the filter's loop, a step on average; without: as if at every step
+  bool without_ledger = false;           ///< leave out what the ledger adds up; else a scene with one is not counted
+};
+
+/// Nodes in memory a particle.
+double nodes_per_particle(const Simulation& simulation);
+
+/// Of a simulation after its last step; materials count as flowing, the ledger's sums do not count.
+RunFacts facts_of(const Simulation& simulation);
+
 /// Operations a particle-step; nothing where a plugin is not known to the counter or the ledger adds its sums.
-/// Nodes count once, whatever the number of velocity fields. `deforming`: the material flows where it can.
-std::optional<Flops> flops_per_particle(const Experiment& experiment, const Plan& plan, double nodes_per_particle,
-                                        bool deforming);
+/// Nodes count once, whatever the number of velocity fields.
+std::optional<Flops> flops_per_particle(const Experiment& experiment, const Plan& plan, const RunFacts& run);
 
 /// Bytes that must cross memory in a step, a particle: its state is read and written once in a fused pass (read once
 /// more where gather and scatter are apart, and once a pass of a filter's loop), and each channel of its nodes

@@ -63,8 +63,8 @@ void BenchContext::say(const std::string& what) const {
 
 Account account_of(Product& product, double rate, bool deforming) {
   const Plan& plan = product.simulation().plan();
-  const double nodes = product.nodes_per_particle();
-  const auto flops = bench::flops_per_particle(product.experiment(), plan, nodes, deforming);
+  const double nodes = bench::nodes_per_particle(product.simulation());
+  const auto flops = bench::flops_per_particle(product.experiment(), plan, {nodes, deforming, {}, {}, false});
   return {rate, flops ? std::optional(flops->total()) : std::nullopt,
           bench::bytes_per_particle(product.experiment(), plan, nodes)};
 }

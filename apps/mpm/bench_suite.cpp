@@ -84,10 +84,4 @@ Product::Product(Experiment experiment, int threads, const BackendFactory& facto
   simulation_.observe_when([](double, long) { return false; });
 }
 
-double Product::nodes_per_particle() const {
-  const double bytes_per_node = static_cast<double>(simulation_.plan().bytes_per_node());
-  return static_cast<double>(simulation_.backend().grid_bytes()) / bytes_per_node /
-         static_cast<double>(simulation_.particle_count());
-}
-
 }  // namespace mpm::app

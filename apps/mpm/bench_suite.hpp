@@ -76,8 +76,6 @@ class Product final : public bench::Contender {
   const Experiment& experiment() const { return experiment_; }
   Simulation& simulation() { return simulation_; }
   int threads() const override { return threads_; }
-  /// Nodes that the grid holds, a particle; each carries all velocity fields.
-  double nodes_per_particle() const;
 
  private:
   Experiment experiment_;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "bench/costs.hpp"
 #include "experiment/diagnostics.hpp"
+#include "study/summary_value.hpp"
 
 namespace mpm::app {
 namespace {
@@ -53,17 +55,6 @@ Json energy(const Simulation& simulation, const Metrics& metrics, const Recorder
                     {"residual", metrics.ledger_residual(end)}};
   if (simulation.plan().filter) json["ledger"]["filter"] = l.filter;
   return json;
-}
-
-/// Walks a dotted path; null when there is nothing there.
-const Json* at(const Json& summary, const std::string& path) {
-  const Json* value = &summary;
-  std::stringstream names(path);
-  for (std::string name; std::getline(names, name, '.');) {
-    if (!value->is_object() || !value->contains(name)) return nullptr;
-    value = &(*value)[name];
-  }
-  return value;
 }
 
 void collect_names(const Json& value, const std::string& prefix, std::vector<std::string>& names) {
@@ -132,6 +123,10 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
                          {"bytes_per_particle", static_cast<double>(simulation.backend().particle_bytes()) / particles},
                          {"grid_bytes", simulation.backend().grid_bytes()},
                          {"peak_memory", peak_memory()}};
+  // Of the algorithm, counted: null where a plugin is not known to the counter.
+  const auto flops = bench::flops_per_particle(experiment, simulation.plan(), bench::facts_of(simulation));
+  json["performance"]["flops"] =
+      flops ? Json(flops->total() * particles * static_cast<double>(simulation.steps())) : Json();
   for (const auto& [name, seconds] : seconds_by_pass) json["performance"]["seconds_by_pass"][name] = seconds;
   if (!earlier.resumed_from_steps.empty()) json["performance"]["resumed_from_step"] = earlier.resumed_from_steps;
   json["warnings"] = Json::array();
@@ -167,7 +162,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
 std::vector<std::string> judge_expectations(const Experiment& experiment, Json& summary) {
   std::vector<std::string> failed;
   for (const Expectation& expectation : experiment.expectations) {
-    const Json* value = at(summary, expectation.metric);
+    const Json* value = study::value_at(summary, expectation.metric);
     const bool measured = value && value->is_number();
     const double x = measured ? value->get<double>() : NAN;
     bool held = measured;

@@ -14,7 +14,7 @@ Simulation::Simulation(const Experiment& experiment, const BackendFactory& make_
   std::vector<SeededBody> bodies;
   for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body)
     bodies.push_back(seed_body(experiment, body));
-  for (const SeededBody& body : bodies) particles_ += body.count();
+  for (const SeededBody& body : bodies) body_particles_.push_back(body.count()), particles_ += body.count();
   backend_ = make_backend(experiment_, plan_, std::move(bodies));
 }
 
@@ -95,6 +95,7 @@ void Simulation::execute(const Pass& pass, StepInfo& step) {
   backend_->execute(pass, step);
   seconds_[pass.name()] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (pass.kind == PassKind::estimate_time_step) estimate_time_step();
+  if (pass.kind == PassKind::project) ++filter_passes_;
 }
 
 void Simulation::step() {
@@ -139,6 +140,7 @@ void Simulation::save(ArchiveWriter& archive) const {
                                    std::pair{"speed", &estimated_speed_}, std::pair{"filter_clock", &filter_clock_}})
     archive.put(tag, *value);
   archive.put("steps", steps_);
+  archive.put("filter_passes", filter_passes_);
   archive.put("particles", particles_);
   backend_->save(archive);
 }
@@ -150,6 +152,7 @@ void Simulation::restore(ArchiveReader& archive) {
                                    std::pair{"speed", &estimated_speed_}, std::pair{"filter_clock", &filter_clock_}})
     archive.get(tag, *value);
   archive.get("steps", steps_);
+  archive.get("filter_passes", filter_passes_);
   std::size_t particles = 0;
   archive.get("particles", particles);
   if (particles != particles_) throw ArchiveError("it holds another number of particles");

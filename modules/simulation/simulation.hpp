@@ -36,6 +36,9 @@ class Simulation {
   double largest_time_step() const { return largest_; }
   long steps() const { return steps_; }
   std::size_t particle_count() const { return particles_; }
+  std::size_t particle_count(int body) const { return body_particles_[static_cast<std::size_t>(body)]; }
+  /// Passes of the filter's loop so far, of all steps.
+  long filter_passes() const { return filter_passes_; }
 
   /// Everything that later steps depend on. `restore` on a simulation of the same experiment goes on bit for bit,
   /// whatever the number of threads; throws ArchiveError.
@@ -72,7 +75,9 @@ class Simulation {
   bool observed_ = true;
   bool scattered_ = false;  ///< the grid holds this step's scatter already
   long steps_ = 0;
+  long filter_passes_ = 0;
   std::size_t particles_ = 0;
+  std::vector<std::size_t> body_particles_;
   std::map<std::string, double> seconds_;
 };
 

@@ -16,7 +16,17 @@ std::string three_digits(double value) {
   return text;
 }
 
-const Json* at(const Json& summary, const std::string& path) {
+/// Gain of the largest recorded total energy over the energies the scene began with; NaN when it began with none.
+double energy_gain(const Json& summary) {
+  const double start = number_at(summary, "energy.total.initial"), largest = number_at(summary, "energy.total.largest");
+  const double scale = number_at(summary, "energy.kinetic.initial") + number_at(summary, "energy.strain.initial") +
+                       std::abs(number_at(summary, "energy.gravitational.initial"));
+  return scale > 0 ? (largest - start) / scale : not_measured;
+}
+
+}  // namespace
+
+const Json* value_at(const Json& summary, const std::string& path) {
   if (path.starts_with('/')) {
     try {
       return &summary.at(Json::json_pointer(path));
@@ -33,18 +43,8 @@ const Json* at(const Json& summary, const std::string& path) {
   return value;
 }
 
-/// Gain of the largest recorded total energy over the energies the scene began with; NaN when it began with none.
-double energy_gain(const Json& summary) {
-  const double start = number_at(summary, "energy.total.initial"), largest = number_at(summary, "energy.total.largest");
-  const double scale = number_at(summary, "energy.kinetic.initial") + number_at(summary, "energy.strain.initial") +
-                       std::abs(number_at(summary, "energy.gravitational.initial"));
-  return scale > 0 ? (largest - start) / scale : not_measured;
-}
-
-}  // namespace
-
 double number_at(const Json& summary, const std::string& path) {
-  const Json* value = path.empty() ? nullptr : at(summary, path);
+  const Json* value = path.empty() ? nullptr : value_at(summary, path);
   return value && value->is_number() ? value->get<double>() : not_measured;
 }
 

@@ -14,7 +14,10 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
-/// The number at a JSON pointer ("/error/position/rms") or dotted path ("error.position.rms"); NaN when there is none.
+/// What stands at a JSON pointer ("/error/position/rms") or dotted path ("error.position.rms"); null when nothing does.
+const Json* value_at(const Json& summary, const std::string& path);
+
+/// The number there; NaN when there is none.
 double number_at(const Json& summary, const std::string& path);
 
 /// The measure's value, its formula applied; NaN when the summary lacks it.

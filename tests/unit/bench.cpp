@@ -118,7 +118,7 @@ TEST_CASE("rows of the stencil cost what a hand count gives", "[bench]") {
 TEST_CASE("operations and bytes of the standard combination", "[bench]") {
   const Experiment experiment = mpm::test::experiment_from(block(3), {"/precision=float"});
   const Plan plan = make_plan(experiment);
-  const auto flops = flops_per_particle(experiment, plan, 0.5, true);
+  const auto flops = flops_per_particle(experiment, plan, {0.5, true, {}, {}, false});
   REQUIRE(flops);
   // Neo-Hookean: (I + dt L) F 45 + 18, J 14, and in the stress b 30 + 3 (it starts as I), J 14, log 19,
   // lambda ln J - mu 2, mu b 6, + p 3.
@@ -128,7 +128,33 @@ TEST_CASE("operations and bytes of the standard combination", "[bench]") {
   CHECK(flops->grid == 0.5 * 4 * 3);
   CHECK(bytes_per_particle(experiment, plan, 0.5) == 2 * 4 * (3 + 9) + 2 * 0.5 * 32);  // x and F; v and C pass
   const Experiment ledger = mpm::test::experiment_from(block(3), {"/output/ledger=true"});
-  CHECK_FALSE(flops_per_particle(ledger, make_plan(ledger), 0.5, true));
+  CHECK_FALSE(flops_per_particle(ledger, make_plan(ledger), {0.5, true, {}, {}, false}));
+}
+
+TEST_CASE("each pass over the particles that a scene adds is counted", "[bench]") {
+  const auto count = [](std::vector<std::string> overrides) {
+    const Experiment experiment = mpm::test::experiment_from(block(2), overrides);
+    const auto flops = flops_per_particle(experiment, make_plan(experiment), {1, true, {}, {}, false});
+    REQUIRE(flops);
+    return *flops;
+  };
+  const std::string flip = "/transfer/type=\"flip\"", apic = "/transfer/type=\"apic\"";
+  const Flops last = count({apic});
+  const Flops first = count({apic, "/solver/stress_update=\"first\""});
+  const Flops modified = count({apic, "/solver/stress_update=\"modified_last\""});
+  const Flops averaged = count({apic, "/solver/stress_update=\"averaged\""});
+  CHECK(first.material == last.material);
+  CHECK(averaged.material == 2 * last.material);
+  CHECK(first.shape > last.shape);
+  CHECK(first.shape - last.shape < averaged.shape - last.shape + 1);
+  CHECK(modified.scatter > last.scatter);
+  CHECK(averaged.total() > first.total());
+  // A loop of the filter is a gather and a scatter of momentum: each pass adds the same.
+  const Flops two = count({apic, R"(/filter={"type": "fmpm", "order": 2})"});
+  const Flops four = count({apic, R"(/filter={"type": "fmpm", "order": 4})"});
+  CHECK(two.gather - last.gather == (four.gather - last.gather) / 3);
+  CHECK(four.scatter > two.scatter);
+  CHECK(count({flip}).gather > 0);
 }
 
 TEST_CASE("a ratio is the median of the rounds' ratios", "[bench]") {
