@@ -115,6 +115,15 @@ std::vector<Point> pixels_of(const Series& data, const Scales& s) {
   return points;
 }
 
+void draw_marks(Canvas& canvas, const Theme& theme, const Scales& s, const Content& content, std::size_t rank) {
+  const Shown& shown = content.series[rank];
+  draw_error_bars(canvas, s, shown, theme.unit);
+  const auto points = pixels_of(shown.data, s);
+  const bool all = shown.data.kind != SeriesKind::computed;
+  for (const std::size_t i : marked_points(points, rank, content.series.size(), all))
+    draw_mark(canvas, shown.look, points[i], 8 * theme.unit, theme.unit, shown.is_faded[i] ? 0.35 : 1);
+}
+
 void draw_series(Canvas& canvas, const Theme& theme, const Scales& s, const Content& content) {
   // Coloured lines first, then the thin exact ones over them, then marks, published ones on top.
   const auto is_line = [](const Shown& shown, SeriesKind kind) { return shown.data.kind == kind; };
@@ -124,13 +133,12 @@ void draw_series(Canvas& canvas, const Theme& theme, const Scales& s, const Cont
     }
   }
   for (const SeriesKind kind : {SeriesKind::computed, SeriesKind::point, SeriesKind::published}) {
-    for (std::size_t rank = 0; rank < content.series.size(); ++rank) {
-      const Shown& shown = content.series[rank];
-      if (shown.data.kind != kind) continue;
-      draw_error_bars(canvas, s, shown, theme.unit);
-      const auto points = pixels_of(shown.data, s);
-      for (const std::size_t i : marked_points(points, rank, content.series.size(), kind != SeriesKind::computed)) {
-        draw_mark(canvas, shown.look, points[i], 8 * theme.unit, theme.unit, shown.is_faded[i] ? 0.35 : 1);
+    // Crosses over filled marks: both stay to be seen where points coincide.
+    for (const bool strokes : {false, true}) {
+      for (std::size_t rank = 0; rank < content.series.size(); ++rank) {
+        const Shown& shown = content.series[rank];
+        const bool is_stroke = shown.look.marker == Marker::plus || shown.look.marker == Marker::cross;
+        if (shown.data.kind == kind && is_stroke == strokes) draw_marks(canvas, theme, s, content, rank);
       }
     }
   }
