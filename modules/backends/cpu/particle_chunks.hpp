@@ -259,7 +259,7 @@ void ParticleStep<D, T, Components>::place_to_gather(const Chunk& chunk, Work& w
   if (!scene_.list) number_stencils(work, chunk.end, kernels_.side);
 }
 
-/// Number of each stencil's first node, `along_last` of them a row.
+/// Number of each stencil's first node, `along_last` of them a row, and whether neighbours mostly share one.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::number_stencils(Work& work, int count, int along_last) const {
   for (int p = 0; p < count; ++p) {
@@ -268,6 +268,9 @@ void ParticleStep<D, T, Components>::number_stencils(Work& work, int count, int 
       node = node * (axis == D - 1 ? along_last : kernels_.side) + work.base[axis * chunk_size + p] + 1;
     work.first[p] = node;
   }
+  int changes = 0;
+  for (int p = 1; p < count; ++p) changes += work.first[p] != work.first[p - 1] ? 1 : 0;
+  work.shared_stencils = 4 * changes <= count;
 }
 
 /// D^-1 of each particle: of a diagonal, or of a symmetric matrix by its adjugate.

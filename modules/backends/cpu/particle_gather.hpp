@@ -175,7 +175,7 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel,
                                                     bool moment, bool gradient) {
   if (!scene_.list) {
-    const Stencils<T> stencils{work.first, work.weight, work.gradient, chunk.ahead(true)};
+    const Stencils<T> stencils{work.first, work.shared_stencils, work.weight, work.gradient, chunk.ahead(true)};
     return kernels_.gather[moment][gradient](tile, stencils, work.quads, chunk.end);
   }
   if (scene_.evaluate_box && !work.far_only)

@@ -203,7 +203,7 @@ void ParticleStep<D, T, Components>::add_to_tile(const Chunk& chunk, Work& work,
       kernel(grid_.channel(channel, chunk.body.field), work.lists.far_lists(), work.quads, chunk.count);
     return;
   }
-  const Stencils<T> stencils{work.first, work.weight, work.gradient, chunk.ahead(false)};
+  const Stencils<T> stencils{work.first, work.shared_stencils, work.weight, work.gradient, chunk.ahead(false)};
   kernels_.scatter[affine][gradient](work.tile[channel].data(), stencils, work.quads, chunk.count);
   work.clock.lap(Phase::scatter);
 }

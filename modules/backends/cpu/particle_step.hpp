@@ -67,7 +67,8 @@ template <int D, class T>
 struct Workspace {
   static constexpr int symmetric = Sym<D, T>::size;
   alignas(64) std::int32_t base[D * chunk_size];
-  alignas(64) std::int32_t first[chunk_size];  ///< of the stencils: see Stencils
+  alignas(64) std::int32_t first[chunk_size];  ///< of the stencils: see Stencils, as the next
+  bool shared_stencils = false;
   alignas(64) T offset[D * chunk_size], weight[D * 4 * chunk_size], gradient[D * 4 * chunk_size];
   alignas(64) T mass[chunk_size], b[D * chunk_size];
   alignas(64) T stress[symmetric * chunk_size], volume_ratio[chunk_size], scalar[chunk_size];

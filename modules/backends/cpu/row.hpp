@@ -11,6 +11,12 @@
 
 namespace mpm::cpu {
 
+#if defined(__AVX512F__)
+inline constexpr int vector_registers = 32;
+#else
+inline constexpr int vector_registers = 16;
+#endif
+
 template <class T, int K>
 struct Row {
   static constexpr int nodes = K == 2 ? 2 : 4, scalars = nodes * 4;

@@ -38,6 +38,7 @@ struct Ahead {
 template <class T>
 struct Stencils {
   const std::int32_t* first;  ///< of the gather: first node of the stencil in the tile; of the scatter: its first row
+  bool shared = false;        ///< most particles have the stencil of the one before
   const T* weight;
   const T* gradient;  ///< per cell
   Ahead ahead;
@@ -108,24 +109,55 @@ struct LastWeights {
   MPM_ROW_INLINE Row<T, K> row(int particle) const { return spread<T, K>(quads + 4 * particle); }
 };
 
-template <int K, class T>
-MPM_ROW_INLINE void add_to_row(T* at, const Row<T, K>& value) {
-  store_row(at, load_row<T, K>(at) + value);
-}
+/// The rows of one stencil: where particles share it and registers are enough, these keep them from one particle to the
+/// next. Otherwise each particle loads and stores them: a branch that nobody can foresee costs more.
+template <int D, int K, class T, bool Shared, bool Gradient>
+struct StencilRows {
+  using R = Row<T, K>;
+  static constexpr int count = D == 2 ? K : K * K;
+  static constexpr int others = Gradient ? 20 : 12;  // registers that a particle's sums and coefficients want
+  static constexpr bool kept = Shared && count * R::vectors + others <= vector_registers;
 
-template <int D, class T, int K, bool Affine, bool Gradient>
-void scatter_to_tile(T* tile, const Stencils<T>& stencils, const T* coefficients, int count) {
+  R row[kept ? count : 1];
+
+  /// The k-th row, `line` scalars after the one before it.
+  static MPM_ROW_INLINE int place(int k, int line) {
+    return D == 2 ? k * line : (k / K * tile_side<D, K> + k % K) * line;
+  }
+  MPM_ROW_INLINE void load(const T* corner, int line) {
+#pragma GCC unroll 16
+    for (int k = 0; kept && k < count; ++k) row[k] = load_row<T, K>(corner + place(k, line));
+  }
+  MPM_ROW_INLINE void store(T* corner, int line) const {
+#pragma GCC unroll 16
+    for (int k = 0; kept && k < count; ++k) store_row(corner + place(k, line), row[k]);
+  }
+  MPM_ROW_INLINE R get(int k, const T* corner, int line) const {
+    if constexpr (kept) return row[k];
+    return load_row<T, K>(corner + place(k, line));
+  }
+  MPM_ROW_INLINE void set(int k, const R& value, T* corner, int line) {
+    if constexpr (kept)
+      row[k] = value;
+    else
+      store_row(corner + place(k, line), value);
+  }
+};
+
+template <int D, class T, int K, bool Affine, bool Gradient, bool Shared>
+void scatter_particles(T* tile, const Stencils<T>& stencils, const T* coefficients, int count) {
   using R = Row<T, K>;
   constexpr int groups = quad_groups(D, Affine, Gradient), first_s = 1 + (Affine ? D : 0);
-  constexpr int line = first_nodes_of_tile<D> * R::scalars;  // from a row to the next along the axis before the last
   const LastWeights<D, K, T> weights(stencils.weight, count);
   const LastWeights<D, K, T> slopes(Gradient ? stencils.gradient : stencils.weight, Gradient ? count : 0);
   const R number = node_numbers<T, K>();
+  constexpr int line = first_nodes_of_tile<D> * R::scalars;
+  StencilRows<D, K, T, Shared, Gradient> rows;
+  T* corner = nullptr;
   for (int p = 0; p < count; ++p) {
     stencils.ahead.fetch(p);
     const T* const c = coefficients + std::size_t(p) * groups * 4;
     const auto coefficient = [&](int group) { return repeated<T, K>(c + 4 * group); };
-    T* const corner = tile + std::size_t(stencils.first[p]) * R::scalars;
     const AxisWeights<K, T> x(stencils, 0, p, Gradient), y(stencils, D - 2, p, Gradient);
     const R w = weights.row(p);
     R plane = coefficient(0), step_x{}, step_y{}, slope_x{}, slope_y{};
@@ -141,26 +173,37 @@ void scatter_to_tile(T* tile, const Stencils<T>& stencils, const T* coefficients
       slope_x = w * coefficient(first_s);
       if constexpr (D == 3) slope_y = w * coefficient(first_s + 1);
     }
+    T* const place = tile + std::size_t(stencils.first[p]) * R::scalars;
+    if (place != corner) {
+      if (corner) rows.store(corner, line);
+      rows.load(corner = place, line);
+    }
 #pragma GCC unroll 4
     for (int i = 0; i < K; ++i) {
       R row = times<T, K>(x.w[i], plane);
       if constexpr (Gradient) row = row + times<T, K>(x.g[i], slope_x);
       if constexpr (Affine) plane = plane + step_x;
       if constexpr (D == 2) {
-        add_to_row<K, T>(corner + i * line, row);
+        rows.set(i, rows.get(i, corner, line) + row, corner, line);
       } else {
         const R step = times<T, K>(x.w[i], step_y), slope = times<T, K>(x.w[i], slope_y);
 #pragma GCC unroll 4
         for (int j = 0; j < K; ++j) {
-          T* const at = corner + (i * tile_side<D, K> + j) * line;
-          R value = load_row<T, K>(at) + times<T, K>(y.w[j], row);
+          R value = rows.get(i * K + j, corner, line) + times<T, K>(y.w[j], row);
           if constexpr (Gradient) value = value + times<T, K>(y.g[j], slope);
+          rows.set(i * K + j, value, corner, line);
           if constexpr (Affine) row = row + step;
-          store_row(at, value);
         }
       }
     }
   }
+  if (corner) rows.store(corner, line);
+}
+
+template <int D, class T, int K, bool Affine, bool Gradient>
+void scatter_to_tile(T* tile, const Stencils<T>& stencils, const T* coefficients, int count) {
+  if (stencils.shared) return scatter_particles<D, T, K, Affine, Gradient, true>(tile, stencils, coefficients, count);
+  scatter_particles<D, T, K, Affine, Gradient, false>(tile, stencils, coefficients, count);
 }
 
 /// Sums over all rows of a stencil that its last axis' weights do not yet enter.
@@ -169,10 +212,11 @@ struct StencilSums {
   Row<T, K> value{}, moment_x{}, moment_y{}, gradient_x{}, gradient_y{};
 };
 
-template <int D, class T, int K, bool Moment, bool Gradient>
-MPM_ROW_INLINE StencilSums<K, T> sum_rows(const T* corner, const Stencils<T>& stencils, int p) {
+template <int D, class T, int K, bool Moment, bool Gradient, bool Shared>
+MPM_ROW_INLINE StencilSums<K, T> sum_rows(const StencilRows<D, K, T, Shared, Gradient>& rows, const T* corner,
+                                          const Stencils<T>& stencils, int p) {
   using R = Row<T, K>;
-  constexpr int side = tile_side<D, K>;
+  constexpr int line = tile_side<D, K> * 4;
   const AxisWeights<K, T> x(stencils, 0, p, Gradient), y(stencils, D - 2, p, Gradient);
   StencilSums<K, T> sums;
   typename R::Vector moment_y[K];
@@ -181,11 +225,11 @@ MPM_ROW_INLINE StencilSums<K, T> sum_rows(const T* corner, const Stencils<T>& st
   for (int i = 0; i < K; ++i) {
     R plane, plane_moment{}, plane_slope{};
     if constexpr (D == 2) {
-      plane = load_row<T, K>(corner + i * side * 4);
+      plane = rows.get(i, corner, line);
     } else {
 #pragma GCC unroll 4
       for (int j = 0; j < K; ++j) {
-        const R row = load_row<T, K>(corner + (i * side + j) * side * 4);
+        const R row = rows.get(i * K + j, corner, line);
         plane = j == 0 ? times<T, K>(y.w[j], row) : plane + times<T, K>(y.w[j], row);
         if constexpr (Moment) {
           if (j > 0) plane_moment = j == 1 ? times<T, K>(y.w[1], row) : plane_moment + times<T, K>(moment_y[j], row);
@@ -211,17 +255,20 @@ MPM_ROW_INLINE StencilSums<K, T> sum_rows(const T* corner, const Stencils<T>& st
   return sums;
 }
 
-template <int D, class T, int K, bool Moment, bool Gradient>
-void gather_from_tile(const T* tile, const Stencils<T>& stencils, T* moments, int count) {
+template <int D, class T, int K, bool Moment, bool Gradient, bool Shared>
+void gather_particles(const T* tile, const Stencils<T>& stencils, T* moments, int count) {
   using R = Row<T, K>;
   constexpr int groups = quad_groups(D, Moment, Gradient), first_g = 1 + (Moment ? D : 0);
   const LastWeights<D, K, T> weights(stencils.weight, count);
   const LastWeights<D, K, T> slopes(Gradient ? stencils.gradient : stencils.weight, Gradient ? count : 0);
   const R number = node_numbers<T, K>();
+  StencilRows<D, K, T, Shared, Gradient> rows;
+  const T* corner = nullptr;
   for (int p = 0; p < count; ++p) {
     stencils.ahead.fetch(p);
-    const StencilSums<K, T> sums =
-        sum_rows<D, T, K, Moment, Gradient>(tile + std::size_t(stencils.first[p]) * 4, stencils, p);
+    const T* const place = tile + std::size_t(stencils.first[p]) * 4;
+    if (place != corner) rows.load(corner = place, tile_side<D, K> * 4);
+    const StencilSums<K, T> sums = sum_rows<D, T, K, Moment, Gradient, Shared>(rows, corner, stencils, p);
     const R w = weights.row(p);
     const auto weighted = [&](const R& sum) { return within_stencil<T, K>(w * sum); };
     R terms[groups + 3]{};
@@ -244,6 +291,12 @@ void gather_from_tile(const T* tile, const Stencils<T>& stencils, T* moments, in
         for (int k = g; k < groups; ++k) reinterpret_cast<Quad<T>*>(out)[k] = sum_of_nodes(terms[k]);
     }
   }
+}
+
+template <int D, class T, int K, bool Moment, bool Gradient>
+void gather_from_tile(const T* tile, const Stencils<T>& stencils, T* moments, int count) {
+  if (stencils.shared) return gather_particles<D, T, K, Moment, Gradient, true>(tile, stencils, moments, count);
+  gather_particles<D, T, K, Moment, Gradient, false>(tile, stencils, moments, count);
 }
 
 /// One row of a tile along the last axis, and the rows of three blocks in a line that it crosses.
