@@ -1,6 +1,7 @@
 // Axisymmetric scenes: uniform expansion, free fall along the axis, the breathing of a cylinder, the balance of energy
 // and axial momentum, and an impact against the same in 3-D.
 
+#include <algorithm>
 #include <cstdio>
 #include <numbers>
 #include <sstream>
@@ -50,8 +51,8 @@ TEST_CASE("axisymmetric uniform expansion stretches around the axis as along the
             apart = std::max(apart, std::abs(F[p + 4] - F[p]));
             off = std::max(off, std::abs(F[p + 4] - 1.1));
           }
-          CHECK(apart < 1e-13);
-          CHECK(off < 1e-13);
+          CHECK(apart < 1e-11);  // seeds differentiate the velocity over 1e-4 of a cell: 4 digits of rounding more
+          CHECK(off < 1e-11);
         }
 }
 
@@ -218,6 +219,30 @@ TEST_CASE("an axisymmetric impact is that of 3-D", "[axisymmetric]") {
   CHECK(flat.leave == Approx(space.leave).epsilon(0.05));
   CHECK(flat.speed == Approx(space.speed).epsilon(0.03));
   CHECK(flat.kinetic == Approx(space.kinetic).epsilon(0.05));
+}
+
+TEST_CASE("C9 a Taylor bar of copper keeps its length and foot", "[axisymmetric][C9]") {
+  ReadOptions options;
+  options.exact = exact_solutions();
+  const Experiment experiment =
+      read_experiment(MPM_SOURCE_DIR "/experiments/gallery/taylor_bar.json", ComponentLookup(plugins()), options);
+  Simulation simulation(experiment, backend_factory(1));
+  while (!simulation.finished()) simulation.step();
+  const BodyState state = simulation.backend().body_state(0);
+  const std::vector<double>& plastic = state.material_state.at("equivalent_plastic_strain");
+  double length = 0, radius = 0;
+  for (std::size_t p = 0; p < state.circumference.size(); ++p) {
+    radius = std::max(radius, state.position[2 * p]);
+    length = std::max(length, state.position[2 * p + 1]);
+  }
+  const double half = experiment.grid.cell_size / 4;  // a particle's, undeformed
+  length += half, radius += half;
+  std::printf("Taylor bar: length %.3f mm, radius %.3f mm, largest plastic strain %.2f\n", 1e3 * length, 1e3 * radius,
+              *std::max_element(plastic.begin(), plastic.end()));
+  CHECK(length >= 21.0e-3);
+  CHECK(length <= 21.9e-3);
+  CHECK(radius >= 6.7e-3);
+  CHECK(radius <= 7.4e-3);
 }
 
 TEST_CASE("axisymmetric energy balance closes at second order with USAVG and axial momentum is kept",
