@@ -222,6 +222,8 @@ TEST_CASE("axisymmetric scenes and frozen bodies on the host-run device", "[devi
     for (const std::string& order : orders) {
       Mix mix = mix_with(plugin(MPM_CONTACT, "coulomb"), 2);
       mix.shape = "{\"type\": \"" + shape + "\"}", mix.stress_update = order, mix.overrides = around;
+      // Rings that grow and cross cells of linear functions are inverted soon, on either backend.
+      if (shape == "linear") mix.overrides.emplace_back("/solver/end_time=0.045");
       mix.transfer = order == "last" ? R"({"type": "mls"})" : R"({"type": "flip"})";
       check_on_device(mix);
     }

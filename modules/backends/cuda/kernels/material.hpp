@@ -57,7 +57,6 @@ MPM_HD void stress(const Team& team, const Arguments<typename Scene::Scalar>& a)
 /// Advances state and domain by dt with the gathered velocity gradient.
 template <class Scene>
 MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  using T = typename Scene::Scalar;
   using Material = typename Scene::Material;
   constexpr int D = Scene::dimension;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, auto& state) {
