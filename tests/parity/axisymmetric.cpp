@@ -102,3 +102,22 @@ TEST_CASE("axisymmetric fused and separate passes agree bit by bit, as do 1 and 
           CHECK(different(separate, results("fused", 2)) == 0);
         }
 }
+
+TEST_CASE("axisymmetric scenes and frozen bodies go on from what was saved, bit by bit", "[parity][axisymmetric]") {
+  for (const std::string backend : {"reference", "cpu"})
+    for (const bool frozen : {false, true}) {
+      INFO(backend << (frozen ? " frozen" : ""));
+      Mix mix = ring_mix();
+      mix.overrides.push_back(set("/backend", backend));
+      if (frozen) mix.overrides.insert(mix.overrides.end(), {"/gravity=[0, 0]", "/bodies/0/frozen=true"});
+      Scene whole(mix.text(), mix.overrides), resumed(mix.text(), mix.overrides);
+      whole.run_steps(7);
+      ArchiveWriter archive;
+      whole.simulation.save(archive);
+      ArchiveReader reader(archive.bytes());
+      resumed.simulation.restore(reader);
+      whole.run_steps(7), resumed.run_steps(7);
+      CHECK(whole.body().circumference == resumed.body().circumference);
+      CHECK(different(all_results(whole.simulation), all_results(resumed.simulation)) == 0);
+    }
+}
