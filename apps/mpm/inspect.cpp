@@ -44,7 +44,12 @@ std::string range_text(const mpm_parameter& p) {
   return text.empty() ? "any number" : text;
 }
 
-constexpr const char* shape_names[] = {"scalar", "vector", "matrix", "symmetric", "deformation"};
+constexpr const char* shape_names[] = {"scalar", "vector", "matrix", "symmetric", "deformation", "plane deformation"};
+
+/// Whether a material runs in axisymmetric scenes.
+bool strains_around_axis(const Plugin& plugin) {
+  return plugin.descriptor->kind == MPM_MATERIAL && (plugin.material().traits & MPM_STRAINS_AROUND_AXIS);
+}
 
 Json description(const Plugin& plugin) {
   const mpm_descriptor& d = *plugin.descriptor;
@@ -57,6 +62,7 @@ Json description(const Plugin& plugin) {
   json["dimensions"] = Json::array();
   if (d.dimensions & MPM_2D) json["dimensions"].push_back(2);
   if (d.dimensions & MPM_3D) json["dimensions"].push_back(3);
+  if (d.kind == MPM_MATERIAL) json["axisymmetric"] = strains_around_axis(plugin);
   json["precisions"] = Json::array();
   if (d.precisions & (1u << MPM_LANES_FLOAT)) json["precisions"].push_back("float");
   if (d.precisions & (1u << MPM_LANES_DOUBLE)) json["precisions"].push_back("double");
@@ -78,8 +84,8 @@ void print(const Plugin& plugin) {
             << d.summary << "\n\n"
             << d.manual << "\n\nSource: " << d.citation << "\n";
   const bool two = d.dimensions & MPM_2D, three = d.dimensions & MPM_3D;
-  std::cout << "Runs in: " << (two ? "2-D " : "") << (three ? "3-D " : "") << "| "
-            << (d.precisions & (1u << MPM_LANES_FLOAT) ? "float " : "")
+  std::cout << "Runs in: " << (two ? "2-D " : "") << (strains_around_axis(plugin) ? "axisymmetric " : "")
+            << (three ? "3-D " : "") << "| " << (d.precisions & (1u << MPM_LANES_FLOAT) ? "float " : "")
             << (d.precisions & (1u << MPM_LANES_DOUBLE) ? "double" : "") << "\n";
   if (d.kind == MPM_SHAPE) {
     const mpm_shape& shape = plugin.shape();

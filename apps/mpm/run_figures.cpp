@@ -111,9 +111,10 @@ void draw_dissipation(const Table& table, const RunLabel& label, const std::file
 }
 
 void draw_momentum(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
-  Plot plot = plot_of(table, label, "Linear momentum: " + label.title, "momentum p", "momentum x");
+  Plot plot = plot_of(table, label, "Linear momentum: " + label.title, "momentum p", "momentum y");
   for (const char* axis : {"x", "y", "z"}) add(plot, table, std::string("momentum ") + axis, std::string("p ") + axis);
   render::write_figure(plot, stem);
+  if (!table.find("angular momentum z")) return;  // axisymmetric
   Plot spin = plot_of(table, label, "Angular momentum about the centre of mass: " + label.title, "angular momentum L",
                       "angular momentum z");
   for (const char* axis : {"x", "y", "z"})
@@ -161,7 +162,7 @@ constexpr FigureKind kinds[] = {
     {"energy", "total energy", "", draw_energy},
     {"ledger", "ledger residual", "set /output/ledger to true", draw_ledger},
     {"dissipation", "ledger residual", "set /output/ledger to true", draw_dissipation},
-    {"momentum", "momentum x", "", draw_momentum},
+    {"momentum", "momentum y", "", draw_momentum},
     {"contact", "contact nodes", "give the experiment a \"contact\"", draw_contact},
     {"volume_ratio", "smallest volume ratio", "", draw_volume},
     {"error", "position error rms", "name an exact solution in /compare/exact", draw_error},

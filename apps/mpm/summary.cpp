@@ -69,7 +69,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
                const EarlierParts& earlier) {
   const Experiment& experiment = simulation.experiment();
   const Totals &start = metrics.initial(), &end = recorder.latest();
-  const bool flat = experiment.dimension == 2;
+  const auto [first, first_spin] = recorded_axes(experiment);
   const double particles = static_cast<double>(simulation.particle_count());
   std::map<std::string, double> seconds_by_pass = earlier.seconds_by_pass;
   for (const auto& [name, seconds] : simulation.seconds_by_pass()) seconds_by_pass[name] += seconds;
@@ -85,16 +85,17 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
   // A ratio of roundings says nothing: spin counts against mass, speed and size of the domain.
   const double size = experiment.grid.upper[0] - experiment.grid.lower[0];
   const double scale_of_spin = start.mass * start.largest_speed * size;
-  json["momentum"]["linear"] = {{"initial", by_axis(start.momentum, 0, experiment.dimension)},
-                                {"final", by_axis(end.momentum, 0, experiment.dimension)}};
-  json["momentum"]["angular"] = {{"initial", by_axis(start.angular_momentum, flat ? 2 : 0, 3)},
-                                 {"final", by_axis(end.angular_momentum, flat ? 2 : 0, 3)}};
-  for (int c = flat ? 2 : 0; c < 3; ++c)
+  json["momentum"]["linear"] = {{"initial", by_axis(start.momentum, first, experiment.dimension)},
+                                {"final", by_axis(end.momentum, first, experiment.dimension)}};
+  if (first_spin < 3)
+    json["momentum"]["angular"] = {{"initial", by_axis(start.angular_momentum, first_spin, 3)},
+                                   {"final", by_axis(end.angular_momentum, first_spin, 3)}};
+  for (int c = first_spin; c < 3; ++c)
     if (std::abs(start.angular_momentum[c]) > 1e-9 * scale_of_spin)
       json["momentum"]["angular"]["final_over_initial"][std::string(1, "xyz"[c])] =
           end.angular_momentum[c] / start.angular_momentum[c];
-  json["centre_of_mass"] = {{"initial", by_axis(start.centre_of_mass, 0, experiment.dimension)},
-                            {"final", by_axis(end.centre_of_mass, 0, experiment.dimension)}};
+  json["centre_of_mass"] = {{"initial", by_axis(start.centre_of_mass, first, experiment.dimension)},
+                            {"final", by_axis(end.centre_of_mass, first, experiment.dimension)}};
   if (simulation.plan().contact) {
     const ContactRecord& contact = simulation.backend().contact_record();
     json["contact"] = {{"largest_force", recorder.largest_contact_force()},

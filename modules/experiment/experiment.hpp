@@ -32,10 +32,14 @@ struct Component {
   double parameter(std::string_view name) const;
 };
 
+/// What the third direction of a 2-D experiment is: out of the plane, or around the axis (x = r >= 0, y the axis).
+enum class Symmetry { plane_strain, axisymmetric };
+
 struct GridSpecification {
   double cell_size = 0;  ///< m, cubic cells
   Vector3 lower{}, upper{};
-  std::array<int, 3> cells{1, 1, 1};  ///< whole cells a side
+  std::array<int, 3> cells{1, 1, 1};           ///< whole cells a side
+  Symmetry symmetry = Symmetry::plane_strain;  ///< of 2-D
 };
 
 enum class ConditionType { free, stick, slip, separate, prescribed, periodic };
@@ -71,6 +75,7 @@ struct BodySpecification {
   std::shared_ptr<const Geometry> geometry;
   int particles_per_cell_axis = 2;
   double jitter = 0;          ///< largest random shift of a particle, in particle spacings
+  bool frozen = false;        ///< particles keep their places and domains; velocity and material state evolve
   VectorExpression velocity;  ///< initial, m/s, function of x, y, z
   std::optional<VectorExpression> initial_displacement_gradient;  ///< unused until a case needs it
   std::string pointer;
@@ -152,6 +157,8 @@ struct Experiment {
   std::vector<Expectation> expectations;
 
   nlohmann::ordered_json resolved;  ///< the file with overrides applied and every default filled: re-runnable
+
+  bool axisymmetric() const { return grid.symmetry == Symmetry::axisymmetric; }
 
   /// "file:line:column" of a JSON pointer's value, for messages that arise after reading.
   std::string where(std::string_view pointer) const;

@@ -161,7 +161,8 @@ class Planner {
 
   void state(int body, const Component& component) {
     for (const mpm_state& field : component.plugin->state())
-      attribute(body, field.name, state_components(static_cast<mpm_state_shape>(field.shape), experiment_.dimension),
+      attribute(body, field.name,
+                state_components(kept_shape(field, experiment_.axisymmetric()), experiment_.dimension),
                 named(component) + ": " + field.doc);
   }
 
@@ -173,6 +174,9 @@ class Planner {
       attribute(body, "velocity", D, specification.pointer + ": every particle");
       plan_.attributes.push_back(
           {body, "identity", 1, 4, specification.pointer + ": results keep the order of seeding"});
+      if (experiment_.axisymmetric())
+        attribute(body, "circumference", 1,
+                  "/grid/symmetry \"axisymmetric\": a particle is a ring of volume and mass times 2 pi r");
       if (plan_.initial_position)
         attribute(body, "initial_position", D,
                   experiment_.exact        ? experiment_.exact->pointer + ": errors are measured at X"

@@ -74,6 +74,8 @@ Experiment ExperimentReader::read() {
   read_solver(fields.node("solver"));
   read_output(fields.node("output"));
   read_compare(fields.node("compare"));
+  check_axisymmetric();
+  check_frozen();
 
   if (!context_.problems.empty()) throw InputError(std::move(context_.problems));
   experiment_.resolved = in_table_order(resolved_, section);

@@ -39,6 +39,7 @@ OrderedJson ExperimentReader::read_body(const Node& node) {
   body.pointer = node.pointer;
   body.particles_per_cell_axis = fields.integer("particles_per_cell_axis");
   body.jitter = fields.number("jitter");
+  body.frozen = fields.boolean("frozen");
   body.velocity = fields.expression("velocity");
   body.material = material_index(fields);
   if (fields.valid("name") && body.name.empty()) problem(fields.place("name"), "a body needs a name");

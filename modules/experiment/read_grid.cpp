@@ -41,6 +41,7 @@ void ExperimentReader::read_grid(const Node* node) {
   if (!node) return;
   const Fields fields(node, grid_section(), context_);
   experiment_.grid.cell_size = fields.number("cell_size");
+  experiment_.grid.symmetry = static_cast<Symmetry>(fields.choice("symmetry"));
   grid_good_ = read_domain(fields);
   OrderedJson& resolved = resolved_["grid"] = fields.resolved;
   resolved["boundaries"] = read_boundaries(fields.node("boundaries"));

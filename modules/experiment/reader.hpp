@@ -51,6 +51,11 @@ class ExperimentReader {
   void read_node_conditions(const Node* node);
   OrderedJson read_node_condition(const Node& node);
 
+  // read_symmetry.cpp
+  void check_axisymmetric();
+  void check_axis();
+  void check_frozen();
+
   // read_bodies.cpp
   void read_bodies(const Node* node);
   OrderedJson read_body(const Node& node);

@@ -44,7 +44,7 @@ Section experiment_section(const ReadOptions& options) {
               parameter("$schema", Type::string, "", "Where an editor finds the schema of this file."),
               parameter("title", Type::string, "", "One line that heads report and figures.").standard(""),
               parameter("description", Type::string, "", "What the experiment shows.").standard(""),
-              parameter("dimension", Type::integer, "", "2 (plane strain, per metre of depth) or 3.")
+              parameter("dimension", Type::integer, "", "2 (plane strain per metre of depth, or axisymmetric) or 3.")
                   .from(2)
                   .to(3)
                   .needed(),
@@ -88,6 +88,10 @@ Section grid_section() {
               parameter("domain", Type::points, "m", "Lower and upper corner; a whole number of cells a side.")
                   .items(2, 2)
                   .needed(),
+              parameter("symmetry", Type::choice, "",
+                        "Of 2-D: plane_strain (per metre of depth), or axisymmetric (x is the radius, y the axis).")
+                  .of({"plane_strain", "axisymmetric"})
+                  .standard("plane_strain"),
               nested("boundaries", "conditions on the faces of the domain", "boundaries"),
           }};
 }
@@ -177,6 +181,9 @@ Section body_section() {
               .from(0)
               .to(0.5)
               .standard(0),
+          parameter("frozen", Type::boolean, "",
+                    "Particles keep their places, and so their weights; velocities and stresses evolve.")
+              .standard(false),
           parameter("field", Type::string, "",
                     "Velocity field, with contact: bodies that name the same one do not slip on each other. "
                     "Default: the body's name."),

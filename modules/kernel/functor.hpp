@@ -43,6 +43,13 @@ struct ContactResult {
   S status;           ///< 0 apart, 1 sticks, 2 slips
 };
 
+/// State of solids that keep F alone, declared as MPM_STATE_PLANE_DEFORMATION: `Gradient` is a Mat, or in axisymmetric
+/// scenes a Deformation.
+template <class Gradient>
+struct ElasticState {
+  Gradient deformation_gradient;
+};
+
 }  // namespace mpm
 
 // Tables of parameters and state stand beside the functor, so that one file holds the method. The device pass skips

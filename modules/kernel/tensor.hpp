@@ -14,6 +14,8 @@ struct Vec {
 
 template <int D, class S>
 struct Mat {
+  using Scalar = S;
+  static constexpr int dimension = D;
   S m[D * D];
   MPM_HD S& operator()(int i, int j) { return m[i * D + j]; }
   MPM_HD const S& operator()(int i, int j) const { return m[i * D + j]; }
@@ -40,19 +42,38 @@ struct Sym {
   }
 };
 
-/// Matrix of three-dimensional space that couples no in-plane axis with z in 2-D (plane strain): there xx xy yx yy and
-/// zz. Laid out as MPM_STATE_DEFORMATION.
+/// Matrix of three-dimensional space that couples no in-plane axis with z in 2-D (plane strain, or axisymmetric with z
+/// around the axis): there xx xy yx yy and zz. Laid out as MPM_STATE_DEFORMATION.
 template <int D, class S>
 struct Deformation;
 template <class S>
 struct Deformation<2, S> {
+  using Scalar = S;
+  static constexpr int dimension = 2;
   Mat<2, S> plane;
   S zz;
+  MPM_HD static Deformation identity() { return {Mat<2, S>::identity(), S(scalar_of<S>(1))}; }
 };
 template <class S>
 struct Deformation<3, S> {
   Mat<3, S> plane;  ///< all of space
 };
+
+/// Whether a matrix of two dimensions holds zz too; without, its zz is that of plane strain.
+template <class Matrix>
+inline constexpr bool has_zz = false;
+template <class S>
+inline constexpr bool has_zz<Deformation<2, S>> = true;
+
+/// The part along the axes of the grid.
+template <int D, class S>
+MPM_HD const Mat<D, S>& in_plane(const Mat<D, S>& a) {
+  return a;
+}
+template <int D, class S>
+MPM_HD const Mat<D, S>& in_plane(const Deformation<D, S>& a) {
+  return a.plane;
+}
 
 template <int D, class S>
 MPM_HD Mat<D, S> operator*(const Mat<D, S>& a, const Mat<D, S>& b) {
@@ -74,6 +95,10 @@ template <class S>
 MPM_HD S determinant(const Mat<3, S>& a) {
   return a(0, 0) * (a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1)) - a(0, 1) * (a(1, 0) * a(2, 2) - a(1, 2) * a(2, 0)) +
          a(0, 2) * (a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0));
+}
+template <class S>
+MPM_HD S determinant(const Deformation<2, S>& a) {
+  return determinant(a.plane) * a.zz;
 }
 
 template <class S>
@@ -119,6 +144,12 @@ MPM_HD Sym<D, S> left_cauchy_green(const Mat<D, S>& F) {
     }
   return b;
 }
+template <class S>
+MPM_HD Sym<2, S> left_cauchy_green(const Deformation<2, S>& F) {
+  Sym<2, S> b = left_cauchy_green(F.plane);
+  b.s[2] = F.zz * F.zz;
+  return b;
+}
 
 /// An upper bound of the largest eigenvalue, tight for axisymmetric tensors: tr/3 + sqrt(2/3) |dev| (Wolkowicz & Styan
 /// 1980).
@@ -134,6 +165,10 @@ MPM_HD Mat<D, S> advanced(const Mat<D, S>& F, const Mat<D, S>& L, scalar_of<S> d
   Mat<D, S> r;
   for (int k = 0; k < D * D; ++k) r.m[k] = F.m[k] + dt * rate.m[k];
   return r;
+}
+template <class S>
+MPM_HD Deformation<2, S> advanced(const Deformation<2, S>& F, const Deformation<2, S>& L, scalar_of<S> dt) {
+  return {advanced(F.plane, L.plane, dt), F.zz + dt * (L.zz * F.zz)};
 }
 
 }  // namespace mpm

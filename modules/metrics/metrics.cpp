@@ -29,6 +29,7 @@ double second_moment(const Experiment& experiment, const BodyState& state, std::
 /// The affine part C of a velocity over the nodes of a particle: m sum w |C d|^2 / 2 and m sum w d x (C d).
 void add_affine(const Experiment& experiment, const BodyState& state, const double* C, std::size_t p, Totals& totals) {
   const int D = experiment.dimension;
+  const double m = state.mass * state.ring(p);
   for (int a = 0; a < D; ++a)
     for (int b = 0; b < D; ++b) {
       const double moment = second_moment(experiment, state, p, a, b);
@@ -38,13 +39,18 @@ void add_affine(const Experiment& experiment, const BodyState& state, const doub
       for (int c = 0; c < D; ++c) column_a[c] = C[c * D + a], column_b[c] = C[c * D + b];
       const auto spin = cross(d, column_b);
       for (int c = 0; c < 3; ++c) {
-        totals.kinetic += 0.5 * state.mass * moment * column_a[c] * column_b[c];
-        totals.angular_momentum[c] += state.mass * moment * spin[c];
+        totals.kinetic += 0.5 * m * moment * column_a[c] * column_b[c];
+        totals.angular_momentum[c] += m * moment * spin[c];
       }
     }
 }
 
 }  // namespace
+
+RecordedAxes recorded_axes(const Experiment& experiment) {
+  if (experiment.axisymmetric()) return {1, 3};
+  return {0, experiment.dimension == 2 ? 2 : 0};
+}
 
 Metrics::Metrics(const Simulation& simulation) : simulation_(simulation) {
   const Experiment& experiment = simulation.experiment();
@@ -78,15 +84,15 @@ void Metrics::add_body(int body, Totals& totals) const {
   const MaterialQuantities material = material_quantities(experiment, body, state);
   const bool affine = experiment.transfer.plugin->transfer().traits & MPM_AFFINE_CARRIES_ENERGY;
   const double* C = affine ? state.transfer_state.at(experiment.transfer.plugin->state()[0].name).data() : nullptr;
-  const double m = state.mass;
   for (std::size_t p = 0; p < state.position.size() / D; ++p) {
+    const double m = state.mass * state.ring(p);
     double x[3] = {}, v[3] = {};
     std::copy_n(&state.position[p * D], D, x);
     std::copy_n(&state.velocity[p * D], D, v);
     const double speed_squared = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     totals.mass += m;
     totals.kinetic += 0.5 * m * speed_squared;
-    totals.strain += state.volume * material.stored_energy[p];
+    totals.strain += state.volume * state.ring(p) * material.stored_energy[p];
     totals.largest_speed = std::max(totals.largest_speed, std::sqrt(speed_squared));
     totals.smallest_volume_ratio = std::min(totals.smallest_volume_ratio, material.volume_ratio[p]);
     totals.largest_volume_ratio = std::max(totals.largest_volume_ratio, material.volume_ratio[p]);
@@ -134,7 +140,7 @@ double Metrics::ledger_residual(const Totals& now) const {
 
 std::vector<std::string> Metrics::columns() const {
   const Experiment& experiment = simulation_.experiment();
-  const bool flat = experiment.dimension == 2;
+  const bool flat = experiment.dimension == 2 && !experiment.axisymmetric();
   const std::string energy = flat ? " (J/m)" : " (J)", momentum = flat ? " (kg/s)" : " (kg m/s)",
                     spin = flat ? " (kg m/s)" : " (kg m²/s)";
   std::vector<std::string> names{"time (s)", "step", "time step (s)"};
@@ -147,13 +153,15 @@ std::vector<std::string> Metrics::columns() const {
     if (simulation_.plan().filter) names.push_back("ledger filter" + energy);
     names.push_back("ledger residual" + energy);
   }
-  for (int c = 0; c < experiment.dimension; ++c) names.push_back(std::string("momentum ") + "xyz"[c] + momentum);
-  for (int c = flat ? 2 : 0; c < 3; ++c) names.push_back(std::string("angular momentum ") + "xyz"[c] + spin);
-  for (int c = 0; c < experiment.dimension; ++c) names.push_back(std::string("centre of mass ") + "xyz"[c] + " (m)");
+  const auto [first, first_spin] = recorded_axes(experiment);
+  for (int c = first; c < experiment.dimension; ++c) names.push_back(std::string("momentum ") + "xyz"[c] + momentum);
+  for (int c = first_spin; c < 3; ++c) names.push_back(std::string("angular momentum ") + "xyz"[c] + spin);
+  for (int c = first; c < experiment.dimension; ++c)
+    names.push_back(std::string("centre of mass ") + "xyz"[c] + " (m)");
   for (const char* name : {"smallest volume ratio", "largest volume ratio", "largest speed (m/s)"})
     names.emplace_back(name);
   if (simulation_.plan().contact) {
-    for (int c = 0; c < experiment.dimension; ++c)
+    for (int c = first; c < experiment.dimension; ++c)
       names.push_back(std::string("contact force ") + "xyz"[c] + (flat ? " (N/m)" : " (N)"));
     for (const char* name : {"contact nodes", "sticking nodes", "slipping nodes", "largest penetration (m)"})
       names.emplace_back(name);
@@ -180,14 +188,14 @@ std::vector<double> Metrics::row(const Totals& t) const {
     if (simulation_.plan().filter) values.push_back(l.filter);
     values.push_back(ledger_residual(t));
   }
-  values.insert(values.end(), t.momentum.begin(), t.momentum.begin() + experiment.dimension);
-  values.insert(values.end(), t.angular_momentum.begin() + (experiment.dimension == 2 ? 2 : 0),
-                t.angular_momentum.end());
-  values.insert(values.end(), t.centre_of_mass.begin(), t.centre_of_mass.begin() + experiment.dimension);
+  const auto [first, first_spin] = recorded_axes(experiment);
+  values.insert(values.end(), t.momentum.begin() + first, t.momentum.begin() + experiment.dimension);
+  values.insert(values.end(), t.angular_momentum.begin() + first_spin, t.angular_momentum.end());
+  values.insert(values.end(), t.centre_of_mass.begin() + first, t.centre_of_mass.begin() + experiment.dimension);
   values.insert(values.end(), {t.smallest_volume_ratio, t.largest_volume_ratio, t.largest_speed});
   if (simulation_.plan().contact) {
     const ContactRecord& c = simulation_.backend().contact_record();
-    values.insert(values.end(), c.force.begin(), c.force.begin() + experiment.dimension);
+    values.insert(values.end(), c.force.begin() + first, c.force.begin() + experiment.dimension);
     values.insert(values.end(), {static_cast<double>(c.nodes), static_cast<double>(c.sticking),
                                  static_cast<double>(c.slipping), c.largest_penetration});
   }

@@ -12,7 +12,7 @@
 
 namespace mpm {
 
-/// In 2-D energies, momenta and forces are per metre of depth.
+/// In plane strain energies, momenta and forces are per metre of depth; in axisymmetric scenes they are of whole rings.
 struct Totals {
   double time = 0, time_step = 0;
   long step = 0;
@@ -28,6 +28,13 @@ struct Totals {
 
   double total_energy() const { return kinetic + strain + gravitational; }
 };
+
+/// First axis of momenta, centre of mass and contact force that mean something, and of angular momenta: over whole
+/// rings radial sums and spin are zero by symmetry, whatever the half-plane's particles add up to.
+struct RecordedAxes {
+  int linear, angular;
+};
+RecordedAxes recorded_axes(const Experiment& experiment);
 
 /// Keeps what measuring needs of the start: the exact solution and each particle's initial velocity.
 class Metrics {

@@ -32,9 +32,9 @@ std::vector<std::string> component_names(std::uint32_t shape, int dimension) {
 }
 
 /// A field of state and the component of it that a name such as "deformation_gradient_xy" means; -1: none.
-int component_of(const std::string& name, const mpm_state& field, int dimension) {
+int component_of(const std::string& name, const mpm_state& field, int dimension, bool axisymmetric = false) {
   if (field.shape == MPM_STATE_SCALAR) return name == field.name ? 0 : -1;
-  const auto suffixes = component_names(field.shape, dimension);
+  const auto suffixes = component_names(kept_shape(field, axisymmetric), dimension);
   for (std::size_t k = 0; k < suffixes.size(); ++k)
     if (name == std::string(field.name) + "_" + suffixes[k]) return static_cast<int>(k);
   return -1;
@@ -45,7 +45,7 @@ constexpr mpm_state velocity_field{"velocity", "m/s", "velocity v", MPM_STATE_VE
 void add_names(const mpm_state& field, std::vector<std::string>& names) {
   std::vector<std::string> added;
   if (field.shape == MPM_STATE_SCALAR) added.emplace_back(field.name);
-  for (const std::string& suffix : component_names(field.shape, 3))
+  for (const std::string& suffix : component_names(kept_shape(field, false), 3))
     added.push_back(std::string(field.name) + "_" + suffix);
   for (const std::string& name : added)
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -77,7 +77,7 @@ MaterialQuantities material_quantities(const Experiment& experiment, int body, c
   std::vector<std::vector<double>> fields;
   std::vector<void*> pointers;
   for (const mpm_state& declared : material.plugin->state()) {
-    const int components = state_components(static_cast<mpm_state_shape>(declared.shape), D);
+    const int components = state_components(kept_shape(declared, experiment.axisymmetric()), D);
     const std::vector<double>& values = state.material_state.at(declared.name);
     std::vector<double>& field = fields.emplace_back(components * stride);
     for (std::size_t p = 0; p < stride; ++p)
@@ -96,6 +96,7 @@ MaterialQuantities material_quantities(const Experiment& experiment, int body, c
   batch.stored_energy = result.stored_energy.data();
   batch.wave_speed = result.wave_speed.data();
   batch.volume_ratio = result.volume_ratio.data();
+  if (experiment.axisymmetric()) batch.velocity_gradient_zz = stress.data();  // given, not read
   material.plugin->material().update[MPM_SCALAR_DOUBLE][D - 2](material.parameters.data(), &batch);
 
   result.stress.resize(n * symmetric);
@@ -165,8 +166,9 @@ std::vector<double> quantity(const Experiment& experiment, int body, const BodyS
   } else {
     const auto take = [&](const Plugin& plugin, const std::map<std::string, std::vector<double>>& fields) {
       for (const mpm_state& field : plugin.state()) {
-        const int component = component_of(name, field, D);
-        const int components = state_components(static_cast<mpm_state_shape>(field.shape), D);
+        const bool axisymmetric = experiment.axisymmetric();
+        const int component = component_of(name, field, D, axisymmetric);
+        const int components = state_components(kept_shape(field, axisymmetric), D);
         for (std::size_t p = 0; component >= 0 && p < n; ++p)
           values[p] = fields.at(field.name)[p * components + component];
       }

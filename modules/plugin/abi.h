@@ -25,7 +25,7 @@ extern "C" {
  * revision. A host takes plugins of its version and of its revision or an older one: it reads an older, shorter table
  * as if the missing fields were zero. */
 #define MPM_ABI_VERSION 1u
-#define MPM_ABI_REVISION 2u
+#define MPM_ABI_REVISION 3u
 #define MPM_BATCH 64u    /* particles or nodes in a full batch */
 #define MPM_LANES 16u    /* counts are padded to a multiple of this */
 #define MPM_BOX_WIDTH 4u /* nodes an axis of mpm_box_batch */
@@ -59,13 +59,15 @@ typedef struct mpm_parameter {
 } mpm_parameter;
 
 /* Components in 2-D / 3-D: scalar 1/1, vector 2/3, matrix 4/9 (row-major), symmetric 4/6 (xx yy zz xy / xx yy zz yz xz
- * xy), deformation 5/9 (a matrix of three-dimensional space in plane strain: xx xy yx yy zz / row-major). */
+ * xy), deformation 5/9 (a matrix of three-dimensional space in plane strain: xx xy yx yy zz / row-major), plane
+ * deformation 4/9 as a matrix, but 5 as a deformation in axisymmetric scenes: zz is 1 in plane strain and not kept. */
 enum mpm_state_shape {
   MPM_STATE_SCALAR = 0,
   MPM_STATE_VECTOR = 1,
   MPM_STATE_MATRIX = 2,
   MPM_STATE_SYMMETRIC = 3,
-  MPM_STATE_DEFORMATION = 4
+  MPM_STATE_DEFORMATION = 4,
+  MPM_STATE_PLANE_DEFORMATION = 5 /* since revision 3 */
 };
 enum mpm_state_initial { MPM_INITIAL_ZERO = 0, MPM_INITIAL_ONE = 1, MPM_INITIAL_IDENTITY = 2 };
 
@@ -249,7 +251,9 @@ typedef struct mpm_contact {
 enum mpm_material_trait {
   MPM_HYPERELASTIC = 1, /* tau = (dpsi/dF) F^T: the conformance suite checks it */
   MPM_OBJECTIVE = 2,    /* tau(QF) = Q tau Q^T */
-  MPM_DISSIPATES = 4    /* dissipated_energy may be positive */
+  MPM_DISSIPATES = 4,   /* dissipated_energy may be positive */
+  /* Since revision 3. 2-D entries read velocity_gradient_zz: the material runs in axisymmetric scenes. */
+  MPM_STRAINS_AROUND_AXIS = 8
 };
 typedef struct mpm_material_batch {
   uint32_t count, stride, dimension, reserved;
@@ -261,6 +265,9 @@ typedef struct mpm_material_batch {
   void* dissipated_energy;       /* [stride] out, J/m^3, of this advance */
   void* wave_speed;              /* [stride] out, m/s, of the fastest tangent wave */
   void* volume_ratio;            /* [stride] out, J = det F */
+  /* Since revision 3. [stride], 1/s: zz of the velocity gradient, v_r / r in axisymmetric scenes (x = r, y the axis, z
+   * around it). Null in plane strain and 3-D and only there: without velocity_gradient its values are not read. */
+  const void* velocity_gradient_zz;
 } mpm_material_batch;
 typedef struct mpm_material {
   uint32_t traits, reserved;

@@ -27,24 +27,27 @@ bool is_finite_strain(const Plugin& plugin) {
   return traits_of(plugin) & (MPM_OBJECTIVE | MPM_HYPERELASTIC);
 }
 
-/// A batch of particles of one material, with all outputs.
+/// A batch of particles of one material, with all outputs; in axisymmetric scenes L has its zz.
 struct MaterialBatch {
   const Plugin& plugin;
   const ParameterSample& parameters;
   Variant variant;
   int count;
-  Array gradient, stress, energy, dissipated, wave, ratio;
+  bool axisymmetric;
+  Array gradient, hoop, stress, energy, dissipated, wave, ratio;
   std::vector<Array> state;
 
-  MaterialBatch(const Plugin& p, const Variant& v, const ParameterSample& sample, int entries = full)
-      : plugin(p), parameters(sample), variant(v), count(entries) {
+  MaterialBatch(const Plugin& p, const Variant& v, const ParameterSample& sample, int entries = full,
+                bool around_axis = false)
+      : plugin(p), parameters(sample), variant(v), count(entries), axisymmetric(around_axis) {
     const Element element = element_of(v);
     const std::uint32_t n = static_cast<std::uint32_t>(entries);
     gradient = Array(element, v.dimension * v.dimension, n);
     stress = Array(element, v.symmetric(), n);
-    for (Array* scalar : {&energy, &dissipated, &wave, &ratio}) *scalar = Array(element, 1, n);
-    for (const mpm_state& field : p.state()) {
-      const auto shape = static_cast<mpm_state_shape>(field.shape);
+    for (Array* scalar : {&hoop, &energy, &dissipated, &wave, &ratio}) *scalar = Array(element, 1, n);
+    for (mpm_state field : p.state()) {
+      const mpm_state_shape shape = kept_shape(field, axisymmetric);
+      field.shape = shape;
       state.emplace_back(element, state_components(shape, v.dimension), n);
       initialise(state.back(), field);
     }
@@ -61,6 +64,7 @@ struct MaterialBatch {
     for (int lane = 0; lane < count; ++lane)
       for (int i = 0; i < D; ++i)
         for (int j = 0; j < D; ++j) gradient.set(i * D + j, lane, increments[lane](i, j) / dt);
+    for (int lane = 0; axisymmetric && lane < count; ++lane) hoop.set(0, lane, increments[lane](2, 2) / dt);
     return update(gradient.data(), dt);
   }
   std::int32_t evaluate() { return update(nullptr, step); }
@@ -79,7 +83,8 @@ struct MaterialBatch {
                                    energy.data(),
                                    dissipated.data(),
                                    wave.data(),
-                                   ratio.data()};
+                                   ratio.data(),
+                                   axisymmetric ? hoop.data() : nullptr};
     return plugin.material().update[variant.precision][variant.dimension - 2](parameters.data(), &batch);
   }
 
@@ -190,7 +195,8 @@ void check_path(const Context& c, const std::vector<Increments>& path) {
 /// Index of the state field that holds F, or -1.
 int deformation_field(const Plugin& plugin) {
   for (std::size_t k = 0; k < plugin.state().size(); ++k)
-    if (std::strcmp(plugin.state()[k].name, "deformation_gradient") == 0 && plugin.state()[k].shape == MPM_STATE_MATRIX)
+    if (std::strcmp(plugin.state()[k].name, "deformation_gradient") == 0 &&
+        kept_shape(plugin.state()[k], false) == MPM_STATE_MATRIX)
       return static_cast<int>(k);
   return -1;
 }
@@ -451,6 +457,28 @@ void check_plane_strain(const Context& c, const std::vector<Increments>& path) {
   c.findings.at_most("plane_strain_scalars", c.variant, scalars, bound, "energy, heat, J: 2-D against 3-D" + c.where);
 }
 
+/// An axisymmetric particle, strained around the axis too, is one of 3-D; where it only evaluates too.
+void check_axisymmetric(const Context& c, std::vector<Increments> path) {
+  const bool strains = traits_of(c.plugin) & MPM_STRAINS_AROUND_AXIS;
+  if (!strains || c.variant.dimension != 2 || !(c.plugin.descriptor->dimensions & MPM_3D)) return;
+  MaterialBatch ring(c.plugin, c.variant, c.parameters, full, true);
+  MaterialBatch space(c.plugin, {c.variant.precision, 3}, c.parameters);
+  Worst stress, scalars;
+  for (Increments& increments : path) {
+    for (int lane = 0; lane < full; ++lane) increments[lane](2, 2) = increments[full - 1 - lane](1, 0);
+    ring.advance(increments);
+    space.advance(increments);
+    compare_batches(ring, space, c.modulus, stress, scalars);
+    for (MaterialBatch* batch : {&ring, &space}) batch->evaluate();
+    compare_batches(ring, space, c.modulus, stress, scalars);
+  }
+  const double bound = 512 * c.variant.epsilon();
+  c.findings.at_most("axisymmetric_stress", c.variant, stress, bound,
+                     "2-D with a velocity_gradient_zz against 3-D, over rho c^2" + c.where);
+  c.findings.at_most("axisymmetric_scalars", c.variant, scalars, bound,
+                     "energy, heat, J: 2-D with a velocity_gradient_zz against 3-D" + c.where);
+}
+
 /// A particle's result must not depend on which particles share its pack, or runs would differ with the order of
 /// particles.
 void check_neighbours(const Context& c, const std::vector<Increments>& path) {
@@ -532,6 +560,8 @@ void check_material(const Plugin& plugin, Findings& findings) {
       check_agreement(c, path);
       findings.running("plane strain", v, c.where);
       check_plane_strain(c, path);
+      findings.running("strain around an axis", v, c.where);
+      check_axisymmetric(c, path);
       findings.running("neighbours", v, c.where);
       check_neighbours(c, path);
       findings.running("batches", v, c.where);

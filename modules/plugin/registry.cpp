@@ -186,7 +186,8 @@ void check_rows(const Tables& tables, const std::filesystem::path& file) {
   }
   for (std::size_t k = 0; k < tables.state.size(); ++k) {
     const mpm_state& s = tables.state[k];
-    if (!s.name || !*s.name || !s.unit || !s.doc || s.shape > MPM_STATE_DEFORMATION || s.initial > MPM_INITIAL_IDENTITY)
+    if (!s.name || !*s.name || !s.unit || !s.doc || s.shape > MPM_STATE_PLANE_DEFORMATION ||
+        s.initial > MPM_INITIAL_IDENTITY)
       incomplete("state field", k);
   }
   if (tables.descriptor.kind == MPM_MATERIAL && !density)
@@ -263,6 +264,7 @@ int state_components(mpm_state_shape shape, int dimension) {
     case MPM_STATE_VECTOR:
       return dimension;
     case MPM_STATE_MATRIX:
+    case MPM_STATE_PLANE_DEFORMATION:
       return dimension * dimension;
     case MPM_STATE_SYMMETRIC:
       return dimension == 2 ? 4 : 6;
@@ -270,6 +272,11 @@ int state_components(mpm_state_shape shape, int dimension) {
       return dimension == 2 ? 5 : 9;
   }
   return 0;
+}
+
+mpm_state_shape kept_shape(const mpm_state& field, bool axisymmetric) {
+  if (field.shape != MPM_STATE_PLANE_DEFORMATION) return static_cast<mpm_state_shape>(field.shape);
+  return axisymmetric ? MPM_STATE_DEFORMATION : MPM_STATE_MATRIX;
 }
 
 void Registry::load(const std::filesystem::path& file) {

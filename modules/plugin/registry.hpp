@@ -42,8 +42,12 @@ std::string_view kind_plural(mpm_kind kind);
 /// All kinds, in the order they are listed.
 std::span<const mpm_kind> all_kinds();
 
-/// Components of one state field in `dimension` (2 or 3).
+/// Components of one state field in `dimension` (2 or 3); a plane deformation has those of plane strain.
 int state_components(mpm_state_shape shape, int dimension);
+
+/// How a field is kept: a plane deformation is a matrix, or in axisymmetric scenes a deformation; others are what they
+/// are.
+mpm_state_shape kept_shape(const mpm_state& field, bool axisymmetric);
 
 class Registry {
  public:

@@ -131,6 +131,17 @@ concept MaterialFunctorIn = requires(const typename F::template Constants<double
 };
 template <class F>
 concept MaterialFunctor = MaterialFunctorIn<F, 2> && MaterialFunctorIn<F, 3>;
+/// The same in axisymmetric scenes: `advance` takes L with its zz, and the state keeps zz where it is not 1.
+template <class F>
+concept AxisymmetricMaterialFunctor = MaterialFunctor<F> &&
+    requires(const typename F::template Constants<double>& c, const Deformation<2, double>& L,
+             typename F::template AxisymmetricState<double>& s) {
+  { F::advance(c, L, 1.0, s) } -> std::convertible_to<double>;
+  { F::kirchhoff_stress(c, s) } -> std::same_as<Sym<2, double>>;
+  { F::stored_energy(c, s) } -> std::convertible_to<double>;
+  { F::wave_speed(c, s) } -> std::convertible_to<double>;
+  { F::volume_ratio(s) } -> std::convertible_to<double>;
+};
 
 // ---- loading and storing components ------------------------------------------------------------------------------
 
@@ -172,7 +183,8 @@ struct StateLayout {
   int field[Count ? Count : 1]{};
   int component[Count ? Count : 1]{};
 };
-constexpr int components_of(std::uint32_t shape, int D) {
+constexpr int components_of(std::uint32_t shape, int D, bool axisymmetric = false) {
+  if (shape == MPM_STATE_PLANE_DEFORMATION) return axisymmetric ? 5 : D * D;
   return shape == MPM_STATE_SCALAR        ? 1
          : shape == MPM_STATE_VECTOR      ? D
          : shape == MPM_STATE_MATRIX      ? D * D
@@ -180,24 +192,25 @@ constexpr int components_of(std::uint32_t shape, int D) {
                                           : (D == 2 ? 4 : 6);
 }
 template <class F, int D>
-constexpr int declared_components() {
+constexpr int declared_components(bool axisymmetric) {
   int total = 0;
-  for (const mpm_state& field : F::state) total += components_of(field.shape, D);
+  for (const mpm_state& field : F::state) total += components_of(field.shape, D, axisymmetric);
   return total;
 }
 template <class F>
 concept HasState = requires {
   F::state[0].shape;
 };
-template <class F, int D, int Count>
+template <class F, int D, int Count, bool Axisymmetric>
 constexpr StateLayout<Count> state_layout() {
   StateLayout<Count> layout;
   if constexpr (HasState<F>) {
-    static_assert(declared_components<F, D>() == Count,
+    static_assert(declared_components<F, D>(Axisymmetric) == Count,
                   "the State struct must hold exactly the declared state fields, in order");
     int k = 0, f = 0;
     for (const mpm_state& field : F::state) {
-      for (int c = 0; c < components_of(field.shape, D); ++c, ++k) layout.field[k] = f, layout.component[k] = c;
+      for (int c = 0; c < components_of(field.shape, D, Axisymmetric); ++c, ++k)
+        layout.field[k] = f, layout.component[k] = c;
       ++f;
     }
   } else {
@@ -206,11 +219,20 @@ constexpr StateLayout<Count> state_layout() {
   return layout;
 }
 
-template <class F, int D, class S>
+/// The functor's State, or its AxisymmetricState.
+template <class F, int D, class S, bool Axisymmetric>
+struct StateOf {
+  using type = typename F::template State<D, S>;
+};
+template <class F, class S>
+struct StateOf<F, 2, S, true> {
+  using type = typename F::template AxisymmetricState<S>;
+};
+template <class F, int D, class S, bool Axisymmetric = false>
 struct StateAccess {
-  using State = typename F::template State<D, S>;
+  using State = typename StateOf<F, D, S, Axisymmetric>::type;
   static constexpr int count = scalars_in<State, S>;
-  static constexpr StateLayout<count> layout = state_layout<F, D, count>();
+  static constexpr StateLayout<count> layout = state_layout<F, D, count, Axisymmetric>();
 
   MPM_HD static State load(const void* const* fields, std::uint32_t stride, std::uint32_t lane) {
     State state{};
@@ -491,26 +513,39 @@ decltype(auto) prepared_of(const State& state) {
     return (state);
 }
 
-template <class F, int D, class S>
-std::int32_t material_batch(const void* parameters, const mpm_material_batch* request) {
-  const mpm_material_batch q = *request;  // its own copy: nothing that is stored changes it
+/// L of one pack, with its zz in axisymmetric scenes.
+template <int D, class S, bool Axisymmetric>
+inline __attribute__((always_inline)) auto velocity_gradient_of(const mpm_material_batch& q, std::uint32_t lane) {
+  Mat<D, S> L;
+  load_components<D * D, S>(q.velocity_gradient, q.stride, lane, L.m);
+  if constexpr (Axisymmetric) {
+    S zz;
+    load_components<1, S>(q.velocity_gradient_zz, q.stride, lane, &zz);
+    return Deformation<2, S>{L, zz};
+  } else {
+    return L;
+  }
+}
+
+template <class F, int D, class S, bool Axisymmetric>
+std::int32_t material_batch_in(const void* parameters, const mpm_material_batch& q) {
   using T = scalar_of<S>;
+  using StateAccess = StateAccess<F, D, S, Axisymmetric>;
   const typename F::template Constants<T> constants(parameters_of<F>(parameters));
   std::int32_t inadmissible = -1;
   const bool outputs = q.kirchhoff_stress || q.stored_energy || q.wave_speed;
   for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
-    auto state = StateAccess<F, D, S>::load(q.state, q.stride, lane);
+    auto state = StateAccess::load(q.state, q.stride, lane);
     const auto store = [&](void* array, S value) {
       if (array) store_components<1, S>(array, q.stride, lane, &value);
     };
     if (q.velocity_gradient) {
-      Mat<D, S> L;
-      load_components<D * D, S>(q.velocity_gradient, q.stride, lane, L.m);
+      const auto L = velocity_gradient_of<D, S, Axisymmetric>(q, lane);
       store(q.dissipated_energy, F::advance(constants, L, real<S>(q.dt), state));
-      StateAccess<F, D, S>::store(q.state, q.stride, lane, state);
+      StateAccess::store(q.state, q.stride, lane, state);
       if (outputs) {  // of the rounded state, to the same bits as a call of their own gives
         __asm__ volatile("" ::: "memory");
-        state = StateAccess<F, D, S>::load(q.state, q.stride, lane);
+        state = StateAccess::load(q.state, q.stride, lane);
       }
     } else {
       store(q.dissipated_energy, S(real<S>(0)));  // no advance, no heat
@@ -526,6 +561,14 @@ std::int32_t material_batch(const void* parameters, const mpm_material_batch* re
     store(q.volume_ratio, J);
   }
   return inadmissible;
+}
+
+template <class F, int D, class S>
+std::int32_t material_batch(const void* parameters, const mpm_material_batch* request) {
+  const mpm_material_batch q = *request;  // its own copy: nothing that is stored changes it
+  if constexpr (D == 2 && AxisymmetricMaterialFunctor<F>)
+    if (q.velocity_gradient_zz) return material_batch_in<F, D, S, true>(parameters, q);
+  return material_batch_in<F, D, S, false>(parameters, q);
 }
 
 // ---- entry tables and descriptors --------------------------------------------------------------------------------
@@ -598,7 +641,9 @@ inline constexpr mpm_transfer transfer_table{F::traits, 0, MPM_ENTRIES(scatter_b
 template <ContactFunctor F>
 inline constexpr mpm_contact contact_table{F::traits, 0, MPM_ENTRIES(contact_batch)};
 template <MaterialFunctor F>
-inline constexpr mpm_material material_table{F::traits, 0, MPM_ENTRIES(material_batch)};
+inline constexpr mpm_material material_table{
+    F::traits | (AxisymmetricMaterialFunctor<F> ? unsigned{MPM_STRAINS_AROUND_AXIS} : 0u), 0,
+    MPM_ENTRIES(material_batch)};
 #undef MPM_ENTRIES
 
 /// The words of a plugin's manual page.

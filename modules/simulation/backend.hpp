@@ -36,7 +36,7 @@ struct SeedArrays {
 /// The particles of one body as seeded: all of one volume and mass. They are made batch by batch when a backend asks,
 /// so that no second copy of a large body is ever held.
 struct SeededBody {
-  double volume = 0;  ///< initial, m^3 (m^2 per metre of depth in 2-D)
+  double volume = 0;  ///< initial, m^3 (m^2 per metre of depth in 2-D, of circumference in axisymmetric scenes)
   double mass = 0;    ///< kg
   std::size_t dimension = 2, particles = 0;
   bool with_gradient = false;  ///< batches carry the gradient of the velocity
@@ -75,7 +75,9 @@ struct BodyState {
   std::vector<double> position, velocity, initial_position;                   ///< m, m/s, m (empty unless planned)
   std::map<std::string, std::vector<double>> transfer_state, material_state;  ///< by declared field name
   // velocity and transfer_state may be empty after a step that is not observed
-  double volume = 0, mass = 0;
+  double volume = 0, mass = 0;        ///< of a particle; in axisymmetric scenes per metre of circumference
+  std::vector<double> circumference;  ///< n, m: 2 pi r as seeded; empty unless axisymmetric
+  double ring(std::size_t p) const { return circumference.empty() ? 1.0 : circumference[p]; }
   std::vector<double> domain;  ///< n*dimension*dimension, m, columns are semi-sides; empty unless Plan::particle_domain
   /// n*dimension*dimension, m^2: second moment of the shape at the particle's position; empty unless
   /// Plan::second_moment.

@@ -29,6 +29,9 @@ inline int grid_padding_of(const mpm_shape& shape) {
   return shape.form == MPM_NODE_LIST ? list_grid_padding : grid_padding;
 }
 
+/// Why a run ends in which a particle comes to r <= 0.
+inline constexpr const char* reached_axis = "reached the axis r = 0, where its ring has no circumference";
+
 /// Sign with which component `component` of a vector is mirrored at a wall normal to `axis`.
 constexpr double mirror_sign(ConditionType type, int axis, int component) {
   if (type == ConditionType::stick || type == ConditionType::prescribed) return -1;

@@ -24,7 +24,7 @@ TEST_CASE("five mistakes are listed at once in the order of the file", "[config]
   text = replaced(text, "\"frames\": 40", "\"frames\": -1");
   CHECK(errors(text) ==
         R"(FILE:6:11: /grid/domain: missing key; expected a list of points, each a list of numbers
-FILE:8:5: /grid/domian: unknown key "domian"; did you mean "domain"? (valid keys: "cell_size", "domain", "boundaries")
+FILE:8:5: /grid/domian: unknown key "domian"; did you mean "domain"? (valid keys: "cell_size", "domain", "symmetry", "boundaries")
 FILE:16:24: /transfer/type: unknown transfer "flop"; did you mean "flip"? (available: "flip", "apic", "slow_double")
 FILE:19:57: /materials/rubber/youngs_modulus: expected a pressure (Pa), got a length (mm)
 FILE:32:81: /solver/end_time: expected a time (s), got the string "soon"

@@ -460,7 +460,8 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
                                      out[2].data(),
                                      out[3].data(),
                                      out[4].data(),
-                                     out[5].data()};
+                                     out[5].data(),
+                                     nullptr};
       plugin.material().update[MPM_SCALAR_DOUBLE][axis](parameters.data(), &batch);
     }
   }

@@ -55,8 +55,10 @@ inline Mix mix_with(const Plugin& plugin, int dimension) {
 }
 
 /// Passes as the reference backend takes them; that one has no float, so it is chosen afterwards.
-inline Experiment device_experiment(const std::string& text, const std::string& precision) {
-  Experiment experiment = experiment_from(text, {set("/backend", "reference"), set("/precision", "double")});
+inline Experiment device_experiment(const std::string& text, const std::string& precision,
+                                    std::vector<std::string> overrides = {}) {
+  for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
+  Experiment experiment = experiment_from(text, overrides);
   if (precision == "float") experiment.precision = Precision::single;
   return experiment;
 }
@@ -98,8 +100,9 @@ class Devices {
 /// A scene on the host-run device.
 class DeviceScene {
  public:
-  DeviceScene(const std::string& text, const std::string& precision, const device::TeamShape& team = {})
-      : experiment(device_experiment(text, precision)),
+  DeviceScene(const std::string& text, const std::string& precision, const device::TeamShape& team = {},
+              const std::vector<std::string>& overrides = {})
+      : experiment(device_experiment(text, precision, overrides)),
         simulation(experiment, [team](const Experiment& e, const Plan& plan, const std::vector<SeededBody>& bodies) {
           return device::make_host_run(e, plan, bodies, Devices::shared().of(device::choice_of(e)), team);
         }) {}
@@ -153,11 +156,13 @@ inline double device_bound(const Mix& mix) {
 inline void check_on_device(const Mix& mix, const std::vector<std::string>& precisions = {"double", "float"}) {
   INFO(mix.name());
   const std::string text = mix.text();
-  Scene reference(text, {set("/backend", "reference"), set("/precision", "double")});
+  std::vector<std::string> overrides = mix.overrides;
+  for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
+  Scene reference(text, overrides);
   while (!reference.simulation.finished()) reference.simulation.step();
   for (const std::string& precision : precisions) {
     INFO(precision);
-    DeviceScene scene(text, precision);
+    DeviceScene scene(text, precision, {}, mix.overrides);
     scene.run();
     REQUIRE(scene.simulation.steps() == reference.simulation.steps());
     const double worst = scene_difference(reference, scene) / epsilon_of(precision);

@@ -45,8 +45,11 @@ TEST_CASE("every plugin compiles to machine code with NVRTC where it is installe
   std::vector<device::Composition> compositions;
   for (const int dimension : {2, 3})
     for (const Precision precision : {Precision::double_, Precision::single})
-      for (const device::Choice& choice : every_plugin_once(dimension, precision))
+      for (device::Choice& choice : every_plugin_once(dimension, precision)) {
         compositions.push_back(device::compose(choice));
+        choice.axisymmetric = true;
+        if (dimension == 2) compositions.push_back(device::compose(choice));
+      }
   REQUIRE(compositions.size() >= 4 * plugins().of_kind(MPM_SHAPE).size());
   std::vector<device::Cubin> cubins(compositions.size());
   std::atomic<std::size_t> next = 0;

@@ -66,7 +66,8 @@ struct Mix {
   std::string shape = R"({"type": "bspline_quadratic"})", transfer = R"({"type": "apic"})", contact, filter;
   std::string material = R"({"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000})";
   std::string boundaries = R"({"all": "slip"})", stress_update = "last", more;
-  bool close = false;  ///< the domain ends where the bodies do, so that they press against its walls
+  std::vector<std::string> overrides;  ///< of the text, for all runs
+  bool close = false;                  ///< the domain ends where the bodies do, so that they press against its walls
 
   std::string name() const {
     return std::to_string(dimension) + "-D " + shape + " " + transfer + " contact " + contact + " filter " + filter +
@@ -196,13 +197,18 @@ inline void check_parity(const Mix& mix) {
       *factor *= 1e3;
   INFO(mix.name());
   const std::string text = mix.text();
-  Scene reference(text, {set("/backend", "reference"), set("/precision", "double")});
+  const auto on = [&](const std::string& backend, const std::string& precision) {
+    std::vector<std::string> all{set("/backend", backend), set("/precision", precision)};
+    all.insert(all.end(), mix.overrides.begin(), mix.overrides.end());
+    return all;
+  };
+  Scene reference(text, on("reference", "double"));
   const Totals end = reference.run();
   for (const std::string precision : {"double", "float"}) {
     INFO(precision);
     const double epsilon =
         precision == "double" ? std::numeric_limits<double>::epsilon() : std::numeric_limits<float>::epsilon();
-    Scene cpu(text, {set("/backend", "cpu"), set("/precision", precision)});
+    Scene cpu(text, on("cpu", precision));
     const Totals found = cpu.run();
     REQUIRE(found.step == end.step);
     compare_states(reference, cpu, epsilon, allowed);

@@ -33,8 +33,8 @@ TEST_CASE("the version is the first word of the library table, and tables are pl
 }
 
 TEST_CASE("components of state fields in 2-D and 3-D") {
-  const int expected[][2] = {{1, 1}, {2, 3}, {4, 9}, {4, 6}, {5, 9}};
-  for (int shape = 0; shape < 5; ++shape)
+  const int expected[][2] = {{1, 1}, {2, 3}, {4, 9}, {4, 6}, {5, 9}, {4, 9}};
+  for (int shape = 0; shape < 6; ++shape)
     for (int dimension : {2, 3})
       CHECK(mpm::state_components(static_cast<mpm_state_shape>(shape), dimension) == expected[shape][dimension - 2]);
 }

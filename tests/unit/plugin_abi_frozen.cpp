@@ -49,6 +49,7 @@ std::string boundary() {
   NUMBER(MPM_STATE_MATRIX);
   NUMBER(MPM_STATE_SYMMETRIC);
   NUMBER(MPM_STATE_DEFORMATION);
+  NUMBER(MPM_STATE_PLANE_DEFORMATION);
   NUMBER(MPM_INITIAL_ZERO);
   NUMBER(MPM_INITIAL_ONE);
   NUMBER(MPM_INITIAL_IDENTITY);
@@ -77,6 +78,7 @@ std::string boundary() {
   NUMBER(MPM_HYPERELASTIC);
   NUMBER(MPM_OBJECTIVE);
   NUMBER(MPM_DISSIPATES);
+  NUMBER(MPM_STRAINS_AROUND_AXIS);
   NUMBER(MPM_2D);
   NUMBER(MPM_3D);
   NUMBER(MPM_NEEDS_HALF_SIZE);
@@ -225,6 +227,7 @@ std::string boundary() {
   FIELD(mpm_material_batch, dissipated_energy);
   FIELD(mpm_material_batch, wave_speed);
   FIELD(mpm_material_batch, volume_ratio);
+  FIELD(mpm_material_batch, velocity_gradient_zz);
   out << "mpm_material, " << sizeof(mpm_material) << " bytes\n";
   FIELD(mpm_material, traits);
   FIELD(mpm_material, reserved);

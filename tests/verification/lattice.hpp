@@ -17,6 +17,8 @@ struct Line {
   double jitter = 0;         ///< largest shift of a particle, cells: couples modes that a perfect lattice keeps apart
   double time_step = 1e-13;  ///< s; with unit cells and unit wave speed, also the Courant number
   double pic_fraction = 0;   ///< of flip
+  double youngs_modulus = 1;
+  bool frozen = false;
 };
 
 /// Wave speed, cell size and density are one. Periodic across the line too: both rows of nodes are one, so that no
@@ -92,10 +94,11 @@ class LineScene {
       "shape": {"type": ")" +
            line.shape + R"("}, "transfer": )" + transfer_of(line) + "," +
            (line.filter.empty() ? "" : "\"filter\": " + line.filter + ",") + R"(
-      "materials": {"m": {"type": "linear_elastic", "youngs_modulus": 1, "poisson_ratio": 0, "density": 1}},
+      "materials": {"m": {"type": "linear_elastic", "youngs_modulus": )" +
+           digits(line.youngs_modulus) + R"(, "poisson_ratio": 0, "density": 1}},
       "bodies": [{"name": "line", "material": "m", "particles_per_cell_axis": )" +
-           std::to_string(line.particles_per_cell) + R"(, "geometry": {"type": "box", "lower": [0, 0], "upper": [)" +
-           length + R"(, 1]}}],
+           std::to_string(line.particles_per_cell) + R"(, "frozen": )" + (line.frozen ? "true" : "false") +
+           R"(, "geometry": {"type": "box", "lower": [0, 0], "upper": [)" + length + R"(, 1]}}],
       "solver": {"stress_update": ")" +
            line.stress_update + R"(", "time_step": )" + digits(line.time_step) +
            R"(, "end_time": 1e9}, "output": {"ledger": false}})";

@@ -1,6 +1,8 @@
 #pragma once
 // The cpu backend: particles in chunks and blocks, a sparse grid, and the passes over both.
 
+#include <numbers>
+
 #include "grid_step.hpp"
 #include "particle_step.hpp"
 
@@ -32,6 +34,7 @@ class CpuBackend final : public Backend {
   void plan_channels();
   std::vector<Body<D, T>> make_bodies(std::vector<SeededBody>& seeds);
   void lay_out_state(Particles<D, T>& particles, const Component& material) const;
+  void measure_circumferences(Particles<D, T>& particles) const;
   std::vector<T> first_values(const Particles<D, T>& particles, const Component& material, T half_size) const;
   void sort_all();
   void sort_when_moved();
@@ -106,6 +109,7 @@ std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<Se
     body.field = experiment.bodies[i].field;
     body.mass = seeds[i].mass;
     body.volume = seeds[i].volume;
+    body.frozen = experiment.bodies[i].frozen;
     body.material = &experiment.materials[experiment.bodies[i].material].component;
     const mpm_material& material = body.material->plugin->material();
     body.update_material = material.update[lane_precision<T>][D - 2];
@@ -117,6 +121,7 @@ std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<Se
     std::fill_n(particles_[i].half_size.data(), D * chunk_size, half);
     const int affine = seeds[i].with_gradient ? particles_[i].transfer_state[0].first : -1;
     seed_particles(particles_[i], seeds[i], scene_.domain, first_values(particles_[i], *body.material, half), affine);
+    measure_circumferences(particles_[i]);
     if (scene_.plan.initial_position) body.initial_position = seeds[i].arrays().position;
     seeds[i] = {};
   }
@@ -127,7 +132,7 @@ template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::lay_out_state(Particles<D, T>& particles, const Component& material) const {
   const auto add = [&](std::vector<StateField>& fields, const Plugin& plugin) {
     for (const mpm_state& field : plugin.state()) {
-      const int components = state_components(static_cast<mpm_state_shape>(field.shape), D);
+      const int components = state_components(kept_shape(field, scene_.axisymmetric), D);
       fields.push_back({field.name, particles.components, components});
       particles.components += components;
     }
@@ -137,6 +142,7 @@ void CpuBackend<D, T, Components>::lay_out_state(Particles<D, T>& particles, con
   add(particles.transfer_state, *scene_.experiment.transfer.plugin);
   particles.motion_components = particles.components - Particles<D, T>::velocity;
   add(particles.material_state, *material.plugin);
+  if (scene_.axisymmetric) particles.circumference = particles.components++;
   if (scene_.plan.kept_advection) {
     particles.advection = particles.components;
     particles.components += D;
@@ -149,6 +155,21 @@ void CpuBackend<D, T, Components>::lay_out_state(Particles<D, T>& particles, con
   particles.components += D * D;
 }
 
+/// 2 pi r of each particle where it was seeded.
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::measure_circumferences(Particles<D, T>& particles) const {
+  if (particles.circumference < 0) return;
+  for (const Block<D>& block : particles.blocks)
+    for_each_chunk(block, [&](std::uint32_t chunk, int count) {
+      const T* const x = particles.chunk(chunk) + Particles<D, T>::position * chunk_size;
+      T* const around = particles.chunk(chunk) + particles.circumference * chunk_size;
+      for (int p = 0; p < padded(count); ++p)
+        around[p] = static_cast<T>(
+            2 * std::numbers::pi *
+            (scene_.domain.lower[0] + scene_.domain.cell_size * cells_from_corner(scene_.domain, block, 0, x[p])));
+    });
+}
+
 /// What each component of a chunk starts as; domains start as half the undeformed particle's box in cells.
 template <int D, class T, class Components>
 std::vector<T> CpuBackend<D, T, Components>::first_values(const Particles<D, T>& particles, const Component& material,
@@ -156,7 +177,8 @@ std::vector<T> CpuBackend<D, T, Components>::first_values(const Particles<D, T>&
   std::vector<T> values(particles.components, T(0));
   const auto set = [&](const StateField& field, const mpm_state& declared) {
     const bool symmetric = declared.shape == MPM_STATE_SYMMETRIC;
-    const bool plane_strain = declared.shape == MPM_STATE_DEFORMATION && D == 2;  // xx xy yx yy zz
+    const mpm_state_shape shape = kept_shape(declared, scene_.axisymmetric);
+    const bool plane_strain = shape == MPM_STATE_DEFORMATION && D == 2;  // xx xy yx yy zz
     for (int c = 0; c < field.components; ++c) {
       const bool diagonal = symmetric ? c < 3 : plane_strain ? c == 0 || c >= 3 : c % (D + 1) == 0;
       const bool one = declared.initial == MPM_INITIAL_ONE || (declared.initial == MPM_INITIAL_IDENTITY && diagonal);
@@ -345,6 +367,7 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
     if (motion_kept_) state.transfer_state[field.name] = copy(field.first, field.components);
   for (const StateField& field : particles.material_state)
     state.material_state[field.name] = copy(field.first, field.components);
+  if (particles.circumference >= 0) state.circumference = copy(particles.circumference, 1);
   if (particles.domain >= 0) state.domain = copy(particles.domain, D * D);
   for (double& side : state.domain) side *= scene_.domain.cell_size;
   if (scene_.plan.second_moment) state.second_moment = particle_step_->second_moments(index);

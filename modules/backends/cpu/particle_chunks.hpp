@@ -314,6 +314,7 @@ void ParticleStep<D, T, Components>::update_material(const Chunk& chunk, mpm_mat
   request.stride = chunk_size;
   request.dimension = D;
   request.state = state.fields;
+  if (scene_.axisymmetric && !request.velocity_gradient) request.velocity_gradient_zz = chunk.values;  // not read
   if (Components::update_material(chunk.body, request) >= 0) note_inverted(chunk);
 }
 
@@ -328,6 +329,7 @@ void ParticleStep<D, T, Components>::note_inverted(const Chunk& chunk) {
   request.dimension = D;
   request.state = state.fields;
   request.volume_ratio = ratio;
+  if (scene_.axisymmetric) request.velocity_gradient_zz = chunk.values;  // not read
   Components::update_material(chunk.body, request);
   const std::lock_guard lock(mutex_);
   for (int p = 0; p < chunk.count; ++p)
@@ -375,11 +377,15 @@ double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const 
   const auto load = [](const T* first, int component, int p) { return L::load(first + component * chunk_size + p); };
   const auto energy_with = [&](auto&& affine_squares) {
     const T* const v = chunk.motion;
-    const double sum = sum_of_particles<T>(chunk.count, [&](int p) {
+    const auto squares_of = [&](int p) {
       L squares = affine_squares(p);
       for (int c = 0; c < D; ++c) squares = squares + load(v, c, p) * load(v, c, p);
       return squares;
-    });
+    };
+    const T* const around = circumferences(chunk);
+    const double sum =
+        around ? sum_of_particles<T>(chunk.count, [&](int p) { return squares_of(p) * L::load(around + p); })
+               : sum_of_particles<T>(chunk.count, squares_of);
     return 0.5 * chunk.body.mass * sum;
   };
   if (!scene_.has(MPM_AFFINE_CARRIES_ENERGY)) return energy_with([](int) { return L(T(0)); });

@@ -323,7 +323,7 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
                                   work.advection,
                                   moments_for_transfer(chunk, work)};
   Components::gather(scene_, gathered);
-  std::fill(work.mass, work.mass + chunk.end, static_cast<T>(chunk.body.mass));
+  fill_masses(chunk, work);
   const bool affine = scene_.has(MPM_SCATTERS_AFFINE);
   const mpm_scatter_batch scattered{
       n, chunk_size, D, 0, work.mass, velocity, state.fields, work.b, affine ? work.A : nullptr};
@@ -341,12 +341,22 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   request.dt = pass.strain_share * dt;
   const T* const velocity_gradient = scene_.has(MPM_STRAIN_BY_AFFINE) ? work.affine : work.gradient_of_velocity;
   request.velocity_gradient = velocity_gradient;
+  if (scene_.axisymmetric) {  // b is free between gather and scatter
+    for (int p = 0; p < chunk.end; p += Lanes<T>::width)
+      (Lanes<T>::load(work.velocity + p) / radius(chunk, p)).store(work.b + p);
+    request.velocity_gradient_zz = work.b;
+  }
   if (dissipation) request.dissipated_energy = work.scalar;
   if (evaluates_for_scatter(pass)) want_of_material(pass, work, request);
   update_material(chunk, request);
-  if (chunk.particles.domain >= 0) advance_domain(chunk, velocity_gradient, request.dt, pass.strains_again);
+  if (chunk.particles.domain >= 0 && !chunk.body.frozen)
+    advance_domain(chunk, velocity_gradient, request.dt, pass.strains_again);
   if (!dissipation) return;
-  const auto energies = [&](int p) { return Lanes<T>::load(work.scalar + p); };
+  const T* const around = circumferences(chunk);
+  const auto energies = [&](int p) {
+    const Lanes<T> energy = Lanes<T>::load(work.scalar + p);
+    return around ? energy * Lanes<T>::load(around + p) : energy;
+  };
   chunk.block.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
 }
 
@@ -382,17 +392,25 @@ double ParticleStep<D, T, Components>::margin(int axis, int side) const {
   return 1e-9 * scene_.domain.cells[axis] + 8 * static_cast<double>(std::numeric_limits<T>::epsilon());
 }
 
+/// The least position that is beyond the axis, in cells from the block's first node; only along the radius.
+template <int D, class T, class Components>
+T ParticleStep<D, T, Components>::least_place(const Block<D>& block, int axis) const {
+  if (!scene_.axisymmetric || axis != 0) return std::numeric_limits<T>::lowest();
+  const T to_axis = cells_from_axis(scene_, block);
+  return to_axis == T(0) ? std::numeric_limits<T>::min() : std::nextafter(-to_axis, std::numeric_limits<T>::max());
+}
+
 /// x += dt times the advection velocity; returns the largest displacement in cells.
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, const T* advection, double dt) {
   using L = Lanes<T>;
-  const T scale = static_cast<T>(dt / scene_.domain.cell_size);
+  const T scale = chunk.body.frozen ? T(0) : static_cast<T>(dt / scene_.domain.cell_size);
   L largest(T(0)), outside(T(0));
   for (int axis = 0; axis < D; ++axis) {
     T low = -std::numeric_limits<T>::max(), high = std::numeric_limits<T>::max();
     if (!scene_.domain.periodic(axis)) {
       const double origin = chunk.block.at[axis] * block_side<D>;
-      low = static_cast<T>(-margin(axis, 0) - origin);
+      low = std::max(static_cast<T>(-margin(axis, 0) - origin), least_place(chunk.block, axis));
       high = static_cast<T>(scene_.domain.cells[axis] + margin(axis, 1) - origin);
     }
     T* const x = chunk.at(Particles<D, T>::position + axis);
@@ -418,6 +436,10 @@ void ParticleStep<D, T, Components>::note_outside(const Chunk& chunk) {
       if (!std::isfinite(x)) {
         failure_.note(1, chunk.body.index, chunk.ids[p], "not a number: its position is no longer finite");
         break;
+      }
+      if (chunk.at(Particles<D, T>::position + axis)[p] < least_place(chunk.block, axis)) {
+        failure_.note(1, chunk.body.index, chunk.ids[p], reached_axis);
+        continue;
       }
       if (scene_.domain.periodic(axis) || (from_corner >= -margin(axis, 0) && from_corner <= cells + margin(axis, 1)))
         continue;

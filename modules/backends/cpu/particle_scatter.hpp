@@ -2,6 +2,8 @@
 // ParticleStep: particles to grid. Coefficients of a chunk are made as component arrays, then as quads for the tile
 // kernels: what a node gets is w (b + A d) + S grad w, d = node - particle.
 
+#include <numbers>
+
 #include "particle_boxes.hpp"
 #include "particle_lists.hpp"
 
@@ -88,10 +90,12 @@ template <int D, class T, class Components>
     update_material(chunk, request);
     work.clock.lap(Phase::material);
   }
+  if (scene_.axisymmetric && pass.force) weigh_stress(chunk, work);
   if (pass.momentum) {
     momentum_coefficients(chunk, work);
     if (merged) {
       stress_coefficients(chunk, work, step.dt, scene_.has(MPM_SCATTERS_AFFINE));
+      if (scene_.axisymmetric) add_hoop_force(chunk, work, step.dt);
       if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, true, step.dt);
     }
     const bool affine = scene_.has(MPM_SCATTERS_AFFINE) || (merged && scene_.stress_by_affine);
@@ -105,9 +109,55 @@ template <int D, class T, class Components>
   return true;
 }
 
+/// Of each particle as seeded; null in plane strain and 3-D.
+template <int D, class T, class Components>
+const T* ParticleStep<D, T, Components>::circumferences(const Chunk& chunk) const {
+  return chunk.particles.circumference < 0 ? nullptr : chunk.at(chunk.particles.circumference);
+}
+
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::fill_masses(const Chunk& chunk, Work& work) const {
+  const T mass = static_cast<T>(chunk.body.mass);
+  std::fill(work.mass, work.mass + chunk.end, mass);
+  if (const T* const around = circumferences(chunk))
+    for (int p = 0; p < chunk.end; ++p) work.mass[p] = mass * around[p];
+}
+
+/// Of a block's first node, which positions count from.
+template <int D, class T, class Components>
+T ParticleStep<D, T, Components>::cells_from_axis(const Scene<D, T>& scene, const Block<D>& block) {
+  return static_cast<T>(block.at[0] * block_side<D> + scene.domain.lower[0] / scene.domain.cell_size);
+}
+
+/// Distance of a pack of particles from the axis, m.
+template <int D, class T, class Components>
+Lanes<T> ParticleStep<D, T, Components>::radius(const Chunk& chunk, int p) const {
+  const Lanes<T> x = Lanes<T>::load(chunk.at(Particles<D, T>::position) + p);
+  return static_cast<T>(scene_.domain.cell_size) * (x + Lanes<T>(cells_from_axis(scene_, chunk.block)));
+}
+
+/// Times the circumference, so that forces are those of rings.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::weigh_stress(const Chunk& chunk, Work& work) const {
+  const T* const around = circumferences(chunk);
+  for (int k = 0; k < Sym<D, T>::size; ++k)
+    for (int p = 0; p < chunk.end; ++p) work.stress[k * chunk_size + p] *= around[p];
+}
+
+/// b += -factor V0 tau_zz / r along the radius; the stress has been weighed.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::add_hoop_force(const Chunk& chunk, Work& work, double factor) const {
+  using L = Lanes<T>;
+  const T scale = static_cast<T>(-factor * chunk.body.volume);
+  for (int p = 0; p < chunk.end; p += L::width) {
+    const L tau = L::load(work.stress + 2 * chunk_size + p);
+    (L::load(work.b + p) + scale * tau / radius(chunk, p)).store(work.b + p);
+  }
+}
+
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::momentum_coefficients(const Chunk& chunk, Work& work) {
-  std::fill(work.mass, work.mass + chunk.end, static_cast<T>(chunk.body.mass));
+  fill_masses(chunk, work);
   const States state = transfer_states(chunk);
   const mpm_scatter_batch batch{static_cast<std::uint32_t>(chunk.end),
                                 chunk_size,
@@ -211,7 +261,11 @@ void ParticleStep<D, T, Components>::add_to_tile(const Chunk& chunk, Work& work,
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_stress(const Chunk& chunk, Work& work) {
   stress_coefficients(chunk, work, 1.0, false);
-  add_to_tile(chunk, work, force, nullptr, false, scene_.stress_by_affine, !scene_.stress_by_affine);
+  if (scene_.axisymmetric) {
+    std::fill(work.b, work.b + D * chunk_size, T(0));
+    add_hoop_force(chunk, work, 1.0);
+  }
+  add_to_tile(chunk, work, force, nullptr, scene_.axisymmetric, scene_.stress_by_affine, !scene_.stress_by_affine);
 }
 
 /// m b(x, X, t): into its own channel, or times dt onto the momentum's b.
@@ -221,6 +275,7 @@ void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work
   const VectorExpression& expression = *scene_.experiment.body_force;
   if (!merged) std::fill(work.b, work.b + D * chunk_size, T(0));
   const double factor = chunk.body.mass * (merged ? dt : 1.0);
+  const T* const around = circumferences(chunk);
   const T* const position = chunk.at(Particles<D, T>::position);
   for (int p = 0; p < chunk.count; ++p) {
     Vector3 x{}, X{};
@@ -231,22 +286,32 @@ void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work
           chunk.body.initial_position.empty() ? x[a] : chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
     }
     const Vector3 f = expression(x, X, time);
-    for (int c = 0; c < D; ++c) work.b[c * chunk_size + p] += static_cast<T>(factor * f[c]);
+    for (int c = 0; c < D; ++c)
+      work.b[c * chunk_size + p] += static_cast<T>(factor * (around ? around[p] : T(1)) * f[c]);
   }
   if (!merged) add_to_tile(chunk, work, body_force, nullptr, true, false, false);
 }
 
-/// V grad w with w V beside it, and w m (x_p - x_node), V = J V0.
+/// V grad w with w V beside it, and w m (x_p - x_node), V = J V0. Of a ring the gradient is that of its section, as its
+/// volume grows away from the axis.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, Work& work) {
-  const T volume = static_cast<T>(chunk.body.volume), mass = static_cast<T>(chunk.body.mass);
+  const T volume = static_cast<T>(chunk.body.volume);
+  fill_masses(chunk, work);
   for (int p = 0; p < chunk.end; ++p) work.scalar[p] = volume * work.volume_ratio[p];
   std::fill(work.S, work.S + D * D * chunk_size, T(0));
   std::fill(work.A, work.A + D * D * chunk_size, T(0));
   for (int c = 0; c < D; ++c)
     for (int p = 0; p < chunk.end; ++p) {
       work.S[(c * D + c) * chunk_size + p] = work.scalar[p];
-      work.A[(c * D + c) * chunk_size + p] = -mass;
+      work.A[(c * D + c) * chunk_size + p] = -work.mass[p];
+    }
+  if (const T* const around = circumferences(chunk))
+    for (int p = 0; p < chunk.end; p += Lanes<T>::width) {
+      const Lanes<T> ring = Lanes<T>::load(work.scalar + p) * Lanes<T>::load(around + p);
+      const Lanes<T> section = ring / (static_cast<T>(2 * std::numbers::pi) * radius(chunk, p));
+      ring.store(work.scalar + p);
+      for (int c = 0; c < D; ++c) section.store(work.S + (c * D + c) * chunk_size + p);
     }
   add_to_tile(chunk, work, volume_gradient, work.scalar, false, false, true);
   add_to_tile(chunk, work, mass_position, nullptr, false, true, false);

@@ -119,7 +119,8 @@ struct Failure {
 template <int D, class T>
 struct Body {
   int index = 0, field = 0;
-  double mass = 0, volume = 0;
+  double mass = 0, volume = 0;  ///< of a particle; in axisymmetric scenes per metre of circumference
+  bool frozen = false;          ///< particles and domains stay as they are
   const Component* material = nullptr;
   std::int32_t (*update_material)(const void*, const mpm_material_batch*) = nullptr;
   bool dissipates = false;
@@ -261,6 +262,12 @@ class ParticleStep {
   void want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const;
   template <class Visit>
   void scatter_far(int body, Visit&& visit);
+  void fill_masses(const Chunk& chunk, Work& work) const;
+  const T* circumferences(const Chunk& chunk) const;
+  static T cells_from_axis(const Scene<D, T>& scene, const Block<D>& block);
+  Lanes<T> radius(const Chunk& chunk, int p) const;
+  void weigh_stress(const Chunk& chunk, Work& work) const;
+  void add_hoop_force(const Chunk& chunk, Work& work, double factor) const;
   void momentum_coefficients(const Chunk& chunk, Work& work);
   void stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add);
   void add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last, bool constant, bool affine,
@@ -294,6 +301,7 @@ class ParticleStep {
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
   double advance_position(const Chunk& chunk, const T* advection, double dt);
   double margin(int axis, int side) const;
+  T least_place(const Block<D>& block, int axis) const;
   void note_outside(const Chunk& chunk);
 
   const Scene<D, T>& scene_;

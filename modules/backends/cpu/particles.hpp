@@ -57,9 +57,10 @@ template <int D, class T>
 struct Particles {
   // components of a chunk
   static constexpr int position = 0, velocity = D;
-  int advection = -1;    ///< kept for the move pass of MUSL
-  int domain = -1;       ///< semi-side vectors in cells, row-major, columns are vectors
-  int next_domain = -1;  ///< where a step strains before its last use of the weights (Plan::strained_domain)
+  int advection = -1;      ///< kept for the move pass of MUSL
+  int domain = -1;         ///< semi-side vectors in cells, row-major, columns are vectors
+  int next_domain = -1;    ///< where a step strains before its last use of the weights (Plan::strained_domain)
+  int circumference = -1;  ///< m, 2 pi r as seeded, which mass and volume of the body are times; axisymmetric only
   int components = 2 * D;
   int motion_components = D;  ///< from `velocity` on: it and the transfer's state
   AlignedArray<T> half_size;  ///< [D][chunk_size] cells, of shapes that read it

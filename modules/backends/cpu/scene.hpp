@@ -53,6 +53,7 @@ struct Scene {
       evaluate_shape = shape.evaluate[lane_precision<T>];
     }
     padding = grid_padding_of(shape);
+    axisymmetric = D == 2 && e.axisymmetric();
     shape_parameters = e.shape.parameters.data();
     half_size = e.shape.plugin->descriptor->needs & MPM_NEEDS_HALF_SIZE;
     moment_is_gradient = shape.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
@@ -77,6 +78,7 @@ struct Scene {
   const Plan& plan;
   int threads = 1;
   Domain domain;
+  bool axisymmetric = false;  ///< x is the radius
 
   int width = 3;  ///< nodes an axis of a stencil, which make the tile of a block
   void (*evaluate_shape)(const void*, const mpm_shape_batch*) = nullptr;

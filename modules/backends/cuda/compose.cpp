@@ -114,6 +114,7 @@ std::string scene_text(const Choice& choice) {
   out.precision(17);
   out << "#line 1 \"scene\"\nnamespace mpm::device {\nstruct Scene {\n"
       << "  static constexpr int dimension = " << choice.dimension << ";\n"
+      << "  static constexpr bool axisymmetric = " << yes(choice.axisymmetric) << ";\n"
       << "  using Scalar = " << (choice.precision == Precision::single ? "float" : "double") << ";\n"
       << "  using Shape = " << type(choice.shape) << ";\n  using Transfer = " << type(choice.transfer) << ";\n";
   if (choice.filter) out << "  using Filter = " << type(choice.filter) << ";\n";
@@ -169,7 +170,8 @@ std::vector<std::string> entry_names(const Choice& choice) {
 }  // namespace
 
 std::string Choice::name() const {
-  std::string text = std::to_string(dimension) + "-D " + (precision == Precision::single ? "float" : "double") + ":";
+  std::string text = std::to_string(dimension) + "-D " + (axisymmetric ? "axisymmetric " : "") +
+                     (precision == Precision::single ? "float" : "double") + ":";
   std::vector<const Plugin*> plugins{shape, transfer, filter, contact};
   plugins.insert(plugins.end(), materials.begin(), materials.end());
   for (const Plugin* plugin : plugins)
@@ -181,6 +183,7 @@ Choice choice_of(const Experiment& experiment) {
   Choice choice;
   choice.dimension = experiment.dimension;
   choice.precision = experiment.precision;
+  choice.axisymmetric = experiment.axisymmetric();
   choice.shape = experiment.shape.plugin;
   choice.transfer = experiment.transfer.plugin;
   if (experiment.filter) choice.filter = experiment.filter->plugin;

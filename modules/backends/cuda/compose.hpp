@@ -15,6 +15,7 @@ namespace mpm::device {
 struct Choice {
   int dimension = 2;
   Precision precision = Precision::double_;
+  bool axisymmetric = false;
   const Plugin* shape = nullptr;
   const Plugin* transfer = nullptr;
   const Plugin* filter = nullptr;

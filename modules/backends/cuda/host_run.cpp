@@ -5,6 +5,7 @@
 #include <climits>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "backends/cuda/kernels/filter.hpp"  // largest_team
 #include "simulation/boundary.hpp"
@@ -14,25 +15,28 @@ namespace mpm::device {
 namespace {
 
 /// Whether component k of a declared field is one at the start.
-bool starts_as_one(const mpm_state& field, int k, int dimension) {
+bool starts_as_one(const mpm_state& field, int k, int dimension, bool axisymmetric) {
   if (field.initial == MPM_INITIAL_ZERO) return false;
   if (field.initial == MPM_INITIAL_ONE) return true;
   if (field.shape == MPM_STATE_SYMMETRIC) return k < 3;
-  return k % (dimension + 1) == 0 || (field.shape == MPM_STATE_DEFORMATION && k == dimension * dimension);
+  const bool deformation = kept_shape(field, axisymmetric) == MPM_STATE_DEFORMATION;
+  return k % (dimension + 1) == 0 || (deformation && k == dimension * dimension);
 }
 
 template <class T>
 struct Body {
   const Component *transfer, *material;
   int field = 0, material_number = 0, count = 0, dimension = 2;
+  bool axisymmetric = false, frozen = false;
   T mass = 0, volume = 0, half_size = 0;
   std::vector<T> position, velocity, advection, domain, stencil_domain, transfer_state, material_state, stress,
-      volume_ratio, velocity_gradient, wave_speed;
+      volume_ratio, velocity_gradient, wave_speed, circumference, hoop_rate;
   std::vector<int> block_cell, block_begin, order;
 
   Body(const Experiment& experiment, const Plan& plan, int index, const SeededBody& seeded)
-      : transfer(&experiment.transfer), dimension(experiment.dimension) {
+      : transfer(&experiment.transfer), dimension(experiment.dimension), axisymmetric(experiment.axisymmetric()) {
     const BodySpecification& body = experiment.bodies[index];
+    frozen = body.frozen;
     material = &experiment.materials[body.material].component;
     const int D = dimension;
     field = body.field, material_number = body.material, count = static_cast<int>(seeded.count());
@@ -51,6 +55,10 @@ struct Body {
     }
     stress.resize(static_cast<std::size_t>(D == 2 ? 4 : 6) * count), volume_ratio.resize(count);
     velocity_gradient.resize(static_cast<std::size_t>(D) * D * count), wave_speed.resize(count);
+    if (!axisymmetric) return;
+    hoop_rate.resize(count), circumference.resize(count);
+    for (int p = 0; p < count; ++p)
+      circumference[p] = static_cast<T>(2 * std::numbers::pi * seeds.position[static_cast<std::size_t>(p) * D]);
   }
 
   /// [particle][component] to [component][particle].
@@ -69,15 +77,15 @@ struct Body {
   std::vector<T> initial_state(const Plugin& plugin) const {
     std::vector<T> state;
     for (const mpm_state& declared : plugin.state())
-      for (int k = 0; k < state_components(static_cast<mpm_state_shape>(declared.shape), dimension); ++k)
-        state.insert(state.end(), count, starts_as_one(declared, k, dimension) ? T(1) : T(0));
+      for (int k = 0; k < state_components(kept_shape(declared, axisymmetric), dimension); ++k)
+        state.insert(state.end(), count, starts_as_one(declared, k, dimension, axisymmetric) ? T(1) : T(0));
     return state;
   }
   std::map<std::string, std::vector<double>> fields(const std::vector<T>& state, const Plugin& plugin) const {
     std::map<std::string, std::vector<double>> result;
     const T* at = state.data();
     for (const mpm_state& declared : plugin.state()) {
-      const int components = state_components(static_cast<mpm_state_shape>(declared.shape), dimension);
+      const int components = state_components(kept_shape(declared, axisymmetric), dimension);
       result[declared.name] = particle_major(at, components);
       at += static_cast<long>(components) * count;
     }
@@ -100,7 +108,10 @@ struct Body {
             stress.data(),
             volume_ratio.data(),
             velocity_gradient.data(),
-            wave_speed.data()};
+            wave_speed.data(),
+            axisymmetric ? circumference.data() : nullptr,
+            axisymmetric ? hoop_rate.data() : nullptr,
+            frozen ? 1 : 0};
   }
 
   /// Particles into blocks of cells, blocks in order of their cells. A position that is no number goes to block 0,
@@ -239,6 +250,7 @@ class HostRun final : public Backend {
     state.transfer_state = body.fields(body.transfer_state, *body.transfer->plugin);
     state.material_state = body.fields(body.material_state, *body.material->plugin);
     state.mass = body.mass, state.volume = body.volume;
+    if (body.axisymmetric) state.circumference = body.particle_major(body.circumference.data(), 1);
     if (!body.domain.empty()) state.domain = body.particle_major(body.domain.data(), D * D, experiment_.grid.cell_size);
     return state;
   }

@@ -1,6 +1,7 @@
 #include "backends/reference/particles.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace mpm::reference {
 
@@ -16,6 +17,7 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
       padded_((count_ + MPM_LANES - 1) / MPM_LANES * MPM_LANES),
       mass_(seeded.mass),
       volume_(seeded.volume),
+      frozen_(experiment.bodies[body].frozen),
       shape_(experiment, plan) {
   const int D = dimension_;
   position = make(D), velocity = make(D), advection = make(D);
@@ -27,6 +29,7 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
     }
   pad(position), pad(velocity);
   if (plan.initial_position) initial_position = position;
+  if (experiment.axisymmetric()) circumference_ = 2 * std::numbers::pi * position.topRows(1), hoop_rate_ = make(1);
   b = make(D), A = make(D * D), stress = make(D == 2 ? 4 : 6), volume_ratio = make(1);
   gathered_velocity = make(D), gathered_increment = make(D), gathered_affine = make(D * D),
   gathered_gradient = make(D * D), velocity_gradient = make(D * D);
@@ -51,13 +54,14 @@ Array Particles::make(int components) const {
 
 void Particles::initialise(Fields& fields, const Plugin& plugin) {
   for (const mpm_state& declared : plugin.state()) {
-    const int components = state_components(static_cast<mpm_state_shape>(declared.shape), dimension_);
+    const mpm_state_shape shape = kept_shape(declared, experiment_.axisymmetric());
+    const int components = state_components(shape, dimension_);
     Array& field = fields[declared.name] = make(components);
     if (declared.initial == MPM_INITIAL_ONE) field.setOnes();
     if (declared.initial == MPM_INITIAL_IDENTITY)
       for (int i = 0; i < (declared.shape == MPM_STATE_SYMMETRIC ? 3 : dimension_); ++i)
         field.row(declared.shape == MPM_STATE_SYMMETRIC ? i : i * (dimension_ + 1)).setOnes();
-    const bool plane_strain = declared.shape == MPM_STATE_DEFORMATION && dimension_ == 2;  // xx xy yx yy zz
+    const bool plane_strain = shape == MPM_STATE_DEFORMATION && dimension_ == 2;  // xx xy yx yy zz
     if (declared.initial == MPM_INITIAL_IDENTITY && plane_strain) field.row(4).setOnes();
   }
 }
@@ -70,9 +74,9 @@ std::vector<void*> Particles::pointers(Fields& fields, const Plugin& plugin) {
 
 std::uint64_t Particles::bytes() const {
   Eigen::Index scalars = 0;
-  for (const Array* array :
-       {&position, &velocity, &initial_position, &advection, &b, &A, &stress, &volume_ratio, &gathered_velocity,
-        &gathered_increment, &gathered_affine, &gathered_gradient, &velocity_gradient, &domain_})
+  for (const Array* array : {&position, &velocity, &initial_position, &advection, &b, &A, &stress, &volume_ratio,
+                             &gathered_velocity, &gathered_increment, &gathered_affine, &gathered_gradient,
+                             &velocity_gradient, &domain_, &circumference_, &hoop_rate_})
     scalars += array->size();
   for (const auto* fields : {&transfer_state_, &material_state_})
     for (const auto& [name, array] : *fields) scalars += array.size();
@@ -97,6 +101,11 @@ Matrix Particles::symmetric(const Array& array, std::size_t p) const {
   for (int i = 0; i < dimension_; ++i)
     for (int j = 0; j < dimension_; ++j) m(i, j) = array(i == j ? i : (dimension_ == 2 ? 3 : 6 - i - j), p);
   return m;
+}
+
+Vector Particles::hoop_force(std::size_t p) const {
+  if (!axisymmetric()) return Vector::Zero();
+  return {-volume(p) * stress(2, p) / position(0, p), 0, 0};
 }
 
 void Particles::set(Array& array, std::size_t p, const Vector& v) {
@@ -134,6 +143,7 @@ void Particles::call_scatter(const Array& velocities, Fields& states) {
   const mpm_transfer& transfer = transfer_.plugin->transfer();
   Array mass = make(1);
   mass.setConstant(mass_);
+  if (axisymmetric()) mass = mass_ * circumference_;
   const auto state = pointers(states, *transfer_.plugin);
   const auto n = static_cast<std::uint32_t>(padded_);
   const mpm_scatter_batch batch{n,
@@ -166,6 +176,7 @@ std::int32_t Particles::update_material(const mpm_material_batch& request) {
   batch.count = batch.stride = static_cast<std::uint32_t>(padded_);
   batch.dimension = static_cast<std::uint32_t>(dimension_);
   batch.state = state.data();
+  if (axisymmetric()) batch.velocity_gradient_zz = hoop_rate_.data();
   return material_.plugin->material().update[MPM_SCALAR_DOUBLE][dimension_ - 2](material_.parameters.data(), &batch);
 }
 
@@ -187,15 +198,17 @@ void Particles::evaluate_stress() {
 
 double Particles::strain(double dt) {
   pad(velocity_gradient);
+  if (axisymmetric()) hoop_rate_ = gathered_velocity.row(0).array() / position.row(0).array(), pad(hoop_rate_);
   Array dissipated = make(1);
   mpm_material_batch batch{};
   batch.dt = dt;
   batch.velocity_gradient = velocity_gradient.data();
   batch.dissipated_energy = dissipated.data();
   refuse_inverted(update_material(batch));
-  if (plan_.particle_domain)  // (I + dt L) domain, as F
+  if (plan_.particle_domain && !frozen_)  // (I + dt L) domain, as F
     for (std::size_t p = 0; p < padded_; ++p)
       set(domain_, p, Matrix((Matrix::Identity() + dt * matrix(velocity_gradient, p)) * matrix(domain_, p)));
+  if (axisymmetric()) dissipated.array() *= circumference_.array();
   return volume_ * dissipated.leftCols(count_).sum();
 }
 
@@ -260,8 +273,8 @@ double Particles::kinetic_energy() const {
   const Array* C = affine ? &transfer_state_.at(transfer_.plugin->state()[0].name) : nullptr;
   double sum = 0;
   for (std::size_t p = 0; p < count_; ++p) {
-    sum += 0.5 * mass_ * column(velocity, p).squaredNorm();
-    if (C) sum += 0.5 * mass_ * (matrix(*C, p) * second_moments_[p] * matrix(*C, p).transpose()).trace();
+    sum += 0.5 * mass(p) * column(velocity, p).squaredNorm();
+    if (C) sum += 0.5 * mass(p) * (matrix(*C, p) * second_moments_[p] * matrix(*C, p).transpose()).trace();
   }
   return sum;
 }
@@ -286,6 +299,7 @@ BodyState Particles::state() const {
   }
   result.volume = volume_;
   result.mass = mass_;
+  if (axisymmetric()) result.circumference = particle_major(circumference_);
   return result;
 }
 
@@ -294,6 +308,7 @@ void Particles::visit_saved(Self& self, Visit visit) {
   visit("position", self.position);
   visit("velocity", self.velocity);
   visit("initial_position", self.initial_position);
+  visit("circumference", self.circumference_);
   visit("domain", self.domain_);
   for (auto& [name, field] : self.transfer_state_) visit(name, field);
   for (auto& [name, field] : self.material_state_) visit(name, field);

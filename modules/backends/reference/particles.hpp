@@ -15,14 +15,18 @@ class Particles {
 
   std::size_t count() const { return count_; }
   int field() const { return field_; }
-  double mass() const { return mass_; }
-  double volume() const { return volume_; }
+  double mass(std::size_t p) const { return mass_ * ring(p); }
+  double volume(std::size_t p) const { return volume_ * ring(p); }
+  bool axisymmetric() const { return circumference_.size() > 0; }
+  bool frozen() const { return frozen_; }
   std::uint64_t bytes() const;
 
   Vector column(const Array& array, std::size_t p) const;
   Matrix matrix(const Array& array, std::size_t p) const;
   /// Symmetric tensor without its zz in 2-D.
   Matrix symmetric(const Array& array, std::size_t p) const;
+  /// Force that stress around the axis makes on a particle's nodes, each its weight of it: -V tau_zz / r along x, N.
+  Vector hoop_force(std::size_t p) const;
   void set(Array& array, std::size_t p, const Vector& v);
   void set(Array& array, std::size_t p, const Matrix& m);
   /// Copies the last particle into the padding.
@@ -75,6 +79,7 @@ class Particles {
   std::vector<void*> pointers(Fields& fields, const Plugin& plugin);
   void initialise(Fields& fields, const Plugin& plugin);
   std::int32_t update_material(const mpm_material_batch& outputs);
+  double ring(std::size_t p) const { return axisymmetric() ? circumference_(0, p) : 1.0; }
   void refuse_inverted(std::int32_t particle) const;
 
   const Experiment& experiment_;
@@ -83,9 +88,12 @@ class Particles {
   const Component& material_;
   int body_, field_, dimension_;
   std::size_t count_, padded_;
-  double mass_, volume_;
+  double mass_, volume_;  ///< in axisymmetric scenes per metre of circumference
+  bool frozen_;
   Shape shape_;
-  Array domain_;  ///< [D*D], cells, column k the k-th semi-side; empty unless Plan::particle_domain
+  Array circumference_;  ///< m, 2 pi r as seeded; empty unless axisymmetric
+  Array hoop_rate_;      ///< 1/s, v_r / r; empty unless axisymmetric
+  Array domain_;         ///< [D*D], cells, column k the k-th semi-side; empty unless Plan::particle_domain
   Fields transfer_state_, material_state_;
   std::vector<Stencil> stencils_;
   std::vector<Matrix> second_moments_;  ///< m^2, with the stencils

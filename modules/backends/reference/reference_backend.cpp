@@ -83,6 +83,7 @@ void ReferenceBackend::estimate_time_step() {
 void ReferenceBackend::move(const StepInfo& step) {
   for (std::size_t index = 0; index < bodies_.size(); ++index) {
     Particles& body = bodies_[index];
+    if (body.frozen()) continue;
     for (std::size_t p = 0; p < body.count(); ++p) {
       Vector x = body.column(body.position, p) + step.dt * body.column(body.advection, p);
       keep_inside(x, static_cast<int>(index), p);
@@ -97,6 +98,7 @@ void ReferenceBackend::keep_inside(Vector& x, int body, std::size_t p) const {
   for (int c = 0; c < experiment_.dimension; ++c) {
     const double size = grid.upper[c] - grid.lower[c];
     if (!std::isfinite(x[c])) throw RunFailure("not a number: its position is no longer finite", body, p);
+    if (c == 0 && experiment_.axisymmetric() && !(x[0] > 0)) throw RunFailure(reached_axis, body, p);
     if (experiment_.faces[c][0].type == ConditionType::periodic) {
       x[c] -= size * std::floor((x[c] - grid.lower[c]) / size);
       continue;

@@ -1,5 +1,7 @@
 // Particles to grid and back.
 
+#include <numbers>
+
 #include "backends/reference/reference_backend.hpp"
 
 namespace mpm::reference {
@@ -28,28 +30,29 @@ void ReferenceBackend::scatter_momentum(Particles& body, bool remap) {
     const Matrix A = affine ? body.matrix(body.A, p) : Matrix(Matrix::Zero());
     for (const StencilNode& s : body.stencil(p)) {
       Node& node = grid_.node(body.field(), s.index);
-      node.mass += s.weight * body.mass();
+      node.mass += s.weight * body.mass(p);
       node.momentum += s.weight * (b + A * s.distance);
-      if (!remap) node.gravity_force += s.weight * body.mass() * gravity;
+      if (!remap) node.gravity_force += s.weight * body.mass(p) * gravity;
     }
   }
 }
 
-/// f = -V0 tau grad w, or -V0 tau (w D^-1 d) when the transfer takes stress by the affine term; body forces w m b(x,
-/// X, t).
+/// f = -V0 tau grad w, or -V0 tau (w D^-1 d) when the transfer takes stress by the affine term, and around an axis
+/// -w V0 tau_zz / r e_r; body forces w m b(x, X, t).
 void ReferenceBackend::scatter_force(Particles& body, double time) {
   const bool by_affine = experiment_.transfer.plugin->transfer().traits & MPM_STRESS_BY_AFFINE;
   for (std::size_t p = 0; p < body.count(); ++p) {
     const Matrix tau = body.symmetric(body.stress, p);
+    const Vector hoop = body.hoop_force(p);
     Vector force = Vector::Zero();
     if (experiment_.body_force) {
       const Vector x = body.column(body.position, p);
       const Vector X = plan_.initial_position ? body.column(body.initial_position, p) : x;
-      force = body.mass() * to_eigen((*experiment_.body_force)({x[0], x[1], x[2]}, {X[0], X[1], X[2]}, time));
+      force = body.mass(p) * to_eigen((*experiment_.body_force)({x[0], x[1], x[2]}, {X[0], X[1], X[2]}, time));
     }
     for (const StencilNode& s : body.stencil(p)) {
       Node& node = grid_.node(body.field(), s.index);
-      node.internal_force -= body.volume() * (tau * (by_affine ? s.affine : s.gradient));
+      node.internal_force += s.weight * hoop - body.volume(p) * (tau * (by_affine ? s.affine : s.gradient));
       node.body_force += s.weight * force;
     }
   }
@@ -57,12 +60,13 @@ void ReferenceBackend::scatter_force(Particles& body, double time) {
 
 void ReferenceBackend::scatter_contact_fields(Particles& body) {
   for (std::size_t p = 0; p < body.count(); ++p) {
-    const double volume = body.volume() * body.volume_ratio(0, p);
+    const double volume = body.volume(p) * body.volume_ratio(0, p);
+    const double section = body.axisymmetric() ? volume / (2 * std::numbers::pi * body.position(0, p)) : volume;
     for (const StencilNode& s : body.stencil(p)) {
       Node& node = grid_.node(body.field(), s.index);
       node.volume += s.weight * volume;
-      node.volume_gradient += volume * s.gradient;
-      node.mass_position -= s.weight * body.mass() * s.distance;
+      node.volume_gradient += section * s.gradient;  // of the section: a ring's volume grows away from the axis
+      node.mass_position -= s.weight * body.mass(p) * s.distance;
     }
   }
 }

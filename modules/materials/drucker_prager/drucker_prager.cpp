@@ -12,7 +12,7 @@ MPM_EXPORT_PLUGIN(
 
 with phi = `friction_angle` and t = c cot(phi)/K, c = `cohesion`, the volumetric strain at the tip of the cone. In stresses
 q = M p + k with M = 6 sin phi/(3 - sin phi) and k = 6 c cos phi/(3 - sin phi), which meets Mohr-Coulomb in triaxial compression.
-The cone is that of three-dimensional space also in 2-D, which is plane strain with its own elastic zz.
+The cone is that of three-dimensional space also in 2-D, where elastic zz is kept.
 
 Flow is not associated: the return keeps tr(eps), so shearing neither dilates nor compacts. Beyond the tip the state returns to the
 tip: dry sand then carries no stress. Dissipation is tau:(eps_trial - eps) with tau after the return, never negative.

@@ -44,6 +44,8 @@ struct DruckerPrager {
     Deformation<D, S> elastic_deformation_gradient;
     S volume_ratio;  ///< total J
   };
+  template <class S>
+  using AxisymmetricState = State<2, S>;
 
   /// Sine of an angle in [0, pi/2] by its series, to rounding: the device pass has no sine.
   MPM_HD static double sin_of(double angle) {
@@ -92,12 +94,13 @@ struct DruckerPrager {
 
   /// Returns the energy dissipated, J/m^3: tau at the end of the step times the change of elastic strain by the return.
   /// A particle that neither yields nor closes a gap keeps F_e as advanced, to the last bit.
-  template <int D, class S>
-  MPM_HD static S advance(const Constants<scalar_of<S>>& c, const Mat<D, S>& L, scalar_of<S> dt, State<D, S>& state) {
+  template <class G, int D, class S>
+  MPM_HD static S advance(const Constants<scalar_of<S>>& c, const G& L, scalar_of<S> dt, State<D, S>& state) {
     const S before = state.volume_ratio, zero = S(real<S>(0));
-    state.volume_ratio = before * determinant(advanced(Mat<D, S>::identity(), L, dt));
+    state.volume_ratio = before * determinant(advanced(G::identity(), L, dt));
     Deformation<D, S> trial = state.elastic_deformation_gradient;
-    trial.plane = advanced(trial.plane, L, dt);
+    trial.plane = advanced(trial.plane, in_plane(L), dt);
+    if constexpr (has_zz<G>) trial.zz = trial.zz + dt * (L.zz * trial.zz);
     SingularValues<D, S> parts;
     const Vec<3, S> strain = strains(trial, parts);
 

@@ -15,7 +15,7 @@ The first Piola stress of a deformation at constant volume is linear in its stre
 `linear_elastic`, without its false stress under rotation. The usual elastic law of computer graphics and the base of its snow.
 
 No barrier against crushing: energy and stress stay finite as J -> 0, so under strong compression particles invert sooner than with
-`neo_hookean`; J <= 0 is refused: the run stops and names the particle. 2-D is plane strain, where tau_zz = lambda (J - 1) J.
+`neo_hookean`; J <= 0 is refused: the run stops and names the particle. In plane strain tau_zz = lambda (J - 1) J.
 
 The wave speed is sqrt((2 mu s^2 + lambda J^2)/rho0), s the largest stretch: the fastest tangent wave, longitudinal along s.)",
                    "FixedCorotated"})

@@ -2,7 +2,8 @@
 // Fixed corotated solid: psi = mu |F - R|^2 + lambda/2 (J - 1)^2, R the rotation of F's polar decomposition. Stomakhin,
 // Howes, Schroeder & Teran (2012), Energetically consistent invertible elasticity: the fixed corotated energy.
 //   P = 2 mu (F - R) + lambda (J - 1) J F^-T,   tau = P F^T = 2 mu (F - R) F^T + lambda (J - 1) J I
-// Plane strain keeps zz: a stretch of 1 there adds tau_zz = lambda (J - 1) J.
+// In 2-D z is a principal direction: a stretch F_zz there adds tau_zz = 2 mu (F_zz - 1) F_zz + lambda (J - 1) J. In
+// plane strain F_zz = 1.
 
 #include "kernel/elasticity.hpp"
 #include "kernel/functor.hpp"
@@ -23,13 +24,13 @@ struct FixedCorotated {
           inverse_density(T(1 / p.density)) {}
   };
   template <int D, class S>
-  struct State {
-    Mat<D, S> deformation_gradient;
-  };
+  using State = ElasticState<Mat<D, S>>;
+  template <class S>
+  using AxisymmetricState = ElasticState<Deformation<2, S>>;
 
   /// Returns the energy dissipated, J/m^3: none.
-  template <int D, class S>
-  MPM_HD static S advance(const Constants<scalar_of<S>>&, const Mat<D, S>& L, scalar_of<S> dt, State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S advance(const Constants<scalar_of<S>>&, const G& L, scalar_of<S> dt, ElasticState<G>& state) {
     state.deformation_gradient = advanced(state.deformation_gradient, L, dt);
     return S(real<S>(0));
   }
@@ -42,10 +43,11 @@ struct FixedCorotated {
     return r;
   }
 
-  template <int D, class S>
-  MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
-    const Mat<D, S>& F = state.deformation_gradient;
-    const S J = determinant(F), pressure = c.lambda * ((J - real<S>(1)) * J);
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static Sym<G::dimension, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
+    constexpr int D = G::dimension;
+    const Mat<D, S>& F = in_plane(state.deformation_gradient);
+    const S J = determinant(state.deformation_gradient), pressure = c.lambda * ((J - real<S>(1)) * J);
     const Mat<D, S> H = distortion(F);
     const scalar_of<S> two_mu = real<S>(2) * c.mu;
     Sym<D, S> tau{};
@@ -55,16 +57,25 @@ struct FixedCorotated {
         for (int k = 1; k < D; ++k) t = t + H(i, k) * F(j, k);
         tau(i, j) = two_mu * t;
       }
+    if constexpr (has_zz<G>) {
+      const S zz = state.deformation_gradient.zz;
+      tau.s[2] = two_mu * ((zz - real<S>(1)) * zz);
+    }
     for (int i = 0; i < 3; ++i) tau.s[i] = tau.s[i] + pressure;
     return tau;
   }
 
-  template <int D, class S>
-  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
     const S change = determinant(state.deformation_gradient) - real<S>(1);
-    const Mat<D, S> H = distortion(state.deformation_gradient);
+    constexpr int D = G::dimension;
+    const Mat<D, S> H = distortion(in_plane(state.deformation_gradient));
     S squared = H.m[0] * H.m[0];
     for (int k = 1; k < D * D; ++k) squared = squared + H.m[k] * H.m[k];
+    if constexpr (has_zz<G>) {
+      const S hoop = state.deformation_gradient.zz - real<S>(1);
+      squared = squared + hoop * hoop;
+    }
     return c.mu * squared + real<S>(0.5) * c.lambda * (change * change);
   }
 
@@ -72,8 +83,8 @@ struct FixedCorotated {
   /// where J > 0: rho0 c^2 = d2 psi/ds2 <= 2 mu n.b.n + lambda J^2 (a.n)^2. The longitudinal wave along the largest
   /// stretch attains it, so rho0 c^2 = 2 mu max(n.b.n) + lambda J^2 is exact but for the bound of the eigenvalue in
   /// 3-D.
-  template <int D, class S>
-  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
     const S J = determinant(state.deformation_gradient);
     const S largest = largest_in_space(left_cauchy_green(state.deformation_gradient));
     return sqrt(c.inverse_density * (real<S>(2) * c.mu * largest + c.lambda * (J * J)));
@@ -90,8 +101,8 @@ struct FixedCorotated {
     return largest_eigenvalue_bound(b);
   }
 
-  template <int D, class S>
-  MPM_HD static S volume_ratio(const State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S volume_ratio(const ElasticState<G>& state) {
     return determinant(state.deformation_gradient);
   }
 
@@ -105,7 +116,7 @@ struct FixedCorotated {
       MPM_NUMBER_PARAMETER(density, "kg/m^3", required, 0.0, unbounded, MPM_ABOVE_MINIMUM, "initial density"),
   };
   static constexpr mpm_state state[] = {
-      {"deformation_gradient", "", "deformation gradient F", MPM_STATE_MATRIX, MPM_INITIAL_IDENTITY},
+      {"deformation_gradient", "", "deformation gradient F", MPM_STATE_PLANE_DEFORMATION, MPM_INITIAL_IDENTITY},
   };
 #endif
 };

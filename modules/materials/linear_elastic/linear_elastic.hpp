@@ -23,30 +23,33 @@ struct LinearElastic {
               p.density))) {}
   };
   template <int D, class S>
-  struct State {
-    Mat<D, S> deformation_gradient;
-  };
+  using State = ElasticState<Mat<D, S>>;
+  template <class S>
+  using AxisymmetricState = ElasticState<Deformation<2, S>>;
 
   /// Returns the energy dissipated, J/m^3: none.
-  template <int D, class S>
-  MPM_HD static S advance(const Constants<scalar_of<S>>&, const Mat<D, S>& L, scalar_of<S> dt, State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S advance(const Constants<scalar_of<S>>&, const G& L, scalar_of<S> dt, ElasticState<G>& state) {
     state.deformation_gradient = advanced(state.deformation_gradient, L, dt);
     return S(real<S>(0));
   }
 
-  template <int D, class S>
-  MPM_HD static Sym<D, S> strain(const State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static Sym<G::dimension, S> strain(const ElasticState<G>& state) {
+    constexpr int D = G::dimension;
+    const Mat<D, S>& F = in_plane(state.deformation_gradient);
     Sym<D, S> e{};
     for (int i = 0; i < D; ++i)
-      for (int j = i; j < D; ++j)
-        e(i, j) = real<S>(0.5) * (state.deformation_gradient(i, j) + state.deformation_gradient(j, i));
+      for (int j = i; j < D; ++j) e(i, j) = real<S>(0.5) * (F(i, j) + F(j, i));
     for (int i = 0; i < D; ++i) e(i, i) = e(i, i) - real<S>(1);
+    if constexpr (has_zz<G>) e.s[2] = state.deformation_gradient.zz - real<S>(1);
     return e;
   }
 
   /// tau = sigma to the order of small strains.
-  template <int D, class S>
-  MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static Sym<G::dimension, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
+    constexpr int D = G::dimension;
     Sym<D, S> e = strain(state);
     const S pressure = c.lambda * trace(e);
     for (int k = 0; k < Sym<D, S>::size; ++k) e.s[k] = real<S>(2) * c.mu * e.s[k];
@@ -55,19 +58,19 @@ struct LinearElastic {
   }
 
   /// psi = mu eps:eps + lambda/2 (tr eps)^2, J/m^3.
-  template <int D, class S>
-  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
-    const Sym<D, S> e = strain(state);
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
+    const Sym<G::dimension, S> e = strain(state);
     return c.mu * squared_norm(e) + real<S>(0.5) * c.lambda * trace(e) * trace(e);
   }
 
-  template <int D, class S>
-  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>&) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const ElasticState<G>&) {
     return S(c.longitudinal_speed);
   }
 
-  template <int D, class S>
-  MPM_HD static S volume_ratio(const State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S volume_ratio(const ElasticState<G>& state) {
     return determinant(state.deformation_gradient);
   }
 
@@ -80,7 +83,7 @@ struct LinearElastic {
       MPM_NUMBER_PARAMETER(density, "kg/m^3", required, 0.0, unbounded, MPM_ABOVE_MINIMUM, "initial density"),
   };
   static constexpr mpm_state state[] = {
-      {"deformation_gradient", "", "deformation gradient F", MPM_STATE_MATRIX, MPM_INITIAL_IDENTITY},
+      {"deformation_gradient", "", "deformation gradient F", MPM_STATE_PLANE_DEFORMATION, MPM_INITIAL_IDENTITY},
   };
 #endif
 };

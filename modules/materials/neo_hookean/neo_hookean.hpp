@@ -27,13 +27,13 @@ struct NeoHookean {
           volumetric(static_cast<VolumetricEnergy>(static_cast<int>(p.volumetric_energy))) {}
   };
   template <int D, class S>
-  struct State {
-    Mat<D, S> deformation_gradient;
-  };
+  using State = ElasticState<Mat<D, S>>;
+  template <class S>
+  using AxisymmetricState = ElasticState<Deformation<2, S>>;
 
   /// Returns the energy dissipated, J/m^3: none.
-  template <int D, class S>
-  MPM_HD static S advance(const Constants<scalar_of<S>>&, const Mat<D, S>& L, scalar_of<S> dt, State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S advance(const Constants<scalar_of<S>>&, const G& L, scalar_of<S> dt, ElasticState<G>& state) {
     state.deformation_gradient = advanced(state.deformation_gradient, L, dt);
     return S(real<S>(0));
   }
@@ -46,24 +46,24 @@ struct NeoHookean {
     return b;
   }
 
-  template <int D, class S>
-  MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static Sym<G::dimension, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
     const S J = determinant(state.deformation_gradient);
-    Sym<D, S> tau = left_cauchy_green(state.deformation_gradient);
+    Sym<G::dimension, S> tau = left_cauchy_green(state.deformation_gradient);
     S pressure = c.modulus * volumetric_stress(c.volumetric, J);
     if (c.split)
       tau = deviator(isochoric(tau, J));
     else
       pressure = pressure - c.mu;
-    for (int k = 0; k < Sym<D, S>::size; ++k) tau.s[k] = c.mu * tau.s[k];
+    for (int k = 0; k < Sym<G::dimension, S>::size; ++k) tau.s[k] = c.mu * tau.s[k];
     for (int i = 0; i < 3; ++i) tau.s[i] = tau.s[i] + pressure;
     return tau;
   }
 
-  template <int D, class S>
-  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
     const S J = determinant(state.deformation_gradient);
-    const Sym<D, S> b = left_cauchy_green(state.deformation_gradient);
+    const Sym<G::dimension, S> b = left_cauchy_green(state.deformation_gradient);
     const S volumetric = c.modulus * volumetric_energy(c.volumetric, J);
     const scalar_of<S> half_mu = real<S>(0.5) * c.mu;
     if (c.split) return volumetric + half_mu * (trace(isochoric(b, J)) - real<S>(3));
@@ -71,10 +71,10 @@ struct NeoHookean {
   }
 
   /// Longitudinal: rho0 c^2 = mu (1 + n.b.n) + lambda J^2 u'' (coupled); never below the shear wave's mu n.b.n.
-  template <int D, class S>
-  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
     const S J = determinant(state.deformation_gradient);
-    const Sym<D, S> b = left_cauchy_green(state.deformation_gradient);
+    const Sym<G::dimension, S> b = left_cauchy_green(state.deformation_gradient);
     if (c.split) {
       return sqrt(c.inverse_density * split_tangent(c.volumetric, c.mu, c.modulus, isochoric(b, J), J));
     }
@@ -83,8 +83,8 @@ struct NeoHookean {
     return sqrt(c.inverse_density * max(longitudinal, c.mu * largest));
   }
 
-  template <int D, class S>
-  MPM_HD static S volume_ratio(const State<D, S>& state) {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S volume_ratio(const ElasticState<G>& state) {
     return determinant(state.deformation_gradient);
   }
 
@@ -103,7 +103,7 @@ struct NeoHookean {
           "u(J): (ln J)^2/2, (J-1)^2/2, or ((J^2-1)/2 - ln J)/2, the only one stiff when crushed and when stretched"),
   };
   static constexpr mpm_state state[] = {
-      {"deformation_gradient", "", "deformation gradient F", MPM_STATE_MATRIX, MPM_INITIAL_IDENTITY},
+      {"deformation_gradient", "", "deformation gradient F", MPM_STATE_PLANE_DEFORMATION, MPM_INITIAL_IDENTITY},
   };
 #endif
 };

@@ -31,6 +31,8 @@ struct VonMises {
     S volume_ratio;                       ///< total J
     S equivalent_plastic_strain;
   };
+  template <class S>
+  using AxisymmetricState = State<2, S>;
 
   /// The mean of tr(b)/3 that makes det(d + t I) = 1 for a deviatoric d: largest root of t^3 - (d:d/2) t + det d - 1.
   /// Newton from a start at or above the root is monotone, the cubic being convex there.
@@ -46,10 +48,10 @@ struct VonMises {
   /// Returns the energy dissipated by plastic flow, J/m^3: the plastic multiplier times its work-conjugate stress at
   /// the end of the step, which is |s| for small elastic strains. (The stored energy that the return removes from the
   /// trial state is E de^2/2 a step more, which no force has supplied.)
-  template <int D, class S>
-  MPM_HD static S advance(const Constants<scalar_of<S>>& c, const Mat<D, S>& L, scalar_of<S> dt, State<D, S>& state) {
+  template <class G, int D, class S>
+  MPM_HD static S advance(const Constants<scalar_of<S>>& c, const G& L, scalar_of<S> dt, State<D, S>& state) {
     using T = scalar_of<S>;
-    const Mat<D, S> f = advanced(Mat<D, S>::identity(), L, dt);
+    const G f = advanced(G::identity(), L, dt);
     state.volume_ratio = state.volume_ratio * determinant(f);
     const Sym<D, S> b = unimodular(pushed(f, state.elastic_left_cauchy_green));
 
@@ -95,6 +97,12 @@ struct VonMises {
           for (int l = 0; l < D; ++l) t = t + f(i, k) * b(k, l) * f(j, l);
         r(i, j) = t;
       }
+    return r;
+  }
+  template <class S>
+  MPM_HD static Sym<2, S> pushed(const Deformation<2, S>& f, const Sym<2, S>& b) {
+    Sym<2, S> r = pushed(f.plane, b);
+    r.s[2] = f.zz * f.zz * b.s[2];
     return r;
   }
 

@@ -45,6 +45,9 @@ struct ParticleArrays {
   T* volume_ratio;       ///< J
   T* velocity_gradient;  ///< [D*D], 1/s
   T* wave_speed;         ///< m/s
+  T* circumference;      ///< m, 2 pi r as seeded, which mass and volume are times; null unless axisymmetric
+  T* hoop_rate;          ///< 1/s, v_r / r; null unless axisymmetric
+  int frozen;            ///< 1: particles and domains stay as they are
 };
 
 /// Pairs of fields, one a node: geometry in, impulse out.

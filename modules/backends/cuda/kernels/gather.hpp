@@ -45,6 +45,7 @@ MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a)
     const auto moments = gathered_moments<Scene>(a, stencil, a.grid.velocity, a.grid.velocity_before);
     store_matrix(particles.velocity_gradient, stride, p,
                  Scene::strain_by_affine ? moments.affine : moments.velocity_gradient);
+    if constexpr (Scene::axisymmetric) particles.hoop_rate[p] = moments.velocity[0] / particles.position[p];
     if (!a.update_particles) return;
     Vec<D, T> v = load<D>(particles.velocity, stride, p), advection;
     State state = load_state<State>(particles.transfer_state, stride, p);
@@ -61,7 +62,7 @@ MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a)
 template <class T>
 inline constexpr T position_tolerance = sizeof(T) == 4 ? T(1e-6) : T(1e-9);
 
-/// x += dt advection; periodic axes are wrapped.
+/// x += dt advection; periodic axes are wrapped. Frozen particles stay.
 template <class Scene>
 MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -73,7 +74,7 @@ MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
     bool inside = true;
     for (int c = 0; c < D; ++c) {
       const T size = T(a.cells[c]) * a.cell_size;
-      x[c] += a.dt * v[c];
+      if (!a.particles.frozen) x[c] += a.dt * v[c];
       T at = x[c] - a.lower[c];
       if (a.walls[c][0] == wall_periodic) {
         x[c] -= size * floor(at / size);
@@ -84,6 +85,7 @@ MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
       };
       inside = inside && at >= -margin(0) && at <= size + margin(1);  // false for NaN
     }
+    if constexpr (Scene::axisymmetric) inside = inside && x[0] > T(0);
     store(a.particles.position, stride, p, x);
     if (!inside) Team::lower(a.first_failed, p);
   });

@@ -6,12 +6,32 @@
 
 namespace mpm::device {
 
+/// What a particle keeps of its material.
+template <class Scene, bool Axisymmetric>
+struct MaterialState {
+  using type = typename Scene::Material::template State<Scene::dimension, typename Scene::Scalar>;
+};
+template <class Scene>
+struct MaterialState<Scene, true> {
+  using type = typename Scene::Material::template AxisymmetricState<typename Scene::Scalar>;
+};
+
+/// L of a particle; with its zz in axisymmetric scenes.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD auto velocity_gradient_of(const ParticleArrays<T>& particles, int p) {
+  const Mat<Scene::dimension, T> L = load_matrix<Scene::dimension>(particles.velocity_gradient, particles.stride, p);
+  if constexpr (Scene::axisymmetric)
+    return Deformation<2, T>{L, particles.hoop_rate[p]};
+  else
+    return L;
+}
+
 /// Calls body(constants, p, state) for every particle, then checks J.
 template <class Scene, class Body>
 MPM_HD void for_each_state(const Team& team, const Arguments<typename Scene::Scalar>& a, Body body) {
   using T = typename Scene::Scalar;
   using Material = typename Scene::Material;
-  using State = typename Material::template State<Scene::dimension, T>;
+  using State = typename MaterialState<Scene, Scene::axisymmetric>::type;
   const typename Material::template Constants<T> constants(parameters_of<Material>(a.material_parameters));
   for_each_index(team, a.particles.count, [&](int p) {
     State state = load_state<State>(a.particles.material_state, a.particles.stride, p);
@@ -37,16 +57,17 @@ MPM_HD void stress(const Team& team, const Arguments<typename Scene::Scalar>& a)
 /// Advances state and domain by dt with the gathered velocity gradient.
 template <class Scene>
 MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  using T = typename Scene::Scalar;
   using Material = typename Scene::Material;
   constexpr int D = Scene::dimension;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, auto& state) {
     const int stride = a.particles.stride;
-    const Mat<D, T> L = load_matrix<D>(a.particles.velocity_gradient, stride, p);
+    const auto L = velocity_gradient_of<Scene>(a.particles, p);
     Material::advance(constants, L, a.dt, state);
     store_state(a.particles.material_state, stride, p, state);
     if constexpr (Scene::list || Scene::deformed)
-      store_matrix(a.particles.domain, stride, p, advanced(load_matrix<D>(a.particles.domain, stride, p), L, a.dt));
+      if (!a.particles.frozen)
+        store_matrix(a.particles.domain, stride, p,
+                     advanced(load_matrix<D>(a.particles.domain, stride, p), in_plane(L), a.dt));
   });
 }
 

@@ -79,7 +79,15 @@ MPM_HD T* scatter_channel(const Arguments<T>& a, int k) {
   return a.grid.mass_position + (k - 2 - 3 * D) * nodes;
 }
 
+/// Mass or volume of a particle, given what the body says.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD T of_ring(const ParticleArrays<T>& particles, T of_body, int p) {
+  if constexpr (Scene::axisymmetric) return of_body * particles.circumference[p];
+  return of_body;
+}
+
 /// Scatter pass: w m, w (b + A d), -V0 tau grad w (or w D^-1 d) and w m g, and the contact channels, as `a` says.
+/// Around an axis -w V0 tau_zz / r too.
 template <class Scene>
 MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -94,9 +102,11 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
         Vec<D, T> b{};
         Mat<D, T> A{};
         Sym<D, T> tau{};
+        const T mass_of_particle = of_ring<Scene>(particles, particles.mass, p);
+        const T volume_of_particle = of_ring<Scene>(particles, particles.volume, p);
         if (a.momentum)
           Transfer::scatter(
-              parameters_of<Transfer>(a.transfer_parameters), particles.mass,
+              parameters_of<Transfer>(a.transfer_parameters), mass_of_particle,
               load<D>(particles.velocity, particles.stride, p),
               load_state<typename Transfer::template State<D, T>>(particles.transfer_state, particles.stride, p), b, A);
         if (a.force)
@@ -104,7 +114,7 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
         const bool weighs = a.momentum && !a.remap;
         stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
           T values[scatter_channels<Scene>];
-          const T mass = s.weight * particles.mass;
+          const T mass = s.weight * mass_of_particle;
           values[0] = mass;
           for (int i = 0; i < D; ++i) {
             T momentum = b[i];
@@ -117,13 +127,17 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
               else
                 traction += tau(i, j) * s.gradient[j];
             values[1 + i] = s.weight * momentum;
-            values[1 + D + i] = (weighs ? mass * a.gravity[i] : T(0)) - particles.volume * traction;
+            values[1 + D + i] = (weighs ? mass * a.gravity[i] : T(0)) - volume_of_particle * traction;
           }
+          if constexpr (Scene::axisymmetric)
+            values[1 + D] -= s.weight * volume_of_particle * tau.s[2] / particles.position[p];
           if constexpr (Scene::contact) {
-            const T volume = a.contact_fields ? particles.volume * particles.volume_ratio[p] : T(0);
+            const T volume = a.contact_fields ? volume_of_particle * particles.volume_ratio[p] : T(0);
+            T section = volume;  // a ring's volume grows away from the axis
+            if constexpr (Scene::axisymmetric) section = volume / (T(6.283185307179586) * particles.position[p]);
             values[1 + 2 * D] = s.weight * volume;
             for (int i = 0; i < D; ++i) {
-              values[2 + 2 * D + i] = volume * s.gradient[i];
+              values[2 + 2 * D + i] = section * s.gradient[i];
               values[2 + 3 * D + i] = -mass * s.distance[i];
             }
           }
