@@ -100,6 +100,16 @@ struct Mix {
   }
 };
 
+/// Whether the program refuses the mix at load, by name; tests/config/combinations.cpp checks which ones it may.
+inline bool is_refused(const Mix& mix) {
+  try {
+    make_plan(experiment_from(mix.text()));
+    return false;
+  } catch (const InputError&) {
+    return true;
+  }
+}
+
 /// Largest difference of two lists over a scale; NaN counts as infinite.
 inline double difference(const std::vector<double>& a, const std::vector<double>& b, double scale) {
   if (a.size() != b.size()) return std::numeric_limits<double>::infinity();

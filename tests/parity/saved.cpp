@@ -44,6 +44,8 @@ TEST_CASE("a restored run goes on bit for bit", "[parity]") {
       mix.dimension = dimension;
       mix.transfer = R"({"type": "mls"})";
       check_saved(mix.text(), overrides, true);
+      mix.transfer = R"({"type": "polypic", "basis": "full"})";
+      check_saved(mix.text(), overrides, true);
       mix.shape = R"({"type": "gimp"})";
       mix.transfer = R"({"type": "flip"})";
       mix.more = dimension == 2 ? R"J(, "body_force": ["2*sin(3*X)+t", "x-Y*y"])J" : "";

@@ -135,6 +135,10 @@ void CpuBackend<D, T, Components>::lay_out_state(Particles<D, T>& particles, con
       throw std::invalid_argument("the cpu backend takes at most 16 state fields a plugin");
   };
   add(particles.transfer_state, *scene_.experiment.transfer.plugin);
+  if (const int functions = scene_.plan.basis_functions; functions > 0) {
+    particles.transfer_state.push_back({polynomial_coefficients, particles.components, D * functions});
+    particles.components += D * functions;
+  }
   particles.motion_components = particles.components - Particles<D, T>::velocity;
   add(particles.material_state, *material.plugin);
   if (scene_.plan.kept_advection) {
@@ -163,8 +167,8 @@ std::vector<T> CpuBackend<D, T, Components>::first_values(const Particles<D, T>&
       values[field.first + c] = one ? T(1) : T(0);
     }
   };
-  for (std::size_t f = 0; f < particles.transfer_state.size(); ++f)
-    set(particles.transfer_state[f], scene_.experiment.transfer.plugin->state()[f]);
+  const auto of_transfer = scene_.experiment.transfer.plugin->state();  // polynomials beyond affine follow: zero
+  for (std::size_t f = 0; f < of_transfer.size(); ++f) set(particles.transfer_state[f], of_transfer[f]);
   for (std::size_t f = 0; f < particles.material_state.size(); ++f)
     set(particles.material_state[f], material.plugin->state()[f]);
   for (const int first : {particles.domain, particles.next_domain})

@@ -20,7 +20,8 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
       particles_(particles),
       bodies_(std::move(bodies)),
       kernels_(scene.list ? tile_kernels_of_lists<D, T>() : tile_kernels<D, T>(scene.width)),
-      list_kernels_(list_kernels<D, T>()) {
+      list_kernels_(list_kernels<D, T>()),
+      higher_kernels_(higher_kernels<D, T>(scene.width, scene.plan.basis_order)) {
   drift_of_thread_.assign(scene.threads, 0.0);
   int transfer_components = 0;
   for (const Particles<D, T>& body : particles)
@@ -37,6 +38,7 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
       if (scene.evaluate_box) work.boxes.require();
       std::fill(work.offset, work.offset + D * chunk_size, T(0));  // lists count from the particle itself
     }
+    if (scene.plan.basis_functions > 0) work.higher.require(std::size_t(scene.plan.basis_functions) * D * chunk_size);
     if (scene.plan.fused && scene.has(MPM_REPLACES_MOTION))
       work.passing_motion.require(std::size_t(D + transfer_components) * chunk_size);
     if (!scene.plan.filter) continue;
@@ -377,7 +379,10 @@ double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const 
       for (int c = 0; c < D; ++c) squares = squares + load(v, c, p) * load(v, c, p);
       return squares;
     });
-    return 0.5 * chunk.body.mass * sum;
+    if (!higher_kernels_.squares) return 0.5 * chunk.body.mass * sum;
+    const Stencils<T> stencils{work.first, work.weight, work.gradient, {}};
+    const double higher = higher_kernels_.squares(stencils, work.offset, chunk.higher(), chunk.count);
+    return 0.5 * chunk.body.mass * (sum + higher);
   };
   if (!scene_.has(MPM_AFFINE_CARRIES_ENERGY)) return energy_with([](int) { return L(T(0)); });
 

@@ -71,7 +71,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
   std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
   abandoned_ = false;
   const bool energy_moves = scene_.plan.ledger && scene_.has(MPM_AFFINE_CARRIES_ENERGY) &&
-                            (scene_.moment_of_particle || scene_.moment_is_gradient);
+                            (scene_.moment_of_particle || scene_.moment_is_gradient || scene_.plan.basis_functions > 0);
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
       load_velocities(body, block, work);
@@ -131,6 +131,7 @@ template <int D, class T, class Components>
                                advection,
                                moments_for_transfer(chunk, work)};
   Components::gather(scene_, batch);
+  if (higher_kernels_.gather) keep_higher(chunk, work);
   if (step.filtered)  // the filtered velocity replaces the particle's
     for (int c = 0; c < D; ++c)
       for (T* const target : {velocity, advection})
@@ -202,6 +203,10 @@ void ParticleStep<D, T, Components>::gather_chunk(const Chunk& chunk, Work& work
   gather_moments(chunk, work, work.velocity_tile.data(), wanted.channel, moment, gradient);
   work.clock.lap(Phase::gather);
   unpack_moments(work, moment, gradient, n);
+  if (wanted.transfer && higher_kernels_.gather) {
+    const Stencils<T> stencils{work.first, work.weight, work.gradient, {}};
+    higher_kernels_.gather(work.velocity_tile.data(), stencils, work.offset, work.higher.data(), n);
+  }
   if (moment && scene_.moment_of_particle) apply_inverse_moments(chunk, work);
   if (affine && scene_.moment_is_gradient)
     std::copy(work.gradient_of_velocity, work.gradient_of_velocity + D * D * chunk_size, work.affine);
@@ -249,6 +254,14 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::unpack_moments(Work& work, bool moment, bool gradient, int count) {
   if (moment) return gradient ? unpack_moments<true, true>(work, count) : unpack_moments<true, false>(work, count);
   return gradient ? unpack_moments<false, true>(work, count) : unpack_moments<false, false>(work, count);
+}
+
+/// The gathered coefficients become the particles' own.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::keep_higher(const Chunk& chunk, const Work& work) const {
+  const int components = scene_.plan.basis_functions * D;
+  for (int c = 0; c < components; ++c)
+    std::copy_n(work.higher.data() + c * chunk_size, chunk.end, chunk.higher() + c * chunk_size);
 }
 
 /// C <- C D^-1 of moments a particle.
@@ -330,6 +343,7 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
   Components::scatter(scene_, scattered);
   if (!scene_.list) place_to_scatter(chunk, work, false);
   add_to_tile(chunk, work, filter_projection, work.mass, true, affine, false);
+  if (higher_kernels_.scatter) add_higher_to_tile(chunk, work, filter_projection, work.higher.data());
 }
 
 /// Strains the particles by the pass's share of the step; where the pass scatters them too, also gives what that wants

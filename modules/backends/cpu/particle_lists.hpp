@@ -33,7 +33,8 @@ void ParticleStep<D, T, Components>::evaluate_list_batch(const Chunk& chunk, Wor
                              lists.coordinates.data(),
                              lists.weight.data(),
                              gradients ? lists.gradient.data() : nullptr,
-                             moments ? lists.second_moment : nullptr};
+                             moments ? lists.second_moment : nullptr,
+                             nullptr};
   scene_.evaluate_list(scene_.shape_parameters, &batch);
 }
 

@@ -24,7 +24,7 @@ bool starts_as_one(const mpm_state& field, int k, int dimension) {
 template <class T>
 struct Body {
   const Component *transfer, *material;
-  int field = 0, material_number = 0, count = 0, dimension = 2;
+  int field = 0, material_number = 0, count = 0, dimension = 2, basis_functions = 0;
   T mass = 0, volume = 0, half_size = 0;
   std::vector<T> position, velocity, advection, domain, stencil_domain, transfer_state, material_state, stress,
       volume_ratio, velocity_gradient, wave_speed;
@@ -41,7 +41,10 @@ struct Body {
     const SeedArrays seeds = seeded.arrays();
     position = columns(seeds.position, D), velocity = columns(seeds.velocity, D);
     advection.resize(velocity.size());
-    transfer_state = initial_state(*transfer->plugin), material_state = initial_state(*material->plugin);
+    basis_functions = plan.basis_functions;
+    transfer_state = initial_state(*transfer->plugin);
+    transfer_state.resize(transfer_state.size() + static_cast<std::size_t>(basis_functions) * D * count, T(0));
+    material_state = initial_state(*material->plugin);
     const std::vector<T> gradient = columns(seeds.velocity_gradient, D * D);
     std::copy(gradient.begin(), gradient.end(), transfer_state.begin());  // the affine velocity is the first field
     if (plan.particle_domain) {
@@ -237,6 +240,10 @@ class HostRun final : public Backend {
     state.position = body.particle_major(body.position.data(), D);
     state.velocity = body.particle_major(body.velocity.data(), D);
     state.transfer_state = body.fields(body.transfer_state, *body.transfer->plugin);
+    if (const int scalars = body.basis_functions * D; scalars > 0)
+      state.transfer_state[polynomial_coefficients] = body.particle_major(
+          body.transfer_state.data() + body.transfer_state.size() - static_cast<std::size_t>(scalars) * body.count,
+          scalars);
     state.material_state = body.fields(body.material_state, *body.material->plugin);
     state.mass = body.mass, state.volume = body.volume;
     if (!body.domain.empty()) state.domain = body.particle_major(body.domain.data(), D * D, experiment_.grid.cell_size);

@@ -36,6 +36,8 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
       domain_.row(a * (D + 1)).setConstant(0.5 / experiment.bodies[body].particles_per_cell_axis);
   }
   initialise(transfer_state_, *transfer_.plugin);
+  if (plan.basis_functions > 0)
+    transfer_state_[polynomial_coefficients] = gathered_higher = higher = make(plan.basis_functions * D);
   initialise(material_state_, *material_.plugin);
   if (!seeds.velocity_gradient.empty()) {
     Array& affine = transfer_state_.at(transfer_.plugin->state()[0].name);
@@ -70,9 +72,9 @@ std::vector<void*> Particles::pointers(Fields& fields, const Plugin& plugin) {
 
 std::uint64_t Particles::bytes() const {
   Eigen::Index scalars = 0;
-  for (const Array* array :
-       {&position, &velocity, &initial_position, &advection, &b, &A, &stress, &volume_ratio, &gathered_velocity,
-        &gathered_increment, &gathered_affine, &gathered_gradient, &velocity_gradient, &domain_})
+  for (const Array* array : {&position, &velocity, &initial_position, &advection, &b, &A, &stress, &volume_ratio,
+                             &gathered_velocity, &gathered_increment, &gathered_affine, &gathered_gradient,
+                             &velocity_gradient, &domain_, &gathered_higher, &higher})
     scalars += array->size();
   for (const auto* fields : {&transfer_state_, &material_state_})
     for (const auto& [name, array] : *fields) scalars += array.size();
@@ -123,10 +125,11 @@ ShapeArguments Particles::shape_arguments() const {
 void Particles::find_stencils(const Grid& grid) {
   const ShapeArguments at = shape_arguments();
   const ShapeValues values = shape_.evaluate(at);
-  stencils_.clear(), second_moments_.clear();
+  stencils_.clear(), second_moments_.clear(), higher_bases_.clear();
   for (std::size_t p = 0; p < count_; ++p) {
     stencils_.push_back(shape_.stencil(values, at, p, grid, body_));
     second_moments_.push_back(shape_.second_moment(values, at, p));
+    if (plan_.basis_functions > 0) higher_bases_.push_back(shape_.higher_basis(values, p));
   }
 }
 
@@ -146,6 +149,7 @@ void Particles::call_scatter(const Array& velocities, Fields& states) {
                                 b.data(),
                                 transfer.traits & MPM_SCATTERS_AFFINE ? A.data() : nullptr};
   transfer.scatter[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
+  if (plan_.basis_functions > 0) higher = mass_ * states.at(polynomial_coefficients);
 }
 
 void Particles::scatter_coefficients() {
@@ -231,6 +235,7 @@ void Particles::call_gather(double dt, const Array& increments, Array& velocitie
                                advections.data(),
                                moments.size() ? moments.data() : nullptr};
   transfer.gather[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
+  if (plan_.basis_functions > 0) states.at(polynomial_coefficients) = gathered_higher;
 }
 
 void Particles::gather(double dt) {
@@ -262,6 +267,10 @@ double Particles::kinetic_energy() const {
   for (std::size_t p = 0; p < count_; ++p) {
     sum += 0.5 * mass_ * column(velocity, p).squaredNorm();
     if (C) sum += 0.5 * mass_ * (matrix(*C, p) * second_moments_[p] * matrix(*C, p).transpose()).trace();
+    for (int k = 0; k < plan_.basis_functions; ++k)
+      for (int c = 0; c < dimension_; ++c)
+        sum += 0.5 * mass_ * higher_bases_[p].norm[k] *
+               std::pow(transfer_state_.at(polynomial_coefficients)(k * dimension_ + c, p), 2);
   }
   return sum;
 }

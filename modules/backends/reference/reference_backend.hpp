@@ -47,6 +47,8 @@ class ReferenceBackend final : public Backend {
   void gather(const Pass& pass, const StepInfo& step);
   void gather_moments(Particles& body, Vector Node::*velocity);
   void strain(const Pass& pass, const StepInfo& step);
+  void add_higher(const Particles& body, std::size_t p, Vector Node::*momentum);
+  void gather_higher(Particles& body, Vector Node::*velocity_of);
 
   // ---- grid_step.cpp
   void momentum_to_velocity(const Pass& pass, const StepInfo& step);

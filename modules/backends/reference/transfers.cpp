@@ -32,7 +32,30 @@ void ReferenceBackend::scatter_momentum(Particles& body, bool remap) {
       node.momentum += s.weight * (b + A * s.distance);
       if (!remap) node.gravity_force += s.weight * body.mass() * gravity;
     }
+    add_higher(body, p, &Node::momentum);
   }
+}
+
+/// sum w c P over the polynomials beyond affine.
+void ReferenceBackend::add_higher(const Particles& body, std::size_t p, Vector Node::*momentum) {
+  const int D = experiment_.dimension;
+  for (int k = 0; k < plan_.basis_functions; ++k)
+    for (std::size_t n = 0; n < body.stencil(p).size(); ++n)
+      for (int c = 0; c < D; ++c)
+        (grid_.node(body.field(), body.stencil(p)[n].index).*momentum)[c] +=
+            body.higher_basis(p).given(k, static_cast<Eigen::Index>(n)) * body.higher(k * D + c, p);
+}
+
+/// The coefficients of the polynomials beyond affine in the given velocity.
+void ReferenceBackend::gather_higher(Particles& body, Vector Node::*velocity_of) {
+  const int D = experiment_.dimension;
+  if (plan_.basis_functions > 0) body.gathered_higher.setZero();
+  for (std::size_t p = 0; p < body.count(); ++p)
+    for (int k = 0; k < plan_.basis_functions; ++k)
+      for (std::size_t n = 0; n < body.stencil(p).size(); ++n)
+        for (int c = 0; c < D; ++c)
+          body.gathered_higher(k * D + c, p) += body.higher_basis(p).taken(k, static_cast<Eigen::Index>(n)) *
+                                                (grid_.node(body.field(), body.stencil(p)[n].index).*velocity_of)[c];
 }
 
 /// f = -V0 tau grad w, or -V0 tau (w D^-1 d) when the transfer takes stress by the affine term; body forces w m b(x,
@@ -98,6 +121,7 @@ void ReferenceBackend::gather_moments(Particles& body, Vector Node::*velocity_of
     body.set(body.gathered_gradient, p, gradient);
     body.set(body.velocity_gradient, p, strain_by_affine ? affine : gradient);
   }
+  gather_higher(body, velocity_of);
 }
 
 void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {

@@ -1,7 +1,7 @@
 #pragma once
 // Grid to particles: moments of a velocity field, the transfer's gather, and the move. A lane a particle.
 
-#include "backends/cuda/kernels/stencil.hpp"
+#include "backends/cuda/kernels/higher.hpp"
 
 namespace mpm::device {
 
@@ -53,6 +53,11 @@ MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a)
     store(particles.velocity, stride, p, v);
     store(particles.advection, stride, p, advection);
     store_state(particles.transfer_state, stride, p, state);
+    if constexpr (Scene::basis_functions > 0) {
+      Higher<Scene> higher(stencil);
+      higher.gather(a, a.grid.velocity);
+      higher.store(particles.transfer_state, stride, p);
+    }
   });
 }
 

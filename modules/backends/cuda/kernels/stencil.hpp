@@ -95,6 +95,10 @@ class StencilOf<Scene, false> {
     }
   }
 
+  MPM_HD int base(int axis) const { return base_[axis]; }
+  MPM_HD T offset(int axis) const { return offset_[axis]; }
+  MPM_HD const T* weights(int axis) const { return weight_[axis]; }
+
   /// Whether all nodes are in the grid, the position is a number, and the stencil holds the domain.
   MPM_HD bool inside() const { return inside_; }
 
