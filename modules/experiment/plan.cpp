@@ -91,6 +91,7 @@ class Planner {
                              plan_.contact || plan_.velocity_gradient_moment ||
                              (plan_.affine_moment && moment_is_gradient);
     plan_.particle_domain = experiment_.shape.plugin->descriptor->needs & MPM_NEEDS_DOMAIN;
+    plan_.sample_points = static_cast<int>(shape_.sample_points[experiment_.dimension - 2]);
     plan_.second_moment = shape_.second_moment_kind == MPM_MOMENT_PER_PARTICLE &&
                           (plan_.affine_moment || (transfer_.traits & MPM_AFFINE_CARRIES_ENERGY));
     if (const int order = basis_order_of(experiment_.transfer); order > 0) {
@@ -189,6 +190,12 @@ class Planner {
                   "/solver/stress_update \"modified_last\": positions wait for the remapped strain");
       if (plan_.particle_domain)
         attribute(body, "domain", D * D, named(experiment_.shape) + ": semi-side vectors of the particle's domain");
+      if (plan_.sample_points > 0) {
+        attribute(body, "corners", D * plan_.sample_points, named(experiment_.shape) + ": corners of the domain");
+        if (plan_.kept_advection)
+          attribute(body, "moved_corners", D * plan_.sample_points,
+                    "/solver/stress_update \"modified_last\": corners wait for the remapped strain");
+      }
       if (plan_.strained_domain)
         attribute(body, "strained_domain", D * D,
                   strains_before_forces()

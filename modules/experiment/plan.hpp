@@ -99,6 +99,7 @@ struct Plan {
   bool filter = false;                    ///< the grid keeps an increment and its projection
   bool kept_velocity = false;             ///< the grid keeps the unfiltered velocity (a pass restores it)
   bool particle_domain = false;           ///< particles carry their domain, advanced with L where the material is
+  int sample_points = 0;                  ///< corners of a particle's domain that the grid's velocity moves
   bool strained_domain = false;           ///< and its strained copy: a later pass of the step needs the old weights
   int basis_order = 0;                    ///< highest power along an axis of the polynomials beyond affine; 0: none
   int basis_functions = 0;                ///< how many a particle carries (kernel/polynomial_basis.hpp)

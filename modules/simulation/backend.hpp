@@ -77,6 +77,8 @@ struct BodyState {
   // velocity and transfer_state may be empty after a step that is not observed
   double volume = 0, mass = 0;
   std::vector<double> domain;  ///< n*dimension*dimension, m, columns are semi-sides; empty unless Plan::particle_domain
+  /// n*points*dimension, m from the particle: corners of its domain; empty unless Plan::sample_points.
+  std::vector<double> corners;
   /// n*dimension*dimension, m^2: second moment of the shape at the particle's position; empty unless
   /// Plan::second_moment.
   std::vector<double> second_moment;

@@ -156,6 +156,7 @@ inline void compare_states(const Scene& reference, const Scene& cpu, double epsi
     for (const auto& [name, values] : expected.material_state)  // strains and stretches: of order 1
       CHECK(difference(values, found.material_state.at(name), 1.0) <= allowed.material * epsilon);
     CHECK(difference(expected.domain, found.domain, h) <= allowed.material * epsilon);
+    CHECK(difference(expected.corners, found.corners, h) <= allowed.material * epsilon);
     CHECK(difference(expected.second_moment, found.second_moment, h * h) <= allowed.material * epsilon);
   }
 }

@@ -59,6 +59,11 @@ TEST_CASE("a restored run goes on bit for bit", "[parity]") {
         mix.stress_update = order;
         check_saved(mix.text(), overrides);
       }
+      mix.shape = R"({"type": "cpdi2"})";
+      for (const std::string order : {"last", "modified_last"}) {
+        mix.stress_update = order;
+        check_saved(mix.text(), overrides);
+      }
     }
   }
 }

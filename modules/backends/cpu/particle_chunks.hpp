@@ -36,6 +36,8 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
     if (scene.list) {
       work.lists.require(scene.capacity);
       if (scene.evaluate_box) work.boxes.require();
+      if (const int points = scene.plan.sample_points; points > 0)
+        work.moved_corners.require(std::size_t(points) * D * chunk_size);
       std::fill(work.offset, work.offset + D * chunk_size, T(0));  // lists count from the particle itself
     }
     if (scene.plan.basis_functions > 0) work.higher.require(std::size_t(scene.plan.basis_functions) * D * chunk_size);

@@ -136,6 +136,9 @@ template <int D, class T, class Components>
     for (int c = 0; c < D; ++c)
       for (T* const target : {velocity, advection})
         std::copy_n(work.velocity + c * chunk_size, chunk.end, target + c * chunk_size);
+  const bool corners = chunk.particles.corners >= 0;
+  T* const moved = !corners ? nullptr : pass.move ? work.moved_corners.data() : chunk.at(chunk.particles.moved_corners);
+  if (corners) gather_corners(chunk, work, advection, step.dt, moved);
   if (scene_.plan.ledger) chunk.block.kinetic_energy += kinetic_energy(chunk, work);
   work.clock.lap(Phase::transfer);
   if (pass.strain) advance_material(chunk, work, step.dt, pass);
@@ -143,7 +146,9 @@ template <int D, class T, class Components>
   if (!pass.move) return 0;
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
     std::copy_n(chunk.at(chunk.particles.next_domain), D * D * chunk_size, chunk.at(chunk.particles.domain));
-  const double distance = advance_position(chunk, advection, step.dt);
+  const double distance = corners
+                              ? move_with_corners(chunk, work, moved)
+                              : advance_position(chunk, advection, static_cast<T>(step.dt / scene_.domain.cell_size));
   if (scene_.list) extend_bounds(chunk);
   work.clock.lap(Phase::move);
   return distance;
@@ -396,11 +401,10 @@ double ParticleStep<D, T, Components>::margin(int axis, int side) const {
   return 1e-9 * scene_.domain.cells[axis] + 8 * static_cast<double>(std::numeric_limits<T>::epsilon());
 }
 
-/// x += dt times the advection velocity; returns the largest displacement in cells.
+/// x += scale times the advection velocity, in cells; returns the largest displacement in cells.
 template <int D, class T, class Components>
-double ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, const T* advection, double dt) {
+double ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, const T* advection, T scale) {
   using L = Lanes<T>;
-  const T scale = static_cast<T>(dt / scene_.domain.cell_size);
   L largest(T(0)), outside(T(0));
   for (int axis = 0; axis < D; ++axis) {
     T low = -std::numeric_limits<T>::max(), high = std::numeric_limits<T>::max();
@@ -446,11 +450,15 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::move(const StepInfo& step) {
   std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
-    for_each_block(body, false, [&](Block<D>& block, Work&) {
+    for_each_block(body, false, [&](Block<D>& block, Work& work) {
       double& drift = drift_of_thread_[omp_get_thread_num()];
       block.bounds.known = false;
+      const T scale = static_cast<T>(step.dt / scene_.domain.cell_size);
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
-        drift = std::max(drift, advance_position(chunk, chunk.at(chunk.particles.advection), step.dt));
+        const Particles<D, T>& particles = chunk.particles;
+        drift =
+            std::max(drift, particles.corners >= 0 ? move_with_corners(chunk, work, chunk.at(particles.moved_corners))
+                                                   : advance_position(chunk, chunk.at(particles.advection), scale));
       });
     });
   drift_ += *std::max_element(drift_of_thread_.begin(), drift_of_thread_.end());

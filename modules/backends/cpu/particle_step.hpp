@@ -24,6 +24,7 @@ struct ListWork {
   static constexpr int lanes = MPM_LANES;
   // one batch, as the shape takes and gives it
   alignas(64) T position[D * lanes], half_size[D * lanes], domain[D * D * lanes], second_moment[D * D * lanes];
+  alignas(64) T corners[(1 << D) * D * lanes];
   alignas(64) std::int32_t count[lanes];
   AlignedArray<std::int32_t> coordinates;
   AlignedArray<T> weight, gradient;
@@ -98,6 +99,7 @@ struct Workspace {
   AlignedArray<T> velocity_tile, increment_tile;
   AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
   AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
+  AlignedArray<T> moved_corners;                    ///< [corner][D][chunk_size] cells, from the particle
   AlignedArray<T> higher;  ///< [function][D][chunk_size], gathered coefficients of polynomials beyond affine, m/s
   PhaseClock clock;
   bool far_only = false;  ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
@@ -297,7 +299,10 @@ class ParticleStep {
   void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
   void advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass);
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
-  double advance_position(const Chunk& chunk, const T* advection, double dt);
+  double advance_position(const Chunk& chunk, const T* advection, T scale);
+  void gather_corners(const Chunk& chunk, Work& work, const T* advection, double dt, T* moved) const;
+  Vec<D, T> velocity_at_corner(const Chunk& chunk, const Work& work, int particle, const Vec<D, T>& corner) const;
+  double move_with_corners(const Chunk& chunk, Work& work, const T* moved);
   double margin(int axis, int side) const;
   void note_outside(const Chunk& chunk);
 

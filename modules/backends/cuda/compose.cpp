@@ -122,6 +122,7 @@ std::string scene_text(const Choice& choice) {
   if (choice.filter) out << "  using Filter = " << type(choice.filter) << ";\n";
   if (choice.contact) out << "  using Contact = " << type(choice.contact) << ";\n";
   out << "  static constexpr bool contact = " << yes(choice.contact) << ", list = " << yes(list)
+      << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
       << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
       << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
       << "  static constexpr int width = " << (list ? 1 : shape.width)

@@ -26,8 +26,8 @@ struct Body {
   const Component *transfer, *material;
   int field = 0, material_number = 0, count = 0, dimension = 2, basis_functions = 0;
   T mass = 0, volume = 0, half_size = 0;
-  std::vector<T> position, velocity, advection, domain, stencil_domain, transfer_state, material_state, stress,
-      volume_ratio, velocity_gradient, wave_speed;
+  std::vector<T> position, velocity, advection, domain, corners, moved_corners, stencil_domain, transfer_state,
+      material_state, stress, volume_ratio, velocity_gradient, wave_speed;
   std::vector<int> block_cell, block_begin, order;
 
   Body(const Experiment& experiment, const Plan& plan, int index, const SeededBody& seeded)
@@ -52,6 +52,9 @@ struct Body {
       for (int c = 0; c < D; ++c)
         std::fill_n(domain.begin() + static_cast<long>(c * (D + 1)) * count, count, half_size);
     }
+    for (int k = 0; k < plan.sample_points * D; ++k)
+      corners.insert(corners.end(), count, k / D >> k % D & 1 ? half_size : -half_size);
+    moved_corners = corners;
     stress.resize(static_cast<std::size_t>(D == 2 ? 4 : 6) * count), volume_ratio.resize(count);
     velocity_gradient.resize(static_cast<std::size_t>(D) * D * count), wave_speed.resize(count);
   }
@@ -97,6 +100,8 @@ struct Body {
             velocity.data(),
             advection.data(),
             domain.empty() ? nullptr : domain.data(),
+            corners.empty() ? nullptr : corners.data(),
+            corners.empty() ? nullptr : moved_corners.data(),
             stencil_domain.empty() ? nullptr : stencil_domain.data(),
             transfer_state.data(),
             material_state.data(),
@@ -222,9 +227,10 @@ class HostRun final : public Backend {
   std::uint64_t particle_bytes() const override {
     std::uint64_t scalars = 0;
     for (const Body<T>& body : bodies_)
-      scalars += body.position.size() + body.velocity.size() + body.advection.size() + body.domain.size() +
-                 body.stencil_domain.size() + body.transfer_state.size() + body.material_state.size() +
-                 body.stress.size() + body.volume_ratio.size() + body.velocity_gradient.size() + body.wave_speed.size();
+      scalars += body.position.size() + body.velocity.size() + 2 * body.corners.size() + body.advection.size() +
+                 body.domain.size() + body.stencil_domain.size() + body.transfer_state.size() +
+                 body.material_state.size() + body.stress.size() + body.volume_ratio.size() +
+                 body.velocity_gradient.size() + body.wave_speed.size();
     return scalars * sizeof(T);
   }
   std::uint64_t grid_bytes() const override {
@@ -246,6 +252,8 @@ class HostRun final : public Backend {
           scalars);
     state.material_state = body.fields(body.material_state, *body.material->plugin);
     state.mass = body.mass, state.volume = body.volume;
+    if (!body.corners.empty())
+      state.corners = body.particle_major(body.corners.data(), plan_.sample_points * D, experiment_.grid.cell_size);
     if (!body.domain.empty()) state.domain = body.particle_major(body.domain.data(), D * D, experiment_.grid.cell_size);
     return state;
   }
@@ -438,8 +446,12 @@ class HostRun final : public Backend {
     }
   }
 
+  const char* move_failure() const {
+    return plan_.sample_points > 0 ? "left the domain, or its corners have turned its own domain inside out"
+                                   : "left the domain";
+  }
   void move() {
-    for (Body<T>& body : bodies_) run("move", arguments_of(body), teams(body.count), body, "left the domain");
+    for (Body<T>& body : bodies_) run("move", arguments_of(body), teams(body.count), body, move_failure());
   }
 
   // ---- contact -----------------------------------------------------------------------------------------------------

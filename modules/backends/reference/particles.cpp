@@ -35,6 +35,13 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
     for (int a = 0; a < D; ++a)
       domain_.row(a * (D + 1)).setConstant(0.5 / experiment.bodies[body].particles_per_cell_axis);
   }
+  if (plan.sample_points > 0) {
+    corners = moved_corners = make(plan.sample_points * D);
+    for (int corner = 0; corner < plan.sample_points; ++corner)
+      for (int a = 0; a < D; ++a)
+        corners.row(corner * D + a)
+            .setConstant((corner >> a & 1 ? 0.5 : -0.5) / experiment.bodies[body].particles_per_cell_axis);
+  }
   initialise(transfer_state_, *transfer_.plugin);
   if (plan.basis_functions > 0)
     transfer_state_[polynomial_coefficients] = gathered_higher = higher = make(plan.basis_functions * D);
@@ -74,7 +81,7 @@ std::uint64_t Particles::bytes() const {
   Eigen::Index scalars = 0;
   for (const Array* array : {&position, &velocity, &initial_position, &advection, &b, &A, &stress, &volume_ratio,
                              &gathered_velocity, &gathered_increment, &gathered_affine, &gathered_gradient,
-                             &velocity_gradient, &domain_, &gathered_higher, &higher})
+                             &velocity_gradient, &domain_, &gathered_higher, &higher, &corners, &moved_corners})
     scalars += array->size();
   for (const auto* fields : {&transfer_state_, &material_state_})
     for (const auto& [name, array] : *fields) scalars += array.size();
@@ -115,7 +122,7 @@ void Particles::pad(Array& array) const {
 }
 
 ShapeArguments Particles::shape_arguments() const {
-  ShapeArguments at{make(dimension_), make(dimension_), domain_};
+  ShapeArguments at{make(dimension_), make(dimension_), domain_, corners};
   for (int c = 0; c < dimension_; ++c)
     at.position.row(c) = (position.row(c).array() - experiment_.grid.lower[c]) / experiment_.grid.cell_size;
   at.half_size.setConstant(0.5 / experiment_.bodies[body_].particles_per_cell_axis);
@@ -288,6 +295,7 @@ BodyState Particles::state() const {
   if (initial_position.size()) result.initial_position = particle_major(initial_position);
   for (const auto& [name, array] : transfer_state_) result.transfer_state[name] = particle_major(array);
   for (const auto& [name, array] : material_state_) result.material_state[name] = particle_major(array);
+  if (plan_.sample_points > 0) result.corners = particle_major(experiment_.grid.cell_size * corners);
   if (plan_.particle_domain) result.domain = particle_major(experiment_.grid.cell_size * domain_);
   if (plan_.second_moment) {
     const double h = experiment_.grid.cell_size;
@@ -304,6 +312,7 @@ void Particles::visit_saved(Self& self, Visit visit) {
   visit("velocity", self.velocity);
   visit("initial_position", self.initial_position);
   visit("domain", self.domain_);
+  visit("corners", self.corners);
   for (auto& [name, field] : self.transfer_state_) visit(name, field);
   for (auto& [name, field] : self.material_state_) visit(name, field);
 }

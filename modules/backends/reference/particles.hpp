@@ -62,6 +62,8 @@ class Particles {
   Array b, A, stress, volume_ratio;
   Array gathered_velocity, gathered_increment, gathered_affine, gathered_gradient;
   Array velocity_gradient;  ///< what strains the particle
+  Array corners;            ///< [points*D], cells from the particle; empty unless Plan::sample_points
+  Array moved_corners;      ///< where the grid's velocity takes them in this step, from the particle as it is yet
   Array gathered_higher;    ///< [function][D], coefficients of the polynomials beyond affine, m/s
   Array higher;             ///< the same times the mass, to scatter with b and A
 

@@ -76,7 +76,7 @@ void Shape::evaluate_list(const ShapeArguments& at, ShapeValues& values) const {
                              values.weight.data(),
                              values.gradient.data(),
                              plan_.second_moment ? values.second_moment.data() : nullptr,
-                             nullptr};
+                             plan_.sample_points > 0 ? at.corners.data() : nullptr};
   shape_.evaluate_list[MPM_SCALAR_DOUBLE][D - 2](experiment_.shape.parameters.data(), &batch);
 }
 
@@ -176,6 +176,7 @@ Stencil Shape::stencil(const ShapeValues& values, const ShapeArguments& at, std:
   };
   Eigen::Vector3i coordinates = Eigen::Vector3i::Zero();
   if (shape_.form == MPM_NODE_LIST) {
+    if (values.count[p] < 1) throw RunFailure(domain_inside_out(*experiment_.shape.plugin), body, p);
     for (int k = 0; k < values.count[p]; ++k) {
       const StencilNode node = list_node(values, at, p, k, coordinates);
       add(node, coordinates);

@@ -34,6 +34,7 @@ struct ShapeArguments {
   Array position;   ///< [D], from the grid's lower corner
   Array half_size;  ///< [D]; half the undeformed particle's box
   Array domain;     ///< [D*D]; empty unless Plan::particle_domain
+  Array corners;    ///< [points*D], from the position; empty unless Plan::sample_points
 };
 
 /// What the plugin returned for all particles, in cells.

@@ -1,5 +1,7 @@
 // Particles to grid and back.
 
+#include <cmath>
+
 #include "backends/reference/reference_backend.hpp"
 
 namespace mpm::reference {
@@ -33,6 +35,35 @@ void ReferenceBackend::scatter_momentum(Particles& body, bool remap) {
       if (!remap) node.gravity_force += s.weight * body.mass() * gravity;
     }
     add_higher(body, p, &Node::momentum);
+  }
+}
+
+/// Where the tents' velocity at the corners takes them, and what moves the particle beyond the gathered velocity.
+void ReferenceBackend::gather_corners(Particles& body, const StepInfo& step) {
+  const int D = experiment_.dimension;
+  const double h = experiment_.grid.cell_size;
+  for (std::size_t p = 0; p < body.count(); ++p) {
+    const Vector own = body.column(body.advection, p) - body.column(body.gathered_velocity, p);
+    for (int corner = 0; corner < plan_.sample_points; ++corner) {
+      Vector velocity = own;
+      Vector place = Vector::Zero(), lower = Vector::Zero();
+      for (int a = 0; a < D; ++a) {
+        place[a] = (body.position(a, p) - experiment_.grid.lower[a]) / h + body.corners(corner * D + a, p);
+        lower[a] = std::floor(place[a]);
+      }
+      for (int which = 0; which < 1 << D; ++which) {
+        double weight = 1;
+        Eigen::Vector3i node = lower.cast<int>();
+        for (int a = 0; a < D; ++a) {
+          const bool upper = which >> a & 1;
+          weight *= upper ? place[a] - lower[a] : 1 - (place[a] - lower[a]);
+          node[a] += upper;
+        }
+        if (weight != 0) velocity += weight * grid_.node(body.field(), grid_.index(node)).velocity;
+      }
+      for (int a = 0; a < D; ++a)
+        body.moved_corners(corner * D + a, p) = body.corners(corner * D + a, p) + step.dt / h * velocity[a];
+    }
   }
 }
 
@@ -95,6 +126,7 @@ void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
     gather_moments(body, &Node::velocity);
     body.gather(step.dt);
     if (step.filtered) body.take_gathered_velocity();
+    if (plan_.sample_points > 0) gather_corners(body, step);
     if (pass.strain) ledger_.material += body.strain(pass.strain_share * step.dt);
   }
   if (plan_.ledger) ledger_.gather += particle_kinetic_energy() - kinetic_energy_after_;

@@ -45,7 +45,7 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
     const Mat<D, T> L = load_matrix<D>(a.particles.velocity_gradient, stride, p);
     Material::advance(constants, L, a.dt, state);
     store_state(a.particles.material_state, stride, p, state);
-    if constexpr (Scene::list || Scene::deformed)
+    if constexpr ((Scene::list && !Scene::sampled) || Scene::deformed)
       store_matrix(a.particles.domain, stride, p, advanced(load_matrix<D>(a.particles.domain, stride, p), L, a.dt));
   });
 }
