@@ -105,7 +105,7 @@ struct ShapeCase {
 
 struct ListCase {
   Variant v;
-  Buffer position, half_size, domain, node_count, node, weight, gradient, second_moment;
+  Buffer position, half_size, domain, corners, node_count, node, weight, gradient, second_moment;
 
   ListCase(const Variant& variant, bool with_gradient) : v(variant) {
     Random random(1);
@@ -113,6 +113,11 @@ struct ListCase {
     position = v.random(random, D, 4, 12);
     if (v.plugin->descriptor->needs & MPM_NEEDS_HALF_SIZE) half_size = v.random(random, D, 0.2, 0.3);
     if (v.plugin->descriptor->needs & MPM_NEEDS_DOMAIN) domain = v.near_unit(random, 0.25, 0.02);
+    const int points = static_cast<int>(v.plugin->shape().sample_points[D - 2]);
+    if (points > 0) corners = v.buffer(points * D);
+    for (int k = 0; k < points * D; ++k)
+      for (int lane = 0; lane < batch; ++lane)
+        corners.set(k, lane, (k / D >> k % D & 1 ? 0.25 : -0.25) + random.uniform(-0.01, 0.01));
     node_count = v.indices(1), node = v.indices(capacity * D), weight = v.buffer(capacity);
     if (with_gradient) gradient = v.buffer(capacity * D);
     if (v.plugin->shape().second_moment_kind == MPM_MOMENT_PER_PARTICLE) second_moment = v.buffer(D * D);
@@ -121,6 +126,7 @@ struct ListCase {
     auto b = v.header<mpm_list_batch>();
     b.capacity = v.plugin->shape().capacity[v.dimension - 2];
     b.position = position.data(), b.half_size = half_size.data(), b.domain = domain.data();
+    b.samples = corners.data();
     b.node_count = static_cast<std::int32_t*>(node_count.data());
     b.node = static_cast<std::int32_t*>(node.data());
     b.weight = weight.data(), b.gradient = gradient.data(), b.second_moment = second_moment.data();

@@ -98,6 +98,9 @@ void print(const Plugin& plugin) {
                   : shape.second_moment_kind == MPM_MOMENT_PER_PARTICLE ? "one a particle"
                                                                         : number_text(shape.second_moment) + " h^2")
               << "\n";
+    if (shape.sample_points[0] > 0)
+      std::cout << "Carries the " << shape.sample_points[0] << " corners of its domain in 2-D, "
+                << shape.sample_points[1] << " in 3-D, which the grid's velocity moves\n";
     if (d.needs & MPM_NEEDS_HALF_SIZE) std::cout << "Needs the size of the undeformed particle\n";
     if (d.needs & MPM_NEEDS_DOMAIN) std::cout << "Needs the deformed domain of the particle, which it then carries\n";
   }
@@ -218,6 +221,7 @@ int list_combinations(bool json) {
       << "\nShape x transfer x filter (none, at every step, periodically) x contact (none, each law) x stress update: "
       << mixes.size() << " combinations, " << refused.size() << " refused, for " << reasons.size()
       << (reasons.size() == 1 ? " reason" : " reasons")
+      << " (a transfer with a choice of polynomials counts once for each order)"
       << ". The others run on every backend, in 2-D and 3-D, with every material.\n\n";
   print_filters(registry);
   std::cout << "\nRefused at load, with this reason:\n\n";

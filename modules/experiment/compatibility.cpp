@@ -1,10 +1,34 @@
 #include "experiment/compatibility.hpp"
 
+#include <algorithm>
+
 namespace mpm {
 namespace {
 
 std::string named(const char* kind, const Plugin& plugin) {
   return std::string(kind) + " \"" + std::string(plugin.id()) + "\"";
+}
+
+/// All orders that the choices among a transfer's parameters ask for, other parameters at their defaults.
+std::vector<int> basis_orders_of(const Plugin& transfer) {
+  const auto order_of = transfer.transfer().basis_order;
+  if (!order_of) return {0};
+  std::vector<double> block(transfer.descriptor->parameter_bytes / sizeof(double));
+  for (const mpm_parameter& parameter : transfer.parameters())
+    block[parameter.offset / sizeof(double)] =
+        parameter.default_value == parameter.default_value ? parameter.default_value : parameter.minimum;
+  std::vector<int> orders{order_of(block.data())};
+  for (const mpm_parameter& parameter : transfer.parameters()) {
+    if (parameter.type != MPM_CHOICE) continue;
+    const std::string choices = parameter.choices;
+    std::vector<double> chosen = block;
+    for (long k = std::count(choices.begin(), choices.end(), '|'); k >= 0; --k) {
+      chosen[parameter.offset / sizeof(double)] = static_cast<double>(k);
+      const int order = order_of(chosen.data());
+      if (std::find(orders.begin(), orders.end(), order) == orders.end()) orders.push_back(order);
+    }
+  }
+  return orders;
 }
 
 }  // namespace
@@ -14,6 +38,19 @@ std::optional<Refusal> refusal_of(const Mix& mix) {
   if (shape.form == MPM_TENSOR_PRODUCT && (shape.width < 2 || shape.width > 4))
     return Refusal{MPM_SHAPE, named("shape", *mix.shape) + " has " + std::to_string(shape.width) +
                                   " nodes an axis; backends run 2 to 4"};
+  if (mix.basis_order > 0 && shape.form == MPM_NODE_LIST)
+    return Refusal{MPM_TRANSFER, named("transfer", *mix.transfer) +
+                                     " carries products of polynomials along the axes, and the nodes of " +
+                                     named("shape", *mix.shape) +
+                                     " have no axes; choose a shape that is a tensor product, e.g. "
+                                     "\"bspline_quadratic\", or transfer \"apic\""};
+  if (mix.basis_order > 1 && (mix.shape->descriptor->needs & (MPM_NEEDS_HALF_SIZE | MPM_NEEDS_DOMAIN)))
+    return Refusal{MPM_TRANSFER,
+                   named("transfer", *mix.transfer) +
+                       " with powers above 1 takes them from all nodes of a stencil, and outer weights of " +
+                       named("shape", *mix.shape) +
+                       " vanish where a box does not reach them; choose basis \"multilinear\" or a "
+                       "shape without a particle size, e.g. \"bspline_quadratic\""};
   // FLIP takes changes of the grid's velocity and a filter replaces the particles' velocity: both at every step is the
   // filter alone.
   const bool increments = mix.transfer->transfer().traits & MPM_GATHERS_INCREMENT;
@@ -25,6 +62,11 @@ std::optional<Refusal> refusal_of(const Mix& mix) {
                        "choose transfer " +
                        (mix.transfer->transfer().traits & MPM_SCATTERS_AFFINE ? "\"apic\"" : "\"pic\"")};
   return std::nullopt;
+}
+
+int basis_order_of(const Component& transfer) {
+  const auto order = transfer.plugin->transfer().basis_order;
+  return order ? order(transfer.parameters.data()) : 0;
 }
 
 std::vector<Mix> all_mixes(const Registry& registry) {
@@ -39,7 +81,8 @@ std::vector<Mix> all_mixes(const Registry& registry) {
           for (const Plugin* law : laws)
             for (const StressUpdate update :
                  {StressUpdate::first, StressUpdate::last, StressUpdate::modified_last, StressUpdate::averaged})
-              if (filter || every_step) mixes.push_back({shape, transfer, filter, law, update, every_step});
+              for (const int order : basis_orders_of(*transfer))
+                if (filter || every_step) mixes.push_back({shape, transfer, filter, law, update, every_step, order});
   return mixes;
 }
 

@@ -18,7 +18,11 @@ struct Mix {
   const Plugin* contact = nullptr;  ///< or none
   StressUpdate stress_update = StressUpdate::last;
   bool filtered_every_step = true;
+  int basis_order = 0;  ///< of the transfer, as its parameters ask for it (mpm_transfer::basis_order)
 };
+
+/// Highest power along an axis of the polynomials beyond affine that the transfer asks for; 0: none.
+int basis_order_of(const Component& transfer);
 
 struct Refusal {
   mpm_kind at;         ///< the component to change
@@ -29,7 +33,8 @@ struct Refusal {
 std::optional<Refusal> refusal_of(const Mix& mix);
 
 /// Every mix of the registry's plugins: shape x transfer x (no filter, each filter at every step, each filter
-/// periodically) x (no contact, each law) x stress update. Materials mix with everything.
+/// periodically) x (no contact, each law) x stress update. Materials mix with everything. A transfer with polynomials
+/// beyond affine comes once for every order that its choices ask for.
 std::vector<Mix> all_mixes(const Registry& registry);
 
 }  // namespace mpm

@@ -9,6 +9,7 @@
 
 #include "experiment/compatibility.hpp"
 #include "experiment/diagnostics.hpp"
+#include "kernel/polynomial_basis.hpp"
 
 namespace mpm {
 namespace {
@@ -51,7 +52,8 @@ class Planner {
             nullptr,
             nullptr,
             experiment_.solver.stress_update,
-            schedule.every_steps == 1 && schedule.every_time == 0 && schedule.every_courant == 0};
+            schedule.every_steps == 1 && schedule.every_time == 0 && schedule.every_courant == 0,
+            basis_order_of(experiment_.transfer)};
     if (experiment_.filter) mix.filter = experiment_.filter->plugin;
     if (experiment_.contact) mix.contact = experiment_.contact->plugin;
     const auto refusal = refusal_of(mix);
@@ -89,8 +91,13 @@ class Planner {
                              plan_.contact || plan_.velocity_gradient_moment ||
                              (plan_.affine_moment && moment_is_gradient);
     plan_.particle_domain = experiment_.shape.plugin->descriptor->needs & MPM_NEEDS_DOMAIN;
+    plan_.sample_points = static_cast<int>(shape_.sample_points[experiment_.dimension - 2]);
     plan_.second_moment = shape_.second_moment_kind == MPM_MOMENT_PER_PARTICLE &&
                           (plan_.affine_moment || (transfer_.traits & MPM_AFFINE_CARRIES_ENERGY));
+    if (const int order = basis_order_of(experiment_.transfer); order > 0) {
+      plan_.basis_order = std::min(order, static_cast<int>(shape_.width) - 1);
+      plan_.basis_functions = basis_functions(experiment_.dimension, plan_.basis_order);
+    }
     plan_.filter = experiment_.filter.has_value();
     // The reference backend keeps the stencils of a step; the cpu backend evaluates them anew in every pass.
     const bool strains_before_gather =
@@ -187,12 +194,22 @@ class Planner {
                   "/solver/stress_update \"modified_last\": positions wait for the remapped strain");
       if (plan_.particle_domain)
         attribute(body, "domain", D * D, named(experiment_.shape) + ": semi-side vectors of the particle's domain");
+      if (plan_.sample_points > 0) {
+        attribute(body, "corners", D * plan_.sample_points, named(experiment_.shape) + ": corners of the domain");
+        if (plan_.kept_advection)
+          attribute(body, "moved_corners", D * plan_.sample_points,
+                    "/solver/stress_update \"modified_last\": corners wait for the remapped strain");
+      }
       if (plan_.strained_domain)
         attribute(body, "strained_domain", D * D,
                   strains_before_forces()
                       ? named_order() + ": the weights of a step stay those before its strain"
                       : named(*experiment_.filter) + ": the weights of a step stay those before its strain");
       state(body, experiment_.transfer);
+      if (plan_.basis_functions > 0)
+        attribute(body, polynomial_coefficients, D * plan_.basis_functions,
+                  named(experiment_.transfer) + ": " + std::to_string(plan_.basis_functions) +
+                      " polynomials beyond the affine ones");
       state(body, experiment_.materials[specification.material].component);
     }
   }

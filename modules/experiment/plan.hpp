@@ -10,6 +10,10 @@
 
 namespace mpm {
 
+/// Name of the coefficients of polynomials beyond affine among a particle's transfer state: [function][D], m/s per
+/// power of a cell.
+inline constexpr const char* polynomial_coefficients = "polynomial_coefficients";
+
 /// One field every particle of a body carries.
 struct PlannedAttribute {
   int body = 0;
@@ -95,7 +99,10 @@ struct Plan {
   bool filter = false;                    ///< the grid keeps an increment and its projection
   bool kept_velocity = false;             ///< the grid keeps the unfiltered velocity (a pass restores it)
   bool particle_domain = false;           ///< particles carry their domain, advanced with L where the material is
+  int sample_points = 0;                  ///< corners of a particle's domain that the grid's velocity moves
   bool strained_domain = false;           ///< and its strained copy: a later pass of the step needs the old weights
+  int basis_order = 0;                    ///< highest power along an axis of the polynomials beyond affine; 0: none
+  int basis_functions = 0;                ///< how many a particle carries (kernel/polynomial_basis.hpp)
   bool second_moment = false;             ///< the shape's second moment is evaluated a particle
   bool velocity_gradient_moment = false;  ///< the transfer gathers L
   bool sorts_before_gather = false;       ///< velocities that the gather replaces need not travel with the particles

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "metrics/particle_quantities.hpp"
+#include "metrics/polynomial_energy.hpp"
 
 namespace mpm {
 namespace {
@@ -84,6 +85,7 @@ void Metrics::add_body(int body, Totals& totals) const {
   const MaterialQuantities material = material_quantities(experiment, body, state);
   const bool affine = experiment.transfer.plugin->transfer().traits & MPM_AFFINE_CARRIES_ENERGY;
   const double* C = affine ? state.transfer_state.at(experiment.transfer.plugin->state()[0].name).data() : nullptr;
+  const std::vector<double> polynomials = polynomial_energy(experiment, simulation_.plan(), body, state);
   for (std::size_t p = 0; p < state.position.size() / D; ++p) {
     const double m = state.mass * state.ring(p);
     double x[3] = {}, v[3] = {};
@@ -104,6 +106,7 @@ void Metrics::add_body(int body, Totals& totals) const {
       totals.gravitational -= m * experiment.gravity[c] * x[c];
     }
     if (C) add_affine(experiment, state, &C[p * D * D], p, totals);
+    if (!polynomials.empty()) totals.kinetic += m * polynomials[p];
   }
   if (!start_.empty()) add_errors(body, state, totals);
 }

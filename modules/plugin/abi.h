@@ -116,6 +116,8 @@ typedef struct mpm_list_batch {
   void* weight;          /* [capacity][stride] out */
   void* gradient;        /* [capacity][D][stride] out: by position; null when the plan needs none */
   void* second_moment;   /* [D*D][stride] out: sum w d d^T, row-major; null unless per particle and needed */
+  /* Since revision 3. [sample_points][D][stride], cells from the particle; null unless the shape has such points. */
+  const void* samples;
 } mpm_list_batch;
 /* The same particles' nodes as dense boxes, for hosts that take rows of nodes at once. A particle's nodes lie within
  * `extent` nodes an axis from `base`; a node (i, j, k) of the box has entry (i * MPM_BOX_WIDTH + j) * MPM_BOX_WIDTH +
@@ -143,6 +145,11 @@ typedef struct mpm_shape {
   void (*evaluate_list[MPM_PRECISIONS][2])(const void* parameters, const mpm_list_batch* batch); /* list, else null */
   /* Since revision 1. Of a list, null when it has no boxes. */
   void (*evaluate_box[MPM_PRECISIONS][2])(const void* parameters, const mpm_box_batch* batch);
+  /* Since revision 3. Of a list, [dimension - 2]: 0, or 4 and 8: each particle carries the corners of a quadrilateral
+   * and of a hexahedron as its domain (corner c is at the upper end along axis k where bit k of c is set), which the
+   * host moves with the grid's multilinear velocity and whose centroid the particle is. No node lies farther than the
+   * farthest corner + reach along an axis. A domain turned inside out has node_count 0, and the run stops. */
+  uint32_t sample_points[2];
 } mpm_shape;
 
 /* ---- transfer ------------------------------------------------------------------------------------------------
@@ -191,6 +198,12 @@ typedef struct mpm_transfer {
   void (*scatter[MPM_PRECISIONS][2])(const void* parameters,
                                      const mpm_scatter_batch* batch); /* [precision][dimension - 2] */
   void (*gather[MPM_PRECISIONS][2])(const void* parameters, const mpm_gather_batch* batch);
+  /* Since revision 3. Null, or the highest power along an axis, 0 to 3, of the polynomials that a particle carries
+   * beyond b and A: products over the axes of polynomials orthogonal under the shape's weights (see
+   * kernel/polynomial_basis.hpp), as many an axis as the shape has nodes at most. The host carries, scatters (times
+   * the mass) and gathers their coefficients. 0: none. Needs a tensor product, and the traits MPM_SCATTERS_AFFINE,
+   * MPM_GATHERS_AFFINE and MPM_AFFINE_CARRIES_ENERGY. */
+  int32_t (*basis_order)(const void* parameters);
 } mpm_transfer;
 
 /* ---- filter ---------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 
+#include "kernel/corner_domain.hpp"
 #include "plugin/conformance_support.hpp"
 
 namespace mpm::conformance {
@@ -18,11 +19,16 @@ int capacity_of(const Plugin& plugin, int dimension) {
   return static_cast<int>(plugin.shape().capacity[dimension - 2]);
 }
 
+/// Corners of a domain that a particle carries, or 0.
+int points_of(const Plugin& plugin, int dimension) {
+  return static_cast<int>(plugin.shape().sample_points[dimension - 2]);
+}
+
 /// One call of the plugin with all its arrays.
 struct ListBatch {
   Variant variant;
   int capacity, count;
-  Array position, half_size, domain, node_count, node, weight, gradient, second_moment;
+  Array position, half_size, domain, samples, node_count, node, weight, gradient, second_moment;
 
   ListBatch(const Plugin& plugin, const Variant& v, int entries, int outputs)
       : variant(v), capacity(capacity_of(plugin, v.dimension)), count(entries) {
@@ -32,6 +38,7 @@ struct ListBatch {
     position = Array(element, D, n);
     if (plugin.descriptor->needs & MPM_NEEDS_HALF_SIZE) half_size = Array(element, D, n);
     if (plugin.descriptor->needs & MPM_NEEDS_DOMAIN) domain = Array(element, D * D, n);
+    if (points_of(plugin, D) > 0) samples = Array(element, points_of(plugin, D) * D, n);
     node_count = Array(Element::index, 1, n);
     node = Array(Element::index, capacity * D, n);
     weight = Array(element, capacity, n);
@@ -49,6 +56,7 @@ struct ListBatch {
     batch.position = position.data();
     batch.half_size = half_size.data();
     batch.domain = domain.data();
+    batch.samples = samples.data();
     batch.node_count = static_cast<std::int32_t*>(node_count.data());
     batch.node = static_cast<std::int32_t*>(node.data());
     batch.weight = weight.data();
@@ -68,10 +76,37 @@ struct ListInput {
   std::array<Vector3, full> position{}, half_size{};
   std::array<Matrix3, full> domain{};
   std::array<bool, full> flat{};
+  std::array<std::array<Vector3, 8>, full> corners{};  ///< of shapes with sample points, from the position
+  std::array<Vector3, full> centre{};                  ///< where their weights lie in the mean, from the position
 };
 
+/// The corners of a lane's parallelepiped, every other one bent as far as it stays upright, and their centroid.
+template <int D>
+void bend_corners(Random& random, int lane, ListInput& input) {
+  Vec<D, double> straight[1 << D], bent[1 << D];
+  double size = 1;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) size = std::min(size, std::max(0.01, std::abs(input.domain[lane](i, j))));
+  for (int c = 0; c < 1 << D; ++c)
+    for (int i = 0; i < D; ++i) {
+      double x = 0;
+      for (int j = 0; j < D; ++j) x += (c >> j & 1 ? 1 : -1) * input.domain[lane](i, j);
+      straight[c][i] = static_cast<float>(x);
+      bent[c][i] = static_cast<float>(x + 0.3 * size * random.uniform(-1, 1));
+    }
+  const bool bend = lane % 2 == 0 && corner_domain<D, double>(bent).upright;
+  const Vec<D, double>* const corner = bend ? bent : straight;
+  const auto domain = corner_domain<D, double>(corner);
+  const Vec<D, double> centre = centroid(domain, corner);
+  for (int i = 0; i < D; ++i) {
+    input.centre[lane][i] = centre[i];
+    for (int c = 0; c < 1 << D; ++c) input.corners[lane][c][i] = corner[c][i];
+  }
+}
+
 /// Domains from a fraction of a cell to several cells, turned and sheared; every sixteenth has collapsed.
-ListInput list_input(Random& random, int dimension) {
+ListInput list_input(const Plugin& plugin, Random& random, int dimension) {
+  const bool sampled = points_of(plugin, dimension) > 0;  // collapsed ones have no list
   ListInput input;
   for (int lane = 0; lane < full; ++lane) {
     for (int a = 0; a < dimension; ++a) {
@@ -85,13 +120,15 @@ ListInput list_input(Random& random, int dimension) {
     const double size = lane % 4 == 3 ? random.uniform(0.5, 3) : random.uniform(0.05, 0.5);
     Matrix3 shape = sum(Matrix3::identity(), random.matrix(dimension, lane % 8 < 3 ? 0 : 0.3));
     if (lane % 2) shape = random.rotation(dimension) * shape;
-    input.flat[lane] = lane % 16 == 15;
+    input.flat[lane] = lane % 16 == 15 && !sampled;
     for (int i = 0; i < dimension; ++i)
       for (int j = 0; j < dimension; ++j) {
         const int column = input.flat[lane] && j == 1 ? 0 : j;
         input.domain[lane](i, j) = static_cast<float>(size * shape(i, column));
       }
-    if (lane == full - 1) input.domain[lane] = Matrix3{};  // a point
+    if (lane == full - 1 && !sampled) input.domain[lane] = Matrix3{};  // a point
+    if (sampled && dimension == 2) bend_corners<2>(random, lane, input);
+    if (sampled && dimension == 3) bend_corners<3>(random, lane, input);
   }
   return input;
 }
@@ -105,6 +142,7 @@ ListBatch loaded(const Plugin& plugin, const Variant& v, const ListInput& input,
       if (batch.half_size.components()) batch.half_size.set(a, lane, input.half_size[lane][a]);
       for (int b = 0; b < D && batch.domain.components(); ++b)
         batch.domain.set(a * D + b, lane, input.domain[lane](a, b));
+      for (int c = 0; c < points_of(plugin, D); ++c) batch.samples.set(c * D + a, lane, input.corners[lane][c][a]);
     }
   return batch;
 }
@@ -121,6 +159,10 @@ double reach_of(const Plugin& plugin, const ListInput& input, int axis, int lane
   double reach = plugin.shape().reach;
   if (plugin.descriptor->needs & MPM_NEEDS_DOMAIN)
     for (int k = 0; k < 3; ++k) reach += std::abs(input.domain[lane](axis, k));
+  double farthest = 0;
+  for (int c = 0; c < points_of(plugin, 2) || c < points_of(plugin, 3); ++c)
+    farthest = std::max(farthest, std::abs(input.corners[lane][c][axis]));
+  reach += farthest;
   return reach;
 }
 
@@ -171,7 +213,7 @@ void check_sums(const Plugin& plugin, const ListBatch& b, const ListInput& input
     for (int k = 0; k < b.nodes(lane); ++k) {
       const double w = b.weight(k, lane);
       Vector3 d{};
-      for (int a = 0; a < D; ++a) d[a] = b.coordinate(k, a, lane) - b.position(a, lane);
+      for (int a = 0; a < D; ++a) d[a] = b.coordinate(k, a, lane) - b.position(a, lane) - input.centre[lane][a];
       weights += w, f += w * dot(field, d), least = std::min(least, w);
       for (int i = 0; i < D; ++i) {
         slopes[i] += b.slope(k, i, lane), first[i] += w * d[i], f_slope[i] += dot(field, d) * b.slope(k, i, lane);
@@ -314,13 +356,26 @@ void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample
       for (const Array* out : {&b.node_count, &b.node, &b.weight, &b.gradient, &b.second_moment})
         guards &= out->guards_intact();
       guards &= b.node_count.all_written() && b.second_moment.all_written();
-      inputs &= b.position == untouched.position && b.half_size == untouched.half_size && b.domain == untouched.domain;
+      inputs &= b.position == untouched.position && b.half_size == untouched.half_size &&
+                b.domain == untouched.domain && b.samples == untouched.samples;
     }
   findings.require("writes_inside_arrays [" + v.name() + "]", guards, "guards around the outputs" + where);
   findings.require("finite [" + v.name() + "]", finite, "weights and gradients, for collapsed domains too" + where);
   findings.require("inputs_untouched [" + v.name() + "]", inputs, "positions, boxes and domains" + where);
   findings.require("independent_of_batch [" + v.name() + "]", same,
                    "counts of 16 to 64, with and without optional outputs" + where);
+}
+
+/// A domain that its corners turn inside out has no list.
+void check_inside_out(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, ListInput input,
+                      const std::string& where, Findings& findings) {
+  for (auto& corner : input.corners)
+    for (int c = 0; c < points_of(plugin, v.dimension); c += 2) std::swap(corner[c], corner[c + 1]);
+  const ListBatch b = evaluated(plugin, v, parameters, input);
+  bool refused = true;
+  for (int lane = 0; lane < full; ++lane) refused &= b.node_count(0, lane) == 0;
+  findings.require("inside_out [" + v.name() + "]", refused,
+                   "no nodes for corners that have passed one another" + where);
 }
 
 // ---- boxes
@@ -531,12 +586,15 @@ void check_list_shape(const Plugin& plugin, Findings& findings) {
                      shape.capacity[1] <= 4096 && shape.reach > 0;
   findings.require("capacity_and_reach", sized, "1 to 4096 nodes and a positive reach");
   findings.require("second_moment_kind", shape.second_moment_kind <= MPM_MOMENT_PER_PARTICLE, "of mpm_second_moment");
-  if (!sized) return;
+  const bool points = (shape.sample_points[0] == 0 && shape.sample_points[1] == 0) ||
+                      (shape.sample_points[0] == 4 && shape.sample_points[1] == 8);
+  findings.require("sample_points", points, "none, or the corners of a quadrilateral and of a hexahedron");
+  if (!sized || !points) return;
   Random random(20240607);
   for (const ParameterSample& parameters : sample_parameters(plugin, random))
     for (const Variant& v : variants_of(*plugin.descriptor)) {
       const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
-      const ListInput input = list_input(random, v.dimension);
+      const ListInput input = list_input(plugin, random, v.dimension);
       findings.running("nodes, sums and moment", v, where);
       const ListBatch b = evaluated(plugin, v, parameters, input);
       check_nodes(plugin, b, input, where, findings);
@@ -546,6 +604,7 @@ void check_list_shape(const Plugin& plugin, Findings& findings) {
       check_translation(plugin, v, parameters, input, where, findings);
       findings.running("batches", v, where);
       check_batches(plugin, v, parameters, input, where, findings);
+      if (points_of(plugin, v.dimension) > 0) check_inside_out(plugin, v, parameters, input, where, findings);
       if (shape.evaluate_box[v.precision][v.dimension - 2]) check_boxes(plugin, v, parameters, input, where, findings);
       if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
       findings.running("agreement with scalar", v, where);

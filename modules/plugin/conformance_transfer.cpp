@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <vector>
 
+#include "kernel/polynomial_basis.hpp"
 #include "plugin/conformance_support.hpp"
 
 namespace mpm::conformance {
@@ -474,6 +476,100 @@ void check_replaced_motion(const Plugin& plugin, const Variant& v, const Paramet
                    "advection velocity is the gathered one" + where);
 }
 
+// ---- polynomials beyond affine, whose sums are the host's
+// ------------------------------------------------------------
+
+/// Values of the polynomials at the nodes of one particle's quadratic stencil, in the order of for_nodes.
+struct Polynomials {
+  std::vector<std::array<double, 27>> given, taken;
+  Polynomials(const Vector3& position, int dimension, int order) {
+    AxisBasis<3, double> axis[3];
+    for (int a = 0; a < dimension; ++a) {
+      const double x = position[a] / spacing, f = x - std::floor(x - 0.5);
+      const double w[3] = {0.5 * (1.5 - f) * (1.5 - f), 0.75 - (f - 1) * (f - 1), 0.5 * (f - 0.5) * (f - 0.5)};
+      make_axis_basis<3>(w, 1, f, order, axis[a]);
+    }
+    const auto add = [&](int, const int* power) {
+      std::array<double, 27> give{}, take{};
+      for (int node = 0; node < (dimension == 2 ? 9 : 27); ++node) {
+        const int k[3] = {node % 3, node / 3 % 3, node / 9};
+        give[node] = take[node] = 1;
+        for (int a = 0; a < dimension; ++a)
+          give[node] *= axis[a].given[power[a]][k[a]], take[node] *= axis[a].taken[power[a]][k[a]];
+      }
+      given.push_back(give), taken.push_back(take);
+    };
+    if (dimension == 2)
+      for_each_product<2>(order, add);
+    else
+      for_each_product<3>(order, add);
+  }
+};
+
+/// One particle alone on the grid with random coefficients: b, A and the polynomials come back unchanged, and what the
+/// polynomials give has neither momentum nor angular momentum.
+void check_polynomials(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
+                       const Particles& particles, Random& random, const std::string& where, Findings& findings) {
+  const auto order_of = plugin.transfer().basis_order;
+  if (!order_of) return;
+  const int asked = order_of(parameters.data()), order = std::min(asked, 2), D = v.dimension;
+  findings.require("basis_order [" + v.name() + "]", asked >= 0 && asked < static_cast<int>(MPM_BOX_WIDTH),
+                   "0 to 3" + where);
+  constexpr unsigned lower_orders = MPM_SCATTERS_AFFINE | MPM_GATHERS_AFFINE | MPM_AFFINE_CARRIES_ENERGY;
+  const bool affine = (traits_of(plugin) & lower_orders) == lower_orders && state_is_affine_velocity(plugin);
+  findings.require("polynomials_beyond_affine [" + v.name() + "]", affine,
+                   "the orders 0 and 1 are v and an affine velocity that counts" + where);
+  if (!affine || order < 1) return;
+  TransferBatch batch = loaded(plugin, v, particles);
+  const TransferBatch before = batch;
+  batch.scatter(plugin, parameters);
+  Worst returned, moments;
+  for (int lane = 0; lane < full; ++lane) {
+    const Polynomials polynomials(particles.position[lane], D, order);
+    const std::size_t functions = polynomials.given.size();
+    std::vector<Vector3> coefficient(functions), back(functions);
+    for (Vector3& c : coefficient)
+      for (int i = 0; i < D; ++i) c[i] = random.uniform(-1, 1);
+    const Vector3 b = vector_of(batch.b, D, lane);
+    const Matrix3 A = matrix_of(batch.A, D, lane);
+    const double m = batch.mass(0, lane);
+    Vector3 velocity{}, momentum{};
+    Matrix3 C{}, angular{};
+    int node = 0;
+    for_nodes(particles.position[lane], D, [&](int, double w, const Vector3& d, const Vector3&) {
+      const Vector3 Ad = product(A, d);
+      for (int i = 0; i < D; ++i) {
+        double higher = 0;  // momentum that the polynomials give
+        for (std::size_t k = 0; k < functions; ++k) higher += m * coefficient[k][i] * polynomials.given[k][node];
+        // Where the weight vanishes the node has no velocity, and the mean of its polynomials stands for it.
+        double field = (b[i] + Ad[i]) / m;
+        for (std::size_t k = 0; k < functions; ++k)
+          field += w > 0 ? coefficient[k][i] * polynomials.given[k][node] / w : 0;
+        momentum[i] += higher;
+        for (int j = 0; j < D; ++j)
+          angular(i, j) += higher * d[j] / spacing, C(i, j) += w * field * d[j] / second_moment;
+        velocity[i] += w * field;
+        for (std::size_t k = 0; k < functions; ++k) back[k][i] += polynomials.taken[k][node] * field;
+      }
+      ++node;
+    });
+    set_vector(batch.gathered, D, lane, velocity);
+    set_matrix(batch.affine, D, lane, C);
+    moments.add(std::max(difference(momentum, {}), largest_difference(angular, {})) / m, lane);
+    for (std::size_t k = 0; k < functions; ++k) returned.add(difference(back[k], coefficient[k]), lane);
+  }
+  batch.gather(plugin, parameters, 0x1p-8);
+  for (int lane = 0; lane < full; ++lane) {
+    returned.add(difference(vector_of(batch.particle_velocity, D, lane), vector_of(before.velocity, D, lane)), lane);
+    returned.add(spacing * largest_difference(matrix_of(batch.state[0], D, lane), matrix_of(before.state[0], D, lane)),
+                 lane);
+  }
+  findings.at_most("polynomials_return", v, returned, 10 * bound_of(v),
+                   "change of v, C and the coefficients of a particle alone" + where);
+  findings.at_most("polynomials_carry_no_momentum", v, moments, bound_of(v),
+                   "momentum and angular momentum of the polynomials, over the mass" + where);
+}
+
 }  // namespace
 
 void check_transfer(const Plugin& plugin, Findings& findings) {
@@ -490,6 +586,8 @@ void check_transfer(const Plugin& plugin, Findings& findings) {
       check_affine(plugin, v, parameters, particles, random, where, findings);
       findings.running("batches", v, where);
       check_batches(plugin, v, parameters, particles, where, findings);
+      findings.running("polynomials", v, where);
+      check_polynomials(plugin, v, parameters, particles, random, where, findings);
       findings.running("replaced motion", v, where);
       check_replaced_motion(plugin, v, parameters, particles, where, findings);
       if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;

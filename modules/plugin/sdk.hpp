@@ -71,8 +71,19 @@ concept ListShapeFunctorIn = requires(const typename F::Parameters& p, const Vec
   { F::reach } -> std::convertible_to<double>;
   F::evaluate(p, x, domain, out);
 };
+/// The same of a particle whose domain is a quadrilateral or hexahedron with these corners, from the particle.
+template <class F, int D>
+concept SampledShapeFunctorIn = requires(const typename F::Parameters& p, const Vec<D, double>& x,
+                                         const Vec<D, double>* corners,
+                                         NodeList<D, double, F::template capacity<D>>& out) {
+  { F::reach } -> std::convertible_to<double>;
+  { F::template sample_points<D> } -> std::convertible_to<int>;
+  F::evaluate(p, x, corners, out);
+};
 template <class F>
-concept ListShapeFunctor = ListShapeFunctorIn<F, 2> && ListShapeFunctorIn<F, 3>;
+concept SampledShapeFunctor = SampledShapeFunctorIn<F, 2> && SampledShapeFunctorIn<F, 3>;
+template <class F>
+concept ListShapeFunctor = (ListShapeFunctorIn<F, 2> && ListShapeFunctorIn<F, 3>) || SampledShapeFunctor<F>;
 /// The same nodes as a box of `extent` nodes an axis from `base` (mpm_box_batch), over lanes: `box` returns the extent,
 /// 0 where the list must be taken. Rows of W nodes, the last axis along the row, come from what `prepare_rows` computes
 /// once; they are undefined in lanes of other extents than 1 to W. The second moment is the matrix sum w d d^T.
@@ -329,11 +340,17 @@ void list_batch(const void* parameters, const mpm_list_batch* request) {
   const auto& p = parameters_of<F>(parameters);
   for (std::uint32_t i = 0; i < q.count; ++i) {
     Vec<D, T> x;
-    Mat<D, T> domain{};
     List list;
     load_components<D, T>(q.position, q.stride, i, x.v);
-    load_components<D * D, T>(q.domain, q.stride, i, domain.m);
-    F::evaluate(p, x, domain, list);
+    if constexpr (SampledShapeFunctor<F>) {
+      Vec<D, T> corners[F::template sample_points<D>];
+      load_components<F::template sample_points<D> * D, T>(q.samples, q.stride, i, corners[0].v);
+      F::evaluate(p, x, corners, list);
+    } else {
+      Mat<D, T> domain{};
+      load_components<D * D, T>(q.domain, q.stride, i, domain.m);
+      F::evaluate(p, x, domain, list);
+    }
     q.node_count[i] = list.count;
     Mat<D, T> moment{};
     for (int k = 0; k < list.count; ++k) {
@@ -408,6 +425,16 @@ void box_batch(const void* parameters, const mpm_box_batch* q) {
 template <class F>
 std::int32_t filter_iterations(const void* parameters) {
   return static_cast<std::int32_t>(F::iterations(parameters_of<F>(parameters)));
+}
+
+/// Null for a transfer without polynomials beyond the affine ones.
+template <class F>
+constexpr auto basis_order_entry() -> std::int32_t (*)(const void*) {
+  if constexpr (requires(const typename F::Parameters& p) { F::basis_order(p); })
+    return
+        [](const void* parameters) { return static_cast<std::int32_t>(F::basis_order(parameters_of<F>(parameters))); };
+  else
+    return nullptr;
 }
 
 template <class F, int D, class S>
@@ -602,8 +629,16 @@ struct ShapeTable<F> {
                                    {0, 0},
                                    0,
                                    {},
-                                   {}};
+                                   {},
+                                   {0, 0}};
 };
+template <class F, int D>
+constexpr std::uint32_t sample_points_of() {
+  if constexpr (SampledShapeFunctor<F>)
+    return F::template sample_points<D>;
+  else
+    return 0;
+}
 template <ListShapeFunctor F>
 inline constexpr mpm_shape list_table{MPM_NODE_LIST,
                                       0,
@@ -616,7 +651,8 @@ inline constexpr mpm_shape list_table{MPM_NODE_LIST,
                                       {{&list_batch<F, 2, float>, &list_batch<F, 3, float>},
                                        {&list_batch<F, 2, double>, &list_batch<F, 3, double>},
                                        {&list_batch<F, 2, double>, &list_batch<F, 3, double>}},
-                                      {}};
+                                      {},
+                                      {sample_points_of<F, 2>(), sample_points_of<F, 3>()}};
 template <ListShapeFunctor F>
 struct ShapeTable<F> {
   static constexpr mpm_shape value = list_table<F>;
@@ -637,7 +673,8 @@ struct ShapeTable<F> {
 template <FilterFunctor F>
 inline constexpr mpm_filter filter_table{F::traits, 0, &filter_iterations<F>, MPM_ENTRIES(filter_batch)};
 template <TransferFunctor F>
-inline constexpr mpm_transfer transfer_table{F::traits, 0, MPM_ENTRIES(scatter_batch), MPM_ENTRIES(gather_batch)};
+inline constexpr mpm_transfer transfer_table{F::traits, 0, MPM_ENTRIES(scatter_batch), MPM_ENTRIES(gather_batch),
+                                             basis_order_entry<F>()};
 template <ContactFunctor F>
 inline constexpr mpm_contact contact_table{F::traits, 0, MPM_ENTRIES(contact_batch)};
 template <MaterialFunctor F>

@@ -79,6 +79,8 @@ struct BodyState {
   std::vector<double> circumference;  ///< n, m: 2 pi r as seeded; empty unless axisymmetric
   double ring(std::size_t p) const { return circumference.empty() ? 1.0 : circumference[p]; }
   std::vector<double> domain;  ///< n*dimension*dimension, m, columns are semi-sides; empty unless Plan::particle_domain
+  /// n*points*dimension, m from the particle: corners of its domain; empty unless Plan::sample_points.
+  std::vector<double> corners;
   /// n*dimension*dimension, m^2: second moment of the shape at the particle's position; empty unless
   /// Plan::second_moment.
   std::vector<double> second_moment;

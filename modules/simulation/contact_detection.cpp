@@ -35,11 +35,14 @@ std::vector<double> EdgeModel::list_weights(const std::vector<double>& rows) con
   const mpm_shape& shape = shape_.plugin->shape();
   const std::size_t n = (rows.size() + MPM_LANES - 1) / MPM_LANES * MPM_LANES, capacity = shape.capacity[0];
   std::vector<double> position(2 * n, rows.empty() ? 0.0 : rows.back()), half_size(2 * n, 0.5 / rows_per_cell_),
-      domain(4 * n, 0.0), weight(capacity * n);
+      domain(4 * n, 0.0), corners(8 * n), weight(capacity * n);
   std::vector<std::int32_t> count(n), node(capacity * 2 * n);
   std::copy(rows.begin(), rows.end(), position.begin());
   std::fill(position.begin() + static_cast<std::ptrdiff_t>(n), position.end(), 0.5 / rows_per_cell_);
   for (const std::size_t diagonal : {0u, 3u}) std::fill_n(domain.begin() + diagonal * n, n, 0.5 / rows_per_cell_);
+  for (std::size_t k = 0; k < 8; ++k)
+    std::fill_n(corners.begin() + static_cast<std::ptrdiff_t>(k * n), n,
+                (k / 2 >> k % 2 & 1 ? 0.5 : -0.5) / rows_per_cell_);
   mpm_list_batch batch{};
   batch.count = batch.stride = static_cast<std::uint32_t>(n);
   batch.dimension = 2;
@@ -47,6 +50,7 @@ std::vector<double> EdgeModel::list_weights(const std::vector<double>& rows) con
   batch.position = position.data();
   batch.half_size = half_size.data();
   batch.domain = domain.data();
+  if (shape.sample_points[0] > 0) batch.samples = corners.data();
   batch.node_count = count.data();
   batch.node = node.data();
   batch.weight = weight.data();

@@ -13,4 +13,10 @@ inline std::string domain_too_long(const Plugin& shape) {
          std::string(shape.id()) + "\"; choose smaller particles or a shape without that bound (\"cpdi\")";
 }
 
+/// For a shape whose domains have corners that move (mpm_shape::sample_points).
+inline std::string domain_inside_out(const Plugin& shape) {
+  return "its domain is turned inside out: the corners that shape \"" + std::string(shape.id()) +
+         "\" moves with the grid have passed one another; choose a smaller step, or a shape that follows F (\"cpdi\")";
+}
+
 }  // namespace mpm

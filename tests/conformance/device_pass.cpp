@@ -116,6 +116,28 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
 }
 )";
 
+constexpr const char* sampled_shape_body = R"(
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
+  Vec<D, S> x;
+  Vec<D, S> corners[1 << D];
+  load<D>(t.in[0], lane, x.v);
+  load<(1 << D) * D>(t.in[1], lane, corners[0].v);
+  NodeList<D, S, Functor::template capacity<D>> list;
+  Functor::evaluate(p, x, corners, list);
+  for (int k = 0; k < Functor::template capacity<D>; ++k) {
+    const bool used = k < list.count;
+    S node[D], w = used ? list.weight[k] : S(0), g[D];
+    for (int a = 0; a < D; ++a) node[a] = used ? static_cast<S>(list.node[k][a]) : S(0), g[a] = used ? list.gradient[k][a] : S(0);
+    store<D>(t.out[0], k * D * 64 + lane, node);
+    store<1>(t.out[1], k * 64 + lane, &w);
+    store<D>(t.out[2], k * D * 64 + lane, g);
+  }
+  const S count = static_cast<S>(list.count);
+  store<1>(t.out[3], lane, &count);
+}
+)";
+
 constexpr const char* filter_body = R"(
 template <int D, class S> MPM_HD void run(const Task& t, int lane) {
   const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
@@ -217,6 +239,10 @@ bool is_list(const Plugin& plugin) {
   return plugin.descriptor->kind == MPM_SHAPE && plugin.shape().form == MPM_NODE_LIST;
 }
 
+bool is_sampled(const Plugin& plugin) {
+  return is_list(plugin) && plugin.shape().sample_points[0] > 0;
+}
+
 bool is_deformed(const Plugin& plugin) {
   return !is_list(plugin) && (plugin.descriptor->needs & MPM_NEEDS_DOMAIN);
 }
@@ -224,6 +250,7 @@ bool is_deformed(const Plugin& plugin) {
 const char* body_of(const Plugin& plugin) {
   switch (plugin.descriptor->kind) {
     case MPM_SHAPE:
+      if (is_sampled(plugin)) return sampled_shape_body;
       if (is_list(plugin)) return list_shape_body;
       if (is_deformed(plugin)) return deformed_shape_body;
       return plugin.descriptor->needs & MPM_NEEDS_HALF_SIZE ? sized_shape_body : shape_body;
@@ -294,6 +321,15 @@ Column domains(Random& random, int D) {
   return domain;
 }
 
+/// Bent boxes of half a cell or so around the particle.
+Column corners(Random& random, int D) {
+  Column column = random_column(random, (1 << D) * D, -0.1, 0.1);
+  for (int k = 0; k < (1 << D) * D; ++k)
+    for (int lane = 0; lane < particles; ++lane)
+      column[static_cast<std::size_t>(k * particles + lane)] += k / D >> k % D & 1 ? 0.5 : -0.5;
+  return column;
+}
+
 Call inputs(const Plugin& plugin, int D, Random& random) {
   Call call;
   const int width = plugin.descriptor->kind == MPM_SHAPE ? static_cast<int>(plugin.shape().width) : 0;
@@ -301,7 +337,7 @@ Call inputs(const Plugin& plugin, int D, Random& random) {
     case MPM_SHAPE:
       if (is_list(plugin)) {
         const int capacity = static_cast<int>(plugin.shape().capacity[D - 2]);
-        call.in = {random_column(random, D, -10, 30), domains(random, D)};
+        call.in = {random_column(random, D, -10, 30), is_sampled(plugin) ? corners(random, D) : domains(random, D)};
         call.out = {zeros(capacity * D), zeros(capacity), zeros(capacity * D), zeros(1)};
         break;
       }
@@ -355,7 +391,8 @@ void run_list(const Plugin& plugin, int D, const ParameterSample& parameters, Ca
   batch.count = batch.stride = particles;
   batch.dimension = static_cast<std::uint32_t>(D);
   batch.capacity = static_cast<std::uint32_t>(capacity);
-  batch.position = call.in[0].data(), batch.domain = call.in[1].data();
+  batch.position = call.in[0].data();
+  (plugin.shape().sample_points[D - 2] > 0 ? batch.samples : batch.domain) = call.in[1].data();
   batch.node_count = count.data(), batch.node = node.data();
   batch.weight = weight.data(), batch.gradient = gradient.data();
   plugin.shape().evaluate_list[MPM_SCALAR_DOUBLE][D - 2](parameters.data(), &batch);

@@ -245,7 +245,8 @@ constexpr mpm_shape large_moment_table{
     {0, 0},
     0,
     {},
-    {}};
+    {},
+    {0, 0}};
 
 /// Leaves the off-diagonal of a list's second moment out.
 template <int D, class T>
@@ -268,7 +269,8 @@ constexpr mpm_shape diagonal_moment_table{MPM_NODE_LIST,
                                           {{&diagonal_moment<2, float>, &diagonal_moment<3, float>},
                                            {&diagonal_moment<2, double>, &diagonal_moment<3, double>},
                                            {&diagonal_moment<2, double>, &diagonal_moment<3, double>}},
-                                          {}};
+                                          {},
+                                          {0, 0}};
 
 // ---- filters
 

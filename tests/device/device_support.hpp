@@ -122,6 +122,7 @@ inline double state_difference(const Experiment& experiment, const BodyState& ex
   double worst = std::max(difference(expected.position, found.position, 1.0),
                           difference(expected.velocity, found.velocity, speed));
   worst = std::max(worst, difference(expected.domain, found.domain, h));
+  worst = std::max(worst, difference(expected.corners, found.corners, h));
   const auto fields = [&](const auto& a, const auto& b, double scale) {
     REQUIRE(a.size() == b.size());
     for (const auto& [name, values] : a) worst = std::max(worst, difference(values, b.at(name), scale));

@@ -23,6 +23,8 @@ std::vector<device::Choice> every_plugin_once(int dimension, Precision precision
     device::Choice choice;
     choice.dimension = dimension, choice.precision = precision;
     choice.shape = shapes[k % shapes.size()], choice.transfer = transfers[k % transfers.size()];
+    if (choice.transfer->transfer().basis_order && choice.shape->shape().form == MPM_TENSOR_PRODUCT)
+      choice.basis_order = static_cast<int>(choice.shape->shape().width) - 1;
     if (k < filters.size()) choice.filter = filters[k];
     if (k < contacts.size()) choice.contact = contacts[k];
     for (std::size_t m = k; m < materials.size(); m += most) choice.materials.push_back(materials[m]);

@@ -38,7 +38,7 @@ TEST_CASE("parity of filters on every shape and transfer", "[parity]") {
           const std::size_t third = mix.filter.find("\"order\": 3");
           if (dimension == 3 && shape.find("linear") != shape.npos && third != mix.filter.npos)
             mix.filter.replace(third, 10, "\"order\": 2");
-          check_parity(mix);
+          if (!is_refused(mix)) check_parity(mix);
         }
 }
 

@@ -24,6 +24,7 @@ void check_all_mixes(int dimension) {
           for (const std::string affine : {"aflip", "asflip"})
             if (shape.find("linear") != shape.npos && transfer.find("\"" + affine + "\"") != transfer.npos)
               mix.transfer = R"({"type": ")" + affine + R"(", "pic_fraction": 0.2})";
+          if (is_refused(mix)) continue;
           check_parity(mix);
           ++count;
         }

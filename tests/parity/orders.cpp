@@ -16,7 +16,7 @@ TEST_CASE("parity of the orders of a step", "[parity]") {
             Mix mix;
             mix.dimension = dimension;
             mix.shape = shape, mix.transfer = transfer, mix.contact = contact, mix.stress_update = order;
-            check_parity(mix);
+            if (!is_refused(mix)) check_parity(mix);
           }
 }
 

@@ -101,6 +101,16 @@ struct Mix {
   }
 };
 
+/// Whether the program refuses the mix at load, by name; tests/config/combinations.cpp checks which ones it may.
+inline bool is_refused(const Mix& mix) {
+  try {
+    make_plan(experiment_from(mix.text()));
+    return false;
+  } catch (const InputError&) {
+    return true;
+  }
+}
+
 /// Largest difference of two lists over a scale; NaN counts as infinite.
 inline double difference(const std::vector<double>& a, const std::vector<double>& b, double scale) {
   if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
@@ -147,6 +157,7 @@ inline void compare_states(const Scene& reference, const Scene& cpu, double epsi
     for (const auto& [name, values] : expected.material_state)  // strains and stretches: of order 1
       CHECK(difference(values, found.material_state.at(name), 1.0) <= allowed.material * epsilon);
     CHECK(difference(expected.domain, found.domain, h) <= allowed.material * epsilon);
+    CHECK(difference(expected.corners, found.corners, h) <= allowed.material * epsilon);
     CHECK(difference(expected.second_moment, found.second_moment, h * h) <= allowed.material * epsilon);
   }
 }

@@ -44,6 +44,8 @@ TEST_CASE("a restored run goes on bit for bit", "[parity]") {
       mix.dimension = dimension;
       mix.transfer = R"({"type": "mls"})";
       check_saved(mix.text(), overrides, true);
+      mix.transfer = R"({"type": "polypic", "basis": "full"})";
+      check_saved(mix.text(), overrides, true);
       mix.shape = R"({"type": "gimp"})";
       mix.transfer = R"({"type": "flip"})";
       mix.more = dimension == 2 ? R"J(, "body_force": ["2*sin(3*X)+t", "x-Y*y"])J" : "";
@@ -54,6 +56,11 @@ TEST_CASE("a restored run goes on bit for bit", "[parity]") {
       mix.transfer = R"({"type": "tpic"})", mix.shape = R"({"type": "cpdi"})";
       mix.filter = R"({"type": "xpic", "order": 2, "every_courant": 0.4})";
       for (const std::string order : {"last", "first", "modified_last", "averaged"}) {
+        mix.stress_update = order;
+        check_saved(mix.text(), overrides);
+      }
+      mix.shape = R"({"type": "cpdi2"})";
+      for (const std::string order : {"last", "modified_last"}) {
         mix.stress_update = order;
         check_saved(mix.text(), overrides);
       }

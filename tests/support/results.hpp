@@ -16,7 +16,7 @@ inline std::vector<double> all_results(const Simulation& simulation) {
   const Backend& backend = simulation.backend();
   for (int body = 0; body < static_cast<int>(simulation.experiment().bodies.size()); ++body) {
     const BodyState state = backend.body_state(body);
-    append(state.position), append(state.velocity), append(state.domain);
+    append(state.position), append(state.velocity), append(state.domain), append(state.corners);
     for (const auto* fields : {&state.transfer_state, &state.material_state})
       for (const auto& [name, values] : *fields) append(values);
   }

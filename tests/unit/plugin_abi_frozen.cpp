@@ -127,6 +127,7 @@ std::string boundary() {
   FIELD(mpm_list_batch, weight);
   FIELD(mpm_list_batch, gradient);
   FIELD(mpm_list_batch, second_moment);
+  FIELD(mpm_list_batch, samples);
   out << "mpm_box_batch, " << sizeof(mpm_box_batch) << " bytes\n";
   FIELD(mpm_box_batch, count);
   FIELD(mpm_box_batch, stride);
@@ -152,6 +153,7 @@ std::string boundary() {
   FIELD(mpm_shape, reach);
   FIELD(mpm_shape, evaluate_list);
   FIELD(mpm_shape, evaluate_box);
+  FIELD(mpm_shape, sample_points);
   out << "mpm_scatter_batch, " << sizeof(mpm_scatter_batch) << " bytes\n";
   FIELD(mpm_scatter_batch, count);
   FIELD(mpm_scatter_batch, stride);
@@ -181,6 +183,7 @@ std::string boundary() {
   FIELD(mpm_transfer, reserved);
   FIELD(mpm_transfer, scatter);
   FIELD(mpm_transfer, gather);
+  FIELD(mpm_transfer, basis_order);
   out << "mpm_filter_batch, " << sizeof(mpm_filter_batch) << " bytes\n";
   FIELD(mpm_filter_batch, count);
   FIELD(mpm_filter_batch, stride);

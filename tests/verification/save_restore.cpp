@@ -29,7 +29,7 @@ bool same_bits(const T& a, const T& b) {
 bool same_bits(const BodyState& a, const BodyState& b) {
   return a.position == b.position && a.velocity == b.velocity && a.initial_position == b.initial_position &&
          a.transfer_state == b.transfer_state && a.material_state == b.material_state && a.domain == b.domain &&
-         a.second_moment == b.second_moment;
+         a.corners == b.corners && a.second_moment == b.second_moment;
 }
 
 void check_resume(const std::vector<std::string>& overrides) {

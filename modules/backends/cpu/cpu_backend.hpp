@@ -140,12 +140,24 @@ void CpuBackend<D, T, Components>::lay_out_state(Particles<D, T>& particles, con
       throw std::invalid_argument("the cpu backend takes at most 16 state fields a plugin");
   };
   add(particles.transfer_state, *scene_.experiment.transfer.plugin);
+  if (const int functions = scene_.plan.basis_functions; functions > 0) {
+    particles.transfer_state.push_back({polynomial_coefficients, particles.components, D * functions});
+    particles.components += D * functions;
+  }
   particles.motion_components = particles.components - Particles<D, T>::velocity;
   add(particles.material_state, *material.plugin);
   if (scene_.axisymmetric) particles.circumference = particles.components++;
   if (scene_.plan.kept_advection) {
     particles.advection = particles.components;
     particles.components += D;
+  }
+  if (const int scalars = scene_.plan.sample_points * D; scalars > 0) {
+    particles.corners = particles.components;
+    particles.components += scalars;
+    if (scene_.plan.kept_advection) {
+      particles.moved_corners = particles.components;
+      particles.components += scalars;
+    }
   }
   if (!scene_.plan.particle_domain) return;
   particles.domain = particles.components;
@@ -185,10 +197,12 @@ std::vector<T> CpuBackend<D, T, Components>::first_values(const Particles<D, T>&
       values[field.first + c] = one ? T(1) : T(0);
     }
   };
-  for (std::size_t f = 0; f < particles.transfer_state.size(); ++f)
-    set(particles.transfer_state[f], scene_.experiment.transfer.plugin->state()[f]);
+  const auto of_transfer = scene_.experiment.transfer.plugin->state();  // polynomials beyond affine follow: zero
+  for (std::size_t f = 0; f < of_transfer.size(); ++f) set(particles.transfer_state[f], of_transfer[f]);
   for (std::size_t f = 0; f < particles.material_state.size(); ++f)
     set(particles.material_state[f], material.plugin->state()[f]);
+  for (int k = 0; particles.corners >= 0 && k < scene_.plan.sample_points * D; ++k)
+    values[particles.corners + k] = k / D >> k % D & 1 ? half_size : -half_size;
   for (const int first : {particles.domain, particles.next_domain})
     for (int k = 0; first >= 0 && k < D * D; k += D + 1) values[first + k] = half_size;
   return values;
@@ -370,6 +384,8 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
   if (particles.circumference >= 0) state.circumference = copy(particles.circumference, 1);
   if (particles.domain >= 0) state.domain = copy(particles.domain, D * D);
   for (double& side : state.domain) side *= scene_.domain.cell_size;
+  if (particles.corners >= 0) state.corners = copy(particles.corners, scene_.plan.sample_points * D);
+  for (double& corner : state.corners) corner *= scene_.domain.cell_size;
   if (scene_.plan.second_moment) state.second_moment = particle_step_->second_moments(index);
   return state;
 }

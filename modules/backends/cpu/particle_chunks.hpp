@@ -20,7 +20,8 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
       particles_(particles),
       bodies_(std::move(bodies)),
       kernels_(scene.list ? tile_kernels_of_lists<D, T>() : tile_kernels<D, T>(scene.width)),
-      list_kernels_(list_kernels<D, T>()) {
+      list_kernels_(list_kernels<D, T>()),
+      higher_kernels_(higher_kernels<D, T>(scene.width, scene.plan.basis_order)) {
   drift_of_thread_.assign(scene.threads, 0.0);
   int transfer_components = 0;
   for (const Particles<D, T>& body : particles)
@@ -35,8 +36,11 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
     if (scene.list) {
       work.lists.require(scene.capacity);
       if (scene.evaluate_box) work.boxes.require();
+      if (const int points = scene.plan.sample_points; points > 0)
+        work.moved_corners.require(std::size_t(points) * D * chunk_size);
       std::fill(work.offset, work.offset + D * chunk_size, T(0));  // lists count from the particle itself
     }
+    if (scene.plan.basis_functions > 0) work.higher.require(std::size_t(scene.plan.basis_functions) * D * chunk_size);
     if (scene.plan.fused && scene.has(MPM_REPLACES_MOTION))
       work.passing_motion.require(std::size_t(D + transfer_components) * chunk_size);
     if (!scene.plan.filter) continue;
@@ -386,7 +390,10 @@ double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const 
     const double sum =
         around ? sum_of_particles<T>(chunk.count, [&](int p) { return squares_of(p) * L::load(around + p); })
                : sum_of_particles<T>(chunk.count, squares_of);
-    return 0.5 * chunk.body.mass * sum;
+    if (!higher_kernels_.squares) return 0.5 * chunk.body.mass * sum;
+    const Stencils<T> stencils{work.first, false, work.weight, work.gradient, {}};
+    const double higher = higher_kernels_.squares(stencils, work.offset, chunk.higher(), around, chunk.count);
+    return 0.5 * chunk.body.mass * (sum + higher);
   };
   if (!scene_.has(MPM_AFFINE_CARRIES_ENERGY)) return energy_with([](int) { return L(T(0)); });
 

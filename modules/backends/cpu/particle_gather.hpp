@@ -71,7 +71,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
   std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
   abandoned_ = false;
   const bool energy_moves = scene_.plan.ledger && scene_.has(MPM_AFFINE_CARRIES_ENERGY) &&
-                            (scene_.moment_of_particle || scene_.moment_is_gradient);
+                            (scene_.moment_of_particle || scene_.moment_is_gradient || scene_.plan.basis_functions > 0);
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
       load_velocities(body, block, work);
@@ -131,10 +131,14 @@ template <int D, class T, class Components>
                                advection,
                                moments_for_transfer(chunk, work)};
   Components::gather(scene_, batch);
+  if (higher_kernels_.gather) keep_higher(chunk, work);
   if (step.filtered)  // the filtered velocity replaces the particle's
     for (int c = 0; c < D; ++c)
       for (T* const target : {velocity, advection})
         std::copy_n(work.velocity + c * chunk_size, chunk.end, target + c * chunk_size);
+  const bool corners = chunk.particles.corners >= 0;
+  T* const moved = !corners ? nullptr : pass.move ? work.moved_corners.data() : chunk.at(chunk.particles.moved_corners);
+  if (corners) gather_corners(chunk, work, advection, step.dt, moved);
   if (scene_.plan.ledger) chunk.block.kinetic_energy += kinetic_energy(chunk, work);
   work.clock.lap(Phase::transfer);
   if (pass.strain) advance_material(chunk, work, step.dt, pass);
@@ -142,7 +146,9 @@ template <int D, class T, class Components>
   if (!pass.move) return 0;
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
     std::copy_n(chunk.at(chunk.particles.next_domain), D * D * chunk_size, chunk.at(chunk.particles.domain));
-  const double distance = advance_position(chunk, advection, step.dt);
+  const double distance = corners
+                              ? move_with_corners(chunk, work, moved)
+                              : advance_position(chunk, advection, static_cast<T>(step.dt / scene_.domain.cell_size));
   if (scene_.list) extend_bounds(chunk);
   work.clock.lap(Phase::move);
   return distance;
@@ -202,6 +208,10 @@ void ParticleStep<D, T, Components>::gather_chunk(const Chunk& chunk, Work& work
   gather_moments(chunk, work, work.velocity_tile.data(), wanted.channel, moment, gradient);
   work.clock.lap(Phase::gather);
   unpack_moments(work, moment, gradient, n);
+  if (wanted.transfer && higher_kernels_.gather) {
+    const Stencils<T> stencils{work.first, false, work.weight, work.gradient, {}};
+    higher_kernels_.gather(work.velocity_tile.data(), stencils, work.offset, work.higher.data(), n);
+  }
   if (moment && scene_.moment_of_particle) apply_inverse_moments(chunk, work);
   if (affine && scene_.moment_is_gradient)
     std::copy(work.gradient_of_velocity, work.gradient_of_velocity + D * D * chunk_size, work.affine);
@@ -249,6 +259,14 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::unpack_moments(Work& work, bool moment, bool gradient, int count) {
   if (moment) return gradient ? unpack_moments<true, true>(work, count) : unpack_moments<true, false>(work, count);
   return gradient ? unpack_moments<false, true>(work, count) : unpack_moments<false, false>(work, count);
+}
+
+/// The gathered coefficients become the particles' own.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::keep_higher(const Chunk& chunk, const Work& work) const {
+  const int components = scene_.plan.basis_functions * D;
+  for (int c = 0; c < components; ++c)
+    std::copy_n(work.higher.data() + c * chunk_size, chunk.end, chunk.higher() + c * chunk_size);
 }
 
 /// C <- C D^-1 of moments a particle.
@@ -330,6 +348,7 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
   Components::scatter(scene_, scattered);
   if (!scene_.list) place_to_scatter(chunk, work, false);
   add_to_tile(chunk, work, filter_projection, work.mass, true, affine, false);
+  if (higher_kernels_.scatter) add_higher_to_tile(chunk, work, filter_projection, work.higher.data());
 }
 
 /// Strains the particles by the pass's share of the step; where the pass scatters them too, also gives what that wants
@@ -400,11 +419,11 @@ T ParticleStep<D, T, Components>::least_place(const Block<D>& block, int axis) c
   return to_axis == T(0) ? std::numeric_limits<T>::min() : std::nextafter(-to_axis, std::numeric_limits<T>::max());
 }
 
-/// x += dt times the advection velocity; returns the largest displacement in cells.
+/// x += scale times the advection velocity, in cells; returns the largest displacement in cells.
 template <int D, class T, class Components>
-double ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, const T* advection, double dt) {
+double ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, const T* advection, T scale) {
   using L = Lanes<T>;
-  const T scale = chunk.body.frozen ? T(0) : static_cast<T>(dt / scene_.domain.cell_size);
+  if (chunk.body.frozen) scale = T(0);
   L largest(T(0)), outside(T(0));
   for (int axis = 0; axis < D; ++axis) {
     T low = -std::numeric_limits<T>::max(), high = std::numeric_limits<T>::max();
@@ -454,11 +473,15 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::move(const StepInfo& step) {
   std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
-    for_each_block(body, false, [&](Block<D>& block, Work&) {
+    for_each_block(body, false, [&](Block<D>& block, Work& work) {
       double& drift = drift_of_thread_[omp_get_thread_num()];
       block.bounds.known = false;
+      const T scale = static_cast<T>(step.dt / scene_.domain.cell_size);
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
-        drift = std::max(drift, advance_position(chunk, chunk.at(chunk.particles.advection), step.dt));
+        const Particles<D, T>& particles = chunk.particles;
+        drift =
+            std::max(drift, particles.corners >= 0 ? move_with_corners(chunk, work, chunk.at(particles.moved_corners))
+                                                   : advance_position(chunk, chunk.at(particles.advection), scale));
       });
     });
   drift_ += *std::max_element(drift_of_thread_.begin(), drift_of_thread_.end());

@@ -4,8 +4,10 @@
 
 #include <sstream>
 
+#include "kernel/corner_domain.hpp"
 #include "kernel/lanes.hpp"
 #include "particle_chunks.hpp"
+#include "simulation/domain_too_long.hpp"
 
 namespace mpm::cpu {
 
@@ -20,6 +22,8 @@ void ParticleStep<D, T, Components>::evaluate_list_batch(const Chunk& chunk, Wor
   const bool domain = chunk.particles.domain >= 0;
   copy(chunk.at(Particles<D, T>::position), D, lists.position);
   if (domain) copy(chunk.at(chunk.particles.domain), D * D, lists.domain);
+  const bool corners = chunk.particles.corners >= 0;
+  if (corners) copy(chunk.at(chunk.particles.corners), (1 << D) * D, lists.corners);
   if (scene_.half_size) copy(chunk.particles.half_size.data(), D, lists.half_size);
   const bool moments = scene_.plan.second_moment;
   const mpm_list_batch batch{lanes,
@@ -33,7 +37,8 @@ void ParticleStep<D, T, Components>::evaluate_list_batch(const Chunk& chunk, Wor
                              lists.coordinates.data(),
                              lists.weight.data(),
                              gradients ? lists.gradient.data() : nullptr,
-                             moments ? lists.second_moment : nullptr};
+                             moments ? lists.second_moment : nullptr,
+                             corners ? lists.corners : nullptr};
   scene_.evaluate_list(scene_.shape_parameters, &batch);
 }
 
@@ -60,6 +65,71 @@ void ParticleStep<D, T, Components>::evaluate_lists(const Chunk& chunk, Work& wo
   if (scene_.plan.second_moment) invert_moments(chunk, work);
 }
 
+/// The grid's multilinear velocity at a corner, whose nodes the particle's list has made sure of.
+template <int D, class T, class Components>
+Vec<D, T> ParticleStep<D, T, Components>::velocity_at_corner(const Chunk& chunk, const Work& work, int particle,
+                                                             const Vec<D, T>& corner) const {
+  Vec<D, T> x, velocity{};
+  for (int a = 0; a < D; ++a) x[a] = chunk.at(Particles<D, T>::position + a)[particle];
+  const TentCell<D, T> cell(x, corner);
+  const bool near = work.lists.near_end[particle] > work.lists.first[particle];
+  const T* const nodes = near ? work.velocity_tile.data() : grid_.channel(motion, chunk.body.field);
+  for (int which = 0; which < 1 << D; ++which) {
+    const T weight = cell.weight(which);
+    if (weight == T(0)) continue;
+    std::array<int, 3> node{};
+    int at = 0;
+    for (int a = 0; a < D; ++a) {
+      node[a] = cell.node(which, a);
+      at = at * kernels_.side + node[a] + 1;
+      node[a] += chunk.block.at[a] * block_side<D>;
+    }
+    if (!near) at = grid_.find(node);
+    for (int a = 0; a < D; ++a) velocity[a] += weight * nodes[std::size_t(at) * 4 + a];
+  }
+  return velocity;
+}
+
+/// Where the corners go, from the particles as they are yet: with the grid, and with what moves the particle beyond the
+/// gathered velocity.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::gather_corners(const Chunk& chunk, Work& work, const T* advection, double dt,
+                                                    T* moved) const {
+  const T scale = static_cast<T>(dt / scene_.domain.cell_size);
+  for (int p = 0; p < chunk.end; ++p) {
+    if (work.lists.near_end[p] == work.lists.first[p] && work.lists.far_end[p] == work.lists.first[p]) continue;
+    for (int k = 0; k < 1 << D; ++k) {
+      Vec<D, T> corner;
+      for (int a = 0; a < D; ++a) corner[a] = chunk.at(chunk.particles.corners + k * D + a)[p];
+      const Vec<D, T> v = velocity_at_corner(chunk, work, p, corner);
+      for (int a = 0; a < D; ++a) {
+        const T own = advection[a * chunk_size + p] - work.velocity[a * chunk_size + p];
+        moved[(k * D + a) * chunk_size + p] = corner[a] + scale * (v[a] + own);
+      }
+    }
+  }
+}
+
+/// Corners and particles to where the corners were moved; returns the largest displacement in cells.
+template <int D, class T, class Components>
+double ParticleStep<D, T, Components>::move_with_corners(const Chunk& chunk, Work& work, const T* moved) {
+  if (chunk.body.frozen) return 0;
+  for (int p = 0; p < chunk.end; ++p) {
+    Vec<D, T> corner[1 << D];
+    for (int k = 0; k < 1 << D; ++k)
+      for (int a = 0; a < D; ++a) corner[k][a] = moved[(k * D + a) * chunk_size + p];
+    const CornerDomain<D, T> domain = corner_domain<D, T>(corner);
+    const Vec<D, T> centre = centroid(domain, corner);
+    for (int a = 0; a < D; ++a) work.advection[a * chunk_size + p] = centre[a];
+    for (int k = 0; k < 1 << D; ++k)
+      for (int a = 0; a < D; ++a) chunk.at(chunk.particles.corners + k * D + a)[p] = corner[k][a] - centre[a];
+    if (domain.upright || p >= chunk.count || !std::isfinite(domain.volume)) continue;
+    const std::lock_guard lock(mutex_);
+    failure_.note(-1, chunk.body.index, chunk.ids[p], domain_inside_out(*scene_.experiment.shape.plugin));
+  }
+  return advance_position(chunk, work.advection, T(1));
+}
+
 /// Appends one particle's list to those of the chunk; returns the next free entry.
 template <int D, class T, class Components>
 int ParticleStep<D, T, Components>::keep_list(const Chunk& chunk, Work& work, int first_lane, int lane, int entry,
@@ -68,6 +138,12 @@ int ParticleStep<D, T, Components>::keep_list(const Chunk& chunk, Work& work, in
   constexpr int lanes = ListWork<D, T>::lanes;
   const int p = first_lane + lane, count = lists.count[lane];
   const auto shape = [&] { return "shape \"" + std::string(scene_.experiment.shape.plugin->id()) + "\" "; };
+  if (count == 0 && chunk.particles.corners >= 0) {
+    lists.first[p] = lists.near_end[p] = lists.far_end[p] = entry;
+    const std::lock_guard lock(mutex_);
+    failure_.note(-1, chunk.body.index, chunk.ids[p], domain_inside_out(*scene_.experiment.shape.plugin));
+    return entry;
+  }
   if (count < 1 || count > scene_.capacity)
     throw std::logic_error(shape() + "gave a list of " + std::to_string(count) + " nodes");
   const std::int32_t* const nodes = lists.coordinates.data() + lane;
@@ -158,6 +234,10 @@ void ParticleStep<D, T, Components>::extend_bounds(const Chunk& chunk) const {
     for (int p = 0; p < chunk.end; p += L::width) {
       L extent(static_cast<T>(scene_.list_reach));
       for (int k = 0; domain >= 0 && k < D; ++k) extent = extent + abs(L::load(chunk.at(domain + a * D + k) + p));
+      L farthest(T(0));
+      for (int k = 0; k < scene_.plan.sample_points; ++k)
+        farthest = max(farthest, abs(L::load(chunk.at(chunk.particles.corners + k * D + a) + p)));
+      extent = extent + farthest;
       const L x = L::load(chunk.at(Particles<D, T>::position + a) + p);
       low = min(low, x - extent), high = max(high, x + extent);
     }

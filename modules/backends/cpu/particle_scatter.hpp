@@ -100,6 +100,7 @@ template <int D, class T, class Components>
     }
     const bool affine = scene_.has(MPM_SCATTERS_AFFINE) || (merged && scene_.stress_by_affine);
     add_to_tile(chunk, work, momentum, work.mass, true, affine, merged && by_gradient);
+    if (higher_kernels_.scatter) add_higher_to_tile(chunk, work, momentum, chunk.higher());
   }
   if (pass.force && separate) {
     scatter_stress(chunk, work);
@@ -255,6 +256,15 @@ void ParticleStep<D, T, Components>::add_to_tile(const Chunk& chunk, Work& work,
   }
   const Stencils<T> stencils{work.first, work.shared_stencils, work.weight, work.gradient, chunk.ahead(false)};
   kernels_.scatter[affine][gradient](work.tile[channel].data(), stencils, work.quads, chunk.count);
+  work.clock.lap(Phase::scatter);
+}
+
+/// Momenta of the polynomials beyond affine, on stencils that were placed to scatter.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::add_higher_to_tile(const Chunk& chunk, Work& work, Channel channel,
+                                                        const T* coefficients) {
+  const Stencils<T> stencils{work.first, false, work.weight, work.gradient, {}};
+  higher_kernels_.scatter(work.tile[channel].data(), stencils, work.offset, coefficients, work.mass, chunk.count);
   work.clock.lap(Phase::scatter);
 }
 

@@ -12,6 +12,7 @@
 
 #include "box_kernels.hpp"
 #include "grid.hpp"
+#include "higher_kernels.hpp"
 #include "kernel/tensor.hpp"
 #include "phase_clock.hpp"
 
@@ -23,6 +24,7 @@ struct ListWork {
   static constexpr int lanes = MPM_LANES;
   // one batch, as the shape takes and gives it
   alignas(64) T position[D * lanes], half_size[D * lanes], domain[D * D * lanes], second_moment[D * D * lanes];
+  alignas(64) T corners[(1 << D) * D * lanes];
   alignas(64) std::int32_t count[lanes];
   AlignedArray<std::int32_t> coordinates;
   AlignedArray<T> weight, gradient;
@@ -98,6 +100,8 @@ struct Workspace {
   AlignedArray<T> velocity_tile, increment_tile;
   AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
   AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
+  AlignedArray<T> moved_corners;                    ///< [corner][D][chunk_size] cells, from the particle
+  AlignedArray<T> higher;  ///< [function][D][chunk_size], gathered coefficients of polynomials beyond affine, m/s
   PhaseClock clock;
   bool far_only = false;  ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
 
@@ -215,6 +219,8 @@ class ParticleStep {
               left_out * chunk_size * sizeof(T)};
     }
     T* at(int component) const { return values + component * chunk_size; }
+    /// Coefficients of the polynomials beyond affine: the last field of the transfer's state.
+    T* higher() const { return motion_at(particles.transfer_state.back().first); }
     T* motion_at(int component) const { return motion + (component - Particles<D, T>::velocity) * chunk_size; }
   };
   struct States {
@@ -275,6 +281,7 @@ class ParticleStep {
   template <bool Affine, bool Gradient>
   void pack_coefficients(Work& work, const T* last, bool constant, int count);
   void pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient, int count);
+  void add_higher_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* coefficients);
   void scatter_stress(const Chunk& chunk, Work& work);
   void scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt);
   void scatter_contact_fields(const Chunk& chunk, Work& work);
@@ -293,13 +300,17 @@ class ParticleStep {
   template <bool Moment, bool Gradient>
   void unpack_moments(Work& work, int count);
   void unpack_moments(Work& work, bool moment, bool gradient, int count);
+  void keep_higher(const Chunk& chunk, const Work& work) const;
   void apply_inverse_moments(const Chunk& chunk, Work& work) const;
   void multiply_by_inverse_moments(const Chunk& chunk, Work& work) const;
   const T* moments_for_transfer(const Chunk& chunk, Work& work) const;
   void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
   void advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass);
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
-  double advance_position(const Chunk& chunk, const T* advection, double dt);
+  double advance_position(const Chunk& chunk, const T* advection, T scale);
+  void gather_corners(const Chunk& chunk, Work& work, const T* advection, double dt, T* moved) const;
+  Vec<D, T> velocity_at_corner(const Chunk& chunk, const Work& work, int particle, const Vec<D, T>& corner) const;
+  double move_with_corners(const Chunk& chunk, Work& work, const T* moved);
   double margin(int axis, int side) const;
   T least_place(const Block<D>& block, int axis) const;
   void note_outside(const Chunk& chunk);
@@ -310,6 +321,7 @@ class ParticleStep {
   std::vector<Body<D, T>> bodies_;
   TileKernels<D, T> kernels_;
   ListKernels<D, T> list_kernels_;
+  HigherKernels<D, T> higher_kernels_;
   std::vector<std::unique_ptr<Work>> work_;
   std::vector<double> drift_of_thread_;
   double drift_ = 0, last_drift_ = 0;  ///< since the last sort, and of the last move, in cells

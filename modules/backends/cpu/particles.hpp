@@ -61,6 +61,8 @@ struct Particles {
   int domain = -1;         ///< semi-side vectors in cells, row-major, columns are vectors
   int next_domain = -1;    ///< where a step strains before its last use of the weights (Plan::strained_domain)
   int circumference = -1;  ///< m, 2 pi r as seeded, which mass and volume of the body are times; axisymmetric only
+  int corners = -1;        ///< of a domain that the grid's velocity moves: [corner][D] cells, from the particle
+  int moved_corners = -1;  ///< where they go in this step, kept for the move pass of MUSL
   int components = 2 * D;
   int motion_components = D;  ///< from `velocity` on: it and the transfer's state
   AlignedArray<T> half_size;  ///< [D][chunk_size] cells, of shapes that read it

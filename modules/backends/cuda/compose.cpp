@@ -1,9 +1,12 @@
 #include "backends/cuda/compose.hpp"
 
+#include <algorithm>
 #include <set>
 #include <sstream>
 
 #include "backends/cuda/kernels/arguments.hpp"
+#include "experiment/compatibility.hpp"
+#include "kernel/polynomial_basis.hpp"
 #include "output/atomic_file.hpp"
 
 namespace mpm::device {
@@ -120,6 +123,7 @@ std::string scene_text(const Choice& choice) {
   if (choice.filter) out << "  using Filter = " << type(choice.filter) << ";\n";
   if (choice.contact) out << "  using Contact = " << type(choice.contact) << ";\n";
   out << "  static constexpr bool contact = " << yes(choice.contact) << ", list = " << yes(list)
+      << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
       << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
       << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
       << "  static constexpr int width = " << (list ? 1 : shape.width)
@@ -133,7 +137,10 @@ std::string scene_text(const Choice& choice) {
       << ", gathers_increment = " << yes(traits & MPM_GATHERS_INCREMENT)
       << ", reads_second_moment = " << yes(traits & MPM_READS_SECOND_MOMENT)
       << ", stress_by_affine = " << yes(traits & MPM_STRESS_BY_AFFINE)
-      << ", strain_by_affine = " << yes(traits & MPM_STRAIN_BY_AFFINE) << ";\n};\n";
+      << ", strain_by_affine = " << yes(traits & MPM_STRAIN_BY_AFFINE) << ";\n"
+      << "  static constexpr int basis_order = " << choice.basis_order
+      << ", basis_functions = " << basis_functions(choice.dimension, choice.basis_order)
+      << ";  // polynomials beyond affine\n};\n";
   for (std::size_t k = 0; k < choice.materials.size(); ++k)
     out << "struct Scene" << k << " : Scene {\n  using Material = " << type(choice.materials[k]) << ";\n};\n";
   out << "MPM_DEVICE_ENTRIES\n";
@@ -176,6 +183,7 @@ std::string Choice::name() const {
   plugins.insert(plugins.end(), materials.begin(), materials.end());
   for (const Plugin* plugin : plugins)
     if (plugin) text += " " + std::string(plugin->id());
+  if (basis_order > 0) text += ", polynomials of order " + std::to_string(basis_order);
   return text;
 }
 
@@ -186,6 +194,8 @@ Choice choice_of(const Experiment& experiment) {
   choice.axisymmetric = experiment.axisymmetric();
   choice.shape = experiment.shape.plugin;
   choice.transfer = experiment.transfer.plugin;
+  if (const int order = basis_order_of(experiment.transfer); order > 0)
+    choice.basis_order = std::min(order, static_cast<int>(choice.shape->shape().width) - 1);
   if (experiment.filter) choice.filter = experiment.filter->plugin;
   if (experiment.contact) choice.contact = experiment.contact->plugin;
   for (const MaterialSpecification& material : experiment.materials)

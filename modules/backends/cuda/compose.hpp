@@ -21,6 +21,7 @@ struct Choice {
   const Plugin* filter = nullptr;
   const Plugin* contact = nullptr;
   std::vector<const Plugin*> materials;
+  int basis_order = 0;  ///< as in Plan
 
   /// "2-D double: linear apic coulomb neo_hookean", for messages.
   std::string name() const;

@@ -26,11 +26,11 @@ bool starts_as_one(const mpm_state& field, int k, int dimension, bool axisymmetr
 template <class T>
 struct Body {
   const Component *transfer, *material;
-  int field = 0, material_number = 0, count = 0, dimension = 2;
+  int field = 0, material_number = 0, count = 0, dimension = 2, basis_functions = 0;
   bool axisymmetric = false, frozen = false;
   T mass = 0, volume = 0, half_size = 0;
-  std::vector<T> position, velocity, advection, domain, stencil_domain, transfer_state, material_state, stress,
-      volume_ratio, velocity_gradient, wave_speed, circumference, hoop_rate;
+  std::vector<T> position, velocity, advection, domain, corners, moved_corners, stencil_domain, transfer_state,
+      material_state, stress, volume_ratio, velocity_gradient, wave_speed, circumference, hoop_rate;
   std::vector<int> block_cell, block_begin, order;
 
   Body(const Experiment& experiment, const Plan& plan, int index, const SeededBody& seeded)
@@ -45,7 +45,10 @@ struct Body {
     const SeedArrays seeds = seeded.arrays();
     position = columns(seeds.position, D), velocity = columns(seeds.velocity, D);
     advection.resize(velocity.size());
-    transfer_state = initial_state(*transfer->plugin), material_state = initial_state(*material->plugin);
+    basis_functions = plan.basis_functions;
+    transfer_state = initial_state(*transfer->plugin);
+    transfer_state.resize(transfer_state.size() + static_cast<std::size_t>(basis_functions) * D * count, T(0));
+    material_state = initial_state(*material->plugin);
     const std::vector<T> gradient = columns(seeds.velocity_gradient, D * D);
     std::copy(gradient.begin(), gradient.end(), transfer_state.begin());  // the affine velocity is the first field
     if (plan.particle_domain) {
@@ -53,6 +56,9 @@ struct Body {
       for (int c = 0; c < D; ++c)
         std::fill_n(domain.begin() + static_cast<long>(c * (D + 1)) * count, count, half_size);
     }
+    for (int k = 0; k < plan.sample_points * D; ++k)
+      corners.insert(corners.end(), count, k / D >> k % D & 1 ? half_size : -half_size);
+    moved_corners = corners;
     stress.resize(static_cast<std::size_t>(D == 2 ? 4 : 6) * count), volume_ratio.resize(count);
     velocity_gradient.resize(static_cast<std::size_t>(D) * D * count), wave_speed.resize(count);
     if (!axisymmetric) return;
@@ -102,6 +108,8 @@ struct Body {
             velocity.data(),
             advection.data(),
             domain.empty() ? nullptr : domain.data(),
+            corners.empty() ? nullptr : corners.data(),
+            corners.empty() ? nullptr : moved_corners.data(),
             stencil_domain.empty() ? nullptr : stencil_domain.data(),
             transfer_state.data(),
             material_state.data(),
@@ -230,9 +238,10 @@ class HostRun final : public Backend {
   std::uint64_t particle_bytes() const override {
     std::uint64_t scalars = 0;
     for (const Body<T>& body : bodies_)
-      scalars += body.position.size() + body.velocity.size() + body.advection.size() + body.domain.size() +
-                 body.stencil_domain.size() + body.transfer_state.size() + body.material_state.size() +
-                 body.stress.size() + body.volume_ratio.size() + body.velocity_gradient.size() + body.wave_speed.size();
+      scalars += body.position.size() + body.velocity.size() + 2 * body.corners.size() + body.advection.size() +
+                 body.domain.size() + body.stencil_domain.size() + body.transfer_state.size() +
+                 body.material_state.size() + body.stress.size() + body.volume_ratio.size() +
+                 body.velocity_gradient.size() + body.wave_speed.size();
     return scalars * sizeof(T);
   }
   std::uint64_t grid_bytes() const override {
@@ -248,9 +257,15 @@ class HostRun final : public Backend {
     state.position = body.particle_major(body.position.data(), D);
     state.velocity = body.particle_major(body.velocity.data(), D);
     state.transfer_state = body.fields(body.transfer_state, *body.transfer->plugin);
+    if (const int scalars = body.basis_functions * D; scalars > 0)
+      state.transfer_state[polynomial_coefficients] = body.particle_major(
+          body.transfer_state.data() + body.transfer_state.size() - static_cast<std::size_t>(scalars) * body.count,
+          scalars);
     state.material_state = body.fields(body.material_state, *body.material->plugin);
     state.mass = body.mass, state.volume = body.volume;
     if (body.axisymmetric) state.circumference = body.particle_major(body.circumference.data(), 1);
+    if (!body.corners.empty())
+      state.corners = body.particle_major(body.corners.data(), plan_.sample_points * D, experiment_.grid.cell_size);
     if (!body.domain.empty()) state.domain = body.particle_major(body.domain.data(), D * D, experiment_.grid.cell_size);
     return state;
   }
@@ -443,8 +458,12 @@ class HostRun final : public Backend {
     }
   }
 
+  const char* move_failure() const {
+    return plan_.sample_points > 0 ? "left the domain, or its corners have turned its own domain inside out"
+                                   : "left the domain";
+  }
   void move() {
-    for (Body<T>& body : bodies_) run("move", arguments_of(body), teams(body.count), body, "left the domain");
+    for (Body<T>& body : bodies_) run("move", arguments_of(body), teams(body.count), body, move_failure());
   }
 
   // ---- contact -----------------------------------------------------------------------------------------------------

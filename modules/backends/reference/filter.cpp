@@ -49,6 +49,7 @@ void ReferenceBackend::scatter_projection(Particles& body) {
     const Matrix A = affine ? body.matrix(body.A, p) : Matrix(Matrix::Zero());
     for (const StencilNode& s : body.stencil(p))
       grid_.node(body.field(), s.index).projected += s.weight * (b + A * s.distance);
+    add_higher(body, p, &Node::projected);
   }
 }
 

@@ -38,7 +38,16 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
     for (int a = 0; a < D; ++a)
       domain_.row(a * (D + 1)).setConstant(0.5 / experiment.bodies[body].particles_per_cell_axis);
   }
+  if (plan.sample_points > 0) {
+    corners = moved_corners = make(plan.sample_points * D);
+    for (int corner = 0; corner < plan.sample_points; ++corner)
+      for (int a = 0; a < D; ++a)
+        corners.row(corner * D + a)
+            .setConstant((corner >> a & 1 ? 0.5 : -0.5) / experiment.bodies[body].particles_per_cell_axis);
+  }
   initialise(transfer_state_, *transfer_.plugin);
+  if (plan.basis_functions > 0)
+    transfer_state_[polynomial_coefficients] = gathered_higher = higher = make(plan.basis_functions * D);
   initialise(material_state_, *material_.plugin);
   if (!seeds.velocity_gradient.empty()) {
     Array& affine = transfer_state_.at(transfer_.plugin->state()[0].name);
@@ -74,9 +83,26 @@ std::vector<void*> Particles::pointers(Fields& fields, const Plugin& plugin) {
 
 std::uint64_t Particles::bytes() const {
   Eigen::Index scalars = 0;
-  for (const Array* array : {&position, &velocity, &initial_position, &advection, &b, &A, &stress, &volume_ratio,
-                             &gathered_velocity, &gathered_increment, &gathered_affine, &gathered_gradient,
-                             &velocity_gradient, &domain_, &circumference_, &hoop_rate_})
+  for (const Array* array : {&position,
+                             &velocity,
+                             &initial_position,
+                             &advection,
+                             &b,
+                             &A,
+                             &stress,
+                             &volume_ratio,
+                             &gathered_velocity,
+                             &gathered_increment,
+                             &gathered_affine,
+                             &gathered_gradient,
+                             &velocity_gradient,
+                             &domain_,
+                             &circumference_,
+                             &hoop_rate_,
+                             &gathered_higher,
+                             &higher,
+                             &corners,
+                             &moved_corners})
     scalars += array->size();
   for (const auto* fields : {&transfer_state_, &material_state_})
     for (const auto& [name, array] : *fields) scalars += array.size();
@@ -122,7 +148,7 @@ void Particles::pad(Array& array) const {
 }
 
 ShapeArguments Particles::shape_arguments() const {
-  ShapeArguments at{make(dimension_), make(dimension_), domain_};
+  ShapeArguments at{make(dimension_), make(dimension_), domain_, corners};
   for (int c = 0; c < dimension_; ++c)
     at.position.row(c) = (position.row(c).array() - experiment_.grid.lower[c]) / experiment_.grid.cell_size;
   at.half_size.setConstant(0.5 / experiment_.bodies[body_].particles_per_cell_axis);
@@ -132,10 +158,11 @@ ShapeArguments Particles::shape_arguments() const {
 void Particles::find_stencils(const Grid& grid) {
   const ShapeArguments at = shape_arguments();
   const ShapeValues values = shape_.evaluate(at);
-  stencils_.clear(), second_moments_.clear();
+  stencils_.clear(), second_moments_.clear(), higher_bases_.clear();
   for (std::size_t p = 0; p < count_; ++p) {
     stencils_.push_back(shape_.stencil(values, at, p, grid, body_));
     second_moments_.push_back(shape_.second_moment(values, at, p));
+    if (plan_.basis_functions > 0) higher_bases_.push_back(shape_.higher_basis(values, p));
   }
 }
 
@@ -156,6 +183,9 @@ void Particles::call_scatter(const Array& velocities, Fields& states) {
                                 b.data(),
                                 transfer.traits & MPM_SCATTERS_AFFINE ? A.data() : nullptr};
   transfer.scatter[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
+  if (plan_.basis_functions == 0) return;
+  higher = states.at(polynomial_coefficients);
+  for (std::size_t p = 0; p < count_; ++p) higher.col(static_cast<Eigen::Index>(p)) *= mass(p);
 }
 
 void Particles::scatter_coefficients() {
@@ -244,6 +274,7 @@ void Particles::call_gather(double dt, const Array& increments, Array& velocitie
                                advections.data(),
                                moments.size() ? moments.data() : nullptr};
   transfer.gather[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
+  if (plan_.basis_functions > 0) states.at(polynomial_coefficients) = gathered_higher;
 }
 
 void Particles::gather(double dt) {
@@ -275,6 +306,10 @@ double Particles::kinetic_energy() const {
   for (std::size_t p = 0; p < count_; ++p) {
     sum += 0.5 * mass(p) * column(velocity, p).squaredNorm();
     if (C) sum += 0.5 * mass(p) * (matrix(*C, p) * second_moments_[p] * matrix(*C, p).transpose()).trace();
+    for (int k = 0; k < plan_.basis_functions; ++k)
+      for (int c = 0; c < dimension_; ++c)
+        sum += 0.5 * mass(p) * higher_bases_[p].norm[k] *
+               std::pow(transfer_state_.at(polynomial_coefficients)(k * dimension_ + c, p), 2);
   }
   return sum;
 }
@@ -292,6 +327,7 @@ BodyState Particles::state() const {
   if (initial_position.size()) result.initial_position = particle_major(initial_position);
   for (const auto& [name, array] : transfer_state_) result.transfer_state[name] = particle_major(array);
   for (const auto& [name, array] : material_state_) result.material_state[name] = particle_major(array);
+  if (plan_.sample_points > 0) result.corners = particle_major(experiment_.grid.cell_size * corners);
   if (plan_.particle_domain) result.domain = particle_major(experiment_.grid.cell_size * domain_);
   if (plan_.second_moment) {
     const double h = experiment_.grid.cell_size;
@@ -310,6 +346,7 @@ void Particles::visit_saved(Self& self, Visit visit) {
   visit("initial_position", self.initial_position);
   visit("circumference", self.circumference_);
   visit("domain", self.domain_);
+  visit("corners", self.corners);
   for (auto& [name, field] : self.transfer_state_) visit(name, field);
   for (auto& [name, field] : self.material_state_) visit(name, field);
 }

@@ -36,6 +36,8 @@ class Particles {
   /// RunFailure.
   void find_stencils(const Grid& grid);
   const Stencil& stencil(std::size_t p) const { return stencils_[p]; }
+  /// Polynomials beyond affine at the same nodes; there when Plan::basis_functions is not 0.
+  const HigherBasis& higher_basis(std::size_t p) const { return higher_bases_[p]; }
 
   /// Momentum coefficients b and A of all particles.
   void scatter_coefficients();
@@ -64,6 +66,10 @@ class Particles {
   Array b, A, stress, volume_ratio;
   Array gathered_velocity, gathered_increment, gathered_affine, gathered_gradient;
   Array velocity_gradient;  ///< what strains the particle
+  Array corners;            ///< [points*D], cells from the particle; empty unless Plan::sample_points
+  Array moved_corners;      ///< where the grid's velocity takes them in this step, from the particle as it is yet
+  Array gathered_higher;    ///< [function][D], coefficients of the polynomials beyond affine, m/s
+  Array higher;             ///< the same times the mass, to scatter with b and A
 
  private:
   using Fields = std::map<std::string, Array>;
@@ -97,6 +103,7 @@ class Particles {
   Fields transfer_state_, material_state_;
   std::vector<Stencil> stencils_;
   std::vector<Matrix> second_moments_;  ///< m^2, with the stencils
+  std::vector<HigherBasis> higher_bases_;
 };
 
 }  // namespace mpm::reference

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "kernel/corner_domain.hpp"
+#include "simulation/domain_too_long.hpp"
+
 namespace mpm {
 namespace reference {
 
@@ -85,12 +88,37 @@ void ReferenceBackend::move(const StepInfo& step) {
     Particles& body = bodies_[index];
     if (body.frozen()) continue;
     for (std::size_t p = 0; p < body.count(); ++p) {
-      Vector x = body.column(body.position, p) + step.dt * body.column(body.advection, p);
+      Vector x = body.column(body.position, p);
+      if (plan_.sample_points == 0)
+        x += step.dt * body.column(body.advection, p);
+      else
+        x += experiment_.dimension == 2 ? move_corners<2>(body, static_cast<int>(index), p)
+                                        : move_corners<3>(body, static_cast<int>(index), p);
       keep_inside(x, static_cast<int>(index), p);
       body.set(body.position, p, x);
     }
     body.pad(body.position);
+    if (plan_.sample_points > 0) body.pad(body.corners);
   }
+}
+
+/// Takes the corners to where the grid's velocity moved them; returns the way to their domain's centroid, m.
+template <int D>
+Vector ReferenceBackend::move_corners(Particles& body, int index, std::size_t p) const {
+  constexpr int points = 1 << D;
+  Vec<D, double> corner[points];
+  for (int c = 0; c < points; ++c)
+    for (int a = 0; a < D; ++a) corner[c][a] = body.moved_corners(c * D + a, p);
+  const CornerDomain<D, double> domain = corner_domain<D, double>(corner);
+  if (!domain.upright && std::isfinite(domain.volume))  // keep_inside names what is not a number
+    throw RunFailure(domain_inside_out(*experiment_.shape.plugin), index, p);
+  const Vec<D, double> centre = centroid(domain, corner);
+  Vector way = Vector::Zero();
+  for (int a = 0; a < D; ++a) {
+    way[a] = experiment_.grid.cell_size * centre[a];
+    for (int c = 0; c < points; ++c) body.corners(c * D + a, p) = corner[c][a] - centre[a];
+  }
+  return way;
 }
 
 void ReferenceBackend::keep_inside(Vector& x, int body, std::size_t p) const {

@@ -33,6 +33,8 @@ class ReferenceBackend final : public Backend {
  private:
   void estimate_time_step();
   void move(const StepInfo& step);
+  template <int D>
+  Vector move_corners(Particles& body, int index, std::size_t p) const;
   /// Wraps periodic axes; throws RunFailure where a particle is not a number or beyond a wall.
   void keep_inside(Vector& x, int body, std::size_t p) const;
   /// Rows of particles a cell of the coarsest body in a field: its surface lags the most.
@@ -47,6 +49,9 @@ class ReferenceBackend final : public Backend {
   void gather(const Pass& pass, const StepInfo& step);
   void gather_moments(Particles& body, Vector Node::*velocity);
   void strain(const Pass& pass, const StepInfo& step);
+  void gather_corners(Particles& body, const StepInfo& step);
+  void add_higher(const Particles& body, std::size_t p, Vector Node::*momentum);
+  void gather_higher(Particles& body, Vector Node::*velocity_of);
 
   // ---- grid_step.cpp
   void momentum_to_velocity(const Pass& pass, const StepInfo& step);

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "kernel/polynomial_basis.hpp"
 #include "simulation/domain_too_long.hpp"
 
 namespace mpm::reference {
@@ -74,7 +75,8 @@ void Shape::evaluate_list(const ShapeArguments& at, ShapeValues& values) const {
                              values.node.data(),
                              values.weight.data(),
                              values.gradient.data(),
-                             plan_.second_moment ? values.second_moment.data() : nullptr};
+                             plan_.second_moment ? values.second_moment.data() : nullptr,
+                             plan_.sample_points > 0 ? at.corners.data() : nullptr};
   shape_.evaluate_list[MPM_SCALAR_DOUBLE][D - 2](experiment_.shape.parameters.data(), &batch);
 }
 
@@ -122,6 +124,39 @@ Matrix Shape::second_moment(const ShapeValues& values, const ShapeArguments& at,
   return moment;
 }
 
+template <int K>
+HigherBasis Shape::higher_basis_of_width(const ShapeValues& values, std::size_t p) const {
+  const int D = dimension_;
+  AxisBasis<K, double> axis[3];
+  for (int c = 0; c < D; ++c)
+    make_axis_basis<K>(&values.weight(c * K, p), static_cast<int>(values.weight.cols()), values.offset(c, p),
+                       plan_.basis_order, axis[c]);
+  HigherBasis basis;
+  const int nodes = D == 3 ? K * K * K : K * K;
+  basis.given = basis.taken = Array::Ones(plan_.basis_functions, nodes);
+  basis.norm.assign(plan_.basis_functions, 1.0);
+  const auto add = [&](int function, const int* power) {
+    for (int c = 0; c < D; ++c) basis.norm[function] *= axis[c].norm[power[c]];
+    for (int node = 0; node < nodes; ++node) {
+      const int at[3] = {node % K, node / K % K, node / (K * K)};
+      for (int c = 0; c < D; ++c) {
+        basis.given(function, node) *= axis[c].given[power[c]][at[c]];
+        basis.taken(function, node) *= axis[c].taken[power[c]][at[c]];
+      }
+    }
+  };
+  if (D == 3)
+    for_each_product<3>(plan_.basis_order, add);
+  else
+    for_each_product<2>(plan_.basis_order, add);
+  return basis;
+}
+
+HigherBasis Shape::higher_basis(const ShapeValues& values, std::size_t p) const {
+  if (shape_.width == 2) return higher_basis_of_width<2>(values, p);
+  return shape_.width == 3 ? higher_basis_of_width<3>(values, p) : higher_basis_of_width<4>(values, p);
+}
+
 Stencil Shape::stencil(const ShapeValues& values, const ShapeArguments& at, std::size_t p, const Grid& grid,
                        int body) const {
   const int D = dimension_;
@@ -141,6 +176,7 @@ Stencil Shape::stencil(const ShapeValues& values, const ShapeArguments& at, std:
   };
   Eigen::Vector3i coordinates = Eigen::Vector3i::Zero();
   if (shape_.form == MPM_NODE_LIST) {
+    if (values.count[p] < 1) throw RunFailure(domain_inside_out(*experiment_.shape.plugin), body, p);
     for (int k = 0; k < values.count[p]; ++k) {
       const StencilNode node = list_node(values, at, p, k, coordinates);
       add(node, coordinates);

@@ -23,11 +23,18 @@ struct StencilNode {
 };
 using Stencil = std::vector<StencilNode>;
 
+/// The polynomials beyond affine at the nodes of one particle, in the order of its stencil.
+struct HigherBasis {
+  Array given, taken;        ///< [function][node]: w P, and w P / sum w P^2
+  std::vector<double> norm;  ///< [function] sum w P^2
+};
+
 /// Where the shape of one body is evaluated, in cells.
 struct ShapeArguments {
   Array position;   ///< [D], from the grid's lower corner
   Array half_size;  ///< [D]; half the undeformed particle's box
   Array domain;     ///< [D*D]; empty unless Plan::particle_domain
+  Array corners;    ///< [points*D], from the position; empty unless Plan::sample_points
 };
 
 /// What the plugin returned for all particles, in cells.
@@ -48,8 +55,12 @@ class Shape {
   Stencil stencil(const ShapeValues& values, const ShapeArguments& at, std::size_t p, const Grid& grid, int body) const;
   /// D = sum w d d^T of particle p, m^2; zero when it is one a particle and the plan does not want it.
   Matrix second_moment(const ShapeValues& values, const ShapeArguments& at, std::size_t p) const;
+  /// The polynomials beyond affine of particle p, of a tensor product.
+  HigherBasis higher_basis(const ShapeValues& values, std::size_t p) const;
 
  private:
+  template <int K>
+  HigherBasis higher_basis_of_width(const ShapeValues& values, std::size_t p) const;
   void evaluate_product(const ShapeArguments& at, ShapeValues& values) const;
   void evaluate_list(const ShapeArguments& at, ShapeValues& values) const;
   StencilNode product_node(const ShapeValues& values, std::size_t p, const int (&at)[3],

@@ -1,5 +1,6 @@
 // Particles to grid and back.
 
+#include <cmath>
 #include <numbers>
 
 #include "backends/reference/reference_backend.hpp"
@@ -34,7 +35,59 @@ void ReferenceBackend::scatter_momentum(Particles& body, bool remap) {
       node.momentum += s.weight * (b + A * s.distance);
       if (!remap) node.gravity_force += s.weight * body.mass(p) * gravity;
     }
+    add_higher(body, p, &Node::momentum);
   }
+}
+
+/// Where the tents' velocity at the corners takes them, and what moves the particle beyond the gathered velocity.
+void ReferenceBackend::gather_corners(Particles& body, const StepInfo& step) {
+  const int D = experiment_.dimension;
+  const double h = experiment_.grid.cell_size;
+  for (std::size_t p = 0; p < body.count(); ++p) {
+    const Vector own = body.column(body.advection, p) - body.column(body.gathered_velocity, p);
+    for (int corner = 0; corner < plan_.sample_points; ++corner) {
+      Vector velocity = own;
+      Vector place = Vector::Zero(), lower = Vector::Zero();
+      for (int a = 0; a < D; ++a) {
+        place[a] = (body.position(a, p) - experiment_.grid.lower[a]) / h + body.corners(corner * D + a, p);
+        lower[a] = std::floor(place[a]);
+      }
+      for (int which = 0; which < 1 << D; ++which) {
+        double weight = 1;
+        Eigen::Vector3i node = lower.cast<int>();
+        for (int a = 0; a < D; ++a) {
+          const bool upper = which >> a & 1;
+          weight *= upper ? place[a] - lower[a] : 1 - (place[a] - lower[a]);
+          node[a] += upper;
+        }
+        if (weight != 0) velocity += weight * grid_.node(body.field(), grid_.index(node)).velocity;
+      }
+      for (int a = 0; a < D; ++a)
+        body.moved_corners(corner * D + a, p) = body.corners(corner * D + a, p) + step.dt / h * velocity[a];
+    }
+  }
+}
+
+/// sum w c P over the polynomials beyond affine.
+void ReferenceBackend::add_higher(const Particles& body, std::size_t p, Vector Node::*momentum) {
+  const int D = experiment_.dimension;
+  for (int k = 0; k < plan_.basis_functions; ++k)
+    for (std::size_t n = 0; n < body.stencil(p).size(); ++n)
+      for (int c = 0; c < D; ++c)
+        (grid_.node(body.field(), body.stencil(p)[n].index).*momentum)[c] +=
+            body.higher_basis(p).given(k, static_cast<Eigen::Index>(n)) * body.higher(k * D + c, p);
+}
+
+/// The coefficients of the polynomials beyond affine in the given velocity.
+void ReferenceBackend::gather_higher(Particles& body, Vector Node::*velocity_of) {
+  const int D = experiment_.dimension;
+  if (plan_.basis_functions > 0) body.gathered_higher.setZero();
+  for (std::size_t p = 0; p < body.count(); ++p)
+    for (int k = 0; k < plan_.basis_functions; ++k)
+      for (std::size_t n = 0; n < body.stencil(p).size(); ++n)
+        for (int c = 0; c < D; ++c)
+          body.gathered_higher(k * D + c, p) += body.higher_basis(p).taken(k, static_cast<Eigen::Index>(n)) *
+                                                (grid_.node(body.field(), body.stencil(p)[n].index).*velocity_of)[c];
 }
 
 /// f = -V0 tau grad w, or -V0 tau (w D^-1 d) when the transfer takes stress by the affine term, and around an axis
@@ -76,6 +129,7 @@ void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
     gather_moments(body, &Node::velocity);
     body.gather(step.dt);
     if (step.filtered) body.take_gathered_velocity();
+    if (plan_.sample_points > 0) gather_corners(body, step);
     if (pass.strain) ledger_.material += body.strain(pass.strain_share * step.dt);
   }
   if (plan_.ledger) ledger_.gather += particle_kinetic_energy() - kinetic_energy_after_;
@@ -102,6 +156,7 @@ void ReferenceBackend::gather_moments(Particles& body, Vector Node::*velocity_of
     body.set(body.gathered_gradient, p, gradient);
     body.set(body.velocity_gradient, p, strain_by_affine ? affine : gradient);
   }
+  gather_higher(body, velocity_of);
 }
 
 void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {

@@ -38,6 +38,8 @@ struct ParticleArrays {
   T* velocity;        ///< [D], m/s
   T* advection;       ///< [D], m/s: moves the particle
   T* domain;          ///< [D*D], cells; null unless the shape takes domains
+  T* corners;         ///< [corner][D], cells from the particle; null unless the grid's velocity moves them
+  T* moved_corners;   ///< where they go in this step, from the particle as it is yet
   T* stencil_domain;  ///< the same at the last scatter: weights do not change inside a step
   T* transfer_state;  ///< declared fields one after another
   T* material_state;

@@ -28,6 +28,18 @@ MPM_HD void store_matrix(T* array, int stride, int index, const Mat<D, T>& value
   for (int k = 0; k < D * D; ++k) array[k * stride + index] = value.m[k];
 }
 
+/// The corners of a particle's domain, [corner][D].
+template <int D, class T>
+MPM_HD void load_corners(const T* array, int stride, int index, Vec<D, T>* corners) {
+  for (int c = 0; c < 1 << D; ++c)
+    for (int a = 0; a < D; ++a) corners[c][a] = array[(c * D + a) * stride + index];
+}
+template <int D, class T>
+MPM_HD void store_corners(T* array, int stride, int index, const Vec<D, T>* corners) {
+  for (int c = 0; c < 1 << D; ++c)
+    for (int a = 0; a < D; ++a) array[(c * D + a) * stride + index] = corners[c][a];
+}
+
 /// A functor's State: exactly its declared scalars, in order.
 template <class State, class T>
 inline constexpr int scalars_of = __is_empty(State) ? 0 : static_cast<int>(sizeof(State) / sizeof(T));

@@ -44,6 +44,11 @@ MPM_HD void project(const Team& team, const Arguments<typename Scene::Scalar>& a
         Mat<D, T> A{};
         Transfer::gather(parameters, moments, a.dt, v, state, advection);
         Transfer::scatter(parameters, a.particles.mass, v, state, b, A);
+        [[maybe_unused]] auto higher = higher_of<Scene>(a, stencil, p);
+        if constexpr (Scene::basis_functions > 0) {
+          for (T& coefficient : higher.coefficient) coefficient = T(0);
+          higher.gather(a, a.grid.increment);
+        }
         stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
           T values[D];
           for (int i = 0; i < D; ++i) {
@@ -51,6 +56,7 @@ MPM_HD void project(const Team& team, const Arguments<typename Scene::Scalar>& a
             if constexpr (Scene::scatters_affine)
               for (int j = 0; j < D; ++j) momentum += A(i, j) * s.distance[j];
             values[i] = s.weight * momentum;
+            if constexpr (Scene::basis_functions > 0) values[i] += a.particles.mass * higher.given(s.node, i);
           }
           add(s.node, values);
         });

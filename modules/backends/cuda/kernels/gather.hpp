@@ -1,7 +1,8 @@
 #pragma once
 // Grid to particles: moments of a velocity field, the transfer's gather, and the move. A lane a particle.
 
-#include "backends/cuda/kernels/stencil.hpp"
+#include "backends/cuda/kernels/higher.hpp"
+#include "kernel/corner_domain.hpp"
 
 namespace mpm::device {
 
@@ -30,6 +31,32 @@ MPM_HD GatheredMoments<Scene::dimension, typename Scene::Scalar> gathered_moment
   return moments;
 }
 
+/// Where the grid's multilinear velocity takes a particle's corners, with what moves it beyond the gathered velocity.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD void gather_corners(const Arguments<T>& a, int p, const Vec<Scene::dimension, T>& advection,
+                           const Vec<Scene::dimension, T>& gathered) {
+  constexpr int D = Scene::dimension;
+  const int stride = a.particles.stride;
+  const Vec<D, T> x = position_in_cells<D>(a, p);
+  Vec<D, T> corners[1 << D];
+  load_corners<D>(a.particles.corners, stride, p, corners);
+  for (int c = 0; c < 1 << D; ++c) {
+    const TentCell<D, T> cell(x, corners[c]);
+    Vec<D, T> v;
+    for (int i = 0; i < D; ++i) v[i] = advection[i] - gathered[i];
+    for (int which = 0; which < 1 << D; ++which) {
+      const T weight = cell.weight(which);
+      if (weight == T(0)) continue;
+      int node[D];
+      for (int i = 0; i < D; ++i) node[i] = cell.node(which, i);
+      const int index = node_index<D>(a, node);
+      for (int i = 0; i < D; ++i) v[i] += weight * a.grid.velocity[i * a.node_count + index];
+    }
+    for (int i = 0; i < D; ++i) corners[c][i] += a.dt * a.inverse_cell_size * v[i];
+  }
+  store_corners<D>(a.particles.moved_corners, stride, p, corners);
+}
+
 /// Gather pass; without `update_particles` only the velocity gradient that strains the particle (of USF and MUSL).
 template <class Scene>
 MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a) {
@@ -53,7 +80,13 @@ MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a)
     if (a.filtered) v = advection = moments.velocity;
     store(particles.velocity, stride, p, v);
     store(particles.advection, stride, p, advection);
+    if constexpr (Scene::sampled) gather_corners<Scene>(a, p, advection, moments.velocity);
     store_state(particles.transfer_state, stride, p, state);
+    if constexpr (Scene::basis_functions > 0) {
+      Higher<Scene> higher(stencil);
+      higher.gather(a, a.grid.velocity);
+      higher.store(particles.transfer_state, stride, p);
+    }
   });
 }
 
@@ -72,9 +105,24 @@ MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
     Vec<D, T> x = load<D>(a.particles.position, stride, p);
     const Vec<D, T> v = load<D>(a.particles.advection, stride, p);
     bool inside = true;
+    Vec<D, T> way;
+    for (int c = 0; c < D; ++c) way[c] = a.dt * v[c];
+    if constexpr (Scene::sampled) {  // the particle goes to the centroid of its moved corners
+      if (a.particles.frozen) return;
+      Vec<D, T> corners[1 << D];
+      load_corners<D>(a.particles.moved_corners, stride, p, corners);
+      const CornerDomain<D, T> domain = corner_domain<D, T>(corners);
+      const Vec<D, T> centre = centroid(domain, corners);
+      for (int c = 0; c < D; ++c) {
+        way[c] = a.cell_size * centre[c];
+        for (Vec<D, T>& corner : corners) corner[c] = corner[c] - centre[c];
+      }
+      store_corners<D>(a.particles.corners, stride, p, corners);
+      inside = domain.upright;
+    }
     for (int c = 0; c < D; ++c) {
       const T size = T(a.cells[c]) * a.cell_size;
-      if (!a.particles.frozen) x[c] += a.dt * v[c];
+      if (!a.particles.frozen) x[c] += way[c];
       T at = x[c] - a.lower[c];
       if (a.walls[c][0] == wall_periodic) {
         x[c] -= size * floor(at / size);

@@ -64,7 +64,7 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
     const auto L = velocity_gradient_of<Scene>(a.particles, p);
     Material::advance(constants, L, a.dt, state);
     store_state(a.particles.material_state, stride, p, state);
-    if constexpr (Scene::list || Scene::deformed)
+    if constexpr ((Scene::list && !Scene::sampled) || Scene::deformed)
       if (!a.particles.frozen)
         store_matrix(a.particles.domain, stride, p,
                      advanced(load_matrix<D>(a.particles.domain, stride, p), in_plane(L), a.dt));

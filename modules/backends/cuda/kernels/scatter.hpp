@@ -1,7 +1,7 @@
 #pragma once
 // Particles to grid. One team sums a block's particles into a tile in shared memory, then adds the tile to the grid.
 
-#include "backends/cuda/kernels/stencil.hpp"
+#include "backends/cuda/kernels/higher.hpp"
 
 namespace mpm::device {
 
@@ -86,6 +86,18 @@ MPM_HD T of_ring(const ParticleArrays<T>& particles, T of_body, int p) {
   return of_body;
 }
 
+/// The particle's polynomials beyond affine where the scene has them.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD auto higher_of(const Arguments<T>& a, const Stencil<Scene>& stencil, int p) {
+  if constexpr (Scene::basis_functions > 0) {
+    Higher<Scene> higher(stencil);
+    higher.load(a.particles.transfer_state, a.particles.stride, p);
+    return higher;
+  } else {
+    return 0;
+  }
+}
+
 /// Scatter pass: w m, w (b + A d), -V0 tau grad w (or w D^-1 d) and w m g, and the contact channels, as `a` says.
 /// Around an axis -w V0 tau_zz / r too.
 template <class Scene>
@@ -112,6 +124,7 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
         if (a.force)
           for (int k = 0; k < Sym<D, T>::size; ++k) tau.s[k] = particles.stress[k * particles.stride + p];
         const bool weighs = a.momentum && !a.remap;
+        [[maybe_unused]] const auto higher = higher_of<Scene>(a, stencil, p);
         stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
           T values[scatter_channels<Scene>];
           const T mass = s.weight * mass_of_particle;
@@ -127,6 +140,7 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
               else
                 traction += tau(i, j) * s.gradient[j];
             values[1 + i] = s.weight * momentum;
+            if constexpr (Scene::basis_functions > 0) values[1 + i] += mass_of_particle * higher.given(s.node, i);
             values[1 + D + i] = (weighs ? mass * a.gravity[i] : T(0)) - volume_of_particle * traction;
           }
           if constexpr (Scene::axisymmetric)

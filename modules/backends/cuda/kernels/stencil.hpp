@@ -95,6 +95,10 @@ class StencilOf<Scene, false> {
     }
   }
 
+  MPM_HD int base(int axis) const { return base_[axis]; }
+  MPM_HD T offset(int axis) const { return offset_[axis]; }
+  MPM_HD const T* weights(int axis) const { return weight_[axis]; }
+
   /// Whether all nodes are in the grid, the position is a number, and the stencil holds the domain.
   MPM_HD bool inside() const { return inside_; }
 
@@ -149,8 +153,16 @@ class StencilOf<Scene, true> {
       inside_ = inside_ && position_[c] >= T(-a.padding[c]) && position_[c] <= T(a.cells[c] + a.padding[c]);
     list_.count = 0;
     if (!inside_) return;
-    const Mat<D, T> domain = load_matrix<D>(a.particles.stencil_domain, a.particles.stride, p);
-    Shape::evaluate(parameters_of<Shape>(a.shape_parameters), position_, domain, list_);
+    const auto parameters = parameters_of<Shape>(a.shape_parameters);
+    if constexpr (Scene::sampled) {
+      Vec<D, T> corners[1 << D];
+      load_corners<D>(a.particles.corners, a.particles.stride, p, corners);
+      Shape::evaluate(parameters, position_, corners, list_);
+      inside_ = list_.count > 0;
+    } else {
+      const Mat<D, T> domain = load_matrix<D>(a.particles.stencil_domain, a.particles.stride, p);
+      Shape::evaluate(parameters, position_, domain, list_);
+    }
     for (int k = 0; k < list_.count; ++k)
       for (int i = 0; i < D; ++i) {
         const int node = list_.node[k][i];
