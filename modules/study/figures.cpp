@@ -233,9 +233,15 @@ void draw_curves(const Results& results, const FigureRequest& figure, const fs::
         ++missing;
         continue;
       }
-      for (const std::string& header : table.header)
-        if (header.substr(0, header.find(" (")) == figure.column) plot.y_label = figure.column + unit_in(header);
-      all.push_back({alone.label, *time, *column, {}, SeriesKind::computed, {}});
+      if (figure.over_initial)
+        plot.y_label = figure.column + " over its initial value";
+      else
+        for (const std::string& header : table.header)
+          if (header.substr(0, header.find(" (")) == figure.column) plot.y_label = figure.column + unit_in(header);
+      std::vector<double> values = *column;
+      if (figure.over_initial && !values.empty())
+        for (const double first = values.front(); double& value : values) value /= first;
+      all.push_back({alone.label, *time, std::move(values), {}, SeriesKind::computed, {}});
     }
     return all;
   };
