@@ -288,6 +288,7 @@ void draw_heat_map(const Results& results, const FigureRequest& figure, const fs
   map.y_names = labels_shown(y);
   map.values.assign(map.x_names.size() * map.y_names.size(), not_measured);
   map.notes.assign(map.values.size(), "");
+  bool has_flags = false;
   for (const Result* result : layer.results) {
     const auto column = std::find(map.x_names.begin(), map.x_names.end(), label_on(study, *result, figure.x));
     const auto row = std::find(map.y_names.begin(), map.y_names.end(), label_on(study, *result, figure.y));
@@ -296,9 +297,11 @@ void draw_heat_map(const Results& results, const FigureRequest& figure, const fs
     map.values[index] = result->value(figure.value);
     if (!std::isfinite(map.values[index])) map.notes[index] = outcome_words(*result);
     if (!result->flags.empty()) map.notes[index] = "!";
+    has_flags |= !result->flags.empty();
     if (study.bisection && figure.value == critical_measure && result->stable && !result->unstable)
       map.notes[index] = "or more";
   }
+  if (has_flags) map.footnote += " · !: broke a limit of the study";
   render::write_figure(map, stem);
 }
 

@@ -1,5 +1,5 @@
-// Every study in experiments/: the file is read, its first combination passes the checks of `mpm check`, and none of the
-// others is refused but for what the list of combinations names.
+// Every study in experiments/: the file is read, its first combination passes the checks of `mpm check`, and none of
+// the others is refused but for what the list of combinations names.
 
 #include "cli/program.hpp"
 #include "experiment/diagnostics.hpp"
