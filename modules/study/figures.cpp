@@ -164,6 +164,8 @@ std::vector<Series> points_by_series(const Results& results, const FigureRequest
   std::vector<std::string> without{by, figure.panels};
   for (const Axis& axis : study.axes)
     if (axis.choices.size() == 1) without.push_back(axis.name);
+  for (const auto& [axis, labels] : figure.where)
+    if (labels.size() == 1) without.push_back(axis);
   std::vector<Series> all;
   const auto add_to = [&](const std::string& label) -> Series& {
     for (Series& series : all)
