@@ -142,6 +142,13 @@ void draw_series(Canvas& canvas, const Theme& theme, const Scales& s, const Cont
       }
     }
   }
+  for (const Shown& shown : content.series) {  // the front once more, over pale marks of later series
+    if (std::find(shown.is_faded.begin(), shown.is_faded.end(), true) == shown.is_faded.end()) continue;
+    const auto points = pixels_of(shown.data, s);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!shown.is_faded[i]) draw_mark(canvas, shown.look, points[i], 8 * theme.unit, theme.unit, 1);
+    }
+  }
 }
 
 // What stands in the plot already: new labels look for a place that none of it crosses.

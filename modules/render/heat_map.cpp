@@ -163,6 +163,8 @@ Writing writing_of(const Canvas& canvas, const Theme& theme, const HeatMap& map,
   for (auto& line : wrapped(canvas, std::isnan(value) && note.empty() ? "not run" : note, size, width))
     lines.push_back(std::move(line));
   if (fits(lines)) return {lines};
+  const std::vector<std::string> beside{number.size() == 1 ? number.front() + " " + note : ""};
+  if (number.size() == 1 && fits(beside)) return {beside};
   if (!number.empty()) return {fits(number) ? number : std::vector<std::string>{}, true};
   if (lines.size() > most) {
     lines.resize(most);

@@ -128,7 +128,7 @@ Layout lay_out(const Canvas& canvas, const Theme& theme, const Multiples& m, con
               std::clamp(static_cast<int>(at.height / theme.text / 1.9), 1, 8));
   const double widest_x = widest_label(canvas, theme, s.x.ticks);
   at.left = space.x0 + widest_label(canvas, theme, s.y.ticks) + 12 * theme.unit;
-  at.gap_x = std::max(1.5 * theme.text, widest_x + 0.5 * theme.text);
+  at.gap_x = std::max(1.5 * theme.text, widest_x + theme.text);
   at.width = (space.x1 - 0.5 * widest_x - at.left - (columns - 1) * at.gap_x) / columns;
   if (!(at.width > 3 * theme.text && at.height > 2 * theme.text)) {
     throw std::invalid_argument("small multiples of " + std::to_string(m.panels.size()) + " panels do not fit " +

@@ -164,6 +164,8 @@ std::vector<Series> points_by_series(const Results& results, const FigureRequest
   std::vector<std::string> without{by, figure.panels};
   for (const Axis& axis : study.axes)
     if (axis.choices.size() == 1) without.push_back(axis.name);
+  for (const auto& [axis, labels] : figure.where)
+    if (labels.size() == 1) without.push_back(axis);
   std::vector<Series> all;
   const auto add_to = [&](const std::string& label) -> Series& {
     for (Series& series : all)
@@ -233,9 +235,15 @@ void draw_curves(const Results& results, const FigureRequest& figure, const fs::
         ++missing;
         continue;
       }
-      for (const std::string& header : table.header)
-        if (header.substr(0, header.find(" (")) == figure.column) plot.y_label = figure.column + unit_in(header);
-      all.push_back({alone.label, *time, *column, {}, SeriesKind::computed, {}});
+      if (figure.over_initial)
+        plot.y_label = figure.column + " over its initial value";
+      else
+        for (const std::string& header : table.header)
+          if (header.substr(0, header.find(" (")) == figure.column) plot.y_label = figure.column + unit_in(header);
+      std::vector<double> values = *column;
+      if (figure.over_initial && !values.empty())
+        for (const double first = values.front(); double& value : values) value /= first;
+      all.push_back({alone.label, *time, std::move(values), {}, SeriesKind::computed, {}});
     }
     return all;
   };
@@ -282,6 +290,7 @@ void draw_heat_map(const Results& results, const FigureRequest& figure, const fs
   map.y_names = labels_shown(y);
   map.values.assign(map.x_names.size() * map.y_names.size(), not_measured);
   map.notes.assign(map.values.size(), "");
+  bool has_flags = false;
   for (const Result* result : layer.results) {
     const auto column = std::find(map.x_names.begin(), map.x_names.end(), label_on(study, *result, figure.x));
     const auto row = std::find(map.y_names.begin(), map.y_names.end(), label_on(study, *result, figure.y));
@@ -290,9 +299,11 @@ void draw_heat_map(const Results& results, const FigureRequest& figure, const fs
     map.values[index] = result->value(figure.value);
     if (!std::isfinite(map.values[index])) map.notes[index] = outcome_words(*result);
     if (!result->flags.empty()) map.notes[index] = "!";
+    has_flags |= !result->flags.empty();
     if (study.bisection && figure.value == critical_measure && result->stable && !result->unstable)
       map.notes[index] = "or more";
   }
+  if (has_flags) map.footnote += " · !: broke a limit of the study";
   render::write_figure(map, stem);
 }
 

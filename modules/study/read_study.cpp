@@ -109,7 +109,8 @@ std::vector<Section> figure_kinds() {
        true},
       {"curves",
        "recorded curves of the runs",
-       {name, title, text("column", "Column of metrics.csv.").needed(), panels, flag("log_y"), where},
+       {name, title, text("column", "Column of metrics.csv.").needed(), panels, flag("log_y"),
+        parameter("over_initial", Type::boolean, "", "Over its first value.").standard(false), where},
        true},
       {"outcome_map", "what became of the runs", {name, title, x, flag("log_x"), where}, true},
   };
@@ -336,6 +337,7 @@ class StudyReader {
     if (has("column")) figure.column = fields.text("column");
     figure.log_x = (has("log_x") && fields.boolean("log_x")) || (has("log") && fields.boolean("log"));
     figure.log_y = has("log_y") && fields.boolean("log_y");
+    figure.over_initial = has("over_initial") && fields.boolean("over_initial");
     if (const Node* where = fields.node("where")) read_where(*where, figure);
     study_.figures.push_back(std::move(figure));
   }

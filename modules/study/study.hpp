@@ -73,6 +73,7 @@ struct FigureRequest {
   std::vector<std::string> costs;    ///< of a Pareto figure
   std::string column;                ///< of metrics.csv, for curves
   bool log_x = false, log_y = false;
+  bool over_initial = false;                                            ///< curves: over their first values
   std::vector<std::pair<std::string, std::vector<std::string>>> where;  ///< axis and the labels that are shown
 };
 

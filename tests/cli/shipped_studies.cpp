@@ -1,0 +1,70 @@
+// Every study in experiments/: the file is read, its first combination passes the checks of `mpm check`, and none of
+// the others is refused but for what the list of combinations names.
+
+#include "cli/program.hpp"
+#include "experiment/diagnostics.hpp"
+#include "experiment/plan.hpp"
+#include "mpm/cli.hpp"
+#include "study/study.hpp"
+#include "support/scene.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+const fs::path root = MPM_SOURCE_DIR;
+
+bool is_study(const fs::path& file) {
+  const Json json = Json::parse(slurp(file), nullptr, false, true);
+  return json.is_object() && json.contains("base") && json.contains("axes");
+}
+
+std::vector<fs::path> shipped() {
+  std::vector<fs::path> studies;
+  for (const auto& entry : fs::recursive_directory_iterator(root / "experiments"))
+    if (entry.path().extension() == ".json" && is_study(entry.path())) studies.push_back(entry.path());
+  std::sort(studies.begin(), studies.end());
+  return studies;
+}
+
+/// Why a combination cannot be run; empty when it can.
+std::string refusal(const study::Study& study, const study::Combination& combination) {
+  ReadOptions options = app::read_options(plugins(), {});
+  options.overrides = combination.overrides;
+  if (const auto& b = study.bisection) options.overrides.push_back(b->pointer + "=" + Json(b->from * b->scale).dump());
+  try {
+    const Experiment experiment = read_experiment(study.base, plugins(), options);
+    return make_plan(experiment).particles > 0 ? "" : "it has no particles";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("shipped studies are read, and what they combine runs together") {
+  const auto studies = shipped();
+  REQUIRE(studies.size() >= 9);
+  for (const fs::path& file : studies) {
+    INFO(file.string());
+    const study::Study study = study::read_study(file);
+    CHECK(!study.figures.empty());
+    const auto combinations = study::expand(study);
+    REQUIRE(!combinations.empty());
+    CHECK(refusal(study, combinations.front()) == "");
+    for (const study::Combination& combination : combinations) {
+      const std::string reason = refusal(study, combination);
+      INFO(combination.name << ": " << reason);
+      CHECK((reason.empty() || has(reason, "leaves nothing of transfer")));
+    }
+  }
+}
+
+TEST_CASE("shipped studies are in the table of docs/studies.md") {
+  const std::string page = slurp(root / "docs/studies.md");
+  for (const fs::path& file : shipped()) {
+    INFO(file.string());
+    CHECK(has(page, "| `" + fs::relative(file, root).string() + "` |"));
+  }
+}
