@@ -10,8 +10,10 @@
 
 namespace mpm::cpu {
 
-inline constexpr int chunk_size = MPM_BATCH;  ///< particles in a chunk
-inline constexpr int block_nodes = 64;        ///< nodes (and cells) in a block, in both dimensions
+/// Particles in a chunk: in double half as many, so that what a step holds of them stays in the first-level cache.
+template <class T>
+inline constexpr int chunk_size = sizeof(T) == 4 ? MPM_BATCH : MPM_BATCH / 2;
+inline constexpr int block_nodes = 64;  ///< nodes (and cells) in a block, in both dimensions
 
 template <int D>
 inline constexpr int block_bits = D == 3 ? 2 : 3;

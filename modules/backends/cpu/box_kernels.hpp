@@ -67,15 +67,15 @@ inline __attribute__((always_inline)) void scatter_box(Quad<T>* corner, const T*
 #pragma GCC unroll 4
     for (int j = 0; j < rows; ++j) {
       Q* const nodes = corner + (i * (D == 2 ? 1 : side) + j) * side;
-      const int first = (i * (D == 2 ? 1 : box_width) + j) * box_width * chunk_size;
+      const int first = (i * (D == 2 ? 1 : box_width) + j) * box_width * chunk_size<T>;
       Q value = row;
 #pragma GCC unroll 4
       for (int k = 0; k < W; ++k) {
-        const int at = first + k * chunk_size;
+        const int at = first + k * chunk_size<T>;
         Q sum = nodes[k] + weight[at] * value;
         if constexpr (Gradient)
 #pragma GCC unroll 4
-          for (int a = 0; a < D; ++a) sum += gradient[a * box_nodes<D> * chunk_size + at] * c[first_s + a];
+          for (int a = 0; a < D; ++a) sum += gradient[a * box_nodes<D> * chunk_size<T> + at] * c[first_s + a];
         nodes[k] = sum;
         if constexpr (Affine) value += c[D];
       }
@@ -112,11 +112,11 @@ inline __attribute__((always_inline)) void gather_box(const Quad<T>* corner, con
 #pragma GCC unroll 4
     for (int j = 0; j < rows; ++j) {
       const Q* const nodes = corner + (i * (D == 2 ? 1 : side) + j) * side;
-      const int first = (i * (D == 2 ? 1 : box_width) + j) * box_width * chunk_size;
+      const int first = (i * (D == 2 ? 1 : box_width) + j) * box_width * chunk_size<T>;
       Q row{}, row_m{}, row_g[3]{};  // short chains of additions
 #pragma GCC unroll 4
       for (int k = 0; k < W; ++k) {
-        const int at = first + k * chunk_size;
+        const int at = first + k * chunk_size<T>;
         const Q v = nodes[k], term = weight[at] * v;
         row += term;
         if constexpr (Moment) {
@@ -124,7 +124,7 @@ inline __attribute__((always_inline)) void gather_box(const Quad<T>* corner, con
         }
         if constexpr (Gradient)
 #pragma GCC unroll 4
-          for (int a = 0; a < D; ++a) row_g[a] += gradient[a * box_nodes<D> * chunk_size + at] * v;
+          for (int a = 0; a < D; ++a) row_g[a] += gradient[a * box_nodes<D> * chunk_size<T> + at] * v;
       }
       plane += row;
       if constexpr (Moment) m[D - 1] += row_m;

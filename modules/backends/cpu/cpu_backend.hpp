@@ -117,8 +117,8 @@ std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<Se
     field_of_body_.push_back(body.field);
     lay_out_state(particles_[i], *body.material);
     const T half = static_cast<T>(0.5 / experiment.bodies[i].particles_per_cell_axis);
-    particles_[i].half_size.require(std::size_t(D) * chunk_size);
-    std::fill_n(particles_[i].half_size.data(), D * chunk_size, half);
+    particles_[i].half_size.require(std::size_t(D) * chunk_size<T>);
+    std::fill_n(particles_[i].half_size.data(), D * chunk_size<T>, half);
     const int affine = seeds[i].with_gradient ? particles_[i].transfer_state[0].first : -1;
     seed_particles(particles_[i], seeds[i], scene_.domain, first_values(particles_[i], *body.material, half), affine);
     measure_circumferences(particles_[i]);
@@ -172,9 +172,9 @@ template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::measure_circumferences(Particles<D, T>& particles) const {
   if (particles.circumference < 0) return;
   for (const Block<D>& block : particles.blocks)
-    for_each_chunk(block, [&](std::uint32_t chunk, int count) {
-      const T* const x = particles.chunk(chunk) + Particles<D, T>::position * chunk_size;
-      T* const around = particles.chunk(chunk) + particles.circumference * chunk_size;
+    for_each_chunk<T>(block, [&](std::uint32_t chunk, int count) {
+      const T* const x = particles.chunk(chunk) + Particles<D, T>::position * chunk_size<T>;
+      T* const around = particles.chunk(chunk) + particles.circumference * chunk_size<T>;
       for (int p = 0; p < padded(count); ++p)
         around[p] = static_cast<T>(
             2 * std::numbers::pi *
@@ -357,7 +357,7 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
   // Visits every particle: visit(block, values of its lane, index of seeding).
   const auto each = [&](auto&& visit) {
     for (const Block<D>& block : particles.blocks)
-      for_each_chunk(block, [&](std::uint32_t chunk, int count) {
+      for_each_chunk<T>(block, [&](std::uint32_t chunk, int count) {
         for (int p = 0; p < count; ++p)
           visit(block, particles.chunk(chunk) + p, static_cast<std::size_t>(particles.ids(chunk)[p]));
       });
@@ -365,7 +365,7 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
   const auto copy = [&](int first, int components) {
     std::vector<double> out(n * components);
     each([&](const Block<D>&, const T* values, std::size_t id) {
-      for (int c = 0; c < components; ++c) out[id * components + c] = values[(first + c) * chunk_size];
+      for (int c = 0; c < components; ++c) out[id * components + c] = values[(first + c) * chunk_size<T>];
     });
     return out;
   };
@@ -374,7 +374,7 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
     for (int a = 0; a < D; ++a)
       state.position[id * D + a] =
           scene_.domain.lower[a] +
-          scene_.domain.cell_size * cells_from_corner(scene_.domain, block, a, values[a * chunk_size]);
+          scene_.domain.cell_size * cells_from_corner(scene_.domain, block, a, values[a * chunk_size<T>]);
   });
   if (motion_kept_) state.velocity = copy(Particles<D, T>::velocity, D);
   for (const StateField& field : particles.transfer_state)
@@ -394,7 +394,7 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
 template <int D, class T, class Components>
 std::string CpuBackend<D, T, Components>::signature() const {
   return "cpu " + std::to_string(D) + "-D of " + std::to_string(sizeof(T)) + " bytes, chunks of " +
-         std::to_string(chunk_size);
+         std::to_string(chunk_size<T>);
 }
 
 template <int D, class T, class Components>
@@ -422,8 +422,8 @@ void CpuBackend<D, T, Components>::save(ArchiveWriter& archive) const {
     archive.put("blocks", blocks);
     for (const auto& units : particles.units) archive.put("units", units);
     for (std::uint32_t i = 0; i < particles.chunks; ++i) {
-      archive.put("identities", particles.ids(i), chunk_size);
-      archive.put("values", particles.chunk(i), std::size_t(particles.components) * chunk_size);
+      archive.put("identities", particles.ids(i), chunk_size<T>);
+      archive.put("values", particles.chunk(i), std::size_t(particles.components) * chunk_size<T>);
     }
   }
 }
@@ -472,7 +472,7 @@ void CpuBackend<D, T, Components>::restore_particles(ArchiveReader& archive, Par
       for (auto& value : *triple) value = *next++;
     block.first_chunk = static_cast<std::uint32_t>(next[0]);
     block.count = static_cast<std::uint32_t>(next[1]);
-    const std::uint64_t chunks = (std::uint64_t(block.count) + chunk_size - 1) / chunk_size;
+    const std::uint64_t chunks = (std::uint64_t(block.count) + chunk_size<T> - 1) / chunk_size<T>;
     if (block.count == 0 || block.first_chunk + chunks > particles.chunks)
       throw ArchiveError("value \"blocks\" is not of these particles");
     count += block.count;
@@ -490,11 +490,11 @@ void CpuBackend<D, T, Components>::restore_particles(ArchiveReader& archive, Par
   particles.places.resize(particles.chunks);
   for (std::uint32_t i = 0; i < particles.chunks; ++i) {
     particles.places[i] = particles.pool.take();
-    archive.get("identities", particles.ids(i), chunk_size);
-    archive.get("values", particles.chunk(i), std::size_t(components) * chunk_size);
+    archive.get("identities", particles.ids(i), chunk_size<T>);
+    archive.get("values", particles.chunk(i), std::size_t(components) * chunk_size<T>);
   }
   for (const Block<D>& block : particles.blocks)
-    for_each_chunk(block, [&](std::uint32_t chunk, int lanes) {
+    for_each_chunk<T>(block, [&](std::uint32_t chunk, int lanes) {
       for (int lane = 0; lane < lanes; ++lane)
         if (particles.ids(chunk)[lane] < 0 || std::size_t(particles.ids(chunk)[lane]) >= count)
           throw ArchiveError("value \"identities\" is not of these particles");

@@ -34,8 +34,8 @@ struct ParticleBasis {
   AxisBasis<K, T> axis[D];
   ParticleBasis(const Stencils<T>& stencils, const T* offset, int particle, int order) {
     for (int a = 0; a < D; ++a)
-      make_axis_basis<K>(stencils.weight + a * K * chunk_size + particle, chunk_size, offset[a * chunk_size + particle],
-                         order, axis[a]);
+      make_axis_basis<K>(stencils.weight + a * K * chunk_size<T> + particle, chunk_size<T>,
+                         offset[a * chunk_size<T> + particle], order, axis[a]);
   }
 };
 
@@ -57,7 +57,7 @@ void scatter_higher(T* tile, const Stencils<T>& stencils, const T* offset, const
     PowerQuads<D, R, T> c;
     for_each_product<D>(R - 1, [&](int function, const int* power) {
       Q& q = c.of[power[0]][power[1]][power[2]];
-      for (int a = 0; a < D; ++a) q[a] = mass[p] * coefficients[(function * D + a) * chunk_size + p];
+      for (int a = 0; a < D; ++a) q[a] = mass[p] * coefficients[(function * D + a) * chunk_size<T> + p];
     });
     T* const corner = tile + std::size_t(stencils.first[p]) * W::scalars;
     for (int i = 0; i < K; ++i) {
@@ -111,7 +111,7 @@ void gather_higher(const T* tile, const Stencils<T>& stencils, const T* offset, 
     }
     for_each_product<D>(R - 1, [&](int function, const int* power) {
       for (int a = 0; a < D; ++a)
-        coefficients[(function * D + a) * chunk_size + p] = c.of[power[0]][power[1]][power[2]][a];
+        coefficients[(function * D + a) * chunk_size<T> + p] = c.of[power[0]][power[1]][power[2]][a];
     });
   }
 }
@@ -125,7 +125,7 @@ double squares_of_higher(const Stencils<T>& stencils, const T* offset, const T* 
     for_each_product<D>(R - 1, [&](int function, const int* power) {
       T norm = T(1), squares = T(0);
       for (int a = 0; a < D; ++a) {
-        const T c = coefficients[(function * D + a) * chunk_size + p];
+        const T c = coefficients[(function * D + a) * chunk_size<T> + p];
         norm *= basis.axis[a].norm[power[a]], squares += c * c;
       }
       sum += static_cast<double>(norm * squares * (circumference ? circumference[p] : T(1)));

@@ -12,7 +12,7 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::evaluate_boxes(const Chunk& chunk, Work& work, bool gradients) {
   BoxWork<D, T>& boxes = work.boxes;
   const mpm_box_batch batch{static_cast<std::uint32_t>(chunk.end),
-                            chunk_size,
+                            chunk_size<T>,
                             D,
                             0,
                             chunk.at(Particles<D, T>::position),
@@ -54,7 +54,7 @@ bool ParticleStep<D, T, Components>::place_boxes(const Chunk& chunk, Work& work)
     const int width = widths[p] > 3 ? box_width : 3;
     int fits = widths[p] > 0 ? 1 : 0, node = 0;
     for (int a = 0; a < D; ++a) {
-      const int base = boxes.base[a * chunk_size + p];
+      const int base = boxes.base[a * chunk_size<T> + p];
       fits &= (base >= lowest[a] ? 1 : 0) & (base <= highest[a] + 1 - width ? 1 : 0);
       node = node * side + base + 1;
     }
@@ -65,7 +65,7 @@ bool ParticleStep<D, T, Components>::place_boxes(const Chunk& chunk, Work& work)
   ListWork<D, T>& reach = work.lists;
   for (int a = 0; a < D; ++a) {
     int low = reach.lowest[a], high = reach.highest[a];
-    const std::int32_t* const base = boxes.base + a * chunk_size;
+    const std::int32_t* const base = boxes.base + a * chunk_size<T>;
 #pragma omp simd reduction(min : low) reduction(max : high)
     for (int p = 0; p < end; ++p) {
       low = std::min(low, widths[p] ? base[p] : low);
@@ -90,7 +90,7 @@ int ParticleStep<D, T, Components>::evaluate_lists_between_boxes(const Chunk& ch
   for (int lane = 0; lane < lanes; ++lane) {
     if (width[lane]) continue;
     const int p = first_lane + lane;
-    for (int a = 0; a < D; ++a) work.offset[a * chunk_size + p] = T(0);  // lists count from the particle itself
+    for (int a = 0; a < D; ++a) work.offset[a * chunk_size<T> + p] = T(0);  // lists count from the particle itself
     keep_moment(work, first_lane, lane);
     entry = keep_list(chunk, work, first_lane, lane, entry, gradients);
   }
@@ -103,15 +103,15 @@ void ParticleStep<D, T, Components>::multiply_by_inverse_moments(const Chunk& ch
   using L = Lanes<T>;
   for (int p = 0; p < chunk.end; p += L::width) {
     L inverse[D * D];
-    for (int k = 0; k < D * D; ++k) inverse[k] = L::load(work.inverse_moment + k * chunk_size + p);
+    for (int k = 0; k < D * D; ++k) inverse[k] = L::load(work.inverse_moment + k * chunk_size<T> + p);
     for (int c = 0; c < D; ++c) {
-      T* const row = work.affine + c * D * chunk_size + p;
+      T* const row = work.affine + c * D * chunk_size<T> + p;
       L from[D];
-      for (int a = 0; a < D; ++a) from[a] = L::load(row + a * chunk_size);
+      for (int a = 0; a < D; ++a) from[a] = L::load(row + a * chunk_size<T>);
       for (int a = 0; a < D; ++a) {
         L sum = from[0] * inverse[a];
         for (int b = 1; b < D; ++b) sum = sum + from[b] * inverse[b * D + a];
-        sum.store(row + a * chunk_size);
+        sum.store(row + a * chunk_size<T>);
       }
     }
   }

@@ -37,15 +37,16 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
       work.lists.require(scene.capacity);
       if (scene.evaluate_box) work.boxes.require();
       if (const int points = scene.plan.sample_points; points > 0)
-        work.moved_corners.require(std::size_t(points) * D * chunk_size);
-      std::fill(work.offset, work.offset + D * chunk_size, T(0));  // lists count from the particle itself
+        work.moved_corners.require(std::size_t(points) * D * chunk_size<T>);
+      std::fill(work.offset, work.offset + D * chunk_size<T>, T(0));  // lists count from the particle itself
     }
-    if (scene.plan.basis_functions > 0) work.higher.require(std::size_t(scene.plan.basis_functions) * D * chunk_size);
+    if (scene.plan.basis_functions > 0)
+      work.higher.require(std::size_t(scene.plan.basis_functions) * D * chunk_size<T>);
     if (scene.plan.fused && scene.has(MPM_REPLACES_MOTION))
-      work.passing_motion.require(std::size_t(D + transfer_components) * chunk_size);
+      work.passing_motion.require(std::size_t(D + transfer_components) * chunk_size<T>);
     if (!scene.plan.filter) continue;
-    work.scratch_velocity.require(std::size_t(D) * chunk_size);
-    work.scratch_state.require(std::size_t(std::max(transfer_components, 1)) * chunk_size);
+    work.scratch_velocity.require(std::size_t(D) * chunk_size<T>);
+    work.scratch_state.require(std::size_t(std::max(transfer_components, 1)) * chunk_size<T>);
   }
 }
 
@@ -90,7 +91,7 @@ void ParticleStep<D, T, Components>::fetch_nodes_of_next(int body, const Block<D
   const std::size_t next = static_cast<std::size_t>(&block - blocks.data()) + 1;
   if (next >= blocks.size() || grid_.slots() == 0) return;
   constexpr int columns = neighbour_count<D> / 3, bytes = block_nodes * 4 * static_cast<int>(sizeof(T));
-  const int chunks = static_cast<int>((block.count + chunk_size - 1) / chunk_size);
+  const int chunks = static_cast<int>((block.count + chunk_size<T> - 1) / chunk_size<T>);
   for (int column = columns * share / chunks; column < columns * (share + 1) / chunks; ++column) {
     const std::size_t first = std::size_t(blocks[next].neighbours[3 * column + 2]) * block_nodes * 4;
     for (const Channel c : {motion, next_motion})
@@ -105,11 +106,11 @@ template <int D, class T, class Components>
 template <class Visit>
 void ParticleStep<D, T, Components>::for_each_chunk_of(int body, Block<D>& block, Visit&& visit, T* motion) {
   Particles<D, T>& particles = particles_[body];
-  for_each_chunk(block, [&](std::uint32_t i, int count) {
+  for_each_chunk<T>(block, [&](std::uint32_t i, int count) {
     const char* const next = reinterpret_cast<const char*>(particles.chunk(std::min(i + 1, particles.chunks - 1)));
     fetch_nodes_of_next(body, block, static_cast<int>(i - block.first_chunk));
     T* const values = particles.chunk(i);
-    T* const kept = values + Particles<D, T>::velocity * chunk_size;
+    T* const kept = values + Particles<D, T>::velocity * chunk_size<T>;
     visit(Chunk{particles, bodies_[body], block, values, motion ? motion : kept, particles.ids(i), count, padded(count),
                 next});
   });
@@ -168,7 +169,7 @@ template <int D, class T, class Components>
   if (scene_.list) return evaluate_lists(chunk, work, gradients);
   const bool moments = scene_.plan.second_moment;
   const mpm_shape_batch batch{static_cast<std::uint32_t>(chunk.end),
-                              chunk_size,
+                              chunk_size<T>,
                               D,
                               0,
                               chunk.at(Particles<D, T>::position),
@@ -186,7 +187,7 @@ template <int D, class T, class Components>
 template <int D, class T, class Components>
 T ParticleStep<D, T, Components>::weight_along(const Work& work, int width, int axis, int particle) {
   T sum = 0;
-  for (int k = 0; k < width; ++k) sum += work.weight[(axis * width + k) * chunk_size + particle];
+  for (int k = 0; k < width; ++k) sum += work.weight[(axis * width + k) * chunk_size<T> + particle];
   return sum;
 }
 
@@ -216,7 +217,7 @@ bool ParticleStep<D, T, Components>::place_to_scatter(const Chunk& chunk, Work& 
   if (scene_.list) return place_lists(chunk, work, extend_reach);
   if (extend_reach) {
     for (int axis = 0; axis < D; ++axis) {
-      const std::int32_t* const base = work.base + axis * chunk_size;
+      const std::int32_t* const base = work.base + axis * chunk_size<T>;
       typename Work::Integers low = work.lowest[axis], high = work.highest[axis];
       for (int p = 0; p < chunk.end; p += Work::integers) {
         const auto node = *reinterpret_cast<const typename Work::Integers*>(base + p);
@@ -269,7 +270,7 @@ void ParticleStep<D, T, Components>::number_stencils(Work& work, int count, int 
   for (int p = 0; p < count; ++p) {
     int node = work.base[p] + 1;
     for (int axis = 1; axis < D; ++axis)
-      node = node * (axis == D - 1 ? along_last : kernels_.side) + work.base[axis * chunk_size + p] + 1;
+      node = node * (axis == D - 1 ? along_last : kernels_.side) + work.base[axis * chunk_size<T> + p] + 1;
     work.first[p] = node;
   }
   int changes = 0;
@@ -286,10 +287,10 @@ void ParticleStep<D, T, Components>::invert_moments(const Chunk& chunk, Work& wo
   const int n = chunk.end;
   if (!scene_.list) {
     for (int a = 0; a < D; ++a)
-      for (int p = 0; p < n; ++p) inverse[a * chunk_size + p] = scale / m[a * chunk_size + p];
+      for (int p = 0; p < n; ++p) inverse[a * chunk_size<T> + p] = scale / m[a * chunk_size<T> + p];
     return;
   }
-  const auto at = [](int i, int j) { return (i * D + j) * chunk_size; };
+  const auto at = [](int i, int j) { return (i * D + j) * chunk_size<T>; };
   if constexpr (D == 2) {
     for (int p = 0; p < n; ++p) {
       const T xx = m[at(0, 0) + p], xy = m[at(0, 1) + p], yy = m[at(1, 1) + p], f = scale / (xx * yy - xy * xy);
@@ -315,7 +316,7 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::update_material(const Chunk& chunk, mpm_material_batch request) {
   States state = material_states(chunk);
   request.count = static_cast<std::uint32_t>(chunk.end);
-  request.stride = chunk_size;
+  request.stride = chunk_size<T>;
   request.dimension = D;
   request.state = state.fields;
   if (scene_.axisymmetric && !request.velocity_gradient) request.velocity_gradient_zz = chunk.values;  // not read
@@ -325,11 +326,11 @@ void ParticleStep<D, T, Components>::update_material(const Chunk& chunk, mpm_mat
 /// Finds the lowest index among the inadmissible particles of a chunk.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::note_inverted(const Chunk& chunk) {
-  alignas(64) T ratio[chunk_size];
+  alignas(64) T ratio[chunk_size<T>];
   States state = material_states(chunk);
   mpm_material_batch request{};
   request.count = static_cast<std::uint32_t>(chunk.end);
-  request.stride = chunk_size;
+  request.stride = chunk_size<T>;
   request.dimension = D;
   request.state = state.fields;
   request.volume_ratio = ratio;
@@ -378,7 +379,7 @@ inline double sum_of_particles(int count, Value&& value_of) {
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const Work& work) const {
   using L = Lanes<T>;
-  const auto load = [](const T* first, int component, int p) { return L::load(first + component * chunk_size + p); };
+  const auto load = [](const T* first, int component, int p) { return L::load(first + component * chunk_size<T> + p); };
   const auto energy_with = [&](auto&& affine_squares) {
     const T* const v = chunk.motion;
     const auto squares_of = [&](int p) {

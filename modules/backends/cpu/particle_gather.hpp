@@ -118,7 +118,7 @@ template <int D, class T, class Components>
   T* const velocity = chunk.motion;
   T* const advection = pass.move ? work.advection : chunk.at(chunk.particles.advection);
   const mpm_gather_batch batch{static_cast<std::uint32_t>(chunk.end),
-                               chunk_size,
+                               chunk_size<T>,
                                D,
                                0,
                                step.dt,
@@ -135,7 +135,7 @@ template <int D, class T, class Components>
   if (step.filtered)  // the filtered velocity replaces the particle's
     for (int c = 0; c < D; ++c)
       for (T* const target : {velocity, advection})
-        std::copy_n(work.velocity + c * chunk_size, chunk.end, target + c * chunk_size);
+        std::copy_n(work.velocity + c * chunk_size<T>, chunk.end, target + c * chunk_size<T>);
   const bool corners = chunk.particles.corners >= 0;
   T* const moved = !corners ? nullptr : pass.move ? work.moved_corners.data() : chunk.at(chunk.particles.moved_corners);
   if (corners) gather_corners(chunk, work, advection, step.dt, moved);
@@ -145,7 +145,7 @@ template <int D, class T, class Components>
   work.clock.lap(Phase::material);
   if (!pass.move) return 0;
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
-    std::copy_n(chunk.at(chunk.particles.next_domain), D * D * chunk_size, chunk.at(chunk.particles.domain));
+    std::copy_n(chunk.at(chunk.particles.next_domain), D * D * chunk_size<T>, chunk.at(chunk.particles.domain));
   const double distance = corners
                               ? move_with_corners(chunk, work, moved)
                               : advance_position(chunk, advection, static_cast<T>(step.dt / scene_.domain.cell_size));
@@ -214,13 +214,13 @@ void ParticleStep<D, T, Components>::gather_chunk(const Chunk& chunk, Work& work
   }
   if (moment && scene_.moment_of_particle) apply_inverse_moments(chunk, work);
   if (affine && scene_.moment_is_gradient)
-    std::copy(work.gradient_of_velocity, work.gradient_of_velocity + D * D * chunk_size, work.affine);
+    std::copy(work.gradient_of_velocity, work.gradient_of_velocity + D * D * chunk_size<T>, work.affine);
   if (wanted.transfer && wanted.channel == motion && scene_.has(MPM_GATHERS_INCREMENT)) {
     gather_moments(chunk, work, work.increment_tile.data(), velocity_before, false, false);
     for (int p = 0; p < n; p += Lanes<T>::width) {
       Lanes<T> increment[4];
       load_quads<T>(work.quads + 4 * p, 4, increment);
-      for (int c = 0; c < D; ++c) increment[c].store(work.increment + c * chunk_size + p);
+      for (int c = 0; c < D; ++c) increment[c].store(work.increment + c * chunk_size<T> + p);
     }
   }
 }
@@ -239,19 +239,20 @@ void ParticleStep<D, T, Components>::unpack_moments(Work& work, int count) {
     const T* quads = work.quads + p * step;
     L v[4];
     load_quads<T>(quads, step, v);
-    for (int c = 0; c < D; ++c) v[c].store(work.velocity + c * chunk_size + p);
+    for (int c = 0; c < D; ++c) v[c].store(work.velocity + c * chunk_size<T> + p);
 #pragma GCC unroll 3
     for (int a = 0; Moment && a < D; ++a) {
-      const L f = L::load(work.offset + a * chunk_size + p);
+      const L f = L::load(work.offset + a * chunk_size<T> + p);
       L sums[4];
       load_quads<T>(quads += 4, step, sums);
-      for (int c = 0; c < D; ++c) (scale * (sums[c] - f * v[c])).store(work.affine + (c * D + a) * chunk_size + p);
+      for (int c = 0; c < D; ++c) (scale * (sums[c] - f * v[c])).store(work.affine + (c * D + a) * chunk_size<T> + p);
     }
 #pragma GCC unroll 3
     for (int a = 0; Gradient && a < D; ++a) {
       L sums[4];
       load_quads<T>(quads += 4, step, sums);
-      for (int c = 0; c < D; ++c) (inverse_h * sums[c]).store(work.gradient_of_velocity + (c * D + a) * chunk_size + p);
+      for (int c = 0; c < D; ++c)
+        (inverse_h * sums[c]).store(work.gradient_of_velocity + (c * D + a) * chunk_size<T> + p);
     }
   }
 }
@@ -266,7 +267,7 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::keep_higher(const Chunk& chunk, const Work& work) const {
   const int components = scene_.plan.basis_functions * D;
   for (int c = 0; c < components; ++c)
-    std::copy_n(work.higher.data() + c * chunk_size, chunk.end, chunk.higher() + c * chunk_size);
+    std::copy_n(work.higher.data() + c * chunk_size<T>, chunk.end, chunk.higher() + c * chunk_size<T>);
 }
 
 /// C <- C D^-1 of moments a particle.
@@ -276,7 +277,7 @@ void ParticleStep<D, T, Components>::apply_inverse_moments(const Chunk& chunk, W
   for (int c = 0; c < D; ++c)
     for (int a = 0; a < D; ++a)
       for (int p = 0; p < chunk.end; ++p)
-        work.affine[(c * D + a) * chunk_size + p] *= work.inverse_moment[a * chunk_size + p];
+        work.affine[(c * D + a) * chunk_size<T> + p] *= work.inverse_moment[a * chunk_size<T> + p];
 }
 
 /// D of the last shape evaluation as the transfer reads it, cells^2; null where it is a multiple of the identity.
@@ -285,12 +286,12 @@ const T* ParticleStep<D, T, Components>::moments_for_transfer(const Chunk& chunk
   const bool varies = scene_.moment_of_particle || scene_.moment_is_gradient;
   if (!varies || !scene_.has(MPM_READS_SECOND_MOMENT)) return nullptr;
   if (scene_.list) return work.second_moment;
-  std::fill_n(work.transfer_moment, D * D * chunk_size, T(0));
+  std::fill_n(work.transfer_moment, D * D * chunk_size<T>, T(0));
   for (int a = 0; a < D; ++a)
     for (int p = 0; p < chunk.end; ++p) {
-      const T f = work.offset[a * chunk_size + p];
-      work.transfer_moment[a * (D + 1) * chunk_size + p] =
-          scene_.moment_of_particle ? work.second_moment[a * chunk_size + p] : f * (T(1) - f);
+      const T f = work.offset[a * chunk_size<T> + p];
+      work.transfer_moment[a * (D + 1) * chunk_size<T> + p] =
+          scene_.moment_of_particle ? work.second_moment[a * chunk_size<T> + p] : f * (T(1) - f);
     }
   return work.transfer_moment;
 }
@@ -318,17 +319,17 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
   wanted.transfer = true, wanted.channel = filter_increment;
   gather_chunk(chunk, work, wanted);
   T* const velocity = work.scratch_velocity.data();
-  std::fill_n(velocity, D * chunk_size, T(0));
+  std::fill_n(velocity, D * chunk_size<T>, T(0));
   States state{};
   T* next = work.scratch_state.data();
   for (std::size_t f = 0; f < chunk.particles.transfer_state.size(); ++f) {
-    const int scalars = chunk.particles.transfer_state[f].components * chunk_size;
+    const int scalars = chunk.particles.transfer_state[f].components * chunk_size<T>;
     state.fields[f] = std::fill_n(next, scalars, T(0)) - scalars;
     next += scalars;
   }
   const std::uint32_t n = static_cast<std::uint32_t>(chunk.end);
   const mpm_gather_batch gathered{n,
-                                  chunk_size,
+                                  chunk_size<T>,
                                   D,
                                   0,
                                   step.dt,
@@ -344,7 +345,7 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
   fill_masses(chunk, work);
   const bool affine = scene_.has(MPM_SCATTERS_AFFINE);
   const mpm_scatter_batch scattered{
-      n, chunk_size, D, 0, work.mass, velocity, state.fields, work.b, affine ? work.A : nullptr};
+      n, chunk_size<T>, D, 0, work.mass, velocity, state.fields, work.b, affine ? work.A : nullptr};
   Components::scatter(scene_, scattered);
   if (!scene_.list) place_to_scatter(chunk, work, false);
   add_to_tile(chunk, work, filter_projection, work.mass, true, affine, false);
@@ -391,14 +392,14 @@ void ParticleStep<D, T, Components>::advance_domain(const Chunk& chunk, const T*
   const T step = static_cast<T>(dt);
   for (int p = 0; p < chunk.end; p += V::width) {
     V L[D * D];
-    for (int c = 0; c < D * D; ++c) L[c] = V::load(velocity_gradient + c * chunk_size + p);
+    for (int c = 0; c < D * D; ++c) L[c] = V::load(velocity_gradient + c * chunk_size<T> + p);
     for (int k = 0; k < D; ++k) {  // column by column
       V side[D];
-      for (int b = 0; b < D; ++b) side[b] = V::load(from + (b * D + k) * chunk_size + p);
+      for (int b = 0; b < D; ++b) side[b] = V::load(from + (b * D + k) * chunk_size<T> + p);
       for (int a = 0; a < D; ++a) {
         V rate = L[a * D] * side[0];
         for (int b = 1; b < D; ++b) rate = rate + L[a * D + b] * side[b];
-        (side[a] + step * rate).store(to + (a * D + k) * chunk_size + p);
+        (side[a] + step * rate).store(to + (a * D + k) * chunk_size<T> + p);
       }
     }
   }
@@ -433,7 +434,7 @@ double ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, cons
       high = static_cast<T>(scene_.domain.cells[axis] + margin(axis, 1) - origin);
     }
     T* const x = chunk.at(Particles<D, T>::position + axis);
-    const T* const v = advection + axis * chunk_size;
+    const T* const v = advection + axis * chunk_size<T>;
     for (int p = 0; p < chunk.end; p += L::width) {
       const L change = scale * L::load(v + p), moved = L::load(x + p) + change;
       moved.store(x + p);
@@ -504,7 +505,8 @@ TimeStepLimit ParticleStep<D, T, Components>::time_step_limit() {
         const T* const v = chunk.at(Particles<D, T>::velocity);
         for (int p = 0; p < chunk.count; ++p) {
           double squared = 0;
-          for (int c = 0; c < D; ++c) squared += static_cast<double>(v[c * chunk_size + p]) * v[c * chunk_size + p];
+          for (int c = 0; c < D; ++c)
+            squared += static_cast<double>(v[c * chunk_size<T> + p]) * v[c * chunk_size<T> + p];
           const double wave = work.scalar[p], speed = wave + std::sqrt(squared);
           const std::size_t id = static_cast<std::size_t>(chunk.ids[p]);
           if (speed > of_block.speed || (speed == of_block.speed && id < of_block.particle))

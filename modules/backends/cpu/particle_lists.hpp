@@ -17,7 +17,7 @@ void ParticleStep<D, T, Components>::evaluate_list_batch(const Chunk& chunk, Wor
   ListWork<D, T>& lists = work.lists;
   constexpr int lanes = ListWork<D, T>::lanes;
   const auto copy = [&](const T* from, int components, T* to) {
-    for (int c = 0; c < components; ++c) std::copy_n(from + c * chunk_size + first_lane, lanes, to + c * lanes);
+    for (int c = 0; c < components; ++c) std::copy_n(from + c * chunk_size<T> + first_lane, lanes, to + c * lanes);
   };
   const bool domain = chunk.particles.domain >= 0;
   copy(chunk.at(Particles<D, T>::position), D, lists.position);
@@ -46,7 +46,8 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::keep_moment(Work& work, int first_lane, int lane) const {
   if (!scene_.plan.second_moment) return;
   for (int c = 0; c < D * D; ++c)
-    work.second_moment[c * chunk_size + first_lane + lane] = work.lists.second_moment[c * ListWork<D, T>::lanes + lane];
+    work.second_moment[c * chunk_size<T> + first_lane + lane] =
+        work.lists.second_moment[c * ListWork<D, T>::lanes + lane];
 }
 
 template <int D, class T, class Components>
@@ -103,8 +104,8 @@ void ParticleStep<D, T, Components>::gather_corners(const Chunk& chunk, Work& wo
       for (int a = 0; a < D; ++a) corner[a] = chunk.at(chunk.particles.corners + k * D + a)[p];
       const Vec<D, T> v = velocity_at_corner(chunk, work, p, corner);
       for (int a = 0; a < D; ++a) {
-        const T own = advection[a * chunk_size + p] - work.velocity[a * chunk_size + p];
-        moved[(k * D + a) * chunk_size + p] = corner[a] + scale * (v[a] + own);
+        const T own = advection[a * chunk_size<T> + p] - work.velocity[a * chunk_size<T> + p];
+        moved[(k * D + a) * chunk_size<T> + p] = corner[a] + scale * (v[a] + own);
       }
     }
   }
@@ -117,10 +118,10 @@ double ParticleStep<D, T, Components>::move_with_corners(const Chunk& chunk, Wor
   for (int p = 0; p < chunk.end; ++p) {
     Vec<D, T> corner[1 << D];
     for (int k = 0; k < 1 << D; ++k)
-      for (int a = 0; a < D; ++a) corner[k][a] = moved[(k * D + a) * chunk_size + p];
+      for (int a = 0; a < D; ++a) corner[k][a] = moved[(k * D + a) * chunk_size<T> + p];
     const CornerDomain<D, T> domain = corner_domain<D, T>(corner);
     const Vec<D, T> centre = centroid(domain, corner);
-    for (int a = 0; a < D; ++a) work.advection[a * chunk_size + p] = centre[a];
+    for (int a = 0; a < D; ++a) work.advection[a * chunk_size<T> + p] = centre[a];
     for (int k = 0; k < 1 << D; ++k)
       for (int a = 0; a < D; ++a) chunk.at(chunk.particles.corners + k * D + a)[p] = corner[k][a] - centre[a];
     if (domain.upright || p >= chunk.count || !std::isfinite(domain.volume)) continue;
@@ -295,7 +296,7 @@ std::vector<double> ParticleStep<D, T, Components>::second_moments(int body) {
           for (int b = 0; b < D; ++b) {
             if (!scene_.list && a != b) continue;
             moments[(std::size_t(chunk.ids[p]) * D + a) * D + b] =
-                square * work.second_moment[(scene_.list ? a * D + b : a) * chunk_size + p];
+                square * work.second_moment[(scene_.list ? a * D + b : a) * chunk_size<T> + p];
           }
     });
   return moments;

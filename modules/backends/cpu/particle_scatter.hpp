@@ -142,7 +142,7 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::weigh_stress(const Chunk& chunk, Work& work) const {
   const T* const around = circumferences(chunk);
   for (int k = 0; k < Sym<D, T>::size; ++k)
-    for (int p = 0; p < chunk.end; ++p) work.stress[k * chunk_size + p] *= around[p];
+    for (int p = 0; p < chunk.end; ++p) work.stress[k * chunk_size<T> + p] *= around[p];
 }
 
 /// b += -factor V0 tau_zz / r along the radius; the stress has been weighed.
@@ -151,7 +151,7 @@ void ParticleStep<D, T, Components>::add_hoop_force(const Chunk& chunk, Work& wo
   using L = Lanes<T>;
   const T scale = static_cast<T>(-factor * chunk.body.volume);
   for (int p = 0; p < chunk.end; p += L::width) {
-    const L tau = L::load(work.stress + 2 * chunk_size + p);
+    const L tau = L::load(work.stress + 2 * chunk_size<T> + p);
     (L::load(work.b + p) + scale * tau / radius(chunk, p)).store(work.b + p);
   }
 }
@@ -161,7 +161,7 @@ void ParticleStep<D, T, Components>::momentum_coefficients(const Chunk& chunk, W
   fill_masses(chunk, work);
   const States state = transfer_states(chunk);
   const mpm_scatter_batch batch{static_cast<std::uint32_t>(chunk.end),
-                                chunk_size,
+                                chunk_size<T>,
                                 D,
                                 0,
                                 work.mass,
@@ -181,17 +181,17 @@ void ParticleStep<D, T, Components>::stress_coefficients(const Chunk& chunk, Wor
   T* const out = by_affine ? work.A : work.S;
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
-      T* const target = out + (i * D + j) * chunk_size;
+      T* const target = out + (i * D + j) * chunk_size<T>;
       if (of_particle) {
         if (!add) std::fill(target, target + chunk.end, T(0));
         for (int k = scene_.list ? 0 : j; k < (scene_.list ? D : j + 1); ++k) {
-          const T* const tau = work.stress + Sym<D, T>::index(i, k) * chunk_size;
-          const T* const inverse = work.inverse_moment + (scene_.list ? k * D + j : j) * chunk_size;
+          const T* const tau = work.stress + Sym<D, T>::index(i, k) * chunk_size<T>;
+          const T* const inverse = work.inverse_moment + (scene_.list ? k * D + j : j) * chunk_size<T>;
           for (int p = 0; p < chunk.end; ++p) target[p] += scale * tau[p] * inverse[p];
         }
         continue;
       }
-      const T* const tau = work.stress + Sym<D, T>::index(i, j) * chunk_size;
+      const T* const tau = work.stress + Sym<D, T>::index(i, j) * chunk_size<T>;
       if (by_affine && add)
         for (int p = 0; p < chunk.end; ++p) target[p] += scale * tau[p];
       else
@@ -213,18 +213,18 @@ void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last
 #pragma GCC unroll 7
     for (int g = 0; g < groups; ++g) q[g][2] = q[g][3] = zero;
     if (last) q[0][3] = L::load(last + p);
-    for (int c = 0; c < D; ++c) q[0][c] = constant ? L::load(work.b + c * chunk_size + p) : zero;
+    for (int c = 0; c < D; ++c) q[0][c] = constant ? L::load(work.b + c * chunk_size<T> + p) : zero;
 #pragma GCC unroll 3
     for (int a = 0; Affine && a < D; ++a) {
-      const L f = L::load(work.offset + a * chunk_size + p);
+      const L f = L::load(work.offset + a * chunk_size<T> + p);
       for (int c = 0; c < D; ++c) {
-        q[1 + a][c] = h * L::load(work.A + (c * D + a) * chunk_size + p);
+        q[1 + a][c] = h * L::load(work.A + (c * D + a) * chunk_size<T> + p);
         q[0][c] = q[0][c] - q[1 + a][c] * f;
       }
     }
 #pragma GCC unroll 3
     for (int a = 0; Gradient && a < D; ++a)
-      for (int c = 0; c < D; ++c) q[first_s + a][c] = inverse_h * L::load(work.S + (c * D + a) * chunk_size + p);
+      for (int c = 0; c < D; ++c) q[first_s + a][c] = inverse_h * L::load(work.S + (c * D + a) * chunk_size<T> + p);
     store_groups<T, groups>(work.quads + std::size_t(p) * 4 * groups, q);
   }
 }
@@ -272,7 +272,7 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_stress(const Chunk& chunk, Work& work) {
   stress_coefficients(chunk, work, 1.0, false);
   if (scene_.axisymmetric) {
-    std::fill(work.b, work.b + D * chunk_size, T(0));
+    std::fill(work.b, work.b + D * chunk_size<T>, T(0));
     add_hoop_force(chunk, work, 1.0);
   }
   add_to_tile(chunk, work, force, nullptr, scene_.axisymmetric, scene_.stress_by_affine, !scene_.stress_by_affine);
@@ -283,21 +283,21 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged,
                                                         double dt) {
   const VectorExpression& expression = *scene_.experiment.body_force;
-  if (!merged) std::fill(work.b, work.b + D * chunk_size, T(0));
+  if (!merged) std::fill(work.b, work.b + D * chunk_size<T>, T(0));
   const double factor = chunk.body.mass * (merged ? dt : 1.0);
   const T* const around = circumferences(chunk);
   const T* const position = chunk.at(Particles<D, T>::position);
   for (int p = 0; p < chunk.count; ++p) {
     Vector3 x{}, X{};
     for (int a = 0; a < D; ++a) {
-      x[a] = scene_.domain.lower[a] +
-             scene_.domain.cell_size * cells_from_corner(scene_.domain, chunk.block, a, position[a * chunk_size + p]);
+      x[a] = scene_.domain.lower[a] + scene_.domain.cell_size * cells_from_corner(scene_.domain, chunk.block, a,
+                                                                                  position[a * chunk_size<T> + p]);
       X[a] =
           chunk.body.initial_position.empty() ? x[a] : chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
     }
     const Vector3 f = expression(x, X, time);
     for (int c = 0; c < D; ++c)
-      work.b[c * chunk_size + p] += static_cast<T>(factor * (around ? around[p] : T(1)) * f[c]);
+      work.b[c * chunk_size<T> + p] += static_cast<T>(factor * (around ? around[p] : T(1)) * f[c]);
   }
   if (!merged) add_to_tile(chunk, work, body_force, nullptr, true, false, false);
 }
@@ -309,19 +309,19 @@ void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, 
   const T volume = static_cast<T>(chunk.body.volume);
   fill_masses(chunk, work);
   for (int p = 0; p < chunk.end; ++p) work.scalar[p] = volume * work.volume_ratio[p];
-  std::fill(work.S, work.S + D * D * chunk_size, T(0));
-  std::fill(work.A, work.A + D * D * chunk_size, T(0));
+  std::fill(work.S, work.S + D * D * chunk_size<T>, T(0));
+  std::fill(work.A, work.A + D * D * chunk_size<T>, T(0));
   for (int c = 0; c < D; ++c)
     for (int p = 0; p < chunk.end; ++p) {
-      work.S[(c * D + c) * chunk_size + p] = work.scalar[p];
-      work.A[(c * D + c) * chunk_size + p] = -work.mass[p];
+      work.S[(c * D + c) * chunk_size<T> + p] = work.scalar[p];
+      work.A[(c * D + c) * chunk_size<T> + p] = -work.mass[p];
     }
   if (const T* const around = circumferences(chunk))
     for (int p = 0; p < chunk.end; p += Lanes<T>::width) {
       const Lanes<T> ring = Lanes<T>::load(work.scalar + p) * Lanes<T>::load(around + p);
       const Lanes<T> section = ring / (static_cast<T>(2 * std::numbers::pi) * radius(chunk, p));
       ring.store(work.scalar + p);
-      for (int c = 0; c < D; ++c) section.store(work.S + (c * D + c) * chunk_size + p);
+      for (int c = 0; c < D; ++c) section.store(work.S + (c * D + c) * chunk_size<T> + p);
     }
   add_to_tile(chunk, work, volume_gradient, work.scalar, false, false, true);
   add_to_tile(chunk, work, mass_position, nullptr, false, true, false);

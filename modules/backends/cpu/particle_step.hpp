@@ -29,7 +29,7 @@ struct ListWork {
   AlignedArray<std::int32_t> coordinates;
   AlignedArray<T> weight, gradient;
   // the chunk: entries of a particle from first[p], in its tile up to near_end[p] or on the grid up to far_end[p]
-  std::int32_t first[chunk_size], near_end[chunk_size], far_end[chunk_size];
+  std::int32_t first[chunk_size<T>], near_end[chunk_size<T>], far_end[chunk_size<T>];
   AlignedArray<std::int32_t> node;
   AlignedArray<T> values;  ///< see NodeLists
   int lowest[3], highest[3];
@@ -45,8 +45,8 @@ struct ListWork {
     coordinates.require(std::size_t(capacity) * D * lanes);
     weight.require(std::size_t(capacity) * lanes);
     gradient.require(std::size_t(capacity) * D * lanes);
-    node.require(std::size_t(capacity) * chunk_size);
-    values.require(std::size_t(capacity) * chunk_size * 8);
+    node.require(std::size_t(capacity) * chunk_size<T>);
+    values.require(std::size_t(capacity) * chunk_size<T> * 8);
   }
   NodeLists<T> near_lists() const { return {first, near_end, node.data(), values.data()}; }
   NodeLists<T> far_lists() const { return {first, far_end, node.data(), values.data()}; }
@@ -55,12 +55,12 @@ struct ListWork {
 /// The boxes of nodes of one chunk.
 template <int D, class T>
 struct BoxWork {
-  alignas(64) std::int32_t base[D * chunk_size], width[chunk_size], tile_node[chunk_size];
+  alignas(64) std::int32_t base[D * chunk_size<T>], width[chunk_size<T>], tile_node[chunk_size<T>];
   AlignedArray<T> weight, gradient;
   Boxes<T> boxes() const { return {width, tile_node, weight.data(), gradient.data()}; }
   void require() {
-    weight.require(std::size_t(box_nodes<D>) * chunk_size);
-    gradient.require(std::size_t(box_nodes<D>) * D * chunk_size);
+    weight.require(std::size_t(box_nodes<D>) * chunk_size<T>);
+    gradient.require(std::size_t(box_nodes<D>) * D * chunk_size<T>);
   }
 };
 
@@ -68,32 +68,32 @@ struct BoxWork {
 template <int D, class T>
 struct Workspace {
   static constexpr int symmetric = Sym<D, T>::size;
-  alignas(64) std::int32_t base[D * chunk_size];
-  alignas(64) std::int32_t first[chunk_size];  ///< of the stencils: see Stencils, as the next
+  alignas(64) std::int32_t base[D * chunk_size<T>];
+  alignas(64) std::int32_t first[chunk_size<T>];  ///< of the stencils: see Stencils, as the next
   bool shared_stencils = false;
-  alignas(64) T offset[D * chunk_size], weight[D * 4 * chunk_size], gradient[D * 4 * chunk_size];
-  alignas(64) T mass[chunk_size], b[D * chunk_size];
-  alignas(64) T stress[symmetric * chunk_size], volume_ratio[chunk_size], scalar[chunk_size];
-  alignas(64) T velocity[D * chunk_size], increment[D * chunk_size];
+  alignas(64) T offset[D * chunk_size<T>], weight[D * 4 * chunk_size<T>], gradient[D * 4 * chunk_size<T>];
+  alignas(64) T mass[chunk_size<T>], b[D * chunk_size<T>];
+  alignas(64) T stress[symmetric * chunk_size<T>], volume_ratio[chunk_size<T>], scalar[chunk_size<T>];
+  alignas(64) T velocity[D * chunk_size<T>], increment[D * chunk_size<T>];
   // What is gathered is used up before anything is scattered: one place for both stays in the first-level cache.
   union {
-    alignas(64) T affine[D * D * chunk_size];
-    alignas(64) T A[D * D * chunk_size];
+    alignas(64) T affine[D * D * chunk_size<T>];
+    alignas(64) T A[D * D * chunk_size<T>];
   };
   union {
-    alignas(64) T gradient_of_velocity[D * D * chunk_size];
-    alignas(64) T S[D * D * chunk_size];
+    alignas(64) T gradient_of_velocity[D * D * chunk_size<T>];
+    alignas(64) T S[D * D * chunk_size<T>];
   };
-  alignas(64) T advection[D * chunk_size];
+  alignas(64) T advection[D * chunk_size<T>];
   /// Of moments a particle: cells^2, and the inverse in 1/m^2. [D] of a tensor product, [D * D] of a list.
-  alignas(64) T second_moment[D * D * chunk_size], inverse_moment[D * D * chunk_size];
-  alignas(64) T transfer_moment[D * D * chunk_size];  ///< as the transfer reads it, where it is not second_moment
+  alignas(64) T second_moment[D * D * chunk_size<T>], inverse_moment[D * D * chunk_size<T>];
+  alignas(64) T transfer_moment[D * D * chunk_size<T>];  ///< as the transfer reads it, where it is not second_moment
   using Integers = typename Lanes<float>::Mask;
   static constexpr int integers = Lanes<float>::width;
   Integers lowest[3], highest[3];  ///< first nodes of a block's stencils, lane by lane
   ListWork<D, T> lists;
   BoxWork<D, T> boxes;
-  alignas(64) T quads[(1 + 2 * D) * 4 * chunk_size + 4];
+  alignas(64) T quads[(1 + 2 * D) * 4 * chunk_size<T> + 4];
   /// Zero between uses, so that the scatter may add.
   AlignedArray<T> tile[channel_count];
   /// Tiles to gather from; only what the block reaches is valid.
@@ -214,14 +214,14 @@ class ParticleStep {
       const bool passes = motion != at(Particles<D, T>::velocity);
       const int left_out = passes ? particles.motion_components : 0;
       const std::size_t share = (particles.components - left_out) * sizeof(T) / 2;
-      return {next, gather ? share * chunk_size : 0, share,
-              passes ? Particles<D, T>::velocity * chunk_size * sizeof(T) : ~std::size_t(0),
-              left_out * chunk_size * sizeof(T)};
+      return {next, gather ? share * chunk_size<T> : 0, share,
+              passes ? Particles<D, T>::velocity * chunk_size<T> * sizeof(T) : ~std::size_t(0),
+              left_out * chunk_size<T> * sizeof(T)};
     }
-    T* at(int component) const { return values + component * chunk_size; }
+    T* at(int component) const { return values + component * chunk_size<T>; }
     /// Coefficients of the polynomials beyond affine: the last field of the transfer's state.
     T* higher() const { return motion_at(particles.transfer_state.back().first); }
-    T* motion_at(int component) const { return motion + (component - Particles<D, T>::velocity) * chunk_size; }
+    T* motion_at(int component) const { return motion + (component - Particles<D, T>::velocity) * chunk_size<T>; }
   };
   struct States {
     void* fields[max_state_fields];

@@ -74,8 +74,8 @@ struct Particles {
   std::array<std::vector<Unit>, colour_count<D>> units;
   std::uint32_t chunks = 0;
 
-  std::size_t value_bytes() const { return std::size_t(components) * chunk_size * sizeof(T); }
-  std::size_t chunk_bytes() const { return value_bytes() + chunk_size * sizeof(std::int32_t); }
+  std::size_t value_bytes() const { return std::size_t(components) * chunk_size<T> * sizeof(T); }
+  std::size_t chunk_bytes() const { return value_bytes() + chunk_size<T> * sizeof(std::int32_t); }
   T* values_at(std::byte* place) const { return reinterpret_cast<T*>(place); }
   std::int32_t* ids_at(std::byte* place) const { return reinterpret_cast<std::int32_t*>(place + value_bytes()); }
 
@@ -91,11 +91,11 @@ constexpr int padded(int count) {
 }
 
 /// Calls run(chunk number, particles in it) over a block.
-template <int D, class Run>
+template <class T, int D, class Run>
 inline void for_each_chunk(const Block<D>& block, Run&& run) {
-  for (std::uint32_t first = 0; first < block.count; first += chunk_size)
-    run(block.first_chunk + first / chunk_size,
-        static_cast<int>(std::min<std::uint32_t>(chunk_size, block.count - first)));
+  for (std::uint32_t first = 0; first < block.count; first += chunk_size<T>)
+    run(block.first_chunk + first / chunk_size<T>,
+        static_cast<int>(std::min<std::uint32_t>(chunk_size<T>, block.count - first)));
 }
 
 /// Position of a particle in cells from the domain's lower corner, wrapped on periodic axes.

@@ -34,10 +34,10 @@ Destination<D, T> destination(const Domain& domain, const Block<D>& from, const 
     to.wrap[axis] = 0;
     if (domain.periodic(axis)) {
       const int cells = domain.cells[axis];
-      const double x = origin + static_cast<double>(position[axis * chunk_size + lane]);
+      const double x = origin + static_cast<double>(position[axis * chunk_size<T> + lane]);
       to.wrap[axis] = -cells * static_cast<int>(std::floor(x / cells));
     }
-    to.node[axis] = origin + base[axis * chunk_size + lane] + to.wrap[axis];
+    to.node[axis] = origin + base[axis * chunk_size<T> + lane] + to.wrap[axis];
     to.block[axis] = to.node[axis] >> block_bits<D>;
   }
   return to;
@@ -52,11 +52,12 @@ constexpr BlockCoordinates neighbour_at(BlockCoordinates at, int index) {
 /// The lanes after the last of a block's `count` particles hold copies of it.
 template <int D, class T>
 void fill_tail(const Particles<D, T>& particles, std::uint32_t count, std::byte* last_chunk) {
-  const int used = static_cast<int>((count - 1) % chunk_size) + 1;
+  const int used = static_cast<int>((count - 1) % chunk_size<T>) + 1;
   T* const values = particles.values_at(last_chunk);
   std::int32_t* const ids = particles.ids_at(last_chunk);
   for (int lane = used; lane < padded(used); ++lane) {
-    for (int c = 0; c < particles.components; ++c) values[c * chunk_size + lane] = values[c * chunk_size + used - 1];
+    for (int c = 0; c < particles.components; ++c)
+      values[c * chunk_size<T> + lane] = values[c * chunk_size<T> + used - 1];
     ids[lane] = ids[used - 1];
   }
 }
@@ -73,7 +74,7 @@ class Sorter {
         row_bytes_((particles.components * sizeof(T) + sizeof(Tail) + 7) / 8 * 8) {}
 
   bool run() {
-    space_.key.resize(std::max(space_.key.size(), std::size_t(particles_.chunks) * chunk_size));
+    space_.key.resize(std::max(space_.key.size(), std::size_t(particles_.chunks) * chunk_size<T>));
     sources_.resize(particles_.blocks.size());
     find_keys();
     if (in_units() && nothing_to_do()) return false;
@@ -138,18 +139,18 @@ class Sorter {
       Source& source = sources_[b];
       source = {};
       std::uint16_t last = 0;
-      for_each_chunk(particles_.blocks[b],
-                     [&](std::uint32_t chunk, int count) { last = find_keys_of(b, chunk, count, last, source); });
+      for_each_chunk<T>(particles_.blocks[b],
+                        [&](std::uint32_t chunk, int count) { last = find_keys_of(b, chunk, count, last, source); });
     }
   }
 
   std::uint16_t find_keys_of(int b, std::uint32_t chunk, int count, std::uint16_t last, Source& source) {
-    alignas(64) std::int32_t base[D * chunk_size], around[chunk_size], cell[chunk_size], out[chunk_size];
+    alignas(64) std::int32_t base[D * chunk_size<T>], around[chunk_size<T>], cell[chunk_size<T>], out[chunk_size<T>];
     const int end = padded(count);
     first_nodes(chunk, count, base);
     for (int p = 0; p < end; ++p) around[p] = cell[p] = out[p] = 0;
     for (int axis = 0; axis < D; ++axis) {
-      const std::int32_t* const node = base + axis * chunk_size;
+      const std::int32_t* const node = base + axis * chunk_size<T>;
       for (int p = 0; p < end; ++p) {
         const std::int32_t d = (node[p] >> block_bits<D>)+1;
         out[p] |= (d < 0) | (d > 2);
@@ -158,13 +159,13 @@ class Sorter {
       }
       if (!scene_.domain.periodic(axis)) continue;
       const double origin = particles_.blocks[b].at[axis] * block_side<D>, cells = scene_.domain.cells[axis];
-      const T* const x = particles_.chunk(chunk) + axis * chunk_size;
+      const T* const x = particles_.chunk(chunk) + axis * chunk_size<T>;
       for (int p = 0; p < end; ++p) {
         const double from_corner = origin + static_cast<double>(x[p]);
         out[p] |= (from_corner < 0) | (from_corner >= cells);
       }
     }
-    std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size;
+    std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size<T>;
     std::int32_t elsewhere = 0, disorder = 0;
     for (int p = 0; p < count; ++p) {
       key[p] = out[p] ? far_key : static_cast<std::uint16_t>(around[p] * block_nodes + cell[p]);
@@ -189,14 +190,15 @@ class Sorter {
     if (scene_.list) {  // the middle of the list's nodes comes to the middle of the tile
       for (int axis = 0; axis < D; ++axis)
         for (int p = 0; p < padded(count); ++p)
-          base[axis * chunk_size + p] = static_cast<std::int32_t>(
-              std::floor(particles_.chunk(chunk)[axis * chunk_size + std::min(p, count - 1)] - T(0.5)));
+          base[axis * chunk_size<T> + p] = static_cast<std::int32_t>(
+              std::floor(particles_.chunk(chunk)[axis * chunk_size<T> + std::min(p, count - 1)] - T(0.5)));
       return;
     }
-    alignas(64) T offset[D * chunk_size], weight[D * 4 * chunk_size];
-    const T* const domain = particles_.domain < 0 ? nullptr : particles_.chunk(chunk) + particles_.domain * chunk_size;
+    alignas(64) T offset[D * chunk_size<T>], weight[D * 4 * chunk_size<T>];
+    const T* const domain =
+        particles_.domain < 0 ? nullptr : particles_.chunk(chunk) + particles_.domain * chunk_size<T>;
     const mpm_shape_batch batch{static_cast<std::uint32_t>(padded(count)),
-                                chunk_size,
+                                chunk_size<T>,
                                 D,
                                 0,
                                 particles_.chunk(chunk),
@@ -255,12 +257,12 @@ class Sorter {
 
   /// By target, each in the old order.
   void find_far() {
-    alignas(64) std::int32_t base[D * chunk_size];
+    alignas(64) std::int32_t base[D * chunk_size<T>];
     for (std::uint32_t b = 0; b < sources_.size(); ++b) {
       if (sources_[b].far == 0) continue;
       const Block<D>& block = particles_.blocks[b];
-      for_each_chunk(block, [&](std::uint32_t chunk, int count) {
-        const std::uint32_t first = chunk * chunk_size;
+      for_each_chunk<T>(block, [&](std::uint32_t chunk, int count) {
+        const std::uint32_t first = chunk * chunk_size<T>;
         first_nodes(chunk, count, base);
         for (int lane = 0; lane < count; ++lane) {
           if (space_.key[first + lane] != far_key) continue;
@@ -320,7 +322,7 @@ class Sorter {
     return same;
   }
   static std::uint32_t chunks_of(std::uint32_t particles) {
-    return (particles + chunk_size - 1) / chunk_size;
+    return (particles + chunk_size<T> - 1) / chunk_size<T>;
   }
 
   // ---- moving
@@ -409,8 +411,8 @@ class Sorter {
 
   void send_block(std::uint32_t b, std::byte* rows) {
     std::array<std::uint32_t, neighbour_count<D>> next = sources_[b].first_row;
-    for_each_chunk(particles_.blocks[b], [&](std::uint32_t chunk, int count) {
-      const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size;
+    for_each_chunk<T>(particles_.blocks[b], [&](std::uint32_t chunk, int count) {
+      const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size<T>;
       prefetch(chunk + 1);
       for (int lane = 0; lane < count; ++lane) {
         const int k = key[lane] / block_nodes;
@@ -426,16 +428,16 @@ class Sorter {
   void send_far() {
     if (space_.far_rows.size() < far_.size() * row_bytes_) space_.far_rows.resize(far_.size() * row_bytes_);
     for (std::size_t i = 0; i < far_.size(); ++i)
-      write_row(space_.far_rows.data() + i * row_bytes_, far_[i].slot / chunk_size,
-                static_cast<int>(far_[i].slot % chunk_size), far_[i].cell, far_[i].shift);
+      write_row(space_.far_rows.data() + i * row_bytes_, far_[i].slot / chunk_size<T>,
+                static_cast<int>(far_[i].slot % chunk_size<T>), far_[i].cell, far_[i].shift);
   }
 
   void write_row(std::byte* row, std::uint32_t chunk, int lane, std::uint32_t cell, const int* shift) const {
     const T* const from = particles_.chunk(chunk) + lane;
     T* const values = reinterpret_cast<T*>(row);
-    for_each_component([&](int c) { values[c] = from[c * chunk_size]; });
+    for_each_component([&](int c) { values[c] = from[c * chunk_size<T>]; });
     for (int a = 0; a < D; ++a) values[a] += static_cast<T>(shift[a]);
-    const Tail tail{particles_.ids(chunk)[lane], cell, chunk * chunk_size + lane};
+    const Tail tail{particles_.ids(chunk)[lane], cell, chunk * chunk_size<T> + lane};
     std::memcpy(row + particles_.components * sizeof(T), &tail, sizeof tail);
   }
   Tail tail_of(const std::byte* row) const {
@@ -536,12 +538,12 @@ class Sorter {
       }
     }
     take_far_before(~0u);
-    fill_tail(particles_, block.count, places_[block.first_chunk + (block.count - 1) / chunk_size]);
+    fill_tail(particles_, block.count, places_[block.first_chunk + (block.count - 1) / chunk_size<T>]);
   }
 
   void count_stayers(const Block<D>& block, std::uint32_t* counts) const {
-    for_each_chunk(block, [&](std::uint32_t chunk, int count) {
-      const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size;
+    for_each_chunk<T>(block, [&](std::uint32_t chunk, int count) {
+      const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size<T>;
       for (int lane = 0; lane < count; ++lane)
         if (key[lane] / block_nodes == here) ++counts[key[lane] % block_nodes];
     });
@@ -551,36 +553,36 @@ class Sorter {
     const T* const values = reinterpret_cast<const T*>(row);
     const Tail tail = tail_of(row);
     const std::uint32_t to = place[tail.cell]++;
-    std::byte* const chunk = places_[block.first_chunk + to / chunk_size];
-    T* const target = particles_.values_at(chunk) + to % chunk_size;
-    for_each_component([&](int c) { target[c * chunk_size] = values[c]; });
-    particles_.ids_at(chunk)[to % chunk_size] = tail.id;
+    std::byte* const chunk = places_[block.first_chunk + to / chunk_size<T>];
+    T* const target = particles_.values_at(chunk) + to % chunk_size<T>;
+    for_each_component([&](int c) { target[c * chunk_size<T>] = values[c]; });
+    particles_.ids_at(chunk)[to % chunk_size<T>] = tail.id;
   }
 
   /// Component by component, so that the old chunk is read in its own order; what leaves goes to where nobody looks.
   template <class TakeFar>
   void take_stayers(const Block<D>& left, const Block<D>& block, std::uint32_t* place, TakeFar&& take_far_before) {
-    T* to[chunk_size];
-    std::int32_t* id_to[chunk_size];
+    T* to[chunk_size<T>];
+    std::int32_t* id_to[chunk_size<T>];
     std::byte* const nowhere = space_.nowhere[omp_get_thread_num()].data();
-    for_each_chunk(left, [&](std::uint32_t chunk, int count) {
-      const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size;
+    for_each_chunk<T>(left, [&](std::uint32_t chunk, int count) {
+      const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size<T>;
       prefetch(chunk + 1);
-      for (int lane = 0; lane < chunk_size; ++lane) {
+      for (int lane = 0; lane < chunk_size<T>; ++lane) {
         std::byte* target = nowhere;
         std::uint32_t at = static_cast<std::uint32_t>(lane);
         if (lane < count && key[lane] / block_nodes == here) {
-          take_far_before(chunk * chunk_size + lane);
+          take_far_before(chunk * chunk_size<T> + lane);
           at = place[key[lane] % block_nodes]++;
-          target = places_[block.first_chunk + at / chunk_size];
+          target = places_[block.first_chunk + at / chunk_size<T>];
         }
-        to[lane] = particles_.values_at(target) + at % chunk_size;
-        id_to[lane] = particles_.ids_at(target) + at % chunk_size;
+        to[lane] = particles_.values_at(target) + at % chunk_size<T>;
+        id_to[lane] = particles_.ids_at(target) + at % chunk_size<T>;
       }
       for_each_component([&](int c) {
-        const T* const from = particles_.chunk(chunk) + c * chunk_size;
+        const T* const from = particles_.chunk(chunk) + c * chunk_size<T>;
 #pragma GCC unroll 16
-        for (int lane = 0; lane < chunk_size; ++lane) to[lane][c * chunk_size] = from[lane];
+        for (int lane = 0; lane < chunk_size<T>; ++lane) to[lane][c * chunk_size<T>] = from[lane];
       });
       for (int lane = 0; lane < count; ++lane) *id_to[lane] = particles_.ids(chunk)[lane];
     });
@@ -588,7 +590,7 @@ class Sorter {
   void prefetch(std::uint32_t chunk) const {
     if (chunk >= particles_.chunks) return;
     const std::byte* const place = particles_.places[chunk];
-    constexpr std::size_t component = chunk_size * sizeof(T), gap = Particles<D, T>::velocity * component;
+    constexpr std::size_t component = chunk_size<T> * sizeof(T), gap = Particles<D, T>::velocity * component;
     for (std::size_t byte = 0; byte < gap; byte += 64) __builtin_prefetch(place + byte, 0, 2);
     for (std::size_t byte = gap + left_behind_ * component; byte < particles_.chunk_bytes(); byte += 64)
       __builtin_prefetch(place + byte, 0, 2);
@@ -637,7 +639,7 @@ void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const D
   std::vector<Seeded> found;
   BlockTable table;
   particles.pool.set_chunk_bytes(particles.chunk_bytes());
-  particles.pool.reserve((seeds.count() + chunk_size - 1) / chunk_size);
+  particles.pool.reserve((seeds.count() + chunk_size<T> - 1) / chunk_size<T>);
   int known = -1;
   seeds.for_each_batch([&](const SeedBatch& batch) {
     for (std::size_t i = 0; i < batch.count; ++i) {
@@ -650,20 +652,20 @@ void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const D
       if (known < 0 || found[known].at != at) known = table.insert(at, static_cast<int>(found.size()));
       if (known == static_cast<int>(found.size())) found.emplace_back().at = at;
       Seeded& block = found[known];
-      const int lane = static_cast<int>(block.count++ % chunk_size);
+      const int lane = static_cast<int>(block.count++ % chunk_size<T>);
       if (lane == 0) {
         block.chunks.push_back(particles.pool.take());
         for (int c = 0; c < particles.components; ++c)
-          std::fill_n(particles.values_at(block.chunks.back()) + c * chunk_size, chunk_size, first_value[c]);
+          std::fill_n(particles.values_at(block.chunks.back()) + c * chunk_size<T>, chunk_size<T>, first_value[c]);
       }
       T* const values = particles.values_at(block.chunks.back()) + lane;
       particles.ids_at(block.chunks.back())[lane] = static_cast<std::int32_t>(batch.first + i);
       for (int a = 0; a < D; ++a) {
-        values[(Particles<D, T>::position + a) * chunk_size] = static_cast<T>(cells[a] - at[a] * block_side<D>);
-        values[(Particles<D, T>::velocity + a) * chunk_size] = static_cast<T>(batch.velocity[i * D + a]);
+        values[(Particles<D, T>::position + a) * chunk_size<T>] = static_cast<T>(cells[a] - at[a] * block_side<D>);
+        values[(Particles<D, T>::velocity + a) * chunk_size<T>] = static_cast<T>(batch.velocity[i * D + a]);
       }
       for (int c = 0; affine >= 0 && c < D * D; ++c)
-        values[(affine + c) * chunk_size] = static_cast<T>(batch.velocity_gradient[i * D * D + c]);
+        values[(affine + c) * chunk_size<T>] = static_cast<T>(batch.velocity_gradient[i * D * D + c]);
     }
   });
   std::sort(found.begin(), found.end(), [](const Seeded& a, const Seeded& b) { return a.at < b.at; });

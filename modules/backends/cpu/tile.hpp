@@ -88,21 +88,21 @@ template <int K, class T>
 struct AxisWeights {
   typename Row<T, K>::Vector w[K], g[K];
   MPM_ROW_INLINE AxisWeights(const Stencils<T>& stencils, int axis, int particle, bool gradient) {
-    for (int k = 0; k < K; ++k) w[k] = broadcast<T, K>(stencils.weight[(axis * K + k) * chunk_size + particle]);
+    for (int k = 0; k < K; ++k) w[k] = broadcast<T, K>(stencils.weight[(axis * K + k) * chunk_size<T> + particle]);
     if (gradient)
-      for (int k = 0; k < K; ++k) g[k] = broadcast<T, K>(stencils.gradient[(axis * K + k) * chunk_size + particle]);
+      for (int k = 0; k < K; ++k) g[k] = broadcast<T, K>(stencils.gradient[(axis * K + k) * chunk_size<T> + particle]);
   }
 };
 
 /// Weights along the last axis, one quad a particle.
 template <int D, int K, class T>
 struct LastWeights {
-  alignas(64) T quads[chunk_size * 4];
+  alignas(64) T quads[chunk_size<T> * 4];
   MPM_ROW_INLINE LastWeights(const T* weights, int count) {
-    const T* const w = weights + (D - 1) * K * chunk_size;
+    const T* const w = weights + (D - 1) * K * chunk_size<T>;
     for (int p = 0; p < count; p += Lanes<T>::width) {
       Lanes<T> components[4];
-      for (int k = 0; k < 4; ++k) components[k] = k < K ? Lanes<T>::load(w + k * chunk_size + p) : Lanes<T>(T(0));
+      for (int k = 0; k < 4; ++k) components[k] = k < K ? Lanes<T>::load(w + k * chunk_size<T> + p) : Lanes<T>(T(0));
       store_quads<T>(quads + 4 * p, 4, components);
     }
   }
