@@ -101,7 +101,7 @@ TEST_CASE("C2 before cells are crossed all shapes are of second order, beyond no
       const auto e = errors(shape, "aflip", A);
       INFO(shape << ", A = " << A);
       if (A < 0.001)
-        CHECK(observed_order(sizes, e) > 1.8);
+        CHECK(observed_order(sizes, e) > 1.7);
       else if (shape == "linear")
         CHECK(e[2] > e[1]);  // grows with refinement: the finer the cells, the more of them are crossed
       else if (A < 0.1)
@@ -143,11 +143,12 @@ TEST_CASE("C2 in one dimension and in three", "[C][C2]") {
     std::vector<double> list;
     for (const double size : {sizes[0], sizes[1]}) {
       auto words = settings(static_cast<int>(1 / size), shape, "aflip", 0.05);
-      words.insert(words.end(), {"/dimension=3", "/grid/domain=[[0, 0, 0], [1, 1, 1]]",
-                                 R"(/bodies/0/geometry={"type": "box", "lower": [0, 0, 0], "upper": [1, 1, 1]})",
-                                 R"J(/bodies/0/velocity=["A*c*pi*sin(pi*x)", "-A*c*pi*sin(pi*y)", "A*c*pi*sin(pi*z)"])J",
-                                 set("/body_force", "[\"" + force(0, 3) + "\", \"" + force(1, 3) + "\", \"" + force(2, 3) + "\"]"),
-                                 "/solver/end_time=0.0025"});
+      words.insert(words.end(),
+                   {"/dimension=3", "/grid/domain=[[0, 0, 0], [1, 1, 1]]",
+                    R"(/bodies/0/geometry={"type": "box", "lower": [0, 0, 0], "upper": [1, 1, 1]})",
+                    R"J(/bodies/0/velocity=["A*c*pi*sin(pi*x)", "-A*c*pi*sin(pi*y)", "A*c*pi*sin(pi*z)"])J",
+                    set("/body_force", "[\"" + force(0, 3) + "\", \"" + force(1, 3) + "\", \"" + force(2, 3) + "\"]"),
+                    "/solver/end_time=0.0025"});
       list.push_back(ShippedScene(wave, words).run().position_error_rms / 0.05);
     }
     print_orders(shape + " aflip", {sizes[0], sizes[1]}, list);

@@ -120,6 +120,16 @@ TEST_CASE("C4 heights of the Hencky column, and stress errors over five grids", 
       for (std::size_t k = 1; k < cells.size(); ++k) CHECK(errors[k] > errors[k - 1]);
       continue;
     }
-    for (std::size_t k = 0; k < marks.size(); ++k) CHECK(std::abs(heights[k] - exact_height(marks[k])) < 0.02);
+    const bool is_stretching = shape == "gimp_contiguous" || shape == "cpdi",
+               has_box = is_stretching || shape == "gimp";
+    // Splines weigh particles without their size: rows of them do not sum evenly over a node, and the stress ripples.
+    for (std::size_t k = 0; k < marks.size(); ++k)
+      CHECK(std::abs(heights[k] - exact_height(marks[k])) < (has_box ? 2e-4 : 0.01));
+    for (std::size_t k = 1; k < 4; ++k) CHECK(errors[k] < (has_box ? 0.5 : 0.9) * errors[k - 1]);
+    // Boxes that do not shorten with the column overlap in the end.
+    if (is_stretching)
+      CHECK(observed_order(cells, errors) > 1.6);
+    else
+      CHECK(observed_order(cells, errors) < 0.5);
   }
 }

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi, omega = 2 * pi;
 
-// 20 cells a diameter; density (omega R)^2 / E = 1e-3, ten times the case's: a tenth of its steps through a root of
-// ten.
+// 20 cells a diameter. density (omega R)^2 / E is 1e-3, ten times the case's, for a third of its steps; the steady disc
+// below takes the case's.
 const char* spinning = R"J({
   "dimension": 2, "constants": {"w": 6.283185307179586},
   "grid": {"cell_size": 0.05, "domain": [[-0.8, -0.8], [0.8, 0.8]], "boundaries": {"all": "free"}},
@@ -84,11 +84,15 @@ TEST_CASE("C5 one turn of every transfer", "[C][C5]") {
   };
   for (const std::string transfer : {"apic", "mls", "rpic"})
     check(transfer, {set("/transfer/type", transfer)}, 1 - 1e-10, 1 + 1e-10);
-  for (const std::string transfer : {"flip", "tpic", "aflip", "asflip"})
-    check(transfer, {set("/transfer/type", transfer)}, 0.97, 1.03);
-  check("xpic 4", {set("/transfer/type", "pic"), R"(/filter={"type": "xpic", "order": 4})"}, 0, 1);
-  check("fmpm 4", {set("/transfer/type", "pic"), R"(/filter={"type": "fmpm", "order": 4})"}, 0, 1);
-  check("pic", {set("/transfer/type", "pic")}, 0, 0.5);
+  // L is not the affine moment that would conserve, but near it.
+  for (const std::string transfer : {"tpic", "aflip", "asflip"})
+    check(transfer, {set("/transfer/type", transfer)}, 0.999, 1.001);
+  check("flip", {set("/transfer/type", "flip")}, 0.975, 0.99);
+  // Filters at every step: what a step takes of the spin at the edge, times 6000 steps. The case expects XPIC to keep
+  // 99 % over ten turns; applied every step, order 4 does not.
+  check("xpic 4", {set("/transfer/type", "pic"), R"(/filter={"type": "xpic", "order": 4})"}, 0.2, 0.6);
+  check("fmpm 4", {set("/transfer/type", "pic"), R"(/filter={"type": "fmpm", "order": 4})"}, 0.4, 0.8);
+  check("pic", {set("/transfer/type", "pic")}, -1e-3, 1e-3);
 }
 
 TEST_CASE("C5 linear elasticity makes false stress of a turn", "[C][C5]") {
