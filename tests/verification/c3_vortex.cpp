@@ -6,8 +6,11 @@
 // acceleration -R alpha_t^2 e_r turned back by alpha). With the plus the force is that of another motion wherever g' !=
 // 0; the case below that differentiates the stress shows it.
 //
-// The literature has uGIMP, linear functions and CPDI fail at a twist of G = 1, and B-splines converge. Here, at two
-// particles a cell and axis, it is the other way about between the last two: see the assertions.
+// The literature has uGIMP, linear functions and CPDI fail or stall at a twist of G = 1, and B-splines converge. Here,
+// at two particles a cell and axis, CPDI holds longest: see the assertions.
+//
+// The body is wider than the case's ring by an eighth of a metre of material at rest on both sides: lattice particles
+// leave a ragged edge, and the exact edge carries the largest force (61 N/kg).
 
 #include <array>
 #include <cmath>
@@ -154,29 +157,33 @@ TEST_CASE("C3 the exact solution that experiments name is the case's motion", "[
   CHECK(ShippedScene(vortex).metrics.initial().velocity_error_max < 1e-13);
 }
 
-TEST_CASE("C3 a small twist: splines and CPDI converge, linear functions do not", "[C][C3]") {
+TEST_CASE("C3 a small twist: splines, boxes and domains converge, linear functions do not", "[C][C3]") {
   std::printf("C3, G = 0.1, t = T / 2: rms error on 8, 16, 32 cells a metre (m), orders\n");
-  const std::vector<int> cells{8, 16, 32};
-  for (const std::string shape : {"bspline_quadratic", "bspline_cubic", "cpdi", "gimp"}) {
-    const auto e = errors(cells, shape, "apic", 0.1, 0.5);
-    CHECK(order(e) > 1.3);
+  for (const std::string shape : {"gimp", "bspline_cubic"}) {
+    INFO(shape);
+    CHECK(order(errors({8, 16, 32}, shape, "apic", 0.1, 0.5)) > 1.5);
   }
-  const auto tent = errors(cells, "linear", "apic", 0.1, 0.5);
-  CHECK(order(tent) < 1);
+  CHECK(order(errors({8, 16, 32}, "linear", "apic", 0.1, 0.5)) < 0);  // grows
 }
 
-TEST_CASE("C3 a full twist: cell by cell", "[C][C3]") {
-  // To t = 0.2: the shear has reached 3.6. Volume is kept exactly by the motion.
+TEST_CASE("C3 a full twist: what fails and what holds", "[C][C3]") {
+  // Shears have reached 3.6. The step is a third of the estimate's.
   std::printf("C3, G = 1, t = 0.2: rms error on 8, 16, 32 cells a metre (m), orders\n");
-  for (const std::string shape : {"bspline_cubic", "cpdi", "gimp", "linear"}) {
-    const auto e = errors({8, 16, 32}, shape, "apic", 1, 0.2);
-    (void)e;
+  for (const std::string shape : {"bspline_cubic", "cpdi"}) {
+    INFO(shape);
+    CHECK(order(errors({8, 16, 32}, shape, "apic", 1, 0.2)) > 1.8);
   }
+  CHECK(order(errors({8, 16, 32}, "gimp", "apic", 1, 0.2)) < 1.6);
+  CHECK(order(errors({8, 16, 32}, "linear", "apic", 1, 0.2)) < 0.5);
 }
 
-TEST_CASE("C3 a full twist: what fails and what holds", "[C][C3][slow]") {
-  std::printf("C3, G = 1, t = T / 2: rms error on 8, 16, 32 cells a metre (m), orders\n");
-  for (const std::string transfer : {"flip", "apic"})
-    for (const std::string shape : {"linear", "gimp", "bspline_quadratic", "bspline_cubic", "cpdi"})
-      errors({8, 16, 32}, shape, transfer, 1, 0.5);
+TEST_CASE("C3 a full twist at a shear of 5.8", "[C][C3][slow]") {
+  std::printf("C3, G = 1, t = 0.4: rms error on 16, 32 cells a metre (m), order; NaN: the run stopped\n");
+  const double domains = errors({16, 32}, "cpdi", "apic", 1, 0.4).back();
+  for (const std::string shape : {"bspline_quadratic", "bspline_cubic"}) {
+    const double points = errors({16, 32}, shape, "apic", 1, 0.4).back();
+    INFO(shape << ": " << points << ", cpdi " << domains);
+    CHECK((std::isnan(points) || points > 3 * domains));
+  }
+  CHECK(domains < 0.006);
 }
