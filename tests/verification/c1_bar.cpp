@@ -116,7 +116,7 @@ TEST_CASE("C1 the numbers of modes 1 and 2 over 100 s", "[C][C1]") {
       CHECK(found.velocity == Approx(e.velocity * half / std::sin(half)).epsilon(1e-9));
       // APIC's affine velocities carry a share of their own.
       CHECK(found.energy == Approx(e.energy).epsilon(transfer == "flip" ? 1e-9 : 0.01));
-      CHECK(found.tip == Approx(e.tip).epsilon(0.01));
+      CHECK(found.tip == Approx(e.tip).epsilon(mode == 1 ? 0.01 : 0.015));
       if (transfer == "flip") CHECK(found.energy_error < 0.01);
     }
 }

@@ -6,8 +6,8 @@
 // acceleration -R alpha_t^2 e_r turned back by alpha). With the plus the force is that of another motion wherever g' !=
 // 0; the case below that differentiates the stress shows it.
 //
-// The literature has uGIMP, linear functions and CPDI fail or stall at a twist of G = 1, and B-splines converge. Here,
-// at two particles a cell and axis, CPDI holds longest: see the assertions.
+// The literature has uGIMP and linear functions fail at a twist of G = 1 and B-splines converge; and so it is here.
+// CPDI, said to stall, holds longer than splines at two particles a cell and axis.
 //
 // The body is wider than the case's ring by an eighth of a metre of material at rest on both sides: lattice particles
 // leave a ragged edge, and the exact edge carries the largest force (61 N/kg).
@@ -70,12 +70,11 @@ Vec2 force_by_differences(double X, double Y, double t) {
 
 std::vector<std::string> settings(int cells, const std::string& shape, const std::string& transfer, double twist,
                                   double end) {
-  return {set("/grid/cell_size", digits(1.0 / cells)),
-          set("/shape/type", shape),
-          set("/transfer/type", transfer),
-          set("/constants/G", digits(twist)),
-          set("/compare/exact/amplitude", digits(twist)),
-          set("/solver/end_time", digits(end))};
+  return {set("/grid/cell_size", digits(1.0 / cells)), set("/shape/type", shape), set("/transfer/type", transfer),
+          set("/constants/G", digits(twist)), set("/compare/exact/amplitude", digits(twist)),
+          set("/solver/end_time", digits(end)),
+          // As in experiments/studies/vortex.json.
+          set("/solver/courant", twist < 1 ? "0.3" : "0.5")};
 }
 
 /// Errors on grids of `cells` a metre; NaN where a run stops.
@@ -166,15 +165,15 @@ TEST_CASE("C3 a small twist: splines, boxes and domains converge, linear functio
   CHECK(order(errors({8, 16, 32}, "linear", "apic", 0.1, 0.5)) < 0);  // grows
 }
 
-TEST_CASE("C3 a full twist: what fails and what holds", "[C][C3]") {
-  // Shears have reached 3.6. The step is a third of the estimate's.
+TEST_CASE("C3 a full twist: GIMP and linear functions fail, splines and CPDI hold", "[C][C3]") {
+  // Shears have reached 3.6.
   std::printf("C3, G = 1, t = 0.2: rms error on 8, 16, 32 cells a metre (m), orders\n");
   for (const std::string shape : {"bspline_cubic", "cpdi"}) {
     INFO(shape);
     CHECK(order(errors({8, 16, 32}, shape, "apic", 1, 0.2)) > 1.8);
   }
-  CHECK(order(errors({8, 16, 32}, "gimp", "apic", 1, 0.2)) < 1.6);
-  CHECK(order(errors({8, 16, 32}, "linear", "apic", 1, 0.2)) < 0.5);
+  CHECK(order(errors({8, 16, 32}, "gimp", "apic", 1, 0.2)) < 1);
+  CHECK(order(errors({8, 16, 32}, "linear", "apic", 1, 0.2)) < 0);  // grows
 }
 
 TEST_CASE("C3 a full twist at a shear of 5.8", "[C][C3][slow]") {
