@@ -1,5 +1,6 @@
 #include "metrics/exact.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -96,6 +97,30 @@ class AxisAlignedWave final : public ExactSolution {
   int dimension_;
 };
 
+/// Case C3 (Brannon, Kamojjala & Sadeghirad 2011): the ring 0.75 <= R <= 1.25 m about the origin, each circle turned by
+/// G sin(pi t / T) h(R), h = (1 - 16 (R - 1)^2)^2; h and h' vanish at both edges. h = 0 beyond them.
+class GeneralisedVortex final : public ExactSolution {
+ public:
+  GeneralisedVortex(const ExactChoice& choice)
+      : amplitude_(value(choice, "amplitude")), time_(value(choice, "duration")) {}
+  Vector3 position(const Vector3& X, const Vector3&, double t) const override {
+    const double angle = amplitude_ * std::sin(pi * t / time_) * profile(X), c = std::cos(angle), s = std::sin(angle);
+    return {c * X[0] - s * X[1], s * X[0] + c * X[1], X[2]};
+  }
+  Vector3 velocity(const Vector3& X, const Vector3& V, double t) const override {
+    const double rate = amplitude_ * pi / time_ * std::cos(pi * t / time_) * profile(X);
+    const Vector3 x = position(X, V, t);
+    return {-rate * x[1], rate * x[0], 0};
+  }
+
+ private:
+  static double profile(const Vector3& X) {
+    const double q = std::hypot(X[0], X[1]) - 1, root = std::max(0.0, 1 - 16 * q * q);
+    return root * root;
+  }
+  double amplitude_, time_;
+};
+
 struct Entry {
   ExactDescription description;
   std::function<std::unique_ptr<ExactSolution>(const Experiment&, double)> make;
@@ -127,7 +152,13 @@ const std::vector<Entry>& entries() {
         "manufactured solution u_i = A sin(pi X_i) sin(c pi t + phi_i) on the unit square or cube",
         {number("amplitude", "m", "amplitude A").needed(),
          number("wave_speed", "m/s", "c = sqrt(E / density)").above(0).needed()}},
-       [](const Experiment& e, double) { return std::make_unique<AxisAlignedWave>(*e.exact, e.dimension); }}};
+       [](const Experiment& e, double) { return std::make_unique<AxisAlignedWave>(*e.exact, e.dimension); }},
+      {{"generalised_vortex",
+        "manufactured solution on the ring 0.75 <= R <= 1.25 m about the origin: circles turn by G sin(pi t / T) (1 - "
+        "16 (R - 1)^2)^2",
+        {number("amplitude", "", "angle G that the middle circle turns, rad").needed(),
+         number("duration", "s", "time T until all is back in its place").above(0).needed()}},
+       [](const Experiment& e, double) { return std::make_unique<GeneralisedVortex>(*e.exact); }}};
   return all;
 }
 

@@ -1,0 +1,184 @@
+// Case C5: spinning bodies: mass moments, energy, what each transfer keeps of the spin, the stress of a disc that
+// spins steadily, and the turned stress of laws that conformance/cases_c5.cpp leaves out. `ctest -V` shows the tables.
+//
+// See rotation.cpp for why FLIP with lumped masses does not keep 99 % of its angular momentum over ten turns, as one
+// would like.
+
+#include <cmath>
+#include <numbers>
+
+#include "materials/fixed_corotated/fixed_corotated.hpp"
+#include "shipped.hpp"
+#include "support/catch.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+constexpr double pi = std::numbers::pi, omega = 2 * pi;
+
+// 20 cells a diameter. density (omega R)^2 / E is 1e-3, ten times the case's, for a third of its steps; the steady disc
+// below takes the case's.
+const char* spinning = R"J({
+  "dimension": 2, "constants": {"w": 6.283185307179586},
+  "grid": {"cell_size": 0.05, "domain": [[-0.8, -0.8], [0.8, 0.8]], "boundaries": {"all": "free"}},
+  "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
+  "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 9.869604401e6, "poisson_ratio": 0.3, "density": 1000}},
+  "bodies": [{"name": "body", "material": "m", "velocity": ["-w*y", "w*x"],
+              "geometry": {"type": "ball", "centre": [0, 0], "radius": 0.5}}],
+  "solver": {"time_step": "auto", "courant": 0.4, "end_time": 1}, "output": {"ledger": false},
+  "compare": {"exact": {"type": "rigid_rotation", "angular_velocity": 6.283185307179586, "centre_x": 0, "centre_y": 0}}})J";
+
+const std::string square = R"(/bodies/0/geometry={"type": "box", "lower": [-0.5, -0.5], "upper": [0.5, 0.5]})";
+
+struct Kept {
+  double spin = 0, kinetic = 0, error = 0;  ///< over the initial; m
+};
+
+Kept turn(const std::vector<std::string>& settings) {
+  Scene scene(spinning, settings);
+  const Totals start = scene.metrics.initial(), end = scene.run();
+  return {end.angular_momentum[2] / start.angular_momentum[2], end.kinetic / start.kinetic, end.position_error_rms};
+}
+
+}  // namespace
+
+TEST_CASE("C5 moments and energies of disc and square", "[C][C5]") {
+  std::printf("C5: spin (kg m^2/s) and kinetic energy (J/m) at the start, 20, 40, 80 cells; exact\n");
+  struct Row {
+    const char* name;
+    std::string geometry;
+    double moment;
+  };
+  for (const Row& row : {Row{"disc", "", 98.17477}, Row{"square", square, 1000.0 / 6}}) {
+    std::printf("  %-8s", row.name);
+    double error = 0, before = 0;
+    for (const int n : {20, 40, 80}) {
+      std::vector<std::string> list{set("/grid/cell_size", digits(1.0 / n)), set("/transfer/type", "flip")};
+      if (!row.geometry.empty()) list.push_back(row.geometry);
+      const Totals start = Scene(spinning, list).metrics.initial();
+      std::printf(" %10.4f %10.4f", start.angular_momentum[2], start.kinetic);
+      error = std::abs(start.angular_momentum[2] / (row.moment * omega) - 1);
+      CHECK(start.kinetic == Approx(0.5 * omega * start.angular_momentum[2]).epsilon(1e-12));
+      // A lattice of n^2 points has the moment of the square less the points' own: 1 - 1 / (2 n)^2.
+      if (!row.geometry.empty()) {
+        CHECK(error == Approx(0.25 / (n * n)).epsilon(1e-6));
+        if (before > 0) CHECK(error == Approx(before / 4).epsilon(1e-6));
+      }
+      before = error;
+    }
+    std::printf(" | %10.4f %10.4f\n", row.moment * omega, 0.5 * row.moment * omega * omega);
+    CHECK(error < 0.005);
+  }
+}
+
+TEST_CASE("C5 one turn of every transfer", "[C][C5]") {
+  std::printf("C5, one turn of the disc: share kept of spin and kinetic energy, rms error (m)\n");
+  const auto check = [](const std::string& name, const std::vector<std::string>& settings, double least, double most) {
+    const Kept kept = turn(settings);
+    std::printf("  %-10s %.12f %.6f %.4f\n", name.c_str(), kept.spin, kept.kinetic, kept.error);
+    INFO(name << " keeps " << kept.spin);
+    CHECK(kept.spin >= least);
+    CHECK(kept.spin <= most);
+  };
+  for (const std::string transfer : {"apic", "mls", "rpic"})
+    check(transfer, {set("/transfer/type", transfer)}, 1 - 1e-10, 1 + 1e-10);
+  // L is not the affine moment that would conserve, but near it.
+  for (const std::string transfer : {"tpic", "aflip", "asflip"})
+    check(transfer, {set("/transfer/type", transfer)}, 0.999, 1.001);
+  check("flip", {set("/transfer/type", "flip")}, 0.975, 0.99);
+  // Filters at every step: what a step takes of the spin at the edge, times 6000 steps. The case expects XPIC to keep
+  // 99 % over ten turns; applied every step, order 4 does not.
+  check("xpic 4", {set("/transfer/type", "pic"), R"(/filter={"type": "xpic", "order": 4})"}, 0.2, 0.6);
+  check("fmpm 4", {set("/transfer/type", "pic"), R"(/filter={"type": "fmpm", "order": 4})"}, 0.4, 0.8);
+  check("pic", {set("/transfer/type", "pic")}, -1e-3, 1e-3);
+}
+
+TEST_CASE("C5 linear elasticity makes false stress of a turn", "[C][C5]") {
+  // 2 (lambda + mu)(cos theta - 1) in the plane: at a quarter turn the disc would be crushed. Neo-Hookean keeps
+  // the volume to what spinning stretches it by.
+  for (const std::string material : {"linear_elastic", "neo_hookean"}) {
+    Scene scene(spinning, {set("/materials/m/type", material), set("/solver/end_time", "0.1")});
+    double energy = 0;
+    try {
+      energy = scene.run().strain / scene.metrics.initial().kinetic;
+    } catch (const RunFailure&) {
+      energy = INFINITY;
+    }
+    std::printf("C5, a tenth of a turn, %s: strain energy over kinetic %.4g\n", material.c_str(), energy);
+    CHECK((energy < 0.01) == (material == "neo_hookean"));
+  }
+}
+
+TEST_CASE("C5 the stress of a steadily spinning disc", "[C][C5]") {
+  // Set spinning without strain the disc breathes about the steady state of plane strain, in linear elasticity with
+  //   s_r = K1 rho w^2 (R^2 - r^2), s_t = rho w^2 (K1 R^2 - K2 r^2), K1 = (3 - 2 nu)/(8 (1 - nu)), K2 = (1 + 2 nu)/(8
+  //   (1 - nu)):
+  // means over many breaths are the steady stresses. density (w R)^2 / E = 1e-4.
+  constexpr double radius = 0.5, spin = 10, nu = 0.3, K1 = (3 - 2 * nu) / (8 * (1 - nu)),
+                   K2 = (1 + 2 * nu) / (8 * (1 - nu)), scale = 1000 * spin * spin, modulus = 2.5e8;
+  CHECK(K1 * scale * radius * radius == Approx(10714.2857).epsilon(1e-8));
+  const double lambda = modulus * nu / ((1 + nu) * (1 - 2 * nu)), mu = modulus / (2 * (1 + nu));
+  std::printf("C5, steady disc: cells a diameter; mean stress in the middle and s_r, s_t at r = 0.25 (Pa)\n");
+  for (const int n : {20, 40}) {
+    Scene scene(spinning, {set("/constants/w", "10"), set("/compare", "null"),
+                           set("/materials/m/youngs_modulus", digits(modulus)), set("/grid/cell_size", digits(1.0 / n)),
+                           set("/solver/end_time", "0.06")});
+    std::vector<double> radial, hoop;
+    long samples = 0;
+    while (!scene.simulation.finished()) {
+      scene.simulation.step();
+      if (scene.simulation.steps() % 4 != 0) continue;
+      const BodyState state = scene.body();
+      const auto& F = state.material_state.at("deformation_gradient");
+      const std::size_t count = state.position.size() / 2;
+      radial.resize(count), hoop.resize(count);
+      ++samples;
+      for (std::size_t p = 0; p < count; ++p) {
+        const double* f = &F[4 * p];
+        const double J = f[0] * f[3] - f[1] * f[2], pressure = lambda * std::log(J) - mu;
+        // tau = mu b + (lambda ln J - mu) I along the radius and across it.
+        const double x = state.position[2 * p], y = state.position[2 * p + 1], r = std::hypot(x, y);
+        const double rx = x / r, ry = y / r;
+        const double a = f[0] * rx + f[2] * ry, b = f[1] * rx + f[3] * ry, c = -f[0] * ry + f[2] * rx,
+                     d = -f[1] * ry + f[3] * rx;
+        radial[p] += (mu * (a * a + b * b) + pressure) / J;
+        hoop[p] += (mu * (c * c + d * d) + pressure) / J;
+      }
+    }
+    const std::vector<double> place = scene.body().position;
+    double middle = 0, middles = 0, half_r = 0, half_t = 0, halves = 0;
+    for (std::size_t p = 0; p < radial.size(); ++p) {
+      const double r = std::hypot(place[2 * p], place[2 * p + 1]), s_r = radial[p] / static_cast<double>(samples),
+                   s_t = hoop[p] / static_cast<double>(samples);
+      if (r < 0.1) middle += 0.5 * (s_r + s_t) + scale * 0.25 * (K1 + K2) * 2 * r * r, middles += 1;
+      if (std::abs(r - 0.25) < 0.025)
+        half_r += s_r + scale * K1 * (r * r - 0.0625), half_t += s_t + scale * K2 * (r * r - 0.0625), halves += 1;
+    }
+    middle /= middles, half_r /= halves, half_t /= halves;
+    const double exact_r = scale * K1 * (0.25 - 0.0625), exact_t = scale * (K1 * 0.25 - K2 * 0.0625);
+    std::printf("  %d: %.1f %.1f %.1f | exact 10714.3 %.1f %.1f\n", n, middle, half_r, half_t, exact_r, exact_t);
+    INFO(n << " cells");
+    CHECK(middle == Approx(10714.2857).epsilon(0.02));
+    CHECK(half_r == Approx(exact_r).epsilon(0.03));
+    CHECK(half_t == Approx(exact_t).epsilon(0.03));
+  }
+}
+
+TEST_CASE("C5h the stress of a fixed corotated solid turns with it", "[C][C5]") {
+  using Matrix = Mat<2, double>;
+  const FixedCorotated::Constants<double> constants({1000, 0.3, 1000});
+  FixedCorotated::State<2, double> state{Matrix::identity()};
+  FixedCorotated::advance(constants, Matrix{{0.3, 0, 0, -0.2}}, 1.0, state);  // F = diag(1.3, 0.8)
+  const auto start = FixedCorotated::kirchhoff_stress(constants, state);
+  const double angle = 2 * pi / 7, c = std::cos(angle), s = std::sin(angle);
+  for (int k = 1; k <= 7; ++k) {
+    FixedCorotated::advance(constants, Matrix{{c - 1, -s, s, c - 1}}, 1.0, state);
+    const auto tau = FixedCorotated::kirchhoff_stress(constants, state);
+    const double C = std::cos(k * angle), S = std::sin(k * angle);
+    CHECK(std::abs(tau.s[0] - (C * C * start.s[0] + S * S * start.s[1])) < 1e-12 * 1000);
+    CHECK(std::abs(tau.s[1] - (S * S * start.s[0] + C * C * start.s[1])) < 1e-12 * 1000);
+    CHECK(std::abs(tau.s[3] - C * S * (start.s[0] - start.s[1])) < 1e-12 * 1000);
+  }
+}
