@@ -50,10 +50,11 @@ struct TileCase {
     stencils.weight = static_cast<const T*>(weight.data()), stencils.gradient = static_cast<const T*>(gradient.data());
     T* const nodes = static_cast<T*>(tile.data());
     T* const particles = static_cast<T*>(quads.data());
-    if (gathers)
-      kernels.gather[affine][with_gradient](nodes, stencils, particles, batch);
-    else
-      kernels.scatter[affine][with_gradient](nodes, stencils, particles, batch);
+    for (int done = 0; done < batch; done += cpu::chunk_size<T>)
+      if (gathers)
+        kernels.gather[affine][with_gradient](nodes, stencils, particles, cpu::chunk_size<T>);
+      else
+        kernels.scatter[affine][with_gradient](nodes, stencils, particles, cpu::chunk_size<T>);
   }
   std::string problem() { return tile.finite() && quads.finite() ? "" : "a result is not a number"; }
 };
