@@ -30,8 +30,10 @@ TEST_CASE("parity of axisymmetric scenes on every shape and transfer", "[parity]
       Mix mix = ring_mix();
       mix.shape = shape, mix.transfer = transfer;
       // Rings that grow and cross cells of linear functions are inverted soon, on either backend.
-      if (shape.find("linear") != shape.npos) mix.overrides.emplace_back("/solver/end_time=0.045");
-      check_parity(mix);
+      // Third powers of polynomials take up the rounding of light nodes, more with each step.
+      const bool third_powers = shape.find("cubic") != shape.npos && transfer.find("full") != transfer.npos;
+      if (shape.find("linear") != shape.npos || third_powers) mix.overrides.emplace_back("/solver/end_time=0.045");
+      if (!is_refused(mix)) check_parity(mix);
     }
 }
 
@@ -70,7 +72,7 @@ TEST_CASE("parity of axisymmetric materials, contact, filters and body forces", 
 }
 
 TEST_CASE("parity of frozen bodies", "[parity][frozen]") {
-  for (const std::string shape : {"bspline_quadratic", "gimp", "cpdi"})
+  for (const std::string shape : {"bspline_quadratic", "gimp", "cpdi", "cpdi2"})
     for (const std::string transfer : {"flip", "apic", "mls"})
       for (const std::string order : {"last", "first", "modified_last", "averaged"}) {
         Mix mix;
