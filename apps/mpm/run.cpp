@@ -13,6 +13,7 @@
 #include "experiment/diagnostics.hpp"
 #include "mpm/checkpoint.hpp"
 #include "mpm/cli.hpp"
+#include "mpm/remedy.hpp"
 #include "mpm/run_figures.hpp"
 #include "mpm/stop_on_signal.hpp"
 #include "mpm/summary.hpp"
@@ -131,10 +132,6 @@ std::string failure_text(const RunFailure& failure, const Simulation& simulation
          failure.cause;
 }
 
-constexpr const char* failure_remedy =
-    "remedy: a smaller /solver/courant or /solver/time_step, a transfer with more damping, or a material that is "
-    "stiffer when crushed";
-
 /// What stands between a run and its end; the run can be resumed from there.
 Outcome unfinished(const Simulation& simulation) {
   if (!simulation.finished())
@@ -166,7 +163,7 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints&
     } catch (const RunFailure& failure) {
       const Outcome outcome{run_failed, "failed", failure_text(failure, simulation)};
       progress.show(true);
-      std::cerr << "the run failed: " << outcome.reason << "\n" << failure_remedy << "\n";
+      std::cerr << "the run failed: " << outcome.reason << "\n" << remedy_for(failure.cause) << "\n";
       return outcome;
     }
     recorder.record();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/expression.hpp"
 #include "output/csv.hpp"
 #include "render/plot.hpp"
 #include "study/analysis.hpp"
@@ -55,6 +56,28 @@ Series line_of(const Results& results, const FigureRequest& figure, const Group&
   for (const auto& [x, y] : points) {
     series.x.push_back(x);
     series.y.push_back(y);
+  }
+  return series;
+}
+
+/// The figure's formula over the numbers of its axis.
+Series exact_line(const Results& results, const FigureRequest& figure) {
+  constexpr int intervals = 120;
+  const VectorExpression::Term term = figure.exact;
+  const VectorExpression formula(std::span(&term, 1), {"x", {}});
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const Choice& choice : results.study.axis(figure.x)->choices) {
+    low = std::min(low, *choice.number);
+    high = std::max(high, *choice.number);
+  }
+  Series series;
+  series.label = figure.exact_label;
+  series.kind = SeriesKind::exact;
+  for (int k = 0; k <= intervals; ++k) {
+    const double share = static_cast<double>(k) / intervals;
+    const double x = figure.log_x ? low * std::pow(high / low, share) : low + (high - low) * share;
+    series.x.push_back(x);
+    series.y.push_back(formula({x, 0, 0}, {x, 0, 0}, 0)[0]);
   }
   return series;
 }
@@ -119,6 +142,7 @@ void draw_lines(const Results& results, const FigureRequest& figure, const fs::p
     std::vector<std::string> within{figure.x};
     for (const Group& alone : group(results, one, within)) series.push_back(line_of(results, figure, alone));
     std::erase_if(series, [](const Series& line) { return line.x.empty(); });
+    if (!figure.exact.empty()) series.push_back(exact_line(results, figure));
     return series;
   });
 }

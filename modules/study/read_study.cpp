@@ -105,7 +105,7 @@ std::vector<Section> figure_kinds() {
       {"small_multiples",
        "a panel for each value of an axis",
        {name, title, x, value, text("panels", "Axis with a panel for each value.").needed(), flag("log_x"),
-        flag("log_y"), where},
+        flag("log_y"), text("exact", "Formula of x, drawn in every panel."), text("exact_label", "Its name."), where},
        true},
       {"curves",
        "recorded curves of the runs",
@@ -233,12 +233,16 @@ class StudyReader {
     Measure measure{member.key, fields.text("value"), words, fields.text("unit"), fields.text("formula")};
     if (fields.given("label")) measure.label = fields.text("label");
     if (!fields.given("formula")) return measure;
-    try {
-      check_expression(measure.formula, {"x", {}});
-    } catch (const ExpressionError& error) {
-      context_.problem(*fields.node("formula"), error.what());
-    }
+    check_formula(fields, "formula");
     return measure;
+  }
+
+  void check_formula(const Fields& fields, const char* key) {
+    try {
+      check_expression(fields.text(key), {"x", {}});
+    } catch (const ExpressionError& error) {
+      context_.problem(*fields.node(key), error.what());
+    }
   }
 
   std::vector<std::string> measure_names() const {
@@ -335,6 +339,7 @@ class StudyReader {
     if (has("value") && figure.value.empty()) figure.value = error_measure(item);
     if (has("costs")) read_costs(fields, figure);
     if (has("column")) figure.column = fields.text("column");
+    if (has("exact")) read_exact(fields, figure);
     figure.log_x = (has("log_x") && fields.boolean("log_x")) || (has("log") && fields.boolean("log"));
     figure.log_y = has("log_y") && fields.boolean("log_y");
     figure.over_initial = has("over_initial") && fields.boolean("over_initial");
@@ -356,6 +361,14 @@ class StudyReader {
       if (!taken) return name;
       name = wanted + "_" + std::to_string(copy);
     }
+  }
+
+  void read_exact(const Fields& fields, FigureRequest& figure) {
+    figure.exact = fields.text("exact");
+    figure.exact_label = fields.given("exact_label") ? fields.text("exact_label") : figure.exact;
+    if (fields.given("exact")) check_formula(fields, "exact");
+    if (fields.given("exact_label") && !fields.given("exact"))
+      context_.problem(*fields.node("exact_label"), "names a formula that is not there: give \"exact\" too");
   }
 
   void read_costs(const Fields& fields, FigureRequest& figure) {

@@ -72,6 +72,7 @@ struct FigureRequest {
   std::string value;                 ///< measure; empty: the study's error
   std::vector<std::string> costs;    ///< of a Pareto figure
   std::string column;                ///< of metrics.csv, for curves
+  std::string exact, exact_label;    ///< formula of x that is drawn beside the measured values; empty: none
   bool log_x = false, log_y = false;
   bool over_initial = false;                                            ///< curves: over their first values
   std::vector<std::pair<std::string, std::vector<std::string>>> where;  ///< axis and the labels that are shown

@@ -153,6 +153,20 @@ TEST_CASE("mistakes in a study, with place and remedy", "[study]") {
   CHECK(mistakes(small, {"/grid/cell_size=1"}).find("--set: /grid/cell_size: /grid/cell_size is overwritten") == 0);
 }
 
+TEST_CASE("an exact curve of small multiples is a formula of x", "[study]") {
+  const auto with = [](const std::string& keys) {
+    return R"J({"base": "b", "axes": {"/a": [1, 2], "/b": [1, 2]}, "measure": {"e": "/e"}, "figures": [
+      {"type": "small_multiples", "x": "/a", "panels": "/b", "value": "e")J" +
+           keys + "}]}";
+  };
+  const Study study = read_study_text(with(R"J(, "exact": "2*x")J"), "s.json");
+  CHECK(study.figures[0].exact == "2*x");
+  CHECK(study.figures[0].exact_label == "2*x");
+  CHECK(read_study_text(with(R"J(, "exact": "x", "exact_label": "ours")J"), "s.json").figures[0].exact_label == "ours");
+  CHECK(mistakes(with(R"J(, "exact": "2*y")J")).find("/figures/0/exact") != std::string::npos);
+  CHECK(mistakes(with(R"J(, "exact_label": "ours")J")).find("give \"exact\" too") != std::string::npos);
+}
+
 TEST_CASE("bisection brackets the last stable value with few questions", "[study]") {
   BisectionSearch search(0.1, 10, 0.01);
   int questions = 0;

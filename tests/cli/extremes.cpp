@@ -1,0 +1,202 @@
+// The shipped studies of extremes load; and what a run does that is not as it should be is named, in the summary, in
+// the report and by the exit code.
+
+#include "cli/program.hpp"
+#include "study/study.hpp"
+#include "support/scene.hpp"
+
+using namespace mpm::test;
+
+namespace {
+
+std::vector<fs::path> shipped_files() {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(fs::path(MPM_SOURCE_DIR) / "experiments/extremes"))
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Scenes that studies change have no axes.
+bool is_study(const fs::path& file) {
+  return !file.stem().string().ends_with("_scene");
+}
+
+mpm::ReadOptions options(std::vector<std::string> overrides = {}) {
+  mpm::ReadOptions options;
+  options.exact = mpm::exact_solutions();
+  options.overrides = std::move(overrides);
+  return options;
+}
+
+/// The ball of `ball()` with a velocity that squeezes it.
+Json squeezed() {
+  Json scene = ball();
+  scene["bodies"][0]["velocity"] = {"-2*(x-0.5)", "-2*(y-0.5)"};
+  scene["solver"] = {{"time_step", 0.01}, {"end_time", 0.5}};
+  scene["output"] = {{"metrics_every", 1}};
+  return scene;
+}
+
+/// Linear shapes with FLIP in a collision gain energy long before they invert.
+Json gaining() {
+  Json scene = two_balls();
+  scene.erase("contact");
+  scene["shape"]["type"] = "linear";
+  scene["transfer"]["type"] = "flip";
+  scene["bodies"][0]["velocity"] = {0.3, 0.3};
+  scene["bodies"][1]["velocity"] = {-0.3, -0.3};
+  scene["solver"] = {{"time_step", 0.01}, {"end_time", 0.6}};
+  scene["output"] = {{"metrics_every", 1}};
+  return scene;
+}
+
+/// A study of one run, in `folder`/out.
+Result run_as_study(const Folder& folder, const Json& scene, const Json& limits) {
+  spill(folder / "scene.json", scene.dump(1));
+  const std::string transfer = scene["transfer"]["type"];
+  const Json study{{"base", "scene.json"}, {"axes", {{"/transfer/type", {transfer}}}}, {"limits", limits}};
+  spill(folder / "s.json", study.dump(1));
+  return call(folder, {"study", "s.json", "--out", "out", "--jobs", "1"});
+}
+
+/// The study names what the run did: on standard error, in study.json and in its report; code 4.
+void is_flagged(const Json& scene, const Json& limits, const std::string& name) {
+  const Folder folder;
+  const Result result = run_as_study(folder, scene, limits);
+  INFO(result.err);
+  CHECK(result.code == 4);
+  CHECK(has(result.err, name));
+  const Json study = json_in(folder / "out/study.json");
+  REQUIRE(study["runs"].size() == 1);
+  CHECK(study["runs"][0]["status"] == "done");
+  REQUIRE(study["objections"].size() == 1);
+  CHECK(has(study["objections"][0], name));
+  CHECK(has(slurp(folder / "out/report.html"), name));
+}
+
+/// The run itself: its summary's outcome names the metric; code 4.
+void fails_expectation(const Json& scene, const Json& expectation) {
+  const Folder folder;
+  const Result result = run_scene(folder, expecting(scene, expectation));
+  INFO(result.err);
+  CHECK(result.code == 4);
+  const Json summary = json_in(folder / "run/summary.json");
+  CHECK(summary["outcome"]["exit_code"] == 4);
+  CHECK(has(summary["outcome"]["reason"], expectation["metric"].get<std::string>()));
+  CHECK(has(slurp(folder / "run/report.html"), expectation["metric"].get<std::string>()));
+}
+
+/// Code 3: the summary's outcome names the cause, and standard error the remedy that fits it.
+void stops(const Json& scene, const std::string& cause, const std::string& remedy) {
+  const Folder folder;
+  const Result result = run_scene(folder, scene);
+  INFO(result.err);
+  CHECK(result.code == 3);
+  const Json summary = json_in(folder / "run/summary.json");
+  CHECK(summary["outcome"]["exit_code"] == 3);
+  CHECK(has(summary["outcome"]["reason"], cause));
+  CHECK(has(slurp(folder / "run/report.html"), cause));
+  const auto place = result.err.find("remedy: ");
+  REQUIRE(place != std::string::npos);
+  CHECK(has(result.err.substr(place, result.err.find('\n', place) - place), remedy));
+}
+
+}  // namespace
+
+TEST_CASE("every shipped study of extremes loads, and so does every combination of it") {
+  std::size_t studies = 0;
+  for (const fs::path& file : shipped_files()) {
+    INFO(file);
+    if (!is_study(file)) {
+      CHECK_NOTHROW(mpm::read_experiment(file, plugins(), options()));
+      continue;
+    }
+    ++studies;
+    const mpm::study::Study study = mpm::study::read_study(file);
+    CHECK(!study.figures.empty());
+    CHECK((study.limits.energy_gain || study.limits.least_volume_ratio));
+    for (const mpm::study::Combination& combination : mpm::study::expand(study)) {
+      INFO(combination.name);
+      CHECK_NOTHROW(mpm::read_experiment(study.base, plugins(), options(combination.overrides)));
+    }
+  }
+  CHECK(studies == 12);
+}
+
+TEST_CASE("a gain of energy is named, in the summary of the run and by its study's code") {
+  is_flagged(gaining(), {{"isolated", true}}, "energy gain of ");
+  fails_expectation(gaining(), {{"metric", "energy.total.largest_over_initial"}, {"at_most", 1.01}});
+  const Folder folder;
+  const Result result = run_scene(folder, gaining());
+  CHECK(result.code == 0);  // a run without expectations is not judged, but warns
+  const Json summary = json_in(folder / "run/summary.json");
+  REQUIRE(summary["warnings"].size() == 1);
+  CHECK(has(summary["warnings"][0], "total energy rose by "));
+  CHECK(has(result.err, "warning: total energy rose by "));
+}
+
+TEST_CASE("a volume ratio out of range is named") {
+  is_flagged(squeezed(), {{"volume_ratio", {0.9, 2}}}, "smallest volume ratio J 0.");
+  Json swollen = squeezed();
+  swollen["bodies"][0]["velocity"] = {"2*(x-0.5)", "2*(y-0.5)"};
+  is_flagged(swollen, {{"volume_ratio", {0.1, 1.1}}}, "largest volume ratio J 1.");
+  fails_expectation(squeezed(), {{"metric", "stability.smallest_volume_ratio"}, {"at_least", 0.9}});
+}
+
+TEST_CASE("a formula stands in every panel of small multiples, over the numbers of their axis") {
+  const Folder folder;
+  Json scene = ball();
+  scene["solver"]["end_time"] = 0.01;
+  spill(folder / "scene.json", scene.dump(1));
+  spill(folder / "s.json", R"J({"base": "scene.json",
+    "axes": {"/transfer/type": ["pic", "flip"], "/solver/time_step": [0.001, 0.002]},
+    "measure": {"steps": {"value": "/steps", "label": "steps"}},
+    "figures": [{"type": "small_multiples", "x": "/solver/time_step", "panels": "/transfer/type", "value": "steps",
+                 "exact": "0.01/x", "exact_label": "end over step"}]})J");
+  const Result result = call(folder, {"study", "s.json", "--out", "out", "--jobs", "1"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const std::string csv = slurp(folder / "out/figures/small_multiples.csv");
+  INFO(csv);
+  CHECK(has(csv, "end over step"));
+  CHECK(has(csv, "exact,0.001,10"));
+  CHECK(has(csv, "exact,0.002,5"));
+  CHECK(has(csv, "computed,0.002,5"));
+}
+
+TEST_CASE("a run that stops says why, and what helps against that") {
+  Json scene = ball();
+  scene["solver"] = {{"time_step", 0.5}, {"end_time", 50}};
+  stops(scene, "inverted: its volume ratio J is not positive", "a transfer with more damping");
+
+  scene = ball();
+  scene["body_force"] = {"sqrt(0.05 - t)", 0};
+  stops(scene, "not a number", "check the expressions of the file");
+
+  scene = ball();
+  scene["grid"]["boundaries"]["all"] = "free";
+  scene["bodies"][0]["velocity"] = {20, 0};
+  stops(scene, "left the domain", "a larger /grid/domain");
+
+  // A box that is drawn to more than two cells, and a list that reaches beyond the padding.
+  scene = ball();
+  scene["shape"]["type"] = "gimp_contiguous";
+  scene["transfer"]["type"] = "tpic";
+  scene["grid"]["domain"] = {{0, 0}, {6, 1}};
+  scene["grid"]["boundaries"]["all"] = "free";
+  scene["materials"]["m"]["youngs_modulus"] = 1e-6;
+  scene["bodies"][0]["geometry"]["centre"] = {3, 0.5};
+  scene["bodies"][0]["velocity"] = {"2*(x-3)", 0};
+  scene["solver"] = {{"time_step", 0.01}, {"end_time", 5}};
+  stops(scene, "its domain has grown too long for the 4 nodes", "/shape/type \"cpdi\"");
+
+  scene = Json::parse(R"J({
+    "title": "sheared", "dimension": 2,
+    "grid": {"cell_size": 1, "domain": [[0, 0], [60, 4]], "boundaries": {"all": "free"}},
+    "shape": {"type": "cpdi"}, "transfer": {"type": "tpic"},
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e-9, "poisson_ratio": 0, "density": 1}},
+    "bodies": [{"name": "cell", "material": "m", "geometry": {"type": "box", "lower": [1, 1], "upper": [2, 2]}, "velocity": ["80*(y-1.25)", 0]}],
+    "solver": {"time_step": 1, "end_time": 10}})J");
+  stops(scene, "its domain reaches more than 8 cells", "more particles a cell");
+}
