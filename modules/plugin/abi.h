@@ -170,10 +170,7 @@ enum mpm_transfer_trait {
                                     with MPM_AFFINE_CARRIES_ENERGY; its energy and momentum do not count */
   /* Velocity and state after a gather follow from what is gathered alone (neither is read), and the particle moves with
    * the gathered velocity: the host need not keep them from one step to the next. */
-  MPM_REPLACES_MOTION = 1024,
-  /* Since revision 3. The v- of velocity_increment is the grid's velocity before conditions and contact, so that the
-   * particle feels their impulse before the forces too; without the trait it is that after them. */
-  MPM_INCREMENT_BEFORE_CONDITIONS = 2048
+  MPM_REPLACES_MOTION = 1024
 };
 typedef struct mpm_scatter_batch {
   uint32_t count, stride, dimension, reserved;

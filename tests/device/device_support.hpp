@@ -41,7 +41,6 @@ inline Mix mix_with(const Plugin& plugin, int dimension) {
       break;
     case MPM_TRANSFER:
       mix.transfer = choice;
-      mix.seed = 1;  // with 3 a particle of affine FLIP passes the edge of its stencil within the rounding of a float
       break;
     case MPM_FILTER:
       mix.more += ", \"filter\": " + choice;

@@ -87,7 +87,6 @@ void CpuBackend<D, T, Components>::plan_channels() {
   if (separate) grid_.plan_channel(force);
   if (separate && experiment.body_force) grid_.plan_channel(body_force);
   if (plan.velocity_increment || plan.ledger) grid_.plan_channel(velocity_before);
-  if (scene_.has(MPM_INCREMENT_BEFORE_CONDITIONS)) grid_.plan_channel(velocity_unconstrained);
   if (plan.contact) {
     grid_.plan_channel(volume_gradient);
     grid_.plan_channel(mass_position);

@@ -12,9 +12,8 @@
 namespace mpm::cpu {
 
 enum Channel {
-  motion,                  ///< scattered momentum and mass; velocity and mass once it has been divided
-  velocity_before,         ///< v-, later the increment v+ - v-
-  velocity_unconstrained,  ///< v- before conditions and contact, where the increment counts from it
+  motion,           ///< scattered momentum and mass; velocity and mass once it has been divided
+  velocity_before,  ///< v-, later the increment v+ - v-
   force,
   body_force,
   volume_gradient,  ///< and volume

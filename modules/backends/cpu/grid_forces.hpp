@@ -87,8 +87,6 @@ double GridStep<D, T>::divide_by_mass(bool keeps_before, bool accounted) {
       nodes[k] = velocity;
     }
     if (keeps_before) std::memcpy(&grid_.quad(velocity_before, field, first), nodes, block_nodes * sizeof(Q));
-    if (keeps_before && grid_.has(velocity_unconstrained))
-      std::memcpy(&grid_.quad(velocity_unconstrained, field, first), nodes, block_nodes * sizeof(Q));
     if (!accounted || !heavy[3]) return;
     Wide squares{};
     for (int k = 0; k < block_nodes; ++k) {  // no velocity where there is no mass
@@ -260,14 +258,12 @@ void GridStep<D, T>::accelerate(double dt) {
   });
 }
 
-/// The increment, in place of the velocity before.
 template <int D, class T>
 void GridStep<D, T>::subtract_velocity_before() {
-  const Channel from = grid_.has(velocity_unconstrained) ? velocity_unconstrained : velocity_before;
   for_each_block([&](int field, std::uint32_t first, double*) {
-    const Q *const after = &motion_at(field, first), *const before = &grid_.quad(from, field, first);
-    Q* const increment = &grid_.quad(velocity_before, field, first);
-    for (int k = 0; k < block_nodes; ++k) increment[k] = after[k] - before[k];
+    const Q* const after = &motion_at(field, first);
+    Q* const before = &grid_.quad(velocity_before, field, first);
+    for (int k = 0; k < block_nodes; ++k) before[k] = after[k] - before[k];
   });
 }
 

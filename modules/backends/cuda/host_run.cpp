@@ -426,12 +426,9 @@ class HostRun final : public Backend {
   void momentum_to_velocity(const Pass& pass) {
     for_each_axis("fold_masses", walls_, pass.remap);
     if (!pass.remap) for_each_axis("fold_forces", folded_axes());
-    // The phase leaves v- alone where it is told that it serves a remap.
-    const bool before_conditions = experiment_.transfer.plugin->transfer().traits & MPM_INCREMENT_BEFORE_CONDITIONS;
-    if (before_conditions && !pass.remap) for_each_field("momentum_to_velocity", nodes());
     for_each_field("impose_walls", nodes());
     if (plan_.contact) resolve_contact(nullptr);
-    for_each_field("momentum_to_velocity", nodes(), pass.remap || before_conditions);
+    for_each_field("momentum_to_velocity", nodes(), pass.remap);
     for_each_axis("fill_velocities", filled_axes());
   }
 

@@ -193,7 +193,6 @@ void Grid::fill_ghosts(double time) {
     const Vector wall = fold->side < 0 ? Vector(Vector::Zero()) : wall_velocity(*fold, time);
     ghost.velocity = wall + mirrored(node.velocity - wall, *fold, type);
     ghost.velocity_before = ghost.velocity - mirrored(node.velocity - node.velocity_before, *fold, type);
-    ghost.velocity_unconstrained = ghost.velocity - mirrored(node.velocity - node.velocity_unconstrained, *fold, type);
   }
 }
 

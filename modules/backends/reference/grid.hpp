@@ -21,16 +21,15 @@ inline Vector to_eigen(const Vector3& v) {
 /// One velocity field at one node.
 struct Node {
   double mass = 0;
-  Vector momentum = Vector::Zero();                ///< kg m/s
-  Vector internal_force = Vector::Zero();          ///< N
-  Vector body_force = Vector::Zero();              ///< N
-  Vector gravity_force = Vector::Zero();           ///< N
-  double volume = 0;                               ///< sum w V, m^3
-  Vector volume_gradient = Vector::Zero();         ///< sum V grad w, m^2
-  Vector mass_position = Vector::Zero();           ///< sum w m (x_p - x_node), kg m
-  Vector velocity_before = Vector::Zero();         ///< v-, m/s
-  Vector velocity_unconstrained = Vector::Zero();  ///< v- before conditions and contact, m/s
-  Vector velocity = Vector::Zero();                ///< v+ (or v- until the forces are applied), m/s
+  Vector momentum = Vector::Zero();         ///< kg m/s
+  Vector internal_force = Vector::Zero();   ///< N
+  Vector body_force = Vector::Zero();       ///< N
+  Vector gravity_force = Vector::Zero();    ///< N
+  double volume = 0;                        ///< sum w V, m^3
+  Vector volume_gradient = Vector::Zero();  ///< sum V grad w, m^2
+  Vector mass_position = Vector::Zero();    ///< sum w m (x_p - x_node), kg m
+  Vector velocity_before = Vector::Zero();  ///< v-, m/s
+  Vector velocity = Vector::Zero();         ///< v+ (or v- until the forces are applied), m/s
 
   Vector increment = Vector::Zero();      ///< v* of the filter, m/s
   Vector projected = Vector::Zero();      ///< S+ S v*, m/s (kg m/s until divided by the mass)

@@ -15,10 +15,7 @@ void accelerate(Node& node, double dt) {
 void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& step) {
   const double before = plan_.ledger ? grid_.kinetic_energy() : 0.0;
   grid_.fold_walls(step.time, pass.remap ? 0.0 : step.dt, pass.remap);
-  if (!pass.remap) {
-    grid_.fold_forces();
-    keep_unconstrained_velocity();
-  }
+  if (!pass.remap) grid_.fold_forces();
   impose_conditions(step.time);
   if (plan_.ledger && !pass.remap) ledger_.boundary += grid_.kinetic_energy() - before;
   if (plan_.contact) resolve_contact(step, false, pass.remap);
@@ -29,14 +26,6 @@ void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& st
       if (!pass.remap) node.velocity_before = node.velocity;
     }
   grid_.fill_ghosts(step.time);
-}
-
-void ReferenceBackend::keep_unconstrained_velocity() {
-  for (int field = 0; field < grid_.field_count(); ++field)
-    for (std::size_t i = 0; i < grid_.node_count(); ++i) {
-      Node& node = grid_.node(field, i);
-      node.velocity_unconstrained = node.mass > 0 ? Vector(node.momentum / node.mass) : Vector(Vector::Zero());
-    }
 }
 
 void ReferenceBackend::impose_conditions(double time) {

@@ -55,8 +55,6 @@ class ReferenceBackend final : public Backend {
 
   // ---- grid_step.cpp
   void momentum_to_velocity(const Pass& pass, const StepInfo& step);
-  /// v- before conditions and contact, for increments that count from it.
-  void keep_unconstrained_velocity();
   /// Sets the momenta that conditions give.
   void impose_conditions(double time);
   void apply_forces(const StepInfo& step);

@@ -138,9 +138,7 @@ void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
 
 /// sum w v, sum w (v - v-), C = sum v (x) w D^-1 d and L = sum v (x) grad w of the given velocity, v+ as a rule.
 void ReferenceBackend::gather_moments(Particles& body, Vector Node::*velocity_of) {
-  const unsigned traits = experiment_.transfer.plugin->transfer().traits;
-  const bool strain_by_affine = traits & MPM_STRAIN_BY_AFFINE;
-  const auto before = traits & MPM_INCREMENT_BEFORE_CONDITIONS ? &Node::velocity_unconstrained : &Node::velocity_before;
+  const bool strain_by_affine = experiment_.transfer.plugin->transfer().traits & MPM_STRAIN_BY_AFFINE;
   for (std::size_t p = 0; p < body.count(); ++p) {
     Vector velocity = Vector::Zero(), increment = Vector::Zero();
     Matrix affine = Matrix::Zero(), gradient = Matrix::Zero();
@@ -148,7 +146,7 @@ void ReferenceBackend::gather_moments(Particles& body, Vector Node::*velocity_of
       const Node& node = grid_.node(body.field(), s.index);
       const Vector& v = node.*velocity_of;
       velocity += s.weight * v;
-      increment += s.weight * (v - node.*before);
+      increment += s.weight * (v - node.velocity_before);
       affine += v * s.affine.transpose();
       gradient += v * s.gradient.transpose();
     }

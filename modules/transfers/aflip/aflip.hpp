@@ -37,8 +37,8 @@ struct Aflip {
   }
 
 #if MPM_HOST
-  static constexpr unsigned traits = MPM_SCATTERS_AFFINE | MPM_GATHERS_AFFINE | MPM_GATHERS_INCREMENT |
-                                     MPM_STARTS_WITH_GRADIENT | MPM_INCREMENT_BEFORE_CONDITIONS;
+  static constexpr unsigned traits =
+      MPM_SCATTERS_AFFINE | MPM_GATHERS_AFFINE | MPM_GATHERS_INCREMENT | MPM_STARTS_WITH_GRADIENT;
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(pic_fraction, "", 0.01, 0.0, 1.0, 0,
                            "share of APIC in the velocity update: 0 keeps the particle's own velocity, 1 is APIC"),

@@ -4,7 +4,7 @@
 
 MPM_EXPORT_PLUGIN(
     transfer<mpm::Asflip>,
-    {"asflip", "1.1.0", "Affine separable FLIP: AFLIP whose particles part where material opens",
+    {"asflip", "1.0.0", "Affine separable FLIP: AFLIP whose particles part where material opens",
      "Fei, Guo, Wu, Huang & Gao (2021), ACM Trans. Graph. 40(4):109",
      R"(As `aflip`, and the particle also moves with a share of what the grid smooths away: x += dt (u + beta alpha r), u = sum w v+,
 r = v - sum w v-, alpha = 1 - `pic_fraction`. beta = `beta_min` where ln J of the motion is below `threshold` (material pressed
