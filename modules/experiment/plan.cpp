@@ -230,6 +230,10 @@ class Planner {
       channel("unfiltered velocity", D,
               named(*experiment_.filter) + (filters_before_forces() ? ": strains; then the correction of the particles"
                                                                     : ": the strain comes before the forces"));
+    if (plan_.velocity_increment || plan_.ledger)
+      channel("velocity before the forces", D,
+              plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of velocity"
+                                       : "/output/ledger: work of the forces");
     if (plan_.separate_force) channel("force", D, why_separate_force());
     if (experiment_.body_force)
       channel("body force", D, experiment_.body_force_pointer + ": its work is accounted for apart");
