@@ -103,7 +103,7 @@ TEST_CASE("a choice adds what it declares and nothing else") {
   const RequiredRow ledger = counted("+ ledger");
   CHECK(more_than_base(ledger) == Calls{});
   CHECK(ledger.bytes_per_particle == base.bytes_per_particle);
-  CHECK(ledger.bytes_per_node == base.bytes_per_node + quad);
+  CHECK(ledger.bytes_per_node == base.bytes_per_node + 2 * quad);
   CHECK(ledger.passes == base.passes);
 
   // No affine velocity to keep, scatter and gather; gradients of the weights for stress and strain, and an increment.
@@ -113,7 +113,7 @@ TEST_CASE("a choice adds what it declares and nothing else") {
                                       {"transfer: scatter, affine", -gathers},
                                       {"transfer: gather, affine", -gathers}});
   CHECK(flip.bytes_per_particle == base.bytes_per_particle - 9 * sizeof(float));
-  CHECK(flip.bytes_per_node == base.bytes_per_node + quad);
+  CHECK(flip.bytes_per_node == base.bytes_per_node + 2 * quad);
   CHECK(flip.passes == base.passes);
 
   // Order 4 is three more rounds: weights, gather and scatter each.

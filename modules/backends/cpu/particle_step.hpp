@@ -69,8 +69,7 @@ template <int D, class T>
 struct Workspace {
   static constexpr int symmetric = Sym<D, T>::size;
   alignas(64) std::int32_t base[D * chunk_size<T>];
-  alignas(64) std::int32_t first[chunk_size<T>];  ///< of the stencils: see Stencils, as the next
-  bool shared_stencils = false;
+  alignas(64) std::int32_t first[chunk_size<T>];  ///< of the stencils: see Stencils
   alignas(64) T offset[D * chunk_size<T>], weight[D * 4 * chunk_size<T>], gradient[D * 4 * chunk_size<T>];
   alignas(64) T mass[chunk_size<T>], b[D * chunk_size<T>];
   alignas(64) T stress[symmetric * chunk_size<T>], volume_ratio[chunk_size<T>], scalar[chunk_size<T>];
@@ -103,7 +102,8 @@ struct Workspace {
   AlignedArray<T> moved_corners;                    ///< [corner][D][chunk_size] cells, from the particle
   AlignedArray<T> higher;  ///< [function][D][chunk_size], gathered coefficients of polynomials beyond affine, m/s
   PhaseClock clock;
-  bool far_only = false;  ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
+  bool shared_stencils = false;  ///< see Stencils
+  bool far_only = false;         ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
 
   void clear(Channel c, int scalars) { std::memset(tile[c].data(), 0, std::size_t(scalars) * sizeof(T)); }
 };
