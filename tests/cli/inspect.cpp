@@ -189,7 +189,8 @@ TEST_CASE("what is switched on adds its own rows, and each names the line that a
 
   const Json ledger = plan_of(ball());
   CHECK(attributes(ledger) == attributes(bare));
-  CHECK(fields(ledger) == Words{"mass and momentum 32", "mass and momentum of the next step 32", "force 32"});
+  CHECK(fields(ledger) == Words{"mass and momentum 32", "mass and momentum of the next step 32",
+                                "velocity before the forces 32", "force 32"});
   CHECK(because(ledger, "fields", "force") == "/output/ledger: work of the forces");
 
   Json scene = without_ledger(ball());
