@@ -326,7 +326,7 @@ Column corners(Random& random, int D) {
   Column column = random_column(random, (1 << D) * D, -0.1, 0.1);
   for (int k = 0; k < (1 << D) * D; ++k)
     for (int lane = 0; lane < particles; ++lane)
-      column[static_cast<std::size_t>(k * particles + lane)] += k / D >> k % D & 1 ? 0.5 : -0.5;
+      column[static_cast<std::size_t>(k) * particles + lane] += k / D >> k % D & 1 ? 0.5 : -0.5;
   return column;
 }
 
