@@ -132,7 +132,7 @@ TEST_CASE("operations and bytes of the standard combination", "[bench]") {
 }
 
 TEST_CASE("each pass over the particles that a scene adds is counted", "[bench]") {
-  const auto count = [](std::vector<std::string> overrides) {
+  const auto count = [](const std::vector<std::string>& overrides) {
     const Experiment experiment = mpm::test::experiment_from(block(2), overrides);
     const auto flops = flops_per_particle(experiment, make_plan(experiment), {1, true, {}, {}, false});
     REQUIRE(flops);
