@@ -198,7 +198,7 @@ inline std::vector<double> total_values(const Totals& t, const Totals& start, do
 inline void check_parity(const Mix& mix) {
 #ifdef __SANITIZE_ADDRESS__
   static int mixes = 0;
-  if (mixes++ % 3 != 0) return;  // many times as slow, and to find bad memory a third of the mixes will do
+  if (mixes++ % 5 != 0) return;  // many times as slow, and to find bad memory a fifth of the mixes will do
 #endif
   // The linear shape's gradient does not vanish with its weight: f/m of a node barely reached is unbounded, worst in
   // 3-D. Measured: up to 4e6 epsilon; in float that leaves a check against gross errors only.
