@@ -1,5 +1,5 @@
 #pragma once
-// The particles of one body: chunks of 64, [component][64] contiguous in each, sorted by cell within blocks of cells.
+// The particles of one body: chunks of 64, [component][64] contiguous in each, sorted into blocks of cells.
 // Positions are in cells from the first node of the particle's block, which keeps them exact in float.
 
 #include <algorithm>
@@ -113,12 +113,14 @@ inline double cells_from_corner(const Domain& domain, const Block<D>& block, int
 /// What a sort works in, kept from one to the next so that its pages are touched once.
 struct SortSpace {
   std::vector<std::uint16_t> key;                ///< of a particle: where it goes among the blocks around, and its cell
+  std::vector<std::uint64_t> leaving;            ///< of a chunk: bit k where particle k leaves its block
   std::array<std::vector<std::byte>, 3> rows;    ///< particles on their way to another block, of three layers of blocks
   std::vector<std::byte> far_rows;               ///< of those that go farther than to a neighbour
   std::vector<std::vector<std::byte*>> unused;   ///< chunks at hand, a thread each
   std::vector<AlignedArray<std::byte>> nowhere;  ///< a chunk a thread that nobody reads
   std::uint64_t bytes() const {
-    std::uint64_t total = key.capacity() * sizeof(key[0]) + far_rows.capacity();
+    std::uint64_t total =
+        key.capacity() * sizeof(key[0]) + leaving.capacity() * sizeof(leaving[0]) + far_rows.capacity();
     for (const auto& layer : rows) total += layer.capacity();
     return total;
   }
@@ -130,10 +132,10 @@ template <int D, class T>
 void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain,
                     const std::vector<T>& first_value, int affine);
 
-/// Sorts stably by block and cell of the stencil's first node (of a list: of the position less half a cell); the same
-/// for any number of threads. Blocks that nothing enters or leaves, in order already, are not touched. Whether the
-/// list of blocks has changed. Unless `with_motion`, velocities and the transfer's state stay behind: they hold
-/// anything afterwards.
+/// Sorts into the blocks of stencils' first nodes (of lists: of positions less half a cell), at first and where it will
+/// last by cells within a block too; the same for any number of threads. Whoever stays in its block stays in its place,
+/// unless the block is put in order. Whether the list of blocks has changed. Unless `with_motion`, velocities and the
+/// transfer's state stay behind: they hold anything afterwards.
 template <int D, class T>
 bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion);
 

@@ -1,13 +1,15 @@
 #pragma once
-// Sorting particles into blocks. Where each goes is found first, from positions alone; then blocks are made anew layer
-// by layer, into chunks that blocks before them have left, so that a sort needs little memory beside the particles.
-// Particles that change their block travel in rows. Order is that of (block, cell, old order), and nothing depends on
-// which thread does what.
+// Sorting particles into blocks. Where each goes is found first, from positions alone. Particles that change their
+// block travel in rows and take the places of those that left; the others stay where they are. A block is put in the
+// order of its cells at first, and later where that will last: made anew, layer by layer, into chunks that blocks
+// before it have left, so that a sort needs little memory beside the particles. Nothing depends on which thread does
+// what.
 
 #include <omp.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <numeric>
 #include <tuple>
@@ -75,9 +77,11 @@ class Sorter {
 
   bool run() {
     space_.key.resize(std::max(space_.key.size(), std::size_t(particles_.chunks) * chunk_size<T>));
+    space_.leaving.resize(std::max(space_.leaving.size(), std::size_t(particles_.chunks)));
     sources_.resize(particles_.blocks.size());
     find_keys();
-    if (in_units() && nothing_to_do()) return false;
+    first_ = !in_units();
+    if (!first_ && nothing_to_do()) return false;
     find_targets();
     const bool same = order_targets();
     move();
@@ -93,8 +97,8 @@ class Sorter {
   struct Source {
     std::array<std::uint32_t, neighbour_count<D>> leavers{}, first_row{};
     std::uint32_t leaving = 0, far = 0;
-    int rows = 0;         ///< which rows its leavers are among
-    bool ordered = true;  ///< nothing leaves, and all are in order of their cells
+    std::uint32_t changes = 0;  ///< particles in another cell than the one before
+    int rows = 0;               ///< which rows its leavers are among
   };
   /// A block as it will be: the old ones under their old numbers, then those that only receive.
   struct Target {
@@ -111,6 +115,8 @@ class Sorter {
     BlockCoordinates to;
     int shift[D];
   };
+  /// What becomes of a block.
+  enum class Change { nothing, mended, anew };
   /// What a row holds after the values.
   struct Tail {
     std::int32_t id;
@@ -138,15 +144,16 @@ class Sorter {
     for (int b = 0; b < n; ++b) {
       Source& source = sources_[b];
       source = {};
-      std::uint16_t last = 0;
       for_each_chunk<T>(particles_.blocks[b],
-                        [&](std::uint32_t chunk, int count) { last = find_keys_of(b, chunk, count, last, source); });
+                        [&](std::uint32_t chunk, int count) { find_keys_of(b, chunk, count, source); });
+      source.leaving = std::accumulate(source.leavers.begin(), source.leavers.end(), 0u);
     }
   }
 
-  std::uint16_t find_keys_of(int b, std::uint32_t chunk, int count, std::uint16_t last, Source& source) {
+  void find_keys_of(int b, std::uint32_t chunk, int count, Source& source) {
     alignas(64) std::int32_t base[D * chunk_size<T>], around[chunk_size<T>], cell[chunk_size<T>], out[chunk_size<T>];
     const int end = padded(count);
+    if (chunk + 1 < particles_.chunks) fetch(chunk + 1, 0, Particles<D, T>::velocity);
     first_nodes(chunk, count, base);
     for (int p = 0; p < end; ++p) around[p] = cell[p] = out[p] = 0;
     for (int axis = 0; axis < D; ++axis) {
@@ -166,24 +173,25 @@ class Sorter {
       }
     }
     std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size<T>;
-    std::int32_t elsewhere = 0, disorder = 0;
+    std::int32_t elsewhere = 0, changes = 0;
     for (int p = 0; p < count; ++p) {
       key[p] = out[p] ? far_key : static_cast<std::uint16_t>(around[p] * block_nodes + cell[p]);
       elsewhere |= key[p] / block_nodes != here;
     }
-    for (int p = 1; p < count; ++p) disorder |= key[p] < key[p - 1];
-    if (!elsewhere) {
-      if (disorder || key[0] < last) source.ordered = false;
-      return key[count - 1];
-    }
-    source.ordered = false;
-    for (int p = 0; p < count; ++p) {
-      const int to = key[p] / block_nodes;
-      if (to == here) continue;
-      ++(key[p] == far_key ? source.far : source.leavers[to]);
-    }
-    source.leaving = std::accumulate(source.leavers.begin(), source.leavers.end(), 0u);
-    return last;
+    for (int p = 1; p < count; ++p) changes += key[p] != key[p - 1];
+    source.changes += changes;
+    std::uint64_t& leaving = space_.leaving[chunk];
+    leaving = 0;
+    if (!elsewhere) return;
+    for (int p = 0; p < count; ++p) leaving |= std::uint64_t(key[p] / block_nodes != here) << p;
+    for_each_leaver(chunk,
+                    [&](int lane) { ++(key[lane] == far_key ? source.far : source.leavers[key[lane] / block_nodes]); });
+  }
+
+  /// Calls use(lane) for those of a chunk that leave their block.
+  template <class Use>
+  void for_each_leaver(std::uint32_t chunk, Use&& use) const {
+    for (std::uint64_t left = space_.leaving[chunk]; left != 0; left &= left - 1) use(std::countr_zero(left));
   }
 
   void first_nodes(std::uint32_t chunk, int count, std::int32_t* base) const {
@@ -213,7 +221,9 @@ class Sorter {
   }
 
   bool nothing_to_do() const {
-    return std::all_of(sources_.begin(), sources_.end(), [](const Source& source) { return source.ordered; });
+    for (std::uint32_t b = 0; b < sources_.size(); ++b)
+      if (sources_[b].leaving + sources_[b].far > 0 || wants_order(b, 0)) return false;
+    return true;
   }
 
   // ---- blocks
@@ -327,8 +337,25 @@ class Sorter {
 
   // ---- moving
 
-  bool untouched(std::uint32_t target) const {
-    return target < sources_.size() && targets_[target].incoming == 0 && sources_[target].ordered;
+  /// Whether a block is worth the order of its cells: its particles lie scattered, cells hold so many that neighbours
+  /// will share their stencils (ParticleStep::number_stencils), and few come and go, so that the order will last.
+  bool wants_order(std::uint32_t b, std::uint32_t incoming) const {
+    const Source& source = sources_[b];
+    const std::uint32_t count = particles_.blocks[b].count;
+    if (4 * source.changes <= count || 8 * (source.leaving + source.far + incoming) > count) return false;
+    std::uint64_t cells = 0;
+    for_each_chunk<T>(particles_.blocks[b], [&](std::uint32_t chunk, int lanes) {
+      const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size<T>;
+      for (int lane = 0; lane < lanes; ++lane) cells |= std::uint64_t(1) << key[lane] % block_nodes;
+    });
+    return 4 * static_cast<std::uint32_t>(std::popcount(cells)) <= count;
+  }
+
+  Change change_of(std::uint32_t target) const {
+    if (first_ || target >= sources_.size() || targets_[target].number < 0) return Change::anew;
+    const std::uint32_t incoming = targets_[target].incoming;
+    if (wants_order(target, incoming)) return Change::anew;
+    return sources_[target].leaving + sources_[target].far + incoming == 0 ? Change::nothing : Change::mended;
   }
 
   /// Blocks by layers across the axis in which there are most.
@@ -411,17 +438,17 @@ class Sorter {
 
   void send_block(std::uint32_t b, std::byte* rows) {
     std::array<std::uint32_t, neighbour_count<D>> next = sources_[b].first_row;
-    for_each_chunk<T>(particles_.blocks[b], [&](std::uint32_t chunk, int count) {
+    for_each_chunk<T>(particles_.blocks[b], [&](std::uint32_t chunk, int) {
       const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size<T>;
       prefetch(chunk + 1);
-      for (int lane = 0; lane < count; ++lane) {
+      for_each_leaver(chunk, [&](int lane) {
+        if (key[lane] == far_key) return;
         const int k = key[lane] / block_nodes;
-        if (k == here || key[lane] == far_key) continue;
         const BlockCoordinates d = neighbour_at<D>({}, k);
         int shift[D];
         for (int a = 0; a < D; ++a) shift[a] = -d[a] * block_side<D>;
         write_row(rows + next[k]++ * row_bytes_, chunk, lane, key[lane] % block_nodes, shift);
-      }
+      });
     });
   }
 
@@ -472,25 +499,25 @@ class Sorter {
     return all;
   }
 
-  /// Makes a block anew.
   void receive(std::uint32_t number) {
     const Target& target = targets_[number];
-    const bool existed = number < sources_.size();
-    if (untouched(number)) {
-      const Block<D>& block = particles_.blocks[number];
-      std::copy_n(particles_.places.begin() + block.first_chunk, chunks_of(block.count),
-                  places_.begin() + blocks_[target.number].first_chunk);
-      return;
-    }
+    const Change change = change_of(number);
     std::vector<std::byte*>& unused = space_.unused[omp_get_thread_num()];
+    const bool existed = number < sources_.size();
+    const std::uint32_t had = existed ? chunks_of(particles_.blocks[number].count) : 0;
+    std::uint32_t kept = 0;  // chunks
     if (target.number >= 0) {
       const Block<D>& block = blocks_[target.number];
-      for (std::uint32_t i = 0; i < chunks_of(block.count); ++i) places_[block.first_chunk + i] = take(unused);
-      fill(number);
+      const std::uint32_t has = chunks_of(block.count);
+      std::byte** const places = places_.data() + block.first_chunk;
+      if (change != Change::anew) kept = std::min(had, has);
+      for (std::uint32_t i = 0; i < has; ++i)
+        places[i] = i < kept ? particles_.places[particles_.blocks[number].first_chunk + i] : take(unused);
+      if (change == Change::mended) mend(number);
+      if (change == Change::anew) fill(number);
     }
-    if (!existed) return;
-    const Block<D>& left = particles_.blocks[number];
-    for (std::uint32_t i = 0; i < chunks_of(left.count); ++i) give(unused, particles_.places[left.first_chunk + i]);
+    for (std::uint32_t i = kept; i < had; ++i)
+      give(unused, particles_.places[particles_.blocks[number].first_chunk + i]);
   }
 
   std::byte* take(std::vector<std::byte*>& unused) {
@@ -510,6 +537,56 @@ class Sorter {
     particles_.pool.give(chunk);
   }
 
+  /// Slots of a block that nobody holds any more, in order: those of its leavers, then those beyond its end.
+  class Holes {
+   public:
+    Holes(const Sorter& sorter, const Block<D>& block)
+        : sorter_(sorter), block_(block), end_(block.count), left_(sorter.space_.leaving[block.first_chunk]) {}
+    std::uint32_t next() {
+      while (left_ == 0) {
+        if ((chunk_ + 1) * chunk_size<T> >= block_.count) return end_++;
+        left_ = sorter_.space_.leaving[block_.first_chunk + ++chunk_];
+        sorter_.prefetch(block_.first_chunk + chunk_ + 1);
+      }
+      const int lane = std::countr_zero(left_);
+      left_ &= left_ - 1;
+      return chunk_ * chunk_size<T> + lane;
+    }
+
+   private:
+    const Sorter& sorter_;
+    const Block<D>& block_;
+    std::uint32_t chunk_ = 0, end_;
+    std::uint64_t left_;
+  };
+
+  /// Who comes takes the place of who left; where more leave than come, the last fill up.
+  void mend(std::uint32_t number) {
+    const Target& target = targets_[number];
+    const Block<D>&old = particles_.blocks[number], &block = blocks_[target.number];
+    Holes holes(*this, old);
+    const Incoming from = incoming(number);
+    for (int i = 0; i < from.count; ++i)
+      for (const std::byte* row = from.sent[i].first; row != from.sent[i].last; row += row_bytes_)
+        read_row(block, row, holes.next());
+    for (std::uint32_t i = target.first_far; i < target.last_far; ++i)
+      read_row(block, space_.far_rows.data() + i * row_bytes_, holes.next());
+    for (std::uint32_t slot = block.count; slot < old.count; ++slot) {
+      const std::uint32_t chunk = old.first_chunk + slot / chunk_size<T>, lane = slot % chunk_size<T>;
+      if (!(space_.leaving[chunk] >> lane & 1)) copy(chunk, static_cast<int>(lane), block, holes.next());
+    }
+    fill_tail(particles_, block.count, places_[block.first_chunk + (block.count - 1) / chunk_size<T>]);
+  }
+
+  void copy(std::uint32_t chunk, int lane, const Block<D>& block, std::uint32_t to) {
+    std::byte* const place = places_[block.first_chunk + to / chunk_size<T>];
+    const T* const values = particles_.chunk(chunk) + lane;
+    T* const target = particles_.values_at(place) + to % chunk_size<T>;
+    for_each_component([&](int c) { target[c * chunk_size<T>] = values[c * chunk_size<T>]; });
+    particles_.ids_at(place)[to % chunk_size<T>] = particles_.ids(chunk)[lane];
+  }
+
+  /// Makes a block anew, in the order of (cell, old order).
   void fill(std::uint32_t number) {
     const Target& target = targets_[number];
     const Block<D>& block = blocks_[target.number];
@@ -526,7 +603,7 @@ class Sorter {
     std::uint32_t far = target.first_far;
     const auto take_far_before = [&](std::uint32_t slot) {
       for (; far < target.last_far && far_[far].slot < slot; ++far)
-        read_row(block, space_.far_rows.data() + far * row_bytes_, place);
+        read_row_of_cell(block, space_.far_rows.data() + far * row_bytes_, place);
     };
     for (int i = 0; i < from.count; ++i) {
       const Sent& sent = from.sent[i];
@@ -534,7 +611,7 @@ class Sorter {
         take_stayers(particles_.blocks[number], block, place, take_far_before);
       for (const std::byte* row = sent.first; row != sent.last; row += row_bytes_) {
         take_far_before(tail_of(row).slot);
-        read_row(block, row, place);
+        read_row_of_cell(block, row, place);
       }
     }
     take_far_before(~0u);
@@ -549,14 +626,15 @@ class Sorter {
     });
   }
 
-  void read_row(const Block<D>& block, const std::byte* row, std::uint32_t* place) {
+  void read_row_of_cell(const Block<D>& block, const std::byte* row, std::uint32_t* place) {
+    read_row(block, row, place[tail_of(row).cell]++);
+  }
+  void read_row(const Block<D>& block, const std::byte* row, std::uint32_t to) {
     const T* const values = reinterpret_cast<const T*>(row);
-    const Tail tail = tail_of(row);
-    const std::uint32_t to = place[tail.cell]++;
     std::byte* const chunk = places_[block.first_chunk + to / chunk_size<T>];
     T* const target = particles_.values_at(chunk) + to % chunk_size<T>;
     for_each_component([&](int c) { target[c * chunk_size<T>] = values[c]; });
-    particles_.ids_at(chunk)[to % chunk_size<T>] = tail.id;
+    particles_.ids_at(chunk)[to % chunk_size<T>] = tail_of(row).id;
   }
 
   /// Component by component, so that the old chunk is read in its own order; what leaves goes to where nobody looks.
@@ -589,11 +667,15 @@ class Sorter {
   }
   void prefetch(std::uint32_t chunk) const {
     if (chunk >= particles_.chunks) return;
-    const std::byte* const place = particles_.places[chunk];
-    constexpr std::size_t component = chunk_size<T> * sizeof(T), gap = Particles<D, T>::velocity * component;
-    for (std::size_t byte = 0; byte < gap; byte += 64) __builtin_prefetch(place + byte, 0, 2);
-    for (std::size_t byte = gap + left_behind_ * component; byte < particles_.chunk_bytes(); byte += 64)
-      __builtin_prefetch(place + byte, 0, 2);
+    fetch(chunk, 0, Particles<D, T>::velocity);
+    fetch(chunk, Particles<D, T>::velocity + left_behind_, particles_.components + 1);
+  }
+  /// Components of a chunk, after the last of which its indices lie.
+  void fetch(std::uint32_t chunk, int first, int last) const {
+    constexpr std::size_t component = chunk_size<T> * sizeof(T);
+    const std::size_t end = std::min(last * component, particles_.chunk_bytes());
+    for (std::size_t byte = first * component; byte < end; byte += 64)
+      __builtin_prefetch(particles_.places[chunk] + byte, 1, 2);
   }
 
   void finish() {
@@ -610,7 +692,8 @@ class Sorter {
   SortSpace& space_;
   const Scene<D, T>& scene_;
   int threads_;
-  int left_behind_;  ///< components from the velocity on that do not travel
+  bool first_ = false;  ///< sort of these particles
+  int left_behind_;     ///< components from the velocity on that do not travel
   std::size_t row_bytes_, at_hand_ = 0;
   std::vector<Source> sources_;
   std::vector<Target> targets_;
