@@ -135,7 +135,7 @@ TEST_CASE("A11 a filter and contact gain no energy in an impact", "[A][A11][cont
     const Energies e = collide(settings);
     std::printf("  %-40s %8.5f %8.5f\n", name.c_str(), e.largest, e.last);
     INFO(name);
-    CHECK(e.largest < 1.001);  // velocities are half a step ahead of strains
+    CHECK(e.largest < 1.001);  // velocities are half a step ahead of strains: one field too shows up to 0.2 %
     return e.last;
   };
   double before = 0;
