@@ -104,6 +104,8 @@ class Planner {
         strains_before_forces() || (plan_.filter && filters_before_forces() && strains_after_forces());
     plan_.strained_domain = plan_.particle_domain && strains_before_gather && experiment_.backend == "cpu";
     plan_.kept_velocity = plan_.filter && (filters_before_forces() || strains_before_forces());
+    plan_.constrained_velocity =
+        plan_.filter && experiment_.filter_schedule.constrain_always && (plan_.contact || separates());
     decide_fusion();
     plan_.separate_force = plan_.velocity_increment || plan_.contact || plan_.ledger ||
                            experiment_.body_force.has_value() || any_face(ConditionType::separate) ||
@@ -151,6 +153,13 @@ class Planner {
     if (choice == PassChoice::separate) why = "/solver/passes \"separate\"";
     plan_.fused = why.empty();
     if (choice == PassChoice::fused && !plan_.fused) refuse("/solver/passes", "passes cannot be fused: " + why);
+  }
+
+  /// A wall or box that material may leave.
+  bool separates() const {
+    return any_face(ConditionType::separate) ||
+           std::any_of(experiment_.boxes.begin(), experiment_.boxes.end(),
+                       [](const BoxCondition& box) { return box.type == ConditionType::separate; });
   }
 
   bool any_face(ConditionType type) const {
@@ -230,6 +239,11 @@ class Planner {
       channel("unfiltered velocity", D,
               named(*experiment_.filter) + (filters_before_forces() ? ": strains; then the correction of the particles"
                                                                     : ": the strain comes before the forces"));
+    if (plan_.constrained_velocity) {
+      const std::string because = named(*experiment_.filter) + ": an increment may take back what a one-sided law gave";
+      channel("velocity that conditions and contact added", D, because);
+      if (plan_.kept_velocity) channel("the same of the unfiltered velocity", D, because);
+    }
     if (plan_.velocity_increment || plan_.ledger)
       channel("velocity before the forces", D,
               plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of velocity"

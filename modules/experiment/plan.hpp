@@ -98,6 +98,7 @@ struct Plan {
   bool kept_advection = false;            ///< MUSL: the advection velocity waits for `move`
   bool filter = false;                    ///< the grid keeps an increment and its projection
   bool kept_velocity = false;             ///< the grid keeps the unfiltered velocity (a pass restores it)
+  bool constrained_velocity = false;      ///< and what one-sided laws have added: an increment may take it back
   bool particle_domain = false;           ///< particles carry their domain, advanced with L where the material is
   int sample_points = 0;                  ///< corners of a particle's domain that the grid's velocity moves
   bool strained_domain = false;           ///< and its strained copy: a later pass of the step needs the old weights

@@ -97,6 +97,10 @@ void CpuBackend<D, T, Components>::plan_channels() {
     grid_.plan_channel(filter_projection);
   }
   if (plan.kept_velocity) grid_.plan_channel(kept_velocity);
+  if (plan.constrained_velocity) {
+    grid_.plan_channel(constrained);
+    if (plan.kept_velocity) grid_.plan_channel(kept_constrained);
+  }
 }
 
 template <int D, class T, class Components>

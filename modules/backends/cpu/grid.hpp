@@ -23,6 +23,8 @@ enum Channel {
   filter_projection,  ///< momentum S+ S v* and mass while it is scattered, then velocity; then the velocity before
                       ///< conditions
   kept_velocity,      ///< of the grid before the filter, with the mass
+  constrained,  ///< velocity that conditions and contact have added in the step; while they act, the one without it
+  kept_constrained,  ///< of kept_velocity
   channel_count
 };
 

@@ -33,6 +33,7 @@ template <int D, class T>
 void GridStep<D, T>::begin_filter(const Pass& pass) {
   copy_velocity(motion, filter_increment);
   if (pass.restores) copy_velocity(motion, kept_velocity);
+  if (pass.restores && grid_.has(constrained)) copy_velocity(constrained, kept_constrained);
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = mass_norm_of_increment();
   if (ledger_on()) kinetic_energy_unfiltered_ = kinetic_energy();
@@ -102,7 +103,41 @@ void GridStep<D, T>::update_block(int field, std::uint32_t first, std::uint32_t 
   }
 }
 
-/// Conditions and contact on the accumulated velocity, without a trace in ledger and records.
+/// `constrained` <- the velocity without what conditions and contact have added in this step.
+template <int D, class T>
+void GridStep<D, T>::keep_free_velocity(bool after_forces) {
+  if (!grid_.has(constrained)) return;
+  visit_blocks([&](int field, std::uint32_t first, double*) {  // leaves the ledger's partial sums alone
+    const Q* const nodes = &motion_at(field, first);
+    Q* const added = &grid_.quad(constrained, field, first);
+    for (int k = 0; k < block_nodes; ++k) added[k] = after_forces ? nodes[k] - added[k] : nodes[k];
+  });
+}
+
+template <int D, class T>
+void GridStep<D, T>::measure_constraints() {
+  if (!grid_.has(constrained)) return;
+  visit_blocks([&](int field, std::uint32_t first, double*) {
+    const Q* const nodes = &motion_at(field, first);
+    Q* const added = &grid_.quad(constrained, field, first);
+    for (int k = 0; k < block_nodes; ++k) added[k] = nodes[k] - added[k];  // no mass left in it
+  });
+}
+
+/// Conditions and contact on the velocity without what they have added so far, so that an impulse which the increments
+/// no longer need is taken back.
+template <int D, class T>
+void GridStep<D, T>::constrain_free(double time, const StepInfo& step) {
+  if (!grid_.has(constrained)) return constrain(time, step);
+  for_each_block([&](int field, std::uint32_t first, double*) {
+    Q *const nodes = &motion_at(field, first), *const added = &grid_.quad(constrained, field, first);
+    for (int k = 0; k < block_nodes; ++k) added[k] = nodes[k] -= added[k];
+  });
+  constrain(time, step);
+  measure_constraints();
+}
+
+/// Conditions and contact on the velocity as it is, without a trace in ledger and records.
 template <int D, class T>
 void GridStep<D, T>::constrain(double time, const StepInfo& step) {
   impose(time, Account::nothing);
@@ -117,7 +152,7 @@ void GridStep<D, T>::update_filter(const Pass& pass, const StepInfo& step) {
   for_each_block([&](int field, std::uint32_t first, double*) { update_block(field, first, iteration); });
   if (scene_.experiment.filter_schedule.constrain_always) {
     copy_velocity(motion, filter_projection);
-    constrain(time_of(pass, step), step);
+    constrain_free(time_of(pass, step), step);
     for_each_block([&](int field, std::uint32_t first, double*) {
       for (std::uint32_t node = first; node < first + block_nodes; ++node)
         if (motion_at(field, node)[3] > 0)
@@ -142,7 +177,7 @@ void GridStep<D, T>::update_filter(const Pass& pass, const StepInfo& step) {
 template <int D, class T>
 void GridStep<D, T>::end_filter(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
-  if (!scene_.experiment.filter_schedule.constrain_always) constrain(time, step);
+  if (!scene_.experiment.filter_schedule.constrain_always) constrain_free(time, step);
   fill_ghosts(time, false);
   if (pass.remap || pass.restores) return;
   if (ledger_on()) {
@@ -154,9 +189,15 @@ void GridStep<D, T>::end_filter(const Pass& pass, const StepInfo& step) {
 
 template <int D, class T>
 void GridStep<D, T>::restore_velocity(const Pass& pass) {
-  if (!pass.keeps_correction) return copy_velocity(kept_velocity, motion);
+  restore(motion, kept_velocity, pass.keeps_correction);
+  if (grid_.has(constrained)) restore(constrained, kept_constrained, pass.keeps_correction);
+}
+
+template <int D, class T>
+void GridStep<D, T>::restore(Channel channel, Channel kept_channel, bool keeps_correction) {
+  if (!keeps_correction) return copy_velocity(kept_channel, channel);
   for_each_block([&](int field, std::uint32_t first, double*) {
-    Q *const nodes = &motion_at(field, first), *const kept = &grid_.quad(kept_velocity, field, first);
+    Q *const nodes = &grid_.quad(channel, field, first), *const kept = &grid_.quad(kept_channel, field, first);
     for (int k = 0; k < block_nodes; ++k) {
       const Q filtered = nodes[k];
       nodes[k] = kept[k];
@@ -165,16 +206,22 @@ void GridStep<D, T>::restore_velocity(const Pass& pass) {
   });
 }
 
+template <int D, class T>
+void GridStep<D, T>::add(Channel correction, Channel channel) {
+  for_each_block([&](int field, std::uint32_t first, double*) {
+    Q* const nodes = &grid_.quad(channel, field, first);
+    const Q* const added = &grid_.quad(correction, field, first);
+    for (int k = 0; k < block_nodes; ++k) nodes[k] += added[k];
+  });
+}
+
 /// v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
 template <int D, class T>
 void GridStep<D, T>::add_correction(const Pass& pass, const StepInfo& step) {
   const double unfiltered = ledger_on() ? kinetic_energy() : 0.0;
-  for_each_block([&](int field, std::uint32_t first, double*) {
-    Q* const nodes = &motion_at(field, first);
-    const Q* const correction = &grid_.quad(kept_velocity, field, first);
-    for (int k = 0; k < block_nodes; ++k) nodes[k] += correction[k];
-  });
-  constrain(time_of(pass, step), step);
+  add(kept_velocity, motion);
+  if (grid_.has(constrained)) add(kept_constrained, constrained);
+  constrain_free(time_of(pass, step), step);
   fill_ghosts(time_of(pass, step), false);
   if (!ledger_on()) return;
   kinetic_energy_after_ = kinetic_energy();

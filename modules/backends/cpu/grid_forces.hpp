@@ -111,11 +111,13 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
     ledger_.boundary += folded;
   }
   const Account account = accounted ? Account::change_of_energy : Account::nothing;
+  keep_free_velocity(false);
   impose(step.time, account);
   if (scene_.plan.contact) {
     resolve_contact(step, remap ? Recorded::remap : Recorded::before_forces);
     impose(step.time, account);
   }
+  measure_constraints();
   if (keeps_before) copy_constrained_velocity();
   fill_ghosts(step.time, false);
 }
@@ -274,11 +276,13 @@ void GridStep<D, T>::apply_forces(const StepInfo& step) {
   add_gravity_corrections(step.dt);
   accelerate(step.dt);
   const Account account = ledger_on() ? Account::mark : Account::nothing;
+  keep_free_velocity(true);
   impose(end, account);
   if (scene_.plan.contact) {
     resolve_contact(step, Recorded::after_forces);
     impose(end, account);
   }
+  measure_constraints();
   if (ledger_on()) account_for_impulses(step.dt);
   if (scene_.plan.velocity_increment) subtract_velocity_before();
   fill_ghosts(end, scene_.plan.velocity_increment);

@@ -77,7 +77,12 @@ class GridStep {
     return pass.before_forces || pass.remap ? step.time : step.time + step.dt;
   }
   void copy_velocity(Channel from, Channel to);
+  void restore(Channel channel, Channel kept_channel, bool keeps_correction);
+  void add(Channel correction, Channel channel);
   double mass_norm_of_increment();
+  void keep_free_velocity(bool after_forces);
+  void measure_constraints();
+  void constrain_free(double time, const StepInfo& step);
   void constrain(double time, const StepInfo& step);
   void update_block(int field, std::uint32_t first, std::uint32_t iteration);
 

@@ -147,7 +147,7 @@ struct Body {
 template <class T>
 struct Field {
   std::vector<T> mass, momentum, force, velocity_before, velocity, volume, volume_gradient, mass_position, increment,
-      projected, trial_velocity, kept_velocity;
+      projected, trial_velocity, kept_velocity, constrained, kept_constrained;
   std::vector<int> folded;
 
   Field(const Plan& plan, std::size_t nodes, int D) : mass(nodes), folded(nodes) {
@@ -155,12 +155,24 @@ struct Field {
     if (plan.contact) volume.resize(nodes), volume_gradient.resize(D * nodes), mass_position.resize(D * nodes);
     if (plan.filter)
       for (auto* channel : {&increment, &projected, &trial_velocity, &kept_velocity}) channel->resize(D * nodes);
+    if (plan.constrained_velocity) constrained.resize(D * nodes), kept_constrained.resize(D * nodes);
   }
   GridArrays<T> arrays() {
     const auto pointer = [](std::vector<T>& channel) { return channel.empty() ? nullptr : channel.data(); };
-    return {pointer(mass),      pointer(momentum),  pointer(force),           pointer(velocity_before),
-            pointer(velocity),  pointer(volume),    pointer(volume_gradient), pointer(mass_position),
-            pointer(increment), pointer(projected), pointer(trial_velocity),  pointer(kept_velocity),
+    return {pointer(mass),
+            pointer(momentum),
+            pointer(force),
+            pointer(velocity_before),
+            pointer(velocity),
+            pointer(volume),
+            pointer(volume_gradient),
+            pointer(mass_position),
+            pointer(increment),
+            pointer(projected),
+            pointer(trial_velocity),
+            pointer(kept_velocity),
+            pointer(constrained),
+            pointer(kept_constrained),
             folded.data()};
   }
 };
@@ -426,18 +438,22 @@ class HostRun final : public Backend {
   void momentum_to_velocity(const Pass& pass) {
     for_each_axis("fold_masses", walls_, pass.remap);
     if (!pass.remap) for_each_axis("fold_forces", folded_axes());
+    if (plan_.constrained_velocity) for_each_field("keep_free_velocity", vectors());
     for_each_field("impose_walls", nodes());
     if (plan_.contact) resolve_contact(nullptr);
     for_each_field("momentum_to_velocity", nodes(), pass.remap);
+    if (plan_.constrained_velocity) for_each_field("measure_constraints", vectors());
     for_each_axis("fill_velocities", filled_axes());
   }
 
   void apply_forces(const StepInfo& step) {
     for_each_axis("fold_forces", folded_axes());  // what USF scattered after the momenta were folded
     for_each_field("accelerate", vectors());
+    if (plan_.constrained_velocity) for_each_field("keep_free_velocity", vectors());
     for_each_field("impose_walls", nodes());
     if (plan_.contact) resolve_contact(&step);
     for_each_field("update_velocity", nodes());
+    if (plan_.constrained_velocity) for_each_field("measure_constraints", vectors());
     for_each_axis("fill_velocities", filled_axes());
   }
 
@@ -557,12 +573,14 @@ class HostRun final : public Backend {
     for_each_axis("fill_increments", filled_axes());
   }
 
-  /// Walls, contact and walls again on the grid's velocity.
+  /// Walls, contact and walls again on the grid's velocity without what they have added so far.
   void constrain_velocity() {
+    if (plan_.constrained_velocity) for_each_field("take_free_velocity", vectors());
     for_each_field("velocity_to_momentum", vectors());
     for_each_field("impose_walls", nodes());
     if (plan_.contact) resolve_contact(nullptr);
     for_each_field("update_velocity", nodes());
+    if (plan_.constrained_velocity) for_each_field("measure_constraints", vectors());
   }
 
   void end_filter(const Pass& pass) {

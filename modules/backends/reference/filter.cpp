@@ -1,7 +1,9 @@
 // Velocity filters. With S+ the gather (grid to particles to grid: S+ S, mass-weighted) a filter applies a truncated
 // series in I - S+ S to the grid's velocity (Hammerquist & Nairn 2017, CMAME 318:724, XPIC; Nairn & Hammerquist 2021,
 // CPM 8:1205, FMPM). The loop is incremental: v* <- what is left, v <- v + what the plugin takes of it, and conditions
-// and contact correct v, whose net change becomes v*.
+// and contact correct v, whose net change becomes v*. One-sided laws (contact, separating walls) are given the sum of
+// all increments before they acted, so an impulse that a later increment no longer needs is taken back (Nairn 2026,
+// arXiv 2604.07307).
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +23,7 @@ double time_of(const Pass& pass, const StepInfo& step) {
 void ReferenceBackend::begin_filter(const Pass& pass) {
   for_each_node([&](Node& node) {
     node.increment = node.velocity;
-    if (pass.restores) node.kept_velocity = node.velocity;
+    if (pass.restores) node.kept_velocity = node.velocity, node.kept_constrained = node.constrained;
   });
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = grid_.mass_norm(&Node::increment);
@@ -58,7 +60,7 @@ void ReferenceBackend::update_filter(const Pass& pass, const StepInfo& step) {
   if (experiment_.filter_schedule.constrain_always) {
     std::vector<Vector> tried;
     for_each_node([&](Node& node) { tried.push_back(node.velocity); });
-    constrain_velocity(pass, step);
+    constrain_free_velocity(pass, step);
     // What conditions and contact changed is a part of this pass's change of v.
     auto try_of = tried.begin();
     for_each_node([&](Node& node) { node.increment += node.velocity - *try_of++; });
@@ -98,7 +100,7 @@ void ReferenceBackend::call_filter(int field) {
 }
 
 void ReferenceBackend::end_filter(const Pass& pass, const StepInfo& step) {
-  if (!experiment_.filter_schedule.constrain_always) constrain_velocity(pass, step);
+  if (!experiment_.filter_schedule.constrain_always) constrain_free_velocity(pass, step);
   grid_.fill_ghosts(time_of(pass, step));
   if (pass.restores) return;  // the momentum stays that of the velocity kept aside
   for_each_node([](Node& node) { node.momentum = node.mass * node.velocity; });
@@ -111,20 +113,38 @@ void ReferenceBackend::end_filter(const Pass& pass, const StepInfo& step) {
 void ReferenceBackend::restore_velocity(const Pass& pass) {
   for_each_node([&](Node& node) {
     std::swap(node.velocity, node.kept_velocity);
-    if (pass.keeps_correction) node.kept_velocity -= node.velocity;
+    std::swap(node.constrained, node.kept_constrained);
+    if (!pass.keeps_correction) return;
+    node.kept_velocity -= node.velocity;
+    node.kept_constrained -= node.constrained;
   });
 }
 
 /// v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
 void ReferenceBackend::add_correction(const Pass& pass, const StepInfo& step) {
   const double unfiltered = plan_.ledger ? grid_.kinetic_energy() : 0.0;
-  for_each_node([](Node& node) { node.velocity += node.kept_velocity; });
-  constrain_velocity(pass, step);
+  for_each_node([](Node& node) {
+    node.velocity += node.kept_velocity;
+    node.constrained += node.kept_constrained;
+  });
+  constrain_free_velocity(pass, step);
   grid_.fill_ghosts(time_of(pass, step));
   for_each_node([](Node& node) { node.momentum = node.mass * node.velocity; });
   if (!plan_.ledger) return;
   kinetic_energy_after_ = grid_.kinetic_energy();
   ledger_.filter += kinetic_energy_after_ - unfiltered;
+}
+
+/// Conditions and contact on the velocity without what they have added so far.
+void ReferenceBackend::constrain_free_velocity(const Pass& pass, const StepInfo& step) {
+  if (!plan_.constrained_velocity) return constrain_velocity(pass, step);
+  for_each_node([](Node& node) {
+    if (node.mass > 0) node.constrained = node.velocity -= node.constrained;  // free, until they have acted
+  });
+  constrain_velocity(pass, step);
+  for_each_node([](Node& node) {
+    if (node.mass > 0) node.constrained = node.velocity - node.constrained;
+  });
 }
 
 /// Conditions, contact and conditions again, as after the forces, but on velocities and on no one's record.

@@ -31,9 +31,11 @@ struct Node {
   Vector velocity_before = Vector::Zero();  ///< v-, m/s
   Vector velocity = Vector::Zero();         ///< v+ (or v- until the forces are applied), m/s
 
-  Vector increment = Vector::Zero();      ///< v* of the filter, m/s
-  Vector projected = Vector::Zero();      ///< S+ S v*, m/s (kg m/s until divided by the mass)
-  Vector kept_velocity = Vector::Zero();  ///< unfiltered, where a pass restores it, m/s
+  Vector increment = Vector::Zero();         ///< v* of the filter, m/s
+  Vector projected = Vector::Zero();         ///< S+ S v*, m/s (kg m/s until divided by the mass)
+  Vector kept_velocity = Vector::Zero();     ///< unfiltered, where a pass restores it, m/s
+  Vector constrained = Vector::Zero();       ///< what conditions and contact have added to `velocity` in this step, m/s
+  Vector kept_constrained = Vector::Zero();  ///< of kept_velocity, m/s
 
   bool held[3] = {false, false, false};  ///< components that a condition gives now
 

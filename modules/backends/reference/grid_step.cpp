@@ -16,6 +16,7 @@ void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& st
   const double before = plan_.ledger ? grid_.kinetic_energy() : 0.0;
   grid_.fold_walls(step.time, pass.remap ? 0.0 : step.dt, pass.remap);
   if (!pass.remap) grid_.fold_forces();
+  keep_free_velocity(false);
   impose_conditions(step.time);
   if (plan_.ledger && !pass.remap) ledger_.boundary += grid_.kinetic_energy() - before;
   if (plan_.contact) resolve_contact(step, false, pass.remap);
@@ -25,7 +26,22 @@ void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& st
       node.velocity = node.mass > 0 ? Vector(node.momentum / node.mass) : Vector(Vector::Zero());
       if (!pass.remap) node.velocity_before = node.velocity;
     }
+  measure_constraints();
   grid_.fill_ghosts(step.time);
+}
+
+/// `constrained` <- the velocity without what conditions and contact have added in this step.
+void ReferenceBackend::keep_free_velocity(bool after_forces) {
+  if (!plan_.constrained_velocity) return;
+  for_each_node([&](Node& node) {
+    const Vector added = after_forces ? node.constrained : Vector(Vector::Zero());
+    node.constrained = node.mass > 0 ? Vector(node.momentum / node.mass - added) : Vector(Vector::Zero());
+  });
+}
+
+void ReferenceBackend::measure_constraints() {
+  if (!plan_.constrained_velocity) return;
+  for_each_node([](Node& node) { node.constrained = node.velocity - node.constrained; });
 }
 
 void ReferenceBackend::impose_conditions(double time) {
@@ -45,6 +61,7 @@ void ReferenceBackend::apply_forces(const StepInfo& step) {
   grid_.fold_forces();  // forces that USF scattered after the momenta were folded; nothing is left of the others
   for (int field = 0; field < grid_.field_count(); ++field)
     for (std::size_t i = 0; i < grid_.node_count(); ++i) accelerate(grid_.node(field, i), step.dt);
+  keep_free_velocity(true);
   impose_conditions(step.time + step.dt);
   if (plan_.contact) resolve_contact(step, true);
   for (int field = 0; field < grid_.field_count(); ++field)
@@ -53,6 +70,7 @@ void ReferenceBackend::apply_forces(const StepInfo& step) {
       node.velocity = node.mass > 0 ? Vector(node.momentum / node.mass) : Vector(Vector::Zero());
       if (plan_.ledger && node.mass > 0) account_for_impulses(node, step.dt);
     }
+  measure_constraints();
   kinetic_energy_after_ = plan_.ledger ? grid_.kinetic_energy() : 0.0;
   grid_.fill_ghosts(step.time + step.dt);
 }

@@ -57,6 +57,8 @@ class ReferenceBackend final : public Backend {
   void momentum_to_velocity(const Pass& pass, const StepInfo& step);
   /// Sets the momenta that conditions give.
   void impose_conditions(double time);
+  void keep_free_velocity(bool after_forces);
+  void measure_constraints();
   void apply_forces(const StepInfo& step);
   void account_for_impulses(const Node& node, double dt);
 
@@ -84,6 +86,7 @@ class ReferenceBackend final : public Backend {
   void end_filter(const Pass& pass, const StepInfo& step);
   void restore_velocity(const Pass& pass);
   void add_correction(const Pass& pass, const StepInfo& step);
+  void constrain_free_velocity(const Pass& pass, const StepInfo& step);
   void constrain_velocity(const Pass& pass, const StepInfo& step);
   void impose_on_velocity(double time);
   void resolve_contact_of_velocity(double dt);

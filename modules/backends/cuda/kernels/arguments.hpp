@@ -13,19 +13,21 @@ inline constexpr int block_cells = 4;
 /// One velocity field. Channels that the plan does not ask for are null.
 template <class T>
 struct GridArrays {
-  T* mass;             ///< kg
-  T* momentum;         ///< [D], kg m/s
-  T* force;            ///< [D], N: internal force and weight
-  T* velocity_before;  ///< [D], m/s
-  T* velocity;         ///< [D], m/s
-  T* volume;           ///< m^3, of contact like the next two
-  T* volume_gradient;  ///< [D], m^2
-  T* mass_position;    ///< [D], kg m
-  T* increment;        ///< [D], m/s, of the filter like the next three
-  T* projected;        ///< [D], kg m/s, then m/s
-  T* trial_velocity;   ///< [D], m/s: before conditions and contact act on an increment
-  T* kept_velocity;    ///< [D], m/s
-  int* folded;         ///< bit a: this ghost was folded along axis a in this step
+  T* mass;              ///< kg
+  T* momentum;          ///< [D], kg m/s
+  T* force;             ///< [D], N: internal force and weight
+  T* velocity_before;   ///< [D], m/s
+  T* velocity;          ///< [D], m/s
+  T* volume;            ///< m^3, of contact like the next two
+  T* volume_gradient;   ///< [D], m^2
+  T* mass_position;     ///< [D], kg m
+  T* increment;         ///< [D], m/s, of the filter like the next three
+  T* projected;         ///< [D], kg m/s, then m/s
+  T* trial_velocity;    ///< [D], m/s: before conditions and contact act on an increment
+  T* kept_velocity;     ///< [D], m/s
+  T* constrained;       ///< [D], m/s: what conditions and contact have added in the step; null unless one-sided
+  T* kept_constrained;  ///< [D], m/s: of kept_velocity
+  int* folded;          ///< bit a: this ghost was folded along axis a in this step
 };
 
 /// The particles of one body and material.

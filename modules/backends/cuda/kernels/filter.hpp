@@ -11,8 +11,10 @@ namespace mpm::device {
 /// increment <- velocity, and kept_velocity <- velocity; ghosts too.
 template <class Scene>
 MPM_HD void begin_filter(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  for_each_index(team, Scene::dimension * a.node_count,
-                 [&](int at) { a.grid.increment[at] = a.grid.kept_velocity[at] = a.grid.velocity[at]; });
+  for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    a.grid.increment[at] = a.grid.kept_velocity[at] = a.grid.velocity[at];
+    if (a.grid.constrained) a.grid.kept_constrained[at] = a.grid.constrained[at];
+  });
 }
 
 template <class Scene>
@@ -110,6 +112,36 @@ MPM_HD void correct_increment(const Team& team, const Arguments<typename Scene::
   });
 }
 
+/// constrained <- p / m without what conditions and contact have added in this step.
+template <class Scene>
+MPM_HD void keep_free_velocity(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    const T mass = a.grid.mass[at % a.node_count];
+    a.grid.constrained[at] = mass > T(0) ? a.grid.momentum[at] / mass - a.grid.constrained[at] : T(0);
+  });
+}
+
+/// constrained <- velocity <- velocity without what conditions and contact have added, so that an impulse which the
+/// increments no longer need is taken back.
+template <class Scene>
+MPM_HD void take_free_velocity(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    if (a.grid.mass[at % a.node_count] > T(0))
+      a.grid.constrained[at] = a.grid.velocity[at] = a.grid.velocity[at] - a.grid.constrained[at];
+  });
+}
+
+/// constrained <- velocity - constrained: what they have added.
+template <class Scene>
+MPM_HD void measure_constraints(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    if (a.grid.mass[at % a.node_count] > T(0)) a.grid.constrained[at] = a.grid.velocity[at] - a.grid.constrained[at];
+  });
+}
+
 /// Gives ghosts the mirrored increment.
 template <class Scene>
 MPM_HD void fill_increments(const Team& team, const Arguments<typename Scene::Scalar>& a) {
@@ -126,21 +158,29 @@ MPM_HD void keep_correction(const Team& team, const Arguments<typename Scene::Sc
     const typename Scene::Scalar filtered = a.grid.velocity[at];
     a.grid.velocity[at] = a.grid.kept_velocity[at];
     a.grid.kept_velocity[at] = filtered - a.grid.velocity[at];
+    if (!a.grid.constrained) return;
+    const typename Scene::Scalar added = a.grid.constrained[at];
+    a.grid.constrained[at] = a.grid.kept_constrained[at];
+    a.grid.kept_constrained[at] = added - a.grid.constrained[at];
   });
 }
 
 /// velocity += the kept correction: what the particles take.
 template <class Scene>
 MPM_HD void add_correction(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  for_each_index(team, Scene::dimension * a.node_count,
-                 [&](int at) { a.grid.velocity[at] += a.grid.kept_velocity[at]; });
+  for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    a.grid.velocity[at] += a.grid.kept_velocity[at];
+    if (a.grid.constrained) a.grid.constrained[at] += a.grid.kept_constrained[at];
+  });
 }
 
 /// velocity <- what begin_filter kept.
 template <class Scene>
 MPM_HD void restore_velocity(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  for_each_index(team, Scene::dimension * a.node_count,
-                 [&](int at) { a.grid.velocity[at] = a.grid.kept_velocity[at]; });
+  for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    a.grid.velocity[at] = a.grid.kept_velocity[at];
+    if (a.grid.constrained) a.grid.constrained[at] = a.grid.kept_constrained[at];
+  });
 }
 
 /// Lanes of a reduction that shared memory has room for.

@@ -18,7 +18,7 @@ MPM_HD void clear(const Team& team, const Arguments<typename Scene::Scalar>& a) 
     };
     a.grid.mass[node] = T(0);
     a.grid.folded[node] = 0;
-    clear_vector(a.grid.momentum), clear_vector(a.grid.velocity);
+    clear_vector(a.grid.momentum), clear_vector(a.grid.velocity), clear_vector(a.grid.constrained);
     if (a.remap) return;
     clear_vector(a.grid.force), clear_vector(a.grid.velocity_before);
     if (a.grid.volume) a.grid.volume[node] = T(0);

@@ -37,6 +37,9 @@
   MPM_DEVICE_ENTRY(mpm_keep_correction, keep_correction<Scene>, 1)                   \
   MPM_DEVICE_ENTRY(mpm_add_correction, add_correction<Scene>, 1)                     \
   MPM_DEVICE_ENTRY(mpm_restore_velocity, restore_velocity<Scene>, 1)                 \
+  MPM_DEVICE_ENTRY(mpm_keep_free_velocity, keep_free_velocity<Scene>, 1)             \
+  MPM_DEVICE_ENTRY(mpm_take_free_velocity, take_free_velocity<Scene>, 1)             \
+  MPM_DEVICE_ENTRY(mpm_measure_constraints, measure_constraints<Scene>, 1)           \
   MPM_DEVICE_ENTRY(mpm_increment_norm, increment_norm<Scene>, mpm::device::largest_team)
 
 #define MPM_DEVICE_MATERIAL_ENTRIES(n)                  \
