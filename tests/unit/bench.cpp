@@ -8,6 +8,7 @@
 #include "bench/table.hpp"
 #include "kernel/tensor.hpp"
 #include "support/catch.hpp"
+#include "support/differences.hpp"
 #include "support/scene.hpp"
 
 using namespace mpm;
@@ -31,13 +32,6 @@ std::string block(int dimension) {
          (three ? ", 2" : "") + R"(], "solver": {"time_step": 1e-3, "end_time": 10}, "output": {"ledger": false}})";
 }
 
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  REQUIRE(a.size() == b.size());
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
-
 struct Sleeper final : Contender {
   explicit Sleeper(int cycle) : cycle(cycle) {}
   void step() override { ++steps; }
@@ -54,15 +48,15 @@ TEST_CASE("the baseline solves the same problem as the cpu backend", "[bench]") 
     mpm::test::Scene scene(block(dimension));
     const auto baseline = make_baseline(scene.experiment);
     const std::vector<double> start = baseline->positions();
-    CHECK(largest_difference(start, scene.body().position) < 1e-14);
+    CHECK(mpm::test::largest_difference(start, scene.body().position) < 1e-14);
     for (int step = 0; step < 30; ++step) {
       baseline->step();
       scene.simulation.step();
     }
     const BodyState state = scene.body();
-    CHECK(largest_difference(start, state.position) > 0.1);  // a cell: particles crossed, walls pushed
-    CHECK(largest_difference(baseline->positions(), state.position) < 1e-12);
-    CHECK(largest_difference(baseline->velocities(), state.velocity) < 1e-10);
+    CHECK(mpm::test::largest_difference(start, state.position) > 0.1);  // a cell: particles crossed, walls pushed
+    CHECK(mpm::test::largest_difference(baseline->positions(), state.position) < 1e-12);
+    CHECK(mpm::test::largest_difference(baseline->velocities(), state.velocity) < 1e-10);
   }
 }
 
@@ -71,7 +65,7 @@ TEST_CASE("the baseline in float stays near its double", "[bench]") {
   const Experiment single = mpm::test::experiment_from(block(3), {"/precision=float"});
   const auto a = make_baseline(exact), b = make_baseline(single);
   for (int step = 0; step < 20; ++step) a->step(), b->step();
-  const double difference = largest_difference(a->positions(), b->positions());
+  const double difference = mpm::test::largest_difference(a->positions(), b->positions());
   CHECK(difference > 0);
   CHECK(difference < 1e-5);
 }
