@@ -4,6 +4,8 @@
 #include <string_view>
 
 #include "bench/counting.hpp"
+#include "kernel/corner_domain.hpp"
+#include "kernel/polynomial_basis.hpp"
 #include "materials/drucker_prager/drucker_prager.hpp"
 #include "materials/fixed_corotated/fixed_corotated.hpp"
 #include "materials/linear_elastic/linear_elastic.hpp"
@@ -13,6 +15,7 @@
 #include "shapes/bspline_cubic/bspline_cubic.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
 #include "shapes/cpdi/cpdi.hpp"
+#include "shapes/cpdi2/cpdi2.hpp"
 #include "shapes/gimp/gimp.hpp"
 #include "shapes/gimp_contiguous/gimp_contiguous.hpp"
 #include "shapes/linear/linear.hpp"
@@ -22,6 +25,7 @@
 #include "transfers/flip/flip.hpp"
 #include "transfers/mls/mls.hpp"
 #include "transfers/pic/pic.hpp"
+#include "transfers/polypic/polypic.hpp"
 #include "transfers/rpic/rpic.hpp"
 #include "transfers/tpic/tpic.hpp"
 
@@ -98,18 +102,34 @@ ShapeCost deformed_cost(const Component& component, double half_size, bool momen
   return cost;
 }
 
-template <int D, class T>
-ShapeCost cpdi_cost(const Component& component, double half_size, bool moment_of_particle) {
+/// Corner c of a square or cube about the particle, as vectors from it.
+template <int D, class S>
+void set_corners(double half_size, Vec<D, S>* corners) {
+  for (int c = 0; c < 1 << D; ++c)
+    for (int a = 0; a < D; ++a) corners[c][a] = S(c >> a & 1 ? half_size : -half_size);
+}
+
+/// Mean over places in a cell. A list's weights and gradients are made together.
+template <class F, int D, class T>
+ShapeCost list_cost(const Component& component, double half_size, bool moment_of_particle) {
   using S = Counted<T>;
-  const auto& p = parameters_of<Cpdi>(component);
+  const auto& p = parameters_of<F>(component);
   ShapeCost cost;
   Mat<D, S> domain{};
   for (int a = 0; a < D; ++a) domain(a, a) = S(half_size);
+  Vec<D, S> corners[1 << D];
+  set_corners<D, S>(half_size, corners);
   for (int k = 0; k < samples; ++k) {
     Vec<D, S> x;
     for (int a = 0; a < D; ++a) x[a] = S(sample(k, a));
-    NodeList<D, S, Cpdi::capacity<D>> list;
-    cost.plain += static_cast<double>(count_operations([&] { Cpdi::evaluate(p, x, domain, list); })) / samples;
+    NodeList<D, S, F::template capacity<D>> list;
+    const long evaluation = count_operations([&] {
+      if constexpr (requires { F::template sample_points<D>; })
+        F::evaluate(p, x, corners, list);
+      else
+        F::evaluate(p, x, domain, list);
+    });
+    cost.plain += static_cast<double>(evaluation) / samples;
     cost.nodes += static_cast<double>(list.count) / samples;
   }
   cost.plain += cost.nodes * (D + (moment_of_particle ? 3 * D * D : 0));  // distances, and the moment's sum
@@ -127,7 +147,8 @@ std::optional<ShapeCost> shape_cost(const Component& component, double half_size
   if (id == "b2gimp") return tensor_cost<B2Gimp, D, T>(component, half_size, moment);
   if (id == "gimp_contiguous") return deformed_cost<GimpContiguous, D, T>(component, half_size, moment);
   if (id == "gimp") return tensor_cost<Gimp, D, T>(component, half_size, moment);
-  if (id == "cpdi") return cpdi_cost<D, T>(component, half_size, moment);
+  if (id == "cpdi") return list_cost<Cpdi, D, T>(component, half_size, moment);
+  if (id == "cpdi2") return list_cost<Cpdi2, D, T>(component, half_size, moment);
   return std::nullopt;
 }
 
@@ -156,6 +177,7 @@ std::optional<double> transfer_cost(const Component& component) {
   if (id == "rpic") return transfer_round_trip<Rpic, D, T>(component);
   if (id == "aflip") return transfer_round_trip<Aflip, D, T>(component);
   if (id == "asflip") return transfer_round_trip<Asflip, D, T>(component);
+  if (id == "polypic") return transfer_round_trip<Polypic, D, T>(component);
   return std::nullopt;
 }
 
@@ -211,6 +233,47 @@ double gather_cost(const Wanted& w, const ShapeCost& shape, bool moment, bool gr
   return cost + shape.nodes * (2 * w.D + (moment ? 2 * DD : 0) + (gradient ? 2 * DD : 0));
 }
 
+/// What corners that the grid moves cost a step: each takes the velocity of its cell, and what moves the particle
+/// beyond its own; then the domain's centroid becomes the particle's place.
+template <int D, class T>
+double corner_cost(double half_size) {
+  using S = Counted<T>;
+  Vec<D, S> corners[1 << D], x;
+  set_corners<D, S>(half_size, corners);
+  for (int a = 0; a < D; ++a) x[a] = S(sample(0, a));
+  const long moved = count_operations([&] { centroid(corner_domain<D, S>(corners), corners); });
+  const long tents = count_operations([&] {
+    const TentCell<D, S> cell(x, corners[0]);
+    for (int which = 0; which < 1 << D; ++which) cell.weight(which);
+  });
+  const double velocity = (1 << D) * 2 * D + 4 * D;  // of the nodes, and dt (v + advection - own) onto the corner
+  return static_cast<double>(moved) + (1 << D) * (static_cast<double>(tents) + velocity + D);
+}
+
+/// Polynomials beyond affine: the bases of the axes, then sums of one axis at a time (higher_kernels.hpp).
+struct PolynomialCost {
+  double gather = 0, scatter = 0;
+};
+
+template <int D, int K, class T>
+PolynomialCost polynomial_cost(int order) {
+  using S = Counted<T>;
+  S w[K];
+  for (int k = 0; k < K; ++k) w[k] = S(1.0 / K);
+  AxisBasis<K, S> basis;
+  const double bases =
+      static_cast<double>(D * count_operations([&] { make_axis_basis<K>(w, 1, S(0.5 * (K - 1)), order, basis); }));
+  const double cost = bases + polynomial_sums(D, K, order);
+  return {cost, cost + D * basis_functions(D, order)};  // times the mass
+}
+
+template <int D, class T>
+PolynomialCost polynomial_cost(int width, int order) {
+  if (order == 0) return {};
+  if (width == 2) return polynomial_cost<D, 2, T>(order);
+  return width == 3 ? polynomial_cost<D, 3, T>(order) : polynomial_cost<D, 4, T>(order);
+}
+
 /// Passes over the particles besides the gather and the scatter that every step has.
 struct ExtraPasses {
   int strains = 0;                ///< that gather a velocity gradient on their own
@@ -253,7 +316,8 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
   w.contact = plan.contact;
   w.moment_is_gradient = shape_table.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
   w.moment_of_particle = shape_table.second_moment_kind == MPM_MOMENT_PER_PARTICLE;
-  const auto shape = shape_cost<D, T>(experiment.shape, 0.5 / experiment.bodies[0].particles_per_cell_axis, w);
+  const double half_size = 0.5 / experiment.bodies[0].particles_per_cell_axis;
+  const auto shape = shape_cost<D, T>(experiment.shape, half_size, w);
   const auto transfer = transfer_cost<D, T>(experiment.transfer);
   const auto material = mean_material_cost<D, T>(experiment, run);
   if (!shape || !transfer || !material || (plan.ledger && !run.without_ledger)) return std::nullopt;
@@ -282,7 +346,11 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
                  loops * gather_cost(w, *shape, gathers_affine, gathers_gradient);
   if (w.has(MPM_GATHERS_INCREMENT)) flops.gather += gather_cost(w, *shape, false, false);
   if (plan.particle_domain) flops.gather += extra.advances * D * D * (2 * D + 2);
-  flops.scatter = (loops + extra.remaps) * scatter_cost(w, *shape, scatters_affine, false, false);
+  if (plan.sample_points > 0) flops.gather += corner_cost<D, T>(half_size);
+  const PolynomialCost polynomials = polynomial_cost<D, T>(shape->width, plan.basis_order);
+  flops.gather += (1 + loops) * polynomials.gather;
+  flops.scatter = (1 + loops + extra.remaps) * polynomials.scatter;
+  flops.scatter += (loops + extra.remaps) * scatter_cost(w, *shape, scatters_affine, false, false);
   if (w.separate_force)
     flops.scatter += scatter_cost(w, *shape, scatters_affine, false, false) +
                      scatter_cost(w, *shape, w.stress_by_affine(), !w.stress_by_affine(), true);
@@ -320,6 +388,13 @@ double gather_rows(int dimension, int width, bool moment, bool gradient) {
   for (int i = 0; i < K; ++i)
     total += plane + 2 * D + (moment ? (i > 1 ? 2 : i) * D + 2 * (D - 1) * D : 0) + (gradient ? 2 * D * D : 0);
   return total;
+}
+
+double polynomial_sums(int dimension, int width, int order) {
+  const int D = dimension, K = width, R = order + 1;
+  const int line = K * R;  // the last axis
+  const int plane = D == 3 ? K * (line + R * R) : line;
+  return 2.0 * D * K * (plane + R * R * (D == 3 ? R : 1));
 }
 
 double nodes_per_particle(const Simulation& simulation) {

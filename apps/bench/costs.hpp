@@ -45,4 +45,8 @@ double bytes_per_particle(const Experiment& experiment, const Plan& plan, double
 double scatter_rows(int dimension, int width, bool affine, bool gradient);
 double gather_rows(int dimension, int width, bool moment, bool gradient);
 
+/// Sums over a stencil of the products of powers up to `order` an axis, either way, axis by axis
+/// (modules/backends/cpu/higher_kernels.hpp).
+double polynomial_sums(int dimension, int width, int order);
+
 }  // namespace mpm::bench

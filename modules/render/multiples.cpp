@@ -138,19 +138,33 @@ Layout lay_out(const Canvas& canvas, const Theme& theme, const Multiples& m, con
   return at;
 }
 
+constexpr double order_mark = 0.9, order_gap = 0.6;  // in sizes of text
+
+// Digits behind the point with which the orders of every panel have room; one at the least.
+int digits_of_orders(const Canvas& canvas, const Theme& theme, const std::vector<Content>& contents, double width) {
+  for (const Content& content : contents) {
+    double end = -order_gap * theme.text;
+    for (const Shown& shown : content.series)
+      if (const auto order = order_of(shown))
+        end += (order_mark + order_gap) * theme.text + canvas.measure_text(fixed(*order, 2), theme.text);
+    if (end > width) return 1;
+  }
+  return 2;
+}
+
 // The observed orders of a panel in the colours of their series, each beside its mark; what has no room is dotted.
-void draw_orders(Canvas& canvas, const Theme& theme, const Content& content, Point at, double width) {
+void draw_orders(Canvas& canvas, const Theme& theme, const Content& content, Point at, double width, int digits) {
   double x = at.x;
   for (const Shown& shown : content.series) {
     const auto order = order_of(shown);
     if (!order) continue;
-    const std::string text = fixed(*order, 2);
-    const double mark = 0.9 * theme.text, end = x + mark + canvas.measure_text(text, theme.text);
+    const std::string text = fixed(*order, digits);
+    const double mark = order_mark * theme.text, end = x + mark + canvas.measure_text(text, theme.text);
     const Colour colour = readable_text(shown.look.colour);
     if (end > at.x + width) return canvas.text({x, at.y}, "…", theme.style(colour));
     draw_mark(canvas, shown.look, {x + 0.35 * theme.text, at.y - 0.35 * theme.text}, 6 * theme.unit, theme.unit);
     canvas.text({x + mark, at.y}, text, theme.style(colour));
-    x = end + 0.6 * theme.text;
+    x = end + order_gap * theme.text;
   }
 }
 
@@ -158,13 +172,14 @@ void draw_panels(Canvas& canvas, const Theme& theme, const Multiples& m, Sheet& 
   Scales s;
   const Layout at = lay_out(canvas, theme, m, sheet, space, s);
   canvas.text({space.x0, space.y0 - 0.9 * theme.text}, with_factor(m.y_label, s.y.ticks.exponent), theme.style());
+  const int digits = digits_of_orders(canvas, theme, sheet.contents, at.width);
   for (std::size_t k = 0; k < m.panels.size(); ++k) {
     const std::size_t column = k % at.grid.columns, row = k / at.grid.columns;
     const double x = at.left + static_cast<double>(column) * (at.width + at.gap_x);
     const double y = at.top + static_cast<double>(row) * (at.height + at.gap_y);
     s.box = {x, y, x + at.width, y + at.height};
     const std::string title = shortened(canvas, m.panels[k].title, theme.text, at.width, true);
-    if (at.orders_as_text) draw_orders(canvas, theme, sheet.contents[k], {x, y - 0.5 * theme.text}, at.width);
+    if (at.orders_as_text) draw_orders(canvas, theme, sheet.contents[k], {x, y - 0.5 * theme.text}, at.width, digits);
     canvas.text({x, y - (at.orders_as_text ? 1.8 : 0.5) * theme.text}, title,
                 {theme.text, kInk, Anchor::start, Baseline::alphabetic, 0, true});
     draw_scales(canvas, theme, s, is_lowest(k, m.panels.size(), at.grid), column == 0);

@@ -238,6 +238,14 @@ std::string unit_in(const std::string& header) {
   return at == std::string::npos ? "" : header.substr(at);
 }
 
+/// The first entry, each `every`th after it, and the last.
+std::vector<double> taken_every(const std::vector<double>& values, int every) {
+  std::vector<double> taken;
+  for (std::size_t row = 0; row < values.size(); ++row)
+    if (row % static_cast<std::size_t>(every) == 0 || row + 1 == values.size()) taken.push_back(values[row]);
+  return taken;
+}
+
 void draw_curves(const Results& results, const FigureRequest& figure, const fs::path& folder, const fs::path& stem) {
   Plot plot;
   plot.title = title_of(results, figure);
@@ -264,10 +272,10 @@ void draw_curves(const Results& results, const FigureRequest& figure, const fs::
       else
         for (const std::string& header : table.header)
           if (header.substr(0, header.find(" (")) == figure.column) plot.y_label = figure.column + unit_in(header);
-      std::vector<double> values = *column;
+      std::vector<double> values = taken_every(*column, figure.every);
       if (figure.over_initial && !values.empty())
         for (const double first = values.front(); double& value : values) value /= first;
-      all.push_back({alone.label, *time, std::move(values), {}, SeriesKind::computed, {}});
+      all.push_back({alone.label, taken_every(*time, figure.every), std::move(values), {}, SeriesKind::computed, {}});
     }
     return all;
   };

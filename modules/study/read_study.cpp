@@ -94,7 +94,8 @@ std::vector<Section> figure_kinds() {
       {"convergence", "error over resolution", {name, title, x, value, panels, where}, true},
       {"pareto",
        "error against cost",
-       {name, title, value, parameter("costs", Type::names, "", "Measures; default the cost and particle-steps."),
+       {name, title, value,
+        parameter("costs", Type::names, "", "Measures; default the cost, particle-steps and flops."),
         text("series", "Axis whose values have colours of their own."), panels, where},
        true},
       {"heat_map",
@@ -110,7 +111,8 @@ std::vector<Section> figure_kinds() {
       {"curves",
        "recorded curves of the runs",
        {name, title, text("column", "Column of metrics.csv.").needed(), panels, flag("log_y"),
-        parameter("over_initial", Type::boolean, "", "Over its first value.").standard(false), where},
+        parameter("over_initial", Type::boolean, "", "Over its first value.").standard(false),
+        parameter("every", Type::integer, "", "Rows from one point to the next.").from(1).to(1e9).standard(1), where},
        true},
       {"outcome_map", "what became of the runs", {name, title, x, flag("log_x"), where}, true},
   };
@@ -343,6 +345,7 @@ class StudyReader {
     figure.log_x = (has("log_x") && fields.boolean("log_x")) || (has("log") && fields.boolean("log"));
     figure.log_y = has("log_y") && fields.boolean("log_y");
     figure.over_initial = has("over_initial") && fields.boolean("over_initial");
+    if (has("every")) figure.every = fields.integer("every");
     if (const Node* where = fields.node("where")) read_where(*where, figure);
     study_.figures.push_back(std::move(figure));
   }

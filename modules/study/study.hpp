@@ -75,6 +75,7 @@ struct FigureRequest {
   std::string exact, exact_label;    ///< formula of x that is drawn beside the measured values; empty: none
   bool log_x = false, log_y = false;
   bool over_initial = false;                                            ///< curves: over their first values
+  int every = 1;                                                        ///< curves: rows from one point to the next
   std::vector<std::pair<std::string, std::vector<std::string>>> where;  ///< axis and the labels that are shown
 };
 

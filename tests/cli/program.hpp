@@ -18,6 +18,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "support/catch.hpp"
@@ -223,6 +224,23 @@ inline Result run_scene(const Folder& folder, const Json& scene, Words more = {}
   Words words{"run", "scene.json", "--out", "run", "--threads", "1"};
   words.insert(words.end(), more.begin(), more.end());
   return call(folder, words);
+}
+
+/// Runs a scene that stops with code 3, of which summary and report tell; the summary's reason and standard error.
+inline std::pair<std::string, std::string> stopped_scene(const Folder& folder, const Json& scene) {
+  const Result result = run_scene(folder, scene);
+  INFO(result.err);
+  CHECK(result.code == 3);
+  const Json summary = json_in(folder / "run/summary.json");
+  CHECK(summary["outcome"]["exit_code"] == 3);
+  CHECK(summary["outcome"]["status"] == "failed");
+  const std::string reason = summary["outcome"]["reason"];
+  CHECK(has(result.err, reason));
+  const std::string report = slurp(folder / "run/report.html");
+  CHECK(has(report, "</html>"));
+  const auto cause = reason.rfind(") m ") + 4;  // up to a quote or apostrophe: the report writes entities
+  CHECK(has(report, reason.substr(cause, reason.find_first_of("\"'", cause) - cause)));
+  return {reason, result.err};
 }
 
 inline bool rows_written(const fs::path& csv, int least) {

@@ -101,9 +101,22 @@ std::vector<fs::path> checkpoints(const Folder& folder, const std::string& place
   return output::checkpoints_in(folder / (place + "/run/checkpoint"));
 }
 
+/// Scenes whose particles carry more than a transfer's and a material's own state: coefficients of polynomials,
+/// corners.
+std::vector<std::pair<std::string, Json>> scenes_that_carry_more() {
+  Json polynomials = meeting();
+  polynomials["transfer"] = {{"type", "polypic"}, {"basis", "full"}};
+  Json corners = meeting();
+  corners["shape"]["type"] = "cpdi2";
+  corners["transfer"]["type"] = "flip";
+  corners["solver"]["stress_update"] = "modified_last";
+  return {{"polynomials", polynomials}, {"corners", corners}};
+}
+
 /// Scenes that keep different states: contact, one fused pass, filters, node lists, histories, automatic steps.
 std::vector<std::pair<std::string, Json>> scenes() {
-  std::vector<std::pair<std::string, Json>> all{{"contact", meeting()}};
+  std::vector<std::pair<std::string, Json>> all = scenes_that_carry_more();
+  all.emplace_back("contact", meeting());
   Json fused = meeting();
   fused.erase("contact");
   fused["bodies"].erase(1);
@@ -215,6 +228,33 @@ TEST_CASE("a hundred kills at random moments change no byte") {
   std::cout << "seed " << seed << ": " << kills << " kills, " << resumed << " resumptions, " << runs << " runs\n";
   CHECK(kills >= 100);
   CHECK(resumed >= 30);
+}
+
+TEST_CASE("a killed run goes on with the polynomials and corners that its particles carry") {
+  for (const auto& [name, scene] : scenes_that_carry_more())
+    for (const char* backend : {"cpu", "reference"}) {
+      INFO(name << ", " << backend);
+      const Folder folder;
+      Json variant = scene;
+      variant["backend"] = backend;
+      variant["solver"]["time_step"] = 0.0005;
+      spill(folder / "scene.json", variant.dump(1));
+      must_end_with(0, run_in(folder, "whole"));
+      std::vector<fs::path> last;
+      for (const bool goes_on : {false, true}) {  // killed as soon as it has come further
+        Process process(folder, program(words_for("killed", goes_on ? Words{"--resume"} : Words{})));
+        REQUIRE(process.wait_until([&] {
+          const std::vector<fs::path> present = checkpoints(folder, "killed");
+          return !present.empty() && (last.empty() || present[0].filename() > last[0].filename());
+        }));
+        process.send(SIGKILL);
+        REQUIRE(process.finish().signal == SIGKILL);
+        last = checkpoints(folder, "killed");
+      }
+      must_end_with(0, run_in(folder, "killed", {"--resume"}));
+      check_same_results(folder / "killed/run", folder / "whole/run");
+      CHECK(json_in(folder / "killed/run/summary.json")["performance"]["resumed_from_step"].size() == 2);
+    }
 }
 
 TEST_CASE("another number of threads goes on with the same bits") {

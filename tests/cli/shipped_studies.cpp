@@ -28,6 +28,15 @@ std::vector<fs::path> shipped() {
   return studies;
 }
 
+/// Of what docs/combinations.md names.
+bool is_known_refusal(const std::string& reason) {
+  static const std::string page = slurp(root / "docs/combinations.md");
+  for (const char* words : {"leaves nothing of transfer", "carries products of polynomials along the axes",
+                            "takes them from all nodes of a stencil"})
+    if (has(reason, words)) return has(page, words);
+  return false;
+}
+
 /// Why a combination cannot be run; empty when it can.
 std::string refusal(const study::Study& study, const study::Combination& combination) {
   ReadOptions options = app::read_options(plugins(), {});
@@ -57,7 +66,7 @@ TEST_CASE("shipped studies are read, and what they combine runs together") {
     for (const study::Combination& combination : combinations) {
       const std::string reason = refusal(study, combination);
       INFO(combination.name << ": " << reason);
-      CHECK((reason.empty() || has(reason, "leaves nothing of transfer")));
+      CHECK((reason.empty() || is_known_refusal(reason)));
     }
   }
 }

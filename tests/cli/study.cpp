@@ -1,6 +1,7 @@
 // `mpm study` and `mpm advise`: every combination a run of its own, whatever becomes of it.
 
 #include "cli/program.hpp"
+#include "output/csv.hpp"
 
 using namespace mpm::test;
 
@@ -222,4 +223,29 @@ TEST_CASE("2: studies that cannot be run leave nothing behind") {
   CHECK(foreign.code == 2);
   CHECK(has(foreign.err, "not an earlier study (no study.json)"));
   CHECK(slurp(folder / "thesis/chapter.tex") == "years of work");
+}
+
+TEST_CASE("curves of every so many rows keep the first and the last") {
+  const Folder folder;
+  Json study = small_study();
+  study["axes"] = {{"/transfer/type", {"pic"}}};
+  study["figures"] = {{{"type", "curves"}, {"column", "total energy"}, {"every", 10}}};
+  write_inputs(folder, breathing(), study);
+  const Result result = run_study(folder);
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const auto recorded = mpm::output::read_csv(folder / "out/runs/pic/metrics.csv");
+  REQUIRE(recorded.rows() == 26);
+  const auto &time = *recorded.find("time"), &energy = *recorded.find("total energy");
+  std::istringstream csv(slurp(folder / "out/figures/curves.csv"));
+  std::string line;
+  std::getline(csv, line);
+  for (const std::size_t row : {0, 10, 20, 25}) {
+    REQUIRE(std::getline(csv, line));
+    INFO(line);
+    const auto at = line.find(",computed,") + 10, comma = line.find(',', at);
+    CHECK(std::stod(line.substr(at)) == time[row]);
+    CHECK(std::stod(line.substr(comma + 1)) == energy[row]);
+  }
+  CHECK(!std::getline(csv, line));
 }

@@ -93,38 +93,31 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
 }
 )";
 
-/// Entries beyond a particle's count are stored as zero, so that whole arrays compare.
+/// What a list shape takes beside the position, and gives to `evaluate`.
+constexpr const char* domain_of_list = R"(
+template <int D, class S> struct Domain {
+  Mat<D, S> sides;
+  MPM_HD Domain(const void* array, int lane) { load<D * D>(array, lane, sides.m); }
+  MPM_HD const Mat<D, S>& get() const { return sides; }
+};
+)";
+constexpr const char* corners_of_list = R"(
+template <int D, class S> struct Domain {
+  Vec<D, S> corners[1 << D];
+  MPM_HD Domain(const void* array, int lane) { load<(1 << D) * D>(array, lane, corners[0].v); }
+  MPM_HD const Vec<D, S>* get() const { return corners; }
+};
+)";
+
+/// Follows one of the two. Entries beyond a particle's count are stored as zero, so that whole arrays compare.
 constexpr const char* list_shape_body = R"(
 template <int D, class S> MPM_HD void run(const Task& t, int lane) {
   const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
   Vec<D, S> x;
-  Mat<D, S> domain;
   load<D>(t.in[0], lane, x.v);
-  load<D * D>(t.in[1], lane, domain.m);
+  const Domain<D, S> domain(t.in[1], lane);
   NodeList<D, S, Functor::template capacity<D>> list;
-  Functor::evaluate(p, x, domain, list);
-  for (int k = 0; k < Functor::template capacity<D>; ++k) {
-    const bool used = k < list.count;
-    S node[D], w = used ? list.weight[k] : S(0), g[D];
-    for (int a = 0; a < D; ++a) node[a] = used ? static_cast<S>(list.node[k][a]) : S(0), g[a] = used ? list.gradient[k][a] : S(0);
-    store<D>(t.out[0], k * D * 64 + lane, node);
-    store<1>(t.out[1], k * 64 + lane, &w);
-    store<D>(t.out[2], k * D * 64 + lane, g);
-  }
-  const S count = static_cast<S>(list.count);
-  store<1>(t.out[3], lane, &count);
-}
-)";
-
-constexpr const char* sampled_shape_body = R"(
-template <int D, class S> MPM_HD void run(const Task& t, int lane) {
-  const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
-  Vec<D, S> x;
-  Vec<D, S> corners[1 << D];
-  load<D>(t.in[0], lane, x.v);
-  load<(1 << D) * D>(t.in[1], lane, corners[0].v);
-  NodeList<D, S, Functor::template capacity<D>> list;
-  Functor::evaluate(p, x, corners, list);
+  Functor::evaluate(p, x, domain.get(), list);
   for (int k = 0; k < Functor::template capacity<D>; ++k) {
     const bool used = k < list.count;
     S node[D], w = used ? list.weight[k] : S(0), g[D];
@@ -247,11 +240,10 @@ bool is_deformed(const Plugin& plugin) {
   return !is_list(plugin) && (plugin.descriptor->needs & MPM_NEEDS_DOMAIN);
 }
 
-const char* body_of(const Plugin& plugin) {
+std::string body_of(const Plugin& plugin) {
   switch (plugin.descriptor->kind) {
     case MPM_SHAPE:
-      if (is_sampled(plugin)) return sampled_shape_body;
-      if (is_list(plugin)) return list_shape_body;
+      if (is_list(plugin)) return std::string(is_sampled(plugin) ? corners_of_list : domain_of_list) + list_shape_body;
       if (is_deformed(plugin)) return deformed_shape_body;
       return plugin.descriptor->needs & MPM_NEEDS_HALF_SIZE ? sized_shape_body : shape_body;
     case MPM_TRANSFER:
@@ -266,8 +258,8 @@ const char* body_of(const Plugin& plugin) {
 }
 
 std::string kernel_text(const Plugin& plugin) {
-  const char* body = body_of(plugin);
-  return std::string(prologue) + "typedef " + plugin.descriptor->functor_name + " Functor;\n" + body + epilogue;
+  return std::string(prologue) + "typedef " + plugin.descriptor->functor_name + " Functor;\n" + body_of(plugin) +
+         epilogue;
 }
 
 // ---- inputs and the plugin's own answer ----------------------------------------------------------------------------

@@ -371,6 +371,17 @@ TEST_CASE("small multiples share axes, looks and one legend", "[figures]") {
   m.panels[1].series[0].y.pop_back();
   CHECK_THROWS_WITH(write_figure(m, folder.path / "multiples"),
                     "panel 'cubic', series 'FLIP': 3 values of x, but 2 of y");
+  // Above small panels, with one digit where two have no room; none is left out for want of the second.
+  const std::vector<Series> four{line("PIC", 1), line("FLIP", 2), line("APIC", 1.5), line("MLS", 0.5)};
+  m.panels.assign(8, {"shape", {four[0], four[1]}});
+  write_figure(m, folder.path / "small");
+  CHECK(text_of(folder.path / "small.svg").find(">2.00<") != std::string::npos);
+  m.panels.assign(8, {"shape", four});
+  write_figure(m, folder.path / "small");
+  const std::string small = text_of(folder.path / "small.svg");
+  for (const char* words : {">1.0<", ">2.0<", ">1.5<", ">0.5<"}) CHECK(small.find(words) != std::string::npos);
+  CHECK(small.find("…") == std::string::npos);
+  CHECK(small.find(">2.00<") == std::string::npos);
   m.panels.assign(500, {"one", {line("FLIP", 2)}});
   CHECK_THROWS_AS(write_figure(m, folder.path / "multiples"), std::invalid_argument);
   m.panels.clear();

@@ -64,6 +64,12 @@ TEST_CASE("a restored run goes on bit for bit", "[parity]") {
         mix.stress_update = order;
         check_saved(mix.text(), overrides);
       }
+      // Polynomials where the scatter is a pass of its own, is done twice, and through a filter's loop.
+      mix.shape = R"({"type": "bspline_cubic"})", mix.transfer = R"({"type": "polypic", "basis": "full"})";
+      for (const std::string order : {"last", "modified_last"}) {
+        mix.stress_update = order;
+        check_saved(mix.text(), overrides);
+      }
     }
   }
 }

@@ -8,6 +8,7 @@
 #include "bench/table.hpp"
 #include "kernel/tensor.hpp"
 #include "support/catch.hpp"
+#include "support/differences.hpp"
 #include "support/scene.hpp"
 
 using namespace mpm;
@@ -31,13 +32,6 @@ std::string block(int dimension) {
          (three ? ", 2" : "") + R"(], "solver": {"time_step": 1e-3, "end_time": 10}, "output": {"ledger": false}})";
 }
 
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  REQUIRE(a.size() == b.size());
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
-
 struct Sleeper final : Contender {
   explicit Sleeper(int cycle) : cycle(cycle) {}
   void step() override { ++steps; }
@@ -54,15 +48,15 @@ TEST_CASE("the baseline solves the same problem as the cpu backend", "[bench]") 
     mpm::test::Scene scene(block(dimension));
     const auto baseline = make_baseline(scene.experiment);
     const std::vector<double> start = baseline->positions();
-    CHECK(largest_difference(start, scene.body().position) < 1e-14);
+    CHECK(mpm::test::largest_difference(start, scene.body().position) < 1e-14);
     for (int step = 0; step < 30; ++step) {
       baseline->step();
       scene.simulation.step();
     }
     const BodyState state = scene.body();
-    CHECK(largest_difference(start, state.position) > 0.1);  // a cell: particles crossed, walls pushed
-    CHECK(largest_difference(baseline->positions(), state.position) < 1e-12);
-    CHECK(largest_difference(baseline->velocities(), state.velocity) < 1e-10);
+    CHECK(mpm::test::largest_difference(start, state.position) > 0.1);  // a cell: particles crossed, walls pushed
+    CHECK(mpm::test::largest_difference(baseline->positions(), state.position) < 1e-12);
+    CHECK(mpm::test::largest_difference(baseline->velocities(), state.velocity) < 1e-10);
   }
 }
 
@@ -71,7 +65,7 @@ TEST_CASE("the baseline in float stays near its double", "[bench]") {
   const Experiment single = mpm::test::experiment_from(block(3), {"/precision=float"});
   const auto a = make_baseline(exact), b = make_baseline(single);
   for (int step = 0; step < 20; ++step) a->step(), b->step();
-  const double difference = largest_difference(a->positions(), b->positions());
+  const double difference = mpm::test::largest_difference(a->positions(), b->positions());
   CHECK(difference > 0);
   CHECK(difference < 1e-5);
 }
@@ -155,6 +149,67 @@ TEST_CASE("each pass over the particles that a scene adds is counted", "[bench]"
   CHECK(two.gather - last.gather == (four.gather - last.gather) / 3);
   CHECK(four.scatter > two.scatter);
   CHECK(count({flip}).gather > 0);
+}
+
+TEST_CASE("sums of polynomials beyond affine cost what a hand count gives", "[bench]") {
+  // 2-D, 3 nodes, powers to 1: of each line 3 nodes give 2 powers, and these go into 2 * 2 products; x and y.
+  CHECK(polynomial_sums(2, 3, 1) == 3 * (3 * 2 + 2 * 2) * 2 * 2);
+  // 3-D, 4 nodes, powers to 3: lines of 4 * 4, planes of 4 lines and 4 * 4 a line, 4^3 products a plane.
+  CHECK(polynomial_sums(3, 4, 3) == 4 * (4 * (4 * 4 + 4 * 4) + 64) * 2 * 3);
+}
+
+TEST_CASE("PolyPIC costs what APIC does and its polynomials", "[bench]") {
+  const auto count = [](const std::string& transfer, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> overrides{"/transfer=" + transfer};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    const Experiment experiment = mpm::test::experiment_from(block(2), overrides);
+    const auto flops = flops_per_particle(experiment, make_plan(experiment), {1, true, {}, {}, false});
+    REQUIRE(flops);
+    return *flops;
+  };
+  const std::string affine = R"({"type": "apic"})", two = R"({"type": "polypic"})";
+  const std::string full = R"({"type": "polypic", "basis": "full"})";
+  const Flops apic = count(affine), multilinear = count(two), quadratic = count(full);
+  CHECK(multilinear.shape == apic.shape);
+  CHECK(multilinear.transfer == apic.transfer);
+  CHECK(multilinear.material == apic.material);
+  // One product, x y. The bases of an axis: P_0 of distances 3, w P 3, norm 6, moment 9, giving back 3; P_1 of as many,
+  // its recurrence 12 and two ratios.
+  const double gather = 2 * (24 + 38) + polynomial_sums(2, 3, 1);
+  CHECK(multilinear.gather - apic.gather == gather);
+  CHECK(multilinear.scatter - apic.scatter == gather + 2);  // times the mass
+  CHECK(quadratic.gather - apic.gather > 6 * 2 * 3);
+  CHECK(quadratic.gather > multilinear.gather);
+  // Each pass of a filter's loop gathers and scatters them, MUSL scatters them once more.
+  const std::vector<std::string> filter{R"(/filter={"type": "fmpm", "order": 3})"};
+  const double passes = (count(two, filter).gather - count(affine, filter).gather) / gather;
+  CHECK(passes == 3);
+  const std::vector<std::string> modified{"/solver/stress_update=\"modified_last\""};
+  CHECK(count(two, modified).scatter - count(affine, modified).scatter == 2 * (gather + 2));
+}
+
+TEST_CASE("CPDI2 costs its corners", "[bench]") {
+  for (const int dimension : {2, 3})
+    for (const std::string precision : {"float", "double"}) {
+      INFO(dimension << "-D " << precision);
+      const auto count = [&](const std::string& shape) {
+        const Experiment experiment = mpm::test::experiment_from(
+            block(dimension),
+            {"/shape/type=\"" + shape + "\"", "/transfer/type=\"flip\"", "/precision=\"" + precision + "\""});
+        const auto flops = flops_per_particle(experiment, make_plan(experiment), {1, true, {}, {}, false});
+        REQUIRE(flops);
+        return *flops;
+      };
+      const Flops cpdi = count("cpdi"), cpdi2 = count("cpdi2");
+      // On squares and cubes both have the same nodes.
+      CHECK(cpdi2.scatter == cpdi.scatter);
+      CHECK(cpdi2.transfer == cpdi.transfer);
+      CHECK(cpdi2.material == cpdi.material);
+      CHECK(cpdi2.shape > cpdi.shape);
+      // The corners take the velocity of their 2^D nodes and go there; CPDI's domain follows L.
+      const int D = dimension, corners = 1 << D;
+      CHECK(cpdi2.gather - cpdi.gather > corners * (corners * 2 * D + 5 * D) - D * D * (2 * D + 2));
+    }
 }
 
 TEST_CASE("a ratio is the median of the rounds' ratios", "[bench]") {

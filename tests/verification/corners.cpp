@@ -7,6 +7,7 @@
 #include "shapes/cpdi/cpdi.hpp"
 #include "shapes/cpdi2/cpdi2.hpp"
 #include "support/catch.hpp"
+#include "support/differences.hpp"
 #include "support/scene.hpp"
 
 using namespace mpm;
@@ -32,14 +33,6 @@ std::string bending(int dimension) {
          R"(}], "solver": {"time_step": 2e-3, "end_time": 1}, "output": {"ledger": false}})";
 }
 const std::string affine_velocity = R"(["0.3 + 1.2*x - 2*y", "-0.1 + 1.5*x - 0.4*y"])";
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  REQUIRE(a.size() == b.size());
-  REQUIRE(!a.empty());
-  double largest = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, std::abs(a[k] - b[k]));
-  return largest;
-}
 
 /// Places of the corners of all particles, [particle][corner][D], from stored corners or from the domain's sides.
 std::vector<double> corner_places(const BodyState& state, int D) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/catch.hpp"
+#include "support/differences.hpp"
 #include "support/scene.hpp"
 
 using namespace mpm;
@@ -47,12 +48,7 @@ std::vector<std::string> operator+(std::vector<std::string> list, const std::str
   return list;
 }
 
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  REQUIRE(a.size() == b.size());
-  double largest = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, std::abs(a[k] - b[k]));
-  return largest;
-}
+using mpm::test::largest_difference;
 
 double largest_difference(const Scene& a, const Scene& b) {
   return std::max(largest_difference(a.body().velocity, b.body().velocity),

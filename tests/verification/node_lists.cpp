@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/catch.hpp"
+#include "support/differences.hpp"
 #include "support/scene.hpp"
 
 using namespace mpm;
@@ -66,13 +67,6 @@ void check_flight(const char* text, const std::vector<std::string>& overrides) {
   CHECK(std::abs(end.largest_volume_ratio - 1) < 1e-12);
   const Ledger& ledger = scene.simulation.backend().ledger();
   CHECK(std::abs(ledger.gravity - (end.kinetic - start.kinetic)) < 1e-11 * end.kinetic);
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  REQUIRE(a.size() == b.size());
-  double largest = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, std::abs(a[k] - b[k]));
-  return largest;
 }
 
 }  // namespace

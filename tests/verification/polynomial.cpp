@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "support/catch.hpp"
+#include "support/differences.hpp"
 #include "support/scene.hpp"
 
 using namespace mpm;
@@ -31,23 +32,6 @@ const char* rough_2d = R"J(["1 - 4*(y-1.2) + 0.5*sin(31*x)", "-2 + 4*(x-1.3) + 0
 const char* rough_3d = R"J(["1 - 4*(y-1.2) + 0.5*sin(31*z)", "-2 + 4*(x-1.3) - 2*z", "2*y + 0.5*sin(29*x)"])J";
 std::string rough(int dimension) {
   return block(dimension, dimension == 2 ? rough_2d : rough_3d);
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  REQUIRE(a.size() == b.size());
-  REQUIRE(!a.empty());
-  double largest = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, std::abs(a[k] - b[k]));
-  return largest;
-}
-
-double lost_spin(const Totals& start, const Totals& end) {
-  double change = 0, size = 0;
-  for (int c = 0; c < 3; ++c) {
-    change += std::pow(end.angular_momentum[c] - start.angular_momentum[c], 2);
-    size += std::pow(start.angular_momentum[c], 2);
-  }
-  return std::sqrt(change / size);
 }
 
 const std::vector<double>& coefficients(const BodyState& state) {

@@ -5,6 +5,7 @@
 
 #include "lattice.hpp"
 #include "support/catch.hpp"
+#include "support/differences.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -32,23 +33,6 @@ const char* rough_3d = R"J({
   "bodies": [{"name": "block", "material": "m", "geometry": {"type": "box", "lower": [0.8, 0.8, 0.8], "upper": [1.3, 1.1, 1.2]}, "jitter": 0.3,
               "velocity": ["1 - 4*(y-1.2) + 0.5*sin(31*z)", "-2 + 4*(x-1.3) - 2*z", "2*y + 0.5*sin(29*x)"]}],
   "solver": {"time_step": 1e-3, "end_time": 1}, "output": {"ledger": true}})J";
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  REQUIRE(a.size() == b.size());
-  double largest = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, std::abs(a[k] - b[k]));
-  return largest;
-}
-
-/// Change of angular momentum over its size.
-double lost_spin(const Totals& start, const Totals& end) {
-  double change = 0, size = 0;
-  for (int c = 0; c < 3; ++c) {
-    change += std::pow(end.angular_momentum[c] - start.angular_momentum[c], 2);
-    size += std::pow(start.angular_momentum[c], 2);
-  }
-  return std::sqrt(change / size);
-}
 
 const std::string aflip_without_pic = R"({"type": "aflip", "pic_fraction": 0})";
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/catch.hpp"
+#include "support/differences.hpp"
 #include "support/scene.hpp"
 
 using namespace mpm;
@@ -24,14 +25,14 @@ const char* halves = R"J({
     {"name": "right", "material": "m", "geometry": {"type": "box", "lower": [2, 1], "upper": [3, 1.6]}, "velocity": ["1+0.3*sin(pi*(x-1)/2)", "0.4*x"]}],
   "solver": {"time_step": 0.005, "end_time": 0.5}})J";
 
+using mpm::test::largest_difference;
+
 double largest_difference(const Scene& a, const Scene& b) {
   double largest = 0;
   for (int body = 0; body < 2; ++body) {
     const BodyState s = a.body(body), t = b.body(body);
-    for (std::size_t k = 0; k < s.velocity.size(); ++k)
-      largest = std::max(largest, std::abs(s.velocity[k] - t.velocity[k]));
-    for (std::size_t k = 0; k < s.position.size(); ++k)
-      largest = std::max(largest, std::abs(s.position[k] - t.position[k]));
+    largest =
+        std::max({largest, largest_difference(s.velocity, t.velocity), largest_difference(s.position, t.position)});
   }
   return largest;
 }
