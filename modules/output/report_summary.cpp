@@ -97,7 +97,7 @@ std::string time_step_card(const Json& summary) {
   if (least == nullptr && most == nullptr) return {};
   std::string range = inline_html({}, least != nullptr ? *least : *most);
   if (least != nullptr && most != nullptr && *least != *most) range += " to " + inline_html({}, *most);
-  const std::string note = limiting == nullptr ? "" : "limited by particle " + inline_html({}, *limiting);
+  const std::string note = limiting == nullptr ? "" : "limited by " + inline_html({}, *limiting);
   return card("time step", range + "\xC2\xA0s", note);
 }
 
