@@ -75,9 +75,9 @@ struct QuadCase {
       Lanes<T> lanes[4];
       if (packs) {
         for (int c = 0; c < 4; ++c) lanes[c] = Lanes<T>::load(components + c * batch + p);
-        cpu::store_quads<T>(quads + 4 * p, 4, lanes);
+        cpu::store_quads<T>(quads + 4 * p, lanes);
       } else {
-        cpu::load_quads<T>(quads + 4 * p, 4, lanes);
+        cpu::load_quads<T>(quads + 4 * p, lanes);
         for (int c = 0; c < 4; ++c) lanes[c].store(components + c * batch + p);
       }
     }

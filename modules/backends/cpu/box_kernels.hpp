@@ -11,6 +11,9 @@
 namespace mpm::cpu {
 
 inline constexpr int box_width = MPM_BOX_WIDTH;
+/// Quads from one group of a particle's to the next.
+template <class T>
+inline constexpr int quad_step = quad_group<T> / 4;
 template <int D>
 inline constexpr int box_nodes = D == 2 ? box_width* box_width : box_width* box_width* box_width;
 /// Nodes an axis of the tile that lists and boxes are scattered to.
@@ -60,7 +63,7 @@ inline __attribute__((always_inline)) void scatter_box(Quad<T>* corner, const T*
   using Q = Quad<T>;
   constexpr int side = list_tile_side<D>, rows = D == 2 ? 1 : W, first_s = 1 + (Affine ? D : 0);
   Q c[quad_groups(D, Affine, Gradient)];  // in registers, whatever the stores to the tile may reach
-  for (int k = 0; k < quad_groups(D, Affine, Gradient); ++k) c[k] = coefficients[k];
+  for (int k = 0; k < quad_groups(D, Affine, Gradient); ++k) c[k] = coefficients[k * quad_step<T>];
   Q plane = c[0];
   for (int i = 0; i < W; ++i) {
     Q row = plane;
@@ -90,7 +93,7 @@ void scatter_boxes(T* tile, const Boxes<T>& boxes, const T* coefficients, int co
   using Q = Quad<T>;
   constexpr int groups = quad_groups(D, Affine, Gradient);
   for (int p = 0; p < count; ++p) {
-    const Q* const c = reinterpret_cast<const Q*>(coefficients) + p * groups;
+    const Q* const c = reinterpret_cast<const Q*>(coefficients + quad_place<T>(p, groups));
     Q* const corner = reinterpret_cast<Q*>(tile) + boxes.tile_node[p];
     if (boxes.width[p] == 3)
       scatter_box<D, T, 3, Affine, Gradient>(corner, boxes.weight + p, boxes.gradient + p, c);
@@ -141,9 +144,9 @@ inline __attribute__((always_inline)) void gather_box(const Quad<T>* corner, con
   }
   out[0] = value;
   if constexpr (Moment)
-    for (int a = 0; a < D; ++a) out[1 + a] = m[a];
+    for (int a = 0; a < D; ++a) out[(1 + a) * quad_step<T>] = m[a];
   if constexpr (Gradient)
-    for (int a = 0; a < D; ++a) out[first_g + a] = g[a];
+    for (int a = 0; a < D; ++a) out[(first_g + a) * quad_step<T>] = g[a];
 }
 
 template <int D, class T, bool Moment, bool Gradient>
@@ -152,7 +155,7 @@ void gather_boxes(const T* tile, const Boxes<T>& boxes, T* moments, int count) {
   constexpr int groups = quad_groups(D, Moment, Gradient);
   for (int p = 0; p < count; ++p) {
     const Q* const corner = reinterpret_cast<const Q*>(tile) + boxes.tile_node[p];
-    Q* const out = reinterpret_cast<Q*>(moments) + p * groups;
+    Q* const out = reinterpret_cast<Q*>(moments + quad_place<T>(p, groups));
     if (boxes.width[p] == 3)
       gather_box<D, T, 3, Moment, Gradient>(corner, boxes.weight + p, boxes.gradient + p, out);
     else if (boxes.width[p] == 4)
@@ -166,15 +169,15 @@ void scatter_lists(T* nodes, const NodeLists<T>& lists, const T* coefficients, i
   using Q = Quad<T>;
   constexpr int groups = quad_groups(D, Affine, Gradient), first_s = 1 + (Affine ? D : 0);
   for (int p = 0; p < count; ++p) {
-    const Q* const c = reinterpret_cast<const Q*>(coefficients) + p * groups;
+    const Q* const c = reinterpret_cast<const Q*>(coefficients + quad_place<T>(p, groups));
     for (std::int32_t e = lists.first[p]; e < lists.last[p]; ++e) {
       const T* const entry = lists.values + std::size_t(e) * 8;
       Q sum = c[0];
       if constexpr (Affine)
-        for (int a = 0; a < D; ++a) sum += entry[a] * c[1 + a];
+        for (int a = 0; a < D; ++a) sum += entry[a] * c[(1 + a) * quad_step<T>];
       Q value = entry[3] * sum;
       if constexpr (Gradient)
-        for (int a = 0; a < D; ++a) value += entry[4 + a] * c[first_s + a];
+        for (int a = 0; a < D; ++a) value += entry[4 + a] * c[(first_s + a) * quad_step<T>];
       reinterpret_cast<Q*>(nodes)[lists.node[e]] += value;
     }
   }
@@ -197,12 +200,12 @@ void gather_lists(const T* nodes, const NodeLists<T>& lists, T* moments, int cou
       if constexpr (Gradient)
         for (int a = 0; a < D; ++a) g[a] += entry[4 + a] * v;
     }
-    Q* const out = reinterpret_cast<Q*>(moments) + p * groups;
+    Q* const out = reinterpret_cast<Q*>(moments + quad_place<T>(p, groups));
     out[0] = value;
     if constexpr (Moment)
-      for (int a = 0; a < D; ++a) out[1 + a] = m[a];
+      for (int a = 0; a < D; ++a) out[(1 + a) * quad_step<T>] = m[a];
     if constexpr (Gradient)
-      for (int a = 0; a < D; ++a) out[first_g + a] = g[a];
+      for (int a = 0; a < D; ++a) out[(first_g + a) * quad_step<T>] = g[a];
   }
 }
 

@@ -219,7 +219,7 @@ void ParticleStep<D, T, Components>::gather_chunk(const Chunk& chunk, Work& work
     gather_moments(chunk, work, work.increment_tile.data(), velocity_before, false, false);
     for (int p = 0; p < n; p += Lanes<T>::width) {
       Lanes<T> increment[4];
-      load_quads<T>(work.quads + 4 * p, 4, increment);
+      load_quads<T>(work.quads + 4 * p, increment);
       for (int c = 0; c < D; ++c) increment[c].store(work.increment + c * chunk_size<T> + p);
     }
   }
@@ -234,23 +234,22 @@ void ParticleStep<D, T, Components>::unpack_moments(Work& work, int count) {
   const double h = scene_.domain.cell_size;
   const T scale = static_cast<T>(scene_.moment_of_particle ? h : scene_.inverse_moment * h);
   const T inverse_h = static_cast<T>(1 / h);
-  constexpr std::size_t step = 4 * quad_groups(D, Moment, Gradient);
   for (int p = 0; p < count; p += L::width) {
-    const T* quads = work.quads + p * step;
+    const T* quads = work.quads + quad_place<T>(p, quad_groups(D, Moment, Gradient));
     L v[4];
-    load_quads<T>(quads, step, v);
+    load_quads<T>(quads, v);
     for (int c = 0; c < D; ++c) v[c].store(work.velocity + c * chunk_size<T> + p);
 #pragma GCC unroll 3
     for (int a = 0; Moment && a < D; ++a) {
       const L f = L::load(work.offset + a * chunk_size<T> + p);
       L sums[4];
-      load_quads<T>(quads += 4, step, sums);
+      load_quads<T>(quads += quad_group<T>, sums);
       for (int c = 0; c < D; ++c) (scale * (sums[c] - f * v[c])).store(work.affine + (c * D + a) * chunk_size<T> + p);
     }
 #pragma GCC unroll 3
     for (int a = 0; Gradient && a < D; ++a) {
       L sums[4];
-      load_quads<T>(quads += 4, step, sums);
+      load_quads<T>(quads += quad_group<T>, sums);
       for (int c = 0; c < D; ++c)
         (inverse_h * sums[c]).store(work.gradient_of_velocity + (c * D + a) * chunk_size<T> + p);
     }

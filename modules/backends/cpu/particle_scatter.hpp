@@ -93,13 +93,16 @@ template <int D, class T, class Components>
   if (scene_.axisymmetric && pass.force) weigh_stress(chunk, work);
   if (pass.momentum) {
     momentum_coefficients(chunk, work);
+    const bool adds_to_A = scene_.stress_by_affine && scene_.has(MPM_SCATTERS_AFFINE);
+    const bool in_packing = merged && adds_to_A && !scene_.moment_of_particle;
     if (merged) {
-      stress_coefficients(chunk, work, step.dt, scene_.has(MPM_SCATTERS_AFFINE));
+      if (!in_packing) stress_coefficients(chunk, work, step.dt, adds_to_A);
       if (scene_.axisymmetric) add_hoop_force(chunk, work, step.dt);
       if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, true, step.dt);
     }
     const bool affine = scene_.has(MPM_SCATTERS_AFFINE) || (merged && scene_.stress_by_affine);
-    add_to_tile(chunk, work, momentum, work.mass, true, affine, merged && by_gradient);
+    const T stress = in_packing ? stress_scale(chunk, step.dt) : T(0);
+    add_to_tile(chunk, work, momentum, work.mass, true, affine, merged && by_gradient, stress);
     if (higher_kernels_.scatter) add_higher_to_tile(chunk, work, momentum, chunk.higher());
   }
   if (pass.force && separate) {
@@ -172,12 +175,18 @@ void ParticleStep<D, T, Components>::momentum_coefficients(const Chunk& chunk, W
   Components::scatter(scene_, batch);
 }
 
+/// What the stress enters A or S by: -factor V0, with D^-1 where that is one for all particles.
+template <int D, class T, class Components>
+T ParticleStep<D, T, Components>::stress_scale(const Chunk& chunk, double factor) const {
+  const bool of_all = scene_.stress_by_affine && !scene_.moment_of_particle;
+  return static_cast<T>(-factor * chunk.body.volume * (of_all ? scene_.inverse_moment : 1.0));
+}
+
 /// -factor V0 tau D^-1 into A (added or set), or -factor V0 tau into S.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add) {
   const bool by_affine = scene_.stress_by_affine, of_particle = by_affine && scene_.moment_of_particle;
-  const T scale =
-      static_cast<T>(-factor * chunk.body.volume * (by_affine && !of_particle ? scene_.inverse_moment : 1.0));
+  const T scale = stress_scale(chunk, factor);
   T* const out = by_affine ? work.A : work.S;
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
@@ -199,11 +208,11 @@ void ParticleStep<D, T, Components>::stress_coefficients(const Chunk& chunk, Wor
     }
 }
 
-/// b (when `constant`), A and S as quads, with `last` as the fourth scalar of the constant one: in cells, and about the
-/// stencil's first node instead of the particle.
+/// b (when `constant`), A + `stress` tau and S as quads, with `last` as the fourth scalar of the constant one: in
+/// cells, and about the stencil's first node instead of the particle.
 template <int D, class T, class Components>
-template <bool Affine, bool Gradient>
-void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last, bool constant, int count) {
+template <bool Affine, bool Gradient, bool Stress>
+void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last, bool constant, int count, T stress) {
   using L = Lanes<T>;
   const T h = static_cast<T>(scene_.domain.cell_size), inverse_h = T(1) / h;
   constexpr int groups = quad_groups(D, Affine, Gradient), first_s = 1 + (Affine ? D : 0);
@@ -218,31 +227,35 @@ void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last
     for (int a = 0; Affine && a < D; ++a) {
       const L f = L::load(work.offset + a * chunk_size<T> + p);
       for (int c = 0; c < D; ++c) {
-        q[1 + a][c] = h * L::load(work.A + (c * D + a) * chunk_size<T> + p);
+        L A = L::load(work.A + (c * D + a) * chunk_size<T> + p);
+        if constexpr (Stress) A = A + stress * L::load(work.stress + Sym<D, T>::index(c, a) * chunk_size<T> + p);
+        q[1 + a][c] = h * A;
         q[0][c] = q[0][c] - q[1 + a][c] * f;
       }
     }
 #pragma GCC unroll 3
     for (int a = 0; Gradient && a < D; ++a)
       for (int c = 0; c < D; ++c) q[first_s + a][c] = inverse_h * L::load(work.S + (c * D + a) * chunk_size<T> + p);
-    store_groups<T, groups>(work.quads + std::size_t(p) * 4 * groups, q);
+    for (int g = 0; g < groups; ++g) store_quads<T>(work.quads + quad_place<T>(p, groups) + g * quad_group<T>, q[g]);
   }
 }
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last, bool constant, bool affine,
-                                                       bool gradient, int count) {
+                                                       bool gradient, int count, T stress) {
+  if (stress != T(0)) return pack_coefficients<true, false, true>(work, last, constant, count, stress);
   if (affine)
-    return gradient ? pack_coefficients<true, true>(work, last, constant, count)
-                    : pack_coefficients<true, false>(work, last, constant, count);
-  return gradient ? pack_coefficients<false, true>(work, last, constant, count)
-                  : pack_coefficients<false, false>(work, last, constant, count);
+    return gradient ? pack_coefficients<true, true, false>(work, last, constant, count, stress)
+                    : pack_coefficients<true, false, false>(work, last, constant, count, stress);
+  return gradient ? pack_coefficients<false, true, false>(work, last, constant, count, stress)
+                  : pack_coefficients<false, false, false>(work, last, constant, count, stress);
 }
 
-/// Scatters the coefficients of a chunk into the tile of a channel.
+/// Scatters the coefficients of a chunk into the tile of a channel; A with `stress` times its stress, which has no
+/// gradient beside it.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last,
-                                                 bool constant, bool affine, bool gradient) {
-  pack_coefficients(work, last, constant, affine, gradient, chunk.end);
+                                                 bool constant, bool affine, bool gradient, T stress) {
+  pack_coefficients(work, last, constant, affine, gradient, chunk.end, stress);
   work.clock.lap(Phase::coefficients);
   if (scene_.list) {
     T* const tile = work.tile[channel].data();

@@ -92,7 +92,7 @@ struct Workspace {
   Integers lowest[3], highest[3];  ///< first nodes of a block's stencils, lane by lane
   ListWork<D, T> lists;
   BoxWork<D, T> boxes;
-  alignas(64) T quads[(1 + 2 * D) * 4 * chunk_size<T> + 4];
+  alignas(64) T quads[(1 + 2 * D) * 4 * chunk_size<T>];
   /// Zero between uses, so that the scatter may add.
   AlignedArray<T> tile[channel_count];
   /// Tiles to gather from; only what the block reaches is valid.
@@ -275,12 +275,13 @@ class ParticleStep {
   void weigh_stress(const Chunk& chunk, Work& work) const;
   void add_hoop_force(const Chunk& chunk, Work& work, double factor) const;
   void momentum_coefficients(const Chunk& chunk, Work& work);
+  T stress_scale(const Chunk& chunk, double factor) const;
   void stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add);
   void add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last, bool constant, bool affine,
-                   bool gradient);
-  template <bool Affine, bool Gradient>
-  void pack_coefficients(Work& work, const T* last, bool constant, int count);
-  void pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient, int count);
+                   bool gradient, T stress = T(0));
+  template <bool Affine, bool Gradient, bool Stress>
+  void pack_coefficients(Work& work, const T* last, bool constant, int count, T stress);
+  void pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient, int count, T stress);
   void add_higher_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* coefficients);
   void scatter_stress(const Chunk& chunk, Work& work);
   void scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt);

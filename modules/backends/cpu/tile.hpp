@@ -58,7 +58,7 @@ struct TileKernels {
   int load_scalars = 0;     ///< of the tile to gather from
   int scatter_scalars = 0;  ///< of the tile to scatter to
   Scatter scatter[2][2]{};  ///< [affine][gradient]
-  Gather gather[2][2]{};    ///< [moment][gradient]; writes up to one quad beyond the last particle's
+  Gather gather[2][2]{};    ///< [moment][gradient]; for whole packs of particles
   void (*load)(T* tile, const T* channel, const std::int32_t* neighbours, const Reach&);
   void (*flush)(T* tile, T* channel, const std::int32_t* neighbours, const Reach&);  ///< adds, and clears the tile
 };
@@ -103,10 +103,10 @@ struct LastWeights {
     for (int p = 0; p < count; p += Lanes<T>::width) {
       Lanes<T> components[4];
       for (int k = 0; k < 4; ++k) components[k] = k < K ? Lanes<T>::load(w + k * chunk_size<T> + p) : Lanes<T>(T(0));
-      store_quads<T>(quads + 4 * p, 4, components);
+      store_quads<T>(quads + 4 * p, components);
     }
   }
-  MPM_ROW_INLINE Row<T, K> row(int particle) const { return spread<T, K>(quads + 4 * particle); }
+  MPM_ROW_INLINE Row<T, K> row(std::ptrdiff_t place) const { return spread<T, K>(quads + place); }
 };
 
 /// The rows of one stencil: where particles share it and registers are enough, these keep them from one particle to the
@@ -154,12 +154,16 @@ void scatter_particles(T* tile, const Stencils<T>& stencils, const T* coefficien
   constexpr int line = first_nodes_of_tile<D> * R::scalars;
   StencilRows<D, K, T, Shared, Gradient> rows;
   T* corner = nullptr;
+  const T* pack = coefficients;
+  std::ptrdiff_t last = 0;
   for (int p = 0; p < count; ++p) {
     stencils.ahead.fetch(p);
-    const T* const c = coefficients + std::size_t(p) * groups * 4;
-    const auto coefficient = [&](int group) { return repeated<T, K>(c + 4 * group); };
+    const std::ptrdiff_t place = place_in_pack<T>[p % Lanes<T>::width];
+    if (p > 0 && place == 0) pack += groups * quad_group<T>, last += quad_group<T>;
+    const T* const c = pack + place;
+    const auto coefficient = [&](int group) { return repeated<T, K>(c + group * quad_group<T>); };
     const AxisWeights<K, T> x(stencils, 0, p, Gradient), y(stencils, D - 2, p, Gradient);
-    const R w = weights.row(p);
+    const R w = weights.row(last + place);
     R plane = coefficient(0), step_x{}, step_y{}, slope_x{}, slope_y{};
     if constexpr (Affine) {
       plane = w * (plane + number * coefficient(D));
@@ -169,14 +173,14 @@ void scatter_particles(T* tile, const Stencils<T>& stencils, const T* coefficien
       plane = w * plane;
     }
     if constexpr (Gradient) {
-      plane = plane + slopes.row(p) * coefficient(first_s + D - 1);
+      plane = plane + slopes.row(last + place) * coefficient(first_s + D - 1);
       slope_x = w * coefficient(first_s);
       if constexpr (D == 3) slope_y = w * coefficient(first_s + 1);
     }
-    T* const place = tile + std::size_t(stencils.first[p]) * R::scalars;
-    if (place != corner) {
+    T* const first = tile + std::size_t(stencils.first[p]) * R::scalars;
+    if (first != corner) {
       if (corner) rows.store(corner, line);
-      rows.load(corner = place, line);
+      rows.load(corner = first, line);
     }
 #pragma GCC unroll 4
     for (int i = 0; i < K; ++i) {
@@ -255,41 +259,82 @@ MPM_ROW_INLINE StencilSums<K, T> sum_rows(const StencilRows<D, K, T, Shared, Gra
   return sums;
 }
 
+/// The sums of one pack of particles, each over the nodes of all its rows at once.
+template <int D, class T, int K, bool Moment, bool Gradient>
+struct PackSums {
+  using R = Row<T, K>;
+  static constexpr int width = Lanes<T>::width, moments = Moment ? D - 1 : 0, gradients = Gradient ? D - 1 : 0;
+  alignas(64) T rows[1 + moments + gradients][width * R::scalars];
+
+  MPM_ROW_INLINE void set(int lane, const StencilSums<K, T>& sums) {
+    const auto keep = [&](int sum, const R& row) { store_row(rows[sum] + lane * R::scalars, row); };
+    keep(0, sums.value);
+    if constexpr (Moment) keep(1, sums.moment_x);
+    if constexpr (Moment && D == 3) keep(2, sums.moment_y);
+    if constexpr (Gradient) keep(1 + moments, sums.gradient_x);
+    if constexpr (Gradient && D == 3) keep(2 + moments, sums.gradient_y);
+  }
+  /// Node k of the particles i, i + 4, i + 8 ... of the pack.
+  MPM_ROW_INLINE Lanes<T> node(int sum, int i, int k) const {
+    return Lanes<T>(join_quads<T>(rows[sum] + i * R::scalars + 4 * k, 4 * R::scalars));
+  }
+  /// Sums over the nodes along the last axis, with its weights and slopes (lanes), into the pack's quads.
+  MPM_ROW_INLINE void store(T* quads, const T* weights, const T* slopes) const {
+    constexpr auto all = std::make_integer_sequence<int, 4>();
+    const auto store_some = [&]<int... i>(std::integer_sequence<int, i...>) {
+      (store_register<i>(quads, weights, slopes), ...);
+    };
+    store_some(all);
+  }
+
+ private:
+  template <int i>
+  MPM_ROW_INLINE void store_register(T* quads, const T* weights, const T* slopes) const {
+    Lanes<T> w[K], terms[1 + D + D];
+    for (int k = 0; k < K; ++k) w[k] = of_block<i>(weights + k * chunk_size<T>);
+    constexpr int first_g = 1 + (Moment ? D : 0);
+    for (int k = 0; k < K; ++k) {
+      const Lanes<T> value = node(0, i, k), term = w[k] * value;
+      terms[0] = k == 0 ? term : terms[0] + term;
+      if constexpr (Moment)
+        if (k > 0) terms[D] = k == 1 ? term : terms[D] + T(k) * term;
+      if constexpr (Gradient) {
+        const Lanes<T> slope = of_block<i>(slopes + k * chunk_size<T>) * value;
+        terms[first_g + D - 1] = k == 0 ? slope : terms[first_g + D - 1] + slope;
+      }
+    }
+    const auto weighted = [&](int sum) {
+      Lanes<T> total = w[0] * node(sum, i, 0);
+      for (int k = 1; k < K; ++k) total = total + w[k] * node(sum, i, k);
+      return total;
+    };
+    for (int a = 0; a < moments; ++a) terms[1 + a] = weighted(1 + a);
+    for (int a = 0; a < gradients; ++a) terms[first_g + a] = weighted(1 + moments + a);
+    for (int g = 0; g < quad_groups(D, Moment, Gradient); ++g) terms[g].store(quads + g * quad_group<T> + i * width);
+  }
+  /// Lane 4 k + i on all of block k.
+  template <int i>
+  static MPM_ROW_INLINE Lanes<T> of_block(const T* lanes) {
+    const auto loaded = Lanes<T>::load(lanes).v;
+    return Lanes<T>(pick<i, i, i, i, T>(loaded, loaded));
+  }
+};
+
 template <int D, class T, int K, bool Moment, bool Gradient, bool Shared>
 void gather_particles(const T* tile, const Stencils<T>& stencils, T* moments, int count) {
-  using R = Row<T, K>;
-  constexpr int groups = quad_groups(D, Moment, Gradient), first_g = 1 + (Moment ? D : 0);
-  const LastWeights<D, K, T> weights(stencils.weight, count);
-  const LastWeights<D, K, T> slopes(Gradient ? stencils.gradient : stencils.weight, Gradient ? count : 0);
-  const R number = node_numbers<T, K>();
+  constexpr int width = Lanes<T>::width, last = (D - 1) * K * chunk_size<T>;
   StencilRows<D, K, T, Shared, Gradient> rows;
+  PackSums<D, T, K, Moment, Gradient> pack;
   const T* corner = nullptr;
-  for (int p = 0; p < count; ++p) {
-    stencils.ahead.fetch(p);
-    const T* const place = tile + std::size_t(stencils.first[p]) * 4;
-    if (place != corner) rows.load(corner = place, tile_side<D, K> * 4);
-    const StencilSums<K, T> sums = sum_rows<D, T, K, Moment, Gradient, Shared>(rows, corner, stencils, p);
-    const R w = weights.row(p);
-    const auto weighted = [&](const R& sum) { return within_stencil<T, K>(w * sum); };
-    R terms[groups + 3]{};
-    terms[0] = weighted(sums.value);
-    if constexpr (Moment) {
-      terms[1] = weighted(sums.moment_x);
-      if constexpr (D == 3) terms[2] = weighted(sums.moment_y);
-      terms[D] = number * terms[0];
+  for (int first = 0; first < count; first += width) {
+    for (int p = first; p < first + width; ++p) {
+      stencils.ahead.fetch(p);
+      const T* const place = tile + std::size_t(stencils.first[p]) * 4;
+      if (place != corner) rows.load(corner = place, tile_side<D, K> * 4);
+      pack.set(p - first, sum_rows<D, T, K, Moment, Gradient, Shared>(rows, corner, stencils, p));
     }
-    if constexpr (Gradient) {
-      terms[first_g] = weighted(sums.gradient_x);
-      if constexpr (D == 3) terms[first_g + 1] = weighted(sums.gradient_y);
-      terms[first_g + D - 1] = within_stencil<T, K>(slopes.row(p) * sums.value);
-    }
-    T* const out = moments + std::size_t(p) * groups * 4;
-    for (int g = 0; g < groups; g += 4) {
-      if (groups - g > 2)
-        store_sums(out + 4 * g, terms[g], terms[g + 1], terms[g + 2], terms[g + 3]);
-      else
-        for (int k = g; k < groups; ++k) reinterpret_cast<Quad<T>*>(out)[k] = sum_of_nodes(terms[k]);
-    }
+    pack.store(moments + quad_place<T>(first, quad_groups(D, Moment, Gradient)), stencils.weight + last + first,
+               stencils.gradient + last + first);
   }
 }
 
