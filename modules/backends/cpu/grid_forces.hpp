@@ -71,23 +71,33 @@ double GridStep<D, T>::kinetic_energy_of_edges() {
   return sum;
 }
 
+/// Velocities of a block's nodes become change(first node of a pack, velocities, masses), zero without mass; whether
+/// any node has some. As many nodes at once as a register holds.
+template <int D, class T>
+template <class Change>
+bool GridStep<D, T>::for_each_pack(Q* nodes, Change&& change) {
+  bool heavy = false;
+  for (int node = 0; node < block_nodes; node += L::width / 4) {
+    const L old = pack_of(nodes + node), mass(pick<3, 3, 3, 3, T>(old.v, old.v));
+    const auto has_mass = mass > T(0);
+    L velocity(T(0));
+    if (any_lane<T>(has_mass)) {
+      heavy = true;
+      velocity = select(has_mass, change(node, old, mass), velocity);
+    }
+    L(pick<0, 1, 2, 7, T>(velocity.v, old.v)).store(reinterpret_cast<T*>(nodes + node));
+  }
+  return heavy;
+}
+
 /// Momenta to velocities, also into velocity_before where that is kept; returns their energy where that is asked for.
 template <int D, class T>
 double GridStep<D, T>::divide_by_mass(bool keeps_before, bool accounted) {
   for_each_block([&](int field, std::uint32_t first, double* partial) {
     Q* const nodes = &motion_at(field, first);
-    Mask heavy{};
-    for (int k = 0; k < block_nodes; ++k) {
-      const T mass = nodes[k][3];
-      const Q mass4 = mass - Q{};
-      const Mask has_mass = mass4 > 0;
-      heavy |= has_mass;
-      Q velocity = has_mass ? nodes[k] / mass4 : Q{};
-      velocity[3] = mass;
-      nodes[k] = velocity;
-    }
+    const bool heavy = for_each_pack(nodes, [](int, L momentum, L mass) { return momentum / mass; });
     if (keeps_before) std::memcpy(&grid_.quad(velocity_before, field, first), nodes, block_nodes * sizeof(Q));
-    if (!accounted || !heavy[3]) return;
+    if (!accounted || !heavy) return;
     Wide squares{};
     for (int k = 0; k < block_nodes; ++k) {  // no velocity where there is no mass
       const Wide v = widen(nodes[k]);
@@ -236,26 +246,23 @@ void GridStep<D, T>::accelerate(double dt) {
     find_constrained_slots();
     held_.resize(std::size_t(grid_.fields()) * grid_.nodes());
   }
+  L gravity;
+  for (int lane = 0; lane < L::width; ++lane) gravity.v[lane] = gravity_[lane % 4];
   for_each_block([&](int field, std::uint32_t first, double* partial) {
     Q* const nodes = &motion_at(field, first);
     const Q* const f = grid_.has(force) ? &grid_.quad(force, field, first) : nullptr;
     const Q* const body = grid_.has(body_force) ? &grid_.quad(body_force, field, first) : nullptr;
-    Mask heavy{};
-    for (int k = 0; k < block_nodes; ++k) {
-      const T mass = nodes[k][3];
-      const Mask has_mass = mass - Q{} > 0;
-      heavy |= has_mass;
-      Q total{};
-      if (f) total += f[k];
-      if (body) total += body[k];
-      Q velocity = has_mass ? nodes[k] + step * (total / mass + gravity_) : Q{};
-      velocity[3] = mass;
-      nodes[k] = velocity;
-    }
+    const bool heavy = for_each_pack(nodes, [&](int node, L velocity, L mass) {
+      if (!f && !body) return velocity + step * gravity;
+      L total(T(0));
+      if (f) total = total + pack_of(f + node);
+      if (body) total = total + pack_of(body + node);
+      return velocity + step * (total / mass + gravity);
+    });
     if (!ledger_on()) return;
     if (constrained_[first / block_nodes])
       std::memset(held_.data() + std::size_t(field) * grid_.nodes() + first, 0, block_nodes);
-    else if (heavy[3])
+    else if (heavy)
       account_for_block(field, first, dt, nullptr, partial);
   });
 }

@@ -34,7 +34,7 @@ class GridStep {
 
  private:
   using Q = Quad<T>;
-  using Mask = decltype(Q{} > Q{});
+  using L = Lanes<T>;
   using Wide = Quad<double>;  ///< sums of the ledger
   /// What imposing a condition leaves for the ledger: its change of energy at once, or a mark for account_for_impulses.
   enum class Account { nothing, change_of_energy, mark };
@@ -47,6 +47,9 @@ class GridStep {
   void for_each_block(Visit&& visit);
   template <class Visit>
   void visit_blocks(Visit&& visit);
+  template <class Change>
+  static bool for_each_pack(Q* nodes, Change&& change);
+  static L pack_of(const Q* nodes) { return L::load(reinterpret_cast<const T*>(nodes)); }
   double sum_partials(int which) const;
   static Wide widen(Q quad) { return __builtin_convertvector(quad, Wide); }
   static double sum_of_components(Wide quad) { return quad[0] + quad[1] + (D == 3 ? quad[2] : 0.0); }

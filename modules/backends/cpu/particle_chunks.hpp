@@ -264,18 +264,26 @@ void ParticleStep<D, T, Components>::place_to_gather(const Chunk& chunk, Work& w
   if (!scene_.list) number_stencils(work, chunk.end, kernels_.side);
 }
 
-/// Number of each stencil's first node, `along_last` of them a row, and whether neighbours mostly share one.
+/// Number of each stencil's first node, `along_last` of them a row, and whether neighbours mostly share one. Neighbours
+/// are compared in registers: a load of what was just stored, one place off, would wait for both stores.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::number_stencils(Work& work, int count, int along_last) const {
-  for (int p = 0; p < count; ++p) {
-    int node = work.base[p] + 1;
-    for (int axis = 1; axis < D; ++axis)
-      node = node * (axis == D - 1 ? along_last : kernels_.side) + work.base[axis * chunk_size<T> + p] + 1;
-    work.first[p] = node;
+  using Integers = typename Work::Integers;
+  constexpr auto all = std::make_index_sequence<Work::integers>();
+  Integers previous = Integers{} - 1, same{};
+  for (int p = 0; p < count; p += Work::integers) {
+    const auto base = [&](int axis) {
+      return *reinterpret_cast<const Integers*>(work.base + axis * chunk_size<T> + p);
+    };
+    Integers node = base(0) + 1;
+    for (int axis = 1; axis < D; ++axis) node = node * (axis == D - 1 ? along_last : kernels_.side) + (base(axis) + 1);
+    *reinterpret_cast<Integers*>(work.first + p) = node;
+    same += shuffled<[](int lane) { return lane + Work::integers - 1; }>(previous, node, all) == node;
+    previous = node;
   }
-  int changes = 0;
-  for (int p = 1; p < count; ++p) changes += work.first[p] != work.first[p - 1] ? 1 : 0;
-  work.shared_stencils = 4 * changes <= count;
+  int shared = 0;
+  for (int lane = 0; lane < Work::integers; ++lane) shared -= same[lane];
+  work.shared_stencils = 4 * (count - 1 - shared) <= count;
 }
 
 /// D^-1 of each particle: of a diagonal, or of a symmetric matrix by its adjugate.
