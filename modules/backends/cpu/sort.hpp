@@ -235,15 +235,10 @@ class Sorter {
       const Block<D>& block = particles_.blocks[b];
       targets_[b].at = block.at;
       targets_[b].count = block.count - sources_[b].leaving - sources_[b].far;
+      targets_[b].around.fill(-1);
       table_.insert(block.at, static_cast<int>(b));
     }
-    const auto look_around = [&](std::uint32_t first, std::uint32_t last) {
-#pragma omp parallel for num_threads(threads_) schedule(static)
-      for (std::uint32_t b = first; b < last; ++b)
-        for (int k = 0; k < neighbour_count<D>; ++k)
-          targets_[b].around[k] = table_.find(neighbour_at<D>(targets_[b].at, k));
-    };
-    look_around(0, old);
+    look_around_old();
     for (std::uint32_t b = 0; b < old; ++b) {
       if (sources_[b].leaving == 0) continue;
       for (int k = 0; k < neighbour_count<D>; ++k) {
@@ -256,7 +251,23 @@ class Sorter {
       }
     }
     find_far();
-    look_around(old, static_cast<std::uint32_t>(targets_.size()));
+    for (std::size_t b = old; b < targets_.size(); ++b)
+      for (int k = 0; k < neighbour_count<D>; ++k)
+        targets_[b].around[k] = table_.find(neighbour_at<D>(targets_[b].at, k));
+  }
+
+  /// Two neighbours are found at once: each entry is written by one thread.
+  void look_around_old() {
+    const int old = static_cast<int>(sources_.size());
+#pragma omp parallel for num_threads(threads_) schedule(static)
+    for (int b = 0; b < old; ++b) {
+      targets_[b].around[here] = b;
+      for (int k = 0; k < here; ++k) {
+        const int found = table_.find(neighbour_at<D>(targets_[b].at, k));
+        targets_[b].around[k] = found;
+        if (found >= 0) targets_[found].around[neighbour_count<D> - 1 - k] = b;
+      }
+    }
   }
 
   int target_at(const BlockCoordinates& at) {
