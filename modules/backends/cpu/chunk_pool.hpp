@@ -35,9 +35,9 @@ class ChunkPool {
   }
 
  private:
-  /// By a sixteenth of what there is, so that growing chunk by chunk stays cheap and wastes little.
+  /// By a 64th of what there is, so that growing chunk by chunk stays cheap and wastes little.
   void grow(std::size_t count) {
-    const std::size_t chunks = std::max({count, all_ / 16, std::size_t{8}});
+    const std::size_t chunks = std::max({count, all_ / 64, std::size_t{8}});
     AlignedArray<std::byte>& segment = segments_.emplace_back();
     segment.require(chunks * chunk_bytes_);
     const std::size_t made = segment.bytes() / chunk_bytes_;

@@ -38,7 +38,7 @@ class CpuBackend final : public Backend {
   std::vector<T> first_values(const Particles<D, T>& particles, const Component& material, T half_size) const;
   void sort_all();
   void sort_when_moved();
-  void sort_between();
+  void sort_between(const StepInfo& step);
   void scatter(const Pass& pass, const StepInfo& step);
   void gather(const Pass& pass, const StepInfo& step);
   void gather_scatter(const Pass& pass, const StepInfo& step);
@@ -236,16 +236,25 @@ void CpuBackend<D, T, Components>::sort_when_moved() {
 }
 
 /// Between scatter and gather, when the move that follows would, by the last one, lead out of the tiles. What the
-/// gather replaces does not travel.
+/// gather replaces does not travel. Particles are sorted by where they will be in the middle of their way, which makes
+/// the way to the next sort longer.
 template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::sort_between() {
+void CpuBackend<D, T, Components>::sort_between(const StepInfo& step) {
   if (particle_step_->drift() == 0 || !particle_step_->must_sort_soon()) return;
   bool changed = false;
   motion_kept_ = !scene_.has(MPM_REPLACES_MOTION);
-  for (auto& particles : particles_) changed |= sort_particles(particles, sort_space_, scene_, motion_kept_);
+  const double ahead = particle_step_->foresight();
+  Foresight<T> foresight;
+  if (ahead > 0)
+    foresight = {nullptr, static_cast<T>(ahead / particle_step_->last_drift() * step.dt / scene_.domain.cell_size),
+                 static_cast<T>(ahead)};
+  for (std::size_t body = 0; body < particles_.size(); ++body) {
+    if (ahead > 0) foresight.velocities = grid_.channel(motion, field_of_body_[body]);
+    changed |= sort_particles(particles_[body], sort_space_, scene_, motion_kept_, foresight);
+  }
   if (changed) grid_.rebuild(particles_, field_of_body_, {motion, velocity_before});
-  particle_step_->reach_own_cells();
-  particle_step_->set_drift(0);
+  particle_step_->reach_own_cells(ahead > 0);
+  particle_step_->set_drift(ahead);
 }
 
 template <int D, class T, class Components>
@@ -309,7 +318,7 @@ void CpuBackend<D, T, Components>::execute(const Pass& pass, const StepInfo& ste
       limit_ = particle_step_->time_step_limit();
       return;
     case PassKind::sort:
-      return pass.keeps_grid ? sort_between() : sort_when_moved();
+      return pass.keeps_grid ? sort_between(step) : sort_when_moved();
     case PassKind::reset_grid:
       sort_when_moved();  // a plan without a sort pass
       if (scene_.list && particle_step_->widen_active_blocks()) grid_.rebuild(particles_, field_of_body_);

@@ -22,7 +22,7 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
       kernels_(scene.list ? tile_kernels_of_lists<D, T>() : tile_kernels<D, T>(scene.width)),
       list_kernels_(list_kernels<D, T>()),
       higher_kernels_(higher_kernels<D, T>(scene.width, scene.plan.basis_order)) {
-  drift_of_thread_.assign(scene.threads, 0.0);
+  moved_.assign(scene.threads, {});
   int transfer_components = 0;
   for (const Particles<D, T>& body : particles)
     transfer_components = std::max(transfer_components, body.motion_components - D);
@@ -47,6 +47,37 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
     if (!scene.plan.filter) continue;
     work.scratch_velocity.require(std::size_t(D) * chunk_size<T>);
     work.scratch_state.require(std::size_t(std::max(transfer_components, 1)) * chunk_size<T>);
+  }
+  measures_drift_ = !scene.list && !scene.plan.particle_domain;
+  for (int axis = 0; axis < D; ++axis) measures_drift_ = measures_drift_ && !scene.domain.periodic(axis);
+  if (measures_drift_) find_first_places();
+}
+
+/// From the shape itself, to a part of a cell; see drift.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::find_first_places() {
+  Work& work = *work_[0];
+  alignas(64) T position[D * chunk_size<T>];
+  for (int k = 0; k < D * chunk_size<T>; ++k) position[k] = 2 + T(k % chunk_size<T>) / chunk_size<T>;
+  for (std::size_t body = 0; body < bodies_.size(); ++body) {
+    const mpm_shape_batch batch{chunk_size<T>,
+                                chunk_size<T>,
+                                D,
+                                0,
+                                position,
+                                scene_.half_size ? particles_[body].half_size.data() : nullptr,
+                                nullptr,
+                                work.base,
+                                work.offset,
+                                work.weight,
+                                nullptr,
+                                scene_.plan.second_moment ? work.second_moment : nullptr};
+    Components::evaluate_shape(scene_, batch);
+    for (int axis = 0; axis < D; ++axis) {
+      const std::int32_t* const base = work.base + axis * chunk_size<T>;
+      const auto next = std::find(base, base + chunk_size<T>, base[0] + 1) - base;
+      bodies_[body].first_place[axis] = 1 + T(next) / chunk_size<T> - base[0];
+    }
   }
 }
 
@@ -242,10 +273,12 @@ void ParticleStep<D, T, Components>::begin_reach(Block<D>& block, Work& work) co
 }
 
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::reach_own_cells() {
+void ParticleStep<D, T, Components>::reach_own_cells(bool ahead) {
+  const int beside = ahead ? 1 : 0;
   for (auto& particles : particles_)
     for (Block<D>& block : particles.blocks)
-      for (int axis = 0; axis < D; ++axis) block.reach.lowest[axis] = 1, block.reach.highest[axis] = block_side<D>;
+      for (int axis = 0; axis < D; ++axis)
+        block.reach.lowest[axis] = 1 - beside, block.reach.highest[axis] = block_side<D> + beside;
 }
 
 /// After the last one; that of lists is complete already.

@@ -29,10 +29,18 @@ void ParticleStep<D, T, Components>::flush(int body, const Block<D>& block, Work
   work.clock.lap(Phase::tiles);
 }
 
+/// Drift as it was measured; else the sum of the largest moves bounds it.
 template <int D, class T, class Components>
-typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::sum_gathered() {
-  last_drift_ = *std::max_element(drift_of_thread_.begin(), drift_of_thread_.end());
-  drift_ += last_drift_;
+void ParticleStep<D, T, Components>::account_for_move() {
+  Moved largest;
+  for (const Moved& moved : moved_) largest.extend(moved);
+  last_drift_ = largest.distance;
+  drift_ = measures_drift_ ? largest.outside : drift_ + last_drift_;
+}
+
+template <int D, class T, class Components>
+typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::sum_gathered(bool moved) {
+  if (moved) account_for_move();
   throw_failure();
   Gathered sum;
   for (const auto& particles : particles_)
@@ -46,18 +54,17 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
 template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::gather(const Pass& pass,
                                                                                          const StepInfo& step) {
-  std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
+  std::fill(moved_.begin(), moved_.end(), Moved{});
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       load_velocities(body, block, work);
       block.kinetic_energy = block.dissipated = 0;
       block.bounds.clear();
-      double& drift = drift_of_thread_[omp_get_thread_num()];
-      for_each_chunk_of(body, block,
-                        [&](const Chunk& chunk) { drift = std::max(drift, gather_one(pass, step, chunk, work)); });
+      Moved& moved = moved_[omp_get_thread_num()];
+      for_each_chunk_of(body, block, [&](const Chunk& chunk) { moved.extend(gather_one(pass, step, chunk, work)); });
       block.bounds.known = scene_.list && pass.move;
     });
-  return sum_gathered();
+  return sum_gathered(pass.move);
 }
 
 /// Every block gathers from the grid and scatters what follows into next_motion and the forces, which nothing reads any
@@ -68,7 +75,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
                                                                                               const StepInfo& step,
                                                                                               const StepInfo& next) {
   const std::vector<Channel> channels = scattered_channels(pass, next_motion);
-  std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
+  std::fill(moved_.begin(), moved_.end(), Moved{});
   abandoned_ = false;
   const bool energy_moves = scene_.plan.ledger && scene_.has(MPM_AFFINE_CARRIES_ENERGY) &&
                             (scene_.moment_of_particle || scene_.moment_is_gradient || scene_.plan.basis_functions > 0);
@@ -77,11 +84,11 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
       load_velocities(body, block, work);
       begin_reach(block, work);
       block.kinetic_energy = block.dissipated = block.scattered_energy = 0;
-      double& drift = drift_of_thread_[omp_get_thread_num()];
+      Moved& moved = moved_[omp_get_thread_num()];
       for_each_chunk_of(
           body, block,
           [&](const Chunk& chunk) {
-            drift = std::max(drift, gather_one(pass, step, chunk, work));
+            moved.extend(gather_one(pass, step, chunk, work));
             if (abandoned_) return;
             if (!scatter_chunk(pass, next, chunk, work, next_motion, evaluates_for_scatter(pass))) abandoned_ = true;
             if (energy_moves) block.scattered_energy += kinetic_energy(chunk, work);
@@ -96,7 +103,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
           flush(body, block, work, c);
     });
   Fused result;
-  result.gathered = sum_gathered();
+  result.gathered = sum_gathered(pass.move);
   result.scattered = !abandoned_ && !must_sort();
   if (!result.scattered && !step.observed)
     throw std::logic_error("particles moved farther than the nodes around them, and their velocities were not kept");
@@ -105,11 +112,11 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
   return result;
 }
 
-/// What one chunk takes from the tiles; returns the largest displacement in cells. Called by the gather and by the
+/// What one chunk takes from the tiles; returns how far its particles moved. Called by the gather and by the
 /// fused pass, which must agree to the last bit, so it is compiled once.
 template <int D, class T, class Components>
-[[gnu::noinline]] double ParticleStep<D, T, Components>::gather_one(const Pass& pass, const StepInfo& step,
-                                                                    const Chunk& chunk, Work& work) {
+[[gnu::noinline]] auto ParticleStep<D, T, Components>::gather_one(const Pass& pass, const StepInfo& step,
+                                                                  const Chunk& chunk, Work& work) -> Moved {
   Wanted wanted;
   wanted.transfer = true, wanted.strain = pass.strain;
   gather_chunk(chunk, work, wanted);
@@ -143,15 +150,14 @@ template <int D, class T, class Components>
   work.clock.lap(Phase::transfer);
   if (pass.strain) advance_material(chunk, work, step.dt, pass);
   work.clock.lap(Phase::material);
-  if (!pass.move) return 0;
+  if (!pass.move) return {};
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
     std::copy_n(chunk.at(chunk.particles.next_domain), D * D * chunk_size<T>, chunk.at(chunk.particles.domain));
-  const double distance = corners
-                              ? move_with_corners(chunk, work, moved)
-                              : advance_position(chunk, advection, static_cast<T>(step.dt / scene_.domain.cell_size));
+  const Moved far = corners ? move_with_corners(chunk, work, moved)
+                            : advance_position(chunk, advection, static_cast<T>(step.dt / scene_.domain.cell_size));
   if (scene_.list) extend_bounds(chunk);
   work.clock.lap(Phase::move);
-  return distance;
+  return far;
 }
 
 template <int D, class T, class Components>
@@ -419,12 +425,12 @@ T ParticleStep<D, T, Components>::least_place(const Block<D>& block, int axis) c
   return to_axis == T(0) ? std::numeric_limits<T>::min() : std::nextafter(-to_axis, std::numeric_limits<T>::max());
 }
 
-/// x += scale times the advection velocity, in cells; returns the largest displacement in cells.
+/// x += scale times the advection velocity, in cells.
 template <int D, class T, class Components>
-double ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, const T* advection, T scale) {
+auto ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, const T* advection, T scale) -> Moved {
   using L = Lanes<T>;
   if (chunk.body.frozen) scale = T(0);
-  L largest(T(0)), outside(T(0));
+  L largest(T(0)), outside(T(0)), farthest(T(0));
   for (int axis = 0; axis < D; ++axis) {
     T low = -std::numeric_limits<T>::max(), high = std::numeric_limits<T>::max();
     if (!scene_.domain.periodic(axis)) {
@@ -432,17 +438,20 @@ double ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, cons
       low = std::max(static_cast<T>(-margin(axis, 0) - origin), least_place(chunk.block, axis));
       high = static_cast<T>(scene_.domain.cells[axis] + margin(axis, 1) - origin);
     }
+    // Places are known to a part of a cell, see find_first_places.
+    const T first = chunk.body.first_place[axis], beyond = first + block_side<D> - T(1) / chunk_size<T>;
     T* const x = chunk.at(Particles<D, T>::position + axis);
     const T* const v = advection + axis * chunk_size<T>;
     for (int p = 0; p < chunk.end; p += L::width) {
       const L change = scale * L::load(v + p), moved = L::load(x + p) + change;
       moved.store(x + p);
       largest = max(largest, abs(change));
+      farthest = max(farthest, max(first - moved, moved - beyond));
       outside = select(moved >= low, select(moved <= high, outside, L(T(1))), L(T(1)));  // a NaN is outside
     }
   }
   if (any_lane<T>(outside > T(0))) note_outside(chunk);
-  return largest_lane(largest);
+  return {largest_lane(largest), largest_lane(farthest)};
 }
 
 template <int D, class T, class Components>
@@ -471,20 +480,19 @@ void ParticleStep<D, T, Components>::note_outside(const Chunk& chunk) {
 
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::move(const StepInfo& step) {
-  std::fill(drift_of_thread_.begin(), drift_of_thread_.end(), 0.0);
+  std::fill(moved_.begin(), moved_.end(), Moved{});
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
-      double& drift = drift_of_thread_[omp_get_thread_num()];
+      Moved& moved = moved_[omp_get_thread_num()];
       block.bounds.known = false;
       const T scale = static_cast<T>(step.dt / scene_.domain.cell_size);
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         const Particles<D, T>& particles = chunk.particles;
-        drift =
-            std::max(drift, particles.corners >= 0 ? move_with_corners(chunk, work, chunk.at(particles.moved_corners))
-                                                   : advance_position(chunk, chunk.at(particles.advection), scale));
+        moved.extend(particles.corners >= 0 ? move_with_corners(chunk, work, chunk.at(particles.moved_corners))
+                                            : advance_position(chunk, chunk.at(particles.advection), scale));
       });
     });
-  drift_ += *std::max_element(drift_of_thread_.begin(), drift_of_thread_.end());
+  account_for_move();
   throw_failure();
 }
 

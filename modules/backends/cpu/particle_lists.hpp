@@ -113,8 +113,8 @@ void ParticleStep<D, T, Components>::gather_corners(const Chunk& chunk, Work& wo
 
 /// Corners and particles to where the corners were moved; returns the largest displacement in cells.
 template <int D, class T, class Components>
-double ParticleStep<D, T, Components>::move_with_corners(const Chunk& chunk, Work& work, const T* moved) {
-  if (chunk.body.frozen) return 0;
+auto ParticleStep<D, T, Components>::move_with_corners(const Chunk& chunk, Work& work, const T* moved) -> Moved {
+  if (chunk.body.frozen) return {};
   for (int p = 0; p < chunk.end; ++p) {
     Vec<D, T> corner[1 << D];
     for (int k = 0; k < 1 << D; ++k)

@@ -129,6 +129,7 @@ struct Body {
   std::int32_t (*update_material)(const void*, const mpm_material_batch*) = nullptr;
   bool dissipates = false;
   std::vector<double> initial_position;  ///< m, by index of seeding, particle-major
+  std::array<T, D> first_place{};        ///< where in a block particles begin whose first node is the block's, cells
 };
 
 /// Plugins as they were loaded, called through their tables. Another type with these members may call functors that
@@ -175,13 +176,18 @@ class ParticleStep {
   void move(const StepInfo& step);
   TimeStepLimit time_step_limit();
 
-  /// Bound of the distance any particle has moved since it was last reset, in cells.
+  /// How far any particle is out of the block that it was sorted into (its stencil's first node, that is), or a bound
+  /// of that, in cells.
   double drift() const { return drift_; }
   double last_drift() const { return last_drift_; }
   void set_drift(double drift) { drift_ = drift; }
   void set_drift(double drift, double last) { drift_ = drift, last_drift_ = last; }
-  /// The reach of particles that have just been sorted: first nodes lie in their own block.
-  void reach_own_cells();
+  /// The reach of particles that have just been sorted: first nodes lie in their own block, or (`ahead`) up to a cell
+  /// beside it.
+  void reach_own_cells(bool ahead);
+  /// How far ahead of their positions particles may be sorted so that several moves like the last stay within tiles, in
+  /// cells; 0 where only bounds of their drift are known.
+  double foresight() const { return measures_drift_ ? std::clamp(0.95 - 1.25 * last_drift_, 0.0, 0.45) : 0.0; }
   /// Tiles have a margin of one cell for particles that moved since they were sorted.
   bool must_sort() const { return drift_ > 0.99; }
   /// Whether they must be sorted after one more move like the last: what is scattered at once would be scattered again.
@@ -222,6 +228,14 @@ class ParticleStep {
     /// Coefficients of the polynomials beyond affine: the last field of the transfer's state.
     T* higher() const { return motion_at(particles.transfer_state.back().first); }
     T* motion_at(int component) const { return motion + (component - Particles<D, T>::velocity) * chunk_size<T>; }
+  };
+  /// Of one move, in cells.
+  struct Moved {
+    double distance = 0;  ///< largest of any particle along an axis
+    double outside = 0;   ///< farthest from its own block, see drift; where that is measured
+    void extend(const Moved& other) {
+      distance = std::max(distance, other.distance), outside = std::max(outside, other.outside);
+    }
   };
   struct States {
     void* fields[max_state_fields];
@@ -289,8 +303,8 @@ class ParticleStep {
 
   void load_velocities(int body, const Block<D>& block, Work& work);
   void flush(int body, const Block<D>& block, Work& work, Channel channel);
-  double gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
-  Gathered sum_gathered();
+  Moved gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
+  Gathered sum_gathered(bool moved);
   /// What gather_chunk reads: velocities for the transfer, for the material, or the filter's increment.
   struct Wanted {
     bool transfer = false, strain = false;
@@ -308,10 +322,12 @@ class ParticleStep {
   void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
   void advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass);
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
-  double advance_position(const Chunk& chunk, const T* advection, T scale);
+  Moved advance_position(const Chunk& chunk, const T* advection, T scale);
+  void account_for_move();
+  void find_first_places();
   void gather_corners(const Chunk& chunk, Work& work, const T* advection, double dt, T* moved) const;
   Vec<D, T> velocity_at_corner(const Chunk& chunk, const Work& work, int particle, const Vec<D, T>& corner) const;
-  double move_with_corners(const Chunk& chunk, Work& work, const T* moved);
+  Moved move_with_corners(const Chunk& chunk, Work& work, const T* moved);
   double margin(int axis, int side) const;
   T least_place(const Block<D>& block, int axis) const;
   void note_outside(const Chunk& chunk);
@@ -324,7 +340,8 @@ class ParticleStep {
   ListKernels<D, T> list_kernels_;
   HigherKernels<D, T> higher_kernels_;
   std::vector<std::unique_ptr<Work>> work_;
-  std::vector<double> drift_of_thread_;
+  std::vector<Moved> moved_;  ///< of each thread
+  bool measures_drift_ = false;
   double drift_ = 0, last_drift_ = 0;  ///< since the last sort, and of the last move, in cells
   Failure failure_;
   std::exception_ptr exception_;

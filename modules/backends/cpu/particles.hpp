@@ -132,11 +132,21 @@ template <int D, class T>
 void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain,
                     const std::vector<T>& first_value, int affine);
 
+/// How far ahead particles are sorted: by where the velocity of their nearest node leads, so that they are in the
+/// middle of their way while they belong to a block.
+template <class T>
+struct Foresight {
+  const T* velocities = nullptr;  ///< quads of the body's field; null: particles are sorted as they lie
+  T cells_a_velocity = 0;         ///< s/m of cells
+  T farthest = 0;                 ///< cells along any axis, below 1: particles stay within the tile of their block
+};
+
 /// Sorts into the blocks of stencils' first nodes (of lists: of positions less half a cell), at first and where it will
 /// last by cells within a block too; the same for any number of threads. Whoever stays in its block stays in its place,
 /// unless the block is put in order. Whether the list of blocks has changed. Unless `with_motion`, velocities and the
 /// transfer's state stay behind: they hold anything afterwards.
 template <int D, class T>
-bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion);
+bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion,
+                    const Foresight<T>& foresight = {});
 
 }  // namespace mpm::cpu

@@ -67,10 +67,12 @@ void fill_tail(const Particles<D, T>& particles, std::uint32_t count, std::byte*
 template <int D, class T>
 class Sorter {
  public:
-  Sorter(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion)
+  Sorter(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion,
+         const Foresight<T>& foresight)
       : particles_(particles),
         space_(space),
         scene_(scene),
+        foresight_(foresight),
         threads_(particles.blocks.size() < 32 ? 1 : scene.threads),
         left_behind_(with_motion ? 0 : particles.motion_components),
         row_bytes_((particles.components * sizeof(T) + sizeof(Tail) + 7) / 8 * 8) {}
@@ -154,7 +156,7 @@ class Sorter {
     alignas(64) std::int32_t base[D * chunk_size<T>], around[chunk_size<T>], cell[chunk_size<T>], out[chunk_size<T>];
     const int end = padded(count);
     if (chunk + 1 < particles_.chunks) fetch(chunk + 1, 0, Particles<D, T>::velocity);
-    first_nodes(chunk, count, base);
+    first_nodes(particles_.blocks[b], chunk, count, base);
     for (int p = 0; p < end; ++p) around[p] = cell[p] = out[p] = 0;
     for (int axis = 0; axis < D; ++axis) {
       const std::int32_t* const node = base + axis * chunk_size<T>;
@@ -194,7 +196,36 @@ class Sorter {
     for (std::uint64_t left = space_.leaving[chunk]; left != 0; left &= left - 1) use(std::countr_zero(left));
   }
 
-  void first_nodes(std::uint32_t chunk, int count, std::int32_t* base) const {
+  /// Where a chunk's particles will be in the middle of their way; see Foresight. Inside the domain, as they are now.
+  void look_ahead(const Block<D>& block, const T* position, int count, T* ahead) const {
+    using L = Lanes<T>;
+    alignas(64) std::int32_t around[chunk_size<T>], node[chunk_size<T>];
+    const int end = padded(count);
+    for (int p = 0; p < end; ++p) around[p] = node[p] = 0;
+    for (int axis = 0; axis < D; ++axis)
+      for (int p = 0; p < end; ++p) {
+        const std::int32_t nearest = static_cast<std::int32_t>(std::floor(position[axis * chunk_size<T> + p] + T(0.5)));
+        around[p] = around[p] * 3 + (nearest >> block_bits<D>)+1;
+        node[p] = (node[p] << block_bits<D>) | (nearest & (block_side<D> - 1));
+      }
+    for (int p = 0; p < end; ++p) {
+      const T* const v = foresight_.velocities + (std::size_t(block.neighbours[around[p]]) * block_nodes + node[p]) * 4;
+      for (int axis = 0; axis < D; ++axis) ahead[axis * chunk_size<T> + p] = v[axis];
+    }
+    const L least(-foresight_.farthest), most(foresight_.farthest);
+    for (int axis = 0; axis < D; ++axis) {
+      const T origin = static_cast<T>(block.at[axis] * block_side<D>);
+      const L lower(-origin), upper(scene_.domain.cells[axis] - origin);
+      for (int p = 0; p < end; p += L::width) {
+        const L x = L::load(position + axis * chunk_size<T> + p);
+        T* const to = ahead + axis * chunk_size<T> + p;
+        const L way = max(least, min(most, foresight_.cells_a_velocity * L::load(to)));
+        max(min(x, lower), min(max(x, upper), x + way)).store(to);
+      }
+    }
+  }
+
+  void first_nodes(const Block<D>& block, std::uint32_t chunk, int count, std::int32_t* base) const {
     if (scene_.list) {  // the middle of the list's nodes comes to the middle of the tile
       for (int axis = 0; axis < D; ++axis)
         for (int p = 0; p < padded(count); ++p)
@@ -202,14 +233,15 @@ class Sorter {
               std::floor(particles_.chunk(chunk)[axis * chunk_size<T> + std::min(p, count - 1)] - T(0.5)));
       return;
     }
-    alignas(64) T offset[D * chunk_size<T>], weight[D * 4 * chunk_size<T>];
+    alignas(64) T offset[D * chunk_size<T>], weight[D * 4 * chunk_size<T>], ahead[D * chunk_size<T>];
+    if (foresight_.velocities) look_ahead(block, particles_.chunk(chunk), count, ahead);
     const T* const domain =
         particles_.domain < 0 ? nullptr : particles_.chunk(chunk) + particles_.domain * chunk_size<T>;
     const mpm_shape_batch batch{static_cast<std::uint32_t>(padded(count)),
                                 chunk_size<T>,
                                 D,
                                 0,
-                                particles_.chunk(chunk),
+                                foresight_.velocities ? ahead : particles_.chunk(chunk),
                                 scene_.half_size ? particles_.half_size.data() : nullptr,
                                 domain,
                                 base,
@@ -284,7 +316,7 @@ class Sorter {
       const Block<D>& block = particles_.blocks[b];
       for_each_chunk<T>(block, [&](std::uint32_t chunk, int count) {
         const std::uint32_t first = chunk * chunk_size<T>;
-        first_nodes(chunk, count, base);
+        first_nodes(block, chunk, count, base);
         for (int lane = 0; lane < count; ++lane) {
           if (space_.key[first + lane] != far_key) continue;
           const auto to = destination<D, T>(scene_.domain, block, base, particles_.chunk(chunk), lane);
@@ -406,16 +438,24 @@ class Sorter {
     }
   }
 
-  /// So that no thread allocates: blocks grow before others have shrunk, and threads keep chunks at hand.
+  /// So that no thread allocates: within a layer blocks grow before others have shrunk, and threads keep chunks at
+  /// hand.
   void reserve_chunks() {
-    std::size_t growth = 0, largest = 0;
-    for (std::uint32_t i = 0; i < targets_.size(); ++i) {
-      const std::size_t now = i < sources_.size() ? chunks_of(particles_.blocks[i].count) : 0;
-      const std::size_t then = chunks_of(targets_[i].count);
-      growth += then > now ? then - now : 0;
-      largest = std::max({largest, now, then});
+    std::int64_t taken = 0, most = 0;
+    std::size_t largest = 0;
+    for (std::size_t layer = 0; layer + 1 < layers_.size(); ++layer) {
+      std::int64_t left = 0;
+      for (std::uint32_t i = layers_[layer]; i < layers_[layer + 1]; ++i) {
+        const std::uint32_t target = in_layers_[i];
+        const std::int64_t now = target < sources_.size() ? chunks_of(particles_.blocks[target].count) : 0;
+        const std::int64_t then = chunks_of(targets_[target].count);
+        (then > now ? taken : left) += std::abs(then - now);
+        largest = std::max(largest, static_cast<std::size_t>(std::max(now, then)));
+      }
+      most = std::max(most, taken);
+      taken -= left;
     }
-    particles_.pool.reserve(growth + 4 * largest * threads_);
+    particles_.pool.reserve(static_cast<std::size_t>(most) + 4 * largest * threads_);
     space_.unused.resize(std::max(space_.unused.size(), std::size_t(threads_)));
     for (auto& unused : space_.unused) unused.reserve(4 * largest);
     at_hand_ = 2 * largest;
@@ -702,6 +742,7 @@ class Sorter {
   Particles<D, T>& particles_;
   SortSpace& space_;
   const Scene<D, T>& scene_;
+  const Foresight<T> foresight_;
   int threads_;
   bool first_ = false;  ///< sort of these particles
   int left_behind_;     ///< components from the velocity on that do not travel
@@ -717,8 +758,9 @@ class Sorter {
 };
 
 template <int D, class T>
-bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion) {
-  return Sorter<D, T>(particles, space, scene, with_motion).run();
+bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion,
+                    const Foresight<T>& foresight) {
+  return Sorter<D, T>(particles, space, scene, with_motion, foresight).run();
 }
 
 /// Particles as they come, each into the last chunk of its block.
