@@ -46,6 +46,13 @@ MPM_ROW_INLINE Row<T, K> load_row(const T* p) {
   for (int i = 0; i < R::vectors; ++i) row.v[i] = *reinterpret_cast<const typename R::Unaligned*>(p + i * R::width);
   return row;
 }
+/// The compiler would load a row that is used twice two times, as operands: most loads cross a line of the cache.
+template <class T, int K>
+MPM_ROW_INLINE void stay_loaded([[maybe_unused]] Row<T, K>& row) {
+#if defined(__AVX512F__)
+  for (int i = 0; i < Row<T, K>::vectors; ++i) asm("" : "+v"(row.v[i]));
+#endif
+}
 template <class T, int K>
 MPM_ROW_INLINE void store_row(T* p, const Row<T, K>& row) {
   using R = Row<T, K>;
@@ -140,6 +147,40 @@ MPM_ROW_INLINE Row<T, K> node_numbers() {
       row.v[i][lane] = static_cast<T>(node);
     }
   return row;
+}
+
+/// Node k of as many rows as a register has nodes, side by side in their order, for k < 4: a transpose of quads.
+template <class T, int K>
+MPM_ROW_INLINE void nodes_of_rows(const Row<T, K> (&rows)[Row<T, K>::nodes_a_vector], Lanes<T> (&nodes)[4]) {
+  using R = Row<T, K>;
+  using V = typename R::Vector;
+  constexpr auto all = std::make_index_sequence<R::width>();
+  if constexpr (R::nodes_a_vector == 1) {
+    for (int k = 0; k < 4; ++k) nodes[k].v = rows[0].v[k];
+  } else if constexpr (R::nodes_a_vector == 2) {
+    for (int k = 0; k < 4; ++k) {
+      const V a = rows[0].v[k / 2], b = rows[1].v[k / 2];
+      constexpr int half = R::width / 2;
+      nodes[k].v = k % 2 == 0
+                       ? shuffled<[](int lane) { return lane < half ? lane : R::width + lane - half; }>(a, b, all)
+                       : shuffled<[](int lane) { return lane < half ? lane + half : R::width + lane; }>(a, b, all);
+    }
+  } else {
+    constexpr auto halves = [](auto low) {
+      return [](int lane) { return (lane < 8 ? lane : lane + 8) + (decltype(low)::value ? 0 : 8); };
+    };
+    constexpr auto quads = [](auto even) {
+      return [](int lane) { return lane / 4 * 8 + lane % 4 + (decltype(even)::value ? 0 : 4); };
+    };
+    const V ab = shuffled<halves(std::true_type())>(rows[0].v[0], rows[1].v[0], all);
+    const V cd = shuffled<halves(std::true_type())>(rows[2].v[0], rows[3].v[0], all);
+    const V AB = shuffled<halves(std::false_type())>(rows[0].v[0], rows[1].v[0], all);
+    const V CD = shuffled<halves(std::false_type())>(rows[2].v[0], rows[3].v[0], all);
+    nodes[0].v = shuffled<quads(std::true_type())>(ab, cd, all);
+    nodes[1].v = shuffled<quads(std::false_type())>(ab, cd, all);
+    nodes[2].v = shuffled<quads(std::true_type())>(AB, CD, all);
+    nodes[3].v = shuffled<quads(std::false_type())>(AB, CD, all);
+  }
 }
 
 }  // namespace mpm::cpu

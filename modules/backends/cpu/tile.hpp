@@ -233,7 +233,8 @@ MPM_ROW_INLINE StencilSums<K, T> sum_rows(const StencilRows<D, K, T, Shared, Gra
     } else {
 #pragma GCC unroll 4
       for (int j = 0; j < K; ++j) {
-        const R row = rows.get(i * K + j, corner, line);
+        R row = rows.get(i * K + j, corner, line);
+        if (Gradient || (Moment && j > 1)) stay_loaded(row);
         plane = j == 0 ? times<T, K>(y.w[j], row) : plane + times<T, K>(y.w[j], row);
         if constexpr (Moment) {
           if (j > 0) plane_moment = j == 1 ? times<T, K>(y.w[1], row) : plane_moment + times<T, K>(moment_y[j], row);
@@ -259,42 +260,32 @@ MPM_ROW_INLINE StencilSums<K, T> sum_rows(const StencilRows<D, K, T, Shared, Gra
   return sums;
 }
 
-/// The sums of one pack of particles, each over the nodes of all its rows at once.
+/// From the sums over the rows of a pack's particles to its quads, for the four registers of a group one by one: those
+/// of register i are of the particles i, i + 4, i + 8 ... (place_in_pack).
 template <int D, class T, int K, bool Moment, bool Gradient>
 struct PackSums {
   using R = Row<T, K>;
-  static constexpr int width = Lanes<T>::width, moments = Moment ? D - 1 : 0, gradients = Gradient ? D - 1 : 0;
-  alignas(64) T rows[1 + moments + gradients][width * R::scalars];
+  static constexpr int width = Lanes<T>::width, blocks = width / 4;
+  static constexpr int moments = Moment ? D - 1 : 0, gradients = Gradient ? D - 1 : 0, sums = 1 + moments + gradients;
+  /// A register has as many nodes as particles. One sum alone passes through memory faster.
+  static constexpr bool in_registers = K > 2 && sums > 1;
 
-  MPM_ROW_INLINE void set(int lane, const StencilSums<K, T>& sums) {
-    const auto keep = [&](int sum, const R& row) { store_row(rows[sum] + lane * R::scalars, row); };
-    keep(0, sums.value);
-    if constexpr (Moment) keep(1, sums.moment_x);
-    if constexpr (Moment && D == 3) keep(2, sums.moment_y);
-    if constexpr (Gradient) keep(1 + moments, sums.gradient_x);
-    if constexpr (Gradient && D == 3) keep(2 + moments, sums.gradient_y);
-  }
-  /// Node k of the particles i, i + 4, i + 8 ... of the pack.
-  MPM_ROW_INLINE Lanes<T> node(int sum, int i, int k) const {
-    return Lanes<T>(join_quads<T>(rows[sum] + i * R::scalars + 4 * k, 4 * R::scalars));
-  }
-  /// Sums over the nodes along the last axis, with its weights and slopes (lanes), into the pack's quads.
-  MPM_ROW_INLINE void store(T* quads, const T* weights, const T* slopes) const {
-    constexpr auto all = std::make_integer_sequence<int, 4>();
-    const auto store_some = [&]<int... i>(std::integer_sequence<int, i...>) {
-      (store_register<i>(quads, weights, slopes), ...);
-    };
-    store_some(all);
+  static MPM_ROW_INLINE void list(const StencilSums<K, T>& from, R (&rows)[sums]) {
+    rows[0] = from.value;
+    if constexpr (Moment) rows[1] = from.moment_x;
+    if constexpr (Moment && D == 3) rows[2] = from.moment_y;
+    if constexpr (Gradient) rows[1 + moments] = from.gradient_x;
+    if constexpr (Gradient && D == 3) rows[2 + moments] = from.gradient_y;
   }
 
- private:
-  template <int i>
-  MPM_ROW_INLINE void store_register(T* quads, const T* weights, const T* slopes) const {
+  /// Sums over the nodes along the last axis, with its weights and slopes (lanes). node(sum, k): node k of the particles.
+  template <int i, class Node>
+  static MPM_ROW_INLINE void store(T* quads, const T* weights, const T* slopes, Node&& node) {
     Lanes<T> w[K], terms[1 + D + D];
     for (int k = 0; k < K; ++k) w[k] = of_block<i>(weights + k * chunk_size<T>);
     constexpr int first_g = 1 + (Moment ? D : 0);
     for (int k = 0; k < K; ++k) {
-      const Lanes<T> value = node(0, i, k), term = w[k] * value;
+      const Lanes<T> value = node(0, k), term = w[k] * value;
       terms[0] = k == 0 ? term : terms[0] + term;
       if constexpr (Moment)
         if (k > 0) terms[D] = k == 1 ? term : terms[D] + T(k) * term;
@@ -304,14 +295,16 @@ struct PackSums {
       }
     }
     const auto weighted = [&](int sum) {
-      Lanes<T> total = w[0] * node(sum, i, 0);
-      for (int k = 1; k < K; ++k) total = total + w[k] * node(sum, i, k);
+      Lanes<T> total = w[0] * node(sum, 0);
+      for (int k = 1; k < K; ++k) total = total + w[k] * node(sum, k);
       return total;
     };
     for (int a = 0; a < moments; ++a) terms[1 + a] = weighted(1 + a);
     for (int a = 0; a < gradients; ++a) terms[first_g + a] = weighted(1 + moments + a);
     for (int g = 0; g < quad_groups(D, Moment, Gradient); ++g) terms[g].store(quads + g * quad_group<T> + i * width);
   }
+
+ private:
   /// Lane 4 k + i on all of block k.
   template <int i>
   static MPM_ROW_INLINE Lanes<T> of_block(const T* lanes) {
@@ -320,21 +313,75 @@ struct PackSums {
   }
 };
 
+/// Calls run.operator()<i>() for the registers of a group.
+template <class Run>
+MPM_ROW_INLINE void for_each_register(Run&& run) {
+  run.template operator()<0>(), run.template operator()<1>(), run.template operator()<2>(), run.template operator()<3>();
+}
+
+/// One pack, its particles in order: where they share stencils, whose rows stay in registers. The sums pass through
+/// memory.
+template <int D, class T, int K, bool Moment, bool Gradient, bool Shared>
+MPM_ROW_INLINE void gather_pack_in_order(StencilRows<D, K, T, Shared, Gradient>& rows, const T*& corner, const T* tile,
+                                         const Stencils<T>& stencils, int first, T* quads, const T* weights,
+                                         const T* slopes) {
+  using Pack = PackSums<D, T, K, Moment, Gradient>;
+  using R = Row<T, K>;
+  alignas(64) T kept[Pack::sums][Pack::width * R::scalars];
+  for (int lane = 0; lane < Pack::width; ++lane) {
+    stencils.ahead.fetch(first + lane);
+    const T* const place = tile + std::size_t(stencils.first[first + lane]) * 4;
+    if (place != corner) rows.load(corner = place, tile_side<D, K> * 4);
+    R sums[Pack::sums];
+    Pack::list(sum_rows<D, T, K, Moment, Gradient, Shared>(rows, corner, stencils, first + lane), sums);
+    for (int s = 0; s < Pack::sums; ++s) store_row(kept[s] + lane * R::scalars, sums[s]);
+  }
+  for_each_register([&]<int i> {
+    Pack::template store<i>(quads, weights, slopes, [&](int sum, int k) {
+      return Lanes<T>(join_quads<T>(kept[sum] + i * R::scalars + 4 * k, 4 * R::scalars));
+    });
+  });
+}
+
+/// One pack, register by register: the sums never leave the registers.
+template <int D, class T, int K, bool Moment, bool Gradient>
+MPM_ROW_INLINE void gather_pack_by_register(const T* tile, const Stencils<T>& stencils, int first, T* quads,
+                                            const T* weights, const T* slopes) {
+  using Pack = PackSums<D, T, K, Moment, Gradient>;
+  using R = Row<T, K>;
+  const StencilRows<D, K, T, false, Gradient> rows{};  // keeps none
+  for_each_register([&]<int i> {
+    R sums[Pack::blocks][Pack::sums];
+#pragma GCC unroll 4
+    for (int k = 0; k < Pack::blocks; ++k) {
+      const int p = first + i + 4 * k;
+      stencils.ahead.fetch(p);
+      Pack::list(sum_rows<D, T, K, Moment, Gradient, false>(rows, tile + std::size_t(stencils.first[p]) * 4, stencils, p),
+                 sums[k]);
+    }
+    Lanes<T> nodes[Pack::sums][4];
+    for (int s = 0; s < Pack::sums; ++s) {
+      R of_sum[Pack::blocks];
+      for (int k = 0; k < Pack::blocks; ++k) of_sum[k] = sums[k][s];
+      nodes_of_rows<T, K>(of_sum, nodes[s]);
+    }
+    Pack::template store<i>(quads, weights, slopes, [&](int sum, int k) { return nodes[sum][k]; });
+  });
+}
+
 template <int D, class T, int K, bool Moment, bool Gradient, bool Shared>
 void gather_particles(const T* tile, const Stencils<T>& stencils, T* moments, int count) {
   constexpr int width = Lanes<T>::width, last = (D - 1) * K * chunk_size<T>;
-  StencilRows<D, K, T, Shared, Gradient> rows;
-  PackSums<D, T, K, Moment, Gradient> pack;
-  const T* corner = nullptr;
+  [[maybe_unused]] StencilRows<D, K, T, Shared, Gradient> rows;
+  [[maybe_unused]] const T* corner = nullptr;
   for (int first = 0; first < count; first += width) {
-    for (int p = first; p < first + width; ++p) {
-      stencils.ahead.fetch(p);
-      const T* const place = tile + std::size_t(stencils.first[p]) * 4;
-      if (place != corner) rows.load(corner = place, tile_side<D, K> * 4);
-      pack.set(p - first, sum_rows<D, T, K, Moment, Gradient, Shared>(rows, corner, stencils, p));
-    }
-    pack.store(moments + quad_place<T>(first, quad_groups(D, Moment, Gradient)), stencils.weight + last + first,
-               stencils.gradient + last + first);
+    T* const quads = moments + quad_place<T>(first, quad_groups(D, Moment, Gradient));
+    const T *const weights = stencils.weight + last + first, *const slopes = stencils.gradient + last + first;
+    if constexpr (!Shared && PackSums<D, T, K, Moment, Gradient>::in_registers)
+      gather_pack_by_register<D, T, K, Moment, Gradient>(tile, stencils, first, quads, weights, slopes);
+    else
+      gather_pack_in_order<D, T, K, Moment, Gradient, Shared>(rows, corner, tile, stencils, first, quads, weights,
+                                                              slopes);
   }
 }
 
