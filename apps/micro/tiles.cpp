@@ -34,11 +34,11 @@ struct TileCase {
     weight = filled<T>(random, D * width, 0, 1), gradient = filled<T>(random, D * width, -1, 1);
     // Four scalars a quad: 64 of a component fill as many quads as sixteen components of a batch.
     quads = filled<T>(random, 4 * (1 + 2 * D) + 1, -1e-3, 1e-3);
-    tile = filled<T>(random, ((gather ? kernels.load_scalars : kernels.scatter_scalars) + batch - 1) / batch, -1, 1);
+    tile = filled<T>(random, (kernels.scalars + batch - 1) / batch, -1, 1);
     for (int lane = 0; lane < batch; ++lane) {
       int number = 0;
       for (int a = 0; a < D; ++a) {
-        const int side = a == D - 1 && !gather ? kernels.first_nodes : kernels.side;
+        const int side = a == D - 1 ? kernels.first_nodes : kernels.side;
         number = number * side + 1 + static_cast<int>(random.uniform(0, cpu::block_side<D>)) % cpu::block_side<D>;
       }
       static_cast<std::int32_t*>(first.data())[lane] = number;

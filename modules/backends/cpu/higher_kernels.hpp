@@ -85,15 +85,17 @@ void scatter_higher(T* tile, const Stencils<T>& stencils, const T* offset, const
 template <int D, class T, int K, int R>
 void gather_higher(const T* tile, const Stencils<T>& stencils, const T* offset, T* coefficients, int count) {
   using Q = Quad<T>;
-  constexpr int side = tile_side<D, K>, Z = PowerQuads<D, R, T>::powers_z;
+  using W = Row<T, K>;
+  constexpr int line = first_nodes_of_tile<D> * W::scalars, Z = PowerQuads<D, R, T>::powers_z;
   for (int p = 0; p < count; ++p) {
     const ParticleBasis<D, K, T> basis(stencils, offset, p, R - 1);
     PowerQuads<D, R, T> c;
-    const Q* const corner = reinterpret_cast<const Q*>(tile) + stencils.first[p];
+    const T* const corner = tile + std::size_t(stencils.first[p]) * W::scalars;
     for (int i = 0; i < K; ++i) {
       Q plane[R][Z] = {};
       for (int j = 0; j < (D == 3 ? K : 1); ++j) {
-        const Q* const nodes = corner + (D == 3 ? (i * side + j) * side : i * side);
+        const T* const row_of_nodes = corner + (D == 3 ? (i * tile_side<D, K> + j) * line : i * line);
+        const Q* const nodes = reinterpret_cast<const Q*>(row_of_nodes);
         Q row[R] = {};
         for (int k = 0; k < K; ++k)
           for (int r = 0; r < R; ++r) row[r] += basis.axis[D - 1].taken[r][k] * nodes[k];

@@ -30,9 +30,9 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
     work_.push_back(std::make_unique<Work>());
     Work& work = *work_.back();
     for (int c = 0; c < channel_count; ++c)
-      if (grid.has(static_cast<Channel>(c))) work.tile[c].require(kernels_.scatter_scalars);
-    work.velocity_tile.require(kernels_.load_scalars);
-    if (scene.has(MPM_GATHERS_INCREMENT)) work.increment_tile.require(kernels_.load_scalars);
+      if (grid.has(static_cast<Channel>(c))) work.tile[c].require(kernels_.scalars);
+    work.velocity_tile.require(kernels_.scalars);
+    if (scene.has(MPM_GATHERS_INCREMENT)) work.increment_tile.require(kernels_.scalars);
     if (scene.list) {
       work.lists.require(scene.capacity);
       if (scene.evaluate_box) work.boxes.require();
@@ -258,7 +258,7 @@ bool ParticleStep<D, T, Components>::place_to_scatter(const Chunk& chunk, Work& 
       work.lowest[axis] = low, work.highest[axis] = high;
     }
   }
-  number_stencils(work, chunk.end, kernels_.first_nodes);
+  number_stencils(work, chunk.end);
   return true;
 }
 
@@ -294,13 +294,13 @@ void ParticleStep<D, T, Components>::end_reach(Block<D>& block, const Work& work
 /// Where stencils begin in the tile to gather from.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::place_to_gather(const Chunk& chunk, Work& work) const {
-  if (!scene_.list) number_stencils(work, chunk.end, kernels_.side);
+  if (!scene_.list) number_stencils(work, chunk.end);
 }
 
-/// Number of each stencil's first node, `along_last` of them a row, and whether neighbours mostly share one. Neighbours
-/// are compared in registers: a load of what was just stored, one place off, would wait for both stores.
+/// Row of each stencil in a tile, and whether neighbours mostly share one. Neighbours are compared in registers: a load
+/// of what was just stored, one place off, would wait for both stores.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::number_stencils(Work& work, int count, int along_last) const {
+void ParticleStep<D, T, Components>::number_stencils(Work& work, int count) const {
   using Integers = typename Work::Integers;
   constexpr auto all = std::make_index_sequence<Work::integers>();
   Integers previous = Integers{} - 1, same{};
@@ -309,7 +309,8 @@ void ParticleStep<D, T, Components>::number_stencils(Work& work, int count, int 
       return *reinterpret_cast<const Integers*>(work.base + axis * chunk_size<T> + p);
     };
     Integers node = base(0) + 1;
-    for (int axis = 1; axis < D; ++axis) node = node * (axis == D - 1 ? along_last : kernels_.side) + (base(axis) + 1);
+    for (int axis = 1; axis < D; ++axis)
+      node = node * (axis == D - 1 ? kernels_.first_nodes : kernels_.side) + (base(axis) + 1);
     *reinterpret_cast<Integers*>(work.first + p) = node;
     same += shuffled<[](int lane) { return lane + Work::integers - 1; }>(previous, node, all) == node;
     previous = node;

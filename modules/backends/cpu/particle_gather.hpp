@@ -98,7 +98,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
       end_reach(block, work);
       for (const Channel c : channels)
         if (abandoned_)
-          work.clear(c, kernels_.scatter_scalars);
+          work.clear(c, kernels_.scalars);
         else
           flush(body, block, work, c);
     });

@@ -266,7 +266,7 @@ class ParticleStep {
   void begin_reach(Block<D>& block, Work& work) const;
   void end_reach(Block<D>& block, const Work& work) const;
   void place_to_gather(const Chunk& chunk, Work& work) const;
-  void number_stencils(Work& work, int count, int along_last) const;
+  void number_stencils(Work& work, int count) const;
   void extend_bounds(const Chunk& chunk) const;
   bool place_lists(const Chunk& chunk, const Work& work, bool extend_reach) const;
   void invert_moments(const Chunk& chunk, Work& work) const;

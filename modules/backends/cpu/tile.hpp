@@ -8,9 +8,9 @@
 //   w_i w_j w_k (b' + i Q_x + j Q_y + k Q_z) + grad terms,    b' = b - h A f,  Q_a = h A e_a,  S_a = S e_a / h.
 // The gather returns in the same places  sum w v,  sum k_a w v  and  sum (dw/dx_a) v.
 //
-// Both work on whole rows of nodes along the last axis (row.hpp). The scatter's tile holds a row of its own for every
-// first node along that axis, so that what one particle stores the next one loads at the same address: rows that
-// overlap wait for one another in the store buffer. The flush adds the rows up.
+// Both work on whole rows of nodes along the last axis (row.hpp). A tile holds a row of its own for every first node
+// along that axis: what one particle scatters the next one loads at the same address (rows that overlap wait for one
+// another in the store buffer), and no load crosses a line of the cache. The flush adds the rows up.
 
 #include <cstdint>
 #include <cstring>
@@ -37,7 +37,7 @@ struct Ahead {
 /// Weights of one chunk. Arrays [axis * K + k][chunk_size].
 template <class T>
 struct Stencils {
-  const std::int32_t* first;  ///< of the gather: first node of the stencil in the tile; of the scatter: its first row
+  const std::int32_t* first;  ///< row of the stencil in the tile
   bool shared = false;        ///< most particles have the stencil of the one before
   const T* weight;
   const T* gradient;  ///< per cell
@@ -54,9 +54,8 @@ struct TileKernels {
   using Scatter = void (*)(T* tile, const Stencils<T>&, const T* coefficients, int count);
   using Gather = void (*)(const T* tile, const Stencils<T>&, T* moments, int count);
   int side = 0;             ///< nodes an axis
-  int first_nodes = 0;      ///< along the last axis: rows of the scatter's tile beside one another
-  int load_scalars = 0;     ///< of the tile to gather from
-  int scatter_scalars = 0;  ///< of the tile to scatter to
+  int first_nodes = 0;      ///< along the last axis: rows of the tile beside one another
+  int scalars = 0;          ///< of a tile
   Scatter scatter[2][2]{};  ///< [affine][gradient]
   Gather gather[2][2]{};    ///< [moment][gradient]; for whole packs of particles
   void (*load)(T* tile, const T* channel, const std::int32_t* neighbours, const Reach&);
@@ -220,7 +219,7 @@ template <int D, class T, int K, bool Moment, bool Gradient, bool Shared>
 MPM_ROW_INLINE StencilSums<K, T> sum_rows(const StencilRows<D, K, T, Shared, Gradient>& rows, const T* corner,
                                           const Stencils<T>& stencils, int p) {
   using R = Row<T, K>;
-  constexpr int line = tile_side<D, K> * 4;
+  constexpr int line = first_nodes_of_tile<D> * R::scalars;
   const AxisWeights<K, T> x(stencils, 0, p, Gradient), y(stencils, D - 2, p, Gradient);
   StencilSums<K, T> sums;
   typename R::Vector moment_y[K];
@@ -278,7 +277,8 @@ struct PackSums {
     if constexpr (Gradient && D == 3) rows[2 + moments] = from.gradient_y;
   }
 
-  /// Sums over the nodes along the last axis, with its weights and slopes (lanes). node(sum, k): node k of the particles.
+  /// Sums over the nodes along the last axis, with its weights and slopes (lanes). node(sum, k): node k of the
+  /// particles.
   template <int i, class Node>
   static MPM_ROW_INLINE void store(T* quads, const T* weights, const T* slopes, Node&& node) {
     Lanes<T> w[K], terms[1 + D + D];
@@ -316,7 +316,8 @@ struct PackSums {
 /// Calls run.operator()<i>() for the registers of a group.
 template <class Run>
 MPM_ROW_INLINE void for_each_register(Run&& run) {
-  run.template operator()<0>(), run.template operator()<1>(), run.template operator()<2>(), run.template operator()<3>();
+  run.template operator()<0>(), run.template operator()<1>(), run.template operator()<2>(),
+      run.template operator()<3>();
 }
 
 /// One pack, its particles in order: where they share stencils, whose rows stay in registers. The sums pass through
@@ -330,8 +331,8 @@ MPM_ROW_INLINE void gather_pack_in_order(StencilRows<D, K, T, Shared, Gradient>&
   alignas(64) T kept[Pack::sums][Pack::width * R::scalars];
   for (int lane = 0; lane < Pack::width; ++lane) {
     stencils.ahead.fetch(first + lane);
-    const T* const place = tile + std::size_t(stencils.first[first + lane]) * 4;
-    if (place != corner) rows.load(corner = place, tile_side<D, K> * 4);
+    const T* const place = tile + std::size_t(stencils.first[first + lane]) * R::scalars;
+    if (place != corner) rows.load(corner = place, first_nodes_of_tile<D> * R::scalars);
     R sums[Pack::sums];
     Pack::list(sum_rows<D, T, K, Moment, Gradient, Shared>(rows, corner, stencils, first + lane), sums);
     for (int s = 0; s < Pack::sums; ++s) store_row(kept[s] + lane * R::scalars, sums[s]);
@@ -356,8 +357,8 @@ MPM_ROW_INLINE void gather_pack_by_register(const T* tile, const Stencils<T>& st
     for (int k = 0; k < Pack::blocks; ++k) {
       const int p = first + i + 4 * k;
       stencils.ahead.fetch(p);
-      Pack::list(sum_rows<D, T, K, Moment, Gradient, false>(rows, tile + std::size_t(stencils.first[p]) * 4, stencils, p),
-                 sums[k]);
+      const T* const corner = tile + std::size_t(stencils.first[p]) * R::scalars;
+      Pack::list(sum_rows<D, T, K, Moment, Gradient, false>(rows, corner, stencils, p), sums[k]);
     }
     Lanes<T> nodes[Pack::sums][4];
     for (int s = 0; s < Pack::sums; ++s) {
@@ -437,8 +438,62 @@ struct Line {
   }
 };
 
+/// The nodes of three blocks in a line that a tile's rows begin and end at, as registers: four of the first block, all
+/// of the second's, four of the third.
 template <int D, class T, int K>
-void load_tile(T* tile, const T* channel, const std::int32_t* neighbours, const Reach& reach) {
+struct LineOfNodes {
+  using R = Row<T, K>;
+  using V = typename R::Vector;
+  static constexpr int B = block_side<D>, beside = 4 / R::nodes_a_vector, own = B / R::nodes_a_vector;
+  V nodes[beside + own + beside]{};
+
+  MPM_ROW_INLINE LineOfNodes(const T* channel, const std::int32_t* neighbours, const TileRow<D>& row, bool first,
+                             bool third) {
+    const auto load = [&](int part, int node, int count, V* to) {
+      const T* const from = channel + (std::size_t(neighbours[part]) * block_nodes + row.block_row + node) * 4;
+      for (int i = 0; i < count; ++i) to[i] = *reinterpret_cast<const typename R::Unaligned*>(from + i * R::width);
+    };
+    if (first) load(row.neighbour, B - 4, beside, nodes);
+    load(row.neighbour + 1, 0, own, nodes + beside);
+    if (third) load(row.neighbour + 2, 0, beside, nodes + beside + own);
+  }
+
+  /// The row whose first node is the z-th that a stencil may begin with.
+  template <int z>
+  MPM_ROW_INLINE R row() const {
+    constexpr int node = 3 + z, shift = node % R::nodes_a_vector;
+    R row;
+    for (int i = 0; i < R::vectors; ++i) {
+      const V* const from = nodes + node / R::nodes_a_vector + i;
+      if constexpr (shift == 0)
+        row.v[i] = from[0];
+      else
+        row.v[i] =
+            shuffled<[](int lane) { return lane + 4 * shift; }>(from[0], from[1], std::make_index_sequence<R::width>());
+    }
+    return row;
+  }
+};
+
+template <int D, class T, int K>
+void load_rows(T* tile, const T* channel, const std::int32_t* neighbours, const Reach& reach) {
+  using R = Row<T, K>;
+  constexpr int rows = first_nodes_of_tile<D>;
+  const Line<D, K> line(reach);
+  const int lowest = reach.lowest[D - 1], highest = reach.highest[D - 1];
+  for_each_row<D, K>(reach, [&](const TileRow<D>& row) {
+    const LineOfNodes<D, T, K> nodes(channel, neighbours, row, line.first, line.third);
+    T* const to = tile + std::size_t(row.number) * rows * R::scalars;
+    [&]<int... z>(std::integer_sequence<int, z...>) {
+      ((z < lowest || z > highest ? void() : store_row(to + z * R::scalars, nodes.template row<z>())), ...);
+    }
+    (std::make_integer_sequence<int, rows>());
+  });
+}
+
+/// Of lists: the nodes themselves.
+template <int D, class T, int K>
+void load_nodes(T* tile, const T* channel, const std::int32_t* neighbours, const Reach& reach) {
   using Q = Quad<T>;
   const Line<D, K> line(reach);
   for_each_row<D, K>(reach, [&](const TileRow<D>& row) {
@@ -450,7 +505,6 @@ void load_tile(T* tile, const T* channel, const std::int32_t* neighbours, const 
   });
 }
 
-/// Of lists: the tile's nodes themselves.
 template <int D, class T, int K>
 void flush_nodes(T* tile, T* channel, const std::int32_t* neighbours, const Reach& reach) {
   using Q = Quad<T>;
@@ -500,8 +554,7 @@ TileKernels<D, T> tile_kernels_of_width() {
   TileKernels<D, T> kernels;
   kernels.side = tile_side<D, K>;
   kernels.first_nodes = first_nodes_of_tile<D>;
-  kernels.load_scalars = rows_of_tile(D, kernels.side) * kernels.side * 4 + Row<T, K>::scalars;  // the last row's end
-  kernels.scatter_scalars = rows_of_tile(D, kernels.side) * kernels.first_nodes * Row<T, K>::scalars;
+  kernels.scalars = rows_of_tile(D, kernels.side) * kernels.first_nodes * Row<T, K>::scalars;
   kernels.scatter[0][0] = &scatter_to_tile<D, T, K, false, false>;
   kernels.scatter[0][1] = &scatter_to_tile<D, T, K, false, true>;
   kernels.scatter[1][0] = &scatter_to_tile<D, T, K, true, false>;
@@ -510,7 +563,7 @@ TileKernels<D, T> tile_kernels_of_width() {
   kernels.gather[0][1] = &gather_from_tile<D, T, K, false, true>;
   kernels.gather[1][0] = &gather_from_tile<D, T, K, true, false>;
   kernels.gather[1][1] = &gather_from_tile<D, T, K, true, true>;
-  kernels.load = &load_tile<D, T, K>;
+  kernels.load = &load_rows<D, T, K>;
   kernels.flush = &flush_rows<D, T, K>;
   return kernels;
 }
@@ -520,8 +573,8 @@ TileKernels<D, T> tiles_of_lists() {
   constexpr int K = 4;
   TileKernels<D, T> kernels;
   kernels.side = kernels.first_nodes = tile_side<D, K>;
-  kernels.load_scalars = kernels.scatter_scalars = rows_of_tile(D, kernels.side) * kernels.side * 4;
-  kernels.load = &load_tile<D, T, K>;
+  kernels.scalars = rows_of_tile(D, kernels.side) * kernels.side * 4;
+  kernels.load = &load_nodes<D, T, K>;
   kernels.flush = &flush_nodes<D, T, K>;
   return kernels;
 }
