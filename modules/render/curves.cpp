@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "render/files.hpp"
 #include "render/polyline.hpp"
 
 namespace mpm::render {
@@ -310,6 +311,9 @@ void check_series(std::span<const Series> series) {
     if (s.y.size() != s.x.size()) complain("of y", s.y.size());
     if (!s.error.empty() && s.error.size() != s.x.size()) complain("error bars", s.error.size());
     if (!s.point_labels.empty() && s.point_labels.size() != s.x.size()) complain("point labels", s.point_labels.size());
+    if (!s.point_names.empty() && s.point_names.size() != s.x.size()) complain("point names", s.point_names.size());
+    if (!s.dominated_by.empty() && s.dominated_by.size() != s.x.size())
+      complain("dominating points", s.dominated_by.size());
   }
 }
 
@@ -328,6 +332,8 @@ Content select(std::span<const Series> series, std::span<const Look> looks, bool
       shown.data.y.push_back(s.y[i]);
       if (!s.error.empty()) shown.data.error.push_back(s.error[i]);
       if (!s.point_labels.empty()) shown.data.point_labels.push_back(s.point_labels[i]);
+      if (!s.point_names.empty()) shown.data.point_names.push_back(s.point_names[i]);
+      if (!s.dominated_by.empty()) shown.data.dominated_by.push_back(s.dominated_by[i]);
     }
     if (shown.data.x.empty()) {
       content.empty += (content.empty.empty() ? "" : ", ") + s.label;
@@ -338,6 +344,37 @@ Content select(std::span<const Series> series, std::span<const Look> looks, bool
     content.series.push_back(std::move(shown));
   }
   return content;
+}
+
+std::string table_of(std::span<const Content> contents, const std::vector<std::string>& panels,
+                     const std::string& x_label, const std::string& y_label) {
+  const bool has_names = std::any_of(contents.begin(), contents.end(), [](const Content& content) {
+    return std::any_of(content.series.begin(), content.series.end(),
+                       [](const Shown& shown) { return !shown.data.point_names.empty(); });
+  });
+  const auto entry = [](const std::vector<std::string>& texts, std::size_t i) { return texts.empty() ? "" : texts[i]; };
+  CsvTable csv;
+  std::vector<std::string> row{"series", "kind", x_label, y_label, "error", "point"};
+  if (!panels.empty()) row.insert(row.begin(), "panel");
+  if (has_names) row.insert(row.end(), {"name", "dominated by"});
+  csv.row(row);
+  for (std::size_t k = 0; k < contents.size(); ++k) {
+    for (const Shown& shown : contents[k].series) {
+      const Series& d = shown.data;
+      for (std::size_t i = 0; i < d.x.size(); ++i) {
+        row = {d.label,
+               name_of(d.kind),
+               full_precision(d.x[i]),
+               full_precision(d.y[i]),
+               d.error.empty() ? "" : full_precision(d.error[i]),
+               entry(d.point_labels, i)};
+        if (!panels.empty()) row.insert(row.begin(), panels[k]);
+        if (has_names) row.insert(row.end(), {entry(d.point_names, i), entry(d.dominated_by, i)});
+        csv.row(row);
+      }
+    }
+  }
+  return csv.text();
 }
 
 std::string remark_of(const Content& content) {

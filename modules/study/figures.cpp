@@ -185,9 +185,11 @@ std::vector<Series> points_by_series(const Results& results, const FigureRequest
                                      const Plot& plot) {
   const Study& study = results.study;
   const std::string by = axis_of_series(study, figure);
-  std::vector<std::string> without{by, figure.panels};
+  std::vector<std::string> without_single;  // axes with a single value tell nothing
   for (const Axis& axis : study.axes)
-    if (axis.choices.size() == 1) without.push_back(axis.name);
+    if (axis.choices.size() == 1) without_single.push_back(axis.name);
+  std::vector<std::string> without = without_single;
+  without.insert(without.end(), {by, figure.panels});
   for (const auto& [axis, labels] : figure.where)
     if (labels.size() == 1) without.push_back(axis);
   std::vector<Series> all;
@@ -205,6 +207,9 @@ std::vector<Series> points_by_series(const Results& results, const FigureRequest
     Series& series = add_to(by.empty() ? study.title : label_on(study, *point.result, by));
     series.x.push_back(point.cost);
     series.y.push_back(point.error);
+    series.point_names.push_back(label_of(study, point.result->combination, without_single));
+    series.dominated_by.push_back(point.dominated_by ? label_of(study, point.dominated_by->combination, without_single)
+                                                     : "");
     const bool is_named = std::find(named.begin(), named.end(), point.result) != named.end();
     series.point_labels.push_back(is_named ? label_of(study, point.result->combination, without) : "");
   }
