@@ -181,10 +181,12 @@ Occupied occupied_by(const Content& content, const Scales& s, double u) {
 void draw_point_labels(Canvas& canvas, const Theme& theme, const Scales& s, const Content& content, double labels_to,
                        Occupied& occupied) {
   const double gap = 14 * theme.unit;
-  const double directions[][2] = {{1, 0}, {-1, 0}, {0, -1}, {0, 1}, {1, -1}, {1, 1}, {-1, -1}, {-1, 1}};
+  const double directions[][2] = {{1, 0},   {-1, 0}, {0, -1}, {0, 1},  {1, -1},  {1, 1},
+                                  {-1, -1}, {-1, 1}, {0, -2}, {1, -2}, {-1, -2}, {0, 2}};  // the last only in a crowd
   for (const Shown& shown : content.series) {
     for (std::size_t i = 0; i < shown.data.point_labels.size(); ++i) {
       const std::string& label = shown.data.point_labels[i];
+      if (label.empty()) continue;
       const Point at = s.at(shown.data.x[i], shown.data.y[i]);
       double best_cost = std::numeric_limits<double>::max();
       Box best_box;
@@ -193,10 +195,16 @@ void draw_point_labels(Canvas& canvas, const Theme& theme, const Scales& s, cons
         const double cx = at.x + d[0] * (gap + width / 2), cy = at.y + d[1] * (gap * 0.7 + height / 2);
         const Box box{cx - width / 2, cy - height / 2, cx + width / 2, cy + height / 2};
         const bool is_outside = box.x0 < s.box.x0 || box.x1 > labels_to || box.y0 < s.box.y0 || box.y1 > s.box.y1;
-        const double cost = occupied.cost(box) + (is_outside ? 100 : 0);
+        const double cost = occupied.cost(box) + (is_outside ? 100 : 0) + (std::fabs(d[1]) > 1 ? 4 : 0);
         if (cost < best_cost) best_cost = cost, best_box = box;
       }
       occupied.boxes.push_back(best_box);
+      const Point corners[] = {{best_box.x0, best_box.y0},
+                               {best_box.x1, best_box.y0},
+                               {best_box.x1, best_box.y1},
+                               {best_box.x0, best_box.y1}};
+      if (best_cost < 10)
+        canvas.polygon(corners, kWhite);  // over a line that no place keeps clear of; never over a mark
       const Colour colour = mix(kWhite, kInk, shown.is_faded[i] ? 0.6 : 1);
       canvas.text(best_box.centre(), label, theme.style(colour, Anchor::middle, Baseline::middle));
     }
