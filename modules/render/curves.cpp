@@ -178,36 +178,45 @@ Occupied occupied_by(const Content& content, const Scales& s, double u) {
   return result;
 }
 
-void draw_point_labels(Canvas& canvas, const Theme& theme, const Scales& s, const Content& content, double labels_to,
-                       Occupied& occupied) {
-  const double gap = 14 * theme.unit;
+// A free place beside the point, else the one least in the way, and what is wrong with it.
+std::pair<Box, double> place_label(const Theme& theme, const Scales& s, Point at, double width, double labels_to,
+                                   const Occupied& occupied) {
+  const double gap = 14 * theme.unit, height = theme.text;
   const double directions[][2] = {{1, 0},   {-1, 0}, {0, -1}, {0, 1},  {1, -1},  {1, 1},
                                   {-1, -1}, {-1, 1}, {0, -2}, {1, -2}, {-1, -2}, {0, 2}};  // the last only in a crowd
-  for (const Shown& shown : content.series) {
-    for (std::size_t i = 0; i < shown.data.point_labels.size(); ++i) {
-      const std::string& label = shown.data.point_labels[i];
-      if (label.empty()) continue;
-      const Point at = s.at(shown.data.x[i], shown.data.y[i]);
-      double best_cost = std::numeric_limits<double>::max();
-      Box best_box;
-      for (const auto& d : directions) {
-        const double width = canvas.measure_text(label, theme.text), height = theme.text;
-        const double cx = at.x + d[0] * (gap + width / 2), cy = at.y + d[1] * (gap * 0.7 + height / 2);
-        const Box box{cx - width / 2, cy - height / 2, cx + width / 2, cy + height / 2};
-        const bool is_outside = box.x0 < s.box.x0 || box.x1 > labels_to || box.y0 < s.box.y0 || box.y1 > s.box.y1;
-        const double cost = occupied.cost(box) + (is_outside ? 100 : 0) + (std::fabs(d[1]) > 1 ? 4 : 0);
-        if (cost < best_cost) best_cost = cost, best_box = box;
-      }
-      occupied.boxes.push_back(best_box);
-      const Point corners[] = {{best_box.x0, best_box.y0},
-                               {best_box.x1, best_box.y0},
-                               {best_box.x1, best_box.y1},
-                               {best_box.x0, best_box.y1}};
-      if (best_cost < 10)
-        canvas.polygon(corners, kWhite);  // over a line that no place keeps clear of; never over a mark
-      const Colour colour = mix(kWhite, kInk, shown.is_faded[i] ? 0.6 : 1);
-      canvas.text(best_box.centre(), label, theme.style(colour, Anchor::middle, Baseline::middle));
-    }
+  double best_cost = std::numeric_limits<double>::max();
+  Box best;
+  for (const auto& d : directions) {
+    const double cx = at.x + d[0] * (gap + width / 2), cy = at.y + d[1] * (gap * 0.7 + height / 2);
+    const Box box{cx - width / 2, cy - height / 2, cx + width / 2, cy + height / 2};
+    const bool is_outside = box.x0 < s.box.x0 || box.x1 > labels_to || box.y0 < s.box.y0 || box.y1 > s.box.y1;
+    const double cost = occupied.cost(box) + (is_outside ? 100 : 0) + (std::fabs(d[1]) > 1 ? 4 : 0);
+    if (cost < best_cost) best_cost = cost, best = box;
+  }
+  return {best, best_cost};
+}
+
+void draw_point_labels(Canvas& canvas, const Theme& theme, const Scales& s, const Content& content, double labels_to,
+                       Occupied& occupied) {
+  struct Label {
+    Point at;
+    std::string text;
+    bool is_faded;
+  };
+  std::vector<Label> labels;
+  for (const Shown& shown : content.series)
+    for (std::size_t i = 0; i < shown.data.point_labels.size(); ++i)
+      if (!shown.data.point_labels[i].empty())
+        labels.push_back({s.at(shown.data.x[i], shown.data.y[i]), shown.data.point_labels[i], shown.is_faded[i]});
+  std::stable_sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.at.x < b.at.x; });
+  for (const Label& label : labels) {
+    const double width = canvas.measure_text(label.text, theme.text), air = 14 * theme.unit;
+    const auto [box, cost] = place_label(theme, s, label.at, width, labels_to, occupied);
+    occupied.boxes.push_back({box.x0 - air, box.y0, box.x1 + air, box.y1});  // two side by side would read as one
+    const Point corners[] = {{box.x0, box.y0}, {box.x1, box.y0}, {box.x1, box.y1}, {box.x0, box.y1}};
+    if (cost < 10) canvas.polygon(corners, kWhite);  // over a line that no place keeps clear of; never over a mark
+    const Colour colour = mix(kWhite, kInk, label.is_faded ? 0.6 : 1);
+    canvas.text(box.centre(), label.text, theme.style(colour, Anchor::middle, Baseline::middle));
   }
 }
 
