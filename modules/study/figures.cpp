@@ -210,16 +210,22 @@ std::vector<std::string> axes_not_in_names(const Study& study, const FigureReque
   return without;
 }
 
+/// Those, and what the figure holds fixed: its title says so.
+std::vector<std::string> axes_not_in_labels(const Study& study, const FigureRequest& figure) {
+  std::vector<std::string> without = axes_not_in_names(study, figure);
+  for (const auto& [axis, labels] : figure.where)
+    if (labels.size() == 1) without.push_back(axis);
+  return without;
+}
+
 /// Points of one colour; what stands beside those of the front leaves out what the colour says.
 std::vector<Series> points_by_series(const Results& results, const FigureRequest& figure, const std::string& cost,
                                      const Plot& plot, FrontLabels labels) {
   const Study& study = results.study;
   const std::string by = axis_of_series(study, figure);
   const std::vector<std::string> not_in_names = axes_not_in_names(study, figure);
-  std::vector<std::string> without = not_in_names;
+  std::vector<std::string> without = axes_not_in_labels(study, figure);
   without.push_back(by);
-  for (const auto& [axis, labels] : figure.where)
-    if (labels.size() == 1) without.push_back(axis);
   std::vector<Series> all;
   const auto add_to = [&](const std::string& label) -> Series& {
     for (Series& series : all)
@@ -267,7 +273,7 @@ void draw_pareto(const Results& results, const FigureRequest& figure, const std:
   plot.footnote = footnote(results, figure, true) +
                   (figure.panels.empty() ? " · pale: dominated" : " · pale: dominated in its panel");
   if (labels == FrontLabels::numbers)
-    plot.footnote += " · front: " + key_of(results.study, points, axes_not_in_names(results.study, figure));
+    plot.footnote += " · front: " + key_of(results.study, points, axes_not_in_labels(results.study, figure));
   plot.log_x = spans_a_decade(costs);
   plot.log_y = spans_a_decade(errors);
   plot.pareto_front = true;
