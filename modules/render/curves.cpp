@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "render/files.hpp"
 #include "render/polyline.hpp"
 
 namespace mpm::render {
@@ -177,28 +178,45 @@ Occupied occupied_by(const Content& content, const Scales& s, double u) {
   return result;
 }
 
+// A free place beside the point, else the one least in the way, and what is wrong with it.
+std::pair<Box, double> place_label(const Theme& theme, const Scales& s, Point at, double width, double labels_to,
+                                   const Occupied& occupied) {
+  const double gap = 14 * theme.unit, height = theme.text;
+  const double directions[][2] = {{1, 0},   {-1, 0}, {0, -1}, {0, 1},  {1, -1},  {1, 1},
+                                  {-1, -1}, {-1, 1}, {0, -2}, {1, -2}, {-1, -2}, {0, 2}};  // the last only in a crowd
+  double best_cost = std::numeric_limits<double>::max();
+  Box best;
+  for (const auto& d : directions) {
+    const double cx = at.x + d[0] * (gap + width / 2), cy = at.y + d[1] * (gap * 0.7 + height / 2);
+    const Box box{cx - width / 2, cy - height / 2, cx + width / 2, cy + height / 2};
+    const bool is_outside = box.x0 < s.box.x0 || box.x1 > labels_to || box.y0 < s.box.y0 || box.y1 > s.box.y1;
+    const double cost = occupied.cost(box) + (is_outside ? 100 : 0) + (std::fabs(d[1]) > 1 ? 4 : 0);
+    if (cost < best_cost) best_cost = cost, best = box;
+  }
+  return {best, best_cost};
+}
+
 void draw_point_labels(Canvas& canvas, const Theme& theme, const Scales& s, const Content& content, double labels_to,
                        Occupied& occupied) {
-  const double gap = 14 * theme.unit;
-  const double directions[][2] = {{1, 0}, {-1, 0}, {0, -1}, {0, 1}, {1, -1}, {1, 1}, {-1, -1}, {-1, 1}};
-  for (const Shown& shown : content.series) {
-    for (std::size_t i = 0; i < shown.data.point_labels.size(); ++i) {
-      const std::string& label = shown.data.point_labels[i];
-      const Point at = s.at(shown.data.x[i], shown.data.y[i]);
-      double best_cost = std::numeric_limits<double>::max();
-      Box best_box;
-      for (const auto& d : directions) {
-        const double width = canvas.measure_text(label, theme.text), height = theme.text;
-        const double cx = at.x + d[0] * (gap + width / 2), cy = at.y + d[1] * (gap * 0.7 + height / 2);
-        const Box box{cx - width / 2, cy - height / 2, cx + width / 2, cy + height / 2};
-        const bool is_outside = box.x0 < s.box.x0 || box.x1 > labels_to || box.y0 < s.box.y0 || box.y1 > s.box.y1;
-        const double cost = occupied.cost(box) + (is_outside ? 100 : 0);
-        if (cost < best_cost) best_cost = cost, best_box = box;
-      }
-      occupied.boxes.push_back(best_box);
-      const Colour colour = mix(kWhite, kInk, shown.is_faded[i] ? 0.6 : 1);
-      canvas.text(best_box.centre(), label, theme.style(colour, Anchor::middle, Baseline::middle));
-    }
+  struct Label {
+    Point at;
+    std::string text;
+    bool is_faded;
+  };
+  std::vector<Label> labels;
+  for (const Shown& shown : content.series)
+    for (std::size_t i = 0; i < shown.data.point_labels.size(); ++i)
+      if (!shown.data.point_labels[i].empty())
+        labels.push_back({s.at(shown.data.x[i], shown.data.y[i]), shown.data.point_labels[i], shown.is_faded[i]});
+  std::stable_sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.at.x < b.at.x; });
+  for (const Label& label : labels) {
+    const double width = canvas.measure_text(label.text, theme.text), air = 14 * theme.unit;
+    const auto [box, cost] = place_label(theme, s, label.at, width, labels_to, occupied);
+    occupied.boxes.push_back({box.x0 - air, box.y0, box.x1 + air, box.y1});  // two side by side would read as one
+    const Point corners[] = {{box.x0, box.y0}, {box.x1, box.y0}, {box.x1, box.y1}, {box.x0, box.y1}};
+    if (cost < 10) canvas.polygon(corners, kWhite);  // over a line that no place keeps clear of; never over a mark
+    const Colour colour = mix(kWhite, kInk, label.is_faded ? 0.6 : 1);
+    canvas.text(box.centre(), label.text, theme.style(colour, Anchor::middle, Baseline::middle));
   }
 }
 
@@ -310,6 +328,9 @@ void check_series(std::span<const Series> series) {
     if (s.y.size() != s.x.size()) complain("of y", s.y.size());
     if (!s.error.empty() && s.error.size() != s.x.size()) complain("error bars", s.error.size());
     if (!s.point_labels.empty() && s.point_labels.size() != s.x.size()) complain("point labels", s.point_labels.size());
+    if (!s.point_names.empty() && s.point_names.size() != s.x.size()) complain("point names", s.point_names.size());
+    if (!s.dominated_by.empty() && s.dominated_by.size() != s.x.size())
+      complain("dominating points", s.dominated_by.size());
   }
 }
 
@@ -328,6 +349,8 @@ Content select(std::span<const Series> series, std::span<const Look> looks, bool
       shown.data.y.push_back(s.y[i]);
       if (!s.error.empty()) shown.data.error.push_back(s.error[i]);
       if (!s.point_labels.empty()) shown.data.point_labels.push_back(s.point_labels[i]);
+      if (!s.point_names.empty()) shown.data.point_names.push_back(s.point_names[i]);
+      if (!s.dominated_by.empty()) shown.data.dominated_by.push_back(s.dominated_by[i]);
     }
     if (shown.data.x.empty()) {
       content.empty += (content.empty.empty() ? "" : ", ") + s.label;
@@ -338,6 +361,37 @@ Content select(std::span<const Series> series, std::span<const Look> looks, bool
     content.series.push_back(std::move(shown));
   }
   return content;
+}
+
+std::string table_of(std::span<const Content> contents, const std::vector<std::string>& panels,
+                     const std::string& x_label, const std::string& y_label) {
+  const bool has_names = std::any_of(contents.begin(), contents.end(), [](const Content& content) {
+    return std::any_of(content.series.begin(), content.series.end(),
+                       [](const Shown& shown) { return !shown.data.point_names.empty(); });
+  });
+  const auto entry = [](const std::vector<std::string>& texts, std::size_t i) { return texts.empty() ? "" : texts[i]; };
+  CsvTable csv;
+  std::vector<std::string> row{"series", "kind", x_label, y_label, "error", "point"};
+  if (!panels.empty()) row.insert(row.begin(), "panel");
+  if (has_names) row.insert(row.end(), {"name", "dominated by"});
+  csv.row(row);
+  for (std::size_t k = 0; k < contents.size(); ++k) {
+    for (const Shown& shown : contents[k].series) {
+      const Series& d = shown.data;
+      for (std::size_t i = 0; i < d.x.size(); ++i) {
+        row = {d.label,
+               name_of(d.kind),
+               full_precision(d.x[i]),
+               full_precision(d.y[i]),
+               d.error.empty() ? "" : full_precision(d.error[i]),
+               entry(d.point_labels, i)};
+        if (!panels.empty()) row.insert(row.begin(), panels[k]);
+        if (has_names) row.insert(row.end(), {entry(d.point_names, i), entry(d.dominated_by, i)});
+        csv.row(row);
+      }
+    }
+  }
+  return csv.text();
 }
 
 std::string remark_of(const Content& content) {

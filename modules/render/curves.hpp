@@ -43,6 +43,11 @@ void check_series(std::span<const Series> series);
 /// The points that can be shown, in the order given. @param looks one a series.
 Content select(std::span<const Series> series, std::span<const Look> looks, bool log_x, bool log_y);
 
+/// Every point shown, a row each; with `panels` the panel's title is the first column. Names of points and what
+/// dominates them have columns where a series has them.
+std::string table_of(std::span<const Content> contents, const std::vector<std::string>& panels,
+                     const std::string& x_label, const std::string& y_label);
+
 /// What was left out, for the footnote.
 std::string remark_of(const Content& content);
 

@@ -204,19 +204,10 @@ void draw_multiples(Canvas& canvas, const Multiples& m, const Theme& theme, Shee
   draw_panels(canvas, theme, m, sheet, {page.x0, top, page.x1, page.y1 - 1.6 * theme.text});
 }
 
-std::string table_of(const Multiples& m, const Sheet& sheet) {
-  CsvTable csv;
-  csv.row({"panel", "series", "kind", m.x_label, m.y_label, "error", "point"});
-  for (std::size_t k = 0; k < m.panels.size(); ++k) {
-    for (const Shown& shown : sheet.contents[k].series) {
-      const Series& d = shown.data;
-      for (std::size_t i = 0; i < d.x.size(); ++i) {
-        csv.row({m.panels[k].title, d.label, name_of(d.kind), full_precision(d.x[i]), full_precision(d.y[i]),
-                 d.error.empty() ? "" : full_precision(d.error[i]), d.point_labels.empty() ? "" : d.point_labels[i]});
-      }
-    }
-  }
-  return csv.text();
+std::vector<std::string> titles_of(const Multiples& m) {
+  std::vector<std::string> titles;
+  for (const Panel& panel : m.panels) titles.push_back(panel.title);
+  return titles;
 }
 
 }  // namespace
@@ -225,7 +216,8 @@ void write_figure(const Multiples& multiples, const std::filesystem::path& stem)
   check(multiples);
   const Theme theme = theme_for(multiples.width, multiples.height);
   Sheet sheet = sheet_of(multiples, theme.unit);
-  write_all(stem, multiples.width, multiples.height, multiples.title, table_of(multiples, sheet),
+  write_all(stem, multiples.width, multiples.height, multiples.title,
+            table_of(sheet.contents, titles_of(multiples), multiples.x_label, multiples.y_label),
             [&](Canvas& canvas) { draw_multiples(canvas, multiples, theme, sheet); });
 }
 

@@ -63,19 +63,6 @@ void draw_plot(Canvas& canvas, const Plot& plot, const Theme& theme, Content& co
   draw_end_labels(canvas, theme, labels, s.box);
 }
 
-std::string table_of(const Plot& plot, const Content& content) {
-  CsvTable csv;
-  csv.row({"series", "kind", plot.x_label, plot.y_label, "error", "point"});
-  for (const Shown& shown : content.series) {
-    const Series& d = shown.data;
-    for (std::size_t i = 0; i < d.x.size(); ++i) {
-      csv.row({d.label, name_of(d.kind), full_precision(d.x[i]), full_precision(d.y[i]),
-               d.error.empty() ? "" : full_precision(d.error[i]), d.point_labels.empty() ? "" : d.point_labels[i]});
-    }
-  }
-  return csv.text();
-}
-
 }  // namespace
 
 void write_figure(const Plot& plot, const std::filesystem::path& stem) {
@@ -83,7 +70,7 @@ void write_figure(const Plot& plot, const std::filesystem::path& stem) {
   check_series(plot.series);
   const Theme theme = theme_for(plot.width, plot.height);
   Content content = select(plot.series, looks_of(plot.series, theme.unit), plot.log_x, plot.log_y);
-  write_all(stem, plot.width, plot.height, plot.title, table_of(plot, content),
+  write_all(stem, plot.width, plot.height, plot.title, table_of({&content, 1}, {}, plot.x_label, plot.y_label),
             [&](Canvas& canvas) { draw_plot(canvas, plot, theme, content); });
 }
 

@@ -19,6 +19,8 @@ struct Series {
   std::vector<double> error = {};
   SeriesKind kind = SeriesKind::computed;
   std::vector<std::string> point_labels = {};  // optional: a short name beside each point
+  std::vector<std::string> point_names = {};   // optional, in the table alone: what each point is
+  std::vector<std::string> dominated_by = {};  // optional, in the table alone: the name of a point that is better
 };
 
 /// Labels carry quantity, symbol and unit: "kinetic energy T (J)". Sizes are pixels.

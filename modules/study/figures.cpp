@@ -180,16 +180,52 @@ std::vector<const Result*> with_room(const std::vector<ParetoPoint>& points, con
   return results;
 }
 
-/// Points of one colour; those on the front carry the rest of their names, where there is room.
-std::vector<Series> points_by_series(const Results& results, const FigureRequest& figure, const std::string& cost,
-                                     const Plot& plot) {
-  const Study& study = results.study;
-  const std::string by = axis_of_series(study, figure);
-  std::vector<std::string> without{by, figure.panels};
+/// What stands beside the points of a front: the rest of their names, where there is room; in a crowd their numbers by
+/// cost; in a crowd of panels nothing.
+enum class FrontLabels { names, numbers, none };
+
+FrontLabels labels_for(const FigureRequest& figure, std::size_t points) {
+  constexpr std::size_t most_beside_names = 100;
+  if (points <= most_beside_names) return FrontLabels::names;
+  return figure.panels.empty() ? FrontLabels::numbers : FrontLabels::none;
+}
+
+/// "1: linear, pic · 2: gimp, flip": the points of the front by their numbers.
+std::string key_of(const Study& study, const std::vector<ParetoPoint>& points,
+                   const std::vector<std::string>& without) {
+  std::string key;
+  int number = 0;
+  for (const ParetoPoint& point : points)
+    if (!point.dominated_by)
+      key += (key.empty() ? "" : " · ") + std::to_string(++number) + ":\u00a0" +
+             label_of(study, point.result->combination, without);
+  return key;
+}
+
+/// Axes that tell nothing of a point: those with a single value, and the one of the panels.
+std::vector<std::string> axes_not_in_names(const Study& study, const FigureRequest& figure) {
+  std::vector<std::string> without{figure.panels};
   for (const Axis& axis : study.axes)
     if (axis.choices.size() == 1) without.push_back(axis.name);
+  return without;
+}
+
+/// Those, and what the figure holds fixed: its title says so.
+std::vector<std::string> axes_not_in_labels(const Study& study, const FigureRequest& figure) {
+  std::vector<std::string> without = axes_not_in_names(study, figure);
   for (const auto& [axis, labels] : figure.where)
     if (labels.size() == 1) without.push_back(axis);
+  return without;
+}
+
+/// Points of one colour; what stands beside those of the front leaves out what the colour says.
+std::vector<Series> points_by_series(const Results& results, const FigureRequest& figure, const std::string& cost,
+                                     const Plot& plot, FrontLabels labels) {
+  const Study& study = results.study;
+  const std::string by = axis_of_series(study, figure);
+  const std::vector<std::string> not_in_names = axes_not_in_names(study, figure);
+  std::vector<std::string> without = axes_not_in_labels(study, figure);
+  without.push_back(by);
   std::vector<Series> all;
   const auto add_to = [&](const std::string& label) -> Series& {
     for (Series& series : all)
@@ -200,13 +236,21 @@ std::vector<Series> points_by_series(const Results& results, const FigureRequest
   if (!by.empty())  // in the order of the axis, the same in every panel
     for (const Choice& choice : study.axis(by)->choices) add_to(choice.label);
   const auto points = pareto(results, figure, cost, figure.value);
-  const auto named = with_room(points, plot);
+  const auto named = labels == FrontLabels::names ? with_room(points, plot) : std::vector<const Result*>();
+  int number = 0;
   for (const ParetoPoint& point : points) {
+    const auto name = [&](const Result* result) { return label_of(study, result->combination, not_in_names); };
     Series& series = add_to(by.empty() ? study.title : label_on(study, *point.result, by));
     series.x.push_back(point.cost);
     series.y.push_back(point.error);
-    const bool is_named = std::find(named.begin(), named.end(), point.result) != named.end();
-    series.point_labels.push_back(is_named ? label_of(study, point.result->combination, without) : "");
+    series.point_names.push_back(name(point.result));
+    series.dominated_by.push_back(point.dominated_by ? name(point.dominated_by) : "");
+    std::string label;
+    if (std::find(named.begin(), named.end(), point.result) != named.end())
+      label = label_of(study, point.result->combination, without);
+    else if (labels == FrontLabels::numbers && !point.dominated_by)
+      label = std::to_string(++number);
+    series.point_labels.push_back(label);
   }
   std::erase_if(all, [](const Series& series) { return series.x.empty(); });
   return all;
@@ -214,8 +258,10 @@ std::vector<Series> points_by_series(const Results& results, const FigureRequest
 
 void draw_pareto(const Results& results, const FigureRequest& figure, const std::string& cost, const fs::path& stem) {
   const Measure &x = *results.study.measure(cost), &y = *results.study.measure(figure.value);
+  const auto points = pareto(results, figure, cost, figure.value);
+  const FrontLabels labels = labels_for(figure, points.size());
   std::vector<double> costs, errors;
-  for (const ParetoPoint& point : pareto(results, figure, cost, figure.value)) {
+  for (const ParetoPoint& point : points) {
     costs.push_back(point.cost);
     errors.push_back(point.error);
   }
@@ -226,11 +272,13 @@ void draw_pareto(const Results& results, const FigureRequest& figure, const std:
   plot.y_label = y.title();
   plot.footnote = footnote(results, figure, true) +
                   (figure.panels.empty() ? " · pale: dominated" : " · pale: dominated in its panel");
+  if (labels == FrontLabels::numbers)
+    plot.footnote += " · front: " + key_of(results.study, points, axes_not_in_labels(results.study, figure));
   plot.log_x = spans_a_decade(costs);
   plot.log_y = spans_a_decade(errors);
   plot.pareto_front = true;
   draw(results, figure, plot, stem,
-       [&](const FigureRequest& one) { return points_by_series(results, one, cost, plot); });
+       [&](const FigureRequest& one) { return points_by_series(results, one, cost, plot, labels); });
 }
 
 std::string unit_in(const std::string& header) {
