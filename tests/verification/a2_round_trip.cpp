@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "support/catch.hpp"
+#include "support/differences.hpp"
 #include "support/scene.hpp"
 
 using namespace mpm;
@@ -85,6 +86,43 @@ TEST_CASE("A2 particles of two masses at random places: momentum, spin, affine f
         if (transfer == "apic" || transfer == "mls") CHECK(std::abs(any.spin) <= 1e-12);
         if (transfer == "pic") CHECK(any.spin < -0.02);
         if (transfer == "flip") CHECK(any.change <= 1e-12);  // the identity, for any field
+      }
+}
+
+TEST_CASE("A2 particles that carry an affine field itself get it back, velocities and gradients", "[A][A2]") {
+  // Seeded by the field's own gradient, which in the case above is a difference quotient.
+  constexpr double B[4] = {0.7, -3, 5, -0.4};
+  std::printf("A2: change of an affine field (m/s) and of its gradient (1/s), seeded exactly\n");
+  for (const std::string backend : {"reference", "cpu"})
+    for (const std::string shape : {"bspline_quadratic", "bspline_cubic"})
+      for (const std::string transfer : {"apic", "mls", "tpic"}) {
+        const Experiment experiment =
+            experiment_from(text(affine_x, affine_y, "0.4"),
+                            {set("/backend", backend), set("/shape/type", shape), set("/transfer/type", transfer)});
+        Simulation simulation(experiment, [&](const Experiment& e, const Plan& p, std::vector<SeededBody> bodies) {
+          for (SeededBody& body : bodies) {
+            SeedArrays seeds = body.arrays();
+            REQUIRE(seeds.velocity_gradient.size() == 4 * body.count());
+            for (std::size_t k = 0; k < seeds.velocity_gradient.size(); ++k) seeds.velocity_gradient[k] = B[k % 4];
+            body.replace(std::move(seeds));
+          }
+          return backend_factory(1)(e, p, std::move(bodies));
+        });
+        const std::array before{simulation.backend().body_state(0), simulation.backend().body_state(1)};
+        simulation.step();
+        double of_velocity = 0, of_gradient = 0;
+        for (int b = 0; b < 2; ++b) {
+          const BodyState after = simulation.backend().body_state(b);
+          of_velocity = std::max(of_velocity, largest_difference(before[b].velocity, after.velocity));
+          REQUIRE(after.transfer_state.size() == 1);
+          of_gradient = std::max(of_gradient, largest_difference(before[b].transfer_state.begin()->second,
+                                                                 after.transfer_state.begin()->second));
+        }
+        std::printf("  %-9s %-17s %-5s %8.1e %8.1e\n", backend.c_str(), shape.c_str(), transfer.c_str(), of_velocity,
+                    of_gradient);
+        INFO(backend << " " << shape << " " << transfer);
+        CHECK(of_velocity <= 1e-12);
+        CHECK(of_gradient <= 1e-12);
       }
 }
 
