@@ -107,7 +107,7 @@ TEST_CASE("C6 two equal bars exchange their velocities", "[C][C6]") {
 }
 
 TEST_CASE("C6 contact on every increment gives the shock of a single field", "[C][C6][contact][filters]") {
-  // Published: within 0.5 % from order 4 on. Periodic across, so that the bars have no corners.
+  // Published: within 0.5 % from order 4 on. Periodic across: bars without corners, whose normals would be tilted.
   const std::vector<std::string> slab{set("/transfer/type", "pic"), set("/solver/time_step", "1e-5"),
                                       set("/solver/end_time", "0.00501"), set("/grid/boundaries/y_min", "periodic"),
                                       set("/grid/boundaries/y_max", "periodic")};

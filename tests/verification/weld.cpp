@@ -64,6 +64,7 @@ TEST_CASE("D4 a welded interface is transparent to rounding", "[D][D4]") {
 
 TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the end is not", "[D][D4][filters]") {
   const std::string rough = R"J(["1+0.3*sin(40*x)","0.4*x+0.3*cos(31*x*y)"])J";
+  double least = 1, most = 0;
   for (const std::string backend : {"reference", "cpu"})
     for (const auto& [shape, transfer] : pairs_of(shapes, transfers))
       for (const auto& [type, order] : {std::pair{"fmpm", "4"}, std::pair{"xpic", "3"}}) {
@@ -99,6 +100,7 @@ TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the
           CHECK(late < 1e-14);
         else
           CHECK(late > 1e-5);  // ten orders above
+        if (!whole) least = std::min(least, late), most = std::max(most, late);
         step_all(20);
         exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
         INFO("after 20 more: every increment " << exact << ", at the end " << late);
@@ -106,6 +108,7 @@ TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the
         if (!whole || shape != "linear")
           CHECK(late > (periodic && transfer != "flip" ? 1e-4 : 1e-3));  // an affine field brings some of it along
       }
+  std::printf("D4, a weld at the end of a filter's loop: off by %.1e to %.1e m/s after a step\n", least, most);
 }
 
 TEST_CASE("D4 what a weld at the end loses grows with the order of the filter", "[D][D4][filters]") {
