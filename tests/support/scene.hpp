@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "backends/make_backend.hpp"
@@ -58,6 +59,17 @@ inline std::string digits(double value) {
 
 inline std::string set(const std::string& pointer, const std::string& value) {
   return pointer + "=" + value;
+}
+
+/// Each shape with each transfer, but for PolyPIC on lists of nodes, which have no axes: refused by name
+/// (polynomial.cpp).
+inline std::vector<std::pair<std::string, std::string>> pairs_of(const std::vector<std::string>& shapes,
+                                                                 const std::vector<std::string>& transfers) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const std::string& shape : shapes)
+    for (const std::string& transfer : transfers)
+      if (transfer != "polypic" || !shape.starts_with("cpdi")) pairs.emplace_back(shape, transfer);
+  return pairs;
 }
 
 /// Slope of log(error) against log(size) between the last two entries: the observed order.

@@ -15,8 +15,18 @@ namespace {
 
 const std::vector<std::string> backends{"reference", "cpu"};
 const std::vector<std::string> shapes{
-    "linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi"};
-const std::vector<std::string> filtered_transfers{"pic", "apic", "mls", "tpic", "rpic"};  // flip: periodically
+    "linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2"};
+const std::vector<std::string> filtered_transfers{"pic", "apic", "mls", "tpic", "rpic", "polypic"};
+
+/// Filtered every few steps; at every step they are refused.
+bool is_flip(const std::string& transfer) {
+  return transfer.ends_with("flip");
+}
+std::vector<std::string> all_transfers() {
+  std::vector<std::string> all = filtered_transfers;
+  all.insert(all.end(), {"flip", "aflip", "asflip"});
+  return all;
+}
 
 // Random places, and velocities that the grid cannot hold.
 const char* rough = R"J({
@@ -36,7 +46,7 @@ const char* flight = R"J({
   "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e3, "poisson_ratio": 0.3, "density": 1000}},
   "bodies": [{"name": "ball", "material": "m", "geometry": {"type": "ball", "centre": [0.6, 1], "radius": 0.23}, "velocity": [8, 2]}],
   "gravity": [0, -9.81],
-  "solver": {"time_step": 0.002, "end_time": 0.2}, "output": {"ledger": true},
+  "solver": {"time_step": 0.002, "end_time": 0.1}, "output": {"ledger": true},
   "compare": {"exact": {"type": "free_fall"}}})J";
 
 std::string filter(const std::string& type, int order, const std::string& more = "") {
@@ -100,21 +110,19 @@ TEST_CASE("order 1 of either filter is PIC", "[filters]") {
 
 TEST_CASE("a filter of order k combines the first k visits of the grid", "[filters]") {
   for (const std::string& backend : backends)
-    for (const std::string& shape : shapes)
-      for (const std::string& transfer : filtered_transfers)
-        for (const auto& [name, boundaries] : walls) {
-          const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
-                                                set("/transfer/type", transfer), set("/grid/boundaries", boundaries)};
-          for (const int order : {2, 4}) {
-            const std::vector<double> expected = combined(common, order);
-            INFO(backend << " " << shape << " " << transfer << " " << name << " order " << order);
-            for (const std::string type : {"fmpm", "xpic"})
-              for (const std::string update : {"last", "first"})
-                CHECK(largest_difference(
-                          visited(common + filter(type, order) + set("/solver/stress_update", update), 1), expected) <
-                      1e-10);
-          }
+    for (const auto& [shape, transfer] : pairs_of(shapes, filtered_transfers))
+      for (const auto& [name, boundaries] : walls) {
+        const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
+                                              set("/transfer/type", transfer), set("/grid/boundaries", boundaries)};
+        for (const int order : {2, 4}) {
+          const std::vector<double> expected = combined(common, order);
+          INFO(backend << " " << shape << " " << transfer << " " << name << " order " << order);
+          for (const std::string type : {"fmpm", "xpic"})
+            for (const std::string update : {"last", "first"})
+              CHECK(largest_difference(visited(common + filter(type, order) + set("/solver/stress_update", update), 1),
+                                       expected) < 1e-10);
         }
+      }
 }
 
 TEST_CASE("a moving wall is a wall at rest seen from a moving train", "[filters][walls]") {
@@ -122,19 +130,18 @@ TEST_CASE("a moving wall is a wall at rest seen from a moving train", "[filters]
   const std::string stick = set("/grid/boundaries", R"({"all":"stick"})");
   const std::string moving = set("/grid/boundaries", R"({"all":{"type":"prescribed","velocity":["2","-3"]}})");
   for (const std::string& backend : backends)
-    for (const std::string& shape : shapes)
-      for (const std::string& transfer : filtered_transfers)
-        for (const std::string type : {"fmpm", "xpic"})
-          for (const std::string constraints : {"every_increment", "at_end"}) {
-            const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
-                                                  set("/transfer/type", transfer),
-                                                  filter(type, 4, R"(,"constraints":")" + constraints + "\"")};
-            std::vector<double> at_rest = visited(common + stick, 1);
-            for (std::size_t k = 0; k < at_rest.size(); ++k) at_rest[k] += k % 2 ? -3 : 2;
-            INFO(backend << " " << shape << " " << transfer << " " << type << " " << constraints);
-            CHECK(largest_difference(visited(common + moving + set("/constants/U", "2") + set("/constants/W", "-3"), 1),
-                                     at_rest) < 1e-11);
-          }
+    for (const auto& [shape, transfer] : pairs_of(shapes, filtered_transfers))
+      for (const std::string type : {"fmpm", "xpic"})
+        for (const std::string constraints : {"every_increment", "at_end"}) {
+          const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
+                                                set("/transfer/type", transfer),
+                                                filter(type, 4, R"(,"constraints":")" + constraints + "\"")};
+          std::vector<double> at_rest = visited(common + stick, 1);
+          for (std::size_t k = 0; k < at_rest.size(); ++k) at_rest[k] += k % 2 ? -3 : 2;
+          INFO(backend << " " << shape << " " << transfer << " " << type << " " << constraints);
+          CHECK(largest_difference(visited(common + moving + set("/constants/U", "2") + set("/constants/W", "-3"), 1),
+                                   at_rest) < 1e-11);
+        }
 }
 
 TEST_CASE("a field that moves with its walls is no business of a filter", "[filters][walls]") {
@@ -143,24 +150,23 @@ TEST_CASE("a field that moves with its walls is no business of a filter", "[filt
       set("/grid/boundaries", R"({"all":{"type":"prescribed","velocity":["2","-3"]}})"),
       set("/solver/time_step", "1e-4")};
   for (const std::string& backend : backends)
-    for (const std::string& shape : shapes)
-      for (const std::string& transfer : filtered_transfers)
-        for (const std::string type : {"fmpm", "xpic"})
-          for (const std::string order : {"last", "first", "modified_last", "averaged"}) {
-            Scene scene(rough, uniform + set("/backend", backend) + set("/shape/type", shape) +
-                                   set("/transfer/type", transfer) + set("/solver/stress_update", order) +
-                                   filter(type, 5));
-            const Totals end = scene.run_steps(10);
-            INFO(backend << " " << shape << " " << transfer << " " << type << " " << order);
-            const BodyState state = scene.body();
-            double error = 0;
-            for (std::size_t k = 0; k < state.velocity.size(); ++k)
-              error = std::max(error, std::abs(state.velocity[k] - (k % 2 ? -3 : 2)));
-            CHECK(error < 1e-13 * 3 * 10);
-            CHECK(std::abs(end.smallest_volume_ratio - 1) < 1e-13);
-            CHECK(scene.simulation.backend().filter_record().last_norm <
-                  1e-13 * scene.simulation.backend().filter_record().first_norm);
-          }
+    for (const auto& [shape, transfer] : pairs_of(shapes, filtered_transfers))
+      for (const std::string type : {"fmpm", "xpic"})
+        for (const std::string order : {"last", "first", "modified_last", "averaged"}) {
+          Scene scene(rough, uniform + set("/backend", backend) + set("/shape/type", shape) +
+                                 set("/transfer/type", transfer) + set("/solver/stress_update", order) +
+                                 filter(type, 5));
+          const Totals end = scene.run_steps(10);
+          INFO(backend << " " << shape << " " << transfer << " " << type << " " << order);
+          const BodyState state = scene.body();
+          double error = 0;
+          for (std::size_t k = 0; k < state.velocity.size(); ++k)
+            error = std::max(error, std::abs(state.velocity[k] - (k % 2 ? -3 : 2)));
+          CHECK(error < 1e-13 * 3 * 10);
+          CHECK(std::abs(end.smallest_volume_ratio - 1) < 1e-13);
+          CHECK(scene.simulation.backend().filter_record().last_norm <
+                1e-13 * scene.simulation.backend().filter_record().first_norm);
+        }
 }
 
 TEST_CASE("a filter keeps a slip wall the plane of symmetry", "[filters][walls]") {
@@ -173,75 +179,76 @@ TEST_CASE("a filter keeps a slip wall the plane of symmetry", "[filters][walls]"
     "bodies": [{"name": "b", "material": "m", "geometry": {"type": "box", "lower": [-0.3, 0.3], "upper": [0.3, 0.7]}, "velocity": ["-x*(3+y)", "2 + cos(40*x)"]}],
     "solver": {"time_step": 1e-3, "end_time": 1}})J";
   for (const std::string& backend : backends)
-    for (const std::string& shape : shapes)
-      for (const std::string& transfer : filtered_transfers)
-        for (const std::string type : {"fmpm", "xpic"}) {
-          const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
-                                                set("/transfer/type", transfer), filter(type, 4)};
-          Scene full(whole, common), half(whole, common + set("/grid/domain", "[[0,0],[0.8,1]]") +
-                                                     set("/grid/boundaries", R"({"all":"free","x_min":"slip"})") +
-                                                     set("/bodies/0/geometry/lower", "[0,0.3]"));
-          full.run_steps(10), half.run_steps(10);
-          const BodyState a = full.body(), b = half.body();
-          std::vector<double> right;
-          for (std::size_t p = 0; p < a.position.size(); p += 2)
-            if (a.position[p] > 0) right.insert(right.end(), {a.velocity[p], a.velocity[p + 1]});
-          INFO(backend << " " << shape << " " << transfer << " " << type);
-          CHECK(largest_difference(right, b.velocity) < 1e-10);
-        }
+    for (const auto& [shape, transfer] : pairs_of(shapes, filtered_transfers))
+      for (const std::string type : {"fmpm", "xpic"}) {
+        const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
+                                              set("/transfer/type", transfer), filter(type, 4)};
+        Scene full(whole, common), half(whole, common + set("/grid/domain", "[[0,0],[0.8,1]]") +
+                                                   set("/grid/boundaries", R"({"all":"free","x_min":"slip"})") +
+                                                   set("/bodies/0/geometry/lower", "[0,0.3]"));
+        full.run_steps(10), half.run_steps(10);
+        const BodyState a = full.body(), b = half.body();
+        std::vector<double> right;
+        for (std::size_t p = 0; p < a.position.size(); p += 2)
+          if (a.position[p] > 0) right.insert(right.end(), {a.velocity[p], a.velocity[p + 1]});
+        INFO(backend << " " << shape << " " << transfer << " " << type);
+        CHECK(largest_difference(right, b.velocity) < 1e-10);
+      }
 }
 
 TEST_CASE("A7 filters do not act on free flight", "[filters][A][A7]") {
   for (const std::string& backend : backends)
-    for (const std::string& shape : shapes)
-      for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic"})
-        for (const auto& [type, order] : {std::pair{"fmpm", 4}, std::pair{"xpic", 3}})
-          for (const std::string update : {"last", "first", "modified_last", "averaged"}) {
-            if (update == "first" && transfer != "pic") continue;
-            const std::string interval = transfer == "flip" ? R"(,"every_steps":3)" : "";
-            Scene scene(flight, {set("/backend", backend), set("/shape/type", shape), set("/transfer/type", transfer),
-                                 set("/solver/stress_update", update), filter(type, order, interval)});
-            const Totals start = scene.metrics.initial(), end = scene.run();
-            INFO(backend << " " << shape << " " << transfer << " " << type << " " << update);
-            CHECK(end.position_error_max < 1e-11);
-            CHECK(end.velocity_error_max < 1e-11);
-            CHECK(std::abs(end.largest_volume_ratio - 1) < 1e-12);
-            const Ledger& ledger = scene.simulation.backend().ledger();
-            CHECK(std::abs(ledger.filter) < 1e-11 * end.kinetic);
-            CHECK(std::abs(ledger.gravity - (end.kinetic - start.kinetic)) < 1e-11 * end.kinetic);
-          }
+    for (const auto& [shape, transfer] : pairs_of(shapes, all_transfers()))
+      for (const auto& [type, order] : {std::pair{"fmpm", 4}, std::pair{"xpic", 3}})
+        for (const std::string update : {"last", "first", "modified_last", "averaged"}) {
+          if (update == "first" && transfer != "pic") continue;
+          const std::string interval = is_flip(transfer) ? R"(,"every_steps":3)" : "";
+          Scene scene(flight, {set("/backend", backend), set("/shape/type", shape), set("/transfer/type", transfer),
+                               set("/solver/stress_update", update), filter(type, order, interval)});
+          const Totals start = scene.metrics.initial(), end = scene.run();
+          INFO(backend << " " << shape << " " << transfer << " " << type << " " << update);
+          CHECK(end.position_error_max < 1e-11);
+          CHECK(end.velocity_error_max < 1e-11);
+          CHECK(std::abs(end.largest_volume_ratio - 1) < 1e-12);
+          const Ledger& ledger = scene.simulation.backend().ledger();
+          CHECK(std::abs(ledger.filter) < 1e-11 * end.kinetic);
+          CHECK(std::abs(ledger.gravity - (end.kinetic - start.kinetic)) < 1e-11 * end.kinetic);
+        }
 }
 
 TEST_CASE("filters conserve momentum", "[filters][momentum]") {
   for (const std::string& backend : backends)
-    for (const std::string& shape : shapes)
-      for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic"})
-        for (const std::string type : {"fmpm", "xpic"})
-          for (const std::string update : {"last", "modified_last"}) {
-            const std::string interval = transfer == "flip" ? R"(,"every_steps":2)" : "";
-            Scene scene(rough, {set("/backend", backend), set("/shape/type", shape), set("/transfer/type", transfer),
-                                set("/grid/domain", "[[-0.5,-0.5],[1.5,1.5]]"), set("/solver/stress_update", update),
-                                set("/solver/time_step", "1e-4"), filter(type, 3, interval)});
-            const Totals start = scene.metrics.initial(), end = scene.run_steps(20);
-            INFO(backend << " " << shape << " " << transfer << " " << type << " " << update);
-            for (int c = 0; c < 2; ++c) CHECK(std::abs(end.momentum[c] - start.momentum[c]) < 1e-12 * start.mass * 3);
-          }
+    for (const auto& [shape, transfer] : pairs_of(shapes, all_transfers()))
+      for (const std::string type : {"fmpm", "xpic"})
+        for (const std::string update : {"last", "modified_last"}) {
+          const std::string interval = is_flip(transfer) ? R"(,"every_steps":2)" : "";
+          Scene scene(rough, {set("/backend", backend), set("/shape/type", shape), set("/transfer/type", transfer),
+                              set("/grid/domain", "[[-0.5,-0.5],[1.5,1.5]]"), set("/solver/stress_update", update),
+                              set("/solver/time_step", "1e-4"), filter(type, 3, interval)});
+          const Totals start = scene.metrics.initial(), end = scene.run_steps(20);
+          INFO(backend << " " << shape << " " << transfer << " " << type << " " << update);
+          for (int c = 0; c < 2; ++c) CHECK(std::abs(end.momentum[c] - start.momentum[c]) < 1e-12 * start.mass * 3);
+        }
 }
 
 TEST_CASE("no wall breaks the contraction", "[filters][walls]") {
   for (const std::string& backend : backends)
-    for (const std::string& shape : shapes)
-      for (const std::string& transfer : filtered_transfers)
-        for (const std::string wall : {"stick", "slip", "separate"}) {
-          Scene scene(rough,
-                      std::vector<std::string>{set("/backend", backend), set("/shape/type", shape),
-                                               set("/transfer/type", transfer), filter("fmpm", 12),
-                                               set("/grid/boundaries/all", wall), set("/solver/time_step", "1e-4")});
-          scene.run_steps(5);
-          INFO(backend << " " << shape << " " << transfer << " " << wall);
+    for (const auto& [shape, transfer] : pairs_of(shapes, filtered_transfers))
+      for (const std::string wall : {"stick", "slip", "separate"}) {
+        Scene scene(rough,
+                    std::vector<std::string>{set("/backend", backend), set("/shape/type", shape),
+                                             set("/transfer/type", transfer), filter("fmpm", 12),
+                                             set("/grid/boundaries/all", wall), set("/solver/time_step", "1e-4")});
+        scene.run_steps(5);
+        INFO(backend << " " << shape << " " << transfer << " " << wall);
+        // On two nodes an axis multilinear polynomials are all there are: PolyPIC leaves the filter nothing to do.
+        if (shape == "linear" && transfer == "polypic")
+          CHECK(scene.simulation.backend().filter_record().last_norm <
+                1e-12 * scene.simulation.backend().filter_record().first_norm);
+        else
           CHECK(scene.simulation.backend().filter_record().largest_growth > 0.1);
-          CHECK(scene.simulation.backend().filter_record().largest_growth <= 1 + 1e-12);
-        }
+        CHECK(scene.simulation.backend().filter_record().largest_growth <= 1 + 1e-12);
+      }
 }
 
 TEST_CASE("the record takes the largest growth, of rounding none", "[filters]") {
@@ -256,29 +263,28 @@ TEST_CASE("the record takes the largest growth, of rounding none", "[filters]") 
 TEST_CASE("the loop contracts in the mass norm, and ends at the tolerance", "[filters]") {
   // S+ S of PIC and of the affine transfers is a mean of projections in the mass norm: I - S+S never grows anything.
   for (const std::string& backend : backends)
-    for (const std::string& shape : shapes)
-      for (const std::string transfer : {"pic", "apic", "mls"}) {
-        const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
-                                              set("/transfer/type", transfer)};
-        INFO(backend << " " << shape << " " << transfer);
-        Scene scene(rough, common + filter("fmpm", 12) + set("/solver/time_step", "1e-4"));
-        double growth = 0;
-        for (int k = 0; k < 20; ++k) {
-          scene.simulation.step();
-          const FilterRecord& record = scene.simulation.backend().filter_record();
-          CHECK(record.iterations == 11);
-          CHECK(record.first_norm > 0);
-          CHECK(record.last_norm < record.first_norm);
-          growth = record.largest_growth;
-        }
-        CHECK(growth > 0);
-        CHECK(growth <= 1 + 1e-12);
-        Scene loose(rough, common + filter("fmpm", 200, R"(,"tolerance":0.1)"));
-        loose.simulation.step();
-        const FilterRecord& record = loose.simulation.backend().filter_record();
-        CHECK(record.iterations < 199);
-        CHECK(record.last_norm <= 0.1 * record.first_norm);
+    for (const auto& [shape, transfer] : pairs_of(shapes, {"pic", "apic", "mls", "rpic", "polypic"})) {
+      const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
+                                            set("/transfer/type", transfer)};
+      INFO(backend << " " << shape << " " << transfer);
+      Scene scene(rough, common + filter("fmpm", 12) + set("/solver/time_step", "1e-4"));
+      double growth = 0;
+      for (int k = 0; k < 20; ++k) {
+        scene.simulation.step();
+        const FilterRecord& record = scene.simulation.backend().filter_record();
+        CHECK(record.iterations == 11);
+        CHECK(record.first_norm > 0);
+        CHECK(record.last_norm < record.first_norm);
+        growth = record.largest_growth;
       }
+      CHECK(growth > 0);
+      CHECK(growth <= 1 + 1e-12);
+      Scene loose(rough, common + filter("fmpm", 200, R"(,"tolerance":0.1)"));
+      loose.simulation.step();
+      const FilterRecord& record = loose.simulation.backend().filter_record();
+      CHECK(record.iterations < 199);
+      CHECK(record.last_norm <= 0.1 * record.first_norm);
+    }
 }
 
 TEST_CASE("higher orders keep more of what the grid can hold", "[filters]") {

@@ -9,15 +9,15 @@ using namespace mpm::test;
 
 namespace {
 
-/// |symbol of S|^2 of a particle at the middle of a cell (offset 0) or on a node (1/2). The domain of a cpdi particle
-/// on a node straddles it: weights 1/4, 1/2, 1/4.
+/// |symbol of S|^2 of a particle at the middle of a cell (offset 0) or on a node (1/2). The domain of a cpdi
+/// or cpdi2 particle on a node straddles it: weights 1/4, 1/2, 1/4.
 double symbol_squared(const std::string& shape, double offset, double theta) {
   if (shape == "bspline_cubic" || shape == "b2gimp") {  // the same at one particle a cell
     if (offset == 0) return std::pow((23 * std::cos(theta / 2) + std::cos(1.5 * theta)) / 24, 2);
     return std::pow((2 + std::cos(theta)) / 3, 2);
   }
   if (offset == 0) return std::pow(std::cos(theta / 2), 2);
-  if (shape == "cpdi") return std::pow(std::cos(theta / 2), 4);
+  if (shape.starts_with("cpdi")) return std::pow(std::cos(theta / 2), 4);
   return std::pow(0.75 + std::cos(theta) / 4, 2);
 }
 
@@ -30,7 +30,8 @@ TEST_CASE("A3 damping of a mode by PIC, XPIC, FMPM and FLIP is that of the symbo
        {std::pair{"linear", 0.0}, std::pair{"bspline_quadratic", 0.0}, std::pair{"gimp", 0.0}, std::pair{"cpdi", 0.0},
         std::pair{"bspline_quadratic", 0.5}, std::pair{"gimp", 0.5}, std::pair{"cpdi", 0.5},
         std::pair{"bspline_cubic", 0.0}, std::pair{"bspline_cubic", 0.5}, std::pair{"b2gimp", 0.0},
-        std::pair{"b2gimp", 0.5}, std::pair{"gimp_contiguous", 0.0}, std::pair{"gimp_contiguous", 0.5}})
+        std::pair{"b2gimp", 0.5}, std::pair{"gimp_contiguous", 0.0}, std::pair{"gimp_contiguous", 0.5},
+        std::pair{"cpdi2", 0.0}, std::pair{"cpdi2", 0.5}})
     for (const int mode : modes) {
       const double s2 = symbol_squared(shape, offset, 2 * std::numbers::pi * mode / 32);
       Line line{.shape = shape, .mode = mode, .offset = offset};
@@ -51,16 +52,23 @@ TEST_CASE("A3 damping of a mode by PIC, XPIC, FMPM and FLIP is that of the symbo
 TEST_CASE("A3 affine transfers damp by the fourth power of the wave number", "[A][A3]") {
   // 1 - (3/64) theta^4, against 1 - theta^2 / 4 of PIC; TPIC's gradient is APIC's affine matrix on this lattice.
   const double theta = 2 * std::numbers::pi / 32;
-  for (const char* transfer : {"apic", "mls", "tpic"}) {
+  for (const char* transfer : {"apic", "mls", "tpic", "polypic"}) {
     INFO(transfer);
     const double loss = 1 - factor({.shape = "bspline_quadratic", .transfer = transfer, .offset = 0.5});
     CHECK(loss == Approx(3.0 / 64 * std::pow(theta, 4)).epsilon(0.05));
   }
-  // cpdi on a node: second moment 1/2, first moment i sin(theta) / 2.
+  // Lists of nodes on a node: second moment 1/2, first moment i sin(theta) / 2.
   for (const int mode : modes) {
     const double angle = 2 * std::numbers::pi * mode / 32;
     const double exact = std::pow(std::cos(angle / 2), 4) + 0.5 * std::pow(std::sin(angle), 2);
-    CHECK(factor({.shape = "cpdi", .transfer = "apic", .mode = mode, .offset = 0.5}) == Approx(exact).epsilon(1e-10));
+    for (const char* shape : {"cpdi", "cpdi2"})
+      CHECK(factor({.shape = shape, .transfer = "apic", .mode = mode, .offset = 0.5}) == Approx(exact).epsilon(1e-10));
+    // A whole basis keeps all that the grid holds.
+    for (const char* shape : {"linear", "bspline_quadratic", "bspline_cubic"})
+      CHECK(factor({.shape = shape,
+                    .transfer = R"({"type": "polypic", "basis": "full"})",
+                    .mode = mode,
+                    .offset = shape == std::string("linear") ? 0 : 0.5}) == Approx(1.0).epsilon(1e-10));
   }
 }
 
@@ -68,7 +76,7 @@ TEST_CASE("A4 the null space: FLIP keeps it, every other transfer and filter ord
   // Particles at 1/4 and 3/4 of their cell, with velocities +1 and -1: no node sees anything.
   const auto alternating = [](double x) { return x - std::floor(x) < 0.5 ? 1.0 : -1.0; };
   for (const char* shape :
-       {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi"}) {
+       {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2"}) {
     const auto run = [&](const std::string& transfer, const std::string& with_filter, int steps) {
       auto scene = std::make_unique<LineScene>(
           Line{.shape = shape, .transfer = transfer, .filter = with_filter, .particles_per_cell = 2}, alternating);
@@ -78,7 +86,7 @@ TEST_CASE("A4 the null space: FLIP keeps it, every other transfer and filter ord
     INFO(shape);
     CHECK(run("flip", "", 100)->velocities().front() == Approx(1.0).epsilon(1e-12));
     CHECK(run("flip", "", 100)->largest_speed() == Approx(1.0).epsilon(1e-12));
-    for (const char* transfer : {"pic", "apic", "mls", "tpic"}) {
+    for (const auto& [one, transfer] : pairs_of({shape}, {"pic", "apic", "mls", "tpic", "rpic", "polypic"})) {
       INFO(transfer);
       CHECK(run(transfer, "", 1)->largest_speed() <= 1e-14);
     }

@@ -57,6 +57,13 @@ class LineScene {
     for (std::size_t k = 0; k < state.position.size(); k += 2) x.push_back(state.position[k]);
     return x;
   }
+  /// Along the line, F - 1.
+  std::vector<double> strains() const {
+    const auto F = simulation_.backend().body_state(0).material_state.at("deformation_gradient");
+    std::vector<double> strain;
+    for (std::size_t k = 0; k < F.size(); k += 4) strain.push_back(F[k] - 1);
+    return strain;
+  }
   /// sum v sin(2 pi mode x / length).
   double amplitude() const {
     const BodyState state = simulation_.backend().body_state(0);
@@ -74,8 +81,7 @@ class LineScene {
   /// Of velocity over wave speed and of strain: the shortest wave shows in strains only.
   double largest_disturbance() const {
     double largest = largest_speed();
-    const auto F = simulation_.backend().body_state(0).material_state.at("deformation_gradient");
-    for (std::size_t k = 0; k < F.size(); k += 4) largest = std::max(largest, std::abs(F[k] - 1));
+    for (const double strain : strains()) largest = std::max(largest, std::abs(strain));
     return largest;
   }
 

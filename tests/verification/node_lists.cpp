@@ -14,7 +14,7 @@ using namespace mpm::test;
 namespace {
 
 const std::vector<std::string> backends{"reference", "cpu"};
-const std::vector<std::string> sized_shapes{"gimp", "gimp_contiguous", "b2gimp", "cpdi"};
+const std::vector<std::string> sized_shapes{"gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2"};
 const std::vector<std::string> transfers{"pic", "flip", "apic", "mls", "tpic", "rpic", "aflip", "asflip"};
 
 const char* flight = R"J({
@@ -73,7 +73,7 @@ void check_flight(const char* text, const std::vector<std::string>& overrides) {
 
 TEST_CASE("A7 free flight with sized shapes and Taylor transfer", "[A][A7]") {
   for (const std::string& backend : backends)
-    for (const std::string shape : {"gimp", "gimp_contiguous", "b2gimp", "cpdi", "linear"})
+    for (const std::string shape : {"gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2", "linear"})
       for (const std::string& transfer : transfers)
         for (const std::string order : {"last", "first", "modified_last"}) {
           if (shape == "linear" && transfer != "tpic") continue;  // free_fall.cpp
@@ -132,7 +132,7 @@ TEST_CASE("A2 an affine field comes back exactly", "[A][A2]") {
   const double seeded = 2.2e-16 * 20 / (1e-4 * 0.1);
   for (const std::string& backend : backends)
     for (const std::string shape :
-         {"gimp", "gimp_contiguous", "b2gimp", "cpdi", "linear", "bspline_quadratic", "bspline_cubic"})
+         {"gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2", "linear", "bspline_quadratic", "bspline_cubic"})
       for (const std::string transfer : {"apic", "mls", "tpic"}) {
         Scene scene(affine_field,
                     {set("/backend", backend), set("/shape/type", shape), set("/transfer/type", transfer)});

@@ -3,6 +3,7 @@
 // increment; a weld at the end of each field's own filter is another method.
 
 #include <cmath>
+#include <cstdio>
 
 #include "support/catch.hpp"
 #include "support/differences.hpp"
@@ -25,6 +26,10 @@ const char* halves = R"J({
     {"name": "right", "material": "m", "geometry": {"type": "box", "lower": [2, 1], "upper": [3, 1.6]}, "velocity": ["1+0.3*sin(pi*(x-1)/2)", "0.4*x"]}],
   "solver": {"time_step": 0.005, "end_time": 0.5}})J";
 
+const std::vector<std::string> shapes{
+    "linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2"};
+const std::vector<std::string> transfers{"pic", "flip", "apic", "mls", "tpic", "rpic", "aflip", "asflip", "polypic"};
+
 using mpm::test::largest_difference;
 
 double largest_difference(const Scene& a, const Scene& b) {
@@ -40,80 +45,105 @@ double largest_difference(const Scene& a, const Scene& b) {
 }  // namespace
 
 TEST_CASE("D4 a welded interface is transparent to rounding", "[D][D4]") {
-  for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic"})
-    for (const std::string transfer : {"pic", "flip", "apic", "mls", "rpic", "aflip", "asflip"})
-      for (const std::string order : {"last", "first", "modified_last", "averaged"})
-        for (const std::string backend : {"reference", "cpu"}) {
-          if (backend == "reference" && order != "last") continue;
-          const std::vector<std::string> common{set("/shape/type", shape), set("/transfer/type", transfer),
-                                                set("/solver/stress_update", order), set("/backend", backend)};
-          auto single = common;
-          single.push_back("/contact=null");
-          Scene welded(halves, common), one(halves, single);
-          INFO(shape << " " << transfer << " " << order << " " << backend);
-          welded.run_steps(1), one.run_steps(1);
-          CHECK(largest_difference(welded, one) < 1e-13);
-          welded.run_steps(60), one.run_steps(60);
-          CHECK(largest_difference(welded, one) < 1e-9);
-        }
-}
-
-TEST_CASE("D4 the weld is transparent to sized shapes and Taylor transfer", "[D][D4]") {
-  for (const std::string backend : {"reference", "cpu"})
-    for (const std::string shape :
-         {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi"})
-      for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic", "rpic", "aflip", "asflip"})
-        for (const std::string order : {"last", "modified_last"}) {
-          if ((shape == "linear" || shape.rfind("bspline", 0) == 0) && transfer != "tpic") continue;  // above
-          const std::vector<std::string> common{set("/shape/type", shape), set("/transfer/type", transfer),
-                                                set("/solver/stress_update", order), set("/backend", backend)};
-          auto single = common;
-          single.push_back("/contact=null");
-          Scene welded(halves, common), one(halves, single);
-          INFO(backend << " " << shape << " " << transfer << " " << order);
-          welded.run_steps(1), one.run_steps(1);
-          CHECK(largest_difference(welded, one) < 1e-12);
-          welded.run_steps(30), one.run_steps(30);
-          CHECK(largest_difference(welded, one) < 1e-9);
-        }
+  for (const auto& [shape, transfer] : pairs_of(shapes, transfers))
+    for (const std::string order : {"last", "first", "modified_last", "averaged"})
+      for (const std::string backend : {"reference", "cpu"}) {
+        if (backend == "reference" && order != "last") continue;
+        const std::vector<std::string> common{set("/shape/type", shape), set("/transfer/type", transfer),
+                                              set("/solver/stress_update", order), set("/backend", backend)};
+        auto single = common;
+        single.push_back("/contact=null");
+        Scene welded(halves, common), one(halves, single);
+        INFO(shape << " " << transfer << " " << order << " " << backend);
+        welded.run_steps(1), one.run_steps(1);
+        CHECK(largest_difference(welded, one) < 1e-13);
+        welded.run_steps(30), one.run_steps(30);
+        CHECK(largest_difference(welded, one) < 1e-9);
+      }
 }
 
 TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the end is not", "[D][D4][filters]") {
   const std::string rough = R"J(["1+0.3*sin(40*x)","0.4*x+0.3*cos(31*x*y)"])J";
+  double least = 1, most = 0;
   for (const std::string backend : {"reference", "cpu"})
-    for (const std::string shape :
-         {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi"})
-      for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic", "rpic", "aflip", "asflip"})
-        for (const auto& [type, order] : {std::pair{"fmpm", "4"}, std::pair{"xpic", "3"}}) {
-          const auto run = [&, type = type, order = order](const std::string& constraints, bool weld) {
-            const std::string interval =
-                transfer.find("flip") != transfer.npos ? R"("every_steps":2,)" : "";  // FLIP at every step is refused
-            std::vector<std::string> overrides{set("/shape/type", shape), set("/transfer/type", transfer),
-                                               set("/backend", backend),
-                                               std::string(R"(/filter={"type":")") + type + R"(","order":)" + order +
-                                                   "," + interval + R"("constraints":")" + constraints + "\"}"};
-            // FMPM drives light surface nodes harder than the transfer alone: a step below its limit there.
-            overrides.insert(overrides.end(), {set("/solver/time_step", "0.001"), set("/bodies/0/velocity", rough),
-                                               set("/bodies/1/velocity", rough)});
-            if (!weld) overrides.emplace_back("/contact=null");
-            return std::make_unique<Scene>(halves, overrides);
-          };
-          const auto one = run("every_increment", false), always = run("every_increment", true),
-                     at_end = run("at_end", true);
-          const auto step_all = [&](int steps) {
-            for (Scene* scene : {one.get(), always.get(), at_end.get()}) scene->run_steps(steps);
-          };
-          const bool periodic = transfer.find("flip") != transfer.npos;
-          step_all(periodic ? 2 : 1);
-          double exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
-          INFO(backend << " " << shape << " " << transfer << " " << type << ": every increment " << exact
-                       << ", at the end " << late);
-          CHECK(exact < 1e-14);
+    for (const auto& [shape, transfer] : pairs_of(shapes, transfers))
+      for (const auto& [type, order] : {std::pair{"fmpm", "4"}, std::pair{"xpic", "3"}}) {
+        const auto run = [&, shape = shape, transfer = transfer, type = type, order = order](
+                             const std::string& constraints, bool weld) {
+          const std::string interval =
+              transfer.find("flip") != transfer.npos ? R"("every_steps":2,)" : "";  // FLIP at every step is refused
+          std::vector<std::string> overrides{set("/shape/type", shape), set("/transfer/type", transfer),
+                                             set("/backend", backend),
+                                             std::string(R"(/filter={"type":")") + type + R"(","order":)" + order +
+                                                 "," + interval + R"("constraints":")" + constraints + "\"}"};
+          // FMPM drives light surface nodes harder than the transfer alone: a step below its limit there.
+          overrides.insert(overrides.end(), {set("/solver/time_step", "0.001"), set("/bodies/0/velocity", rough),
+                                             set("/bodies/1/velocity", rough)});
+          if (!weld) overrides.emplace_back("/contact=null");
+          return std::make_unique<Scene>(halves, overrides);
+        };
+        const auto one = run("every_increment", false), always = run("every_increment", true),
+                   at_end = run("at_end", true);
+        const auto step_all = [&](int steps) {
+          for (Scene* scene : {one.get(), always.get(), at_end.get()}) scene->run_steps(steps);
+        };
+        const bool periodic = transfer.find("flip") != transfer.npos;
+        step_all(periodic ? 2 : 1);
+        double exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
+        INFO(backend << " " << shape << " " << transfer << " " << type << ": every increment " << exact
+                     << ", at the end " << late);
+        CHECK(exact < 1e-14);
+        // Polynomials of a tent, also of one averaged over a box inside its cell, keep all that the grid holds: the
+        // filter has nothing to do, until a box straddles a face.
+        const bool whole = transfer == "polypic" && (shape == "linear" || shape.starts_with("gimp"));
+        if (whole)
+          CHECK(late < 1e-14);
+        else
           CHECK(late > 1e-5);  // ten orders above
-          step_all(20);
-          exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
-          INFO("after 20 more: every increment " << exact << ", at the end " << late);
-          CHECK(exact < 1e-13);
+        if (!whole) least = std::min(least, late), most = std::max(most, late);
+        step_all(20);
+        exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
+        INFO("after 20 more: every increment " << exact << ", at the end " << late);
+        CHECK(exact < 1e-13);
+        if (!whole || shape != "linear")
           CHECK(late > (periodic && transfer != "flip" ? 1e-4 : 1e-3));  // an affine field brings some of it along
+      }
+  std::printf("D4, a weld at the end of a filter's loop: off by %.1e to %.1e m/s after a step\n", least, most);
+}
+
+TEST_CASE("D4 what a weld at the end loses grows with the order of the filter", "[D][D4][filters]") {
+  // Up to order 2 nothing: of the welded v- both fields' projections average to that of the single field. Later
+  // increments start from projections that nothing has welded.
+  const std::string rough = R"J(["1+0.3*sin(40*x)","0.4*x+0.3*cos(31*x*y)"])J";
+  std::printf("D4, a weld in the filter's loop: velocity after a step less that of one field (m/s)\n");
+  for (const std::string shape : {"linear", "bspline_quadratic"})
+    for (const std::string transfer : {"pic", "apic"})
+      for (const std::string type : {"fmpm", "xpic"}) {
+        double before = 0;
+        for (const int order : {2, 4, 8, 16}) {
+          const auto step = [&](const std::string& constraints, const std::string& contact) {
+            auto scene = std::make_unique<Scene>(
+                halves, std::vector<std::string>{
+                            set("/shape/type", shape), set("/transfer/type", transfer), set("/contact", contact),
+                            set("/bodies/0/velocity", rough), set("/bodies/1/velocity", rough),
+                            set("/solver/time_step", "0.0005"),
+                            set("/filter", R"({"type":")" + type + R"(","order":)" + std::to_string(order) +
+                                               R"(,"constraints":")" + constraints + "\"}")});
+            scene->run_steps(1);
+            return scene;
+          };
+          const auto one = step("every_increment", "null"), always = step("every_increment", R"({"type":"stick"})"),
+                     at_end = step("at_end", R"({"type":"stick"})");
+          const double exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
+          std::printf("  %-17s %-4s %s %2d every increment %.1e, at the end %.1e\n", shape.c_str(), transfer.c_str(),
+                      type.c_str(), order, exact, late);
+          INFO(shape << " " << transfer << " " << type << " " << order);
+          CHECK(exact < 1e-14);
+          if (order == 2)
+            CHECK(late < 1e-14);
+          else
+            CHECK(late > std::max(1e-4, before));
+          before = late;
         }
+      }
 }

@@ -12,7 +12,9 @@ surroundings to the grid, as in `apic` (a fraction of 1 is `apic`). sum w v+ mov
 
 Mass and linear momentum are conserved to rounding, affine fields pass unchanged. Angular momentum is not exact: v keeps what C holds
 too. For the same reason kinetic energy and angular momentum count v alone, as with `flip`. Without forces and with a
-fraction of 0 the velocity is kept, and so is noise that the grid cannot see. The grid keeps two velocities.
+fraction of 0 the velocity is kept, and so is noise that the grid cannot see. The grid keeps two velocities. A wave of which a
+gather leaves s reaches the grid as v / s and comes back as s v: its energy swings, up to 1/s^2 of the start at full strain
+(6 % more in the two lowest waves of a block of ten cells), and does not build up.
 
 v- is the grid's velocity after conditions and contact before the forces, as in `flip`; the paper takes it before
 them. Here walls are mirror images: v- of a body and its image is the velocity after the wall, and with the one before
