@@ -310,6 +310,7 @@ Cell cell_of(const Study& study, const FigureRequest& figure, const Result& resu
   Cell cell{result.value(figure.value), ""};
   if (!std::isfinite(cell.value)) cell.note = outcome_words(result);
   if (!result.flags.empty()) cell.note = "!";
+  if (study.bisection && result.outcome.status == Status::failed) cell.note = "none";
   if (study.bisection && figure.value == critical_measure && result.stable && !result.unstable) cell.note = "or more";
   return cell;
 }
@@ -352,9 +353,10 @@ Cell cell_of(const Study& study, const FigureRequest& figure, const std::vector<
   for (const Result* run : runs) {
     const Cell cell = cell_of(study, figure, *run);
     const bool better = figure.take == Take::smallest ? cell.value < taken.value : cell.value > taken.value;
-    // What has no number is told only where no run has one.
     if (better || std::isnan(taken.value)) taken = cell;
   }
+  // A number of some of the runs says how many are not as they should be.
+  if (!figure.over.empty() && !study.bisection && std::isfinite(taken.value)) taken.note = bounded_of(runs).note;
   return taken;
 }
 
@@ -404,7 +406,9 @@ void draw_heat_map(const Results& results, const FigureRequest& figure, const fs
   }
   map.value_label = value_label_of(study, figure, most);
   if (has_flags) map.footnote += " · !: broke a limit";
-  if (figure.take == Take::bounded)
+  if (std::find(map.notes.begin(), map.notes.end(), "none") != map.notes.end())
+    map.footnote += " · none: unstable from the beginning";
+  if (!figure.over.empty())
     for (const auto& [words, sign] : signs)
       if (std::any_of(map.notes.begin(), map.notes.end(), [&](const auto& note) { return has_sign(note, sign); }))
         map.footnote += std::string(" · ") + sign + ": " + words;

@@ -152,6 +152,30 @@ TEST_CASE("refused, unstable and flagged combinations are recorded by name") {
   CHECK(fs::is_regular_file(folder / "out/figures/heat_map.png"));
 }
 
+TEST_CASE("a cell of a heat map tells how many of its runs are bounded, and what became of the others") {
+  const Folder folder;
+  Json study = small_study();
+  study["axes"] = {{"/transfer/type", {"pic", "flip"}}, {"/grid/cell_size", {0.1, 0.05}}};
+  study["axes"]["/limits"] = {
+      {"values", {{{"energy_gain", nullptr}}, {{"energy_gain", 1}, {"volume_ratio", {0.9999, 2}}}}},
+      {"labels", {"wide", "narrow"}}};
+  study["figures"] = {{{"type", "heat_map"},
+                       {"x", "/transfer/type"},
+                       {"y", "/grid/cell_size"},
+                       {"over", "/limits"},
+                       {"take", "bounded"}}};
+  write_inputs(folder, breathing(), study);
+  const Result result = run_study(folder);
+  INFO(result.err);
+  CHECK(result.code == 4);
+  CHECK(has(result.out, "8 combinations: 8 done"));
+  const std::string csv = slurp(folder / "out/figures/heat_map.csv");
+  INFO(csv);
+  CHECK(has(csv, "runs bounded, of 2"));
+  CHECK(has(csv, "0.1,flip,2,\n"));
+  CHECK(has(csv, "0.05,pic,1,J1\n"));
+}
+
 TEST_CASE("bisection finds the largest stable step") {
   const Folder folder;
   Json study = small_study();
