@@ -20,7 +20,8 @@ namespace {
 constexpr const char* footer =
     R"(Exit codes: 0 done and every expectation held; 2 bad input, nothing was run; 3 the run became unstable or
 invalid (what, where and when is printed; results so far are kept), or test-plugin found a plugin that fails, crashes
-or hangs; 4 an expectation in "compare" failed; 5 the machine failed (disk, memory); 130 stopped by Ctrl-C at a step
+or hangs; 4 an expectation in "compare" failed, or the run broke a limit: it gained more than 1 % of energy out of
+nothing, or a volume ratio J left 0.1 to 10 (flagged by name; other limits under "limits"); 5 the machine failed (disk, memory); 130 stopped by Ctrl-C at a step
 boundary, everything written.
 A run that was stopped, killed or had no room on the disk goes on from its last checkpoint with --resume.
 Plugins are found in the build tree and in the folders of MPM_PLUGIN_PATH.)";

@@ -13,12 +13,12 @@
 namespace mpm::app {
 
 enum ExitCode {
-  done = 0,        ///< and every expectation held
-  bad_input = 2,   ///< nothing was run
-  run_failed = 3,  ///< unstable or invalid: results up to there are kept; test-plugin: the plugin failed
-  expectation_failed = 4,
-  machine_failed = 5,  ///< disk, memory
-  interrupted = 130    ///< Ctrl-C: everything up to the last step is written
+  done = 0,                ///< and every expectation held
+  bad_input = 2,           ///< nothing was run
+  run_failed = 3,          ///< unstable or invalid: results up to there are kept; test-plugin: the plugin failed
+  expectation_failed = 4,  ///< or a limit was broken
+  machine_failed = 5,      ///< disk, memory
+  interrupted = 130        ///< Ctrl-C: everything up to the last step is written
 };
 
 struct RunOptions {

@@ -13,6 +13,7 @@
 #include "experiment/diagnostics.hpp"
 #include "mpm/checkpoint.hpp"
 #include "mpm/cli.hpp"
+#include "mpm/limits.hpp"
 #include "mpm/remedy.hpp"
 #include "mpm/run_figures.hpp"
 #include "mpm/stop_on_signal.hpp"
@@ -20,6 +21,7 @@
 #include "output/atomic_file.hpp"
 #include "output/manifest.hpp"
 #include "output/report.hpp"
+#include "study/summary_value.hpp"
 
 namespace mpm::app {
 namespace {
@@ -300,6 +302,12 @@ Outcome finish(Outcome outcome, nlohmann::ordered_json summary, const Experiment
     for (const std::string& sentence : failed) std::cerr << sentence << "\n";
     if (!failed.empty()) outcome = {expectation_failed, "expectation failed", failed.front()};
   }
+  std::string flagged;
+  for (const std::string& flag : judge_limits(experiment, summary)) {
+    std::cerr << "flagged: " << flag << "\n";
+    flagged += (flagged.empty() ? "" : "; ") + flag;
+  }
+  if (outcome.exit_code == done && !flagged.empty()) outcome = {expectation_failed, study::limit_broken, flagged};
   for (const auto& warning : summary["warnings"]) std::cerr << "warning: " << warning.get<std::string>() << "\n";
   const auto write_summary = [&] {
     summary["outcome"] = {{"exit_code", outcome.exit_code}, {"status", outcome.status}, {"reason", outcome.reason}};

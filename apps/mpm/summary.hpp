@@ -13,7 +13,7 @@ namespace mpm::app {
 /// How a run ended.
 struct Outcome {
   int exit_code = 0;
-  std::string status = "done";  ///< done, failed, expectation failed, interrupted
+  std::string status = "done";  ///< done, failed, expectation failed, limit broken, interrupted
   std::string reason;
 };
 
@@ -24,7 +24,7 @@ struct EarlierParts {
   std::vector<long> resumed_from_steps;  ///< step of each resumption, the last one included
 };
 
-/// All groups but `expect` and `outcome`. `wall_seconds` is that of this process.
+/// All groups but `expect`, `limits`, `flags` and `outcome`. `wall_seconds` is that of this process.
 nlohmann::ordered_json summarise(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder,
                                  double wall_seconds, const EarlierParts& earlier);
 

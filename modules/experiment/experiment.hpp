@@ -117,6 +117,13 @@ struct Expectation {
   std::string pointer;
 };
 
+/// What a finished run must respect at every recorded time, else it is flagged by name.
+struct Limits {
+  std::optional<bool> isolated;       ///< nothing: as the scene says
+  std::optional<double> energy_gain;  ///< of the energy that an isolated scene began with; nothing: not judged
+  std::optional<std::array<double, 2>> volume_ratio;  ///< smallest and largest of any particle; nothing: not judged
+};
+
 struct ExactChoice {
   std::string type;                                    ///< name in the registry of exact solutions
   std::vector<std::pair<std::string, double>> values;  ///< its parameters
@@ -155,6 +162,7 @@ struct Experiment {
   std::vector<std::string> figures;
   std::optional<ExactChoice> exact;
   std::vector<Expectation> expectations;
+  Limits limits;
 
   nlohmann::ordered_json resolved;  ///< the file with overrides applied and every default filled: re-runnable
 

@@ -85,6 +85,11 @@ ParameterSpec from_plugin(const mpm_parameter& declared) {
 }
 
 std::string describe_expected(const ParameterSpec& spec) {
+  if (spec.may_be_null) {
+    ParameterSpec other = spec;
+    other.may_be_null = false;
+    return describe_expected(other) + " or null";
+  }
   const std::string per_axis = spec.components ? std::to_string(spec.components) : "one";
   switch (spec.type) {
     case ParameterType::number: {
@@ -163,11 +168,13 @@ void Fields::read(const ParameterSpec& spec, const Node* node) {
   value.node = node;
   if (!node) {
     use_default(spec, value);
+  } else if (spec.may_be_null && node->type == Node::Type::null) {
+    value.valid = value.is_null = true;
   } else {
     value.valid = read_value(spec, *node, value);
   }
-  if (spec.type == ParameterType::nested && node) {
-    resolved[spec.name] = nullptr;  // keeps its place in the order of the table
+  if (value.is_null || (spec.type == ParameterType::nested && node)) {
+    resolved[spec.name] = nullptr;  // kept, or keeps its place in the order of the table
   } else if (!value.resolved.is_null()) {
     resolved[spec.name] = value.resolved;
   }
@@ -186,8 +193,8 @@ void Fields::use_default(const ParameterSpec& spec, Value& value) {
   if (chosen != spec.choices.end()) value.number = static_cast<double>(chosen - spec.choices.begin());
   if (spec.type == ParameterType::vector || spec.type == ParameterType::expression_vector) {
     const std::size_t count = spec.components ? spec.components : context_.dimension;
-    value.resolved = OrderedJson(std::vector<double>(count, value.number));
-    for (std::size_t i = 0; i < count; ++i) value.vector[i] = value.number;
+    value.resolved = standard.is_array() ? standard : OrderedJson(std::vector<double>(count, value.number));
+    for (std::size_t i = 0; i < count; ++i) value.vector[i] = value.resolved[i].get<double>();
     value.expression = VectorExpression(value.vector);
   }
 }

@@ -40,7 +40,7 @@ struct ParameterSpec {
   std::string unit;  ///< SI; "" a pure number; "any" whatever dimension
   std::string doc;   ///< one sentence
   bool required = false;
-  OrderedJson default_value;  ///< null: none. A vector's default is one number for all components
+  OrderedJson default_value;  ///< null: none. A vector's default is a list, or one number for all components
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
   bool above_minimum = false, below_maximum = false;  ///< the bound itself is excluded
@@ -48,6 +48,7 @@ struct ParameterSpec {
   std::string word;                                  ///< a number may also be this word ("auto")
   std::string variables;                             ///< letters that an expression may use
   bool may_leave_free = false;                       ///< components of an expression vector may be null
+  bool may_be_null = false;                          ///< null says "none", and is kept
   int components = 0;                                ///< of a vector; 0: as the dimension of the experiment
   std::size_t least_items = 0, most_items = 100000;  ///< of points
   std::string definition;                            ///< of nested
@@ -63,6 +64,7 @@ struct ParameterSpec {
   ParameterSpec& or_word(std::string text) { return word = std::move(text), *this; }
   ParameterSpec& over(std::string letters) { return variables = std::move(letters), *this; }
   ParameterSpec& leave_free() { return may_leave_free = true, *this; }
+  ParameterSpec& or_null() { return may_be_null = true, *this; }
   ParameterSpec& with_components(int count) { return components = count, *this; }
   ParameterSpec& items(std::size_t least, std::size_t most) { return least_items = least, most_items = most, *this; }
   ParameterSpec& defined_as(std::string name_) { return definition = std::move(name_), *this; }
@@ -117,6 +119,8 @@ class Fields {
   const VectorExpression& expression(std::string_view name) const { return value(name).expression; }
   /// Components of an expression vector that are not null.
   const std::array<bool, 3>& held(std::string_view name) const { return value(name).held; }
+  /// The file says null where the key may be null.
+  bool is_null(std::string_view name) const { return value(name).is_null; }
   /// The value as it stands in the file; null when absent.
   const Node* node(std::string_view name) const { return value(name).node; }
   /// The value, or the whole object when absent: where a problem about it belongs.
@@ -129,7 +133,7 @@ class Fields {
  private:
   struct Value {
     const Node* node = nullptr;
-    bool valid = false;
+    bool valid = false, is_null = false;
     double number = 0;
     std::string text;
     Vector3 vector{};

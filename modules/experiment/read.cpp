@@ -74,6 +74,7 @@ Experiment ExperimentReader::read() {
   read_solver(fields.node("solver"));
   read_output(fields.node("output"));
   read_compare(fields.node("compare"));
+  read_limits(fields.node("limits"));
   check_axisymmetric();
   check_frozen();
 
@@ -170,6 +171,12 @@ void ExperimentReader::read_compare(const Node* node) {
   if (!fields.given("expect") || !is_list(*fields.node("expect"), "expectations", true)) return;
   resolved["expect"] = OrderedJson::array();
   for (const Node& item : fields.node("expect")->items) resolved["expect"].push_back(read_expectation(item));
+}
+
+void ExperimentReader::read_limits(const Node* node) {
+  const Fields fields(node, limits_section(), context_);
+  experiment_.limits = limits_of(fields, context_);
+  resolved_["limits"] = fields.resolved;
 }
 
 OrderedJson ExperimentReader::read_exact(const Node& node) {

@@ -32,6 +32,7 @@ class ExperimentReader {
   void read_solver(const Node* node);
   void read_output(const Node* node);
   void read_compare(const Node* node);
+  void read_limits(const Node* node);
   OrderedJson read_exact(const Node& node);
   OrderedJson read_expectation(const Node& node);
 

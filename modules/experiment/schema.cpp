@@ -91,12 +91,14 @@ Json value_schema(const ParameterSpec& spec) {
 
 Json parameter_schema(const ParameterSpec& spec) {
   Json schema = value_schema(spec);
+  if (spec.may_be_null) schema = {{"anyOf", Json::array({std::move(schema), {{"type", "null"}}})}};
   const bool has_unit = !spec.unit.empty() && spec.unit != "any";
   const std::string text = spec.doc + (has_unit ? " Unit: " + spec.unit + "." : "");
   if (!text.empty()) schema["description"] = text;
   if (spec.default_value.is_null()) return schema;
   const bool vector = spec.type == ParameterType::vector || spec.type == ParameterType::expression_vector;
-  if (!vector) schema["default"] = spec.default_value;  // a vector's default has as many zeros as dimensions
+  // The number that is a vector's default stands for as many as there are dimensions.
+  if (!vector || spec.default_value.is_array()) schema["default"] = spec.default_value;
   return schema;
 }
 
@@ -164,6 +166,7 @@ Json definitions(const ComponentLookup& components, const ReadOptions& options) 
   all["solver"] = section_schema(solver_section());
   all["output"] = section_schema(output_section(options));
   all["compare"] = section_schema(compare_section());
+  all["limits"] = section_schema(limits_section());
   all["exact"] = choice_schema(exact_kinds(options));
   all["expectation"] = section_schema(expectation_section());
   all["expectation"]["anyOf"] =

@@ -77,6 +77,7 @@ Section experiment_section(const ReadOptions& options) {
                   .of(options.figures)
                   .standard(OrderedJson::array()),
               nested("compare", "what to compare the results with", "compare"),
+              nested("limits", "what a finished run must respect", "limits"),
           }};
 }
 
@@ -259,6 +260,27 @@ Section compare_section() {
           {nested("exact", "an exact solution", "exact"), nested("expect", "a list of expectations", "expectations")}};
 }
 
+Section limits_section() {
+  return {
+      "limits",
+      "what a finished run must respect",
+      {
+          parameter("isolated", Type::boolean, "",
+                    "Whether nothing works on the scene from outside; default: as the file says, by body force, moving "
+                    "walls and prescribed nodes."),
+          parameter("energy_gain", Type::number, "",
+                    "Largest gain of an isolated scene at any recorded time, of the energy that it began with.")
+              .from(0)
+              .or_null()
+              .standard(0.01),
+          parameter("volume_ratio", Type::vector, "",
+                    "Smallest and largest volume ratio of any particle at any recorded time.")
+              .with_components(2)
+              .or_null()
+              .standard({0.1, 10.0}),
+      }};
+}
+
 Section expectation_section() {
   return {"expectation",
           "an expectation",
@@ -269,6 +291,20 @@ Section expectation_section() {
               parameter("equals", Type::number, "any", "Value, within the tolerance."),
               parameter("tolerance", Type::number, "any", "Allowed distance from `equals`, absolute.").from(0),
           }};
+}
+
+Limits limits_of(const Fields& fields, ReadContext& context) {
+  Limits limits;
+  if (fields.given("isolated")) limits.isolated = fields.boolean("isolated");
+  if (!fields.is_null("energy_gain")) limits.energy_gain = fields.number("energy_gain");
+  if (fields.given("energy_gain") && limits.energy_gain && fields.given("isolated") && !*limits.isolated)
+    context.problem(*fields.node("energy_gain"), "a gain is judged in isolated scenes only, and \"isolated\" is false");
+  if (fields.is_null("volume_ratio")) return limits;
+  const Vector3& range = fields.vector("volume_ratio");
+  if (fields.valid("volume_ratio") && !(range[0] < range[1]))
+    context.problem(*fields.node("volume_ratio"), "expected the smaller ratio first");
+  limits.volume_ratio = {range[0], range[1]};
+  return limits;
 }
 
 std::vector<Section> exact_kinds(const ReadOptions& options) {

@@ -22,8 +22,12 @@ Section body_section();
 Section solver_section();
 Section output_section(const ReadOptions& options);
 Section compare_section();
+Section limits_section();
 Section expectation_section();
 std::vector<Section> exact_kinds(const ReadOptions& options);
+
+/// What fields of `limits_section` say, checked against each other.
+Limits limits_of(const Fields& fields, ReadContext& context);
 
 /// The plugins of a kind as sections, with the keys the host itself reads beside them.
 std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind kind);

@@ -13,7 +13,7 @@ std::string banner(const char* kind, const std::string& title, const std::string
   return std::string("<div class=\"banner ") + kind + "\"><strong>" + title + "</strong>" + body + "</div>\n";
 }
 
-const char* meaning_of(std::int64_t exit_code) {
+const char* meaning_of(std::int64_t exit_code, bool limit_broken) {
   switch (exit_code) {
     case 0:
       return "Done: the run finished and every expectation held";
@@ -22,12 +22,17 @@ const char* meaning_of(std::int64_t exit_code) {
     case 3:
       return "Failed: the run became unstable or invalid";
     case 4:
-      return "Finished, but an expectation failed";
+      return limit_broken ? "Finished, but broke a limit" : "Finished, but an expectation failed";
     case 5:
       return "Failed: the machine could not go on";
     default:
       return "Failed";
   }
+}
+
+bool broke_a_limit(const Run& run) {
+  const Json* status = member(run.summary, {"outcome", "status"});
+  return status != nullptr && *status == "limit broken";
 }
 
 std::string warnings_banner(const Run& run) {
@@ -37,6 +42,15 @@ std::string warnings_banner(const Run& run) {
   for (const Json& warning : *warnings) list += "<li>" + value_html({}, warning) + "</li>";
   return banner("warn", warnings->size() == 1 ? "One warning" : std::to_string(warnings->size()) + " warnings",
                 list + "</ul>");
+}
+
+/// The limits that the run broke, where the outcome does not name them already.
+std::string flags_banner(const Run& run) {
+  const Json* flags = member(run.summary, {"flags"});
+  if (flags == nullptr || !flags->is_array() || flags->empty() || broke_a_limit(run)) return {};
+  std::string list = "<ul>";
+  for (const Json& flag : *flags) list += "<li>" + value_html({}, flag) + "</li>";
+  return banner("bad", "Flagged", list + "</ul>");
 }
 
 std::string unreadable_banner(const Run& run) {
@@ -65,7 +79,7 @@ std::string outcome_banner(const Run& run) {
   if (good) rest.erase("status");
   if (!rest.empty()) body += "<span>" + table_html(rest) + "</span>";
   const std::string code_text = good ? "" : " (exit code " + integer_html(code->get<std::int64_t>()) + ")";
-  return banner(good ? "good" : "bad", meaning_of(code->get<std::int64_t>()) + code_text, body);
+  return banner(good ? "good" : "bad", meaning_of(code->get<std::int64_t>(), broke_a_limit(run)) + code_text, body);
 }
 
 // Finds a value by the end of its dotted path: "dt_min" or "time_step.min", wherever its group is, nearest to the top.
@@ -271,8 +285,8 @@ std::string performance_section(const Run& run) {
 
 // Groups and values that no other section knows: nothing that was recorded is hidden.
 std::string other_groups(const Run& run) {
-  static const std::set<std::string> known = {"outcome", "warnings", "expect",    "energy",     "momentum",
-                                              "contact", "error",    "stability", "performance"};
+  static const std::set<std::string> known = {"outcome",  "warnings", "expect", "limits",    "flags",      "energy",
+                                              "momentum", "contact",  "error",  "stability", "performance"};
   Json loose = Json::object();
   std::string html;
   for (const auto& item : run.summary.items()) {
@@ -286,24 +300,14 @@ std::string other_groups(const Run& run) {
   return section("Also recorded", (loose.empty() ? "" : table_html(loose)) + html);
 }
 
-}  // namespace
-
-std::string outcome(const Run& run) {
-  return outcome_banner(run) + warnings_banner(run) + unreadable_banner(run);
-}
-
-std::string headline_numbers(const Run& run) {
-  const std::string cards = simple_cards(run.summary) + time_step_card(run.summary);
-  return cards.empty() ? "" : "<dl class=\"cards\">\n" + cards + "</dl>\n";
-}
-
-std::string expectations(const Run& run) {
-  const Json* list = member(run.summary, {"expect"});
+/// Table of what the run was held against: a group of the summary with a verdict for each of its entries.
+std::string judged(const Run& run, const char* group, const char* title) {
+  const Json* list = member(run.summary, {group});
   if (list == nullptr || list->empty()) return {};
   const bool known_form = list->is_array() && std::all_of(list->begin(), list->end(), [](const Json& e) {
                             return e.is_object() && e.contains("metric");
                           });
-  if (!known_form) return section("Expectations", value_html("expect", *list));
+  if (!known_form) return section(title, value_html(group, *list));
   // The verdict comes first, so that a narrow screen shows it without scrolling.
   std::string html =
       "<div class=\"scroll\"><table><thead><tr><th>verdict</th><th>metric</th><th>expected</th>"
@@ -313,7 +317,22 @@ std::string expectations(const Run& run) {
             requirement(e) + other_terms(e) + "</td><td class=\"number\">" +
             (e.contains("value") ? inline_html({}, e["value"]) : "—") + "</td></tr>";
   }
-  return section("Expectations", html + "</tbody></table></div>");
+  return section(title, html + "</tbody></table></div>");
+}
+
+}  // namespace
+
+std::string outcome(const Run& run) {
+  return outcome_banner(run) + flags_banner(run) + warnings_banner(run) + unreadable_banner(run);
+}
+
+std::string headline_numbers(const Run& run) {
+  const std::string cards = simple_cards(run.summary) + time_step_card(run.summary);
+  return cards.empty() ? "" : "<dl class=\"cards\">\n" + cards + "</dl>\n";
+}
+
+std::string expectations(const Run& run) {
+  return judged(run, "expect", "Expectations") + judged(run, "limits", "Limits");
 }
 
 std::string measurements(const Run& run) {

@@ -3,6 +3,7 @@
 
 #include "experiment/expression.hpp"
 #include "experiment/parameter.hpp"
+#include "experiment/sections.hpp"
 #include "study/axis_reader.hpp"
 #include "study/study.hpp"
 
@@ -42,15 +43,6 @@ Section measure_section() {
            parameter("label", Type::string, "", "Quantity on figures and in tables; default the name."),
            parameter("unit", Type::string, "", "Unit of the result."),
            parameter("formula", Type::string, "", "Formula of x, the value.")}};
-}
-
-Section limits_section() {
-  return {
-      "limits",
-      "what finished runs must respect",
-      {parameter("isolated", Type::boolean, "", "Nothing works on the scene from outside.").standard(false),
-       parameter("energy_gain", Type::number, "", "Largest gain of an isolated scene, of its initial energy.").from(0),
-       parameter("volume_ratio", Type::vector, "", "Smallest and largest ratio of any particle.").with_components(2)}};
 }
 
 Section bisection_section() {
@@ -101,6 +93,10 @@ std::vector<Section> figure_kinds() {
       {"heat_map",
        "a table of numbers as colours",
        {name, title, text("x", "Axis of the columns.").needed(), text("y", "Axis of the rows.").needed(), value,
+        text("over", "Axis whose runs share a cell."),
+        parameter("take", Type::choice, "", "What a cell takes of them.")
+            .of({"smallest", "largest", "bounded"})
+            .standard("smallest"),
         flag("log"), where},
        true},
       {"small_multiples",
@@ -284,19 +280,16 @@ class StudyReader {
                      "no axis is called " + in_quotes(name) + suggestion(name, names, "axes: " + quoted_list(names)));
   }
 
+  /// Limits of the study are those of every run, in place of the base's; `set` and the axes come after them.
   void read_limits(const Node* node) {
     if (!node) return;
     const Fields fields(node, limits_section(), context_);
-    const bool isolated = fields.boolean("isolated");
-    if (fields.given("energy_gain") && !isolated)
-      context_.problem(*fields.node("energy_gain"), "a gain is judged in isolated scenes only: add \"isolated\": true");
-    if (isolated) study_.limits.energy_gain = fields.given("energy_gain") ? fields.number("energy_gain") : 0.01;
-    if (!fields.given("volume_ratio")) return;
-    const Vector3& range = fields.vector("volume_ratio");
-    if (fields.valid("volume_ratio") && !(range[0] < range[1]))
-      context_.problem(*fields.node("volume_ratio"), "expected the smaller ratio first");
-    study_.limits.least_volume_ratio = range[0];
-    study_.limits.most_volume_ratio = range[1];
+    limits_of(fields, context_);
+    refuse_overwritten("/limits", *node, "");
+    OrderedJson given = OrderedJson::object();
+    for (const Member& member : node->members)
+      if (fields.resolved.contains(member.key)) given[member.key] = fields.resolved[member.key];
+    study_.overrides.insert(study_.overrides.begin(), "/limits=" + given.dump());
   }
 
   void read_figures(const Node* node) {
@@ -338,7 +331,8 @@ class StudyReader {
       context_.problem(fields.place("panels"), "is the axis of x too");
     if (has("series")) figure.series = known_axis(fields, "series", false);
     if (has("value")) figure.value = known_measure(fields, "value");
-    if (has("value") && figure.value.empty()) figure.value = error_measure(item);
+    if (has("over")) read_over(fields, figure);
+    if (has("value") && figure.value.empty() && figure.take != Take::bounded) figure.value = error_measure(item);
     if (has("costs")) read_costs(fields, figure);
     if (has("column")) figure.column = fields.text("column");
     if (has("exact")) read_exact(fields, figure);
@@ -372,6 +366,15 @@ class StudyReader {
     if (fields.given("exact")) check_formula(fields, "exact");
     if (fields.given("exact_label") && !fields.given("exact"))
       context_.problem(*fields.node("exact_label"), "names a formula that is not there: give \"exact\" too");
+  }
+
+  void read_over(const Fields& fields, FigureRequest& figure) {
+    figure.over = known_axis(fields, "over", false);
+    figure.take = static_cast<Take>(fields.choice("take"));
+    if (!figure.over.empty() && (figure.over == figure.x || figure.over == figure.y))
+      context_.problem(fields.place("over"), "is the axis of the columns or rows too");
+    if (fields.given("take") && !fields.given("over"))
+      context_.problem(*fields.node("take"), "takes of several runs: name their axis with \"over\"");
   }
 
   void read_costs(const Fields& fields, FigureRequest& figure) {

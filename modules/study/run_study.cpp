@@ -59,6 +59,7 @@ class Task {
     std::vector<std::string> broken;
     if (outcome.status != Status::done)
       broken.push_back(outcome.reason.empty() ? name_of(outcome.status) : outcome.reason);
+    for (const std::string& flag : flags_in(summary)) broken.push_back(flag);
     const bool stable = broken.empty() && all_hold(study_.bisection->stable_while, summary, broken);
     result_.probes.push_back({*search_->next(), stable, "runs/" + run_name(), stable ? "" : broken.front()});
     result_.outcome.reused = (result_.probes.size() == 1 || result_.outcome.reused) && outcome.reused;
@@ -84,7 +85,7 @@ class Task {
     result_.measures.clear();
     for (const Measure& measure : study_.measures)
       if (const double value = evaluate(measure, summary); std::isfinite(value)) result_.measures[measure.name] = value;
-    result_.flags = flags_of(study_.limits, summary);
+    result_.flags = flags_in(summary);
   }
 
   const Study& study_;

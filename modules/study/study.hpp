@@ -55,13 +55,10 @@ struct Bisection {
   std::string title() const;
 };
 
-/// What a finished run must respect, else it is flagged.
-struct Limits {
-  std::optional<double> energy_gain;  ///< share of the initial energy; of isolated scenes only
-  std::optional<double> least_volume_ratio, most_volume_ratio;  ///< of any particle at any recorded time
-};
-
 enum class FigureType { convergence, pareto, heat_map, small_multiples, curves, outcome_map };
+
+/// What a cell of a heat map takes of the runs that share it.
+enum class Take { smallest, largest, bounded };
 
 /// Which figure and of what; names are those of axes and measures, checked when read.
 struct FigureRequest {
@@ -70,6 +67,8 @@ struct FigureRequest {
   std::string title;
   std::string x, y, panels, series;  ///< axes; empty: not given
   std::string value;                 ///< measure; empty: the study's error
+  std::string over;                  ///< axis whose runs share a cell of a heat map; empty: none
+  Take take = Take::smallest;        ///< the smallest or largest value of theirs, or how many are bounded
   std::vector<std::string> costs;    ///< of a Pareto figure
   std::string column;                ///< of metrics.csv, for curves
   std::string exact, exact_label;    ///< formula of x that is drawn beside the measured values; empty: none
@@ -82,12 +81,11 @@ struct FigureRequest {
 struct Study {
   std::filesystem::path file, base;
   std::string title, description;
-  std::vector<std::string> overrides;  ///< of "set", then of the command line
+  std::vector<std::string> overrides;  ///< of "limits", of "set", then of the command line
   std::vector<Axis> axes;
   std::optional<Bisection> bisection;
   std::vector<Measure> measures;  ///< the file's, then the built-in ones
   std::string error, cost;        ///< names of measures; `error` may be empty
-  Limits limits;
   std::vector<FigureRequest> figures;
 
   const Axis* axis(const std::string& name) const;        ///< null when there is none

@@ -16,14 +16,6 @@ std::string three_digits(double value) {
   return text;
 }
 
-/// Gain of the largest recorded total energy over the energies the scene began with; NaN when it began with none.
-double energy_gain(const Json& summary) {
-  const double start = number_at(summary, "energy.total.initial"), largest = number_at(summary, "energy.total.largest");
-  const double scale = number_at(summary, "energy.kinetic.initial") + number_at(summary, "energy.strain.initial") +
-                       std::abs(number_at(summary, "energy.gravitational.initial"));
-  return scale > 0 ? (largest - start) / scale : not_measured;
-}
-
 }  // namespace
 
 const Json* value_at(const Json& summary, const std::string& path) {
@@ -70,22 +62,9 @@ bool all_hold(const std::vector<Bound>& bounds, const Json& summary, std::vector
   return broken.size() == before;
 }
 
-std::vector<std::string> flags_of(const Limits& limits, const Json& summary) {
-  std::vector<std::string> flags;
-  // Not a number compares false with everything: written so that it is flagged.
-  if (const double gain = energy_gain(summary); limits.energy_gain && !(gain <= *limits.energy_gain))
-    flags.push_back(std::isnan(gain) ? "energy gain unknown: no initial energy"
-                                     : "energy gain of " + three_digits(100 * gain) + " % (limit " +
-                                           number_text(100 * *limits.energy_gain) + " %)");
-  const double smallest = number_at(summary, "stability.smallest_volume_ratio");
-  const double largest = number_at(summary, "stability.largest_volume_ratio");
-  if (limits.least_volume_ratio && !(smallest >= *limits.least_volume_ratio))
-    flags.push_back("smallest volume ratio J " + three_digits(smallest) + " (limit " +
-                    number_text(*limits.least_volume_ratio) + ")");
-  if (limits.most_volume_ratio && !(largest <= *limits.most_volume_ratio))
-    flags.push_back("largest volume ratio J " + three_digits(largest) + " (limit " +
-                    number_text(*limits.most_volume_ratio) + ")");
-  return flags;
+std::vector<std::string> flags_in(const Json& summary) {
+  const Json* flags = value_at(summary, "flags");
+  return flags && flags->is_array() ? flags->get<std::vector<std::string>>() : std::vector<std::string>{};
 }
 
 }  // namespace mpm::study

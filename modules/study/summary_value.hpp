@@ -14,6 +14,9 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
+/// `outcome.status` of a run that finished and broke a limit, but no expectation.
+inline constexpr const char* limit_broken = "limit broken";
+
 /// What stands at a JSON pointer ("/error/position/rms") or dotted path ("error.position.rms"); null when nothing does.
 const Json* value_at(const Json& summary, const std::string& path);
 
@@ -26,7 +29,7 @@ double evaluate(const Measure& measure, const Json& summary);
 /// Whether every bound holds; `broken` gets a sentence for each that does not.
 bool all_hold(const std::vector<Bound>& bounds, const Json& summary, std::vector<std::string>& broken);
 
-/// Names of the limits a finished run breaks: "energy gain of 3.2 % (limit 1 %)". Empty when it respects all.
-std::vector<std::string> flags_of(const Limits& limits, const Json& summary);
+/// Names of the limits that the run broke: "energy gain of 3.2 % (limit 1 %)". Empty when it respected all.
+std::vector<std::string> flags_in(const Json& summary);
 
 }  // namespace mpm::study

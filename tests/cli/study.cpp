@@ -13,6 +13,7 @@ Json breathing() {
   scene["bodies"][0]["velocity"] = {"0.3*(x-0.5)", "0.3*(y-0.5)"};
   scene["solver"] = {{"time_step", 0.01}, {"end_time", 0.25}};
   scene["output"] = {{"metrics_every", 1}, {"ledger", false}};
+  scene["limits"] = {{"energy_gain", nullptr}};  // it swings by some per cent within the steps
   return scene;
 }
 
@@ -34,6 +35,13 @@ Result run_study(const Folder& folder, Words more = {}) {
   Words words{"study", "s.json", "--out", "out", "--jobs", "2"};
   words.insert(words.end(), more.begin(), more.end());
   return call(folder, words);
+}
+
+/// As a figure's CSV writes it.
+std::string digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
 }
 
 Json run_named(const Json& study, const std::string& name) {
@@ -69,13 +77,18 @@ TEST_CASE("a study runs every combination once, and only what changed again; adv
   CHECK(pic["measures"]["particle_steps"] == 52 * 25);
   const Json summary = json_in(folder / "out/runs/pic-0.1/summary.json");
   CHECK(pic["measures"]["loss"] == std::abs(1 - summary["energy"]["total"]["final_over_initial"].get<double>()));
+  CHECK(pic["measures"]["flops"] == summary["performance"]["flops"]);
+  const std::string front = slurp(folder / "out/figures/pareto_flops.csv");
+  INFO(front);
+  CHECK(has(front.substr(0, front.find('\n')), "floating-point operations"));
+  for (const Json& run : json["runs"]) CHECK(has(front, "point," + digits(run["measures"]["flops"]) + ","));
   const std::string report = slurp(folder / "out/report.html");
   for (const char* part :
        {"Small study", "Observed orders", "Pareto fronts", "runs/pic-0.1/report.html", "data:image/svg"})
     CHECK(has(report, part));
   CHECK(!has(report, "src=\"http"));
   CHECK(has(slurp(folder / "out/table.csv"), "\npic-0.1,pic,0.1,done,"));
-  for (const char* figure : {"convergence", "pareto_seconds", "pareto_particle_steps"})
+  for (const char* figure : {"convergence", "pareto_seconds", "pareto_particle_steps", "pareto_flops"})
     for (const char* ending : {".png", ".svg", ".csv"})
       CHECK(fs::is_regular_file(folder / "out/figures" / (std::string(figure) + ending)));
 
@@ -144,6 +157,30 @@ TEST_CASE("refused, unstable and flagged combinations are recorded by name") {
   CHECK(has(slurp(folder / "out/report.html"), "flagged"));
   CHECK(fs::is_regular_file(folder / "out/figures/outcome_map.png"));
   CHECK(fs::is_regular_file(folder / "out/figures/heat_map.png"));
+}
+
+TEST_CASE("a cell of a heat map tells how many of its runs are bounded, and what became of the others") {
+  const Folder folder;
+  Json study = small_study();
+  study["axes"] = {{"/transfer/type", {"pic", "flip"}}, {"/grid/cell_size", {0.1, 0.05}}};
+  study["axes"]["/limits"] = {
+      {"values", {{{"energy_gain", nullptr}}, {{"energy_gain", 1}, {"volume_ratio", {0.9999, 2}}}}},
+      {"labels", {"wide", "narrow"}}};
+  study["figures"] = {{{"type", "heat_map"},
+                       {"x", "/transfer/type"},
+                       {"y", "/grid/cell_size"},
+                       {"over", "/limits"},
+                       {"take", "bounded"}}};
+  write_inputs(folder, breathing(), study);
+  const Result result = run_study(folder);
+  INFO(result.err);
+  CHECK(result.code == 4);
+  CHECK(has(result.out, "8 combinations: 8 done"));
+  const std::string csv = slurp(folder / "out/figures/heat_map.csv");
+  INFO(csv);
+  CHECK(has(csv, "runs bounded, of 2"));
+  CHECK(has(csv, "0.1,flip,2,\n"));
+  CHECK(has(csv, "0.05,pic,1,J1\n"));
 }
 
 TEST_CASE("bisection finds the largest stable step") {

@@ -112,6 +112,9 @@ void check_same_experiment(const Experiment& a, const Experiment& b) {
     CHECK(a.expectations[i].equals == b.expectations[i].equals);
     CHECK(a.expectations[i].tolerance == b.expectations[i].tolerance);
   }
+  CHECK(a.limits.isolated == b.limits.isolated);
+  CHECK(a.limits.energy_gain == b.limits.energy_gain);
+  CHECK(a.limits.volume_ratio == b.limits.volume_ratio);
   CHECK(a.resolved == b.resolved);
 }
 
@@ -175,6 +178,22 @@ TEST_CASE("defaults are filled and the step is automatic", "[config]") {
   CHECK(e.bodies[0].velocity({0.5, 0.25, 0}, {}, 0) == Vector3{-0.25, 0.5, 0.1});
   CHECK(e.resolved["output"]["ledger"] == true);
   CHECK(e.resolved["solver"]["time_step"] == "auto");
+}
+
+TEST_CASE("limits have defaults, and null takes one away", "[config]") {
+  const Experiment e = read_text(smallest_3d);
+  CHECK(!e.limits.isolated);
+  CHECK(e.limits.energy_gain == 0.01);
+  CHECK(e.limits.volume_ratio == std::array{0.1, 10.0});
+  CHECK(e.resolved["limits"].dump() == R"({"energy_gain":0.01,"volume_ratio":[0.1,10.0]})");
+  const auto with = [](const std::string& limits) { return read_text(smallest_3d, {"/limits=" + limits}); };
+  const Experiment none = with(R"({"energy_gain": null, "volume_ratio": null, "isolated": false})");
+  CHECK(!none.limits.energy_gain);
+  CHECK(!none.limits.volume_ratio);
+  CHECK(none.limits.isolated == false);
+  check_same_experiment(read_text(none.resolved.dump(2)), none);
+  CHECK(with(R"({"volume_ratio": [0.5, 2]})").limits.volume_ratio == std::array{0.5, 2.0});
+  CHECK(with("null").limits.energy_gain == 0.01);
 }
 
 TEST_CASE("positions point into the file, at the nearest part for what was not written", "[config]") {

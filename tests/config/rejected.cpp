@@ -10,6 +10,10 @@ namespace {
 std::string errors_of_geometry(std::string_view geometry) {
   return errors_after(R"({"type": "ball", "centre": [0.2, 0.2], "radius": "20 cm"})", geometry);
 }
+bool has_message(const std::string& errors, const std::string& part) {
+  UNSCOPED_INFO(errors);
+  return errors.find(part) != std::string::npos;
+}
 constexpr const char* functions =
     R"("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "floor", )"
     R"("atan2", "pow", "if", "min", "max", "pi")";
@@ -211,6 +215,21 @@ FILE:33:54: /output/colour_by: expected one of "speed", "pressure", "density", g
   CHECK(errors_after("\"rolling\", \"start\": \"2 ms\"", "\"roling\"") ==
         "FILE:36:23: /compare/exact/type: unknown exact solution \"roling\"; did you mean \"rolling\"? "
         "(available: \"rolling\")");
+}
+
+TEST_CASE("limits", "[config]") {
+  const auto with = [](const std::string& limits) {
+    return errors_after("\"figures\":", "\"limits\": " + limits + ",\n \"figures\":");
+  };
+  CHECK(has_message(with(R"({"energy_gain": -0.1})"),
+                    "/limits/energy_gain: out of range: expected a number of at least 0 or null, got -0.1"));
+  CHECK(has_message(with(R"({"volume_ratio": [2, 0.5]})"), "/limits/volume_ratio: expected the smaller ratio first"));
+  CHECK(has_message(with(R"({"volume_ratio": 0.5})"),
+                    "/limits/volume_ratio: expected a list of 2 numbers or null, got the number 0.5"));
+  CHECK(has_message(with(R"({"volume_ratio": [0.1, 2, 3]})"), "/limits/volume_ratio: expected 2 components, got 3"));
+  CHECK(has_message(with(R"({"isolated": null})"), "/limits/isolated: expected true or false, got null"));
+  CHECK(has_message(with(R"({"isolated": false, "energy_gain": 0.1})"), "and \"isolated\" is false"));
+  CHECK(has_message(with(R"({"energy": 1})"), "unknown key \"energy\""));
 }
 
 TEST_CASE("overrides that cannot be applied", "[config]") {

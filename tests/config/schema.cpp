@@ -62,7 +62,7 @@ TEST_CASE("the schema has every key of the experiment", "[schema]") {
   CHECK(schema()["additionalProperties"] == false);
   for (const char* key : {"title",           "dimension",  "precision", "backend", "seed",    "constants", "grid",
                           "node_conditions", "shape",      "transfer",  "filter",  "contact", "materials", "bodies",
-                          "gravity",         "body_force", "solver",    "output",  "figures", "compare"}) {
+                          "gravity",         "body_force", "solver",    "output",  "figures", "compare",   "limits"}) {
     INFO(key);
     CHECK(schema()["properties"].contains(key));
   }
@@ -85,6 +85,15 @@ TEST_CASE("parameters of plugins appear with unit, range, default and choices", 
   CHECK(schema()["$defs"]["shape"]["properties"]["type"]["enum"] == Json({"linear", "bspline_quadratic", "only_flat"}));
   CHECK(schema()["$defs"]["filter"].contains("not"));
   CHECK(schema()["properties"]["figures"]["items"]["enum"] == Json({"energy", "dissipation", "contact"}));
+}
+
+TEST_CASE("a key that may be null says so, with its default", "[schema]") {
+  const Json& limits = schema()["$defs"]["limits"]["properties"];
+  CHECK(limits["energy_gain"]["anyOf"][1]["type"] == "null");
+  CHECK(limits["energy_gain"]["default"] == 0.01);
+  CHECK(limits["volume_ratio"]["anyOf"][0]["minItems"] == 2);
+  CHECK(limits["volume_ratio"]["default"] == Json({0.1, 10.0}));
+  CHECK(limits["isolated"]["type"] == "boolean");
 }
 
 TEST_CASE("every reference in the schema leads somewhere", "[schema]") {

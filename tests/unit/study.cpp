@@ -68,15 +68,6 @@ Results measured(const std::vector<std::pair<double, double>>& cost_and_error) {
   return results;
 }
 
-Json summary(double gain, double smallest, double largest) {
-  return {{"energy",
-           {{"kinetic", {{"initial", 2.0}}},
-            {"strain", {{"initial", 0.0}}},
-            {"gravitational", {{"initial", 0.0}}},
-            {"total", {{"initial", 2.0}, {"largest", 2.0 * (1 + gain)}}}}},
-          {"stability", {{"smallest_volume_ratio", smallest}, {"largest_volume_ratio", largest}}}};
-}
-
 }  // namespace
 
 TEST_CASE("a study is read with its axes, measures and figures", "[study]") {
@@ -144,7 +135,8 @@ TEST_CASE("mistakes in a study, with place and remedy", "[study]") {
   check_mistake("\"x\": \"grid\"", "\"x\": \"/filter\"", "have no numbers");
   check_mistake("\"pareto\"", "\"paretto\"", "unknown figure \"paretto\"; did you mean \"pareto\"?");
   check_mistake("\"error\": \"e\",", "", "shows the error: name it with \"error\"");
-  check_mistake("\"error\": \"e\",", "\"error\": \"e\", \"limits\": {\"energy_gain\": 0.1},", "add \"isolated\": true");
+  check_mistake("\"error\": \"e\",", "\"error\": \"e\", \"limits\": {\"isolated\": false, \"energy_gain\": 0.1},",
+                "and \"isolated\" is false");
   check_mistake("\"error\": \"e\",", "\"error\": \"e\", \"bisect\": {\"pointer\": \"/grid\", \"from\": 1, \"to\": 2},",
                 "overwrites /grid/cell_size of the axis \"grid\"");
   check_mistake(
@@ -167,6 +159,22 @@ TEST_CASE("an exact curve of small multiples is a formula of x", "[study]") {
   CHECK(read_study_text(with(R"J(, "exact": "x", "exact_label": "ours")J"), "s.json").figures[0].exact_label == "ours");
   CHECK(mistakes(with(R"J(, "exact": "2*y")J")).find("/figures/0/exact") != std::string::npos);
   CHECK(mistakes(with(R"J(, "exact_label": "ours")J")).find("give \"exact\" too") != std::string::npos);
+}
+
+TEST_CASE("cells of a heat map may take the runs of an axis together", "[study]") {
+  const auto with = [](const std::string& keys) {
+    return R"J({"base": "b", "axes": {"/a": [1, 2], "/b": [1, 2], "/c": [1, 2]}, "measure": {"e": "/e"}, "figures": [
+      {"type": "heat_map", "x": "/a", "y": "/b")J" +
+           keys + "}]}";
+  };
+  const FigureRequest figure =
+      read_study_text(with(R"J(, "over": "/c", "take": "bounded")J"), "s.json").figures.front();
+  CHECK(figure.over == "/c");
+  CHECK(figure.take == Take::bounded);
+  CHECK(read_study_text(with(R"J(, "over": "/c", "value": "e")J"), "s.json").figures[0].take == Take::smallest);
+  CHECK(mistakes(with(R"J(, "over": "/a", "value": "e")J")).find("columns or rows too") != std::string::npos);
+  CHECK(mistakes(with(R"J(, "take": "largest", "value": "e")J")).find("with \"over\"") != std::string::npos);
+  CHECK(mistakes(with(R"J(, "over": "/c")J")).find("shows the error") != std::string::npos);
 }
 
 TEST_CASE("bisection brackets the last stable value with few questions", "[study]") {
@@ -280,13 +288,19 @@ TEST_CASE("observed orders of each combination", "[study]") {
   CHECK(std::isnan(observed_orders(results, results.study.figures[0])[0].fitted));
 }
 
-TEST_CASE("flags: energy gained and volume ratios out of range, or not known", "[study]") {
-  const Limits limits{0.01, 0.2, 5.0};
-  CHECK(flags_of(limits, summary(0.005, 0.3, 4)).empty());
-  CHECK(flags_of(limits, summary(0.03, 0.3, 4)) == std::vector<std::string>{"energy gain of 3 % (limit 1 %)"});
-  CHECK(flags_of(limits, summary(0, 0.1, 6)).size() == 2);
-  CHECK(flags_of(limits, Json::object()).size() == 3);
-  CHECK(flags_of({}, summary(10, 0, 100)).empty());
+TEST_CASE("limits of a study are those of every run, before what it sets and its axes", "[study]") {
+  const auto with = [](const std::string& keys) {
+    return R"J({"base": "b", "set": {"/limits/isolated": true}, "axes": {"/limits/volume_ratio": [[0.1, 2], [0.5, 2]]}, )J" +
+           keys + "}";
+  };
+  const Study study = read_study_text(with(R"J("limits": {"energy_gain": 2})J"), "s.json");
+  CHECK(study.overrides == std::vector<std::string>{R"(/limits={"energy_gain":2.0})", "/limits/isolated=true"});
+  CHECK(read_study_text(with(R"J("limits": {"energy_gain": null, "volume_ratio": [0.1, 2]})J"), "s.json")
+            .overrides.front() == R"(/limits={"energy_gain":null,"volume_ratio":[0.1,2.0]})");
+  CHECK(mistakes(R"J({"base": "b", "axes": {"/limits": [null]}, "limits": {"energy_gain": 1}})J")
+            .find("/limits is overwritten by the axis") != std::string::npos);
+  CHECK(flags_in(Json{{"flags", {"a", "b"}}}) == std::vector<std::string>{"a", "b"});
+  CHECK(flags_in(Json::object()).empty());
 }
 
 TEST_CASE("numbers of a summary by pointer, by path and by formula", "[study]") {
