@@ -93,11 +93,11 @@ TEST_CASE("a study runs every combination once, and only what changed again; adv
       CHECK(fs::is_regular_file(folder / "out/figures" / (std::string(figure) + ending)));
 
   // At equal cost one of the two coarse runs is better, and the table of the figure says which.
-  const std::string front = slurp(folder / "out/figures/pareto_particle_steps.csv");
-  INFO(front);
-  CHECK(has(front, ",name,dominated by\n"));
-  CHECK(has(front, ",\"pic, 0.1\",\"flip, 0.1\"\n"));
-  CHECK(has(front, ",\"flip, 0.1\",\n"));
+  const std::string named = slurp(folder / "out/figures/pareto_particle_steps.csv");
+  INFO(named);
+  CHECK(has(named, ",name,dominated by\n"));
+  CHECK(has(named, ",\"pic, 0.1\",\"flip, 0.1\"\n"));
+  CHECK(has(named, ",\"flip, 0.1\",\n"));
 
   const Result again = run_study(folder);
   CHECK(again.code == 0);
