@@ -19,6 +19,10 @@ void check_boundaries(const std::string& boundaries, const std::string& more) {
             mix.shape = shape, mix.contact = contact, mix.stress_update = order;
             mix.transfer = "{\"type\": \"" + transfer + "\"}";
             mix.boundaries = boundaries, mix.more = more;
+            // Tents and FLIP turn a soft particle between a wall and the other body inside out.
+            if (!contact.empty() && transfer == "flip" && shape.find("linear") != shape.npos)
+              mix.material =
+                  R"({"type": "neo_hookean", "youngs_modulus": 2000, "poisson_ratio": 0.3, "density": 1000})";
             const std::size_t open = boundaries.find("\"0.1*x\"]");
             if (dimension == 3 && open != boundaries.npos) mix.boundaries.replace(open, 8, "\"0.1*x\", 0]");
             if (dimension == 3 && order == "first") continue;  // 2-D has them all

@@ -65,6 +65,18 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
     if (grid_.has(c)) grid_.quad(c, field, pair.mirror) += slip_signs * grid_.quad(c, field, pair.ghost);
 }
 
+/// On the wall itself: the mirror image takes away what of the contact channels points across it.
+template <int D, class T>
+void GridStep<D, T>::fold_wall_onto_itself(const FaceNodes& face, int field, double dt) {
+  for (std::size_t i = 0; i < face.wall.size(); ++i) {
+    const std::uint32_t node = face.wall[i], edge = face.wall_edge[i];
+    if (face.condition->type == ConditionType::separate && !approaches(face, field, {node, node, edge, edge, {}}, dt))
+      continue;
+    for (const Channel c : {volume_gradient, mass_position})
+      if (grid_.has(c)) grid_.quad(c, field, node)[face.axis] = 0;
+  }
+}
+
 /// Sums the images of periodic nodes: momenta, contact channels and forces.
 template <int D, class T>
 void GridStep<D, T>::fold_images(bool remap, const StepInfo& step) {
@@ -93,6 +105,7 @@ void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step)
         face.pair_folds[field * face.pairs.size() + i] = folds;
         if (folds) fold_pair(face, i, field, remap, step.time);
       }
+      if (!periodic && !remap && grid_.has(volume_gradient)) fold_wall_onto_itself(face, field, dt);
     }
   }
 }

@@ -60,6 +60,7 @@ class GridStep {
   void fold_walls(bool remap, const StepInfo& step);
   void fold_faces(bool periodic, bool remap, const StepInfo& step);
   void fold_pair(FaceNodes& face, std::size_t pair, int field, bool remap, double time);
+  void fold_wall_onto_itself(const FaceNodes& face, int field, double dt);
   bool approaches(const FaceNodes& face, int field, const MirrorPair& pair, double dt);
   void fold_forces(bool periodic);
   void fill_ghosts(double time, bool increments);

@@ -134,7 +134,10 @@ void Grid::fold_axis(int axis, double time, double dt, bool remap) {
       if (fields_[field][index].mass <= 0) continue;
       fold.mirror = this->index(target);
       if (type == ConditionType::separate && !approaches_wall(fold, dt)) continue;
-      if (fold.mirror != index) fold_node(fold, time, remap);
+      if (fold.mirror != index)
+        fold_node(fold, time, remap);
+      else if (!remap)
+        fold_onto_itself(fields_[field][index], axis);
     }
 }
 
@@ -153,6 +156,12 @@ void Grid::fold_node(Fold fold, double time, bool remap) {
     node.mass_position += mirrored(ghost.mass_position, fold, ConditionType::slip);
   }
   folds_.push_back(fold);
+}
+
+/// On the wall itself: the mirror image takes away what of the contact channels points across it.
+void Grid::fold_onto_itself(Node& node, int axis) {
+  node.volume_gradient[axis] = 0;
+  node.mass_position[axis] = 0;
 }
 
 void Grid::fold_projection(std::optional<double> time) {

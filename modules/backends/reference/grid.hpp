@@ -98,6 +98,7 @@ class Grid {
   };
   void fold_axis(int axis, double time, double dt, bool remap);
   void fold_node(Fold fold, double time, bool remap);
+  static void fold_onto_itself(Node& node, int axis);
   bool approaches_wall(const Fold& fold, double dt) const;
   Vector wall_velocity(const Fold& fold, double time) const;
   static Vector mirrored(const Vector& v, const Fold& fold, ConditionType as);

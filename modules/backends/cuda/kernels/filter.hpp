@@ -69,7 +69,7 @@ MPM_HD void project(const Team& team, const Arguments<typename Scene::Scalar>& a
 /// Folds the projection as the momenta of this step were folded.
 template <class Scene>
 MPM_HD void fold_projection(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  for_each_fold<Scene::dimension>(team, a, true, [&](const Fold& fold) {
+  for_each_fold<Scene::dimension>(team, a, true, false, [&](const Fold& fold) {
     if (a.grid.folded[fold.ghost] >> fold.axis & 1)
       add_mirrored<Scene::dimension>(a.grid.projected, a.node_count, fold, fold.wall, true);
   });
@@ -145,7 +145,7 @@ MPM_HD void measure_constraints(const Team& team, const Arguments<typename Scene
 /// Gives ghosts the mirrored increment.
 template <class Scene>
 MPM_HD void fill_increments(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  for_each_fold<Scene::dimension>(team, a, false, [&](const Fold& fold) {
+  for_each_fold<Scene::dimension>(team, a, false, false, [&](const Fold& fold) {
     if (a.grid.folded[fold.ghost] >> fold.axis & 1)
       take_mirrored<Scene::dimension>(a.grid.increment, a.node_count, fold);
   });

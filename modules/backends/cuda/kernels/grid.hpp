@@ -57,9 +57,10 @@ MPM_HD void take_mirrored(T* channel, int nodes, const Fold& fold) {
 }
 
 /// Calls body(fold) for every node of the lines along a.axis that lies beyond an end and has a mirror or image: the
-/// outermost first when folding, since in a domain of few cells its mirror is a ghost too; last when filling.
+/// outermost first when folding, since in a domain of few cells its mirror is a ghost too; last when filling. With
+/// `on_walls` also for those on a wall, which are their own mirrors.
 template <int D, class T, class Body>
-MPM_HD void for_each_fold(const Team& team, const Arguments<T>& a, bool outermost_first, Body body) {
+MPM_HD void for_each_fold(const Team& team, const Arguments<T>& a, bool outermost_first, bool on_walls, Body body) {
   const int axis = a.axis, extent = a.extent[axis], padding = a.padding[axis], cells = a.cells[axis];
   int stride = 1;
   for (int c = 0; c < axis; ++c) stride *= a.extent[c];
@@ -74,7 +75,8 @@ MPM_HD void for_each_fold(const Team& team, const Arguments<T>& a, bool outermos
         mirror = ((i % cells) + cells) % cells;
       else if (folds(wall))
         mirror = side == 0 ? beyond : cells - beyond;
-      if (mirror != i) body(Fold{origin + i * stride, origin + mirror * stride, axis, side, wall});
+      if (mirror != i || (on_walls && beyond == 0 && folds(wall)))
+        body(Fold{origin + i * stride, origin + mirror * stride, axis, side, wall});
     }
   });
 }
@@ -87,7 +89,7 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
   constexpr int D = Scene::dimension;
   const GridArrays<T>& g = a.grid;
   const int nodes = a.node_count;
-  for_each_fold<D>(team, a, true, [&](const Fold& fold) {
+  for_each_fold<D>(team, a, true, true, [&](const Fold& fold) {
     if (!(g.mass[fold.ghost] > T(0))) return;
     if (fold.wall == wall_separate) {
       const T dt = a.remap ? T(0) : a.dt;
@@ -97,6 +99,11 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
         return fold.side == 0 ? speed : -speed;
       };
       if (!(inward(fold.ghost) + inward(fold.mirror) < T(0))) return;
+    }
+    if (fold.ghost == fold.mirror) {  // the image takes away what of the contact channels points across the wall
+      if (a.remap || !g.volume) return;
+      g.volume_gradient[fold.axis * nodes + fold.ghost] = g.mass_position[fold.axis * nodes + fold.ghost] = T(0);
+      return;
     }
     g.mass[fold.mirror] += g.mass[fold.ghost];
     g.mass[fold.ghost] = T(0);
@@ -113,7 +120,7 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
 /// The same for forces, along the folds that were made.
 template <class Scene>
 MPM_HD void fold_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  for_each_fold<Scene::dimension>(team, a, true, [&](const Fold& fold) {
+  for_each_fold<Scene::dimension>(team, a, true, false, [&](const Fold& fold) {
     if (a.grid.folded[fold.ghost] >> fold.axis & 1)
       add_mirrored<Scene::dimension>(a.grid.force, a.node_count, fold, fold.wall, true);
   });
@@ -122,7 +129,7 @@ MPM_HD void fold_forces(const Team& team, const Arguments<typename Scene::Scalar
 /// Gives ghosts the mirrored velocities.
 template <class Scene>
 MPM_HD void fill_velocities(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  for_each_fold<Scene::dimension>(team, a, false, [&](const Fold& fold) {
+  for_each_fold<Scene::dimension>(team, a, false, false, [&](const Fold& fold) {
     if (!(a.grid.folded[fold.ghost] >> fold.axis & 1)) return;
     take_mirrored<Scene::dimension>(a.grid.velocity, a.node_count, fold);
     take_mirrored<Scene::dimension>(a.grid.velocity_before, a.node_count, fold);
