@@ -59,9 +59,9 @@ struct Collision {
   double first = 0, clear = 0;   ///< s: strain energy above 1e-6 and 1e-2 of the kinetic
   double kept = 0, kinetic = 0;  ///< at the end, total and kinetic over the initial
   double largest = 0;            ///< total over the initial
-  double transfers = 0,
-         steps = 0;  ///< lost over the initial, by the ledger: by scatter and gather; by time integration
-  double drift = 0;  ///< kg m/s, momentum at the end
+  double transfers = 0;          ///< lost over the initial in scatter and gather, by the ledger
+  double steps = 0;              ///< lost over the initial by time integration, likewise
+  double drift = 0;              ///< kg m/s, momentum at the end
   double mass = 0;
 };
 
@@ -87,12 +87,11 @@ Collision collide(const std::vector<std::string>& settings) {
 }
 
 void check_collision(const std::string& name, const Collision& found, double least_kept, double most_kept = 1.0001) {
-  std::printf("  %-34s %.3f %.3f %.4f %.4f %.4f | %7.4f %7.4f\n", name.c_str(), found.first, found.clear, found.kept,
-              found.kinetic, found.largest, found.transfers, found.steps);
+  std::printf("  %-34s %.3f %.3f %.4f %.4f %.4f", name.c_str(), found.first, found.clear, found.kept, found.kinetic,
+              found.largest);
+  if (found.transfers != 0) std::printf(" | %7.4f %7.4f", found.transfers, found.steps);
+  std::printf("\n");
   INFO(name);
-  CHECK(found.first < touch);
-  CHECK(found.clear < touch);
-  CHECK(found.clear > touch - 2 * cell / approach);
   CHECK(found.largest <= 1.01);
   CHECK(found.drift < 1e-10 * found.mass * 0.14);
   CHECK(found.kinetic < found.kept);  // the rest is vibration
@@ -103,7 +102,7 @@ void check_collision(const std::string& name, const Collision& found, double lea
 void print_heads() {
   std::printf(
       "C7: touch at %.8f s; strain energy above 1e-6 and 1e-2 of the kinetic (s); total and kinetic energy kept at 3.5 "
-      "s, largest total | lost by transfers, by time integration\n",
+      "s, largest total | with a ledger: lost by transfers, by time integration\n",
       touch);
 }
 
@@ -118,15 +117,19 @@ TEST_CASE("C7 time of touch and energy of every transfer", "[C][C7]") {
   print_heads();
   const auto check = [](const std::string& shape, const std::string& transfer, const std::string& update, double least,
                         double most = 1.0001) {
-    check_collision(shape + " " + transfer + " " + update, collide(scheme(shape, transfer, update)), least, most);
+    const Collision found = collide(scheme(shape, transfer, update));
+    check_collision(shape + " " + transfer + " " + update, found, least, most);
+    CHECK(found.first < touch);
+    CHECK(found.clear < touch);
+    CHECK(found.clear > touch - 2 * cell / approach);
   };
   // E_tot within 2 %: FLIP with MUSL on every shape, as in the literature (linear); on gimp with USL too. USL takes 2 %
   // on wider shapes, see below.
   for (const std::string shape : {"linear", "gimp", "bspline_quadratic"}) check(shape, "flip", "modified_last", 0.98);
   check("gimp", "flip", "last", 0.98);
-  for (const std::string shape : {"linear", "bspline_quadratic"}) check(shape, "flip", "last", 0.96, 0.98);
+  for (const std::string shape : {"linear", "bspline_quadratic", "cpdi"}) check(shape, "flip", "last", 0.96, 0.98);
   check("bspline_cubic", "flip", "last", 0.93, 0.95);
-  // These filter at every step; finer cells and what it consists of are below.
+  // AFLIP and ASFLIP take 1 % of PIC at every step, the others all of it; what finer cells give is below.
   for (const std::string transfer : {"aflip", "asflip"}) check("gimp", transfer, "last", 0.97, 0.98);
   for (const std::string transfer : {"apic", "mls", "tpic"}) check("gimp", transfer, "last", 0.75, 0.82);
   for (const std::string transfer : {"rpic", "pic"}) check("gimp", transfer, "last", 0.1, 0.3);
@@ -157,8 +160,7 @@ TEST_CASE("C7 losses fall with the step or with the cells", "[C][C7][slow]") {
     check_collision(name, found, 0.1);
     return 1 - found.kept;
   };
-  // USL: within 2 % at a quarter of the step, bspline_cubic hardly; linear loses at crossings of cells, whatever the
-  // step.
+  // USL: within 2 % at a quarter of the step, bspline_cubic just not. On linear a smaller step hardly helps.
   for (const std::string shape : {"gimp", "bspline_quadratic", "cpdi", "bspline_cubic"}) {
     const auto usl = scheme(shape, "flip");
     const double whole = lost(shape + " flip", usl);
@@ -167,6 +169,7 @@ TEST_CASE("C7 losses fall with the step or with the cells", "[C][C7][slow]") {
     CHECK(quarter < (shape == "bspline_cubic" ? 0.021 : 0.02));
     CHECK(std::abs(lost(shape + " flip MUSL", scheme(shape, "flip", "modified_last"))) < 0.02);
   }
+  CHECK(lost("linear flip, dt/4", scheme("linear", "flip") + set("/solver/time_step", "0.00025")) > 0.025);
   // AFLIP and ASFLIP reach 2 % on 80 cells.
   for (const std::string transfer : {"aflip", "asflip"})
     CHECK(lost("gimp " + transfer + ", 80 cells", scheme("gimp", transfer) + set("/grid/cell_size", "0.0125")) < 0.02);
