@@ -86,6 +86,7 @@ TEST_CASE("C5 what one step of a filter takes of a rigid turn", "[C][C5]") {
     }
     std::printf("\n");
     CHECK(taken < before);
+    if (order > 4) CHECK(before / taken == Approx(4).epsilon(0.15));  // as 1/m^2 only
     before = taken;
   }
   // PIC by the closed form, and near h^2/R^2.
