@@ -2,8 +2,9 @@
 //
 // FLIP with lumped masses does not keep it: a step adds sum_p m_p x_p x (sum_i w_ip dt f_i / m_i) = dt sum_i c_i x f_i
 // with c_i = sum_p w_ip m_p x_p / m_i, while the forces are free of torque about the nodes, sum_i x_i x f_i = 0. The
-// error dt sum_i (c_i - x_i) x f_i lives where c_i differs from x_i, at the free edge, and does not vanish with dt: the
-// loss is measured here (1.8 % a turn), not the 1 % in ten turns that one would like. APIC keeps it to rounding.
+// error dt sum_i (c_i - x_i) x f_i lives where c_i differs from x_i, at the free edge, and does not vanish with dt:
+// 1.8 % a turn here. It falls with the cells and with more particles; c5_spin_lost.cpp has the balance and ten turns of
+// FLIP. APIC keeps it to rounding.
 
 #include <cmath>
 #include <numbers>
@@ -52,12 +53,12 @@ TEST_CASE("C5 one turn: APIC, MLS and FLIP keep the spin, PIC loses it", "[C][C5
   CHECK(kept_spin(scene, end) < 0.5);
 }
 
-TEST_CASE("C5 ten turns of APIC and FLIP", "[C][C5][slow]") {
-  for (const std::string transfer : {"apic", "mls", "flip"}) {
+TEST_CASE("C5 ten turns of APIC and MLS", "[C][C5][slow]") {
+  for (const std::string transfer : {"apic", "mls"}) {
     Scene scene(disc, {set("/transfer/type", transfer), set("/solver/end_time", "10")});
     Totals end;
     INFO(transfer);
-    CHECK(std::abs(kept_spin(scene, end) - 1) < (transfer == "flip" ? 0.25 : 1e-9));
+    CHECK(std::abs(kept_spin(scene, end) - 1) < 1e-9);
   }
 }
 
