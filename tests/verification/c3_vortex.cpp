@@ -233,3 +233,19 @@ TEST_CASE("C3 a full twist at a shear of 5.8", "[C][C3][slow]") {
   }
   CHECK(domains < 0.006);
 }
+
+TEST_CASE("C3 a full twist there and back", "[C][C3][slow]") {
+  // Shears have been 7, and second order is lost: what went wrong on the way stays, since the ring as a whole is hardly
+  // turned back in that time (its slowest swing in radius lasts 6 s). MLS-MPM comes through on every grid. With other
+  // transfers the ring swings the farther the finer the grid, and leaves the domain or inverts.
+  std::printf("C3, G = 1, t = T: rms error on 8, 16, 32 or 16, 32 cells a metre (m), orders; NaN: the run stopped\n");
+  const Errors splines = errors({8, 16, 32}, "bspline_cubic", "mls", 1, 1, 4);
+  CHECK(order(splines.place) > 0.5);
+  CHECK(splines.place.back() < 0.045);
+  CHECK(falls(splines.volume));
+  const Errors domains = errors({16, 32}, "cpdi", "mls", 1, 1);
+  CHECK(order(domains.place) > 0.5);
+  CHECK(domains.place.back() < 0.04);
+  const double apic = errors({32}, "cpdi", "apic", 1, 1).place.back();
+  CHECK((std::isnan(apic) || apic > domains.place.back()));
+}
