@@ -412,7 +412,7 @@ std::string value_label_of(const Study& study, const FigureRequest& figure, std:
   if (figure.take == Take::bounded) return "runs bounded, of " + std::to_string(runs_a_cell);
   const std::string label = study.measure(figure.value)->title();
   if (figure.over.empty()) return label;
-  return (figure.take == Take::smallest ? "smallest " : "largest ") + label;
+  return (figure.take == Take::smallest ? "smallest of " : "largest of ") + std::to_string(runs_a_cell) + ": " + label;
 }
 
 void draw_heat_map(const Results& results, const FigureRequest& figure, const fs::path& stem, const Group& layer,
@@ -457,9 +457,10 @@ void draw_heat_map(const Results& results, const FigureRequest& figure, const fs
   if (std::find(map.notes.begin(), map.notes.end(), "none") != map.notes.end())
     map.footnote += " · none: unstable from the beginning";
   if (!figure.over.empty())
-    for (const auto& [words, sign] : signs)
-      if (std::any_of(map.notes.begin(), map.notes.end(), [&](const auto& note) { return has_sign(note, sign); }))
-        map.footnote += std::string(" · ") + sign + ": " + words;
+    for (const auto& known : signs)
+      if (std::any_of(map.notes.begin(), map.notes.end(),
+                      [&](const std::string& note) { return has_sign(note, known.second); }))
+        map.footnote += std::string(" · ") + known.second + ": " + known.first;
   render::write_figure(map, stem);
 }
 
