@@ -19,7 +19,7 @@ const char* blocks = R"J({
     {"name": "left", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0], "upper": [0.6, 0.4]}, "velocity": ["0.8", "0.3*sin(9*x)"]},
     {"name": "right", "material": "m", "geometry": {"type": "box", "lower": [0.65, 0], "upper": [1.05, 0.4]}, "velocity": ["-0.8", "y"]}],
   "gravity": [0, -9.81],
-  "solver": {"time_step": "auto", "courant": 0.2, "end_time": 10}, "output": {"ledger": true}})J";
+  "solver": {"time_step": "auto", "courant": 0.15, "end_time": 10}, "output": {"ledger": true}})J";
 
 template <class T>
 bool same_bits(const T& a, const T& b) {
