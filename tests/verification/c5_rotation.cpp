@@ -182,7 +182,8 @@ void add_sample(const Scene& scene, const std::vector<double>& X, double lambda,
   const BodyState state = scene.body();
   const auto& F = state.material_state.at("deformation_gradient");
   double edge[2] = {}, whole[3] = {}, edges = 0;
-  for (std::size_t p = 0; p < X.size() / 2; ++p) {
+  const std::size_t particles = X.size() / 2;
+  for (std::size_t p = 0; p < particles; ++p) {
     const double* f = &F[4 * p];
     const double J = f[0] * f[3] - f[1] * f[2], pressure = (lambda * std::log(J) - mu) / J;
     // Turned back: Q^T F.
@@ -194,7 +195,7 @@ void add_sample(const Scene& scene, const std::vector<double>& X, double lambda,
     if (std::max(x, y) < 0.2 || std::max(x, y) > 0.3 || std::min(x, y) > 0.1) continue;
     edge[0] += x > y ? yy : xx, edge[1] += x > y ? xx : yy, edges += 1;
   }
-  for (double& part : whole) part /= static_cast<double>(X.size() / 2);
+  for (double& part : whole) part /= static_cast<double>(particles);
   for (int k = 0; k < 3; ++k) sum.whole[k] += whole[k];
   for (int k = 0; k < 2; ++k) sum.middle[k] += edge[k] / edges;
   ++sum.samples;
