@@ -1,0 +1,44 @@
+// Fronts of studies as figures and tables.
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "study/figures.hpp"
+#include "study/results.hpp"
+#include "support/catch.hpp"
+
+using namespace mpm;
+using namespace mpm::study;
+
+TEST_CASE("a front in a crowd is numbered, and its table names every point and what dominates it", "[study]") {
+  std::string values = "0";
+  for (int k = 1; k < 120; ++k) values += ", " + std::to_string(k);
+  Results results;
+  results.study = read_study_text(R"J({"base": "b", "axes": {"/a": [)J" + values +
+                                      R"J(]}, "measure": {"e": "/e"}, "error": "e",
+                                      "figures": [{"type": "pareto", "costs": ["flops"], "name": "crowd"}]})J",
+                                  "s.json");
+  for (const Combination& combination : expand(results.study)) {  // 0, 1 and 2 are the front, the others behind 0
+    const double k = static_cast<double>(results.results.size());
+    Result result;
+    result.combination = combination;
+    result.outcome = {Status::done, "", false};
+    result.measures = {{"flops", 10 + k}, {"e", k < 3 ? 9 - 3 * k : 7 + k}};
+    results.results.push_back(result);
+  }
+  std::string folder = (std::filesystem::temp_directory_path() / "study_figures_XXXXXX").string();
+  REQUIRE(::mkdtemp(folder.data()) != nullptr);
+  CHECK(draw_figures(results, folder).empty());
+  const auto text_of = [&](const char* name) {
+    std::ifstream file(folder + "/figures/" + name);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string table = text_of("crowd_flops.csv"), picture = text_of("crowd_flops.svg");
+  std::filesystem::remove_all(folder);
+  for (const char* row : {",10,9,,1,0,\n", ",11,6,,2,1,\n", ",12,3,,3,2,\n", ",13,10,,,3,0\n", ",129,126,,,119,0\n"}) {
+    INFO(row);
+    CHECK(table.find(row) != std::string::npos);
+  }
+  CHECK(picture.find("front: 1:\u00a00 · 2:\u00a01 · 3:\u00a02") != std::string::npos);
+}
