@@ -104,7 +104,8 @@ class Grid {
  private:
   int activate(const BlockCoordinates& at, std::uint64_t field_bits);
   void activate_mirrors();
-  void renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before);
+  void renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before,
+                const std::vector<std::int32_t>& slot_now);
   void list_faces();
   void number_edge_nodes();
   void list_boxes();
@@ -312,12 +313,22 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
           visit(BlockCoordinates{at[0] + x, at[1] + y, at[2] + z});
   };
   constexpr std::array<int, 3> below{-1, -1, -1}, above{1, 1, 1};
+  std::vector<std::int32_t> slot_now(before.size(), -1);  // of a slot as it was
+  const auto activate_again = [&](std::int32_t slot, std::uint64_t bits) {
+    std::int32_t& now = slot_now[slot];
+    if (now < 0) return now = activate(before[slot], bits);
+    field_bits_[now] |= bits;
+    return now;
+  };
   for (std::size_t body = 0; body < bodies.size(); ++body)
     for (Block<D>& block : bodies[body].blocks) {
       const int field = field_of_body[body];  // fields beyond the bits count as shared
       const std::uint64_t bits = field < 62 ? std::uint64_t{1} << field : std::uint64_t{3} << 62;
-      int k = 0;
-      around(block.at, below, above, [&](const BlockCoordinates& at) { block.neighbours[k++] = activate(at, bits); });
+      if (block.has_neighbours())
+        for (std::int32_t& slot : block.neighbours) slot = activate_again(slot, bits);
+      else
+        around(block.at, below, above,
+               [&, k = 0](const BlockCoordinates& at) mutable { block.neighbours[k++] = activate(at, bits); });
       if (block.first_active != below || block.last_active != above)
         around(block.at, block.first_active, block.last_active,
                [&](const BlockCoordinates& at) { activate(at, bits); });
@@ -327,16 +338,17 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
   for (std::uint32_t slot = 0; slot < slots(); ++slot)
     if ((field_bits_[slot] & (field_bits_[slot] - 1)) != 0) shared_.push_back(slot);
   for (const Channel c : kept)
-    if (planned_[c]) renumber(c, before);
+    if (planned_[c]) renumber(c, before, slot_now);
   for (int c = 0; c < channel_count; ++c)
     if (planned_[c]) data_[c].require(std::size_t(fields_) * nodes() * 4);
   list_faces();
   list_boxes();
 }
 
-/// Brings a channel's values from the old numbers of their blocks to the new ones.
+/// Brings a channel's values from the old numbers of their blocks to the new ones, as far as these are known.
 template <int D, class T>
-void Grid<D, T>::renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before) {
+void Grid<D, T>::renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before,
+                          const std::vector<std::int32_t>& slot_now) {
   AlignedArray<T>& before = planned_[next_motion] ? data_[next_motion] : renumbered_;  // nothing reads it meanwhile
   std::swap(data_[channel], before);
   data_[channel].require(std::size_t(fields_) * nodes() * 4);
@@ -345,7 +357,7 @@ void Grid<D, T>::renumber(Channel channel, const std::vector<BlockCoordinates>& 
   const std::int64_t count = static_cast<std::int64_t>(blocks_before.size());
 #pragma omp parallel for num_threads(scene_.threads) schedule(static)
   for (std::int64_t block = 0; block < count; ++block) {
-    const int slot = table_.find(blocks_before[block]);
+    const int slot = slot_now[block] >= 0 ? slot_now[block] : table_.find(blocks_before[block]);
     for (int field = 0; slot >= 0 && field < fields_; ++field)
       std::copy_n(before.data() + (std::size_t(field) * count + block) * scalars, scalars,
                   data_[channel].data() + (std::size_t(field) * slots() + slot) * scalars);

@@ -30,14 +30,17 @@ template <int D>
 struct Block {
   BlockCoordinates at{};
   std::uint32_t first_chunk = 0, count = 0;
-  Reach reach;                                                ///< of this step's stencils
-  std::array<std::int32_t, neighbour_count<D>> neighbours{};  ///< slots of the grid
+  Reach reach;                                                  ///< of this step's stencils
+  std::array<std::int32_t, neighbour_count<D>> neighbours{-1};  ///< slots of the grid, see has_neighbours
   /// Blocks of the grid, from this one, that its particles' lists may reach: always the neighbours.
   std::array<std::int32_t, 3> first_active{-1, -1, -1}, last_active{1, 1, 1};
   ListBounds bounds;                          ///< of the particles as the last gather moved them
   std::uint32_t far = 0;                      ///< particles whose lists leave the tile
   double kinetic_energy = 0, dissipated = 0;  ///< partial sums of the ledger, J
   double scattered_energy = 0;                ///< the same of the particles when they scatter, J
+
+  /// Whether the grid has been built around it.
+  bool has_neighbours() const { return neighbours[0] >= 0; }
 };
 
 /// Blocks of one unit lie side by side; units of one colour touch no common node.
@@ -98,6 +101,19 @@ inline void for_each_chunk(const Block<D>& block, Run&& run) {
         static_cast<int>(std::min<std::uint32_t>(chunk_size<T>, block.count - first)));
 }
 
+/// The lanes after the last of a block's `count` particles hold copies of it.
+template <int D, class T>
+void fill_tail(const Particles<D, T>& particles, std::uint32_t count, std::byte* last_chunk) {
+  const int used = static_cast<int>((count - 1) % chunk_size<T>) + 1;
+  T* const values = particles.values_at(last_chunk);
+  std::int32_t* const ids = particles.ids_at(last_chunk);
+  for (int lane = used; lane < padded(used); ++lane) {
+    for (int c = 0; c < particles.components; ++c)
+      values[c * chunk_size<T> + lane] = values[c * chunk_size<T> + used - 1];
+    ids[lane] = ids[used - 1];
+  }
+}
+
 /// Position of a particle in cells from the domain's lower corner, wrapped on periodic axes.
 template <int D, class T>
 inline double cells_from_corner(const Domain& domain, const Block<D>& block, int axis, T relative) {
@@ -114,14 +130,14 @@ inline double cells_from_corner(const Domain& domain, const Block<D>& block, int
 struct SortSpace {
   std::vector<std::uint16_t> key;                ///< of a particle: where it goes among the blocks around, and its cell
   std::vector<std::uint64_t> leaving;            ///< of a chunk: bit k where particle k leaves its block
-  std::array<std::vector<std::byte>, 3> rows;    ///< particles on their way to another block, of three layers of blocks
+  std::array<AlignedArray<std::byte>, 3> rows;   ///< particles on their way to another block, of three layers of blocks
   std::vector<std::byte> far_rows;               ///< of those that go farther than to a neighbour
   std::vector<std::vector<std::byte*>> unused;   ///< chunks at hand, a thread each
   std::vector<AlignedArray<std::byte>> nowhere;  ///< a chunk a thread that nobody reads
   std::uint64_t bytes() const {
     std::uint64_t total =
         key.capacity() * sizeof(key[0]) + leaving.capacity() * sizeof(leaving[0]) + far_rows.capacity();
-    for (const auto& layer : rows) total += layer.capacity();
+    for (const auto& layer : rows) total += layer.bytes();
     return total;
   }
 };

@@ -15,7 +15,7 @@
 #include <tuple>
 #include <vector>
 
-#include "particles.hpp"
+#include "sort_rows.hpp"
 
 namespace mpm::cpu {
 
@@ -51,19 +51,6 @@ constexpr BlockCoordinates neighbour_at(BlockCoordinates at, int index) {
   return at;
 }
 
-/// The lanes after the last of a block's `count` particles hold copies of it.
-template <int D, class T>
-void fill_tail(const Particles<D, T>& particles, std::uint32_t count, std::byte* last_chunk) {
-  const int used = static_cast<int>((count - 1) % chunk_size<T>) + 1;
-  T* const values = particles.values_at(last_chunk);
-  std::int32_t* const ids = particles.ids_at(last_chunk);
-  for (int lane = used; lane < padded(used); ++lane) {
-    for (int c = 0; c < particles.components; ++c)
-      values[c * chunk_size<T> + lane] = values[c * chunk_size<T> + used - 1];
-    ids[lane] = ids[used - 1];
-  }
-}
-
 template <int D, class T>
 class Sorter {
  public:
@@ -74,8 +61,8 @@ class Sorter {
         scene_(scene),
         foresight_(foresight),
         threads_(particles.blocks.size() < 32 ? 1 : scene.threads),
-        left_behind_(with_motion ? 0 : particles.motion_components),
-        row_bytes_((particles.components * sizeof(T) + sizeof(Tail) + 7) / 8 * 8) {}
+        row_(particles, with_motion),
+        row_bytes_(row_.bytes()) {}
 
   bool run() {
     space_.key.resize(std::max(space_.key.size(), std::size_t(particles_.chunks) * chunk_size<T>));
@@ -94,6 +81,8 @@ class Sorter {
  private:
   static constexpr int here = neighbour_count<D> / 2;  ///< the block itself among its neighbours
   static constexpr std::uint16_t far_key = 0xffff;
+
+  using Fetching = typename RowFormat<D, T>::Fetching;
 
   /// An old block.
   struct Source {
@@ -119,12 +108,6 @@ class Sorter {
   };
   /// What becomes of a block.
   enum class Change { nothing, mended, anew };
-  /// What a row holds after the values.
-  struct Tail {
-    std::int32_t id;
-    std::uint32_t cell, slot;
-  };
-
   /// Not before the first sort: the blocks of seeding have no units yet, though their particles may be in order.
   bool in_units() const {
     return std::any_of(particles_.units.begin(), particles_.units.end(), [](const auto& u) { return !u.empty(); });
@@ -135,7 +118,7 @@ class Sorter {
   void for_each_component(Use&& use) const {
     constexpr int gap = Particles<D, T>::velocity;
     for (int c = 0; c < gap; ++c) use(c);
-    for (int c = gap + left_behind_; c < particles_.components; ++c) use(c);
+    for (int c = gap + row_.left_behind(); c < particles_.components; ++c) use(c);
   }
 
   // ---- where to
@@ -288,8 +271,23 @@ class Sorter {
         targets_[b].around[k] = table_.find(neighbour_at<D>(targets_[b].at, k));
   }
 
+  /// By the slots of the grid, which has been built around the blocks as they are.
+  void look_around_built() {
+    const int old = static_cast<int>(sources_.size());
+    std::int32_t slots = 0;
+    for (const Block<D>& block : particles_.blocks) slots = std::max(slots, block.neighbours[here] + 1);
+    std::vector<std::int32_t> in_slot(slots, -1);
+    for (int b = 0; b < old; ++b) in_slot[particles_.blocks[b].neighbours[here]] = b;
+    for (int b = 0; b < old; ++b)
+      for (int k = 0; k < neighbour_count<D>; ++k) {
+        const std::int32_t slot = particles_.blocks[b].neighbours[k];
+        if (slot < slots) targets_[b].around[k] = in_slot[slot];
+      }
+  }
+
   /// Two neighbours are found at once: each entry is written by one thread.
   void look_around_old() {
+    if (!first_) return look_around_built();
     const int old = static_cast<int>(sources_.size());
 #pragma omp parallel for num_threads(threads_) schedule(static)
     for (int b = 0; b < old; ++b) {
@@ -434,7 +432,7 @@ class Sorter {
       if (layer + 1 < n) send(layer + 1);
       const int first = static_cast<int>(layers_[layer]), last = static_cast<int>(layers_[layer + 1]);
 #pragma omp parallel for num_threads(threads_) schedule(dynamic, 4)
-      for (int i = first; i < last; ++i) receive(in_layers_[i]);
+      for (int i = first; i < last; ++i) receive(in_layers_[i], first_chunk(i + 1));
     }
   }
 
@@ -465,7 +463,7 @@ class Sorter {
 
   /// Rows of a layer's blocks, those for one neighbour side by side.
   void send(int layer) {
-    std::vector<std::byte>& rows = space_.rows[layer % 3];
+    AlignedArray<std::byte>& rows = space_.rows[layer % 3];
     std::size_t count = 0;
     const int first = static_cast<int>(layers_[layer]), last = static_cast<int>(layers_[layer + 1]);
     for (int i = first; i < last; ++i) {
@@ -477,28 +475,37 @@ class Sorter {
       }
       source.rows = layer % 3;
     }
-    if (rows.size() < count * row_bytes_) {
-      rows.clear();
-      rows.resize(count * row_bytes_);
-    }
+    if (rows.bytes() < count * row_bytes_) rows.require(count * row_bytes_ * 9 / 8);
 #pragma omp parallel for num_threads(threads_) schedule(dynamic, 4)
     for (int i = first; i < last; ++i)
       if (in_layers_[i] < sources_.size() && sources_[in_layers_[i]].leaving > 0)
-        send_block(in_layers_[i], rows.data());
+        send_block(in_layers_[i], rows.data(), first_chunk(i + 1));
   }
 
-  void send_block(std::uint32_t b, std::byte* rows) {
+  /// Of the old block at a place among the layers; none: beyond the last chunk.
+  std::uint32_t first_chunk(int i) const {
+    const bool exists = i < static_cast<int>(in_layers_.size()) && in_layers_[i] < sources_.size();
+    return exists ? particles_.blocks[in_layers_[i]].first_chunk : particles_.chunks;
+  }
+  /// The chunk to fetch along with the work on one of a block, which `next_block` follows.
+  Fetching fetch_after(const Block<D>& block, std::uint32_t chunk, std::uint32_t next_block) const {
+    const std::uint32_t following = chunk + 1 < block.first_chunk + chunks_of(block.count) ? chunk + 1 : next_block;
+    return following < particles_.chunks ? Fetching(row_, following, std::popcount(space_.leaving[chunk])) : Fetching();
+  }
+
+  void send_block(std::uint32_t b, std::byte* rows, std::uint32_t next_block) {
     std::array<std::uint32_t, neighbour_count<D>> next = sources_[b].first_row;
     for_each_chunk<T>(particles_.blocks[b], [&](std::uint32_t chunk, int) {
       const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size<T>;
-      prefetch(chunk + 1);
+      Fetching following = fetch_after(particles_.blocks[b], chunk, next_block);
       for_each_leaver(chunk, [&](int lane) {
+        following.go_on();
         if (key[lane] == far_key) return;
         const int k = key[lane] / block_nodes;
         const BlockCoordinates d = neighbour_at<D>({}, k);
         int shift[D];
         for (int a = 0; a < D; ++a) shift[a] = -d[a] * block_side<D>;
-        write_row(rows + next[k]++ * row_bytes_, chunk, lane, key[lane] % block_nodes, shift);
+        row_.write(rows + next[k]++ * row_bytes_, chunk, lane, key[lane] % block_nodes, shift);
       });
     });
   }
@@ -506,22 +513,8 @@ class Sorter {
   void send_far() {
     if (space_.far_rows.size() < far_.size() * row_bytes_) space_.far_rows.resize(far_.size() * row_bytes_);
     for (std::size_t i = 0; i < far_.size(); ++i)
-      write_row(space_.far_rows.data() + i * row_bytes_, far_[i].slot / chunk_size<T>,
-                static_cast<int>(far_[i].slot % chunk_size<T>), far_[i].cell, far_[i].shift);
-  }
-
-  void write_row(std::byte* row, std::uint32_t chunk, int lane, std::uint32_t cell, const int* shift) const {
-    const T* const from = particles_.chunk(chunk) + lane;
-    T* const values = reinterpret_cast<T*>(row);
-    for_each_component([&](int c) { values[c] = from[c * chunk_size<T>]; });
-    for (int a = 0; a < D; ++a) values[a] += static_cast<T>(shift[a]);
-    const Tail tail{particles_.ids(chunk)[lane], cell, chunk * chunk_size<T> + lane};
-    std::memcpy(row + particles_.components * sizeof(T), &tail, sizeof tail);
-  }
-  Tail tail_of(const std::byte* row) const {
-    Tail tail;
-    std::memcpy(&tail, row + particles_.components * sizeof(T), sizeof tail);
-    return tail;
+      row_.write(space_.far_rows.data() + i * row_bytes_, far_[i].slot / chunk_size<T>,
+                 static_cast<int>(far_[i].slot % chunk_size<T>), far_[i].cell, far_[i].shift);
   }
 
   /// The rows that a neighbour has sent to a target.
@@ -550,7 +543,7 @@ class Sorter {
     return all;
   }
 
-  void receive(std::uint32_t number) {
+  void receive(std::uint32_t number, std::uint32_t next_block) {
     const Target& target = targets_[number];
     const Change change = change_of(number);
     std::vector<std::byte*>& unused = space_.unused[omp_get_thread_num()];
@@ -564,7 +557,7 @@ class Sorter {
       if (change != Change::anew) kept = std::min(had, has);
       for (std::uint32_t i = 0; i < has; ++i)
         places[i] = i < kept ? particles_.places[particles_.blocks[number].first_chunk + i] : take(unused);
-      if (change == Change::mended) mend(number);
+      if (change == Change::mended) mend(number, next_block);
       if (change == Change::anew) fill(number);
     }
     for (std::uint32_t i = kept; i < had; ++i)
@@ -591,14 +584,20 @@ class Sorter {
   /// Slots of a block that nobody holds any more, in order: those of its leavers, then those beyond its end.
   class Holes {
    public:
-    Holes(const Sorter& sorter, const Block<D>& block)
-        : sorter_(sorter), block_(block), end_(block.count), left_(sorter.space_.leaving[block.first_chunk]) {}
+    Holes(const Sorter& sorter, const Block<D>& block, std::uint32_t next_block)
+        : sorter_(sorter),
+          block_(block),
+          next_block_(next_block),
+          end_(block.count),
+          left_(sorter.space_.leaving[block.first_chunk]),
+          following_(sorter.fetch_after(block, block.first_chunk, next_block)) {}
     std::uint32_t next() {
       while (left_ == 0) {
         if ((chunk_ + 1) * chunk_size<T> >= block_.count) return end_++;
         left_ = sorter_.space_.leaving[block_.first_chunk + ++chunk_];
-        sorter_.prefetch(block_.first_chunk + chunk_ + 1);
+        following_ = sorter_.fetch_after(block_, block_.first_chunk + chunk_, next_block_);
       }
+      following_.go_on();
       const int lane = std::countr_zero(left_);
       left_ &= left_ - 1;
       return chunk_ * chunk_size<T> + lane;
@@ -607,15 +606,16 @@ class Sorter {
    private:
     const Sorter& sorter_;
     const Block<D>& block_;
-    std::uint32_t chunk_ = 0, end_;
+    std::uint32_t next_block_, chunk_ = 0, end_;
     std::uint64_t left_;
+    Fetching following_;
   };
 
   /// Who comes takes the place of who left; where more leave than come, the last fill up.
-  void mend(std::uint32_t number) {
+  void mend(std::uint32_t number, std::uint32_t next_block) {
     const Target& target = targets_[number];
     const Block<D>&old = particles_.blocks[number], &block = blocks_[target.number];
-    Holes holes(*this, old);
+    Holes holes(*this, old, next_block);
     const Incoming from = incoming(number);
     for (int i = 0; i < from.count; ++i)
       for (const std::byte* row = from.sent[i].first; row != from.sent[i].last; row += row_bytes_)
@@ -646,7 +646,7 @@ class Sorter {
     std::uint32_t place[block_nodes + 1] = {};  // of the next particle of a cell
     for (int i = 0; i < from.count; ++i)
       for (const std::byte* row = from.sent[i].first; row != from.sent[i].last; row += row_bytes_)
-        ++place[tail_of(row).cell + 1];
+        ++place[row_.tail(row).cell + 1];
     for (std::uint32_t i = target.first_far; i < target.last_far; ++i) ++place[far_[i].cell + 1];
     if (existed) count_stayers(particles_.blocks[number], place + 1);
     for (int cell = 0; cell < block_nodes; ++cell) place[cell + 1] += place[cell];
@@ -661,7 +661,7 @@ class Sorter {
       if (sent.source == static_cast<std::int32_t>(number))
         take_stayers(particles_.blocks[number], block, place, take_far_before);
       for (const std::byte* row = sent.first; row != sent.last; row += row_bytes_) {
-        take_far_before(tail_of(row).slot);
+        take_far_before(row_.tail(row).slot);
         read_row_of_cell(block, row, place);
       }
     }
@@ -678,14 +678,10 @@ class Sorter {
   }
 
   void read_row_of_cell(const Block<D>& block, const std::byte* row, std::uint32_t* place) {
-    read_row(block, row, place[tail_of(row).cell]++);
+    read_row(block, row, place[row_.tail(row).cell]++);
   }
   void read_row(const Block<D>& block, const std::byte* row, std::uint32_t to) {
-    const T* const values = reinterpret_cast<const T*>(row);
-    std::byte* const chunk = places_[block.first_chunk + to / chunk_size<T>];
-    T* const target = particles_.values_at(chunk) + to % chunk_size<T>;
-    for_each_component([&](int c) { target[c * chunk_size<T>] = values[c]; });
-    particles_.ids_at(chunk)[to % chunk_size<T>] = tail_of(row).id;
+    row_.read(row, places_[block.first_chunk + to / chunk_size<T>], to % chunk_size<T>);
   }
 
   /// Component by component, so that the old chunk is read in its own order; what leaves goes to where nobody looks.
@@ -719,7 +715,7 @@ class Sorter {
   void prefetch(std::uint32_t chunk) const {
     if (chunk >= particles_.chunks) return;
     fetch(chunk, 0, Particles<D, T>::velocity);
-    fetch(chunk, Particles<D, T>::velocity + left_behind_, particles_.components + 1);
+    fetch(chunk, Particles<D, T>::velocity + row_.left_behind(), particles_.components + 1);
   }
   /// Components of a chunk, after the last of which its indices lie.
   void fetch(std::uint32_t chunk, int first, int last) const {
@@ -745,7 +741,7 @@ class Sorter {
   const Foresight<T> foresight_;
   int threads_;
   bool first_ = false;  ///< sort of these particles
-  int left_behind_;     ///< components from the velocity on that do not travel
+  const RowFormat<D, T> row_;
   std::size_t row_bytes_, at_hand_ = 0;
   std::vector<Source> sources_;
   std::vector<Target> targets_;
@@ -761,59 +757,6 @@ template <int D, class T>
 bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion,
                     const Foresight<T>& foresight) {
   return Sorter<D, T>(particles, space, scene, with_motion, foresight).run();
-}
-
-/// Particles as they come, each into the last chunk of its block.
-template <int D, class T>
-void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain,
-                    const std::vector<T>& first_value, int affine) {
-  struct Seeded {
-    BlockCoordinates at{};
-    std::uint32_t count = 0;
-    std::vector<std::byte*> chunks;
-  };
-  std::vector<Seeded> found;
-  BlockTable table;
-  particles.pool.set_chunk_bytes(particles.chunk_bytes());
-  particles.pool.reserve((seeds.count() + chunk_size<T> - 1) / chunk_size<T>);
-  int known = -1;
-  seeds.for_each_batch([&](const SeedBatch& batch) {
-    for (std::size_t i = 0; i < batch.count; ++i) {
-      double cells[D];
-      BlockCoordinates at{};
-      for (int a = 0; a < D; ++a) {
-        cells[a] = (batch.position[i * D + a] - domain.lower[a]) / domain.cell_size;
-        at[a] = static_cast<int>(std::floor(cells[a] / block_side<D>));
-      }
-      if (known < 0 || found[known].at != at) known = table.insert(at, static_cast<int>(found.size()));
-      if (known == static_cast<int>(found.size())) found.emplace_back().at = at;
-      Seeded& block = found[known];
-      const int lane = static_cast<int>(block.count++ % chunk_size<T>);
-      if (lane == 0) {
-        block.chunks.push_back(particles.pool.take());
-        for (int c = 0; c < particles.components; ++c)
-          std::fill_n(particles.values_at(block.chunks.back()) + c * chunk_size<T>, chunk_size<T>, first_value[c]);
-      }
-      T* const values = particles.values_at(block.chunks.back()) + lane;
-      particles.ids_at(block.chunks.back())[lane] = static_cast<std::int32_t>(batch.first + i);
-      for (int a = 0; a < D; ++a) {
-        values[(Particles<D, T>::position + a) * chunk_size<T>] = static_cast<T>(cells[a] - at[a] * block_side<D>);
-        values[(Particles<D, T>::velocity + a) * chunk_size<T>] = static_cast<T>(batch.velocity[i * D + a]);
-      }
-      for (int c = 0; affine >= 0 && c < D * D; ++c)
-        values[(affine + c) * chunk_size<T>] = static_cast<T>(batch.velocity_gradient[i * D * D + c]);
-    }
-  });
-  std::sort(found.begin(), found.end(), [](const Seeded& a, const Seeded& b) { return a.at < b.at; });
-  for (const Seeded& seeded : found) {
-    Block<D>& block = particles.blocks.emplace_back();
-    block.at = seeded.at;
-    block.first_chunk = particles.chunks;
-    block.count = seeded.count;
-    fill_tail(particles, seeded.count, seeded.chunks.back());
-    particles.chunks += static_cast<std::uint32_t>(seeded.chunks.size());
-    particles.places.insert(particles.places.end(), seeded.chunks.begin(), seeded.chunks.end());
-  }
 }
 
 }  // namespace mpm::cpu

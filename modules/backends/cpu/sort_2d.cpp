@@ -1,3 +1,4 @@
+#include "seeding.hpp"
 #include "sort.hpp"
 
 namespace mpm::cpu {
