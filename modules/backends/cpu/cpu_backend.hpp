@@ -275,7 +275,7 @@ void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step
 template <int D, class T, class Components>
 bool CpuBackend<D, T, Components>::may_pass_motion(const StepInfo& step) const {
   return !step.observed && scene_.has(MPM_REPLACES_MOTION) && !scene_.plan.particle_domain &&
-         particle_step_->stays_within_tiles(step.dt * grid_.largest_component(motion) / scene_.domain.cell_size);
+         particle_step_->stays_within_tiles(step.dt * grid_step_->largest_component() / scene_.domain.cell_size);
 }
 
 /// Gather, and the scatter of the step that follows, into a second motion channel: that of this step is still read.

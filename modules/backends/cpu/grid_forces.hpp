@@ -16,6 +16,22 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
   if (scene.plan.contact)
     for (int field = 0; field < scene.experiment.field_count; ++field)
       edges_.emplace_back(scene.experiment.shape, rows_per_cell(scene.experiment, field));
+  merges_ = may_merge();
+}
+
+/// Whether nothing reads velocities before the forces, and conditions give the same without them.
+template <int D, class T>
+bool GridStep<D, T>::may_merge() const {
+  const Plan& plan = scene_.plan;
+  if (plan.ledger || plan.contact || plan.filter || grid_.has(velocity_before) || grid_.has(force)) return false;
+  for (const auto& sides : scene_.experiment.faces)
+    for (const auto& face : sides)
+      if (face.type == ConditionType::separate) return false;
+  for (const BoxCondition& box : scene_.experiment.boxes)
+    if (box.type == ConditionType::separate) return false;
+  const auto divides = std::find_if(plan.passes.begin(), plan.passes.end(),
+                                    [](const Pass& pass) { return pass.kind == PassKind::momentum_to_velocity; });
+  return plan.passes.end() - divides > 1 && divides[1].kind == PassKind::apply_forces;
 }
 
 /// Calls visit(field, first node, partial sums) for every block of nodes of every field.
@@ -114,6 +130,7 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   fold_images(remap, step);
   const double edges_raw = accounted ? kinetic_energy_of_edges() : 0.0;
   fold_walls(remap, step);
+  if (merges_ && !remap) return;
   const double folded = accounted ? kinetic_energy_of_edges() - edges_raw : 0.0;
   const double energy = divide_by_mass(keeps_before, accounted);
   if (accounted) {
@@ -267,6 +284,40 @@ void GridStep<D, T>::accelerate(double dt) {
   });
 }
 
+/// Momenta to velocities and on by gravity, in one pass; forces came with the momenta.
+template <int D, class T>
+void GridStep<D, T>::divide_and_accelerate(double dt) {
+  L change;
+  for (int lane = 0; lane < L::width; ++lane) change.v[lane] = static_cast<T>(dt) * gravity_[lane % 4];
+  for_each_block([&](int field, std::uint32_t first, double* partial) {
+    L largest(T(0));
+    for_each_pack(&motion_at(field, first), [&](int, L momentum, L mass) {
+      const L velocity = momentum / mass + change;
+      largest = max(largest, select(mass > T(0), abs(velocity), L(T(0))));
+      return velocity;
+    });
+    for (int lane = 0; lane < L::width; ++lane)
+      if (lane % 4 < D) partial[0] = std::max(partial[0], static_cast<double>(largest.v[lane]));
+  });
+  largest_ = 0;
+  for (std::size_t i = 0; i < partials_.size(); i += partial_count)
+    largest_ = std::max(largest_, static_cast<T>(partials_[i]));
+}
+
+/// What walls, boxes and ghosts have given since.
+template <int D, class T>
+void GridStep<D, T>::extend_largest_by_edges() {
+  const auto extend = [&](std::uint32_t node) {
+    for (int field = 0; field < grid_.fields(); ++field)
+      for (int c = 0; c < D; ++c) largest_ = std::max(largest_, std::abs(motion_at(field, node)[c]));
+  };
+  for (const std::uint32_t node : grid_.edge_nodes()) extend(node);
+  for (const FaceNodes& face : grid_.faces())
+    for (const std::uint32_t node : face.wall) extend(node);
+  for (const BoxNodes& box : grid_.boxes())
+    for (const std::uint32_t node : box.nodes) extend(node);
+}
+
 template <int D, class T>
 void GridStep<D, T>::subtract_velocity_before() {
   for_each_block([&](int field, std::uint32_t first, double*) {
@@ -279,6 +330,13 @@ void GridStep<D, T>::subtract_velocity_before() {
 template <int D, class T>
 void GridStep<D, T>::apply_forces(const StepInfo& step) {
   const double end = step.time + step.dt;
+  if (merges_) {
+    divide_and_accelerate(step.dt);
+    add_gravity_corrections(step.dt);
+    impose(end, Account::nothing);
+    fill_ghosts(end, false);
+    return extend_largest_by_edges();
+  }
   for (const bool periodic : {true, false}) fold_forces(periodic);  // those that USF scattered after the momenta
   add_gravity_corrections(step.dt);
   accelerate(step.dt);

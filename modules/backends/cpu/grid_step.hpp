@@ -18,6 +18,8 @@ class GridStep {
   void momentum_to_velocity(bool remap, const StepInfo& step);
   /// v+ = v- + dt f / m with conditions, contact after the forces, increments, ghosts.
   void apply_forces(const StepInfo& step);
+  /// Of the velocities after apply_forces, along any axis.
+  T largest_component() const { return merges_ ? largest_ : grid_.largest_component(motion); }
 
   /// Passes of the filter's loop: see PassKind. project_increment takes what the particles have scattered.
   void begin_filter(const Pass& pass);
@@ -73,6 +75,9 @@ class GridStep {
   void add_gravity_corrections(double dt);
   void account_gravity_corrections(double dt);
   void accelerate(double dt);
+  bool may_merge() const;
+  void divide_and_accelerate(double dt);
+  void extend_largest_by_edges();
   void account_for_impulses(double dt);
   void account_for_block(int field, std::uint32_t first, double dt, const std::uint8_t* held, double* partial);
   void subtract_velocity_before();
@@ -116,6 +121,8 @@ class GridStep {
   std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
   double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0, kinetic_energy_unfiltered_ = 0;
   bool has_gravity_ = false;
+  bool merges_ = false;  ///< momentum_to_velocity leaves the division to apply_forces
+  T largest_ = 0;        ///< see largest_component
 };
 
 }  // namespace mpm::cpu
