@@ -12,6 +12,7 @@
 #include "output/manifest.hpp"
 #include "output/natural_order.hpp"
 #include "output/run_folder.hpp"
+#include "output/summary_value.hpp"
 #include "support/catch.hpp"
 #include "unit/output_support.hpp"
 
@@ -275,4 +276,15 @@ TEST_CASE("files are ordered as people count", "[output]") {
   CHECK(naturally_less("a", "ab"));
   CHECK_FALSE(naturally_less("a1", "a1"));
   CHECK(naturally_less("a01", "a1") != naturally_less("a1", "a01"));
+}
+
+TEST_CASE("values of a summary by pointer and by path", "[output]") {
+  const Json json{{"error", {{"position", {{"rms", 0.25}}}}}, {"word", "x"}};
+  CHECK(number_at(json, "/error/position/rms") == 0.25);
+  CHECK(number_at(json, "error.position.rms") == 0.25);
+  for (const char* path : {"/error/velocity", "/word", "error.position", "/error/~", "", "/"})
+    CHECK(std::isnan(number_at(json, path)));
+  REQUIRE(value_at(json, "word"));
+  CHECK(*value_at(json, "word") == "x");
+  CHECK(!value_at(json, "error.velocity"));
 }
