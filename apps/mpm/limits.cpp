@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "experiment/diagnostics.hpp"
-#include "study/summary_value.hpp"
+#include "output/summary_value.hpp"
 
 namespace mpm::app {
 namespace {
@@ -26,7 +26,7 @@ struct Limit {
 
 /// Entry of `limits`; whether the number keeps its bound. One that is not finite keeps none.
 bool judge(const Limit& limit, const Json& summary, Json& entry) {
-  const double value = study::number_at(summary, limit.metric);
+  const double value = output::number_at(summary, limit.metric);
   entry = {{"metric", limit.metric}};
   if (limit.bound) entry[limit.kind] = *limit.bound;
   entry["value"] = std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -44,7 +44,7 @@ std::string why_no_gain_is_judged(const Experiment& experiment, const Json& summ
   if (const auto isolated = experiment.limits.isolated; isolated && !*isolated) return "/limits/isolated is false";
   const std::string work = experiment.limits.isolated ? "" : work_from_outside(experiment);
   if (!work.empty()) return work;
-  return study::value_at(summary, "energy.total.gain") ? "" : "not recorded: the scene begins without energy";
+  return output::value_at(summary, "energy.total.gain") ? "" : "not recorded: the scene begins without energy";
 }
 
 }  // namespace
@@ -72,7 +72,7 @@ std::vector<std::string> judge_limits(const Experiment& experiment, Json& summar
   const Limit smallest{"stability.smallest_volume_ratio", "at_least", ratio(0), ""};
   const Limit largest{"stability.largest_volume_ratio", "at_most", ratio(1), ""};
   std::vector<std::string> flags;
-  const auto number = [&](const Limit& limit) { return study::number_at(summary, limit.metric); };
+  const auto number = [&](const Limit& limit) { return output::number_at(summary, limit.metric); };
   Json entries = Json::array();
   if (!judge(gain, summary, entries.emplace_back()))
     flags.push_back("energy gain of " + three_digits(100 * number(gain)) + " % (limit " +

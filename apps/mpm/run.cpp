@@ -21,7 +21,7 @@
 #include "output/atomic_file.hpp"
 #include "output/manifest.hpp"
 #include "output/report.hpp"
-#include "study/summary_value.hpp"
+#include "output/summary_value.hpp"
 
 namespace mpm::app {
 namespace {
@@ -307,7 +307,7 @@ Outcome finish(Outcome outcome, nlohmann::ordered_json summary, const Experiment
     std::cerr << "flagged: " << flag << "\n";
     flagged += (flagged.empty() ? "" : "; ") + flag;
   }
-  if (outcome.exit_code == done && !flagged.empty()) outcome = {expectation_failed, study::limit_broken, flagged};
+  if (outcome.exit_code == done && !flagged.empty()) outcome = {expectation_failed, output::limit_broken, flagged};
   for (const auto& warning : summary["warnings"]) std::cerr << "warning: " << warning.get<std::string>() << "\n";
   const auto write_summary = [&] {
     summary["outcome"] = {{"exit_code", outcome.exit_code}, {"status", outcome.status}, {"reason", outcome.reason}};

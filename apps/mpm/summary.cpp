@@ -7,7 +7,7 @@
 
 #include "bench/costs.hpp"
 #include "experiment/diagnostics.hpp"
-#include "study/summary_value.hpp"
+#include "output/summary_value.hpp"
 
 namespace mpm::app {
 namespace {
@@ -157,7 +157,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
 std::vector<std::string> judge_expectations(const Experiment& experiment, Json& summary) {
   std::vector<std::string> failed;
   for (const Expectation& expectation : experiment.expectations) {
-    const Json* value = study::value_at(summary, expectation.metric);
+    const Json* value = output::value_at(summary, expectation.metric);
     const bool measured = value && value->is_number();
     const double x = measured ? value->get<double>() : NAN;
     bool held = measured;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "output/report_parts.hpp"
+#include "output/summary_value.hpp"
 
 namespace mpm::output::report {
 namespace {
@@ -13,7 +14,7 @@ std::string banner(const char* kind, const std::string& title, const std::string
   return std::string("<div class=\"banner ") + kind + "\"><strong>" + title + "</strong>" + body + "</div>\n";
 }
 
-const char* meaning_of(std::int64_t exit_code, bool limit_broken) {
+const char* meaning_of(std::int64_t exit_code, bool broke_a_limit) {
   switch (exit_code) {
     case 0:
       return "Done: the run finished and every expectation held";
@@ -22,7 +23,7 @@ const char* meaning_of(std::int64_t exit_code, bool limit_broken) {
     case 3:
       return "Failed: the run became unstable or invalid";
     case 4:
-      return limit_broken ? "Finished, but broke a limit" : "Finished, but an expectation failed";
+      return broke_a_limit ? "Finished, but broke a limit" : "Finished, but an expectation failed";
     case 5:
       return "Failed: the machine could not go on";
     default:
@@ -32,7 +33,7 @@ const char* meaning_of(std::int64_t exit_code, bool limit_broken) {
 
 bool broke_a_limit(const Run& run) {
   const Json* status = member(run.summary, {"outcome", "status"});
-  return status != nullptr && *status == "limit broken";
+  return status != nullptr && *status == limit_broken;
 }
 
 std::string warnings_banner(const Run& run) {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "study/measured.hpp"
 #include "study/study.hpp"
-#include "study/summary_value.hpp"
 
 namespace mpm::study {
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "output/atomic_file.hpp"
+#include "output/summary_value.hpp"
 
 namespace mpm::study {
 namespace {
@@ -196,7 +197,8 @@ Outcome Runner::outcome_of(const std::string& name, int wait_status) const {
   const std::string reason = ending.value("reason", "");
   const bool known = ending.value("exit_code", -1) == code;
   if (code == 0 && known) return {Status::done, ""};
-  if (code == 4 && known && ending.value("status", "") == limit_broken) return {Status::done, ""};  // and flagged
+  if (code == 4 && known && ending.value("status", "") == output::limit_broken)
+    return {Status::done, ""};  // and flagged
   if (code == 4 && known) return {Status::expectation_failed, reason};
   if (code == 3 && known) return {Status::failed, reason};
   if (code == 2) return {Status::refused, last_lines(name)};

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace mpm::test {
 
@@ -54,18 +55,7 @@ inline bool has(const std::string& text, const std::string& part) {
 /// A fresh folder, removed at the end. The program's streams lie outside of it.
 class Folder {
  public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "mpm_cli_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a folder for the test");
-    root_ = name;
-    fs::create_directory(root_ / "work");
-  }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(root_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
+  Folder() { fs::create_directory(path()); }
 
   fs::path path() const { return root_ / "work"; }
   fs::path operator/(const fs::path& name) const { return path() / name; }
@@ -78,7 +68,7 @@ class Folder {
   }
 
  private:
-  fs::path root_;
+  TemporaryFolder root_;
 };
 
 struct Result {

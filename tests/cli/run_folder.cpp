@@ -1,5 +1,6 @@
 // What a run leaves behind, that it can be run again with the same bytes, and figures drawn again from it.
 
+#include <cmath>
 #include <sstream>
 #include "cli/program.hpp"
 #include "output/csv.hpp"
@@ -237,6 +238,36 @@ TEST_CASE("a filtered run records what the filter did, and others say nothing of
   CHECK(!plain["energy"]["ledger"].contains("filter"));
   CHECK(!plain["stability"].contains("filter"));
   CHECK(!has(slurp(folder / "plain/metrics.csv"), "filter"));
+}
+
+TEST_CASE("the program warns when friction stops a filter's loop from contracting") {
+  // Contact makes of the loop's velocity u the grid's velocity F(u). Without friction F is the projection onto the
+  // velocities that do not approach, in the mass norm: it lengthens no increment. Where bodies slide, what presses them
+  // together by n brakes them by mu n as well: F may lengthen an increment to sqrt(1 + mu^2) of itself.
+  const std::string words = "its loop no longer contracts";
+  const Folder folder;
+  Json scene = two_balls();
+  scene["transfer"]["type"] = "pic";
+  scene["filter"] = {{"type", "fmpm"}, {"order", 8}};
+  scene["bodies"][0]["velocity"] = {3.0, -1.0};  // they graze each other
+  scene["bodies"][1]["velocity"] = {-3.0, 1.0};
+  for (const char* backend : {"reference", "cpu"})
+    for (const double friction : {0.0, 10.0}) {
+      scene["contact"]["friction"] = friction;
+      const Result result = run_scene(folder, scene, {"--backend", backend});
+      INFO(backend << ", friction " << friction << "\n" << result.err);
+      CHECK(result.code == 0);
+      const Json summary = json_in(folder / "run/summary.json");
+      CHECK(summary["energy"]["total"]["final_over_initial"] < 1);
+      const double growth = summary["stability"]["filter"]["largest_growth"];
+      if (friction > 0) CHECK(growth > 1.1);
+      CHECK(growth <= std::sqrt(1 + friction * friction) + 1e-12);
+      const std::size_t warnings = friction > 0 ? 1 : 0;
+      REQUIRE(summary["warnings"].size() == warnings);
+      if (warnings == 1) CHECK(has(summary["warnings"][0], words));
+      CHECK(has(result.err, "warning: the filter's increment grew") == (friction > 0));
+      CHECK(has(slurp(folder / "run/report.html"), words) == (friction > 0));
+    }
 }
 
 TEST_CASE("a second run moves the first aside, and runs/<name> is the standard place") {

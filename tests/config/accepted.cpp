@@ -198,7 +198,7 @@ TEST_CASE("limits have defaults, and null takes one away", "[config]") {
 
 TEST_CASE("positions point into the file, at the nearest part for what was not written", "[config]") {
   const TemporaryFolder folder;
-  const auto file = folder.file(two_discs);
+  const auto file = experiment_file(folder, two_discs);
   const Experiment e = read_experiment(file, components(), options({"/solver/courant=0.1"}));
   const std::string name = file.string();
   CHECK(e.where("/grid/cell_size") == name + ":7:18");
@@ -227,7 +227,7 @@ TEST_CASE("the command line's backend wins", "[config]") {
   ReadOptions chosen = options();
   chosen.backend = "reference";
   const TemporaryFolder folder;
-  const Experiment e = read_experiment(folder.file(two_discs), components(), chosen);
+  const Experiment e = read_experiment(experiment_file(folder, two_discs), components(), chosen);
   CHECK(e.backend == "reference");
   CHECK(e.resolved["backend"] == "reference");
 }

@@ -8,6 +8,7 @@
 
 #include "config/fake_plugins.hpp"
 #include "experiment/read.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace mpm::test {
 
@@ -18,25 +19,12 @@ inline std::string replaced(std::string text, std::string_view from, std::string
   return text;
 }
 
-/// A folder that goes with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "mpm-config-XXXXXX").string();
-    path_ = ::mkdtemp(pattern.data());
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  std::filesystem::path file(std::string_view text) const {
-    const std::filesystem::path path = path_ / "experiment.json";
-    std::ofstream(path, std::ios::binary) << text;
-    return path;
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+/// The text as a file in the folder.
+inline std::filesystem::path experiment_file(const TemporaryFolder& folder, std::string_view text) {
+  const std::filesystem::path path = folder / "experiment.json";
+  std::ofstream(path, std::ios::binary) << text;
+  return path;
+}
 
 /// Two discs with contact, touching most of the format.
 inline const char* const two_discs = R"json(// Two discs
@@ -82,13 +70,13 @@ inline const char* const two_discs = R"json(// Two discs
 
 inline Experiment read_text(const std::string& text, std::vector<std::string> overrides = {}) {
   const TemporaryFolder folder;
-  return read_experiment(folder.file(text), components(), options(std::move(overrides)));
+  return read_experiment(experiment_file(folder, text), components(), options(std::move(overrides)));
 }
 
 /// what() of the InputError that reading throws; "accepted" when it throws none.
 inline std::string errors_with(const std::string& text, const ReadOptions& options) {
   const TemporaryFolder folder;
-  const std::filesystem::path file = folder.file(text);
+  const std::filesystem::path file = experiment_file(folder, text);
   try {
     read_experiment(file, components(), options);
   } catch (const InputError& error) {

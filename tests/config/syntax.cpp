@@ -39,7 +39,7 @@ TEST_CASE("files that hold no experiment", "[config]") {
   const std::string path = folder.path().string();
   CHECK_THROWS_WITH(read_experiment(folder.path(), components(), options()),
                     path + ": is a directory; expected an experiment file");
-  CHECK_THROWS_WITH(read_experiment(folder.path() / "none.json", components(), options()),
+  CHECK_THROWS_WITH(read_experiment(folder / "none.json", components(), options()),
                     path + "/none.json: there is no such file");
 }
 

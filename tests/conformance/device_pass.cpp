@@ -3,7 +3,6 @@
 // entry gives. Where NVRTC is installed the same text is compiled with it too.
 
 #include <dlfcn.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include "plugin/conformance_support.hpp"
 #include "plugin/registry.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 #ifndef MPM_CXX_COMPILER
 #define MPM_CXX_COMPILER "c++"
@@ -542,20 +542,6 @@ double worst_error(const Plugin& plugin, const Call& got, const Call& expected, 
   return worst.value;
 }
 
-/// A folder of this process, removed at the end, with nothing to include but the functor and the kernel headers.
-struct WorkFolder {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / ("mpm_device_pass_" + std::to_string(getpid()));
-  WorkFolder() {
-    std::filesystem::create_directories(path);
-    std::filesystem::create_directory_symlink(std::filesystem::path(MPM_SOURCE_DIR) / "modules" / "kernel",
-                                              path / "kernel");
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-};
-
 std::string contents(const std::filesystem::path& file) {
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
@@ -593,12 +579,15 @@ std::string title(const Plugin& plugin) {
 }  // namespace
 
 TEST_CASE("every functor compiles without system headers and gives the plugin's own results") {
-  const WorkFolder folder;
+  // Nothing to include but the functor and the kernel headers.
+  const mpm::test::TemporaryFolder folder;
+  std::filesystem::create_directory_symlink(std::filesystem::path(MPM_SOURCE_DIR) / "modules" / "kernel",
+                                            folder / "kernel");
   REQUIRE_FALSE(registry().plugins().empty());
   for (const Plugin& plugin : registry().plugins()) {
     DYNAMIC_SECTION(title(plugin)) {
       std::string log;
-      void* library = compiled(plugin, folder.path, log);
+      void* library = compiled(plugin, folder.path(), log);
       INFO(log);
       REQUIRE(library);
       Random random(20240605);

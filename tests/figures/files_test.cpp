@@ -13,25 +13,13 @@
 #include "render/image.hpp"
 #include "render/plot.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace mpm::render;
+using mpm::test::TemporaryFolder;
 namespace fs = std::filesystem;
 
 namespace {
-
-// A folder of its own for each test, removed at its end.
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "figures_test_XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-};
 
 std::string text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -120,9 +108,9 @@ ParticleFrame one_particle(int dimension) {
 }  // namespace
 
 TEST_CASE("a figure has the size asked for, a white ground and its series' colours", "[figures]") {
-  const Folder folder;
-  write_figure(two_lines(), folder.path / "energy");
-  const Image image = read_png(folder.path / "energy.png");
+  const TemporaryFolder folder;
+  write_figure(two_lines(), folder / "energy");
+  const Image image = read_png(folder / "energy.png");
   CHECK(image.width == 800);
   CHECK(image.height == 500);
   for (const int x : {0, 799}) {
@@ -133,12 +121,12 @@ TEST_CASE("a figure has the size asked for, a white ground and its series' colou
 }
 
 TEST_CASE("a picture larger than one tile has no seam", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Plot plot = two_lines();
   plot.width = 2600;
   plot.height = 1000;
-  write_figure(plot, folder.path / "wide");
-  const Image image = read_png(folder.path / "wide.png");
+  write_figure(plot, folder / "wide");
+  const Image image = read_png(folder / "wide.png");
   REQUIRE(image.width == 2600);
   // The axis runs through the seam at 2048 with one colour.
   int row = -1;
@@ -150,10 +138,10 @@ TEST_CASE("a picture larger than one tile has no seam", "[figures]") {
 }
 
 TEST_CASE("the table holds exactly what is shown", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const Plot plot = two_lines();
-  write_figure(plot, folder.path / "energy");
-  const auto lines = lines_of(folder.path / "energy.csv");
+  write_figure(plot, folder / "energy");
+  const auto lines = lines_of(folder / "energy.csv");
   REQUIRE(lines.size() == 1 + 2 * 101);
   CHECK(lines[0] == "series,kind,time t (s),kinetic energy T (J),error,point");
   for (std::size_t i = 0; i < 101; ++i) {
@@ -171,9 +159,9 @@ TEST_CASE("the table holds exactly what is shown", "[figures]") {
 }
 
 TEST_CASE("the vector twin is well formed and holds its words as text", "[figures]") {
-  const Folder folder;
-  write_figure(two_lines(), folder.path / "energy");
-  const std::string svg = text_of(folder.path / "energy.svg");
+  const TemporaryFolder folder;
+  write_figure(two_lines(), folder / "energy");
+  const std::string svg = text_of(folder / "energy.svg");
   CHECK(is_balanced_xml(svg));
   for (const char* words : {">Which keeps &lt;more&gt; energy &amp; why?<", ">time t (s)<", ">kinetic energy T (J)<",
                             ">APIC<", ">FLIP<", ">experiment two_discs.json<"}) {
@@ -182,15 +170,15 @@ TEST_CASE("the vector twin is well formed and holds its words as text", "[figure
 }
 
 TEST_CASE("points that cannot be shown are left out, and the footnote says so", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Plot plot = two_lines();
   plot.log_y = true;
   plot.series[0].y[3] = std::numeric_limits<double>::quiet_NaN();
   plot.series[0].y[4] = std::numeric_limits<double>::infinity();
   plot.series[1].y[5] = -1;
-  write_figure(plot, folder.path / "log");
-  CHECK(lines_of(folder.path / "log.csv").size() == 1 + 2 * 101 - 3);
-  const std::string svg = text_of(folder.path / "log.svg");
+  write_figure(plot, folder / "log");
+  CHECK(lines_of(folder / "log.csv").size() == 1 + 2 * 101 - 3);
+  const std::string svg = text_of(folder / "log.svg");
   CHECK(svg.find("2 points not finite, left out") != std::string::npos);
   CHECK(svg.find("1 point not above zero, left out") != std::string::npos);
   CHECK(svg.find("nan") == std::string::npos);
@@ -198,7 +186,7 @@ TEST_CASE("points that cannot be shown are left out, and the footnote says so", 
 }
 
 TEST_CASE("empty, single and constant data still make a figure", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const int kind = GENERATE(0, 1, 2, 3);
   Plot plot = two_lines();
   if (kind == 0) plot.series.clear();
@@ -206,14 +194,14 @@ TEST_CASE("empty, single and constant data still make a figure", "[figures]") {
   if (kind == 2) plot.series = {{"one point", {1}, {2}}};
   if (kind == 3) plot.series = {{"constant", {0, 1}, {0, 0}}};
   plot.log_x = plot.slope_triangles = false;
-  REQUIRE_NOTHROW(write_figure(plot, folder.path / "bare"));
-  const std::string svg = text_of(folder.path / "bare.svg");
+  REQUIRE_NOTHROW(write_figure(plot, folder / "bare"));
+  const std::string svg = text_of(folder / "bare.svg");
   if (kind < 2) CHECK(svg.find("no data to show") != std::string::npos);
   CHECK(svg.find("nan") == std::string::npos);
 }
 
 TEST_CASE("convergence: the fitted order stands on the triangle", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Plot plot = two_lines();
   Series s{"second order", {}, {}};
   for (int i = 0; i < 5; ++i) {
@@ -222,12 +210,12 @@ TEST_CASE("convergence: the fitted order stands on the triangle", "[figures]") {
   }
   plot.series = {s};
   plot.log_x = plot.log_y = plot.slope_triangles = true;
-  write_figure(plot, folder.path / "order");
-  CHECK(text_of(folder.path / "order.svg").find(">2.00<") != std::string::npos);
+  write_figure(plot, folder / "order");
+  CHECK(text_of(folder / "order.svg").find(">2.00<") != std::string::npos);
 }
 
 TEST_CASE("a ledger stacks its causes and draws the residual apart", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   StackedPlot plot;
   plot.title = "Where does the energy go?";
   plot.x_label = "time t (s)";
@@ -237,20 +225,20 @@ TEST_CASE("a ledger stacks its causes and draws the residual apart", "[figures]"
   plot.lines = {{"residual", {}, {0, 1e-13, -2e-13}}};
   plot.width = 800;
   plot.height = 500;
-  write_figure(plot, folder.path / "ledger");
-  const auto lines = lines_of(folder.path / "ledger.csv");
+  write_figure(plot, folder / "ledger");
+  const auto lines = lines_of(folder / "ledger.csv");
   REQUIRE(lines.size() == 4);
   CHECK(lines[0] == "time t (s),kinetic (J),lost (J),residual (J)");
   CHECK(lines[3] == "2,1,-2,-2.0000000000000001e-13");
-  CHECK(text_of(folder.path / "ledger.svg").find("residual, drawn apart (10⁻¹⁵ J)") != std::string::npos);
-  const Image image = read_png(folder.path / "ledger.png");
+  CHECK(text_of(folder / "ledger.svg").find("residual, drawn apart (10⁻¹⁵ J)") != std::string::npos);
+  const Image image = read_png(folder / "ledger.png");
   CHECK(count_pixels(image, 0x00, 0x72, 0xB2) > 10000);
   plot.areas[0].y.pop_back();
-  CHECK_THROWS_AS(write_figure(plot, folder.path / "ledger"), std::invalid_argument);
+  CHECK_THROWS_AS(write_figure(plot, folder / "ledger"), std::invalid_argument);
 }
 
 TEST_CASE("a map of stability colours its cells and refuses outcomes without a name", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   OutcomeMap map;
   map.title = "Which time step is stable?";
   map.x_label = "cell size h (m)";
@@ -262,21 +250,21 @@ TEST_CASE("a map of stability colours its cells and refuses outcomes without a n
   map.limits = {{"C = 1", {0, 1}, {1, 1}}};
   map.width = 800;
   map.height = 500;
-  write_figure(map, folder.path / "map");
-  CHECK(lines_of(folder.path / "map.csv").size() == 1 + 6 + 2);
-  const std::string svg = text_of(folder.path / "map.svg");
+  write_figure(map, folder / "map");
+  CHECK(lines_of(folder / "map.csv").size() == 1 + 6 + 2);
+  const std::string svg = text_of(folder / "map.svg");
   CHECK(is_balanced_xml(svg));
   for (const char* words : {">bounded<", ">gained energy<", ">not run<", ">C = 1<"})
     CHECK(svg.find(words) != std::string::npos);
-  const Image image = read_png(folder.path / "map.png");
+  const Image image = read_png(folder / "map.png");
   const std::size_t bounded = count_pixels(image, 64, 149, 197), gained = count_pixels(image, 223, 134, 64);
   CHECK(static_cast<double>(bounded) / static_cast<double>(gained) == Approx(1.5).epsilon(0.1));
   map.outcome[0] = 2;
-  CHECK_THROWS_WITH(write_figure(map, folder.path / "map"), "the map has an outcome 2 without a name");
+  CHECK_THROWS_WITH(write_figure(map, folder / "map"), "the map has an outcome 2 without a name");
 }
 
 TEST_CASE("a heat map writes each number in its cell and says what it does not show", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   HeatMap map;
   map.title = "Which pair is the most exact?";
   map.x_label = "transfer";
@@ -290,29 +278,29 @@ TEST_CASE("a heat map writes each number in its cell and says what it does not s
   map.log_scale = true;
   map.width = 800;
   map.height = 500;
-  write_figure(map, folder.path / "heat");
-  const auto lines = lines_of(folder.path / "heat.csv");
+  write_figure(map, folder / "heat");
+  const auto lines = lines_of(folder / "heat.csv");
   CHECK(lines == std::vector<std::string>{"shape,transfer,error e (m),note", "linear,pic,0.25,",
                                           "linear,flip,2.5,gained energy", "linear,apic,,refused", "gimp,pic,,not run",
                                           "gimp,flip,-1,", "gimp,apic,25,"});
-  const std::string svg = text_of(folder.path / "heat.svg");
+  const std::string svg = text_of(folder / "heat.svg");
   CHECK(is_balanced_xml(svg));
   for (const char* words : {">0.25<", ">2.5<", ">gained energy<", ">refused<", ">not run<", ">−1<", ">25<",
                             ">error e (m)<", ">1 cell not above zero or not finite, without colour<"})
     CHECK(svg.find(words) != std::string::npos);
   CHECK(svg.find("nan") == std::string::npos);
   // Least and greatest have the ends of the colours, the geometric mean the middle.
-  const Image image = read_png(folder.path / "heat.png");
+  const Image image = read_png(folder / "heat.png");
   for (const double t : {0.0, 0.5, 1.0}) {
     const Colour c = viridis(t);
     CHECK(count_pixels(image, int(255 * c.r), int(255 * c.g), int(255 * c.b)) > 10000);
   }
   map.values.pop_back();
-  CHECK_THROWS_WITH(write_figure(map, folder.path / "heat"), "a heat map of 3 x 2 cells has 5 values");
+  CHECK_THROWS_WITH(write_figure(map, folder / "heat"), "a heat map of 3 x 2 cells has 5 values");
 }
 
 TEST_CASE("a heat map takes out a power of ten, and never shows a part of a number", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   HeatMap map;
   map.value_label = "error e (m)";
   map.width = 800;
@@ -320,26 +308,26 @@ TEST_CASE("a heat map takes out a power of ten, and never shows a part of a numb
   map.x_names = {"a", "b"};
   map.y_names = {"c"};
   map.values = {2e-5, 4.56789e-6};
-  write_figure(map, folder.path / "small");
-  const std::string svg = text_of(folder.path / "small.svg");
+  write_figure(map, folder / "small");
+  const std::string svg = text_of(folder / "small.svg");
   for (const char* words : {">20<", ">4.57<", ">error e (10⁻⁶ m)<"}) CHECK(svg.find(words) != std::string::npos);
   // Far more cells than text fits.
   map.x_names.assign(60, "a long name of a column");
   map.y_names.assign(60, "a long name of a row");
   map.values.assign(3600, 0.125);
   map.values[0] = 1;
-  write_figure(map, folder.path / "many");
-  const std::string many = text_of(folder.path / "many.svg");
+  write_figure(map, folder / "many");
+  const std::string many = text_of(folder / "many.svg");
   CHECK(many.find("3600 cells without room for the whole text") != std::string::npos);
   CHECK(many.find(">0.1<") == std::string::npos);
   map.x_names.clear();
   map.values.clear();
-  write_figure(map, folder.path / "none");
-  CHECK(text_of(folder.path / "none.svg").find("no data to show") != std::string::npos);
+  write_figure(map, folder / "none");
+  CHECK(text_of(folder / "none.svg").find("no data to show") != std::string::npos);
 }
 
 TEST_CASE("small multiples share axes, looks and one legend", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Multiples m;
   m.title = "How fast?";
   m.x_label = "cell size h (m)";
@@ -354,12 +342,12 @@ TEST_CASE("small multiples share axes, looks and one legend", "[figures]") {
   };
   m.panels = {{"linear", {line("PIC", 1), line("FLIP", 2)}}, {"cubic", {line("FLIP", 3)}}, {"none", {}}};
   m.panels[0].series[0].y[1] = -1;
-  write_figure(m, folder.path / "multiples");
-  const auto rows = lines_of(folder.path / "multiples.csv");
+  write_figure(m, folder / "multiples");
+  const auto rows = lines_of(folder / "multiples.csv");
   REQUIRE(rows.size() == 1 + 2 + 3 + 3);
   CHECK(rows[0] == "panel,series,kind,cell size h (m),error e (m),error,point");
   CHECK(rows[6].substr(0, 20) == "cubic,FLIP,computed,");
-  const std::string svg = text_of(folder.path / "multiples.svg");
+  const std::string svg = text_of(folder / "multiples.svg");
   CHECK(is_balanced_xml(svg));
   for (const char* words : {">linear<", ">cubic<", ">none<", ">PIC<", ">FLIP<", ">cell size h (m)<", ">error e (m)<",
                             ">2.00<", ">3.00<", ">no data to show<"}) {
@@ -369,34 +357,33 @@ TEST_CASE("small multiples share axes, looks and one legend", "[figures]") {
   }
   CHECK(svg.find("1 point not above zero, left out") != std::string::npos);
   m.panels[1].series[0].y.pop_back();
-  CHECK_THROWS_WITH(write_figure(m, folder.path / "multiples"),
-                    "panel 'cubic', series 'FLIP': 3 values of x, but 2 of y");
+  CHECK_THROWS_WITH(write_figure(m, folder / "multiples"), "panel 'cubic', series 'FLIP': 3 values of x, but 2 of y");
   // Above small panels, with one digit where two have no room; none is left out for want of the second.
   const std::vector<Series> four{line("PIC", 1), line("FLIP", 2), line("APIC", 1.5), line("MLS", 0.5)};
   m.panels.assign(8, {"shape", {four[0], four[1]}});
-  write_figure(m, folder.path / "small");
-  CHECK(text_of(folder.path / "small.svg").find(">2.00<") != std::string::npos);
+  write_figure(m, folder / "small");
+  CHECK(text_of(folder / "small.svg").find(">2.00<") != std::string::npos);
   m.panels.assign(8, {"shape", four});
-  write_figure(m, folder.path / "small");
-  const std::string small = text_of(folder.path / "small.svg");
+  write_figure(m, folder / "small");
+  const std::string small = text_of(folder / "small.svg");
   for (const char* words : {">1.0<", ">2.0<", ">1.5<", ">0.5<"}) CHECK(small.find(words) != std::string::npos);
   CHECK(small.find("…") == std::string::npos);
   CHECK(small.find(">2.00<") == std::string::npos);
   m.panels.assign(500, {"one", {line("FLIP", 2)}});
-  CHECK_THROWS_AS(write_figure(m, folder.path / "multiples"), std::invalid_argument);
+  CHECK_THROWS_AS(write_figure(m, folder / "multiples"), std::invalid_argument);
   m.panels.clear();
-  write_figure(m, folder.path / "multiples");
-  CHECK(text_of(folder.path / "multiples.svg").find("no data to show") != std::string::npos);
+  write_figure(m, folder / "multiples");
+  CHECK(text_of(folder / "multiples.svg").find("no data to show") != std::string::npos);
 }
 
 TEST_CASE("a particle is drawn at its true size and place", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   ParticleFrame frame = one_particle(2);
   frame.width = 1600;
   frame.height = 1000;
   frame.values = {1};
-  write_frame(frame, folder.path / "frame");
-  const Image image = read_png(folder.path / "frame.png");
+  write_frame(frame, folder / "frame");
+  const Image image = read_png(folder / "frame.png");
   int left = image.width, right = 0;
   std::size_t count = 0;
   for (int y = 0; y < image.height; ++y) {
@@ -425,14 +412,14 @@ TEST_CASE("a particle is drawn at its true size and place", "[figures]") {
 }
 
 TEST_CASE("frames in two and three dimensions leave their files", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const int dimension = GENERATE(2, 3);
-  write_frame(one_particle(dimension), folder.path / "frame");
-  CHECK(fs::exists(folder.path / "frame.svg") == (dimension == 2));
-  const auto lines = lines_of(folder.path / "frame.csv");
+  write_frame(one_particle(dimension), folder / "frame");
+  CHECK(fs::exists(folder / "frame.svg") == (dimension == 2));
+  const auto lines = lines_of(folder / "frame.csv");
   REQUIRE(lines.size() == 2);
   CHECK(lines[0] == (dimension == 2 ? "x (m),y (m),half size (m),body" : "x (m),y (m),z (m),half size (m),body"));
-  const Image image = read_png(folder.path / "frame.png");
+  const Image image = read_png(folder / "frame.png");
   std::size_t orange = 0;
   for (std::size_t i = 0; i < image.rgb.size(); i += 3)
     orange += image.rgb[i] > 100 && image.rgb[i + 2] < image.rgb[i] / 3;
@@ -441,59 +428,59 @@ TEST_CASE("frames in two and three dimensions leave their files", "[figures]") {
 }
 
 TEST_CASE("the same frame gives the same picture", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const int dimension = GENERATE(2, 3);
-  write_frame(one_particle(dimension), folder.path / "a");
-  write_frame(one_particle(dimension), folder.path / "b");
-  CHECK(text_of(folder.path / "a.png") == text_of(folder.path / "b.png"));
+  write_frame(one_particle(dimension), folder / "a");
+  write_frame(one_particle(dimension), folder / "b");
+  CHECK(text_of(folder / "a.png") == text_of(folder / "b.png"));
 }
 
 TEST_CASE("frames without a usable particle, and ranges of one value", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   ParticleFrame frame = one_particle(2);
   frame.map = ColourMap::viridis;
-  CHECK_NOTHROW(write_frame(frame, folder.path / "one_value"));
+  CHECK_NOTHROW(write_frame(frame, folder / "one_value"));
   frame.values[0] = std::numeric_limits<double>::quiet_NaN();
-  write_frame(frame, folder.path / "none");
-  CHECK(lines_of(folder.path / "none.csv").size() == 1);
-  CHECK(text_of(folder.path / "none.svg").find("1 particle not finite, left out") != std::string::npos);
+  write_frame(frame, folder / "none");
+  CHECK(lines_of(folder / "none.csv").size() == 1);
+  CHECK(text_of(folder / "none.svg").find("1 particle not finite, left out") != std::string::npos);
   frame.map = ColourMap::diverging;
   frame.range = {{0, 0}};
-  CHECK_NOTHROW(write_frame(frame, folder.path / "zero_range"));
+  CHECK_NOTHROW(write_frame(frame, folder / "zero_range"));
 }
 
 TEST_CASE("arrays that do not match are refused by name", "[figures]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Plot plot = two_lines();
   plot.series[1].y.pop_back();
-  CHECK_THROWS_WITH(write_figure(plot, folder.path / "x"), "series 'FLIP': 101 values of x, but 100 of y");
+  CHECK_THROWS_WITH(write_figure(plot, folder / "x"), "series 'FLIP': 101 values of x, but 100 of y");
   ParticleFrame frame = one_particle(2);
   frame.positions.push_back(0);
-  CHECK_THROWS_WITH(write_frame(frame, folder.path / "x"), "a frame of 1 values needs 2 coordinates, not 3");
+  CHECK_THROWS_WITH(write_frame(frame, folder / "x"), "a frame of 1 values needs 2 coordinates, not 3");
   frame = one_particle(2);
   frame.upper[1] = 0;
-  CHECK_THROWS_WITH(write_frame(frame, folder.path / "x"), "the domain of the frame is empty or not finite along y");
+  CHECK_THROWS_WITH(write_frame(frame, folder / "x"), "the domain of the frame is empty or not finite along y");
   plot = two_lines();
   plot.width = 5;
-  CHECK_THROWS_AS(write_figure(plot, folder.path / "x"), std::invalid_argument);
-  CHECK(fs::is_empty(folder.path));
+  CHECK_THROWS_AS(write_figure(plot, folder / "x"), std::invalid_argument);
+  CHECK(fs::is_empty(folder.path()));
 }
 
 TEST_CASE("a file that cannot be written is named with the cause, and nothing is left behind", "[figures]") {
-  const Folder folder;
-  const fs::path missing = folder.path / "no_such_folder" / "energy";
+  const TemporaryFolder folder;
+  const fs::path missing = folder / "no_such_folder" / "energy";
   CHECK_THROWS_WITH(write_figure(two_lines(), missing),
                     "cannot write '" + missing.string() + ".png': No such file or directory");
-  fs::create_directory(folder.path / "taken.txt");
-  CHECK_THROWS_AS(write_file(folder.path / "taken.txt", "text"), std::runtime_error);
-  CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+  fs::create_directory(folder / "taken.txt");
+  CHECK_THROWS_AS(write_file(folder / "taken.txt", "text"), std::runtime_error);
+  CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 1);
 }
 
 TEST_CASE("files are replaced whole; a stem may hold a dot", "[figures]") {
-  const Folder folder;
-  write_file(folder.path / "a.txt", "first, and long");
-  write_file(folder.path / "a.txt", "second");
-  CHECK(text_of(folder.path / "a.txt") == "second");
+  const TemporaryFolder folder;
+  write_file(folder / "a.txt", "first, and long");
+  write_file(folder / "a.txt", "second");
+  CHECK(text_of(folder / "a.txt") == "second");
   CHECK(with_suffix("run_0.5", ".png") == fs::path("run_0.5.png"));
 }
 

@@ -1,12 +1,11 @@
 // Fronts of studies as figures and tables.
 
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 
 #include "study/figures.hpp"
 #include "study/results.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace mpm;
 using namespace mpm::study;
@@ -27,15 +26,13 @@ TEST_CASE("a front in a crowd is numbered, and its table names every point and w
     result.measures = {{"flops", 10 + k}, {"e", k < 3 ? 9 - 3 * k : 7 + k}};
     results.results.push_back(result);
   }
-  std::string folder = (std::filesystem::temp_directory_path() / "study_figures_XXXXXX").string();
-  REQUIRE(::mkdtemp(folder.data()) != nullptr);
-  CHECK(draw_figures(results, folder).empty());
+  const test::TemporaryFolder folder;
+  CHECK(draw_figures(results, folder.path()).empty());
   const auto text_of = [&](const char* name) {
-    std::ifstream file(folder + "/figures/" + name);
+    std::ifstream file(folder / "figures" / name);
     return std::string(std::istreambuf_iterator<char>(file), {});
   };
   const std::string table = text_of("crowd_flops.csv"), picture = text_of("crowd_flops.svg");
-  std::filesystem::remove_all(folder);
   for (const char* row : {",10,9,,1,0,\n", ",11,6,,2,1,\n", ",12,3,,3,2,\n", ",13,10,,,3,0\n", ",129,126,,,119,0\n"}) {
     INFO(row);
     CHECK(table.find(row) != std::string::npos);

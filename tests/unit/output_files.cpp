@@ -7,10 +7,12 @@
 #include <fstream>
 #include <limits>
 
+#include "output/atomic_file.hpp"
 #include "output/csv.hpp"
 #include "output/manifest.hpp"
 #include "output/natural_order.hpp"
 #include "output/run_folder.hpp"
+#include "output/summary_value.hpp"
 #include "support/catch.hpp"
 #include "unit/output_support.hpp"
 
@@ -52,7 +54,7 @@ void write_plain(const fs::path& path, const std::string& text) {
 }  // namespace
 
 TEST_CASE("an atomic write replaces the file and leaves nothing else", "[output][atomic]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path path = scratch / "result.json";
   write_atomically(path, "old");
   write_atomically(path, std::string("new\0bytes", 9));
@@ -61,7 +63,7 @@ TEST_CASE("an atomic write replaces the file and leaves nothing else", "[output]
 }
 
 TEST_CASE("a full disk keeps the old file, removes the temporary one and says what to do", "[output][atomic]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path path = scratch / "result.json";
   write_atomically(path, "old");
   std::string message;
@@ -77,7 +79,7 @@ TEST_CASE("a full disk keeps the old file, removes the temporary one and says wh
 }
 
 TEST_CASE("a path through a file, a missing folder and a folder as target are refused by name", "[output][atomic]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   write_atomically(scratch / "file", "text");
   fs::create_directory(scratch / "folder");
   CHECK(contains(message_of<MachineError>([&] { write_atomically(scratch / "file" / "below", "x"); }), "is a file"));
@@ -90,7 +92,7 @@ TEST_CASE("a path through a file, a missing folder and a folder as target are re
 }
 
 TEST_CASE("the hash of a file is the published SHA-256", "[output][hash]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   write_atomically(scratch / "abc", "abc");
   write_atomically(scratch / "empty", "");
   CHECK(sha256_of_file(scratch / "abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
@@ -115,7 +117,7 @@ TEST_CASE("a CSV table reads back bit for bit", "[output][csv]") {
                                     1e22,
                                     123456789012345678.0,
                                     limits::epsilon()};
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   {
     CsvAppender csv(scratch / "metrics.csv", {"time (s)", "kinetic energy (J)"});
     for (const double value : hard) csv.row(std::vector<double>{value, -value});
@@ -133,7 +135,7 @@ TEST_CASE("a CSV table reads back bit for bit", "[output][csv]") {
 }
 
 TEST_CASE("a column is found with or without its unit, and by quoted names", "[output][csv]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   CsvAppender(scratch / "t.csv", {"time (s)", "angle, \"tilt\" (rad)", "f(x)"}).row(std::vector<double>{1, 2, 3});
   const Table table = read_csv(scratch / "t.csv");
   REQUIRE(table.find("time") != nullptr);
@@ -145,7 +147,7 @@ TEST_CASE("a column is found with or without its unit, and by quoted names", "[o
 }
 
 TEST_CASE("a cut last line is left out, a malformed row is named by its line", "[output][csv]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   write_plain(scratch / "cut.csv", "a,b\n1,2\n3,4.5");
   const Table table = read_csv(scratch / "cut.csv");
   CHECK(table.rows() == 1);
@@ -167,7 +169,7 @@ TEST_CASE("a cut last line is left out, a malformed row is named by its line", "
 }
 
 TEST_CASE("a full disk takes the row back whole, and writing can go on later", "[output][csv]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   CsvAppender csv(scratch / "m.csv", {"a", "b"});
   csv.row(std::vector<double>{1.5, 2.5});
   const std::string before = read_file(scratch / "m.csv");
@@ -183,7 +185,7 @@ TEST_CASE("a full disk takes the row back whole, and writing can go on later", "
 }
 
 TEST_CASE("a process killed while it writes leaves whole rows", "[output][csv]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path path = scratch / "m.csv";
   const pid_t child = ::fork();
   if (child == 0) {
@@ -201,7 +203,7 @@ TEST_CASE("a process killed while it writes leaves whole rows", "[output][csv]")
 }
 
 TEST_CASE("a resumed run continues its table, other columns are refused", "[output][csv]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path path = scratch / "m.csv";
   write_plain(path, "time (s),x\n0,1\n0.5,2\n1,3\n1.5");
   CsvAppender(path, {"time (s)", "x"}).row(std::vector<double>{2, 4});
@@ -214,7 +216,7 @@ TEST_CASE("a resumed run continues its table, other columns are refused", "[outp
 }
 
 TEST_CASE("a run folder is made with those above it, and an earlier run is moved aside", "[output][folder]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path path = scratch / "runs/first/";
   const RunFolder first = RunFolder::create(path);
   CHECK(first.root().filename() == "first");
@@ -230,7 +232,7 @@ TEST_CASE("a run folder is made with those above it, and an earlier run is moved
 }
 
 TEST_CASE("a folder with other contents is refused with a remedy and left alone", "[output][folder]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   fs::create_directory(scratch / "thesis");
   write_plain(scratch / "thesis/chapter.tex", "years of work");
   const std::string message = message_of<FolderRefused>([&] { RunFolder::create(scratch / "thesis"); });
@@ -245,7 +247,7 @@ TEST_CASE("a folder with other contents is refused with a remedy and left alone"
 }
 
 TEST_CASE("JSON files are readable, and bad bytes or NaN do not lose them", "[output][folder]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const RunFolder run = RunFolder::create(scratch / "run");
   run.write_json("manifest.json", {{"z", 1}, {"a", std::nan("")}, {"title", "bad \xFF byte"}});
   const auto value = nlohmann::ordered_json::parse(read_file(run.root() / "manifest.json"));
@@ -274,4 +276,15 @@ TEST_CASE("files are ordered as people count", "[output]") {
   CHECK(naturally_less("a", "ab"));
   CHECK_FALSE(naturally_less("a1", "a1"));
   CHECK(naturally_less("a01", "a1") != naturally_less("a1", "a01"));
+}
+
+TEST_CASE("values of a summary by pointer and by path", "[output]") {
+  const Json json{{"error", {{"position", {{"rms", 0.25}}}}}, {"word", "x"}};
+  CHECK(number_at(json, "/error/position/rms") == 0.25);
+  CHECK(number_at(json, "error.position.rms") == 0.25);
+  for (const char* path : {"/error/velocity", "/word", "error.position", "/error/~", "", "/"})
+    CHECK(std::isnan(number_at(json, path)));
+  REQUIRE(value_at(json, "word"));
+  CHECK(*value_at(json, "word") == "x");
+  CHECK(!value_at(json, "error.velocity"));
 }

@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 #include <cstdlib>
 
+#include "output/atomic_file.hpp"
 #include "output/film.hpp"
 #include "support/catch.hpp"
 #include "unit/output_support.hpp"
@@ -29,14 +30,14 @@ class OnlyPath {
   std::string old_;
 };
 
-void install_stand_in(const ScratchFolder& scratch, const std::string& script) {
+void install_stand_in(const TemporaryFolder& scratch, const std::string& script) {
   fs::create_directories(scratch / "bin");
   write_atomically(scratch / "bin/ffmpeg", "#!/bin/sh\n" + script);
   ::chmod((scratch / "bin/ffmpeg").c_str(), 0755);
 }
 
 // Eleven frames in a folder whose name would trip a shell or ffmpeg's own patterns.
-fs::path make_frames(const ScratchFolder& scratch) {
+fs::path make_frames(const TemporaryFolder& scratch) {
   const fs::path folder = scratch / "my %d frames; *";
   fs::create_directory(folder);
   for (int i = 0; i < 11; ++i) write_atomically(folder / ("f_" + std::to_string(i) + ".png"), std::to_string(i) + " ");
@@ -46,7 +47,7 @@ fs::path make_frames(const ScratchFolder& scratch) {
 }  // namespace
 
 TEST_CASE("without ffmpeg or frames there is no film and no error", "[output][film]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path frames = make_frames(scratch);
   fs::create_directory(scratch / "empty");
   const OnlyPath path(scratch / "empty");
@@ -56,7 +57,7 @@ TEST_CASE("without ffmpeg or frames there is no film and no error", "[output][fi
 }
 
 TEST_CASE("ffmpeg gets the frames in counting order and its film takes the target's name", "[output][film]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path frames = make_frames(scratch);
   install_stand_in(scratch,
                    "for last; do :; done\n"
@@ -69,7 +70,7 @@ TEST_CASE("ffmpeg gets the frames in counting order and its film takes the targe
 }
 
 TEST_CASE("a failure of ffmpeg is told with its last lines, and leaves no half film", "[output][film]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path frames = make_frames(scratch);
   install_stand_in(scratch,
                    "for last; do :; done\necho half > \"$last\"\necho first\n"

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "output/atomic_file.hpp"
 #include "output/base64.hpp"
 #include "output/html.hpp"
 #include "output/report.hpp"
@@ -53,7 +54,7 @@ std::string report_of(const RunFolder& run) {
 }  // namespace
 
 TEST_CASE("the report escapes, embeds and loads nothing", "[output][report]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const std::string html = report_of(sample_run(scratch / "run", 0));
   CHECK(contains(html, "Discs &lt;script&gt;alert(1)&lt;/script&gt; &amp; &quot;rings&quot;"));
   CHECK(contains(html, "coarse &amp; &lt;slow&gt;"));
@@ -69,7 +70,7 @@ TEST_CASE("the report escapes, embeds and loads nothing", "[output][report]") {
 }
 
 TEST_CASE("the report shows every recorded number, also of unknown groups", "[output][report]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const std::string html = report_of(sample_run(scratch / "run", 0));
   for (const char* shown : {"deep value", "42", "1.23457×10<sup>8</sup>", "10<sup>−17</sup>", "2.9×10<sup>7</sup>",
                             "75\xC2\xA0%", "friction", "✓ held", "✗ not held", "at most 1×10<sup>−7</sup>",
@@ -81,7 +82,7 @@ TEST_CASE("the report shows every recorded number, also of unknown groups", "[ou
 }
 
 TEST_CASE("the card of the total energy shows the total, not the first energy that has a ratio", "[output][report]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const RunFolder run = sample_run(scratch / "run", 0);
   run.write_json(
       "summary.json",
@@ -95,7 +96,7 @@ TEST_CASE("the card of the total energy shows the total, not the first energy th
 }
 
 TEST_CASE("a failed run says so in red, with the reason", "[output][report]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const std::string good = report_of(sample_run(scratch / "good", 0));
   CHECK(contains(good, "class=\"banner good\""));
   CHECK_FALSE(contains(good, "class=\"banner bad\""));
@@ -107,7 +108,7 @@ TEST_CASE("a failed run says so in red, with the reason", "[output][report]") {
 }
 
 TEST_CASE("missing and cut files cost a note, not the report", "[output][report]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const RunFolder run = RunFolder::create(scratch / "run");
   CHECK(contains(report_of(run), "No outcome was recorded"));
   run.write_text("summary.json", "{\"energy\": {\"kinetic\": 1");
@@ -117,7 +118,7 @@ TEST_CASE("missing and cut files cost a note, not the report", "[output][report]
 }
 
 TEST_CASE("odd types anywhere in the record are shown, not fatal", "[output][report]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const RunFolder run = RunFolder::create(scratch / "run");
   const Json odd[] = {nullptr, 1.5, "text", Json::array(), Json::object(), Json::array({1, "a", Json::object()}), true};
   for (const Json& value : odd) {

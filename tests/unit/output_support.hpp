@@ -1,36 +1,15 @@
-// A scratch folder and small checks for the tests of modules/output.
+// A temporary folder and small checks for the tests of modules/output.
 #pragma once
 
-#include <unistd.h>
 #include <algorithm>
 #include <filesystem>
 #include <string>
 
-#include "output/atomic_file.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace mpm::output::testing {
 
-/// A fresh folder that goes away with the object.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "mpm-output-test-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw MachineError::from_errno("create", name, errno);
-    path_ = name;
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
+using test::TemporaryFolder;
 
 inline std::size_t entries_in(const std::filesystem::path& folder) {
   return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <limits>
 
+#include "output/atomic_file.hpp"
 #include "output/vtk.hpp"
 #include "support/catch.hpp"
 #include "unit/output_support.hpp"
@@ -31,7 +32,7 @@ bool system_python_runs(const std::string& code) {
 }
 
 // Runs a script that fails by assertion; the scratch folder is its first argument.
-int run_script(const ScratchFolder& scratch, const std::string& script) {
+int run_script(const TemporaryFolder& scratch, const std::string& script) {
   write_atomically(scratch / "check.py", script);
   return std::system(
       ("/usr/bin/python3 '" + (scratch / "check.py").string() + "' '" + scratch.path().string() + "'").c_str());
@@ -40,7 +41,7 @@ int run_script(const ScratchFolder& scratch, const std::string& script) {
 }  // namespace
 
 TEST_CASE("a snapshot whose sizes do not match is refused by name", "[output][vtk]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   ParticleSnapshot snapshot = plane_snapshot();
   snapshot.fields[1].values.pop_back();
   CHECK(contains(message_of<std::invalid_argument>([&] { write_vtu(scratch / "p.vtu", snapshot); }), "velocity"));
@@ -53,7 +54,7 @@ TEST_CASE("a snapshot whose sizes do not match is refused by name", "[output][vt
 }
 
 TEST_CASE("VTK files are well-formed XML", "[output][vtk]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   write_vtu(scratch / "p.vtu", plane_snapshot());
   write_vtu(scratch / "none.vtu", ParticleSnapshot{});
   write_pvd(scratch / "all.pvd", {{0.0, "p.vtu"}, {0.1, "a & b.vtu"}});
@@ -71,7 +72,7 @@ for name in ("p.vtu", "none.vtu", "all.pvd"):
 }
 
 TEST_CASE("VTK's own reader finds the particles and their values", "[output][vtk]") {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   if (!system_python_runs("import vtk")) {
     std::cout << "SKIPPED: VTK's own reader (python3-vtk9) is not installed\n";
     return;

@@ -11,7 +11,7 @@
 #include "support/catch.hpp"
 
 TEST_CASE("abi.h compiles alone as C99, C11 and C++17") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const std::string strict =
       " -pedantic-errors -Wall -Wextra -Werror -fsyntax-only '" + (folder / "alone.c").string() + "'";
   std::ofstream(folder / "alone.c")
@@ -40,7 +40,7 @@ TEST_CASE("components of state fields in 2-D and 3-D") {
 }
 
 TEST_CASE("a plugin written in plain C passes the conformance suite") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   fixture::build_plugin(folder / "whole.so");
   mpm::Registry registry;
   registry.load(folder / "whole.so");

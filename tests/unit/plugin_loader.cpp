@@ -36,7 +36,7 @@ const std::string wrong_tables = "; the plugin's tables are wrong: build it with
 }  // namespace
 
 TEST_CASE("a whole plugin in plain C loads and is found by kind and id") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const fs::path file = folder / "whole.so";
   fixture::build_plugin(file);
   mpm::Registry registry;
@@ -54,7 +54,7 @@ TEST_CASE("a whole plugin in plain C loads and is found by kind and id") {
 }
 
 TEST_CASE("a plugin of another ABI version is refused") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const fs::path file = folder / "version.so";
   fixture::build_plugin(file, "-DFIXTURE_ABI=77");
   CHECK(message_for(file) == start(file) + "was built for plugin ABI version 77, this program has version " +
@@ -62,7 +62,7 @@ TEST_CASE("a plugin of another ABI version is refused") {
 }
 
 TEST_CASE("a plugin of a newer revision or with larger tables is refused with both numbers") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const std::string newer =
       "; rebuild the plugin against this version's headers, or use the newer program it was made for";
   const auto refused = [&](const std::string& name, const std::string& define, const std::string& message) {
@@ -87,7 +87,7 @@ TEST_CASE("a plugin of a newer revision or with larger tables is refused with bo
 }
 
 TEST_CASE("a plugin with shorter tables loads; what they lack is zero") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const fs::path file = folder / "older.so";
   fixture::build_plugin(file, "-DFIXTURE_OLDER");
   std::vector<mpm::Plugin> kept;
@@ -119,7 +119,7 @@ TEST_CASE("a plugin with shorter tables loads; what they lack is zero") {
 }
 
 TEST_CASE("sizes that no version had are refused") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const std::string least = std::to_string(sizeof(mpm_plugin_library));
   const auto refused = [&](const std::string& name, const std::string& define, const std::string& message) {
     const fs::path file = folder / name;
@@ -136,7 +136,7 @@ TEST_CASE("sizes that no version had are refused") {
 }
 
 TEST_CASE("missing tables and incomplete rows are refused before anything reads them") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const auto refused = [&](const std::string& name, const std::string& define, const std::string& message) {
     const fs::path file = folder / name;
     fixture::build_plugin(file, define);
@@ -153,14 +153,14 @@ TEST_CASE("missing tables and incomplete rows are refused before anything reads 
 }
 
 TEST_CASE("one file that offers an id twice is refused whole") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const fs::path file = folder / "twice.so";
   fixture::build_plugin(file, "-DFIXTURE_COUNT=2");
   CHECK(message_for(file) == start(file) + "offers shape `fixture` twice; rename one of them");
 }
 
 TEST_CASE("a refused library is not kept loaded, an accepted one is") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const auto loaded = [](const fs::path& file) {
     void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_NOLOAD);
     if (handle) dlclose(handle);
@@ -176,7 +176,7 @@ TEST_CASE("a refused library is not kept loaded, an accepted one is") {
 }
 
 TEST_CASE("a shared object without the plugin symbol is refused") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const fs::path file = folder / "symbol.so";
   fixture::build_plugin(file, "-DFIXTURE_SYMBOL=another_name");
   CHECK(message_for(file) ==
@@ -185,7 +185,7 @@ TEST_CASE("a shared object without the plugin symbol is refused") {
 }
 
 TEST_CASE("a truncated plugin is refused before it is mapped") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const fs::path file = folder / "truncated.so";
   fixture::build_plugin(file);
   const auto whole = fs::file_size(file);
@@ -199,7 +199,7 @@ TEST_CASE("a truncated plugin is refused before it is mapped") {
 }
 
 TEST_CASE("a file that is not a shared object is refused") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const fs::path file = folder / "text.so";
   std::ofstream(file)
       << "This is a text of more than sixty-four bytes, which is what the header of an ELF file takes.\n";
@@ -210,7 +210,7 @@ TEST_CASE("a file that is not a shared object is refused") {
 }
 
 TEST_CASE("a plugin that needs a symbol nobody defines is refused with its name") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const fs::path file = folder / "undefined.so";
   fixture::build_plugin(file, "-DFIXTURE_CALLS_NOTHING_DEFINED");
   CHECK(message_for(file) == start(file) + "cannot be loaded: " + file.string() +
@@ -218,7 +218,7 @@ TEST_CASE("a plugin that needs a symbol nobody defines is refused with its name"
 }
 
 TEST_CASE("a descriptor that makes no sense is refused") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   const std::string table = std::to_string(sizeof(mpm_shape));
   const fs::path kind = folder / "kind.so", unit = folder / "unit.so", id = folder / "id.so",
                  material = folder / "material.so";
@@ -238,7 +238,7 @@ TEST_CASE("a descriptor that makes no sense is refused") {
 }
 
 TEST_CASE("two files with one kind and id: the first folder wins, the second is named") {
-  const fixture::Folder first, second;
+  const fixture::TemporaryFolder first, second;
   fixture::build_plugin(first / "one.so");
   fixture::build_plugin(second / "two.so");
   const fs::path folders[] = {first.path(), second.path()};
@@ -252,7 +252,7 @@ TEST_CASE("two files with one kind and id: the first folder wins, the second is 
 }
 
 TEST_CASE("a folder with one bad file still gives its good ones") {
-  const fixture::Folder folder;
+  const fixture::TemporaryFolder folder;
   fixture::build_plugin(folder / "good.so");
   std::ofstream(folder / "bad.so") << "no";
   std::ofstream(folder / "notes.txt") << "not looked at";

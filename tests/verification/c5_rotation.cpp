@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "materials/fixed_corotated/fixed_corotated.hpp"
-#include "shipped.hpp"
+#include "spinning_disc.hpp"
 #include "support/catch.hpp"
 
 using namespace mpm;
@@ -17,17 +17,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi, omega = 2 * pi;
 
-// 20 cells a diameter, density (omega R)^2 / E = 1e-4.
-const char* spinning = R"J({
-  "dimension": 2, "constants": {"w": 6.283185307179586},
-  "grid": {"cell_size": 0.05, "domain": [[-0.8, -0.8], [0.8, 0.8]], "boundaries": {"all": "free"}},
-  "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
-  "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 9.869604401e7, "poisson_ratio": 0.3, "density": 1000}},
-  "bodies": [{"name": "body", "material": "m", "velocity": ["-w*y", "w*x"],
-              "geometry": {"type": "ball", "centre": [0, 0], "radius": 0.5}}],
-  "solver": {"time_step": "auto", "courant": 0.8, "end_time": 1}, "output": {"ledger": false},
-  "compare": {"exact": {"type": "rigid_rotation", "angular_velocity": 6.283185307179586, "centre_x": 0, "centre_y": 0}}})J";
-
 const std::string square = R"(/bodies/0/geometry={"type": "box", "lower": [-0.5, -0.5], "upper": [0.5, 0.5]})";
 
 struct Kept {
@@ -35,7 +24,7 @@ struct Kept {
 };
 
 Kept turn(const std::vector<std::string>& settings) {
-  Scene scene(spinning, settings);
+  Scene scene(spinning_disc, settings);
   const Totals start = scene.metrics.initial(), end = scene.run();
   return {end.angular_momentum[2] / start.angular_momentum[2], end.kinetic / start.kinetic, end.position_error_rms};
 }
@@ -55,7 +44,7 @@ TEST_CASE("C5 moments and energies of disc and square", "[C][C5]") {
     for (const int n : {20, 40, 80}) {
       std::vector<std::string> list{set("/grid/cell_size", digits(1.0 / n)), set("/transfer/type", "flip")};
       if (!row.geometry.empty()) list.push_back(row.geometry);
-      const Totals start = Scene(spinning, list).metrics.initial();
+      const Totals start = Scene(spinning_disc, list).metrics.initial();
       std::printf(" %10.4f %10.4f", start.angular_momentum[2], start.kinetic);
       error = std::abs(start.angular_momentum[2] / (row.moment * omega) - 1);
       CHECK(start.kinetic == Approx(0.5 * omega * start.angular_momentum[2]).epsilon(1e-12));
@@ -101,7 +90,7 @@ TEST_CASE("C5 linear elasticity makes false stress of a turn", "[C][C5]") {
   // 2 (lambda + mu)(cos theta - 1) in the plane: at a quarter turn the disc would be crushed. Neo-Hookean keeps
   // the volume to what spinning stretches it by.
   for (const std::string material : {"linear_elastic", "neo_hookean"}) {
-    Scene scene(spinning, {set("/materials/m/type", material), set("/solver/end_time", "0.1")});
+    Scene scene(spinning_disc, {set("/materials/m/type", material), set("/solver/end_time", "0.1")});
     double energy = 0;
     try {
       energy = scene.run().strain / scene.metrics.initial().kinetic;
@@ -124,9 +113,9 @@ TEST_CASE("C5 the stress of a steadily spinning disc", "[C][C5]") {
   const double lambda = modulus * nu / ((1 + nu) * (1 - 2 * nu)), mu = modulus / (2 * (1 + nu));
   std::printf("C5, steady disc: cells a diameter; mean stress in the middle and s_r, s_t at r = 0.25 (Pa)\n");
   for (const int n : {20, 40}) {
-    Scene scene(spinning, {set("/constants/w", "10"), set("/compare", "null"),
-                           set("/materials/m/youngs_modulus", digits(modulus)), set("/grid/cell_size", digits(1.0 / n)),
-                           set("/solver/end_time", "0.06")});
+    Scene scene(spinning_disc, {set("/constants/w", "10"), set("/compare", "null"),
+                                set("/materials/m/youngs_modulus", digits(modulus)),
+                                set("/grid/cell_size", digits(1.0 / n)), set("/solver/end_time", "0.06")});
     std::vector<double> radial, hoop;
     long samples = 0;
     while (!scene.simulation.finished()) {
@@ -209,7 +198,7 @@ TEST_CASE("C5 the stress of a spinning square turns with it", "[C][C5]") {
   // after an eighth of a turn as at the start, and after a whole one.
   constexpr double nu = 0.3, modulus = 9.869604401e7, exact = 1000 * omega * omega / 12;
   const double lambda = modulus * nu / ((1 + nu) * (1 - 2 * nu)), mu = modulus / (2 * (1 + nu));
-  Scene scene(spinning, {square, set("/solver/end_time", "1.04")});
+  Scene scene(spinning_disc, {square, set("/solver/end_time", "1.04")});
   const std::vector<double> X = scene.body().position;
   const Totals start = scene.metrics.initial();
   constexpr double middles[] = {0.04, 0.125, 1};  // of the times sampled, s

@@ -89,7 +89,8 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
   constexpr int D = Scene::dimension;
   const GridArrays<T>& g = a.grid;
   const int nodes = a.node_count;
-  for_each_fold<D>(team, a, true, true, [&](const Fold& fold) {
+  const bool fold_contact = g.volume && !a.remap;
+  for_each_fold<D>(team, a, true, fold_contact, [&](const Fold& fold) {
     if (!(g.mass[fold.ghost] > T(0))) return;
     if (fold.wall == wall_separate) {
       const T dt = a.remap ? T(0) : a.dt;
@@ -101,7 +102,6 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
       if (!(inward(fold.ghost) + inward(fold.mirror) < T(0))) return;
     }
     if (fold.ghost == fold.mirror) {  // the image takes away what of the contact channels points across the wall
-      if (a.remap || !g.volume) return;
       g.volume_gradient[fold.axis * nodes + fold.ghost] = g.mass_position[fold.axis * nodes + fold.ghost] = T(0);
       return;
     }
@@ -109,7 +109,7 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
     g.mass[fold.ghost] = T(0);
     add_mirrored<D>(g.momentum, nodes, fold, fold.wall, true);
     g.folded[fold.ghost] |= 1 << fold.axis;
-    if (a.remap || !g.volume) return;
+    if (!fold_contact) return;
     const int as = fold.wall == wall_periodic ? wall_periodic : wall_slip;
     g.volume[fold.mirror] += g.volume[fold.ghost];
     add_mirrored<D>(g.volume_gradient, nodes, fold, as, false);

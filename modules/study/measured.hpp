@@ -1,5 +1,5 @@
 #pragma once
-// Numbers out of summary.json, and what they say of a run.
+// What a run's summary.json says to a study: measures, bounds, flags.
 
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -13,15 +13,6 @@ namespace mpm::study {
 using Json = nlohmann::ordered_json;
 
 inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
-
-/// `outcome.status` of a run that finished and broke a limit, but no expectation.
-inline constexpr const char* limit_broken = "limit broken";
-
-/// What stands at a JSON pointer ("/error/position/rms") or dotted path ("error.position.rms"); null when nothing does.
-const Json* value_at(const Json& summary, const std::string& path);
-
-/// The number there; NaN when there is none.
-double number_at(const Json& summary, const std::string& path);
 
 /// The measure's value, its formula applied; NaN when the summary lacks it.
 double evaluate(const Measure& measure, const Json& summary);

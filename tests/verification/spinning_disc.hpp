@@ -1,0 +1,19 @@
+#pragma once
+// The disc of case C5.
+
+#include "support/scene.hpp"
+
+namespace mpm::test {
+
+// 20 cells a diameter, a turn a second, density (omega R)^2 / E = 1e-4.
+inline constexpr const char* spinning_disc = R"J({
+  "dimension": 2, "constants": {"w": 6.283185307179586},
+  "grid": {"cell_size": 0.05, "domain": [[-0.8, -0.8], [0.8, 0.8]], "boundaries": {"all": "free"}},
+  "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
+  "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 9.869604401e7, "poisson_ratio": 0.3, "density": 1000}},
+  "bodies": [{"name": "body", "material": "m", "velocity": ["-w*y", "w*x"],
+              "geometry": {"type": "ball", "centre": [0, 0], "radius": 0.5}}],
+  "solver": {"time_step": "auto", "courant": 0.8, "end_time": 1}, "output": {"ledger": false},
+  "compare": {"exact": {"type": "rigid_rotation", "angular_velocity": 6.283185307179586, "centre_x": 0, "centre_y": 0}}})J";
+
+}  // namespace mpm::test
