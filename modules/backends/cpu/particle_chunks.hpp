@@ -81,7 +81,8 @@ void ParticleStep<D, T, Components>::find_first_places() {
   }
 }
 
-/// Calls visit(block, work) for every block of a body. Coloured: no two blocks in work at once share a node.
+/// Calls visit(block, work) for every block of a body. Coloured: no two blocks in work at once share a node, and the
+/// order of those that do is always the same.
 template <int D, class T, class Components>
 template <class Visit>
 void ParticleStep<D, T, Components>::for_each_block(int body, bool coloured, Visit&& visit) {
@@ -97,15 +98,13 @@ void ParticleStep<D, T, Components>::for_each_block(int body, bool coloured, Vis
       if (!exception_) exception_ = std::current_exception();
     }
   };
+  UnitPass pass(particles.tasks, done_);
 #pragma omp parallel num_threads(scene_.threads)
   {
     const FlushDenormals flush;
     Work& work = *work_[omp_get_thread_num()];
     if (coloured) {
-      for (const auto& units : particles.units) {
-#pragma omp for schedule(dynamic, 1)
-        for (std::size_t u = 0; u < units.size(); ++u) guarded(units[u].first, units[u].last, work);
-      }
+      pass.run([&](const Unit& unit) { guarded(unit.first, unit.last, work); });
     } else {
 #pragma omp for schedule(dynamic, 8)
       for (std::size_t b = 0; b < particles.blocks.size(); ++b) guarded(b, b + 1, work);

@@ -340,7 +340,8 @@ class ParticleStep {
   ListKernels<D, T> list_kernels_;
   HigherKernels<D, T> higher_kernels_;
   std::vector<std::unique_ptr<Work>> work_;
-  std::vector<Moved> moved_;  ///< of each thread
+  std::vector<std::atomic<bool>> done_;  ///< units of a pass
+  std::vector<Moved> moved_;             ///< of each thread
   bool measures_drift_ = false;
   double drift_ = 0, last_drift_ = 0;  ///< since the last sort, and of the last move, in cells
   Failure failure_;

@@ -13,6 +13,7 @@
 #include "chunk_pool.hpp"
 #include "scene.hpp"
 #include "tile.hpp"
+#include "unit_order.hpp"
 
 namespace mpm::cpu {
 
@@ -43,13 +44,6 @@ struct Block {
   bool has_neighbours() const { return neighbours[0] >= 0; }
 };
 
-/// Blocks of one unit lie side by side; units of one colour touch no common node.
-struct Unit {
-  std::uint32_t first = 0, last = 0;
-};
-template <int D>
-inline constexpr int colour_count = D == 3 ? 4 : 2;
-
 /// One field of state: its first component within a chunk and its declaration.
 struct StateField {
   std::string name;
@@ -74,7 +68,8 @@ struct Particles {
   ChunkPool pool;
   std::vector<std::byte*> places;  ///< of the chunks: [components][chunk_size] values, then indices of seeding
   std::vector<Block<D>> blocks;
-  std::array<std::vector<Unit>, colour_count<D>> units;
+  ColouredUnits<D> units;
+  std::vector<UnitTask> tasks;  ///< of these units
   std::uint32_t chunks = 0;
 
   std::size_t value_bytes() const { return std::size_t(components) * chunk_size<T> * sizeof(T); }
