@@ -185,6 +185,7 @@ void GridStep<D, T>::add_gravity_corrections(double dt) {
           grid_.quad(force, field, nodes[i])[c] += static_cast<T>(correction[c]);
         else
           v[c] += static_cast<T>(dt * correction[c] / v[3]);
+        largest_ = std::max(largest_, std::abs(v[c]));
       }
     }
 }
@@ -304,9 +305,13 @@ void GridStep<D, T>::divide_and_accelerate(double dt) {
     largest_ = std::max(largest_, static_cast<T>(partials_[i]));
 }
 
-/// What walls, boxes and ghosts have given since.
+/// What walls, boxes and ghosts have given since; those that stand still give nothing larger than there was.
 template <int D, class T>
 void GridStep<D, T>::extend_largest_by_edges() {
+  bool moving = false;
+  for (const FaceNodes& face : grid_.faces()) moving = moving || face.condition->velocity;
+  for (const BoxNodes& box : grid_.boxes()) moving = moving || box.condition->velocity;
+  if (!moving) return;
   const auto extend = [&](std::uint32_t node) {
     for (int field = 0; field < grid_.fields(); ++field)
       for (int c = 0; c < D; ++c) largest_ = std::max(largest_, std::abs(motion_at(field, node)[c]));
