@@ -180,11 +180,12 @@ void GridStep<D, T>::add_gravity_corrections(double dt) {
       const double* const correction = gravity_correction_.data() + (field * nodes.size() + i) * 4;
       Q& v = motion_at(field, nodes[i]);
       if (!(v[3] > 0)) continue;
+      const double step = dt / v[3];
       for (int c = 0; c < D; ++c) {
         if (grid_.has(force))
           grid_.quad(force, field, nodes[i])[c] += static_cast<T>(correction[c]);
         else
-          v[c] += static_cast<T>(dt * correction[c] / v[3]);
+          v[c] += static_cast<T>(step * correction[c]);
         largest_ = std::max(largest_, std::abs(v[c]));
       }
     }

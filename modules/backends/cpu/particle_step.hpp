@@ -219,8 +219,8 @@ class ParticleStep {
     Ahead ahead(bool gather) const {
       const bool passes = motion != at(Particles<D, T>::velocity);
       const int left_out = passes ? particles.motion_components : 0;
-      const std::size_t share = (particles.components - left_out) * sizeof(T) / 2;
-      return {next, gather ? share * chunk_size<T> : 0, share,
+      const std::size_t half = (particles.components - left_out) * sizeof(T) / 2 * chunk_size<T>;
+      return {next, gather ? half : 0, (half + end - 1) / end,
               passes ? Particles<D, T>::velocity * chunk_size<T> * sizeof(T) : ~std::size_t(0),
               left_out * chunk_size<T> * sizeof(T)};
     }
