@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -52,7 +54,9 @@ constexpr int neighbour_index(int dx, int dy, int dz) {
 /// Open-addressing map from block coordinates to a number.
 class BlockTable {
  public:
-  BlockTable() : keys_(64, empty), values_(64, -1) {}
+  /// Room for `expected` blocks before it must grow.
+  explicit BlockTable(std::size_t expected = 32)
+      : keys_(std::bit_ceil(2 * std::max<std::size_t>(expected, 32)), empty), values_(keys_.size(), -1) {}
   void clear() {  // its size stays: it is filled again with about as many
     std::fill(keys_.begin(), keys_.end(), empty);
     std::fill(values_.begin(), values_.end(), -1);

@@ -187,7 +187,7 @@ class ParticleStep {
   void reach_own_cells(bool ahead);
   /// How far ahead of their positions particles may be sorted so that several moves like the last stay within tiles, in
   /// cells; 0 where only bounds of their drift are known.
-  double foresight() const { return measures_drift_ ? std::clamp(0.95 - 1.25 * last_drift_, 0.0, 0.45) : 0.0; }
+  double foresight() const { return measures_drift_ ? std::clamp(0.95 - 1.25 * last_drift_, 0.0, 0.55) : 0.0; }
   /// Tiles have a margin of one cell for particles that moved since they were sorted.
   bool must_sort() const { return drift_ > 0.99; }
   /// Whether they must be sorted after one more move like the last: what is scattered at once would be scattered again.

@@ -246,6 +246,7 @@ class Sorter {
   void find_targets() {
     const std::uint32_t old = static_cast<std::uint32_t>(sources_.size());
     targets_.resize(old);
+    table_ = BlockTable(old + old / 8);
     for (std::uint32_t b = 0; b < old; ++b) {
       const Block<D>& block = particles_.blocks[b];
       targets_[b].at = block.at;
