@@ -113,6 +113,7 @@ std::vector<RequiredScene> required_scenes() {
           {"+ figures", {R"(/figures=["energy", "momentum", "volume_ratio"])"}},
           {"+ checkpoints", {"/output/checkpoint_steps=1000"}},
           {"+ ledger", {"/output/ledger=true"}},
+          {"+ ledger, not due", {"/output/ledger=true", "/output/ledger_every=1000"}},
           {"flip", {R"(/transfer={"type": "flip"})"}},
           {"+ fmpm 4", {R"(/filter={"type": "fmpm", "order": 4})"}},
           {"+ contact", {R"(/contact={"type": "coulomb", "friction": 0.3})"}}};

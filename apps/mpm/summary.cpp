@@ -54,7 +54,7 @@ Json energy(const Simulation& simulation, const Metrics& metrics, const Recorder
   if (const double scale = available_energy(simulation.experiment(), start); scale > 0)
     json["total"]["gain"] = (recorder.largest_total_energy() - start.total_energy()) / scale;
   if (!simulation.plan().ledger) return json;
-  const Ledger& l = simulation.backend().ledger();
+  const Ledger l = simulation.ledger();
   json["ledger"] = {{"scatter", l.scatter},
                     {"gather", l.gather},
                     {"internal_force", l.internal_force},
@@ -66,6 +66,7 @@ Json energy(const Simulation& simulation, const Metrics& metrics, const Recorder
                     {"material_dissipation", l.material},
                     {"residual", metrics.ledger_residual(end)}};
   if (simulation.plan().filter) json["ledger"]["filter"] = l.filter;
+  if (const int every = simulation.plan().ledger_every; every > 1) json["ledger_every"] = every;
   return json;
 }
 
@@ -73,6 +74,25 @@ void collect_names(const Json& value, const std::string& prefix, std::vector<std
   if (value.is_number()) names.push_back(prefix);
   if (!value.is_object()) return;
   for (const auto& [key, child] : value.items()) collect_names(child, prefix.empty() ? key : prefix + "." + key, names);
+}
+
+Json warnings(const Simulation& simulation) {
+  Json all = Json::array();
+  if (const double growth = simulation.backend().filter_record().largest_growth; growth > 1 + 1e-9) {
+    std::ostringstream warning;
+    warning.precision(6);
+    warning << "the filter's increment grew by a factor of up to " << growth
+            << " in one pass: its loop no longer contracts, because constraints or negative weights broke it; filter "
+               "with fewer passes or with /filter/constraints \"at_end\"";
+    all.push_back(warning.str());
+  }
+  constexpr long enough = 10;
+  const Plan& plan = simulation.plan();
+  const long entries = plan.accounts_within(simulation.steps());
+  if (plan.ledger_every > 1 && entries < enough)
+    all.push_back("the ledger is of " + std::to_string(entries) + " of " + std::to_string(simulation.steps()) +
+                  " steps, too few to say where the energy went; lower /output/ledger_every");
+  return all;
 }
 
 }  // namespace
@@ -142,15 +162,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
       flops ? Json(flops->total() * particles * static_cast<double>(simulation.steps())) : Json();
   for (const auto& [name, seconds] : seconds_by_pass) json["performance"]["seconds_by_pass"][name] = seconds;
   if (!earlier.resumed_from_steps.empty()) json["performance"]["resumed_from_step"] = earlier.resumed_from_steps;
-  json["warnings"] = Json::array();
-  if (const double growth = simulation.backend().filter_record().largest_growth; growth > 1 + 1e-9) {
-    std::ostringstream warning;
-    warning.precision(6);
-    warning << "the filter's increment grew by a factor of up to " << growth
-            << " in one pass: its loop no longer contracts, because constraints or negative weights broke it; filter "
-               "with fewer passes or with /filter/constraints \"at_end\"";
-    json["warnings"].push_back(warning.str());
-  }
+  json["warnings"] = warnings(simulation);
   return json;
 }
 

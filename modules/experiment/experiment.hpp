@@ -105,7 +105,8 @@ struct OutputSpecification {
   std::string colour_by = "speed";  ///< attribute that colours the frames
   bool vtk = false;                 ///< a .vtu beside each frame
   bool film = false;
-  bool ledger = true;              ///< the energy ledger, accumulated at every step
+  bool ledger = true;              ///< the energy ledger
+  int ledger_every = 1;            ///< steps between its entries, each counted that many times
   double checkpoint_seconds = 60;  ///< of the wall clock between checkpoints; 0: none by the clock
   long checkpoint_steps = 0;       ///< steps between checkpoints; 0: none by steps
 };

@@ -84,6 +84,7 @@ class Planner {
     const bool moment_is_gradient = shape_.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
     plan_.contact = experiment_.contact.has_value();
     plan_.ledger = experiment_.output.ledger;
+    plan_.ledger_every = experiment_.output.ledger_every;
     plan_.velocity_increment = transfer_.traits & MPM_GATHERS_INCREMENT;
     plan_.affine_moment = transfer_.traits & (MPM_GATHERS_AFFINE | MPM_STRAIN_BY_AFFINE | MPM_STRESS_BY_AFFINE);
     plan_.velocity_gradient_moment = transfer_.traits & MPM_GATHERS_GRADIENT;
@@ -107,9 +108,11 @@ class Planner {
     plan_.constrained_velocity =
         plan_.filter && experiment_.filter_schedule.constrain_always && (plan_.contact || separates());
     decide_fusion();
-    plan_.separate_force = plan_.velocity_increment || plan_.contact || plan_.ledger ||
-                           experiment_.body_force.has_value() || any_face(ConditionType::separate) ||
-                           strains_before_forces() || (plan_.filter && filters_before_forces());
+    // A separating box decides twice, before and after the forces, so these may not come merged with the momentum.
+    plan_.separate_force = plan_.velocity_increment || plan_.contact || experiment_.body_force.has_value() ||
+                           separates() || strains_before_forces() || (plan_.filter && filters_before_forces());
+    plan_.force_for_ledger = plan_.ledger && !plan_.separate_force;
+    plan_.separate_force = plan_.separate_force || plan_.ledger;
     plan_.kept_advection = experiment_.solver.stress_update == StressUpdate::modified_last;
     plan_.initial_position = experiment_.exact.has_value() || experiment_.output.colour_by == "displacement" ||
                              (experiment_.body_force && experiment_.body_force->uses_initial_position());

@@ -94,6 +94,8 @@ struct Plan {
   bool velocity_increment = false;  ///< v+ - v- is kept and gathered
   bool contact = false;
   bool ledger = false;
+  int ledger_every = 1;                   ///< steps between entries of the ledger
+  bool force_for_ledger = false;          ///< nothing but the ledger asks for separate_force
   bool initial_position = false;          ///< particles keep X
   bool kept_advection = false;            ///< MUSL: the advection velocity waits for `move`
   bool filter = false;                    ///< the grid keeps an increment and its projection
@@ -112,6 +114,11 @@ struct Plan {
 
   std::uint64_t particles = 0, nodes = 0;  ///< estimates before seeding
   std::uint64_t particle_bytes = 0, grid_bytes = 0;
+
+  /// Whether the ledger takes its entries from this step (counted from 0): in the middle of those that it counts for.
+  bool accounts_at(long step) const { return ledger && step % ledger_every == ledger_every / 2; }
+  /// How many of the first `steps` steps those are.
+  long accounts_within(long steps) const { return ledger ? (steps + (ledger_every - 1) / 2) / ledger_every : 0; }
 
   std::uint64_t bytes_per_particle(int body) const;
   std::uint64_t bytes_per_node() const;

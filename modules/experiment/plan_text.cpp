@@ -116,6 +116,7 @@ nlohmann::ordered_json Plan::to_json() const {
   json["separate_force"] = separate_force;
   json["velocity_increment"] = velocity_increment;
   json["ledger"] = ledger;
+  if (ledger_every > 1) json["ledger_every"] = ledger_every;
   json["fused"] = fused;
   if (!fused) json["why_not_fused"] = why_not_fused;
   json["estimate"] = {

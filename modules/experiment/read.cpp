@@ -155,9 +155,12 @@ void ExperimentReader::read_output(const Node* node) {
   output.vtk = fields.boolean("vtk");
   output.film = fields.boolean("film");
   output.ledger = fields.boolean("ledger");
+  output.ledger_every = fields.integer("ledger_every");
   output.checkpoint_seconds = fields.number("checkpoint_every");
   output.checkpoint_steps = static_cast<long>(fields.number("checkpoint_steps"));
   resolved_["output"] = fields.resolved;
+  if (fields.valid("ledger_every") && output.ledger_every > 1 && !output.ledger)
+    problem(fields.place("ledger_every"), "there is no ledger to make entries in: set \"ledger\" to true");
   if (!fields.valid("frames")) return;
   if (output.film && output.frames < 2) problem(fields.place("film"), "a film needs \"frames\" of at least 2");
   if (output.vtk && output.frames < 1) problem(fields.place("vtk"), "VTK files are written at frames: set \"frames\"");

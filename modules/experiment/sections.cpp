@@ -244,6 +244,11 @@ Section output_section(const ReadOptions& options) {
           parameter("vtk", Type::boolean, "", "Write a VTK file beside each frame.").standard(false),
           parameter("film", Type::boolean, "", "Join the frames to a film.").standard(false),
           parameter("ledger", Type::boolean, "", "Keep the energy ledger.").standard(true),
+          parameter("ledger_every", Type::integer, "",
+                    "Steps between entries of the ledger, each counted that many times; 1: exact at every step.")
+              .from(1)
+              .to(1e9)
+              .standard(1),
           parameter("checkpoint_every", Type::number, "s", "Wall-clock time between checkpoints; 0: none by the clock.")
               .from(0)
               .standard(60),

@@ -135,7 +135,7 @@ void Metrics::add_errors(int body, const BodyState& state, Totals& totals) const
 
 double Metrics::ledger_residual(const Totals& now) const {
   if (!simulation_.plan().ledger) return 0;
-  const Ledger& ledger = simulation_.backend().ledger();
+  const Ledger ledger = simulation_.ledger();
   const double explained = ledger.scatter + ledger.gather + ledger.filter + ledger.boundary + ledger.contact +
                            ledger.body_force - ledger.material;
   return now.total_energy() - initial_.total_energy() - explained;
@@ -185,7 +185,7 @@ std::vector<double> Metrics::row(const Totals& t) const {
   std::vector<double> values{
       t.time, static_cast<double>(t.step), t.time_step, t.kinetic, t.strain, t.gravitational, t.total_energy()};
   if (simulation_.plan().ledger) {
-    const Ledger& l = simulation_.backend().ledger();
+    const Ledger l = simulation_.ledger();
     values.insert(values.end(), {l.scatter, l.gather, l.internal_force, l.gravity, l.body_force, l.boundary, l.contact,
                                  l.friction, l.material});
     if (simulation_.plan().filter) values.push_back(l.filter);

@@ -244,10 +244,15 @@ std::string ledger(const Json& energy) {
       if (residual != nullptr && residual->is_number()) shares.push_back({"closing residual", residual->get<double>()});
     }
   }
+  const Json* every = member(energy, {"ledger_every"});
+  const std::string sampled = every == nullptr || !every->is_number()
+                                  ? ""
+                                  : " Entries are of every " + number_html(every->get<double>()) +
+                                        "th step and count for as many: the residual holds that error too.";
   return "<h3>Ledger: where the energy went, by cause</h3>"
          "<p class=\"soft\">The closing residual is what no cause accounts for; it should be small beside the "
-         "rest.</p>" +
-         bars_table(shares, "<th>cause</th><th class=\"number\">energy</th><th></th>", "J", false) +
+         "rest." +
+         sampled + "</p>" + bars_table(shares, "<th>cause</th><th class=\"number\">energy</th><th></th>", "J", false) +
          remainder_html(*causes);
 }
 

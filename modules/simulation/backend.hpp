@@ -86,8 +86,8 @@ struct BodyState {
   std::vector<double> second_moment;
 };
 
-/// Energy given to the kinetic energy by each cause, J, accumulated over all steps. Each is computed from its own
-/// impulses and velocities, never as what the others leave over (docs/method.md, the ledger).
+/// Energy given to the kinetic energy by each cause, J, accumulated over the steps that the ledger takes. Each is
+/// computed from its own impulses and velocities, never as what the others leave over (docs/method.md, the ledger).
 struct Ledger {
   double scatter = 0, gather = 0;      ///< exact differences of kinetic energy across the transfers
   double internal_force = 0;           ///< dt f.(v- + v+)/2 of the stresses
@@ -96,6 +96,11 @@ struct Ledger {
   double friction = 0;                 ///< share of contact that the law turned to heat (positive)
   double material = 0;                 ///< dissipated by the materials (positive)
   double filter = 0;                   ///< change of the grid's kinetic energy over the filter's loops
+
+  Ledger times(double factor) const {
+    return {factor * scatter,  factor * gather,  factor * internal_force, factor * gravity,  factor * body_force,
+            factor * boundary, factor * contact, factor * friction,       factor * material, factor * filter};
+  }
 };
 
 /// What the filter did in the last step that it acted in.
@@ -160,6 +165,7 @@ class Backend {
   virtual TimeStepLimit time_step_limit() const = 0;
 
   virtual BodyState body_state(int body) const = 0;
+  /// Of the steps with Plan::accounts_at.
   virtual const Ledger& ledger() const = 0;
   virtual const ContactRecord& contact_record() const = 0;
   virtual const FilterRecord& filter_record() const = 0;

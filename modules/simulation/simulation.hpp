@@ -40,6 +40,9 @@ class Simulation {
   /// Passes of the filter's loop so far, of all steps.
   long filter_passes() const { return filter_passes_; }
 
+  /// Of all steps so far: the entries of each step that was taken count for the ledger_every steps around it.
+  Ledger ledger() const { return backend_->ledger().times(plan_.ledger_every); }
+
   /// Everything that later steps depend on. `restore` on a simulation of the same experiment goes on bit for bit,
   /// whatever the number of threads; throws ArchiveError.
   void save(ArchiveWriter& archive) const;

@@ -91,6 +91,9 @@ TEST_CASE("outputs that are not due cost a handful of instructions to look at th
     INFO(name << ": " << row.instructions->own << " instructions, the base scene " << base.instructions->own);
     CHECK(std::abs(row.instructions->own - base.instructions->own) <= handful * base.steps);
   }
+  const RequiredRow between = counted("+ ledger, not due");  // each pass asks whether the ledger takes the step
+  INFO(between.name << ": " << between.instructions->own << " instructions, the base scene " << base.instructions->own);
+  CHECK(std::abs(between.instructions->own - base.instructions->own) <= 4 * handful * base.steps);
   // The counter sees what is asked for.
   CHECK(counted("+ ledger").instructions->own > base.instructions->own + 1000 * base.steps);
 }

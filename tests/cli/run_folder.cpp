@@ -213,6 +213,29 @@ TEST_CASE("the reference backend records the one thread that it runs on") {
   CHECK(json_in(folder / "run/manifest.json")["threads"] == 1);
 }
 
+TEST_CASE("a ledger of some steps says so, and warns where they are too few") {
+  const Folder folder;
+  Json scene = two_balls();
+  scene["output"]["ledger_every"] = 10;
+  run_as(folder, scene, "few", {"--backend", "reference"});
+  Json summary = json_in(folder / "few/summary.json");
+  REQUIRE(summary["steps"] < 95);
+  CHECK(summary["energy"]["ledger_every"] == 10);
+  const long steps = summary["steps"], entries = (steps + 4) / 10;
+  CHECK(
+      has(summary["warnings"].dump(), "the ledger is of " + std::to_string(entries) + " of " + std::to_string(steps) +
+                                          " steps, too few to say where the energy went; lower /output/ledger_every"));
+  CHECK(has(slurp(folder / "few/report.html"), "Entries are of every 10th step"));
+  CHECK(json_in(folder / "few/plan.json")["ledger_every"] == 10);
+
+  scene["output"]["ledger_every"] = 1;
+  run_as(folder, scene, "every", {"--backend", "reference"});
+  summary = json_in(folder / "every/summary.json");
+  CHECK(!summary["energy"].contains("ledger_every"));
+  CHECK(!has(summary["warnings"].dump(), "the ledger is of"));
+  CHECK(!has(slurp(folder / "every/report.html"), "Entries are of every"));
+}
+
 TEST_CASE("a filtered run records what the filter did, and others say nothing of it") {
   const Folder folder;
   Json scene = two_balls();

@@ -43,7 +43,8 @@ class CpuBackend final : public Backend {
   void gather(const Pass& pass, const StepInfo& step);
   void gather_scatter(const Pass& pass, const StepInfo& step);
   bool may_pass_motion(const StepInfo& step) const;
-  void account_for_gather(const typename Step::Gathered& gathered);
+  void account_for_gather(const typename Step::Gathered& gathered, const StepInfo& step);
+  void wake_for_ledger(long step);
   std::string signature() const;
   void restore_particles(ArchiveReader& archive, Particles<D, T>& particles);
 
@@ -78,14 +79,10 @@ CpuBackend<D, T, Components>::CpuBackend(const Experiment& experiment, const Pla
 
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::plan_channels() {
-  const Experiment& experiment = scene_.experiment;
   const Plan& plan = scene_.plan;
-  // A separating box decides twice, before and after the forces, so these may not come merged with the momentum.
-  bool separate = plan.separate_force || plan.ledger || plan.velocity_increment || plan.contact;
-  for (const BoxCondition& box : experiment.boxes) separate = separate || box.type == ConditionType::separate;
   grid_.plan_channel(motion);
-  if (separate) grid_.plan_channel(force);
-  if (separate && experiment.body_force) grid_.plan_channel(body_force);
+  if (plan.separate_force) grid_.plan_channel(force);
+  if (scene_.experiment.body_force) grid_.plan_channel(body_force);
   if (plan.velocity_increment || plan.ledger) grid_.plan_channel(velocity_before);
   if (plan.contact) {
     grid_.plan_channel(volume_gradient);
@@ -267,7 +264,7 @@ void CpuBackend<D, T, Components>::scatter(const Pass& pass, const StepInfo& ste
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step) {
   motion_kept_ = true;
-  account_for_gather(particle_step_->gather(pass, step));
+  account_for_gather(particle_step_->gather(pass, step), step);
 }
 
 /// Whether a fused pass may leave velocities and the transfer's state behind: nobody reads them, and no particle can
@@ -287,17 +284,18 @@ void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepIn
     gathers.kind = PassKind::gather;
     return gather(gathers, step);
   }
+  StepInfo now = step;
+  now.observed = !may_pass_motion(step);
+  wake_for_ledger(step.step + 1);
   for (const Channel c : {next_motion, force, body_force})
     if (grid_.has(c)) grid_.clear(c);
   StepInfo next{step.next_dt, step.time + step.dt, step.step + 1};
   // The very time that the simulation gives the next step: fixed steps are multiplied, not summed.
   const auto& fixed = scene_.experiment.solver.time_step;
   if (fixed && step.dt == *fixed) next.time = static_cast<double>(step.step + 1) * step.dt;
-  StepInfo now = step;
-  now.observed = !may_pass_motion(step);
   motion_kept_ = now.observed;
   const auto fused = particle_step_->gather_scatter(pass, now, next);
-  account_for_gather(fused.gathered);
+  account_for_gather(fused.gathered, step);
   scattered_ = fused.scattered;
   if (!scattered_) return;
   grid_.swap(motion, next_motion);
@@ -305,14 +303,24 @@ void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepIn
 }
 
 template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::account_for_gather(const typename Step::Gathered& gathered) {
-  if (!scene_.plan.ledger) return;
+void CpuBackend<D, T, Components>::account_for_gather(const typename Step::Gathered& gathered, const StepInfo& step) {
+  if (!scene_.plan.accounts_at(step.step)) return;
   ledger_.gather += gathered.kinetic_energy - grid_step_->kinetic_energy_after();
   ledger_.material += gathered.dissipated;
 }
 
+/// Before the scatter of a step: what only the ledger reads rests in the steps that it leaves out.
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::wake_for_ledger(long step) {
+  const Plan& plan = scene_.plan;
+  const bool rests = plan.ledger && !plan.accounts_at(step);
+  if (plan.force_for_ledger) grid_.let_rest(force, rests);
+  if (!plan.velocity_increment) grid_.let_rest(velocity_before, rests);
+}
+
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::execute(const Pass& pass, const StepInfo& step) {
+  grid_step_->set_accounted(scene_.plan.accounts_at(step.step));
   switch (pass.kind) {
     case PassKind::estimate_time_step:
       limit_ = particle_step_->time_step_limit();
@@ -320,6 +328,7 @@ void CpuBackend<D, T, Components>::execute(const Pass& pass, const StepInfo& ste
     case PassKind::sort:
       return pass.keeps_grid ? sort_between(step) : sort_when_moved();
     case PassKind::reset_grid:
+      wake_for_ledger(step.step);
       sort_when_moved();  // a plan without a sort pass
       if (scene_.list && particle_step_->widen_active_blocks()) grid_.rebuild(particles_, field_of_body_);
       return grid_.clear();

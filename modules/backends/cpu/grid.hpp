@@ -59,7 +59,9 @@ class Grid {
   explicit Grid(const Scene<D, T>& scene) : scene_(scene), fields_(scene.experiment.field_count) {}
 
   void plan_channel(Channel channel) { planned_[channel] = true; }
-  bool has(Channel channel) const { return planned_[channel]; }
+  /// A channel that rests keeps its memory, but nothing scatters, keeps or reads it.
+  void let_rest(Channel channel, bool resting) { resting_[channel] = resting; }
+  bool has(Channel channel) const { return planned_[channel] && !resting_[channel]; }
   int fields() const { return fields_; }
   std::uint32_t slots() const { return static_cast<std::uint32_t>(found_.size()); }
   std::uint32_t nodes() const { return slots() * block_nodes; }
@@ -128,7 +130,7 @@ class Grid {
 
   const Scene<D, T>& scene_;
   int fields_;
-  bool planned_[channel_count]{};
+  bool planned_[channel_count]{}, resting_[channel_count]{};
   AlignedArray<T> data_[channel_count];
   AlignedArray<T> renumbered_;  ///< see renumber
   BlockTable table_;
@@ -338,7 +340,7 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
   for (std::uint32_t slot = 0; slot < slots(); ++slot)
     if ((field_bits_[slot] & (field_bits_[slot] - 1)) != 0) shared_.push_back(slot);
   for (const Channel c : kept)
-    if (planned_[c]) renumber(c, before, slot_now);
+    if (has(c)) renumber(c, before, slot_now);
   for (int c = 0; c < channel_count; ++c)
     if (planned_[c]) data_[c].require(std::size_t(fields_) * nodes() * 4);
   list_faces();
@@ -367,7 +369,7 @@ void Grid<D, T>::renumber(Channel channel, const std::vector<BlockCoordinates>& 
 template <int D, class T>
 void Grid<D, T>::clear() {
   for (const Channel c : {motion, velocity_before, force, body_force, volume_gradient, mass_position})
-    if (planned_[c]) clear(c);
+    if (has(c)) clear(c);
 }
 
 template <int D, class T>

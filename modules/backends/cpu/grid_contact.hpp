@@ -130,7 +130,7 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
 template <int D, class T>
 void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
   const bool after_forces = recorded == Recorded::after_forces;
-  const bool in_ledger = after_forces || recorded == Recorded::before_forces;
+  const bool in_ledger = ledger_on() && (after_forces || recorded == Recorded::before_forces);
   const auto& slots = grid_.shared_slots();
   std::vector<ContactSums> sums(slots.size());
 #pragma omp parallel for num_threads(scene_.threads) schedule(dynamic, 4)

@@ -16,19 +16,14 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
   if (scene.plan.contact)
     for (int field = 0; field < scene.experiment.field_count; ++field)
       edges_.emplace_back(scene.experiment.shape, rows_per_cell(scene.experiment, field));
-  merges_ = may_merge();
+  may_merge_ = may_merge();
 }
 
-/// Whether nothing reads velocities before the forces, and conditions give the same without them.
+/// Whether nothing but the ledger reads velocities before the forces, and conditions give the same without them.
 template <int D, class T>
 bool GridStep<D, T>::may_merge() const {
   const Plan& plan = scene_.plan;
-  if (plan.ledger || plan.contact || plan.filter || grid_.has(velocity_before) || grid_.has(force)) return false;
-  for (const auto& sides : scene_.experiment.faces)
-    for (const auto& face : sides)
-      if (face.type == ConditionType::separate) return false;
-  for (const BoxCondition& box : scene_.experiment.boxes)
-    if (box.type == ConditionType::separate) return false;
+  if (plan.filter || (plan.separate_force && !plan.force_for_ledger)) return false;
   const auto divides = std::find_if(plan.passes.begin(), plan.passes.end(),
                                     [](const Pass& pass) { return pass.kind == PassKind::momentum_to_velocity; });
   return plan.passes.end() - divides > 1 && divides[1].kind == PassKind::apply_forces;
@@ -130,7 +125,7 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   fold_images(remap, step);
   const double edges_raw = accounted ? kinetic_energy_of_edges() : 0.0;
   fold_walls(remap, step);
-  if (merges_ && !remap) return;
+  if (merges() && !remap) return;
   const double folded = accounted ? kinetic_energy_of_edges() - edges_raw : 0.0;
   const double energy = divide_by_mass(keeps_before, accounted);
   if (accounted) {
@@ -336,7 +331,7 @@ void GridStep<D, T>::subtract_velocity_before() {
 template <int D, class T>
 void GridStep<D, T>::apply_forces(const StepInfo& step) {
   const double end = step.time + step.dt;
-  if (merges_) {
+  if (merges()) {
     divide_and_accelerate(step.dt);
     add_gravity_corrections(step.dt);
     impose(end, Account::nothing);

@@ -19,7 +19,7 @@ class GridStep {
   /// v+ = v- + dt f / m with conditions, contact after the forces, increments, ghosts.
   void apply_forces(const StepInfo& step);
   /// Of the velocities after apply_forces, along any axis.
-  T largest_component() const { return merges_ ? largest_ : grid_.largest_component(motion); }
+  T largest_component() const { return merges() ? largest_ : grid_.largest_component(motion); }
 
   /// Passes of the filter's loop: see PassKind. project_increment takes what the particles have scattered.
   void begin_filter(const Pass& pass);
@@ -29,6 +29,7 @@ class GridStep {
   void restore_velocity(const Pass& pass);
   void add_correction(const Pass& pass, const StepInfo& step);
 
+  void set_accounted(bool accounted) { accounted_ = accounted; }
   /// Of the velocities after the last apply_forces or filter; the ledger's.
   double kinetic_energy_after() const { return kinetic_energy_after_; }
   /// Of the particles when they scattered; the ledger's.
@@ -41,7 +42,8 @@ class GridStep {
   /// What imposing a condition leaves for the ledger: its change of energy at once, or a mark for account_for_impulses.
   enum class Account { nothing, change_of_energy, mark };
 
-  bool ledger_on() const { return scene_.plan.ledger; }
+  bool ledger_on() const { return accounted_; }
+  bool merges() const { return may_merge_ && !grid_.has(force); }
   Q& motion_at(int field, std::uint32_t node) { return grid_.quad(motion, field, node); }
   Q mirror_signs(const FaceNodes& face, bool as_slip) const;
   Q wall_velocity(const std::optional<VectorExpression>& velocity, const Vector3& x, double time) const;
@@ -121,8 +123,9 @@ class GridStep {
   std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
   double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0, kinetic_energy_unfiltered_ = 0;
   bool has_gravity_ = false;
-  bool merges_ = false;  ///< momentum_to_velocity leaves the division to apply_forces
-  T largest_ = 0;        ///< see largest_component
+  bool may_merge_ = false;  ///< see merges: momentum_to_velocity leaves the division to apply_forces
+  bool accounted_ = false;  ///< the ledger takes its entries from the step under way
+  T largest_ = 0;           ///< see largest_component
 };
 
 }  // namespace mpm::cpu

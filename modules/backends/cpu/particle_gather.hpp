@@ -54,6 +54,7 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
 template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::gather(const Pass& pass,
                                                                                          const StepInfo& step) {
+  account_for(step);
   std::fill(moved_.begin(), moved_.end(), Moved{});
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
@@ -77,7 +78,9 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
   const std::vector<Channel> channels = scattered_channels(pass, next_motion);
   std::fill(moved_.begin(), moved_.end(), Moved{});
   abandoned_ = false;
-  const bool energy_moves = scene_.plan.ledger && scene_.has(MPM_AFFINE_CARRIES_ENERGY) &&
+  const bool follows = scene_.plan.accounts_at(next.step);
+  account_for(step, follows);
+  const bool energy_moves = follows && scene_.has(MPM_AFFINE_CARRIES_ENERGY) &&
                             (scene_.moment_of_particle || scene_.moment_is_gradient || scene_.plan.basis_functions > 0);
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
@@ -146,7 +149,7 @@ template <int D, class T, class Components>
   const bool corners = chunk.particles.corners >= 0;
   T* const moved = !corners ? nullptr : pass.move ? work.moved_corners.data() : chunk.at(chunk.particles.moved_corners);
   if (corners) gather_corners(chunk, work, advection, step.dt, moved);
-  if (scene_.plan.ledger) chunk.block.kinetic_energy += kinetic_energy(chunk, work);
+  if (sums_energy_) chunk.block.kinetic_energy += kinetic_energy(chunk, work);
   work.clock.lap(Phase::transfer);
   if (pass.strain) advance_material(chunk, work, step.dt, pass);
   work.clock.lap(Phase::material);
@@ -162,6 +165,7 @@ template <int D, class T, class Components>
 
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& step) {
+  account_for(step);
   Wanted wanted;
   wanted.strain = true;
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
@@ -361,7 +365,7 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
 /// of the material.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass) {
-  const bool dissipation = scene_.plan.ledger && chunk.body.dissipates;
+  const bool dissipation = accounted_ && chunk.body.dissipates;
   mpm_material_batch request{};
   request.dt = pass.strain_share * dt;
   const T* const velocity_gradient = scene_.has(MPM_STRAIN_BY_AFFINE) ? work.affine : work.gradient_of_velocity;

@@ -36,7 +36,7 @@ void ParticleStep<D, T, Components>::scatter_far(int body, Visit&& visit) {
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
   const std::vector<Channel> channels = scattered_channels(pass, motion);
-  const bool energies = scene_.plan.ledger && pass.momentum && !pass.remap;
+  const bool energies = scene_.plan.accounts_at(step.step) && pass.momentum && !pass.remap;
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
       const bool extends = pass.momentum && !pass.remap;

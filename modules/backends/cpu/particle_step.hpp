@@ -324,6 +324,11 @@ class ParticleStep {
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
   Moved advance_position(const Chunk& chunk, const T* advection, T scale);
   void account_for_move();
+  /// What the pass that begins sums for the ledger; `follows`: the scatter that it contains wants the energy.
+  void account_for(const StepInfo& step, bool follows = false) {
+    accounted_ = scene_.plan.accounts_at(step.step);
+    sums_energy_ = accounted_ || follows;
+  }
   void find_first_places();
   void gather_corners(const Chunk& chunk, Work& work, const T* advection, double dt, T* moved) const;
   Vec<D, T> velocity_at_corner(const Chunk& chunk, const Work& work, int particle, const Vec<D, T>& corner) const;
@@ -343,7 +348,8 @@ class ParticleStep {
   std::vector<std::atomic<bool>> done_;  ///< units of a pass
   std::vector<Moved> moved_;             ///< of each thread
   bool measures_drift_ = false;
-  double drift_ = 0, last_drift_ = 0;  ///< since the last sort, and of the last move, in cells
+  bool accounted_ = false, sums_energy_ = false;  ///< see account_for
+  double drift_ = 0, last_drift_ = 0;             ///< since the last sort, and of the last move, in cells
   Failure failure_;
   std::exception_ptr exception_;
   std::mutex mutex_;

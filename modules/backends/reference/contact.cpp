@@ -75,10 +75,10 @@ void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, 
         const Vector& J = pair->impulse;
         // Before the forces v- itself changes, at once; after them the impulse counts between v- and v+
         // (account_for_impulses).
-        if (!after_forces && !remap)
+        if (accounted_ && !after_forces && !remap)
           ledger_.contact +=
               J.dot(node_a.momentum + 0.5 * J) / node_a.mass - J.dot(node_b.momentum - 0.5 * J) / node_b.mass;
-        if (!remap) ledger_.friction += pair->dissipated;
+        if (accounted_ && !remap) ledger_.friction += pair->dissipated;
         const Vector sum = node_a.momentum + node_b.momentum;
         node_a.momentum += J;
         node_b.momentum -= J;
@@ -93,9 +93,9 @@ void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, 
     for (int c = 0; c < 3; ++c) contact_.force[c] = total_force[c];
     contact_.momentum_residual = total_change.norm();
   }
-  const double before = plan_.ledger ? grid_.kinetic_energy() : 0.0;
+  const double before = accounted_ ? grid_.kinetic_energy() : 0.0;
   impose_conditions(after_forces ? step.time + step.dt : step.time);
-  if (plan_.ledger && !after_forces && !remap) ledger_.boundary += grid_.kinetic_energy() - before;
+  if (accounted_ && !after_forces && !remap) ledger_.boundary += grid_.kinetic_energy() - before;
 }
 
 }  // namespace mpm::reference

@@ -27,7 +27,7 @@ void ReferenceBackend::begin_filter(const Pass& pass) {
   });
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = grid_.mass_norm(&Node::increment);
-  kinetic_energy_unfiltered_ = plan_.ledger ? grid_.kinetic_energy() : 0.0;
+  kinetic_energy_unfiltered_ = accounted_ ? grid_.kinetic_energy() : 0.0;
 }
 
 /// projected <- S+ S v*, by the transfer's own gather and scatter of particles that were at rest.
@@ -105,7 +105,7 @@ void ReferenceBackend::end_filter(const Pass& pass, const StepInfo& step) {
   if (pass.restores) return;  // the momentum stays that of the velocity kept aside
   for_each_node([](Node& node) { node.momentum = node.mass * node.velocity; });
   if (pass.remap) return;
-  const double filtered = plan_.ledger ? grid_.kinetic_energy() : 0.0;
+  const double filtered = accounted_ ? grid_.kinetic_energy() : 0.0;
   ledger_.filter += filtered - kinetic_energy_unfiltered_;
   kinetic_energy_after_ = filtered;
 }
@@ -122,7 +122,7 @@ void ReferenceBackend::restore_velocity(const Pass& pass) {
 
 /// v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
 void ReferenceBackend::add_correction(const Pass& pass, const StepInfo& step) {
-  const double unfiltered = plan_.ledger ? grid_.kinetic_energy() : 0.0;
+  const double unfiltered = accounted_ ? grid_.kinetic_energy() : 0.0;
   for_each_node([](Node& node) {
     node.velocity += node.kept_velocity;
     node.constrained += node.kept_constrained;
@@ -130,7 +130,7 @@ void ReferenceBackend::add_correction(const Pass& pass, const StepInfo& step) {
   constrain_free_velocity(pass, step);
   grid_.fill_ghosts(time_of(pass, step));
   for_each_node([](Node& node) { node.momentum = node.mass * node.velocity; });
-  if (!plan_.ledger) return;
+  if (!accounted_) return;
   kinetic_energy_after_ = grid_.kinetic_energy();
   ledger_.filter += kinetic_energy_after_ - unfiltered;
 }

@@ -13,12 +13,12 @@ void accelerate(Node& node, double dt) {
 }  // namespace
 
 void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& step) {
-  const double before = plan_.ledger ? grid_.kinetic_energy() : 0.0;
+  const double before = accounted_ ? grid_.kinetic_energy() : 0.0;
   grid_.fold_walls(step.time, pass.remap ? 0.0 : step.dt, pass.remap);
   if (!pass.remap) grid_.fold_forces();
   keep_free_velocity(false);
   impose_conditions(step.time);
-  if (plan_.ledger && !pass.remap) ledger_.boundary += grid_.kinetic_energy() - before;
+  if (accounted_ && !pass.remap) ledger_.boundary += grid_.kinetic_energy() - before;
   if (plan_.contact) resolve_contact(step, false, pass.remap);
   for (int field = 0; field < grid_.field_count(); ++field)
     for (std::size_t i = 0; i < grid_.node_count(); ++i) {
@@ -68,10 +68,10 @@ void ReferenceBackend::apply_forces(const StepInfo& step) {
     for (std::size_t i = 0; i < grid_.node_count(); ++i) {
       Node& node = grid_.node(field, i);
       node.velocity = node.mass > 0 ? Vector(node.momentum / node.mass) : Vector(Vector::Zero());
-      if (plan_.ledger && node.mass > 0) account_for_impulses(node, step.dt);
+      if (accounted_ && node.mass > 0) account_for_impulses(node, step.dt);
     }
   measure_constraints();
-  kinetic_energy_after_ = plan_.ledger ? grid_.kinetic_energy() : 0.0;
+  kinetic_energy_after_ = accounted_ ? grid_.kinetic_energy() : 0.0;
   grid_.fill_ghosts(step.time + step.dt);
 }
 

@@ -20,6 +20,7 @@ ReferenceBackend::ReferenceBackend(const Experiment& experiment, const Plan& pla
 }
 
 void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
+  accounted_ = plan_.accounts_at(step.step);
   switch (pass.kind) {
     case PassKind::estimate_time_step:
       return estimate_time_step();

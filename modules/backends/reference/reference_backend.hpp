@@ -49,6 +49,7 @@ class ReferenceBackend final : public Backend {
   void gather(const Pass& pass, const StepInfo& step);
   void gather_moments(Particles& body, Vector Node::*velocity);
   void strain(const Pass& pass, const StepInfo& step);
+  void strain(Particles& body, double dt);
   void gather_corners(Particles& body, const StepInfo& step);
   void add_higher(const Particles& body, std::size_t p, Vector Node::*momentum);
   void gather_higher(Particles& body, Vector Node::*velocity_of);
@@ -105,6 +106,7 @@ class ReferenceBackend final : public Backend {
   std::vector<EdgeModel> edges_;
   TimeStepLimit limit_;
   Ledger ledger_;
+  bool accounted_ = false;  ///< the ledger takes its entries from the step under way
   ContactRecord contact_;
   FilterRecord filter_;
   double kinetic_energy_after_ = 0;       ///< of the grid when particles gather from it, J

@@ -18,7 +18,7 @@ void ReferenceBackend::scatter(const Pass& pass, const StepInfo& step) {
   }
   if (!pass.momentum) return;
   grid_.sum_images(pass.remap);
-  if (plan_.ledger && !pass.remap) ledger_.scatter += grid_.kinetic_energy() - particle_kinetic_energy();
+  if (accounted_ && !pass.remap) ledger_.scatter += grid_.kinetic_energy() - particle_kinetic_energy();
 }
 
 /// Node by node: w m, and w (b + A d).
@@ -130,9 +130,9 @@ void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
     body.gather(step.dt);
     if (step.filtered) body.take_gathered_velocity();
     if (plan_.sample_points > 0) gather_corners(body, step);
-    if (pass.strain) ledger_.material += body.strain(pass.strain_share * step.dt);
+    if (pass.strain) strain(body, pass.strain_share * step.dt);
   }
-  if (plan_.ledger) ledger_.gather += particle_kinetic_energy() - kinetic_energy_after_;
+  if (accounted_) ledger_.gather += particle_kinetic_energy() - kinetic_energy_after_;
   if (pass.move) move(step);
 }
 
@@ -162,8 +162,13 @@ void ReferenceBackend::gather_moments(Particles& body, Vector Node::*velocity_of
 void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {
   for (Particles& body : bodies_) {
     gather_moments(body, &Node::velocity);
-    ledger_.material += body.strain(pass.strain_share * step.dt);
+    strain(body, pass.strain_share * step.dt);
   }
+}
+
+void ReferenceBackend::strain(Particles& body, double dt) {
+  const double dissipated = body.strain(dt);
+  if (accounted_) ledger_.material += dissipated;
 }
 
 }  // namespace mpm::reference
