@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 #include <functional>
+#include <numeric>
 #include <sstream>
 
 #include "experiment/compatibility.hpp"
@@ -57,12 +58,26 @@ class Planner {
     if (experiment_.filter) mix.filter = experiment_.filter->plugin;
     if (experiment_.contact) mix.contact = experiment_.contact->plugin;
     const auto refusal = refusal_of(mix);
-    if (!refusal) return;
+    if (!refusal) return refuse_common_schedules();
     const Component& at = refusal->at == MPM_SHAPE      ? experiment_.shape
                           : refusal->at == MPM_TRANSFER ? experiment_.transfer
                           : refusal->at == MPM_FILTER   ? *experiment_.filter
                                                         : *experiment_.contact;
     refuse(at.pointer, refusal->reason);
+  }
+
+  /// A filter and a ledger that skip steps meet always, or never, where their numbers have a common divisor.
+  void refuse_common_schedules() const {
+    const FilterSchedule& schedule = experiment_.filter_schedule;
+    const int every = experiment_.output.ledger_every;
+    if (!experiment_.filter || schedule.every_time > 0 || schedule.every_courant > 0) return;
+    if (const int common = std::gcd(every, schedule.every_steps); common > 1)
+      refuse(
+          "/output/ledger_every",
+          std::to_string(every) + " and " + experiment_.filter->pointer + "/every_steps " +
+              std::to_string(schedule.every_steps) + " have the divisor " + std::to_string(common) +
+              " in common: the ledger would count the filter in too many steps or in none; take numbers without one, "
+              "or 1");
   }
 
   /// Puts the line of the file before each reason, which starts with a JSON pointer; a default has no line.

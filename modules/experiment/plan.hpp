@@ -115,10 +115,13 @@ struct Plan {
   std::uint64_t particles = 0, nodes = 0;  ///< estimates before seeding
   std::uint64_t particle_bytes = 0, grid_bytes = 0;
 
-  /// Whether the ledger takes its entries from this step (counted from 0): in the middle of those that it counts for.
-  bool accounts_at(long step) const { return ledger && step % ledger_every == ledger_every / 2; }
+  /// Whether the ledger takes its entries from this step (counted from 0): the first, where bodies meet what they were
+  /// put on, counts for itself; each other in the middle of those that it counts for.
+  bool accounts_at(long step) const { return ledger && (step == 0 || (step - 1) % ledger_every == ledger_every / 2); }
   /// How many of the first `steps` steps those are.
-  long accounts_within(long steps) const { return ledger ? (steps + (ledger_every - 1) / 2) / ledger_every : 0; }
+  long accounts_within(long steps) const {
+    return ledger && steps > 0 ? 1 + (steps - 1 + (ledger_every - 1) / 2) / ledger_every : 0;
+  }
 
   std::uint64_t bytes_per_particle(int body) const;
   std::uint64_t bytes_per_node() const;

@@ -97,6 +97,12 @@ struct Ledger {
   double material = 0;                 ///< dissipated by the materials (positive)
   double filter = 0;                   ///< change of the grid's kinetic energy over the filter's loops
 
+  Ledger plus(const Ledger& other) const {
+    return {scatter + other.scatter, gather + other.gather,         internal_force + other.internal_force,
+            gravity + other.gravity, body_force + other.body_force, boundary + other.boundary,
+            contact + other.contact, friction + other.friction,     material + other.material,
+            filter + other.filter};
+  }
   Ledger times(double factor) const {
     return {factor * scatter,  factor * gather,  factor * internal_force, factor * gravity,  factor * body_force,
             factor * boundary, factor * contact, factor * friction,       factor * material, factor * filter};

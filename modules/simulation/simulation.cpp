@@ -128,7 +128,7 @@ void Simulation::step() {
     scattered_ = fuse && backend_->scattered();
   }
   time_ = end_time();
-  ++steps_;
+  if (++steps_ == 1) first_entries_ = backend_->ledger();
   smallest_ = steps_ == 1 ? dt_ : std::min(smallest_, dt_);
   largest_ = std::max(largest_, dt_);
 }
@@ -142,6 +142,7 @@ void Simulation::save(ArchiveWriter& archive) const {
   archive.put("steps", steps_);
   archive.put("filter_passes", filter_passes_);
   archive.put("particles", particles_);
+  archive.put("first_entries", first_entries_);
   backend_->save(archive);
 }
 
@@ -156,6 +157,7 @@ void Simulation::restore(ArchiveReader& archive) {
   std::size_t particles = 0;
   archive.get("particles", particles);
   if (particles != particles_) throw ArchiveError("it holds another number of particles");
+  archive.get("first_entries", first_entries_);
   backend_->restore(archive);
   scattered_ = false;
   observed_ = true;

@@ -40,8 +40,11 @@ class Simulation {
   /// Passes of the filter's loop so far, of all steps.
   long filter_passes() const { return filter_passes_; }
 
-  /// Of all steps so far: the entries of each step that was taken count for the ledger_every steps around it.
-  Ledger ledger() const { return backend_->ledger().times(plan_.ledger_every); }
+  /// Of all steps so far: the entries of the first step, and those of each other step that was taken once for each of
+  /// the ledger_every steps around it.
+  Ledger ledger() const {
+    return backend_->ledger().times(plan_.ledger_every).plus(first_entries_.times(1.0 - plan_.ledger_every));
+  }
 
   /// Everything that later steps depend on. `restore` on a simulation of the same experiment goes on bit for bit,
   /// whatever the number of threads; throws ArchiveError.
@@ -77,6 +80,7 @@ class Simulation {
   std::function<bool(double, long)> wanted_;
   bool observed_ = true;
   bool scattered_ = false;  ///< the grid holds this step's scatter already
+  Ledger first_entries_;    ///< of the first step
   long steps_ = 0;
   long filter_passes_ = 0;
   std::size_t particles_ = 0;

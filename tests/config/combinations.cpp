@@ -11,6 +11,18 @@
 
 using namespace mpm;
 
+namespace {
+
+const char* const filtered_flip = R"J({ "dimension": 2,
+  "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]},
+  "shape": {"type": "linear"}, "transfer": {"type": "flip"},
+  "filter": {"type": "fmpm", "order": 4},
+  "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000}},
+  "bodies": [{"name": "b", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0.2], "upper": [0.4, 0.4]}}],
+  "solver": {"end_time": 1}})J";
+
+}  // namespace
+
 TEST_CASE("few mixes are refused, and for stated reasons", "[combinations]") {
   const std::vector<Mix> mixes = all_mixes(test::plugins());
   std::set<std::string> reasons;
@@ -53,23 +65,35 @@ TEST_CASE("few mixes are refused, and for stated reasons", "[combinations]") {
 }
 
 TEST_CASE("a refused mix names the place, both components and a remedy", "[combinations]") {
-  const char* text = R"J({ "dimension": 2,
-    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]},
-    "shape": {"type": "linear"}, "transfer": {"type": "flip"},
-    "filter": {"type": "fmpm", "order": 4},
-    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000}},
-    "bodies": [{"name": "b", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0.2], "upper": [0.4, 0.4]}}],
-    "solver": {"end_time": 1}})J";
   try {
-    make_plan(test::experiment_from(text));
+    make_plan(test::experiment_from(filtered_flip));
     FAIL("the mix was not refused");
   } catch (const InputError& error) {
     CHECK(
         std::string(error.what()) ==
-        "test.json:4:15: /filter: filter \"fmpm\" at every step leaves nothing of transfer \"flip\", whose increments "
+        "test.json:4:13: /filter: filter \"fmpm\" at every step leaves nothing of transfer \"flip\", whose increments "
         "it would replace each time; filter periodically (\"every_steps\": 4) or choose transfer \"pic\"");
   }
-  CHECK_NOTHROW(make_plan(test::experiment_from(text, {"/filter/every_steps=4"})));
+  CHECK_NOTHROW(make_plan(test::experiment_from(filtered_flip, {"/filter/every_steps=4"})));
+}
+
+TEST_CASE("a filter and a ledger that skip the same steps are refused", "[combinations]") {
+  const auto message = [](int every_steps, int ledger_every) -> std::string {
+    const std::string filter = R"(/filter={"type": "fmpm", "order": 4, "every_steps": )" + std::to_string(every_steps);
+    const std::string output = R"(/output={"ledger_every": )" + std::to_string(ledger_every) + "}";
+    try {
+      make_plan(test::experiment_from(filtered_flip, {filter + "}", output, R"(/transfer/type="apic")"}));
+      return "accepted";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  CHECK(message(10, 1) == "accepted");
+  CHECK(message(1, 10) == "accepted");
+  CHECK(message(10, 7) == "accepted");
+  const std::string refused = message(10, 8);
+  CHECK(refused.find("/output/ledger_every: 8 and /filter/every_steps 10 have the divisor 2 in common") !=
+        refused.npos);
 }
 
 TEST_CASE("the page of combinations is that of the program", "[combinations]") {
