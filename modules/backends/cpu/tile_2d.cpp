@@ -1,6 +1,6 @@
 #include <stdexcept>
 
-#include "tile.hpp"
+#include "tile_nodes.hpp"
 
 namespace mpm::cpu {
 
