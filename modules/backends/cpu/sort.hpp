@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 #include <numeric>
 #include <tuple>
 #include <vector>
@@ -254,7 +253,7 @@ class Sorter {
       targets_[b].around.fill(-1);
       table_.insert(block.at, static_cast<int>(b));
     }
-    look_around_old();
+    first_ ? look_around_by_place() : look_around_by_slot();
     for (std::uint32_t b = 0; b < old; ++b) {
       if (sources_[b].leaving == 0) continue;
       for (int k = 0; k < neighbour_count<D>; ++k) {
@@ -273,7 +272,7 @@ class Sorter {
   }
 
   /// By the slots of the grid, which has been built around the blocks as they are.
-  void look_around_built() {
+  void look_around_by_slot() {
     const int old = static_cast<int>(sources_.size());
     std::int32_t slots = 0;
     for (const Block<D>& block : particles_.blocks) slots = std::max(slots, block.neighbours[here] + 1);
@@ -286,9 +285,8 @@ class Sorter {
       }
   }
 
-  /// Two neighbours are found at once: each entry is written by one thread.
-  void look_around_old() {
-    if (!first_) return look_around_built();
+  /// Before there is a grid. Two neighbours are found at once: each entry is written by one thread.
+  void look_around_by_place() {
     const int old = static_cast<int>(sources_.size());
 #pragma omp parallel for num_threads(threads_) schedule(static)
     for (int b = 0; b < old; ++b) {

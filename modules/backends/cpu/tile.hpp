@@ -13,7 +13,6 @@
 // another in the store buffer), and no load crosses a line of the cache. The flush adds the rows up.
 
 #include <cstdint>
-#include <cstring>
 #include <type_traits>
 
 #include "blocks.hpp"
