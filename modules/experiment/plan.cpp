@@ -265,7 +265,7 @@ class Planner {
     if (plan_.velocity_increment || plan_.ledger)
       channel("velocity before the forces", D,
               plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of velocity"
-                                       : "/output/ledger: work of the forces");
+                                       : why_for_ledger());
     if (plan_.separate_force) channel("force", D, why_separate_force());
     if (experiment_.body_force)
       channel("body force", D, experiment_.body_force_pointer + ": its work is accounted for apart");
@@ -275,10 +275,15 @@ class Planner {
     }
   }
 
+  std::string why_for_ledger() const {
+    const std::string every = std::to_string(plan_.ledger_every);
+    return "/output/ledger: work of the forces" + (plan_.ledger_every > 1 ? ", in one step of " + every : "");
+  }
+
   std::string why_separate_force() const {
     if (plan_.velocity_increment) return named(experiment_.transfer) + ": gathers the change of velocity";
     if (plan_.contact) return named(*experiment_.contact) + ": acts before and after the forces";
-    if (plan_.ledger) return "/output/ledger: work of the forces";
+    if (plan_.force_for_ledger) return why_for_ledger();
     if (experiment_.body_force) return experiment_.body_force_pointer + ": work of the forces";
     if (strains_before_forces()) return named_order() + ": stress after the momenta";
     if (plan_.filter && filters_before_forces()) return named(*experiment_.filter) + ": filters before the forces";
