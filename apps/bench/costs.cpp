@@ -355,7 +355,7 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
                        scatter_cost(w, *shape, w.stress_by_affine(), !w.stress_by_affine(), true);
   const double merged = scatter_cost(w, *shape, scatters_affine || w.stress_by_affine(), !w.stress_by_affine(), true);
   const double share = plan.force_for_ledger ? 1.0 / plan.ledger_every : plan.separate_force ? 1 : 0;  // of the steps
-  flops.scatter += share * apart + (1 - share) * merged;
+  flops.scatter += merged + share * (apart - merged);
   if (w.contact)
     flops.scatter += scatter_cost(w, *shape, false, true, false) + scatter_cost(w, *shape, true, false, false);
   flops.grid = (4 + extra.remaps + loops * 3) * D * experiment.field_count *

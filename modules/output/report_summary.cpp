@@ -247,8 +247,8 @@ std::string ledger(const Json& energy) {
   const Json* every = member(energy, {"ledger_every"});
   const std::string sampled = every == nullptr || !every->is_number()
                                   ? ""
-                                  : " Entries are of every " + number_html(every->get<double>()) +
-                                        "th step and count for as many: the residual holds that error too.";
+                                  : " After the first step one in " + number_html(every->get<double>()) +
+                                        " is entered and counts for all of them: the residual holds that error too.";
   return "<h3>Ledger: where the energy went, by cause</h3>"
          "<p class=\"soft\">The closing residual is what no cause accounts for; it should be small beside the "
          "rest." +
