@@ -1,4 +1,5 @@
 // The order in which threads take the units of blocks: whoever shares nodes works one after the other, by colours.
+#include <algorithm>
 #include <atomic>
 #include <map>
 #include <set>
@@ -51,7 +52,7 @@ bool are_neighbours(const Column& a, const Column& b) {
 template <int D>
 void check_order() {
   const Columns<D> columns;
-  const std::vector<UnitTask> tasks = ordered_units<D>(columns.units, columns.blocks);
+  const std::vector<UnitTask> tasks = ordered_units<D>(columns.units, columns.blocks, 2).tasks;
   REQUIRE(tasks.size() == columns.colour.size());
   std::set<Column> seen;
   for (std::size_t t = 0; t < tasks.size(); ++t) {
@@ -86,19 +87,68 @@ TEST_CASE("a unit waits for its neighbours of the colours before, and for no oth
   check_order<3>();
 }
 
+TEST_CASE("each thread has a part of space with about as many particles") {
+  const Columns<3> columns;
+  for (const int threads : {1, 2, 3, 5, 40}) {
+    CAPTURE(threads);
+    const UnitOrder order = ordered_units<3>(columns.units, columns.blocks, threads);
+    REQUIRE(order.of_thread.size() == static_cast<std::size_t>(threads));
+    std::set<std::uint32_t> shared_out;
+    std::uint64_t all = 0, largest_unit = 0;
+    std::vector<std::uint64_t> particles;
+    Column last{-100, 0};
+    for (const std::vector<std::uint32_t>& tasks : order.of_thread) {
+      CHECK(std::is_sorted(tasks.begin(), tasks.end()));
+      std::set<Column> part;
+      particles.push_back(0);
+      for (const std::uint32_t t : tasks) {
+        CHECK(shared_out.insert(t).second);
+        const Unit& unit = order.tasks[t].unit;
+        const std::uint64_t size = 2 * columns.blocks[unit.first].count;
+        particles.back() += size;
+        all += size;
+        largest_unit = std::max(largest_unit, size);
+        part.insert(columns.column(unit));
+      }
+      if (part.empty()) continue;
+      CHECK(last < *part.begin());  // parts follow one another along x, the longer side
+      last = *part.rbegin();
+    }
+    CHECK(shared_out.size() == order.tasks.size());
+    for (const std::uint64_t has : particles) CHECK(has <= all / static_cast<std::uint64_t>(threads) + largest_unit);
+  }
+  // across the longer side, also where that is y
+  Columns<3> high;
+  for (TestBlock& block : high.blocks) block.at = {block.at[1], block.at[0], block.at[2]};
+  const UnitOrder order = ordered_units<3>(high.units, high.blocks, 2);
+  std::set<int> first, second;
+  for (const std::uint32_t t : order.of_thread[0]) first.insert(high.column(order.tasks[t].unit).second);
+  for (const std::uint32_t t : order.of_thread[1]) second.insert(high.column(order.tasks[t].unit).second);
+  CHECK(*first.rbegin() <= *second.begin());
+}
+
+TEST_CASE("a body of no units is shared out") {
+  const UnitOrder order = ordered_units<2>(ColouredUnits<2>{}, std::vector<TestBlock>{}, 3);
+  CHECK(order.tasks.empty());
+  CHECK(order.of_thread.size() == 3);
+}
+
 TEST_CASE("neighbouring units are never in work at once and follow their colours, with any number of threads") {
   const Columns<3> columns;
-  const std::vector<UnitTask> tasks = ordered_units<3>(columns.units, columns.blocks);
   std::map<Column, std::atomic<int>> state;  // 0 waiting, 1 in work, 2 done
   for (const auto& [column, colour] : columns.colour) state[column] = 0;
   std::vector<std::atomic<bool>> done;
-  for (const int threads : {1, 2, 5}) {
+  // also fewer or more than the body was shared out to, as a system may give
+  for (const auto& [parts, threads] : {std::pair{1, 1}, {2, 2}, {5, 5}, {5, 2}, {2, 5}}) {
+    const UnitOrder order = ordered_units<3>(columns.units, columns.blocks, parts);
+    const std::vector<UnitTask>& tasks = order.tasks;
+    CAPTURE(parts, threads);
     for (int repeat = 0; repeat < 50; ++repeat) {
       for (auto& [column, value] : state) value = 0;
       std::atomic<int> wrong{0}, visited{0};
-      UnitPass pass(tasks, done);
-      const auto work = [&] {
-        pass.run([&](const Unit& unit) {
+      UnitPass pass(order, done);
+      const auto work = [&, threads = threads](int thread) {
+        pass.run(thread, threads, [&](const Unit& unit) {
           const Column here = columns.column(unit);
           state.at(here) = 1;
           for (const auto& [column, colour] : columns.colour) {
@@ -112,8 +162,8 @@ TEST_CASE("neighbouring units are never in work at once and follow their colours
         });
       };
       std::vector<std::thread> others;
-      for (int t = 1; t < threads; ++t) others.emplace_back(work);
-      work();
+      for (int t = 1; t < threads; ++t) others.emplace_back(work, t);
+      work(0);
       for (std::thread& other : others) other.join();
       REQUIRE(wrong == 0);
       REQUIRE(visited == static_cast<int>(tasks.size()));

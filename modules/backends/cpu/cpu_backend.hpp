@@ -507,7 +507,7 @@ void CpuBackend<D, T, Components>::restore_particles(ArchiveReader& archive, Par
       if (unit.first > unit.last || unit.last > particles.blocks.size())
         throw ArchiveError("value \"units\" is not of these particles");
   }
-  particles.tasks = ordered_units<D>(particles.units, particles.blocks);
+  particles.order = ordered_units<D>(particles.units, particles.blocks, scene_.threads);
   for (std::byte* const place : particles.places) particles.pool.give(place);
   particles.pool.reserve(particles.chunks);
   particles.places.resize(particles.chunks);

@@ -22,7 +22,6 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
       kernels_(scene.list ? tile_kernels_of_lists<D, T>() : tile_kernels<D, T>(scene.width)),
       list_kernels_(list_kernels<D, T>()),
       higher_kernels_(higher_kernels<D, T>(scene.width, scene.plan.basis_order)) {
-  moved_.assign(scene.threads, {});
   int transfer_components = 0;
   for (const Particles<D, T>& body : particles)
     transfer_components = std::max(transfer_components, body.motion_components - D);
@@ -98,13 +97,14 @@ void ParticleStep<D, T, Components>::for_each_block(int body, bool coloured, Vis
       if (!exception_) exception_ = std::current_exception();
     }
   };
-  UnitPass pass(particles.tasks, done_);
+  UnitPass pass(particles.order, done_);
 #pragma omp parallel num_threads(scene_.threads)
   {
     const FlushDenormals flush;
     Work& work = *work_[omp_get_thread_num()];
     if (coloured) {
-      pass.run([&](const Unit& unit) { guarded(unit.first, unit.last, work); });
+      pass.run(omp_get_thread_num(), omp_get_num_threads(),
+               [&](const Unit& unit) { guarded(unit.first, unit.last, work); });
     } else {
 #pragma omp for schedule(dynamic, 8)
       for (std::size_t b = 0; b < particles.blocks.size(); ++b) guarded(b, b + 1, work);

@@ -33,7 +33,7 @@ void ParticleStep<D, T, Components>::flush(int body, const Block<D>& block, Work
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::account_for_move() {
   Moved largest;
-  for (const Moved& moved : moved_) largest.extend(moved);
+  for (const auto& work : work_) largest.extend(work->moved);
   last_drift_ = largest.distance;
   drift_ = measures_drift_ ? largest.outside : drift_ + last_drift_;
 }
@@ -55,14 +55,14 @@ template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::gather(const Pass& pass,
                                                                                          const StepInfo& step) {
   account_for(step);
-  std::fill(moved_.begin(), moved_.end(), Moved{});
+  for (auto& work : work_) work->moved = {};
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       load_velocities(body, block, work);
       block.kinetic_energy = block.dissipated = 0;
       block.bounds.clear();
-      Moved& moved = moved_[omp_get_thread_num()];
-      for_each_chunk_of(body, block, [&](const Chunk& chunk) { moved.extend(gather_one(pass, step, chunk, work)); });
+      for_each_chunk_of(body, block,
+                        [&](const Chunk& chunk) { work.moved.extend(gather_one(pass, step, chunk, work)); });
       block.bounds.known = scene_.list && pass.move;
     });
   return sum_gathered(pass.move);
@@ -76,7 +76,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
                                                                                               const StepInfo& step,
                                                                                               const StepInfo& next) {
   const std::vector<Channel> channels = scattered_channels(pass, next_motion);
-  std::fill(moved_.begin(), moved_.end(), Moved{});
+  for (auto& work : work_) work->moved = {};
   abandoned_ = false;
   const bool follows = scene_.plan.accounts_at(next.step);
   account_for(step, follows);
@@ -87,11 +87,10 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
       load_velocities(body, block, work);
       begin_reach(block, work);
       block.kinetic_energy = block.dissipated = block.scattered_energy = 0;
-      Moved& moved = moved_[omp_get_thread_num()];
       for_each_chunk_of(
           body, block,
           [&](const Chunk& chunk) {
-            moved.extend(gather_one(pass, step, chunk, work));
+            work.moved.extend(gather_one(pass, step, chunk, work));
             if (abandoned_) return;
             if (!scatter_chunk(pass, next, chunk, work, next_motion, evaluates_for_scatter(pass))) abandoned_ = true;
             if (energy_moves) block.scattered_energy += kinetic_energy(chunk, work);
@@ -484,16 +483,15 @@ void ParticleStep<D, T, Components>::note_outside(const Chunk& chunk) {
 
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::move(const StepInfo& step) {
-  std::fill(moved_.begin(), moved_.end(), Moved{});
+  for (auto& work : work_) work->moved = {};
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
-      Moved& moved = moved_[omp_get_thread_num()];
       block.bounds.known = false;
       const T scale = static_cast<T>(step.dt / scene_.domain.cell_size);
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         const Particles<D, T>& particles = chunk.particles;
-        moved.extend(particles.corners >= 0 ? move_with_corners(chunk, work, chunk.at(particles.moved_corners))
-                                            : advance_position(chunk, chunk.at(particles.advection), scale));
+        work.moved.extend(particles.corners >= 0 ? move_with_corners(chunk, work, chunk.at(particles.moved_corners))
+                                                 : advance_position(chunk, chunk.at(particles.advection), scale));
       });
     });
   account_for_move();

@@ -64,9 +64,19 @@ struct BoxWork {
   }
 };
 
-/// What one thread works in.
+/// How far particles have moved, in cells.
+struct Moved {
+  double distance = 0;  ///< largest of any particle along an axis
+  double outside = 0;   ///< farthest from its own block, see drift; where that is measured
+  void extend(const Moved& other) {
+    distance = std::max(distance, other.distance), outside = std::max(outside, other.outside);
+  }
+};
+
+/// What one thread works in. Whatever threads write for each chunk belongs here: a line of the cache that two of them
+/// write costs each chunk a journey from one processor to the other. Processors may fetch lines in pairs.
 template <int D, class T>
-struct Workspace {
+struct alignas(128) Workspace {
   static constexpr int symmetric = Sym<D, T>::size;
   alignas(64) std::int32_t base[D * chunk_size<T>];
   alignas(64) std::int32_t first[chunk_size<T>];  ///< of the stencils: see Stencils
@@ -101,6 +111,7 @@ struct Workspace {
   AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
   AlignedArray<T> moved_corners;                    ///< [corner][D][chunk_size] cells, from the particle
   AlignedArray<T> higher;  ///< [function][D][chunk_size], gathered coefficients of polynomials beyond affine, m/s
+  Moved moved;
   PhaseClock clock;
   bool shared_stencils = false;  ///< see Stencils
   bool far_only = false;         ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
@@ -230,13 +241,6 @@ class ParticleStep {
     T* motion_at(int component) const { return motion + (component - Particles<D, T>::velocity) * chunk_size<T>; }
   };
   /// Of one move, in cells.
-  struct Moved {
-    double distance = 0;  ///< largest of any particle along an axis
-    double outside = 0;   ///< farthest from its own block, see drift; where that is measured
-    void extend(const Moved& other) {
-      distance = std::max(distance, other.distance), outside = std::max(outside, other.outside);
-    }
-  };
   struct States {
     void* fields[max_state_fields];
   };
@@ -346,7 +350,6 @@ class ParticleStep {
   HigherKernels<D, T> higher_kernels_;
   std::vector<std::unique_ptr<Work>> work_;
   std::vector<std::atomic<bool>> done_;  ///< units of a pass
-  std::vector<Moved> moved_;             ///< of each thread
   bool measures_drift_ = false;
   bool accounted_ = false, sums_energy_ = false;  ///< see account_for
   double drift_ = 0, last_drift_ = 0;             ///< since the last sort, and of the last move, in cells

@@ -69,7 +69,7 @@ struct Particles {
   std::vector<std::byte*> places;  ///< of the chunks: [components][chunk_size] values, then indices of seeding
   std::vector<Block<D>> blocks;
   ColouredUnits<D> units;
-  std::vector<UnitTask> tasks;  ///< of these units
+  UnitOrder order;  ///< of these units
   std::uint32_t chunks = 0;
 
   std::size_t value_bytes() const { return std::size_t(components) * chunk_size<T> * sizeof(T); }

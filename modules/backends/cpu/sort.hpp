@@ -369,7 +369,7 @@ class Sorter {
       targets_[number].number = static_cast<std::int32_t>(index);
       chunks_ += chunks_of(block.count);
     }
-    particles_.tasks = ordered_units<D>(particles_.units, blocks_);
+    particles_.order = ordered_units<D>(particles_.units, blocks_, scene_.threads);
     return same;
   }
   static std::uint32_t chunks_of(std::uint32_t particles) {

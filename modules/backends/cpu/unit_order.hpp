@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "blocks.hpp"
@@ -30,12 +31,49 @@ struct UnitTask {
   std::array<std::uint32_t, 8> neighbours{};
 };
 
-/// In an order in which whoever waits waits for one that comes before it. The last to be begun are small, so that
-/// threads end at about the same time.
-template <int D, class Blocks>
-std::vector<UnitTask> ordered_units(const ColouredUnits<D>& units, const Blocks& blocks) {
+/// Of a body: tasks in an order in which whoever waits waits for one that comes before it, and which thread is to take
+/// which of them.
+struct UnitOrder {
   std::vector<UnitTask> tasks;
+  std::vector<std::vector<std::uint32_t>> of_thread;  ///< numbers of tasks, ascending; a part of space for each thread
+};
+
+/// Cuts the body across its longer side into parts of about as many particles, one for each thread: lines of the cache
+/// that two threads write travel between their caches, and far where these belong to different groups of processors.
+inline void share_out(UnitOrder& order, const std::vector<std::array<int, 2>>& columns,
+                      const std::vector<std::uint64_t>& sizes, int threads) {
+  std::vector<std::uint32_t> by_place(columns.size());
+  std::array<int, 2> least{0, 0}, most{0, 0};
+  for (std::uint32_t t = 0; t < by_place.size(); ++t) {
+    by_place[t] = t;
+    for (int axis = 0; axis < 2; ++axis) {
+      least[axis] = t == 0 ? columns[t][axis] : std::min(least[axis], columns[t][axis]);
+      most[axis] = t == 0 ? columns[t][axis] : std::max(most[axis], columns[t][axis]);
+    }
+  }
+  const int along = most[1] - least[1] > most[0] - least[0] ? 1 : 0;
+  std::sort(by_place.begin(), by_place.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::array{columns[a][along], columns[a][1 - along]} < std::array{columns[b][along], columns[b][1 - along]};
+  });
+  const std::uint64_t all = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{0});
+  order.of_thread.assign(static_cast<std::size_t>(threads), {});
+  std::uint64_t before = 0;
+  for (const std::uint32_t t : by_place) {
+    const std::uint64_t middle = before + sizes[t] / 2;
+    order.of_thread[std::min<std::uint64_t>(middle * threads / std::max<std::uint64_t>(all, 1), threads - 1)].push_back(
+        t);
+    before += sizes[t];
+  }
+  for (auto& tasks : order.of_thread) std::sort(tasks.begin(), tasks.end());
+}
+
+/// The last to be begun are small, so that threads end at about the same time.
+template <int D, class Blocks>
+UnitOrder ordered_units(const ColouredUnits<D>& units, const Blocks& blocks, int threads) {
+  UnitOrder order;
   BlockTable numbers;
+  std::vector<std::array<int, 2>> columns;
+  std::vector<std::uint64_t> sizes;
   const auto size = [&](const Unit& unit) {
     std::uint64_t particles = 0;
     for (std::uint32_t b = unit.first; b < unit.last; ++b) particles += blocks[b].count;
@@ -46,7 +84,7 @@ std::vector<UnitTask> ordered_units(const ColouredUnits<D>& units, const Blocks&
     if (colour + 1 == colour_count<D>)
       std::stable_sort(of_colour.begin(), of_colour.end(),
                        [&](const Unit& a, const Unit& b) { return size(a) > size(b); });
-    const std::uint32_t earlier = static_cast<std::uint32_t>(tasks.size());
+    const std::uint32_t earlier = static_cast<std::uint32_t>(order.tasks.size());
     for (const Unit& unit : of_colour) {
       const BlockCoordinates& at = blocks[unit.first].at;
       const int x = at[0] >> 1, y = D == 3 ? at[1] >> 1 : 0;
@@ -57,36 +95,57 @@ std::vector<UnitTask> ordered_units(const ColouredUnits<D>& units, const Blocks&
           if (found >= 0 && static_cast<std::uint32_t>(found) < earlier)
             task.neighbours[task.waits_for++] = static_cast<std::uint32_t>(found);
         }
-      numbers.insert({x, y, 0}, static_cast<int>(tasks.size()));
-      tasks.push_back(task);
+      numbers.insert({x, y, 0}, static_cast<int>(order.tasks.size()));
+      order.tasks.push_back(task);
+      columns.push_back({x, y});
+      sizes.push_back(size(unit));
     }
   }
-  return tasks;
+  share_out(order, columns, sizes, threads);
+  return order;
 }
 
 /// One pass over the units, which threads share.
 class UnitPass {
  public:
-  UnitPass(const std::vector<UnitTask>& tasks, std::vector<std::atomic<bool>>& done) : tasks_(tasks), done_(done) {
-    if (done_.size() < tasks.size()) done_ = std::vector<std::atomic<bool>>(tasks.size());
+  UnitPass(const UnitOrder& order, std::vector<std::atomic<bool>>& done)
+      : order_(order), done_(done), next_(std::max<std::size_t>(order.of_thread.size(), 1)) {
+    if (done_.size() < order.tasks.size()) done_ = std::vector<std::atomic<bool>>(order.tasks.size());
     for (auto& flag : done_) flag.store(false, std::memory_order_relaxed);
   }
 
-  /// Calls visit(unit), which may not throw, for the units that this thread is the first to take.
+  /// Calls visit(unit), which may not throw, for the units that this thread (of `threads` that call this) is the first
+  /// to take: its own, then what others have not begun. Nobody waits for ever: of the tasks not done, the first waits
+  /// for none, and its thread comes to it before any later one.
   template <class Visit>
-  void run(Visit&& visit) {
-    for (std::uint32_t t; (t = next_.fetch_add(1, std::memory_order_relaxed)) < tasks_.size();) {
-      for (int k = 0; k < tasks_[t].waits_for; ++k) done_[tasks_[t].neighbours[k]].wait(false);
-      visit(tasks_[t].unit);
-      done_[t].store(true);
-      done_[t].notify_all();
+  void run(int thread, int threads, Visit&& visit) {
+    const int queues = static_cast<int>(order_.of_thread.size());
+    if (queues != threads) {  // whose own task is in nobody's hands might be waited for
+      for (std::uint32_t t; (t = next_[0].fetch_add(1, std::memory_order_relaxed)) < order_.tasks.size();)
+        work_on(t, visit);
+      return;
+    }
+    for (int k = 0; k < queues; ++k) {
+      const int whose = (thread + k) % queues;
+      const std::vector<std::uint32_t>& queue = order_.of_thread[whose];
+      for (std::uint32_t n; (n = next_[whose].fetch_add(1, std::memory_order_relaxed)) < queue.size();)
+        work_on(queue[n], visit);
     }
   }
 
  private:
-  const std::vector<UnitTask>& tasks_;
+  template <class Visit>
+  void work_on(std::uint32_t number, Visit&& visit) {
+    const UnitTask& task = order_.tasks[number];
+    for (int k = 0; k < task.waits_for; ++k) done_[task.neighbours[k]].wait(false);
+    visit(task.unit);
+    done_[number].store(true);
+    done_[number].notify_all();
+  }
+
+  const UnitOrder& order_;
   std::vector<std::atomic<bool>>& done_;
-  std::atomic<std::uint32_t> next_{0};
+  std::vector<std::atomic<std::uint32_t>> next_;  ///< of each thread's own tasks
 };
 
 }  // namespace mpm::cpu
