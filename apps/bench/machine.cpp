@@ -3,8 +3,11 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <memory>
+#include <thread>
 
 #include "kernel/lanes.hpp"
 
@@ -124,6 +127,37 @@ MemoryBandwidth memory_bandwidth(int threads, std::size_t bytes, int repeats) {
     keep(total.v);
   });
   return result;
+}
+
+double nanoseconds_between_threads(double seconds) {
+  constexpr int rounds_a_look = 64;  // at the clock
+  alignas(128) std::atomic<std::uint64_t> line{0};
+  alignas(128) std::atomic<bool> stop{false};
+  std::thread other([&] {
+    for (std::uint64_t mine = 1;; mine += 2) {
+      while (line.load(std::memory_order_acquire) != mine)
+        if (stop.load(std::memory_order_relaxed)) return;
+      line.store(mine + 1, std::memory_order_release);
+    }
+  });
+  std::uint64_t handed = 0;
+  const auto to_and_fro = [&] {
+    line.store(handed + 1, std::memory_order_release);
+    handed += 2;
+    while (line.load(std::memory_order_acquire) != handed) {
+    }
+  };
+  to_and_fro();  // the other thread is there
+  const auto start = Clock::now();
+  const std::uint64_t before = handed;
+  double elapsed = 0;
+  while (elapsed < seconds) {
+    for (int round = 0; round < rounds_a_look; ++round) to_and_fro();
+    elapsed = seconds_since(start);
+  }
+  stop = true;
+  other.join();
+  return 1e9 * elapsed / static_cast<double>(handed - before);
 }
 
 }  // namespace mpm::bench

@@ -28,26 +28,29 @@ struct Phases {
 };
 
 struct Findings {
-  bench::Table rates{"rates",
-                     "Standard scenes",
-                     {{"scene", "scene"},
-                      {"motion", "motion"},
-                      {"material", "material"},
-                      {"precision", "precision"},
-                      {"threads", "threads"},
-                      {"rate", "rate (M/s)"},
-                      {"spread", "spread (%)"},
-                      {"over_baseline", "/ baseline"},
-                      {"over_one_thread", "/ 1 thread"},
-                      {"over_rest", "/ rest"},
-                      {"flops", "flop"},
-                      {"bytes", "bytes"},
-                      {"gflops", "GFLOP/s"},
-                      {"share_of_peak", "of FMA peak (%)"},
-                      {"share_of_memory", "of memory (%)"}},
-                     {},
-                     "M/s: million particle-steps a second, median of the rounds. Ratios: medians of each round's "
-                     "ratios. flop, bytes: a particle-step, counted."};
+  bench::Table rates{
+      "rates",
+      "Standard scenes",
+      {{"scene", "scene"},
+       {"motion", "motion"},
+       {"material", "material"},
+       {"precision", "precision"},
+       {"threads", "threads"},
+       {"rate", "rate (M/s)"},
+       {"spread", "spread (%)"},
+       {"over_baseline", "/ baseline"},
+       {"over_one_thread", "/ 1 thread"},
+       {"over_rest", "/ rest"},
+       {"line", "line (ns)"},
+       {"flops", "flop"},
+       {"bytes", "bytes"},
+       {"gflops", "GFLOP/s"},
+       {"share_of_peak", "of FMA peak (%)"},
+       {"share_of_memory", "of memory (%)"}},
+      {},
+      "M/s: million particle-steps a second, median of the rounds. Ratios: medians of each round's "
+      "ratios. line: what a line of the cache takes from one thread to another, the longer of before and "
+      "after the rounds; some 50 where processors share a cache. flop, bytes: a particle-step, counted."};
   std::vector<Phases> phases;
   std::vector<bench::Target> targets;
 };
@@ -104,6 +107,7 @@ class Group {
                                      {},
                                      {},
                                      {},
+                                     {},
                                      {}});
       if (scene_.name == "cube_3d") {
         const double wanted = precision_ == Precision::single ? 5 : 3.5;
@@ -124,7 +128,9 @@ class Group {
         products_.push_back(product(motion, k == 0 ? 1 : context_.threads));
         contenders.push_back(products_.back().get());
       }
+    const double before = between_threads();
     const bench::Rates rates = run(contenders);
+    line_ = std::max(before, between_threads());
     for (std::size_t m = 0; m < 2; ++m)
       for (std::size_t k = 0; k < counts; ++k) add_row(findings, rates, m, k, counts);
     if (scene_.name == "cube_3d" && material_.name == "neo_hookean")
@@ -143,6 +149,8 @@ class Group {
     edits.push_back({"/precision", precision_name()});
     return std::make_unique<Product>(context_.suite.experiment(scene_, motion, edits), threads);
   }
+
+  double between_threads() const { return context_.threads > 1 ? bench::nanoseconds_between_threads(0.02) : 0; }
 
   bench::Rates run(const std::vector<bench::Contender*>& contenders) const {
     context_.say("standard: " + scene_.name + ", " + material_.name + ", " + precision_name());
@@ -171,6 +179,7 @@ class Group {
     row.push_back(plain && k == 0 ? Cell(baseline_ratio_[m]) : Cell());
     row.push_back(k == 1 ? Cell(rates.ratio(c, c - 1)) : Cell());
     row.push_back(m == 1 ? Cell(rates.ratio(c, c - counts)) : Cell());
+    row.push_back(k == 1 ? Cell(line_) : Cell());
     row.push_back(account.flops ? Cell(*account.flops) : Cell());
     row.push_back(account.bytes);
     row.push_back(account.flops ? Cell(account.gflops()) : Cell());
@@ -194,6 +203,7 @@ class Group {
   Precision precision_;
   std::vector<std::unique_ptr<Product>> products_;
   double baseline_ratio_[2] = {0, 0};
+  double line_ = 0;  ///< ns from one thread to another
 };
 
 /// Passes first, then what their time goes to; one column a scene.
