@@ -137,7 +137,7 @@ TEST_CASE("neighbouring units are never in work at once and follow their colours
   const Columns<3> columns;
   std::map<Column, std::atomic<int>> state;  // 0 waiting, 1 in work, 2 done
   for (const auto& [column, colour] : columns.colour) state[column] = 0;
-  std::vector<std::atomic<bool>> done;
+  std::vector<std::atomic<int>> states;
   // also fewer or more than the body was shared out to, as a system may give
   for (const auto& [parts, threads] : {std::pair{1, 1}, {2, 2}, {5, 5}, {5, 2}, {2, 5}}) {
     const UnitOrder order = ordered_units<3>(columns.units, columns.blocks, parts);
@@ -146,9 +146,9 @@ TEST_CASE("neighbouring units are never in work at once and follow their colours
     for (int repeat = 0; repeat < 50; ++repeat) {
       for (auto& [column, value] : state) value = 0;
       std::atomic<int> wrong{0}, visited{0};
-      UnitPass pass(order, done);
-      const auto work = [&, threads = threads](int thread) {
-        pass.run(thread, threads, [&](const Unit& unit) {
+      UnitPass pass(order, states);
+      const auto work = [&](int thread) {
+        pass.run(thread, [&](const Unit& unit) {
           const Column here = columns.column(unit);
           state.at(here) = 1;
           for (const auto& [column, colour] : columns.colour) {

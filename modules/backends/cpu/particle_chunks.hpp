@@ -97,14 +97,13 @@ void ParticleStep<D, T, Components>::for_each_block(int body, bool coloured, Vis
       if (!exception_) exception_ = std::current_exception();
     }
   };
-  UnitPass pass(particles.order, done_);
+  UnitPass pass(particles.order, units_);
 #pragma omp parallel num_threads(scene_.threads)
   {
     const FlushDenormals flush;
     Work& work = *work_[omp_get_thread_num()];
     if (coloured) {
-      pass.run(omp_get_thread_num(), omp_get_num_threads(),
-               [&](const Unit& unit) { guarded(unit.first, unit.last, work); });
+      pass.run(omp_get_thread_num(), [&](const Unit& unit) { guarded(unit.first, unit.last, work); });
     } else {
 #pragma omp for schedule(dynamic, 8)
       for (std::size_t b = 0; b < particles.blocks.size(); ++b) guarded(b, b + 1, work);

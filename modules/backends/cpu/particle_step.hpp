@@ -349,7 +349,7 @@ class ParticleStep {
   ListKernels<D, T> list_kernels_;
   HigherKernels<D, T> higher_kernels_;
   std::vector<std::unique_ptr<Work>> work_;
-  std::vector<std::atomic<bool>> done_;  ///< units of a pass
+  std::vector<std::atomic<int>> units_;  ///< of a pass: UnitPass::State
   bool measures_drift_ = false;
   bool accounted_ = false, sums_energy_ = false;  ///< see account_for
   double drift_ = 0, last_drift_ = 0;             ///< since the last sort, and of the last move, in cells

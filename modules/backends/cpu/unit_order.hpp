@@ -108,44 +108,46 @@ UnitOrder ordered_units(const ColouredUnits<D>& units, const Blocks& blocks, int
 /// One pass over the units, which threads share.
 class UnitPass {
  public:
-  UnitPass(const UnitOrder& order, std::vector<std::atomic<bool>>& done)
-      : order_(order), done_(done), next_(std::max<std::size_t>(order.of_thread.size(), 1)) {
-    if (done_.size() < order.tasks.size()) done_ = std::vector<std::atomic<bool>>(order.tasks.size());
-    for (auto& flag : done_) flag.store(false, std::memory_order_relaxed);
+  /// Of a task.
+  enum State : int { not_begun, begun, done };
+
+  UnitPass(const UnitOrder& order, std::vector<std::atomic<int>>& states) : order_(order), states_(states) {
+    if (states_.size() < order.tasks.size()) states_ = std::vector<std::atomic<int>>(order.tasks.size());
+    for (auto& state : states_) state.store(not_begun, std::memory_order_relaxed);
   }
 
-  /// Calls visit(unit), which may not throw, for the units that this thread (of `threads` that call this) is the first
-  /// to take: its own, then what others have not begun. Nobody waits for ever: of the tasks not done, the first waits
-  /// for none, and its thread comes to it before any later one.
+  /// Calls visit(unit), which may not throw, for the units that this thread is the first to take: its own, those that
+  /// these wait for, then what others have not begun. A thread waits only for units in work, and these only for units
+  /// of colours before, so that nobody waits for ever, and a slow thread delays nobody by what it has not begun.
   template <class Visit>
-  void run(int thread, int threads, Visit&& visit) {
-    const int queues = static_cast<int>(order_.of_thread.size());
-    if (queues != threads) {  // whose own task is in nobody's hands might be waited for
-      for (std::uint32_t t; (t = next_[0].fetch_add(1, std::memory_order_relaxed)) < order_.tasks.size();)
-        work_on(t, visit);
-      return;
-    }
-    for (int k = 0; k < queues; ++k) {
-      const int whose = (thread + k) % queues;
-      const std::vector<std::uint32_t>& queue = order_.of_thread[whose];
-      for (std::uint32_t n; (n = next_[whose].fetch_add(1, std::memory_order_relaxed)) < queue.size();)
-        work_on(queue[n], visit);
-    }
+  void run(int thread, Visit&& visit) {
+    const std::size_t parts = order_.of_thread.size();
+    for (std::size_t k = 0; k < parts; ++k)
+      for (const std::uint32_t task : order_.of_thread[(static_cast<std::size_t>(thread) + k) % parts])
+        if (take(task)) work_on(task, visit);
   }
 
  private:
+  bool take(std::uint32_t task) {
+    int state = states_[task].load(std::memory_order_relaxed);
+    return state == not_begun && states_[task].compare_exchange_strong(state, begun, std::memory_order_relaxed);
+  }
+
   template <class Visit>
   void work_on(std::uint32_t number, Visit&& visit) {
     const UnitTask& task = order_.tasks[number];
-    for (int k = 0; k < task.waits_for; ++k) done_[task.neighbours[k]].wait(false);
+    for (int k = 0; k < task.waits_for; ++k) {
+      const std::uint32_t before = task.neighbours[k];
+      if (take(before)) work_on(before, visit);
+      states_[before].wait(begun);
+    }
     visit(task.unit);
-    done_[number].store(true);
-    done_[number].notify_all();
+    states_[number].store(done);
+    states_[number].notify_all();
   }
 
   const UnitOrder& order_;
-  std::vector<std::atomic<bool>>& done_;
-  std::vector<std::atomic<std::uint32_t>> next_;  ///< of each thread's own tasks
+  std::vector<std::atomic<int>>& states_;
 };
 
 }  // namespace mpm::cpu
