@@ -22,7 +22,8 @@ struct MemoryBandwidth {
 MemoryBandwidth memory_bandwidth(int threads, std::size_t bytes, int repeats);
 
 /// ns that a line of the cache takes from one thread to another and is seen there: two threads hand it to and fro for
-/// about `seconds`. Some 50 where their processors share a cache, 200 where they do not; on virtual machines this changes.
+/// about `seconds`. Some 50 where their processors share a cache, 200 where they do not; on virtual machines this
+/// changes.
 double nanoseconds_between_threads(double seconds);
 
 }  // namespace mpm::bench
