@@ -11,6 +11,10 @@
 
 namespace mpm::cpu {
 
+/// Bytes. What different threads write lies in different pages: a processor fetches lines ahead of those that it reads,
+/// up to the end of their page, and takes them from the cache of another.
+inline constexpr std::size_t page = 4096;
+
 template <class T>
 class AlignedArray {
  public:
@@ -18,7 +22,7 @@ class AlignedArray {
   void require(std::size_t count) {
     if (count <= size_) return;
     constexpr std::size_t huge_page = std::size_t{1} << 21;
-    const std::size_t bytes = count * sizeof(T), alignment = bytes < huge_page ? 64 : huge_page;
+    const std::size_t bytes = count * sizeof(T), alignment = bytes < huge_page ? page : huge_page;
     const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
     data_.reset();
     size_ = 0;

@@ -74,9 +74,9 @@ struct Moved {
 };
 
 /// What one thread works in. Whatever threads write for each chunk belongs here: a line of the cache that two of them
-/// write costs each chunk a journey from one processor to the other. Processors may fetch lines in pairs.
+/// write costs each chunk a journey from one processor to the other.
 template <int D, class T>
-struct alignas(128) Workspace {
+struct alignas(page) Workspace {
   static constexpr int symmetric = Sym<D, T>::size;
   alignas(64) std::int32_t base[D * chunk_size<T>];
   alignas(64) std::int32_t first[chunk_size<T>];  ///< of the stencils: see Stencils
