@@ -8,6 +8,7 @@ program=${1:-build/bin/mpm}
 folder=${MPM_BENCH_FOLDER:-runs/bench}
 target=docs/benchmarks/tables.md
 [ -n "${MPM_BENCH_FOLDER:-}" ] || "$program" bench --out "$folder" "$@"
+[ -r "$folder/report.md" ] || { echo "no report.md in $folder: is it the folder of an \`mpm bench --out\`?" >&2; exit 2; }
 {
   echo '# Benchmark tables'
   echo

@@ -1,6 +1,8 @@
 #pragma once
 // GridStep over all nodes: momenta to velocities, forces, and the order of a step.
 
+#include <algorithm>
+
 #include "grid_step.hpp"
 
 namespace mpm::cpu {
@@ -173,6 +175,7 @@ void GridStep<D, T>::add_gravity_corrections(double dt) {
   for (int field = 0; has_gravity_ && field < grid_.fields(); ++field)
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const double* const correction = gravity_correction_.data() + (field * nodes.size() + i) * 4;
+      if (std::all_of(correction, correction + D, [](double weight) { return weight == 0; })) continue;
       Q& v = motion_at(field, nodes[i]);
       if (!(v[3] > 0)) continue;
       const double step = dt / v[3];
