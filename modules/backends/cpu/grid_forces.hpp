@@ -289,19 +289,20 @@ template <int D, class T>
 void GridStep<D, T>::divide_and_accelerate(double dt) {
   L change;
   for (int lane = 0; lane < L::width; ++lane) change.v[lane] = static_cast<T>(dt) * gravity_[lane % 4];
-  for_each_block([&](int field, std::uint32_t first, double* partial) {
+  const std::int64_t blocks = std::int64_t(grid_.slots()) * grid_.fields();
+  T fastest = 0;
+#pragma omp parallel for num_threads(scene_.threads) schedule(static) reduction(max : fastest)
+  for (std::int64_t i = 0; i < blocks; ++i) {
     L largest(T(0));
-    for_each_pack(&motion_at(field, first), [&](int, L momentum, L mass) {
+    for_each_pack(&motion_at(0, 0) + i * block_nodes, [&](int, L momentum, L mass) {
       const L velocity = momentum / mass + change;
       largest = max(largest, select(mass > T(0), abs(velocity), L(T(0))));
       return velocity;
     });
     for (int lane = 0; lane < L::width; ++lane)
-      if (lane % 4 < D) partial[0] = std::max(partial[0], static_cast<double>(largest.v[lane]));
-  });
-  largest_ = 0;
-  for (std::size_t i = 0; i < partials_.size(); i += partial_count)
-    largest_ = std::max(largest_, static_cast<T>(partials_[i]));
+      if (lane % 4 < D) fastest = std::max(fastest, largest.v[lane]);
+  }
+  largest_ = fastest;
 }
 
 /// What walls, boxes and ghosts have given since; those that stand still give nothing larger than there was.

@@ -43,6 +43,7 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
   if (moved) account_for_move();
   throw_failure();
   Gathered sum;
+  if (!accounted_) return sum;  // blocks lie with the threads that worked on them
   for (const auto& particles : particles_)
     for (const Block<D>& block : particles.blocks) {
       sum.kinetic_energy += block.kinetic_energy;
@@ -109,8 +110,8 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
   result.scattered = !abandoned_ && !must_sort();
   if (!result.scattered && !step.observed)
     throw std::logic_error("particles moved farther than the nodes around them, and their velocities were not kept");
-  for (const auto& particles : particles_)
-    for (const Block<D>& block : particles.blocks) result.kinetic_energy += block.scattered_energy;
+  for (std::size_t body = 0; follows && body < particles_.size(); ++body)
+    for (const Block<D>& block : particles_[body].blocks) result.kinetic_energy += block.scattered_energy;
   return result;
 }
 
@@ -180,8 +181,8 @@ double ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& 
     });
   throw_failure();
   double sum = 0;
-  for (const auto& particles : particles_)
-    for (const Block<D>& block : particles.blocks) sum += block.dissipated;
+  for (std::size_t body = 0; accounted_ && body < particles_.size(); ++body)
+    for (const Block<D>& block : particles_[body].blocks) sum += block.dissipated;
   return sum;
 }
 
