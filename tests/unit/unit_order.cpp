@@ -130,7 +130,15 @@ TEST_CASE("each thread has a part of space with about as many particles") {
 TEST_CASE("a body of no units is shared out") {
   const UnitOrder order = ordered_units<2>(ColouredUnits<2>{}, std::vector<TestBlock>{}, 3);
   CHECK(order.tasks.empty());
-  CHECK(order.of_thread.size() == 3);
+  CHECK(order.of_thread.size() == 1);
+}
+
+TEST_CASE("units that are all neighbours fall to one thread") {
+  Columns<3> columns;
+  for (auto& units : columns.units) units.resize(1);
+  CHECK(ordered_units<3>(columns.units, columns.blocks, 2).of_thread.size() == 1);
+  columns.units[0] = Columns<3>().units[0];
+  CHECK(ordered_units<3>(columns.units, columns.blocks, 2).of_thread.size() == 2);
 }
 
 TEST_CASE("neighbouring units are never in work at once and follow their colours, with any number of threads") {

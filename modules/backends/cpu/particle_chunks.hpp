@@ -98,7 +98,8 @@ void ParticleStep<D, T, Components>::for_each_block(int body, bool coloured, Vis
     }
   };
   UnitPass pass(particles.order, units_);
-#pragma omp parallel num_threads(scene_.threads)
+  const int threads = coloured ? static_cast<int>(particles.order.of_thread.size()) : scene_.threads;
+#pragma omp parallel num_threads(threads)
   {
     const FlushDenormals flush;
     Work& work = *work_[omp_get_thread_num()];

@@ -101,7 +101,10 @@ UnitOrder ordered_units(const ColouredUnits<D>& units, const Blocks& blocks, int
       sizes.push_back(size(unit));
     }
   }
-  share_out(order, columns, sizes, threads);
+  // Of units that are all neighbours one is in work at a time: more threads would only hand them to and fro.
+  const bool one_by_one =
+      std::all_of(units.begin(), units.end(), [](const auto& of_colour) { return of_colour.size() < 2; });
+  share_out(order, columns, sizes, one_by_one ? 1 : threads);
   return order;
 }
 
