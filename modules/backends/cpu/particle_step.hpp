@@ -240,7 +240,6 @@ class ParticleStep {
     T* higher() const { return motion_at(particles.transfer_state.back().first); }
     T* motion_at(int component) const { return motion + (component - Particles<D, T>::velocity) * chunk_size<T>; }
   };
-  /// Of one move, in cells.
   struct States {
     void* fields[max_state_fields];
   };
