@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "conformance/support.hpp"
 #include "plugin/abi.h"
-#include "plugin/conformance_support.hpp"
 #include "plugin/registry.hpp"
 
 namespace mpm::micro {

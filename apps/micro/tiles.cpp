@@ -1,8 +1,8 @@
 // Benchmarks of the cpu backend's scatter and gather between 64 particles and the tile of their block, for every width
 // of stencil, with and without affine terms and gradients; and of the transposes around them.
 
-#include "backends/cpu/quad.hpp"
-#include "backends/cpu/tile.hpp"
+#include "backends/cpu/tiles/quad.hpp"
+#include "backends/cpu/tiles/tile.hpp"
 #include "micro.hpp"
 
 namespace mpm::micro {

@@ -14,7 +14,7 @@
 
 #include "mpm/bench_suite.hpp"
 #include "mpm/cli.hpp"
-#include "output/atomic_file.hpp"
+#include "support/files.hpp"
 
 namespace mpm::app {
 namespace {

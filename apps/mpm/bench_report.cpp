@@ -5,8 +5,8 @@
 #include <map>
 
 #include "mpm/bench_sections.hpp"
-#include "output/atomic_file.hpp"
 #include "render/plot.hpp"
+#include "support/files.hpp"
 
 namespace mpm::app {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "counting/required.hpp"
+#include "bench/counting/required.hpp"
 #include "mpm/bench_sections.hpp"
-#include "mpm/recorder.hpp"
+#include "run/recorder.hpp"
 
 namespace mpm::app {
 

@@ -11,8 +11,8 @@
 #include "metrics/exact.hpp"
 #include "metrics/particle_quantities.hpp"
 #include "mpm/run_figures.hpp"
-#include "output/atomic_file.hpp"
 #include "output/run_folder.hpp"
+#include "support/files.hpp"
 
 namespace mpm::app {
 namespace {

@@ -6,11 +6,11 @@
 #include <iostream>
 #include <sstream>
 
-#include "experiment/compatibility.hpp"
 #include "experiment/diagnostics.hpp"
-#include "experiment/plan.hpp"
 #include "experiment/schema.hpp"
 #include "mpm/cli.hpp"
+#include "plan/compatibility.hpp"
+#include "plan/plan.hpp"
 
 namespace mpm::app {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "experiment/diagnostics.hpp"
 #include "mpm/cli.hpp"
-#include "output/atomic_file.hpp"
+#include "support/files.hpp"
 
 namespace mpm::app {
 namespace {

@@ -11,17 +11,17 @@
 
 #include "backends/make_backend.hpp"
 #include "experiment/diagnostics.hpp"
-#include "mpm/checkpoint.hpp"
 #include "mpm/cli.hpp"
-#include "mpm/limits.hpp"
 #include "mpm/remedy.hpp"
 #include "mpm/run_figures.hpp"
 #include "mpm/stop_on_signal.hpp"
-#include "mpm/summary.hpp"
-#include "output/atomic_file.hpp"
 #include "output/manifest.hpp"
 #include "output/report.hpp"
 #include "output/summary_value.hpp"
+#include "run/checkpoint.hpp"
+#include "run/limits.hpp"
+#include "run/summary.hpp"
+#include "support/files.hpp"
 
 namespace mpm::app {
 namespace {

@@ -11,10 +11,10 @@
 #include "experiment/diagnostics.hpp"
 #include "experiment/parameter.hpp"
 #include "mpm/cli.hpp"
-#include "output/atomic_file.hpp"
 #include "output/report.hpp"
 #include "output/run_folder.hpp"
 #include "render/plot.hpp"
+#include "support/files.hpp"
 
 namespace mpm::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "output/csv.hpp"
+#include "support/csv.hpp"
 
 namespace mpm::app {
 

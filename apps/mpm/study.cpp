@@ -9,13 +9,13 @@
 #include "experiment/units.hpp"
 #include "mpm/cli.hpp"
 #include "mpm/stop_on_signal.hpp"
-#include "output/atomic_file.hpp"
 #include "output/manifest.hpp"
 #include "output/run_folder.hpp"
 #include "study/analysis.hpp"
 #include "study/figures.hpp"
 #include "study/report.hpp"
 #include "study/run_study.hpp"
+#include "support/files.hpp"
 
 namespace mpm::app {
 namespace {

@@ -13,11 +13,11 @@
 #include <cstring>
 #include <iostream>
 
+#include "conformance/conformance.hpp"
 #include "experiment/diagnostics.hpp"
 #include "mpm/cli.hpp"
-#include "output/atomic_file.hpp"
-#include "output/file_descriptor.hpp"
-#include "plugin/conformance.hpp"
+#include "support/file_descriptor.hpp"
+#include "support/files.hpp"
 
 namespace mpm::app {
 namespace {

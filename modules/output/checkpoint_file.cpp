@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "output/atomic_file.hpp"
+#include "support/files.hpp"
 
 namespace mpm::output {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "output/atomic_file.hpp"
-#include "output/natural_order.hpp"
+#include "support/files.hpp"
+#include "support/natural_order.hpp"
 
 extern char** environ;
 

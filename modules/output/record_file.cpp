@@ -3,8 +3,8 @@
 #include <fcntl.h>
 #include <sstream>
 
-#include "output/atomic_file.hpp"
 #include "output/checkpoint_file.hpp"
+#include "support/files.hpp"
 
 namespace mpm::output {
 

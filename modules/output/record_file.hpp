@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "output/file_descriptor.hpp"
+#include "support/file_descriptor.hpp"
 
 namespace mpm::output {
 

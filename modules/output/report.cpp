@@ -1,7 +1,7 @@
 #include "output/report.hpp"
 
-#include "output/atomic_file.hpp"
 #include "output/report_parts.hpp"
+#include "support/files.hpp"
 
 namespace mpm::output {
 namespace report {

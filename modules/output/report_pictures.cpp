@@ -1,10 +1,10 @@
 // The figures and particle frames of the report, embedded so that the page is one file.
 #include <algorithm>
 
-#include "output/atomic_file.hpp"
-#include "output/base64.hpp"
-#include "output/natural_order.hpp"
 #include "output/report_parts.hpp"
+#include "support/base64.hpp"
+#include "support/files.hpp"
+#include "support/natural_order.hpp"
 
 namespace mpm::output::report {
 namespace {

@@ -1,8 +1,8 @@
 // The parts of the report that say what was computed, with which methods and plan, and how to do it again.
 #include <cctype>
 
-#include "output/natural_order.hpp"
 #include "output/report_parts.hpp"
+#include "support/natural_order.hpp"
 
 namespace mpm::output::report {
 namespace {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "output/file_descriptor.hpp"
+#include "support/file_descriptor.hpp"
 
 namespace mpm::output {
 

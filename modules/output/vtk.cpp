@@ -7,9 +7,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "output/atomic_file.hpp"
-#include "output/base64.hpp"
 #include "output/html.hpp"
+#include "support/base64.hpp"
+#include "support/files.hpp"
 
 namespace mpm::output {
 namespace {

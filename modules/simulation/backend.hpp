@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiment/plan.hpp"
+#include "plan/plan.hpp"
 #include "simulation/archive.hpp"
 
 namespace mpm {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "experiment/expression.hpp"
-#include "output/csv.hpp"
 #include "render/plot.hpp"
 #include "study/analysis.hpp"
 #include "study/figure_parts.hpp"
+#include "support/csv.hpp"
 
 namespace mpm::study {
 namespace {

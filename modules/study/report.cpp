@@ -4,9 +4,9 @@
 #include <cmath>
 #include <set>
 
-#include "output/atomic_file.hpp"
 #include "output/report_parts.hpp"
 #include "study/analysis.hpp"
+#include "support/files.hpp"
 
 namespace mpm::study {
 namespace {

@@ -12,8 +12,8 @@
 #include <sstream>
 #include <vector>
 
-#include "output/atomic_file.hpp"
 #include "output/summary_value.hpp"
+#include "support/files.hpp"
 
 namespace mpm::study {
 namespace {

@@ -3,7 +3,7 @@
 #include <sys/mount.h>
 
 #include "cli/program.hpp"
-#include "output/csv.hpp"
+#include "support/csv.hpp"
 
 using namespace mpm::test;
 

@@ -1,10 +1,10 @@
 // What is not asked for costs nothing: bytes, passes, calls at the plugin boundary and machine instructions are counted
 // for scenes that differ in one choice. The recorder of `mpm run` runs along.
 
-#include "counting/required.hpp"
+#include "bench/counting/required.hpp"
 
 #include "cli/program.hpp"
-#include "mpm/recorder.hpp"
+#include "run/recorder.hpp"
 #include "support/scene.hpp"
 
 using namespace mpm;

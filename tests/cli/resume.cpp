@@ -8,8 +8,8 @@
 #include <random>
 
 #include "cli/program.hpp"
-#include "output/atomic_file.hpp"
 #include "output/checkpoint_file.hpp"
+#include "support/files.hpp"
 
 using namespace mpm::test;
 namespace output = mpm::output;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 #include "cli/program.hpp"
-#include "output/csv.hpp"
+#include "support/csv.hpp"
 
 namespace output = mpm::output;
 using namespace mpm::test;

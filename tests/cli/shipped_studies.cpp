@@ -3,8 +3,8 @@
 
 #include "cli/program.hpp"
 #include "experiment/diagnostics.hpp"
-#include "experiment/plan.hpp"
 #include "mpm/cli.hpp"
+#include "plan/plan.hpp"
 #include "study/study.hpp"
 #include "support/scene.hpp"
 

@@ -1,7 +1,7 @@
 // `mpm study` and `mpm advise`: every combination a run of its own, whatever becomes of it.
 
 #include "cli/program.hpp"
-#include "output/csv.hpp"
+#include "support/csv.hpp"
 
 using namespace mpm::test;
 

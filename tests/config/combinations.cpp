@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-#include "experiment/compatibility.hpp"
+#include "plan/compatibility.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 

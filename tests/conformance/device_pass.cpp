@@ -11,7 +11,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "plugin/conformance_support.hpp"
+#include "conformance/support.hpp"
 #include "plugin/registry.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"

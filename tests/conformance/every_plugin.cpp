@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "plugin/conformance.hpp"
+#include "conformance/conformance.hpp"
 #include "support/catch.hpp"
 
 namespace {

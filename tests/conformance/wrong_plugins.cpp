@@ -3,10 +3,10 @@
 #include <limits>
 #include <set>
 
+#include "conformance/conformance.hpp"
 #include "contacts/coulomb/coulomb.hpp"
 #include "filters/fmpm/fmpm.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
-#include "plugin/conformance.hpp"
 #include "plugin/sdk.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
 #include "shapes/cpdi/cpdi.hpp"

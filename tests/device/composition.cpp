@@ -1,6 +1,6 @@
 // The composed text itself: what is in it, how it is named, and what is refused.
 
-#include "backends/cuda/nvrtc.hpp"
+#include "backends/device/drivers/nvrtc.hpp"
 #include "device/device_support.hpp"
 
 using namespace mpm;

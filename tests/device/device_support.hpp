@@ -6,7 +6,7 @@
 #include <mutex>
 #include <set>
 
-#include "backends/cuda/host_run.hpp"
+#include "backends/device/host_run.hpp"
 #include "parity/parity.hpp"
 
 namespace mpm::test {

@@ -1,6 +1,6 @@
 // The same text through NVIDIA's run-time compiler, to machine code; no GPU is needed.
 
-#include "backends/cuda/nvrtc.hpp"
+#include "backends/device/drivers/nvrtc.hpp"
 
 #include <atomic>
 #include <thread>

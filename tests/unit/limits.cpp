@@ -1,5 +1,5 @@
 // Limits: which numbers of a summary break them, and which scenes are not judged.
-#include "mpm/limits.hpp"
+#include "run/limits.hpp"
 
 #include <cmath>
 #include <limits>

@@ -7,13 +7,13 @@
 #include <fstream>
 #include <limits>
 
-#include "output/atomic_file.hpp"
-#include "output/csv.hpp"
 #include "output/manifest.hpp"
-#include "output/natural_order.hpp"
 #include "output/run_folder.hpp"
 #include "output/summary_value.hpp"
 #include "support/catch.hpp"
+#include "support/csv.hpp"
+#include "support/files.hpp"
+#include "support/natural_order.hpp"
 #include "unit/output_support.hpp"
 
 namespace fs = std::filesystem;

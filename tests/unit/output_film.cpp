@@ -2,9 +2,9 @@
 #include <sys/stat.h>
 #include <cstdlib>
 
-#include "output/atomic_file.hpp"
 #include "output/film.hpp"
 #include "support/catch.hpp"
+#include "support/files.hpp"
 #include "unit/output_support.hpp"
 
 namespace fs = std::filesystem;

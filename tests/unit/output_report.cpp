@@ -2,12 +2,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "output/atomic_file.hpp"
-#include "output/base64.hpp"
 #include "output/html.hpp"
 #include "output/report.hpp"
 #include "output/run_folder.hpp"
+#include "support/base64.hpp"
 #include "support/catch.hpp"
+#include "support/files.hpp"
 #include "unit/output_support.hpp"
 
 namespace fs = std::filesystem;

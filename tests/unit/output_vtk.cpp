@@ -3,9 +3,9 @@
 #include <iostream>
 #include <limits>
 
-#include "output/atomic_file.hpp"
 #include "output/vtk.hpp"
 #include "support/catch.hpp"
+#include "support/files.hpp"
 #include "unit/output_support.hpp"
 
 namespace fs = std::filesystem;

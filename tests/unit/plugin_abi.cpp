@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "conformance/conformance.hpp"
 #include "fixtures/mpm_fixture.hpp"
 #include "plugin/abi.h"
-#include "plugin/conformance.hpp"
 #include "plugin/registry.hpp"
 #include "support/catch.hpp"
 

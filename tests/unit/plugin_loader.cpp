@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "conformance/conformance.hpp"
 #include "fixtures/mpm_fixture.hpp"
 #include "plugin/abi.h"
-#include "plugin/conformance.hpp"
 #include "plugin/registry.hpp"
 #include "support/catch.hpp"
 

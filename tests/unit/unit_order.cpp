@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "backends/cpu/unit_order.hpp"
+#include "backends/cpu/particles/unit_order.hpp"
 #include "support/catch.hpp"
 
 namespace {

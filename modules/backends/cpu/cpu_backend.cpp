@@ -1,4 +1,4 @@
-#include "cpu_backend.hpp"
+#include "backends/cpu/cpu_backend.hpp"
 
 namespace mpm {
 namespace cpu {

@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include "grid_step.hpp"
-#include "particle_step.hpp"
+#include "backends/cpu/grid/grid_step.hpp"
+#include "backends/cpu/particles/particle_step.hpp"
 
 namespace mpm::cpu {
 

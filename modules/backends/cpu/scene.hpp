@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "blocks.hpp"
-#include "experiment/plan.hpp"
+#include "backends/cpu/grid/blocks.hpp"
+#include "plan/plan.hpp"
 #include "simulation/backend.hpp"
 #include "simulation/boundary.hpp"
 

@@ -1,0 +1,401 @@
+#pragma once
+// The sparse grid: blocks of nodes near particles, planned channels of one quad a node, and the lists of nodes at the
+// edges.
+
+#include <cstdint>
+#include <vector>
+
+#include "backends/cpu/aligned_array.hpp"
+#include "backends/cpu/particles/particles.hpp"
+#include "backends/cpu/scene.hpp"
+
+namespace mpm::cpu {
+
+enum Channel {
+  motion,           ///< scattered momentum and mass; velocity and mass once it has been divided
+  velocity_before,  ///< v-, later the increment v+ - v-
+  force,
+  body_force,
+  volume_gradient,  ///< and volume
+  mass_position,
+  next_motion,        ///< scattered momentum and mass of the following step, by the fused pass
+  filter_increment,   ///< v* of the filter's loop
+  filter_projection,  ///< momentum S+ S v* and mass while it is scattered, then velocity; then the velocity before
+                      ///< conditions
+  kept_velocity,      ///< of the grid before the filter, with the mass
+  constrained,  ///< velocity that conditions and contact have added in the step; while they act, the one without it
+  kept_constrained,  ///< of kept_velocity
+  channel_count
+};
+
+/// A node beyond a wall (or an image of a periodic node) and the node it is folded onto.
+struct MirrorPair {
+  std::uint32_t ghost, mirror;
+  std::uint32_t ghost_edge, mirror_edge;  ///< the same nodes among the edge nodes
+  Vector3 foot;                           ///< of the ghost on the wall, m
+};
+
+/// Nodes that one face of the domain concerns.
+struct FaceNodes {
+  int axis = 0, side = 0;
+  const FaceCondition* condition = nullptr;
+  std::vector<MirrorPair> pairs;
+  std::vector<std::uint32_t> wall;
+  std::vector<std::uint32_t> wall_edge;  ///< the same among the edge nodes, or ~0
+  std::vector<Vector3> wall_position;
+  std::vector<std::uint8_t> pair_folds;  ///< decided each step: [field * pairs + i]
+
+  bool periodic() const { return condition->type == ConditionType::periodic; }
+};
+struct BoxNodes {
+  const BoxCondition* condition = nullptr;
+  std::vector<std::uint32_t> nodes;
+  std::vector<Vector3> position;
+};
+
+template <int D, class T>
+class Grid {
+ public:
+  explicit Grid(const Scene<D, T>& scene) : scene_(scene), fields_(scene.experiment.field_count) {}
+
+  void plan_channel(Channel channel) { planned_[channel] = true; }
+  /// A channel that rests keeps its memory, but nothing scatters, keeps or reads it.
+  void let_rest(Channel channel, bool resting) { resting_[channel] = resting; }
+  bool has(Channel channel) const { return planned_[channel] && !resting_[channel]; }
+  int fields() const { return fields_; }
+  std::uint32_t slots() const { return static_cast<std::uint32_t>(found_.size()); }
+  std::uint32_t nodes() const { return slots() * block_nodes; }
+
+  T* channel(Channel c, int field) { return data_[c].data() + std::size_t(field) * nodes() * 4; }
+  Quad<T>& quad(Channel c, int field, std::uint32_t node) {
+    return reinterpret_cast<Quad<T>*>(channel(c, field))[node];
+  }
+
+  /// Active blocks are those of particles, their neighbours (and what their lists reach), and what folding needs;
+  /// field_bits of a slot says which velocity fields may have mass there.
+  /// The others hold anything afterwards; `kept` channels keep their values where blocks stay, and get zeros elsewhere.
+  void rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body,
+               std::initializer_list<Channel> kept = {});
+  /// Zero for what is scattered in a step.
+  void clear();
+  void clear(Channel c);
+  /// Of all nodes and fields, along any axis.
+  T largest_component(Channel c) const;
+  void swap(Channel a, Channel b) { std::swap(data_[a], data_[b]); }
+
+  /// Number of a node from its coordinates; -1 where no block is active.
+  std::int32_t find(const std::array<int, 3>& node) const {
+    BlockCoordinates at{};
+    for (int a = 0; a < D; ++a) at[a] = node[a] >> block_bits<D>;
+    const int slot = table_.find(at);
+    return slot < 0 ? -1 : slot * block_nodes + node_in_block<D>(node);
+  }
+
+  std::vector<FaceNodes>& faces() { return faces_; }
+  const std::vector<BoxNodes>& boxes() const { return boxes_; }
+  /// Ghosts and the nodes they are folded onto.
+  const std::vector<std::uint32_t>& edge_nodes() const { return edge_nodes_; }
+  /// Slots where two fields or more may meet.
+  const std::vector<std::uint32_t>& shared_slots() const { return shared_; }
+  std::uint64_t bytes() const {
+    std::uint64_t total = renumbered_.bytes();
+    for (const auto& data : data_) total += data.bytes();
+    return total;
+  }
+
+ private:
+  int activate(const BlockCoordinates& at, std::uint64_t field_bits);
+  void activate_mirrors();
+  void renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before,
+                const std::vector<std::int32_t>& slot_now);
+  void list_faces();
+  void number_edge_nodes();
+  void list_boxes();
+  bool may_touch(const BoxCondition& box, const BlockCoordinates& at) const;
+  bool beyond(int axis, int node) const {
+    return node < 0 || node > scene_.domain.cells[axis] ||
+           (scene_.domain.periodic(axis) && node == scene_.domain.cells[axis]);
+  }
+  /// No node of such a block is on or beyond a wall of this axis.
+  bool inside(int axis, int block) const {
+    return block > 0 && (block + 1) * block_side<D> <= scene_.domain.cells[axis];
+  }
+  int mirrored(int axis, int node) const;
+  /// Particles are wrapped when they are sorted: until then a list may reach a cell farther.
+  int padding(int axis) const { return scene_.padding + (scene_.list && scene_.domain.periodic(axis) ? 2 : 0); }
+  bool folded_axis(int axis, int side) const {
+    const ConditionType type = scene_.domain.faces[axis][side];
+    return folds(type) || type == ConditionType::periodic;
+  }
+
+  const Scene<D, T>& scene_;
+  int fields_;
+  bool planned_[channel_count]{}, resting_[channel_count]{};
+  AlignedArray<T> data_[channel_count];
+  AlignedArray<T> renumbered_;  ///< see renumber
+  BlockTable table_;
+  std::vector<BlockCoordinates> found_;
+  std::vector<std::uint64_t> field_bits_;
+  std::vector<std::uint32_t> shared_;
+  std::vector<FaceNodes> faces_;
+  std::vector<BoxNodes> boxes_;
+  std::vector<std::uint32_t> edge_nodes_;
+};
+
+// ---- implementation ----------------------------------------------------------------------------------------------
+
+template <int D, class T>
+int Grid<D, T>::activate(const BlockCoordinates& at, std::uint64_t field_bits) {
+  const int next = static_cast<int>(found_.size()), slot = table_.insert(at, next);
+  if (slot == next) {
+    found_.push_back(at);
+    field_bits_.push_back(0);
+  }
+  field_bits_[slot] |= field_bits;
+  return slot;
+}
+
+/// Node that a node beyond a folding face is folded onto.
+template <int D, class T>
+int Grid<D, T>::mirrored(int axis, int node) const {
+  const int cells = scene_.domain.cells[axis];
+  if (scene_.domain.periodic(axis)) return ((node % cells) + cells) % cells;
+  return node < 0 ? -node : 2 * cells - node;
+}
+
+/// Folding a slot beyond a face needs the slots of its images; images of images follow as the list grows.
+template <int D, class T>
+void Grid<D, T>::activate_mirrors() {
+  for (bool grew = true; grew;) {  // bits must reach images of images even when those were active already
+    grew = false;
+    for (std::size_t slot = 0; slot < found_.size(); ++slot) {
+      const BlockCoordinates at = found_[slot];
+      for (int axis = 0; axis < D; ++axis) {
+        if (inside(axis, at[axis])) continue;
+        for (int k = 0; k < block_side<D>; ++k) {
+          const int node = at[axis] * block_side<D> + k;
+          if (!beyond(axis, node) || !folded_axis(axis, node > 0)) continue;
+          if (node < -padding(axis) || node > scene_.domain.cells[axis] + padding(axis)) continue;
+          BlockCoordinates image = at;
+          image[axis] = mirrored(axis, node) >> block_bits<D>;
+          const int known = table_.find(image);
+          if (known >= 0 && (field_bits_[known] | field_bits_[slot]) == field_bits_[known]) continue;
+          activate(image, field_bits_[slot]);
+          grew = true;
+        }
+      }
+    }
+  }
+}
+
+template <int D, class T>
+void Grid<D, T>::list_faces() {
+  faces_.clear();
+  // In a domain of few cells a ghost's mirror may be a ghost of the other wall, which is folded on afterwards: such
+  // ghosts are folded by their distance from the wall, the outermost first.
+  int first_face[3]{}, levels[3]{};
+  for (const bool periodic : {true, false})  // images are folded before walls
+    for (int axis = 0; axis < D; ++axis) {
+      if (scene_.domain.periodic(axis) != periodic) continue;
+      first_face[axis] = static_cast<int>(faces_.size());
+      levels[axis] = !periodic && scene_.domain.cells[axis] < padding(axis) ? padding(axis) : 1;
+      for (int level = levels[axis]; level > 0; --level)
+        for (int side = 0; side < 2; ++side) {
+          FaceNodes face;
+          face.axis = axis, face.side = side;
+          face.condition = &scene_.experiment.faces[axis][side];
+          faces_.push_back(std::move(face));
+        }
+    }
+  for (std::uint32_t slot = 0; slot < slots(); ++slot) {
+    for (int axis = 0; axis < D; ++axis) {
+      if (inside(axis, found_[slot][axis])) continue;
+      const int cells = scene_.domain.cells[axis];
+      for (int local = 0; local < block_nodes; ++local) {
+        std::array<int, 3> node = node_at<D>(found_[slot], local);
+        const int index = node[axis];
+        if (index < -padding(axis) || index > cells + padding(axis)) continue;
+        const std::uint32_t number = slot * block_nodes + local;
+        const int side = index > 0;
+        if (!folded_axis(axis, side)) continue;
+        const int level = levels[axis] == 1 ? 1 : std::max({1, -index, index - cells});
+        FaceNodes& face = faces_[first_face[axis] + 2 * (levels[axis] - level) + side];
+        if (beyond(axis, index)) {
+          node[axis] = mirrored(axis, index);
+          BlockCoordinates image{};
+          for (int a = 0; a < D; ++a) image[a] = node[a] >> block_bits<D>;
+          const std::uint32_t mirror =
+              static_cast<std::uint32_t>(table_.find(image)) * block_nodes + node_in_block<D>(node);
+          node[axis] = side ? cells : 0;
+          face.pairs.push_back({number, mirror, 0, 0, scene_.domain.node_position(node, D)});
+        } else if (index == 0 || index == cells) {
+          if (scene_.domain.periodic(axis)) continue;
+          face.wall.push_back(number);
+          face.wall_position.push_back(scene_.domain.node_position(node, D));
+        }
+      }
+    }
+  }
+  for (FaceNodes& face : faces_) {
+    face.pair_folds.assign(face.pairs.size() * fields_, 0);
+  }
+  number_edge_nodes();
+}
+
+template <int D, class T>
+void Grid<D, T>::number_edge_nodes() {
+  edge_nodes_.clear();
+  if (std::all_of(faces_.begin(), faces_.end(), [](const FaceNodes& face) { return face.pairs.empty(); })) {
+    for (FaceNodes& face : faces_) face.wall_edge.assign(face.wall.size(), ~0u);
+    return;
+  }
+  std::vector<std::uint32_t> number(nodes(), ~0u);
+  const auto number_of = [&](std::uint32_t node) {
+    if (number[node] == ~0u) {
+      number[node] = static_cast<std::uint32_t>(edge_nodes_.size());
+      edge_nodes_.push_back(node);
+    }
+    return number[node];
+  };
+  for (FaceNodes& face : faces_)
+    for (MirrorPair& pair : face.pairs) {
+      pair.ghost_edge = number_of(pair.ghost);
+      pair.mirror_edge = number_of(pair.mirror);
+    }
+  for (FaceNodes& face : faces_)
+    for (const std::uint32_t node : face.wall) face.wall_edge.push_back(number[node]);
+}
+
+/// False where a block is a cell or more away from a box.
+template <int D, class T>
+bool Grid<D, T>::may_touch(const BoxCondition& box, const BlockCoordinates& at) const {
+  const double h = scene_.domain.cell_size;
+  for (int a = 0; a < D; ++a) {
+    const double first = scene_.domain.lower[a] + h * at[a] * block_side<D>;
+    if (first > box.upper[a] + h || first + h * block_side<D> < box.lower[a] - h) return false;
+  }
+  return true;
+}
+
+template <int D, class T>
+void Grid<D, T>::list_boxes() {
+  boxes_.clear();
+  const double tolerance = 1e-9 * scene_.domain.cell_size;
+  for (const BoxCondition& condition : scene_.experiment.boxes) {
+    BoxNodes box;
+    box.condition = &condition;
+    for (std::uint32_t slot = 0; slot < slots(); ++slot) {
+      if (!may_touch(condition, found_[slot])) continue;
+      for (int local = 0; local < block_nodes; ++local) {
+        const Vector3 x = scene_.domain.node_position(node_at<D>(found_[slot], local), D);
+        bool inside = true;
+        for (int a = 0; a < D; ++a)
+          inside = inside && x[a] >= condition.lower[a] - tolerance && x[a] <= condition.upper[a] + tolerance;
+        if (!inside) continue;
+        box.nodes.push_back(slot * block_nodes + local);
+        box.position.push_back(x);
+      }
+    }
+    boxes_.push_back(std::move(box));
+  }
+}
+
+template <int D, class T>
+void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body,
+                         std::initializer_list<Channel> kept) {
+  const std::vector<BlockCoordinates> before = found_;
+  table_.clear();
+  found_.clear();
+  field_bits_.clear();
+  const auto around = [](const BlockCoordinates& at, const std::array<int, 3>& low, const std::array<int, 3>& high,
+                         auto&& visit) {
+    for (int x = low[0]; x <= high[0]; ++x)
+      for (int y = low[1]; y <= high[1]; ++y)
+        for (int z = D == 3 ? low[2] : 0; z <= (D == 3 ? high[2] : 0); ++z)
+          visit(BlockCoordinates{at[0] + x, at[1] + y, at[2] + z});
+  };
+  constexpr std::array<int, 3> below{-1, -1, -1}, above{1, 1, 1};
+  std::vector<std::int32_t> slot_now(before.size(), -1);  // of a slot as it was
+  const auto activate_again = [&](std::int32_t slot, std::uint64_t bits) {
+    std::int32_t& now = slot_now[slot];
+    if (now < 0) return now = activate(before[slot], bits);
+    field_bits_[now] |= bits;
+    return now;
+  };
+  for (std::size_t body = 0; body < bodies.size(); ++body)
+    for (Block<D>& block : bodies[body].blocks) {
+      const int field = field_of_body[body];  // fields beyond the bits count as shared
+      const std::uint64_t bits = field < 62 ? std::uint64_t{1} << field : std::uint64_t{3} << 62;
+      if (block.has_neighbours())
+        for (std::int32_t& slot : block.neighbours) slot = activate_again(slot, bits);
+      else
+        around(block.at, below, above,
+               [&, k = 0](const BlockCoordinates& at) mutable { block.neighbours[k++] = activate(at, bits); });
+      if (block.first_active != below || block.last_active != above)
+        around(block.at, block.first_active, block.last_active,
+               [&](const BlockCoordinates& at) { activate(at, bits); });
+    }
+  activate_mirrors();
+  shared_.clear();
+  for (std::uint32_t slot = 0; slot < slots(); ++slot)
+    if ((field_bits_[slot] & (field_bits_[slot] - 1)) != 0) shared_.push_back(slot);
+  for (const Channel c : kept)
+    if (has(c)) renumber(c, before, slot_now);
+  for (int c = 0; c < channel_count; ++c)
+    if (planned_[c]) data_[c].require(std::size_t(fields_) * nodes() * 4);
+  list_faces();
+  list_boxes();
+}
+
+/// Brings a channel's values from the old numbers of their blocks to the new ones, as far as these are known.
+template <int D, class T>
+void Grid<D, T>::renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before,
+                          const std::vector<std::int32_t>& slot_now) {
+  AlignedArray<T>& before = planned_[next_motion] ? data_[next_motion] : renumbered_;  // nothing reads it meanwhile
+  std::swap(data_[channel], before);
+  data_[channel].require(std::size_t(fields_) * nodes() * 4);
+  clear(channel);
+  constexpr std::size_t scalars = block_nodes * 4;
+  const std::int64_t count = static_cast<std::int64_t>(blocks_before.size());
+#pragma omp parallel for num_threads(scene_.threads) schedule(static)
+  for (std::int64_t block = 0; block < count; ++block) {
+    const int slot = slot_now[block] >= 0 ? slot_now[block] : table_.find(blocks_before[block]);
+    for (int field = 0; slot >= 0 && field < fields_; ++field)
+      std::copy_n(before.data() + (std::size_t(field) * count + block) * scalars, scalars,
+                  data_[channel].data() + (std::size_t(field) * slots() + slot) * scalars);
+  }
+}
+
+template <int D, class T>
+void Grid<D, T>::clear() {
+  for (const Channel c : {motion, velocity_before, force, body_force, volume_gradient, mass_position})
+    if (has(c)) clear(c);
+}
+
+template <int D, class T>
+T Grid<D, T>::largest_component(Channel c) const {
+  using L = Lanes<T>;
+  const std::int64_t scalars = std::int64_t(fields_) * nodes() * 4;
+  T largest = 0;
+#pragma omp parallel for num_threads(scene_.threads) schedule(static) reduction(max : largest)
+  for (std::int64_t block = 0; block < scalars; block += block_nodes * 4) {
+    L of_block(T(0));
+    for (int s = 0; s < block_nodes * 4; s += L::width) {
+      const L values = L::load(data_[c].data() + block + s);
+      of_block = max(of_block, max(values, -values));
+    }
+    for (int i = 0; i < L::width; ++i)
+      if (i % 4 < D) largest = std::max(largest, of_block.v[i]);
+  }
+  return largest;
+}
+
+template <int D, class T>
+void Grid<D, T>::clear(Channel c) {
+  T* const values = data_[c].data();
+  const std::int64_t blocks = std::int64_t(fields_) * slots();
+#pragma omp parallel for num_threads(scene_.threads) schedule(static)
+  for (std::int64_t i = 0; i < blocks; ++i) std::memset(values + i * block_nodes * 4, 0, block_nodes * 4 * sizeof(T));
+}
+
+}  // namespace mpm::cpu

@@ -1,0 +1,162 @@
+#pragma once
+// GridStep where velocity fields meet: pairs of a slot in batches, pair after pair, so that three fields act in order.
+
+#include "backends/cpu/grid/grid_step.hpp"
+
+namespace mpm::cpu {
+
+/// What the pairs of one slot add to the ledger and the record.
+template <int D, class T>
+struct GridStep<D, T>::ContactSums {
+  double work = 0, friction = 0, largest_penetration = 0;
+  double impulse[3]{}, change[3]{};
+  long sticking = 0, slipping = 0;
+};
+
+template <int D, class T>
+struct GridStep<D, T>::ContactBatch {
+  int count = 0;
+  std::uint32_t node[block_nodes];
+  bool valid[block_nodes];
+  alignas(64) T mass_a[block_nodes], mass_b[block_nodes], separation[block_nodes], area[block_nodes],
+      dissipated[block_nodes];
+  alignas(64) T momentum_a[D * block_nodes],
+      momentum_b[D * block_nodes], normal[D * block_nodes], impulse[D * block_nodes];
+  alignas(64) std::int32_t status[block_nodes];
+
+  void add(std::uint32_t at, const Quad<T>& a, const Quad<T>& b, const ContactGeometry& geometry) {
+    node[count] = at;
+    valid[count] = geometry.valid;
+    mass_a[count] = a[3], mass_b[count] = b[3];
+    separation[count] = static_cast<T>(geometry.separation), area[count] = static_cast<T>(geometry.area);
+    for (int c = 0; c < D; ++c) {
+      momentum_a[c * block_nodes + count] = a[3] * a[c];
+      momentum_b[c * block_nodes + count] = b[3] * b[c];
+      normal[c * block_nodes + count] = geometry.valid ? static_cast<T>(geometry.normal[c]) : T(0);
+    }
+    ++count;
+  }
+  /// Copies the last pair so that whole lanes may be computed.
+  int pad() {
+    const int last = count - 1, end = padded(count);
+    for (int i = count; i < end; ++i) {
+      mass_a[i] = mass_a[last], mass_b[i] = mass_b[last], separation[i] = separation[last], area[i] = area[last];
+      for (int c = 0; c < D; ++c)
+        for (T* array : {momentum_a, momentum_b, normal}) array[c * block_nodes + i] = array[c * block_nodes + last];
+    }
+    return end;
+  }
+};
+
+/// Rows of particles a cell of the coarsest body in a field: its surface lags the most.
+template <int D, class T>
+int GridStep<D, T>::rows_per_cell(const Experiment& experiment, int field) {
+  int rows = 8;
+  for (const BodySpecification& body : experiment.bodies)
+    if (body.field == field) rows = std::min(rows, body.particles_per_cell_axis);
+  return rows;
+}
+
+template <int D, class T>
+ContactFieldNode GridStep<D, T>::contact_node(int field, std::uint32_t node) {
+  ContactFieldNode result;
+  const Q gradient = grid_.quad(volume_gradient, field, node), position = grid_.quad(mass_position, field, node);
+  result.mass = motion_at(field, node)[3];
+  result.volume = gradient[3];
+  for (int c = 0; c < 3; ++c) {
+    result.volume_gradient[c] = gradient[c];
+    result.mass_position[c] = position[c];
+  }
+  return result;
+}
+
+template <int D, class T>
+void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums) {
+  const Component& law = *scene_.experiment.contact;
+  const std::uint32_t end = static_cast<std::uint32_t>(batch.pad());
+  const mpm_contact_batch request{end,
+                                  block_nodes,
+                                  D,
+                                  0,
+                                  step.dt,
+                                  batch.mass_a,
+                                  batch.mass_b,
+                                  batch.momentum_a,
+                                  batch.momentum_b,
+                                  batch.normal,
+                                  batch.separation,
+                                  batch.area,
+                                  batch.impulse,
+                                  batch.dissipated,
+                                  batch.status};
+  law.plugin->contact().apply[lane_precision<T>][D - 2](law.parameters.data(), &request);
+  for (int i = 0; i < batch.count; ++i) {
+    Q &va = motion_at(a, batch.node[i]), &vb = motion_at(b, batch.node[i]);
+    for (int c = 0; c < D; ++c) {
+      const T impulse = batch.impulse[c * block_nodes + i];
+      const double a0 = va[c], b0 = vb[c];
+      va[c] += impulse / va[3];
+      vb[c] -= impulse / vb[3];
+      sums.work += 0.5 * impulse * (a0 + va[c]) - 0.5 * impulse * (b0 + vb[c]);
+      sums.change[c] += va[3] * (va[c] - a0) + vb[3] * (vb[c] - b0);
+      if (batch.status[i] != MPM_APART) sums.impulse[c] += impulse;
+    }
+    sums.friction += batch.dissipated[i];
+    sums.sticking += batch.status[i] == MPM_STICKS;
+    sums.slipping += batch.status[i] == MPM_SLIPS;
+    if (batch.status[i] != MPM_APART && batch.valid[i])
+      sums.largest_penetration = std::max(sums.largest_penetration, -static_cast<double>(batch.separation[i]));
+  }
+}
+
+template <int D, class T>
+void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums) {
+  const bool weld = (scene_.experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION) != 0;
+  for (int a = 0; a < grid_.fields(); ++a)
+    for (int b = a + 1; b < grid_.fields(); ++b) {
+      ContactBatch batch;
+      for (std::uint32_t node = slot * block_nodes; node < (slot + 1) * block_nodes; ++node) {
+        const Q &va = motion_at(a, node), &vb = motion_at(b, node);
+        if (!(va[3] > 0) || !(vb[3] > 0)) continue;
+        if (!weld && std::min(va[3], vb[3]) < contact_prescreen * (static_cast<double>(va[3]) + vb[3])) continue;
+        const ContactGeometry geometry = contact_geometry(contact_node(a, node), contact_node(b, node), edges_[a],
+                                                          edges_[b], scene_.domain.cell_size, D);
+        if (geometry.valid || weld) batch.add(node, va, vb, geometry);
+      }
+      if (batch.count > 0) apply_law(batch, a, b, step, sums);
+    }
+}
+
+template <int D, class T>
+void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
+  const bool after_forces = recorded == Recorded::after_forces;
+  const bool in_ledger = ledger_on() && (after_forces || recorded == Recorded::before_forces);
+  const auto& slots = grid_.shared_slots();
+  std::vector<ContactSums> sums(slots.size());
+#pragma omp parallel for num_threads(scene_.threads) schedule(dynamic, 4)
+  for (std::size_t i = 0; i < slots.size(); ++i) resolve_slot(slots[i], step, sums[i]);
+
+  if (recorded == Recorded::filter) return;
+  ContactRecord record;
+  double change[3]{}, squared = 0;
+  for (const ContactSums& s : sums) {
+    // Before the forces v- itself changes, at once; after them the impulse counts between v- and v+
+    // (account_for_impulses).
+    if (in_ledger && !after_forces) ledger_.contact += s.work;
+    if (in_ledger) ledger_.friction += s.friction;
+    for (int c = 0; c < D; ++c) {
+      record.force[c] += s.impulse[c] / step.dt;
+      change[c] += s.change[c];
+    }
+    record.sticking += s.sticking;
+    record.slipping += s.slipping;
+    record.largest_penetration = std::max(record.largest_penetration, s.largest_penetration);
+  }
+  if (!after_forces) return;
+  record.nodes = record.sticking + record.slipping;
+  for (int c = 0; c < D; ++c) squared += change[c] * change[c];
+  record.momentum_residual = std::sqrt(squared);
+  record_ = record;
+}
+
+}  // namespace mpm::cpu

@@ -1,0 +1,207 @@
+#pragma once
+// GridStep at the edges of the domain: folding, ghosts and conditions (simulation/boundary.hpp is the policy).
+
+#include "backends/cpu/grid/grid_step.hpp"
+
+namespace mpm::cpu {
+
+template <int D, class T>
+Quad<T> GridStep<D, T>::mirror_signs(const FaceNodes& face, bool as_slip) const {
+  Q signs{1, 1, 1, 1};
+  if (face.periodic()) return signs;
+  const ConditionType type = as_slip ? ConditionType::slip : face.condition->type;
+  for (int c = 0; c < 3; ++c) signs[c] = static_cast<T>(mirror_sign(type, face.axis, c));
+  return signs;
+}
+
+template <int D, class T>
+Quad<T> GridStep<D, T>::wall_velocity(const std::optional<VectorExpression>& velocity, const Vector3& x,
+                                      double time) const {
+  Q result{};
+  if (!velocity) return result;
+  const Vector3 v = (*velocity)(x, x, time);
+  for (int c = 0; c < D; ++c) result[c] = static_cast<T>(v[c]);
+  return result;
+}
+
+// ---- folding -----------------------------------------------------------------------------------------------------
+
+/// Predicted speeds of a pair of nodes towards the wall, by momenta as folded so far and forces as scattered.
+template <int D, class T>
+bool GridStep<D, T>::approaches(const FaceNodes& face, int field, const MirrorPair& pair, double dt) {
+  const std::size_t edges = grid_.edge_nodes().size();
+  T speed = 0;
+  for (const auto& [node, edge] : {std::pair{pair.ghost, pair.ghost_edge}, std::pair{pair.mirror, pair.mirror_edge}}) {
+    const Q motion_node = motion_at(field, node);
+    if (!(motion_node[3] > 0)) continue;
+    T forces = motion_node[3] * gravity_[face.axis];
+    if (edge != ~0u && has_gravity_)
+      forces += static_cast<T>(gravity_correction_[(field * edges + edge) * 4 + face.axis]);
+    for (const Channel c : {force, body_force})
+      if (grid_.has(c)) forces += grid_.quad(c, field, node)[face.axis];
+    speed += (motion_node[face.axis] + static_cast<T>(dt) * forces) / motion_node[3];
+  }
+  return face.side == 0 ? speed < 0 : speed > 0;
+}
+
+template <int D, class T>
+void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bool remap, double time) {
+  const MirrorPair& pair = face.pairs[index];
+  Q& ghost = motion_at(field, pair.ghost);
+  const Q signs = mirror_signs(face, false), slip_signs = mirror_signs(face, true);
+  Q wall = ghost[3] * wall_velocity(face.condition->velocity, pair.foot, time);
+  motion_at(field, pair.mirror) += wall + signs * (ghost - wall);
+  if (!remap && has_gravity_ && !face.periodic()) {  // keeps the weight where it was until forces are folded
+    double* const correction = gravity_correction_.data() + field * grid_.edge_nodes().size() * 4;
+    for (int c = 0; c < D; ++c) {
+      const double weight = static_cast<double>(ghost[3]) * gravity_[c];
+      correction[pair.ghost_edge * 4 + c] += weight;
+      correction[pair.mirror_edge * 4 + c] -= weight;
+    }
+  }
+  ghost = Q{};
+  if (remap) return;
+  for (const Channel c : {volume_gradient, mass_position})
+    if (grid_.has(c)) grid_.quad(c, field, pair.mirror) += slip_signs * grid_.quad(c, field, pair.ghost);
+}
+
+/// On the wall itself: the mirror image takes away what of the contact channels points across it.
+template <int D, class T>
+void GridStep<D, T>::fold_wall_onto_itself(const FaceNodes& face, int field, double dt) {
+  for (std::size_t i = 0; i < face.wall.size(); ++i) {
+    const std::uint32_t node = face.wall[i], edge = face.wall_edge[i];
+    if (face.condition->type == ConditionType::separate && !approaches(face, field, {node, node, edge, edge, {}}, dt))
+      continue;
+    for (const Channel c : {volume_gradient, mass_position})
+      if (grid_.has(c)) grid_.quad(c, field, node)[face.axis] = 0;
+  }
+}
+
+/// Sums the images of periodic nodes: momenta, contact channels and forces.
+template <int D, class T>
+void GridStep<D, T>::fold_images(bool remap, const StepInfo& step) {
+  if (!remap) gravity_correction_.assign(has_gravity_ ? grid_.edge_nodes().size() * 4 * grid_.fields() : 0, 0.0);
+  fold_faces(true, remap, step);
+  if (!remap) fold_forces(true);
+}
+
+/// Folds what lies beyond walls onto the material before them.
+template <int D, class T>
+void GridStep<D, T>::fold_walls(bool remap, const StepInfo& step) {
+  fold_faces(false, remap, step);
+  if (!remap) fold_forces(false);
+}
+
+template <int D, class T>
+void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step) {
+  const double dt = remap ? 0.0 : step.dt;
+  for (FaceNodes& face : grid_.faces()) {
+    if (face.periodic() != periodic) continue;
+    const bool separate = face.condition->type == ConditionType::separate;
+    for (int field = 0; field < grid_.fields(); ++field) {
+      for (std::size_t i = 0; i < face.pairs.size(); ++i) {
+        const MirrorPair& pair = face.pairs[i];
+        const bool folds = motion_at(field, pair.ghost)[3] > 0 && (!separate || approaches(face, field, pair, dt));
+        face.pair_folds[field * face.pairs.size() + i] = folds;
+        if (folds) fold_pair(face, i, field, remap, step.time);
+      }
+      if (!periodic && !remap && grid_.has(volume_gradient)) fold_wall_onto_itself(face, field, dt);
+    }
+  }
+}
+
+/// Forces follow the decisions of fold_faces. Folded ghosts are cleared, so that folding again does nothing.
+template <int D, class T>
+void GridStep<D, T>::fold_forces(bool periodic) {
+  const std::size_t edges = grid_.edge_nodes().size();
+  for (const FaceNodes& face : grid_.faces()) {
+    if (face.periodic() != periodic) continue;
+    const Q signs = mirror_signs(face, false);
+    for (int field = 0; field < grid_.fields(); ++field)
+      for (std::size_t i = 0; i < face.pairs.size(); ++i) {
+        if (!face.pair_folds[field * face.pairs.size() + i]) continue;
+        const MirrorPair& pair = face.pairs[i];
+        for (const Channel c : {force, body_force}) {
+          if (!grid_.has(c)) continue;
+          grid_.quad(c, field, pair.mirror) += signs * grid_.quad(c, field, pair.ghost);
+          grid_.quad(c, field, pair.ghost) = Q{};
+        }
+        if (!has_gravity_ || periodic) continue;
+        double* const correction = gravity_correction_.data() + field * edges * 4;
+        for (int c = 0; c < D; ++c) {
+          correction[pair.mirror_edge * 4 + c] += signs[c] * correction[pair.ghost_edge * 4 + c];
+          correction[pair.ghost_edge * 4 + c] = 0;
+        }
+      }
+  }
+}
+
+/// Ghosts take the mirrored velocity (and increment), the last folded first.
+template <int D, class T>
+void GridStep<D, T>::fill_ghosts(double time, bool increments) {
+  auto& faces = grid_.faces();
+  for (auto face = faces.rbegin(); face != faces.rend(); ++face) {
+    const Q signs = mirror_signs(*face, false);
+    for (std::size_t i = 0; i < face->pairs.size(); ++i) {
+      const MirrorPair& pair = face->pairs[i];
+      const Q wall = wall_velocity(face->condition->velocity, pair.foot, time);
+      for (int field = 0; field < grid_.fields(); ++field) {
+        if (!face->pair_folds[field * face->pairs.size() + i]) continue;
+        Q& ghost = motion_at(field, pair.ghost);
+        const T mass = ghost[3];
+        ghost = wall + signs * (motion_at(field, pair.mirror) - wall);
+        ghost[3] = mass;
+        if (increments)
+          grid_.quad(velocity_before, field, pair.ghost) = signs * grid_.quad(velocity_before, field, pair.mirror);
+      }
+    }
+  }
+}
+
+// ---- conditions --------------------------------------------------------------------------------------------------
+
+/// Sets the velocities that walls and boxes give.
+template <int D, class T>
+void GridStep<D, T>::impose(double time, Account account) {
+  for (const FaceNodes& face : grid_.faces()) {
+    const ConditionType type = face.condition->type;
+    const bool separate = type == ConditionType::separate;
+    for (std::size_t i = 0; i < face.wall.size(); ++i) {
+      const Q velocity = wall_velocity(face.condition->velocity, face.wall_position[i], time);
+      for (int field = 0; field < grid_.fields(); ++field) {
+        const T inward = face.side == 0 ? T(1) : T(-1);
+        if (separate && !(inward * motion_at(field, face.wall[i])[face.axis] < 0)) continue;
+        for (int c = 0; c < D; ++c)
+          if (holds(type, face.axis, c)) hold(field, face.wall[i], c, separate ? T(0) : velocity[c], account);
+      }
+    }
+  }
+  for (const BoxNodes& box : grid_.boxes()) {
+    const BoxCondition& condition = *box.condition;
+    for (std::size_t i = 0; i < box.nodes.size(); ++i) {
+      const Q velocity = wall_velocity(condition.velocity, box.position[i], time);
+      for (int field = 0; field < grid_.fields(); ++field)
+        for (int c = 0; c < D; ++c) {
+          const bool on_axis = c == condition.axis;
+          const T now = motion_at(field, box.nodes[i])[c];
+          const bool held = condition.type == ConditionType::stick ||
+                            (condition.type == ConditionType::slip && on_axis) ||
+                            (condition.type == ConditionType::separate && on_axis && condition.side * now < 0) ||
+                            (condition.type == ConditionType::prescribed && condition.held[c]);
+          if (held) hold(field, box.nodes[i], c, velocity[c], account);
+        }
+    }
+  }
+}
+
+template <int D, class T>
+void GridStep<D, T>::hold(int field, std::uint32_t node, int c, T velocity, Account account) {
+  Q& v = motion_at(field, node);
+  const double mass = v[3], old = v[c], now = velocity;
+  if (!(mass > 0)) return;
+  v[c] = velocity;
+  if (account == Account::change_of_energy) ledger_.boundary += 0.5 * mass * (now * now - old * old);
+  if (account == Account::mark) held_[std::size_t(field) * grid_.nodes() + node] |= std::uint8_t(1u << c);
+}
+
+}  // namespace mpm::cpu

@@ -1,0 +1,361 @@
+#pragma once
+// GridStep over all nodes: momenta to velocities, forces, and the order of a step.
+
+#include <algorithm>
+
+#include "backends/cpu/grid/grid_step.hpp"
+
+namespace mpm::cpu {
+
+template <int D, class T>
+GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, ContactRecord& record,
+                         FilterRecord& filter)
+    : scene_(scene), grid_(grid), ledger_(ledger), record_(record), filter_(filter) {
+  for (int c = 0; c < D; ++c) {
+    gravity_[c] = static_cast<T>(scene.experiment.gravity[c]);
+    has_gravity_ = has_gravity_ || gravity_[c] != 0;
+  }
+  if (scene.plan.contact)
+    for (int field = 0; field < scene.experiment.field_count; ++field)
+      edges_.emplace_back(scene.experiment.shape, rows_per_cell(scene.experiment, field));
+  may_merge_ = may_merge();
+}
+
+/// Whether nothing but the ledger reads velocities before the forces, and conditions give the same without them.
+template <int D, class T>
+bool GridStep<D, T>::may_merge() const {
+  const Plan& plan = scene_.plan;
+  if (plan.filter || (plan.separate_force && !plan.force_for_ledger)) return false;
+  const auto divides = std::find_if(plan.passes.begin(), plan.passes.end(),
+                                    [](const Pass& pass) { return pass.kind == PassKind::momentum_to_velocity; });
+  return plan.passes.end() - divides > 1 && divides[1].kind == PassKind::apply_forces;
+}
+
+/// Calls visit(field, first node, partial sums) for every block of nodes of every field.
+template <int D, class T>
+template <class Visit>
+void GridStep<D, T>::for_each_block(Visit&& visit) {
+  partials_.assign(std::size_t(partial_count) * grid_.slots() * grid_.fields(), 0.0);
+  visit_blocks(visit);
+}
+
+/// The same, and goes on with the partial sums of the last for_each_block.
+template <int D, class T>
+template <class Visit>
+void GridStep<D, T>::visit_blocks(Visit&& visit) {
+  const std::int64_t slots = grid_.slots(), blocks = slots * grid_.fields();
+#pragma omp parallel for num_threads(scene_.threads) schedule(static)
+  for (std::int64_t i = 0; i < blocks; ++i)
+    visit(static_cast<int>(i / slots), static_cast<std::uint32_t>(i % slots) * block_nodes,
+          partials_.data() + partial_count * i);
+}
+
+template <int D, class T>
+double GridStep<D, T>::sum_partials(int which) const {
+  double sum = 0;
+  for (std::size_t i = which; i < partials_.size(); i += partial_count) sum += partials_[i];
+  return sum;
+}
+
+/// Nodes without mass count nothing: folded ghosts have a velocity.
+template <int D, class T>
+double GridStep<D, T>::kinetic_energy() {
+  for_each_block([&](int field, std::uint32_t first, double* partial) {
+    const Q* const nodes = &motion_at(field, first);
+    Wide squares{};
+    for (int k = 0; k < block_nodes; ++k) {
+      const Wide v = widen(nodes[k]);
+      squares += (v[3] > 0 ? v[3] : 0.0) * (v * v);
+    }
+    partial[0] = 0.5 * sum_of_components(squares);
+  });
+  return sum_partials(0);
+}
+
+/// Of the momenta on the nodes that folding changes.
+template <int D, class T>
+double GridStep<D, T>::kinetic_energy_of_edges() {
+  double sum = 0;
+  for (int field = 0; field < grid_.fields(); ++field)
+    for (const std::uint32_t node : grid_.edge_nodes()) {
+      const Wide momentum = widen(motion_at(field, node));
+      if (momentum[3] > 0) sum += 0.5 * sum_of_components(momentum * momentum) / momentum[3];
+    }
+  return sum;
+}
+
+/// Velocities of a block's nodes become change(first node of a pack, velocities, masses), zero without mass; whether
+/// any node has some. As many nodes at once as a register holds.
+template <int D, class T>
+template <class Change>
+bool GridStep<D, T>::for_each_pack(Q* nodes, Change&& change) {
+  bool heavy = false;
+  for (int node = 0; node < block_nodes; node += L::width / 4) {
+    const L old = pack_of(nodes + node), mass(pick<3, 3, 3, 3, T>(old.v, old.v));
+    const auto has_mass = mass > T(0);
+    L velocity(T(0));
+    if (any_lane<T>(has_mass)) {
+      heavy = true;
+      velocity = select(has_mass, change(node, old, mass), velocity);
+    }
+    L(pick<0, 1, 2, 7, T>(velocity.v, old.v)).store(reinterpret_cast<T*>(nodes + node));
+  }
+  return heavy;
+}
+
+/// Momenta to velocities, also into velocity_before where that is kept; returns their energy where that is asked for.
+template <int D, class T>
+double GridStep<D, T>::divide_by_mass(bool keeps_before, bool accounted) {
+  for_each_block([&](int field, std::uint32_t first, double* partial) {
+    Q* const nodes = &motion_at(field, first);
+    const bool heavy = for_each_pack(nodes, [](int, L momentum, L mass) { return momentum / mass; });
+    if (keeps_before) std::memcpy(&grid_.quad(velocity_before, field, first), nodes, block_nodes * sizeof(Q));
+    if (!accounted || !heavy) return;
+    Wide squares{};
+    for (int k = 0; k < block_nodes; ++k) {  // no velocity where there is no mass
+      const Wide v = widen(nodes[k]);
+      squares += v[3] * (v * v);
+    }
+    partial[0] = 0.5 * sum_of_components(squares);
+  });
+  return accounted ? sum_partials(0) : 0.0;
+}
+
+template <int D, class T>
+void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
+  const bool accounted = ledger_on() && !remap, keeps_before = !remap && grid_.has(velocity_before);
+  fold_images(remap, step);
+  const double edges_raw = accounted ? kinetic_energy_of_edges() : 0.0;
+  fold_walls(remap, step);
+  if (merges() && !remap) return;
+  const double folded = accounted ? kinetic_energy_of_edges() - edges_raw : 0.0;
+  const double energy = divide_by_mass(keeps_before, accounted);
+  if (accounted) {
+    ledger_.scatter += energy - folded - particle_kinetic_energy_;
+    ledger_.boundary += folded;
+  }
+  const Account account = accounted ? Account::change_of_energy : Account::nothing;
+  keep_free_velocity(false);
+  impose(step.time, account);
+  if (scene_.plan.contact) {
+    resolve_contact(step, remap ? Recorded::remap : Recorded::before_forces);
+    impose(step.time, account);
+  }
+  measure_constraints();
+  if (keeps_before) copy_constrained_velocity();
+  fill_ghosts(step.time, false);
+}
+
+/// Marks the slots where a condition or contact may change a velocity.
+template <int D, class T>
+void GridStep<D, T>::find_constrained_slots() {
+  constrained_.assign(grid_.slots(), 0);
+  for (const FaceNodes& face : grid_.faces())
+    for (const std::uint32_t node : face.wall) constrained_[node / block_nodes] = 1;
+  for (const BoxNodes& box : grid_.boxes())
+    for (const std::uint32_t node : box.nodes) constrained_[node / block_nodes] = 1;
+  if (!scene_.plan.contact) return;
+  for (const std::uint32_t slot : grid_.shared_slots()) constrained_[slot] = 1;
+}
+
+/// What conditions and contact have changed since divide_by_mass, into velocity_before.
+template <int D, class T>
+void GridStep<D, T>::copy_constrained_velocity() {
+  find_constrained_slots();
+  for_each_block([&](int field, std::uint32_t first, double*) {
+    if (constrained_[first / block_nodes])
+      std::memcpy(&grid_.quad(velocity_before, field, first), &motion_at(field, first), block_nodes * sizeof(Q));
+  });
+}
+
+/// What separates a folded weight from the folded mass's weight, before the forces.
+template <int D, class T>
+void GridStep<D, T>::add_gravity_corrections(double dt) {
+  const auto& nodes = grid_.edge_nodes();
+  for (int field = 0; has_gravity_ && field < grid_.fields(); ++field)
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const double* const correction = gravity_correction_.data() + (field * nodes.size() + i) * 4;
+      if (std::all_of(correction, correction + D, [](double weight) { return weight == 0; })) continue;
+      Q& v = motion_at(field, nodes[i]);
+      if (!(v[3] > 0)) continue;
+      const double step = dt / v[3];
+      for (int c = 0; c < D; ++c) {
+        if (grid_.has(force))
+          grid_.quad(force, field, nodes[i])[c] += static_cast<T>(correction[c]);
+        else
+          v[c] += static_cast<T>(step * correction[c]);
+        largest_ = std::max(largest_, std::abs(v[c]));
+      }
+    }
+}
+
+/// The corrections worked as part of the force; they belong to gravity.
+template <int D, class T>
+void GridStep<D, T>::account_gravity_corrections(double dt) {
+  const auto& nodes = grid_.edge_nodes();
+  for (int field = 0; has_gravity_ && field < grid_.fields(); ++field)
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const Q v = motion_at(field, nodes[i]), before = grid_.quad(velocity_before, field, nodes[i]);
+      if (!(v[3] > 0)) continue;
+      for (int c = 0; c < D; ++c) {
+        const double correction = static_cast<T>(gravity_correction_[(field * nodes.size() + i) * 4 + c]);
+        const double work = 0.5 * dt * correction * (static_cast<double>(before[c]) + v[c]);
+        ledger_.internal_force -= work;
+        ledger_.gravity += work;
+      }
+    }
+}
+
+/// Work of every impulse between v- and v+ at their mean, and the energy of v+. With `held`, bits of the block's nodes,
+/// what the forces do not explain is the reaction of a condition on held components and of contact on the others.
+/// Without mass there is no velocity, before or after.
+template <int D, class T>
+void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt, const std::uint8_t* held,
+                                       double* partial) {
+  const Q *const after = &motion_at(field, first), *const before = &grid_.quad(velocity_before, field, first),
+                 *const forces = &grid_.quad(force, field, first);
+  const Q* const bodies = grid_.has(body_force) ? &grid_.quad(body_force, field, first) : nullptr;
+  const Wide gravity = widen(gravity_);
+  Wide internal{}, external{}, momentum{}, squares{}, contact{};
+  for (int k = 0; k < block_nodes; ++k) {
+    const Wide v = widen(after[k]), old = widen(before[k]), f = widen(forces[k]), mean = 0.5 * (old + v);
+    const Wide body = bodies ? widen(bodies[k]) : Wide{};
+    const double mass = v[3];
+    internal += f * mean;
+    external += body * mean;
+    momentum += mass * mean;
+    squares += mass * (v * v);
+    if (!held || (held[k] == 0 && !scene_.plan.contact)) continue;
+    const Wide work = (mass * (v - old) - dt * (f + body + mass * gravity)) * mean;
+    if (held[k] == 0)
+      contact += work;
+    else
+      for (int c = 0; c < D; ++c) partial[held[k] & (1u << c) ? at_conditions : at_contact] += work[c];
+  }
+  partial[of_internal_force] += dt * sum_of_components(internal);
+  partial[of_body_force] += dt * sum_of_components(external);
+  partial[of_gravity] += dt * sum_of_components(momentum * gravity);
+  if (scene_.plan.contact) partial[at_contact] += sum_of_components(contact);
+  partial[of_motion] += 0.5 * sum_of_components(squares);
+}
+
+/// After conditions and contact: the blocks that accelerate has left to them, and the sums of all.
+template <int D, class T>
+void GridStep<D, T>::account_for_impulses(double dt) {
+  visit_blocks([&](int field, std::uint32_t first, double* partial) {
+    if (constrained_[first / block_nodes])
+      account_for_block(field, first, dt, held_.data() + std::size_t(field) * grid_.nodes() + first, partial);
+  });
+  ledger_.internal_force += sum_partials(of_internal_force);
+  ledger_.body_force += sum_partials(of_body_force);
+  ledger_.gravity += sum_partials(of_gravity);
+  ledger_.boundary += sum_partials(at_conditions);
+  if (scene_.plan.contact) ledger_.contact += sum_partials(at_contact);
+  kinetic_energy_after_ = sum_partials(of_motion);
+  account_gravity_corrections(dt);
+}
+
+/// Accounts for the blocks that neither condition nor contact concerns while they are in the cache.
+template <int D, class T>
+void GridStep<D, T>::accelerate(double dt) {
+  const T step = static_cast<T>(dt);
+  if (ledger_on()) {
+    find_constrained_slots();
+    held_.resize(std::size_t(grid_.fields()) * grid_.nodes());
+  }
+  L gravity;
+  for (int lane = 0; lane < L::width; ++lane) gravity.v[lane] = gravity_[lane % 4];
+  for_each_block([&](int field, std::uint32_t first, double* partial) {
+    Q* const nodes = &motion_at(field, first);
+    const Q* const f = grid_.has(force) ? &grid_.quad(force, field, first) : nullptr;
+    const Q* const body = grid_.has(body_force) ? &grid_.quad(body_force, field, first) : nullptr;
+    const bool heavy = for_each_pack(nodes, [&](int node, L velocity, L mass) {
+      if (!f && !body) return velocity + step * gravity;
+      L total(T(0));
+      if (f) total = total + pack_of(f + node);
+      if (body) total = total + pack_of(body + node);
+      return velocity + step * (total / mass + gravity);
+    });
+    if (!ledger_on()) return;
+    if (constrained_[first / block_nodes])
+      std::memset(held_.data() + std::size_t(field) * grid_.nodes() + first, 0, block_nodes);
+    else if (heavy)
+      account_for_block(field, first, dt, nullptr, partial);
+  });
+}
+
+/// Momenta to velocities and on by gravity, in one pass; forces came with the momenta.
+template <int D, class T>
+void GridStep<D, T>::divide_and_accelerate(double dt) {
+  L change;
+  for (int lane = 0; lane < L::width; ++lane) change.v[lane] = static_cast<T>(dt) * gravity_[lane % 4];
+  const std::int64_t blocks = std::int64_t(grid_.slots()) * grid_.fields();
+  T fastest = 0;
+#pragma omp parallel for num_threads(scene_.threads) schedule(static) reduction(max : fastest)
+  for (std::int64_t i = 0; i < blocks; ++i) {
+    L largest(T(0));
+    for_each_pack(&motion_at(0, 0) + i * block_nodes, [&](int, L momentum, L mass) {
+      const L velocity = momentum / mass + change;
+      largest = max(largest, select(mass > T(0), abs(velocity), L(T(0))));
+      return velocity;
+    });
+    for (int lane = 0; lane < L::width; ++lane)
+      if (lane % 4 < D) fastest = std::max(fastest, largest.v[lane]);
+  }
+  largest_ = fastest;
+}
+
+/// What walls, boxes and ghosts have given since; those that stand still give nothing larger than there was.
+template <int D, class T>
+void GridStep<D, T>::extend_largest_by_edges() {
+  bool moving = false;
+  for (const FaceNodes& face : grid_.faces()) moving = moving || face.condition->velocity;
+  for (const BoxNodes& box : grid_.boxes()) moving = moving || box.condition->velocity;
+  if (!moving) return;
+  const auto extend = [&](std::uint32_t node) {
+    for (int field = 0; field < grid_.fields(); ++field)
+      for (int c = 0; c < D; ++c) largest_ = std::max(largest_, std::abs(motion_at(field, node)[c]));
+  };
+  for (const std::uint32_t node : grid_.edge_nodes()) extend(node);
+  for (const FaceNodes& face : grid_.faces())
+    for (const std::uint32_t node : face.wall) extend(node);
+  for (const BoxNodes& box : grid_.boxes())
+    for (const std::uint32_t node : box.nodes) extend(node);
+}
+
+template <int D, class T>
+void GridStep<D, T>::subtract_velocity_before() {
+  for_each_block([&](int field, std::uint32_t first, double*) {
+    const Q* const after = &motion_at(field, first);
+    Q* const before = &grid_.quad(velocity_before, field, first);
+    for (int k = 0; k < block_nodes; ++k) before[k] = after[k] - before[k];
+  });
+}
+
+template <int D, class T>
+void GridStep<D, T>::apply_forces(const StepInfo& step) {
+  const double end = step.time + step.dt;
+  if (merges()) {
+    divide_and_accelerate(step.dt);
+    add_gravity_corrections(step.dt);
+    impose(end, Account::nothing);
+    fill_ghosts(end, false);
+    return extend_largest_by_edges();
+  }
+  for (const bool periodic : {true, false}) fold_forces(periodic);  // those that USF scattered after the momenta
+  add_gravity_corrections(step.dt);
+  accelerate(step.dt);
+  const Account account = ledger_on() ? Account::mark : Account::nothing;
+  keep_free_velocity(true);
+  impose(end, account);
+  if (scene_.plan.contact) {
+    resolve_contact(step, Recorded::after_forces);
+    impose(end, account);
+  }
+  measure_constraints();
+  if (ledger_on()) account_for_impulses(step.dt);
+  if (scene_.plan.velocity_increment) subtract_velocity_before();
+  fill_ghosts(end, scene_.plan.velocity_increment);
+}
+
+}  // namespace mpm::cpu

@@ -1,0 +1,131 @@
+#pragma once
+// The passes that work on nodes: folding at the edges of the domain, conditions, forces, contact; and their ledger.
+
+#include <cstdint>
+#include <vector>
+
+#include "backends/cpu/grid/grid.hpp"
+#include "simulation/contact_pair.hpp"
+
+namespace mpm::cpu {
+
+template <int D, class T>
+class GridStep {
+ public:
+  GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, ContactRecord& record, FilterRecord& filter);
+
+  /// Folds what was scattered, divides by mass, imposes conditions and contact before the forces.
+  void momentum_to_velocity(bool remap, const StepInfo& step);
+  /// v+ = v- + dt f / m with conditions, contact after the forces, increments, ghosts.
+  void apply_forces(const StepInfo& step);
+  /// Of the velocities after apply_forces, along any axis.
+  T largest_component() const { return merges() ? largest_ : grid_.largest_component(motion); }
+
+  /// Passes of the filter's loop: see PassKind. project_increment takes what the particles have scattered.
+  void begin_filter(const Pass& pass);
+  void project_increment(const Pass& pass, const StepInfo& step);
+  void update_filter(const Pass& pass, const StepInfo& step);
+  void end_filter(const Pass& pass, const StepInfo& step);
+  void restore_velocity(const Pass& pass);
+  void add_correction(const Pass& pass, const StepInfo& step);
+
+  void set_accounted(bool accounted) { accounted_ = accounted; }
+  /// Of the velocities after the last apply_forces or filter; the ledger's.
+  double kinetic_energy_after() const { return kinetic_energy_after_; }
+  /// Of the particles when they scattered; the ledger's.
+  void set_particle_kinetic_energy(double energy) { particle_kinetic_energy_ = energy; }
+
+ private:
+  using Q = Quad<T>;
+  using L = Lanes<T>;
+  using Wide = Quad<double>;  ///< sums of the ledger
+  /// What imposing a condition leaves for the ledger: its change of energy at once, or a mark for account_for_impulses.
+  enum class Account { nothing, change_of_energy, mark };
+
+  bool ledger_on() const { return accounted_; }
+  bool merges() const { return may_merge_ && !grid_.has(force); }
+  Q& motion_at(int field, std::uint32_t node) { return grid_.quad(motion, field, node); }
+  Q mirror_signs(const FaceNodes& face, bool as_slip) const;
+  Q wall_velocity(const std::optional<VectorExpression>& velocity, const Vector3& x, double time) const;
+  template <class Visit>
+  void for_each_block(Visit&& visit);
+  template <class Visit>
+  void visit_blocks(Visit&& visit);
+  template <class Change>
+  static bool for_each_pack(Q* nodes, Change&& change);
+  static L pack_of(const Q* nodes) { return L::load(reinterpret_cast<const T*>(nodes)); }
+  double sum_partials(int which) const;
+  static Wide widen(Q quad) { return __builtin_convertvector(quad, Wide); }
+  static double sum_of_components(Wide quad) { return quad[0] + quad[1] + (D == 3 ? quad[2] : 0.0); }
+  double kinetic_energy();
+  double kinetic_energy_of_edges();
+
+  void fold_images(bool remap, const StepInfo& step);
+  void fold_walls(bool remap, const StepInfo& step);
+  void fold_faces(bool periodic, bool remap, const StepInfo& step);
+  void fold_pair(FaceNodes& face, std::size_t pair, int field, bool remap, double time);
+  void fold_wall_onto_itself(const FaceNodes& face, int field, double dt);
+  bool approaches(const FaceNodes& face, int field, const MirrorPair& pair, double dt);
+  void fold_forces(bool periodic);
+  void fill_ghosts(double time, bool increments);
+
+  void impose(double time, Account account);
+  void hold(int field, std::uint32_t node, int component, T velocity, Account account);
+  double divide_by_mass(bool keeps_before, bool accounted);
+  void find_constrained_slots();
+  void copy_constrained_velocity();
+  void add_gravity_corrections(double dt);
+  void account_gravity_corrections(double dt);
+  void accelerate(double dt);
+  bool may_merge() const;
+  void divide_and_accelerate(double dt);
+  void extend_largest_by_edges();
+  void account_for_impulses(double dt);
+  void account_for_block(int field, std::uint32_t first, double dt, const std::uint8_t* held, double* partial);
+  void subtract_velocity_before();
+
+  static double time_of(const Pass& pass, const StepInfo& step) {
+    return pass.before_forces || pass.remap ? step.time : step.time + step.dt;
+  }
+  void copy_velocity(Channel from, Channel to);
+  void restore(Channel channel, Channel kept_channel, bool keeps_correction);
+  void add(Channel correction, Channel channel);
+  double mass_norm_of_increment();
+  void keep_free_velocity(bool after_forces);
+  void measure_constraints();
+  void constrain_free(double time, const StepInfo& step);
+  void constrain(double time, const StepInfo& step);
+  void update_block(int field, std::uint32_t first, std::uint32_t iteration);
+
+  /// How far contact is recorded: the filter's loop leaves no trace.
+  enum class Recorded { before_forces, after_forces, remap, filter };
+  struct ContactSums;
+  struct ContactBatch;
+  void resolve_contact(const StepInfo& step, Recorded recorded);
+  void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
+  void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
+  ContactFieldNode contact_node(int field, std::uint32_t node);
+  static int rows_per_cell(const Experiment& experiment, int field);
+
+  Q gravity_{};
+  const Scene<D, T>& scene_;
+  Grid<D, T>& grid_;
+  Ledger& ledger_;
+  ContactRecord& record_;
+  FilterRecord& filter_;
+  std::vector<EdgeModel> edges_;
+  /// Partial sums of account_for_block.
+  enum Partial { of_internal_force, of_body_force, of_gravity, at_conditions, at_contact, of_motion, partial_count };
+  std::vector<double> partials_;           ///< partial_count a block of a field, summed in order
+  std::vector<std::uint8_t> constrained_;  ///< [slot] find_constrained_slots
+  std::vector<std::uint8_t> held_;  ///< [field][node] bit per component that a condition gives now, of constrained
+                                    ///< slots; the ledger's
+  std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
+  double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0, kinetic_energy_unfiltered_ = 0;
+  bool has_gravity_ = false;
+  bool may_merge_ = false;  ///< see merges: momentum_to_velocity leaves the division to apply_forces
+  bool accounted_ = false;  ///< the ledger takes its entries from the step under way
+  T largest_ = 0;           ///< see largest_component
+};
+
+}  // namespace mpm::cpu

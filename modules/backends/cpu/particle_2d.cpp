@@ -1,6 +1,0 @@
-#include "particle_gather.hpp"
-#include "particle_scatter.hpp"
-
-namespace mpm::cpu {
-template class ParticleStep<2, double>;
-}  // namespace mpm::cpu

@@ -1,0 +1,343 @@
+#pragma once
+// ParticleStep: particles to grid. Coefficients of a chunk are made as component arrays, then as quads for the tile
+// kernels: what a node gets is w (b + A d) + S grad w, d = node - particle.
+
+#include <numbers>
+
+#include "backends/cpu/particles/particle_boxes.hpp"
+#include "backends/cpu/particles/particle_lists.hpp"
+
+namespace mpm::cpu {
+
+/// Channels that a scatter pass adds to, its momenta to `momentum`.
+template <int D, class T, class Components>
+std::vector<Channel> ParticleStep<D, T, Components>::scattered_channels(const Pass& pass, Channel momentum) const {
+  std::vector<Channel> channels;
+  if (pass.momentum || (pass.force && !grid_.has(force))) channels.push_back(momentum);
+  for (const Channel c : {force, body_force})
+    if (pass.force && grid_.has(c)) channels.push_back(c);
+  if (pass.contact_fields) channels.insert(channels.end(), {volume_gradient, mass_position});
+  return channels;
+}
+
+/// Calls visit(chunk, work) for the chunks of blocks with particles that no tile holds, in order and on one thread, so
+/// that sums on the grid are the same for any number of threads. What is scattered meanwhile is theirs alone.
+template <int D, class T, class Components>
+template <class Visit>
+void ParticleStep<D, T, Components>::scatter_far(int body, Visit&& visit) {
+  if (!scene_.list || failure_.severity < 2) return;
+  Work& work = *work_[0];
+  work.far_only = true;
+  for (Block<D>& block : particles_[body].blocks)
+    if (block.far > 0) for_each_chunk_of(body, block, [&](const Chunk& chunk) { visit(chunk, work); });
+  work.far_only = false;
+}
+
+template <int D, class T, class Components>
+double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
+  const std::vector<Channel> channels = scattered_channels(pass, motion);
+  const bool energies = scene_.plan.accounts_at(step.step) && pass.momentum && !pass.remap;
+  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
+    for_each_block(body, true, [&](Block<D>& block, Work& work) {
+      const bool extends = pass.momentum && !pass.remap;
+      if (extends) begin_reach(block, work);
+      block.scattered_energy = 0;
+      block.far = 0;
+      for_each_chunk_of(body, block, [&](const Chunk& chunk) {
+        if (!scatter_chunk(pass, step, chunk, work, motion, false)) {
+          if (stencils_hold(chunk, work)) throw std::logic_error("a particle left the tile of its block");
+          return note_too_long(chunk, work);
+        }
+        if (energies) block.scattered_energy += kinetic_energy(chunk, work);
+        if (scene_.list) block.far += static_cast<std::uint32_t>(work.lists.far_of_chunk);
+      });
+      if (extends) end_reach(block, work);
+      for (const Channel c : channels) flush(body, block, work, c);
+    });
+    scatter_far(body, [&](const Chunk& chunk, Work& work) { scatter_chunk(pass, step, chunk, work, motion, false); });
+  }
+  throw_failure();
+  double sum = 0;
+  if (energies)
+    for (const auto& particles : particles_)
+      for (const Block<D>& block : particles.blocks) sum += block.scattered_energy;
+  return sum;
+}
+
+/// What a pass that scatters wants of the material.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const {
+  if (pass.force) request.kirchhoff_stress = work.stress;
+  if (pass.contact_fields) request.volume_ratio = work.volume_ratio;
+}
+
+/// What a chunk gives its tiles; false, and nothing given, when a particle is outside of them or of its stencil.
+/// `evaluated`: what is wanted of the material is at hand. Called by the scatter
+/// and by the fused pass, which must agree to the last bit, so it is compiled once.
+template <int D, class T, class Components>
+[[gnu::noinline]] bool ParticleStep<D, T, Components>::scatter_chunk(const Pass& pass, const StepInfo& step,
+                                                                     const Chunk& chunk, Work& work, Channel momentum,
+                                                                     bool evaluated) {
+  const bool separate = grid_.has(force), merged = pass.force && !separate;
+  const bool by_gradient = pass.force && !scene_.stress_by_affine;
+  evaluate_shape(chunk, work, by_gradient || pass.contact_fields);
+  if (!stencils_hold(chunk, work)) return false;
+  if (!place_to_scatter(chunk, work, pass.momentum && !pass.remap && !work.far_only)) return false;
+  work.clock.lap(Phase::weights);
+  if (!evaluated && (pass.force || pass.contact_fields)) {
+    mpm_material_batch request{};
+    want_of_material(pass, work, request);
+    update_material(chunk, request);
+    work.clock.lap(Phase::material);
+  }
+  if (scene_.axisymmetric && pass.force) weigh_stress(chunk, work);
+  if (pass.momentum) {
+    momentum_coefficients(chunk, work);
+    const bool adds_to_A = scene_.stress_by_affine && scene_.has(MPM_SCATTERS_AFFINE);
+    const bool in_packing = merged && adds_to_A && !scene_.moment_of_particle;
+    if (merged) {
+      if (!in_packing) stress_coefficients(chunk, work, step.dt, adds_to_A);
+      if (scene_.axisymmetric) add_hoop_force(chunk, work, step.dt);
+      if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, true, step.dt);
+    }
+    const bool affine = scene_.has(MPM_SCATTERS_AFFINE) || (merged && scene_.stress_by_affine);
+    const T stress = in_packing ? stress_scale(chunk, step.dt) : T(0);
+    add_to_tile(chunk, work, momentum, work.mass, true, affine, merged && by_gradient, stress);
+    if (higher_kernels_.scatter) add_higher_to_tile(chunk, work, momentum, chunk.higher());
+  }
+  if (pass.force && separate) {
+    scatter_stress(chunk, work);
+    if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, false, step.dt);
+  }
+  if (pass.contact_fields) scatter_contact_fields(chunk, work);
+  return true;
+}
+
+/// Of each particle as seeded; null in plane strain and 3-D.
+template <int D, class T, class Components>
+const T* ParticleStep<D, T, Components>::circumferences(const Chunk& chunk) const {
+  return chunk.particles.circumference < 0 ? nullptr : chunk.at(chunk.particles.circumference);
+}
+
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::fill_masses(const Chunk& chunk, Work& work) const {
+  const T mass = static_cast<T>(chunk.body.mass);
+  std::fill(work.mass, work.mass + chunk.end, mass);
+  if (const T* const around = circumferences(chunk))
+    for (int p = 0; p < chunk.end; ++p) work.mass[p] = mass * around[p];
+}
+
+/// Of a block's first node, which positions count from.
+template <int D, class T, class Components>
+T ParticleStep<D, T, Components>::cells_from_axis(const Scene<D, T>& scene, const Block<D>& block) {
+  return static_cast<T>(block.at[0] * block_side<D> + scene.domain.lower[0] / scene.domain.cell_size);
+}
+
+/// Distance of a pack of particles from the axis, m.
+template <int D, class T, class Components>
+Lanes<T> ParticleStep<D, T, Components>::radius(const Chunk& chunk, int p) const {
+  const Lanes<T> x = Lanes<T>::load(chunk.at(Particles<D, T>::position) + p);
+  return static_cast<T>(scene_.domain.cell_size) * (x + Lanes<T>(cells_from_axis(scene_, chunk.block)));
+}
+
+/// Times the circumference, so that forces are those of rings.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::weigh_stress(const Chunk& chunk, Work& work) const {
+  const T* const around = circumferences(chunk);
+  for (int k = 0; k < Sym<D, T>::size; ++k)
+    for (int p = 0; p < chunk.end; ++p) work.stress[k * chunk_size<T> + p] *= around[p];
+}
+
+/// b += -factor V0 tau_zz / r along the radius; the stress has been weighed.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::add_hoop_force(const Chunk& chunk, Work& work, double factor) const {
+  using L = Lanes<T>;
+  const T scale = static_cast<T>(-factor * chunk.body.volume);
+  for (int p = 0; p < chunk.end; p += L::width) {
+    const L tau = L::load(work.stress + 2 * chunk_size<T> + p);
+    (L::load(work.b + p) + scale * tau / radius(chunk, p)).store(work.b + p);
+  }
+}
+
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::momentum_coefficients(const Chunk& chunk, Work& work) {
+  fill_masses(chunk, work);
+  const States state = transfer_states(chunk);
+  const mpm_scatter_batch batch{static_cast<std::uint32_t>(chunk.end),
+                                chunk_size<T>,
+                                D,
+                                0,
+                                work.mass,
+                                chunk.motion,
+                                state.fields,
+                                work.b,
+                                scene_.has(MPM_SCATTERS_AFFINE) ? work.A : nullptr};
+  Components::scatter(scene_, batch);
+}
+
+/// What the stress enters A or S by: -factor V0, with D^-1 where that is one for all particles.
+template <int D, class T, class Components>
+T ParticleStep<D, T, Components>::stress_scale(const Chunk& chunk, double factor) const {
+  const bool of_all = scene_.stress_by_affine && !scene_.moment_of_particle;
+  return static_cast<T>(-factor * chunk.body.volume * (of_all ? scene_.inverse_moment : 1.0));
+}
+
+/// -factor V0 tau D^-1 into A (added or set), or -factor V0 tau into S.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add) {
+  const bool by_affine = scene_.stress_by_affine, of_particle = by_affine && scene_.moment_of_particle;
+  const T scale = stress_scale(chunk, factor);
+  T* const out = by_affine ? work.A : work.S;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) {
+      T* const target = out + (i * D + j) * chunk_size<T>;
+      if (of_particle) {
+        if (!add) std::fill(target, target + chunk.end, T(0));
+        for (int k = scene_.list ? 0 : j; k < (scene_.list ? D : j + 1); ++k) {
+          const T* const tau = work.stress + Sym<D, T>::index(i, k) * chunk_size<T>;
+          const T* const inverse = work.inverse_moment + (scene_.list ? k * D + j : j) * chunk_size<T>;
+          for (int p = 0; p < chunk.end; ++p) target[p] += scale * tau[p] * inverse[p];
+        }
+        continue;
+      }
+      const T* const tau = work.stress + Sym<D, T>::index(i, j) * chunk_size<T>;
+      if (by_affine && add)
+        for (int p = 0; p < chunk.end; ++p) target[p] += scale * tau[p];
+      else
+        for (int p = 0; p < chunk.end; ++p) target[p] = scale * tau[p];
+    }
+}
+
+/// b (when `constant`), A + `stress` tau and S as quads, with `last` as the fourth scalar of the constant one: in
+/// cells, and about the stencil's first node instead of the particle.
+template <int D, class T, class Components>
+template <bool Affine, bool Gradient, bool Stress>
+void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last, bool constant, int count, T stress) {
+  using L = Lanes<T>;
+  const T h = static_cast<T>(scene_.domain.cell_size), inverse_h = T(1) / h;
+  constexpr int groups = quad_groups(D, Affine, Gradient), first_s = 1 + (Affine ? D : 0);
+  const L zero(T(0));
+  for (int p = 0; p < count; p += L::width) {
+    L q[groups][4];
+#pragma GCC unroll 7
+    for (int g = 0; g < groups; ++g) q[g][2] = q[g][3] = zero;
+    if (last) q[0][3] = L::load(last + p);
+    for (int c = 0; c < D; ++c) q[0][c] = constant ? L::load(work.b + c * chunk_size<T> + p) : zero;
+#pragma GCC unroll 3
+    for (int a = 0; Affine && a < D; ++a) {
+      const L f = L::load(work.offset + a * chunk_size<T> + p);
+      for (int c = 0; c < D; ++c) {
+        L A = L::load(work.A + (c * D + a) * chunk_size<T> + p);
+        if constexpr (Stress) A = A + stress * L::load(work.stress + Sym<D, T>::index(c, a) * chunk_size<T> + p);
+        q[1 + a][c] = h * A;
+        q[0][c] = q[0][c] - q[1 + a][c] * f;
+      }
+    }
+#pragma GCC unroll 3
+    for (int a = 0; Gradient && a < D; ++a)
+      for (int c = 0; c < D; ++c) q[first_s + a][c] = inverse_h * L::load(work.S + (c * D + a) * chunk_size<T> + p);
+    for (int g = 0; g < groups; ++g) store_quads<T>(work.quads + quad_place<T>(p, groups) + g * quad_group<T>, q[g]);
+  }
+}
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last, bool constant, bool affine,
+                                                       bool gradient, int count, T stress) {
+  if (stress != T(0)) return pack_coefficients<true, false, true>(work, last, constant, count, stress);
+  if (affine)
+    return gradient ? pack_coefficients<true, true, false>(work, last, constant, count, stress)
+                    : pack_coefficients<true, false, false>(work, last, constant, count, stress);
+  return gradient ? pack_coefficients<false, true, false>(work, last, constant, count, stress)
+                  : pack_coefficients<false, false, false>(work, last, constant, count, stress);
+}
+
+/// Scatters the coefficients of a chunk into the tile of a channel; A with `stress` times its stress, which has no
+/// gradient beside it.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last,
+                                                 bool constant, bool affine, bool gradient, T stress) {
+  pack_coefficients(work, last, constant, affine, gradient, chunk.end, stress);
+  work.clock.lap(Phase::coefficients);
+  if (scene_.list) {
+    T* const tile = work.tile[channel].data();
+    const auto kernel = list_kernels_.scatter_lists[affine][gradient];
+    if (scene_.evaluate_box && !work.far_only)
+      list_kernels_.scatter_boxes[affine][gradient](tile, work.boxes.boxes(), work.quads, chunk.count);
+    if (work.lists.any && !work.far_only) kernel(tile, work.lists.near_lists(), work.quads, chunk.count);
+    if (work.lists.any && work.far_only)
+      kernel(grid_.channel(channel, chunk.body.field), work.lists.far_lists(), work.quads, chunk.count);
+    return;
+  }
+  const Stencils<T> stencils{work.first, work.shared_stencils, work.weight, work.gradient, chunk.ahead(false)};
+  kernels_.scatter[affine][gradient](work.tile[channel].data(), stencils, work.quads, chunk.count);
+  work.clock.lap(Phase::scatter);
+}
+
+/// Momenta of the polynomials beyond affine, on stencils that were placed to scatter.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::add_higher_to_tile(const Chunk& chunk, Work& work, Channel channel,
+                                                        const T* coefficients) {
+  const Stencils<T> stencils{work.first, false, work.weight, work.gradient, {}};
+  higher_kernels_.scatter(work.tile[channel].data(), stencils, work.offset, coefficients, work.mass, chunk.count);
+  work.clock.lap(Phase::scatter);
+}
+
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::scatter_stress(const Chunk& chunk, Work& work) {
+  stress_coefficients(chunk, work, 1.0, false);
+  if (scene_.axisymmetric) {
+    std::fill(work.b, work.b + D * chunk_size<T>, T(0));
+    add_hoop_force(chunk, work, 1.0);
+  }
+  add_to_tile(chunk, work, force, nullptr, scene_.axisymmetric, scene_.stress_by_affine, !scene_.stress_by_affine);
+}
+
+/// m b(x, X, t): into its own channel, or times dt onto the momentum's b.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged,
+                                                        double dt) {
+  const VectorExpression& expression = *scene_.experiment.body_force;
+  if (!merged) std::fill(work.b, work.b + D * chunk_size<T>, T(0));
+  const double factor = chunk.body.mass * (merged ? dt : 1.0);
+  const T* const around = circumferences(chunk);
+  const T* const position = chunk.at(Particles<D, T>::position);
+  for (int p = 0; p < chunk.count; ++p) {
+    Vector3 x{}, X{};
+    for (int a = 0; a < D; ++a) {
+      x[a] = scene_.domain.lower[a] + scene_.domain.cell_size * cells_from_corner(scene_.domain, chunk.block, a,
+                                                                                  position[a * chunk_size<T> + p]);
+      X[a] =
+          chunk.body.initial_position.empty() ? x[a] : chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
+    }
+    const Vector3 f = expression(x, X, time);
+    for (int c = 0; c < D; ++c)
+      work.b[c * chunk_size<T> + p] += static_cast<T>(factor * (around ? around[p] : T(1)) * f[c]);
+  }
+  if (!merged) add_to_tile(chunk, work, body_force, nullptr, true, false, false);
+}
+
+/// V grad w with w V beside it, and w m (x_p - x_node), V = J V0. Of a ring the gradient is that of its section, as its
+/// volume grows away from the axis.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, Work& work) {
+  const T volume = static_cast<T>(chunk.body.volume);
+  fill_masses(chunk, work);
+  for (int p = 0; p < chunk.end; ++p) work.scalar[p] = volume * work.volume_ratio[p];
+  std::fill(work.S, work.S + D * D * chunk_size<T>, T(0));
+  std::fill(work.A, work.A + D * D * chunk_size<T>, T(0));
+  for (int c = 0; c < D; ++c)
+    for (int p = 0; p < chunk.end; ++p) {
+      work.S[(c * D + c) * chunk_size<T> + p] = work.scalar[p];
+      work.A[(c * D + c) * chunk_size<T> + p] = -work.mass[p];
+    }
+  if (const T* const around = circumferences(chunk))
+    for (int p = 0; p < chunk.end; p += Lanes<T>::width) {
+      const Lanes<T> ring = Lanes<T>::load(work.scalar + p) * Lanes<T>::load(around + p);
+      const Lanes<T> section = ring / (static_cast<T>(2 * std::numbers::pi) * radius(chunk, p));
+      ring.store(work.scalar + p);
+      for (int c = 0; c < D; ++c) section.store(work.S + (c * D + c) * chunk_size<T> + p);
+    }
+  add_to_tile(chunk, work, volume_gradient, work.scalar, false, false, true);
+  add_to_tile(chunk, work, mass_position, nullptr, false, true, false);
+}
+
+}  // namespace mpm::cpu

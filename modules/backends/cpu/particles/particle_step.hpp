@@ -1,0 +1,363 @@
+#pragma once
+// The passes that work on particles, chunk by chunk: scatter, gather, strain, move, time step. A chunk is loaded once
+// and goes through shape, material and transfer plugins in batches; tiles of nodes are private to a thread.
+
+#include <atomic>
+#include <exception>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "backends/cpu/grid/grid.hpp"
+#include "backends/cpu/phase_clock.hpp"
+#include "backends/cpu/tiles/box_kernels.hpp"
+#include "backends/cpu/tiles/higher_kernels.hpp"
+#include "kernel/tensor.hpp"
+
+namespace mpm::cpu {
+
+/// The lists of nodes of one chunk, made from batches of MPM_LANES particles.
+template <int D, class T>
+struct ListWork {
+  static constexpr int lanes = MPM_LANES;
+  // one batch, as the shape takes and gives it
+  alignas(64) T position[D * lanes], half_size[D * lanes], domain[D * D * lanes], second_moment[D * D * lanes];
+  alignas(64) T corners[(1 << D) * D * lanes];
+  alignas(64) std::int32_t count[lanes];
+  AlignedArray<std::int32_t> coordinates;
+  AlignedArray<T> weight, gradient;
+  // the chunk: entries of a particle from first[p], in its tile up to near_end[p] or on the grid up to far_end[p]
+  std::int32_t first[chunk_size<T>], near_end[chunk_size<T>], far_end[chunk_size<T>];
+  AlignedArray<std::int32_t> node;
+  AlignedArray<T> values;  ///< see NodeLists
+  int lowest[3], highest[3];
+  int far = 0, far_of_chunk = 0;  ///< particles with a node outside the tile, with the tail's lanes and without
+  bool any = false;               ///< else no particle of the chunk has a list, and the above is not filled
+
+  void clear() {
+    far = far_of_chunk = 0;
+    any = false;
+    for (int a = 0; a < 3; ++a) lowest[a] = 1 << 20, highest[a] = -(1 << 20);
+  }
+  void require(int capacity) {
+    coordinates.require(std::size_t(capacity) * D * lanes);
+    weight.require(std::size_t(capacity) * lanes);
+    gradient.require(std::size_t(capacity) * D * lanes);
+    node.require(std::size_t(capacity) * chunk_size<T>);
+    values.require(std::size_t(capacity) * chunk_size<T> * 8);
+  }
+  NodeLists<T> near_lists() const { return {first, near_end, node.data(), values.data()}; }
+  NodeLists<T> far_lists() const { return {first, far_end, node.data(), values.data()}; }
+};
+
+/// The boxes of nodes of one chunk.
+template <int D, class T>
+struct BoxWork {
+  alignas(64) std::int32_t base[D * chunk_size<T>], width[chunk_size<T>], tile_node[chunk_size<T>];
+  AlignedArray<T> weight, gradient;
+  Boxes<T> boxes() const { return {width, tile_node, weight.data(), gradient.data()}; }
+  void require() {
+    weight.require(std::size_t(box_nodes<D>) * chunk_size<T>);
+    gradient.require(std::size_t(box_nodes<D>) * D * chunk_size<T>);
+  }
+};
+
+/// How far particles have moved, in cells.
+struct Moved {
+  double distance = 0;  ///< largest of any particle along an axis
+  double outside = 0;   ///< farthest from its own block, see drift; where that is measured
+  void extend(const Moved& other) {
+    distance = std::max(distance, other.distance), outside = std::max(outside, other.outside);
+  }
+};
+
+/// What one thread works in. Whatever threads write for each chunk belongs here: a line of the cache that two of them
+/// write costs each chunk a journey from one processor to the other.
+template <int D, class T>
+struct alignas(page) Workspace {
+  static constexpr int symmetric = Sym<D, T>::size;
+  alignas(64) std::int32_t base[D * chunk_size<T>];
+  alignas(64) std::int32_t first[chunk_size<T>];  ///< of the stencils: see Stencils
+  alignas(64) T offset[D * chunk_size<T>], weight[D * 4 * chunk_size<T>], gradient[D * 4 * chunk_size<T>];
+  alignas(64) T mass[chunk_size<T>], b[D * chunk_size<T>];
+  alignas(64) T stress[symmetric * chunk_size<T>], volume_ratio[chunk_size<T>], scalar[chunk_size<T>];
+  alignas(64) T velocity[D * chunk_size<T>], increment[D * chunk_size<T>];
+  // What is gathered is used up before anything is scattered: one place for both stays in the first-level cache.
+  union {
+    alignas(64) T affine[D * D * chunk_size<T>];
+    alignas(64) T A[D * D * chunk_size<T>];
+  };
+  union {
+    alignas(64) T gradient_of_velocity[D * D * chunk_size<T>];
+    alignas(64) T S[D * D * chunk_size<T>];
+  };
+  alignas(64) T advection[D * chunk_size<T>];
+  /// Of moments a particle: cells^2, and the inverse in 1/m^2. [D] of a tensor product, [D * D] of a list.
+  alignas(64) T second_moment[D * D * chunk_size<T>], inverse_moment[D * D * chunk_size<T>];
+  alignas(64) T transfer_moment[D * D * chunk_size<T>];  ///< as the transfer reads it, where it is not second_moment
+  using Integers = typename Lanes<float>::Mask;
+  static constexpr int integers = Lanes<float>::width;
+  Integers lowest[3], highest[3];  ///< first nodes of a block's stencils, lane by lane
+  ListWork<D, T> lists;
+  BoxWork<D, T> boxes;
+  alignas(64) T quads[(1 + 2 * D) * 4 * chunk_size<T>];
+  /// Zero between uses, so that the scatter may add.
+  AlignedArray<T> tile[channel_count];
+  /// Tiles to gather from; only what the block reaches is valid.
+  AlignedArray<T> velocity_tile, increment_tile;
+  AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
+  AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
+  AlignedArray<T> moved_corners;                    ///< [corner][D][chunk_size] cells, from the particle
+  AlignedArray<T> higher;  ///< [function][D][chunk_size], gathered coefficients of polynomials beyond affine, m/s
+  Moved moved;
+  PhaseClock clock;
+  bool shared_stencils = false;  ///< see Stencils
+  bool far_only = false;         ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
+
+  void clear(Channel c, int scalars) { std::memset(tile[c].data(), 0, std::size_t(scalars) * sizeof(T)); }
+};
+
+/// A particle that cannot go on; the lowest body, then index, is reported.
+struct Failure {
+  int severity = 2;  ///< in the order that a pass looks: -1 domain, 0 inverted, 1 position, 2 none
+  int body = 0;
+  std::int32_t particle = std::numeric_limits<std::int32_t>::max();
+  std::string cause;
+  void note(int s, int b, std::int32_t p, const std::string& why) {
+    if (std::tie(s, b, p) < std::tie(severity, body, particle)) *this = {s, b, p, why};
+  }
+};
+
+/// One body with what the plugins need of it.
+template <int D, class T>
+struct Body {
+  int index = 0, field = 0;
+  double mass = 0, volume = 0;  ///< of a particle; in axisymmetric scenes per metre of circumference
+  bool frozen = false;          ///< particles and domains stay as they are
+  const Component* material = nullptr;
+  std::int32_t (*update_material)(const void*, const mpm_material_batch*) = nullptr;
+  bool dissipates = false;
+  std::vector<double> initial_position;  ///< m, by index of seeding, particle-major
+  std::array<T, D> first_place{};        ///< where in a block particles begin whose first node is the block's, cells
+};
+
+/// Plugins as they were loaded, called through their tables. Another type with these members may call functors that
+/// were compiled in (modules/bench, which measures the price of the tables).
+template <int D, class T>
+struct LoadedComponents {
+  static void evaluate_shape(const Scene<D, T>& scene, const mpm_shape_batch& batch) {
+    scene.evaluate_shape(scene.shape_parameters, &batch);
+  }
+  static void scatter(const Scene<D, T>& scene, const mpm_scatter_batch& batch) {
+    scene.transfer_scatter(scene.transfer_parameters, &batch);
+  }
+  static void gather(const Scene<D, T>& scene, const mpm_gather_batch& batch) {
+    scene.transfer_gather(scene.transfer_parameters, &batch);
+  }
+  static std::int32_t update_material(const Body<D, T>& body, const mpm_material_batch& batch) {
+    return body.update_material(body.material->parameters.data(), &batch);
+  }
+};
+
+template <int D, class T, class Components = LoadedComponents<D, T>>
+class ParticleStep {
+ public:
+  static constexpr std::size_t max_state_fields = 16;
+  ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std::vector<Particles<D, T>>& particles,
+               std::vector<Body<D, T>> bodies);
+
+  /// Kinetic energy of the particles when momenta are scattered with the ledger on, else zero.
+  double scatter(const Pass& pass, const StepInfo& step);
+  struct Gathered {
+    double kinetic_energy = 0, dissipated = 0;  ///< J, with the ledger on
+  };
+  Gathered gather(const Pass& pass, const StepInfo& step);
+  struct Fused {
+    Gathered gathered;
+    bool scattered = false;     ///< next_motion and the forces are those of the following step
+    double kinetic_energy = 0;  ///< as `scatter` returns it
+  };
+  /// Gather, strain, move, and the scatter of the following step `next` while the chunk is at hand.
+  Fused gather_scatter(const Pass& pass, const StepInfo& step, const StepInfo& next);
+  /// Momentum of the filter's increment, gathered and scattered again, into filter_projection.
+  void project(const StepInfo& step);
+  double strain(const Pass& pass, const StepInfo& step);  ///< energy dissipated, J
+  void move(const StepInfo& step);
+  TimeStepLimit time_step_limit();
+
+  /// How far any particle is out of the block that it was sorted into (its stencil's first node, that is), or a bound
+  /// of that, in cells.
+  double drift() const { return drift_; }
+  double last_drift() const { return last_drift_; }
+  void set_drift(double drift) { drift_ = drift; }
+  void set_drift(double drift, double last) { drift_ = drift, last_drift_ = last; }
+  /// The reach of particles that have just been sorted: first nodes lie in their own block, or (`ahead`) up to a cell
+  /// beside it.
+  void reach_own_cells(bool ahead);
+  /// How far ahead of their positions particles may be sorted so that several moves like the last stay within tiles, in
+  /// cells; 0 where only bounds of their drift are known.
+  double foresight() const { return measures_drift_ ? std::clamp(0.95 - 1.25 * last_drift_, 0.0, 0.55) : 0.0; }
+  /// Tiles have a margin of one cell for particles that moved since they were sorted.
+  bool must_sort() const { return drift_ > 0.99; }
+  /// Whether they must be sorted after one more move like the last: what is scattered at once would be scattered again.
+  bool must_sort_soon() const { return drift_ + last_drift_ > 0.99; }
+  /// Whether they need not be after a move of at most `cells`.
+  bool stays_within_tiles(double cells) const { return drift_ + cells * (1 + 1e-6) < 0.99; }
+  /// Widens the range of grid blocks that the lists of each block of particles may reach; whether any grew.
+  bool widen_active_blocks();
+  /// n*D*D, m^2, of every particle at its position, by index of seeding.
+  std::vector<double> second_moments(int body);
+  const std::vector<Body<D, T>>& bodies() const { return bodies_; }
+
+  void measure_phases(bool on);
+  std::map<std::string, double> phase_seconds() const;
+
+ private:
+  using Work = Workspace<D, T>;
+  /// One chunk under work.
+  struct Chunk {
+    Particles<D, T>& particles;
+    Body<D, T>& body;
+    Block<D>& block;
+    T* values;
+    T* motion;  ///< velocity and the transfer's state, of the chunk or (see `passing`) of the work space
+    const std::int32_t* ids;
+    int count, end;    ///< end: count padded to whole lanes
+    const char* next;  ///< the chunk that follows
+    /// What of it is read arrives in the cache, one half with a gather, the other with a scatter.
+    Ahead ahead(bool gather) const {
+      const bool passes = motion != at(Particles<D, T>::velocity);
+      const int left_out = passes ? particles.motion_components : 0;
+      const std::size_t half = (particles.components - left_out) * sizeof(T) / 2 * chunk_size<T>;
+      return {next, gather ? half : 0, (half + end - 1) / end,
+              passes ? Particles<D, T>::velocity * chunk_size<T> * sizeof(T) : ~std::size_t(0),
+              left_out * chunk_size<T> * sizeof(T)};
+    }
+    T* at(int component) const { return values + component * chunk_size<T>; }
+    /// Coefficients of the polynomials beyond affine: the last field of the transfer's state.
+    T* higher() const { return motion_at(particles.transfer_state.back().first); }
+    T* motion_at(int component) const { return motion + (component - Particles<D, T>::velocity) * chunk_size<T>; }
+  };
+  struct States {
+    void* fields[max_state_fields];
+  };
+
+  template <class Visit>
+  void for_each_block(int body, bool coloured, Visit&& visit);
+  void fetch_nodes_of_next(int body, const Block<D>& block, int share);
+  template <class Visit>
+  void for_each_chunk_of(int body, Block<D>& block, Visit&& visit, T* motion = nullptr);
+  States material_states(const Chunk& chunk) const;
+  States transfer_states(const Chunk& chunk) const;
+  void throw_failure();
+
+  void evaluate_shape(const Chunk& chunk, Work& work, bool gradients);
+  void evaluate_lists(const Chunk& chunk, Work& work, bool gradients);
+  void evaluate_list_batch(const Chunk& chunk, Work& work, int first_lane, bool gradients) const;
+  void keep_moment(Work& work, int first_lane, int lane) const;
+  void evaluate_boxes(const Chunk& chunk, Work& work, bool gradients);
+  bool place_boxes(const Chunk& chunk, Work& work) const;
+  int evaluate_lists_between_boxes(const Chunk& chunk, Work& work, int first_lane, int entry, bool gradients);
+  int keep_list(const Chunk& chunk, Work& work, int first_lane, int lane, int entry, bool gradients);
+  bool reaches_too_far(const Chunk& chunk, int particle, const int* low, const int* high);
+  bool place_to_scatter(const Chunk& chunk, Work& work, bool extend_reach) const;
+  bool stencils_hold(const Chunk& chunk, const Work& work) const;
+  void note_too_long(const Chunk& chunk, const Work& work);
+  static T weight_along(const Work& work, int width, int axis, int particle);
+  void begin_reach(Block<D>& block, Work& work) const;
+  void end_reach(Block<D>& block, const Work& work) const;
+  void place_to_gather(const Chunk& chunk, Work& work) const;
+  void number_stencils(Work& work, int count) const;
+  void extend_bounds(const Chunk& chunk) const;
+  bool place_lists(const Chunk& chunk, const Work& work, bool extend_reach) const;
+  void invert_moments(const Chunk& chunk, Work& work) const;
+  void update_material(const Chunk& chunk, mpm_material_batch request);
+  void note_inverted(const Chunk& chunk);
+  double kinetic_energy(const Chunk& chunk, const Work& work) const;
+
+  std::vector<Channel> scattered_channels(const Pass& pass, Channel momentum) const;
+  bool scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work, Channel momentum,
+                     bool evaluated);
+  /// A fused pass asks its material for the strained state and for the stress that it scatters at once.
+  static bool evaluates_for_scatter(const Pass& pass) { return pass.kind == PassKind::gather_scatter && pass.strain; }
+  void want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const;
+  template <class Visit>
+  void scatter_far(int body, Visit&& visit);
+  void fill_masses(const Chunk& chunk, Work& work) const;
+  const T* circumferences(const Chunk& chunk) const;
+  static T cells_from_axis(const Scene<D, T>& scene, const Block<D>& block);
+  Lanes<T> radius(const Chunk& chunk, int p) const;
+  void weigh_stress(const Chunk& chunk, Work& work) const;
+  void add_hoop_force(const Chunk& chunk, Work& work, double factor) const;
+  void momentum_coefficients(const Chunk& chunk, Work& work);
+  T stress_scale(const Chunk& chunk, double factor) const;
+  void stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add);
+  void add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last, bool constant, bool affine,
+                   bool gradient, T stress = T(0));
+  template <bool Affine, bool Gradient, bool Stress>
+  void pack_coefficients(Work& work, const T* last, bool constant, int count, T stress);
+  void pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient, int count, T stress);
+  void add_higher_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* coefficients);
+  void scatter_stress(const Chunk& chunk, Work& work);
+  void scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt);
+  void scatter_contact_fields(const Chunk& chunk, Work& work);
+
+  void load_velocities(int body, const Block<D>& block, Work& work);
+  void flush(int body, const Block<D>& block, Work& work, Channel channel);
+  Moved gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
+  Gathered sum_gathered(bool moved);
+  /// What gather_chunk reads: velocities for the transfer, for the material, or the filter's increment.
+  struct Wanted {
+    bool transfer = false, strain = false;
+    Channel channel = motion;
+  };
+  void gather_chunk(const Chunk& chunk, Work& work, const Wanted& wanted);
+  void gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment, bool gradient);
+  template <bool Moment, bool Gradient>
+  void unpack_moments(Work& work, int count);
+  void unpack_moments(Work& work, bool moment, bool gradient, int count);
+  void keep_higher(const Chunk& chunk, const Work& work) const;
+  void apply_inverse_moments(const Chunk& chunk, Work& work) const;
+  void multiply_by_inverse_moments(const Chunk& chunk, Work& work) const;
+  const T* moments_for_transfer(const Chunk& chunk, Work& work) const;
+  void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
+  void advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass);
+  void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
+  Moved advance_position(const Chunk& chunk, const T* advection, T scale);
+  void account_for_move();
+  /// What the pass that begins sums for the ledger; `follows`: the scatter that it contains wants the energy.
+  void account_for(const StepInfo& step, bool follows = false) {
+    accounted_ = scene_.plan.accounts_at(step.step);
+    sums_energy_ = accounted_ || follows;
+  }
+  void find_first_places();
+  void gather_corners(const Chunk& chunk, Work& work, const T* advection, double dt, T* moved) const;
+  Vec<D, T> velocity_at_corner(const Chunk& chunk, const Work& work, int particle, const Vec<D, T>& corner) const;
+  Moved move_with_corners(const Chunk& chunk, Work& work, const T* moved);
+  double margin(int axis, int side) const;
+  T least_place(const Block<D>& block, int axis) const;
+  void note_outside(const Chunk& chunk);
+
+  const Scene<D, T>& scene_;
+  Grid<D, T>& grid_;
+  std::vector<Particles<D, T>>& particles_;
+  std::vector<Body<D, T>> bodies_;
+  TileKernels<D, T> kernels_;
+  ListKernels<D, T> list_kernels_;
+  HigherKernels<D, T> higher_kernels_;
+  std::vector<std::unique_ptr<Work>> work_;
+  std::vector<std::atomic<int>> units_;  ///< of a pass: UnitPass::State
+  bool measures_drift_ = false;
+  bool accounted_ = false, sums_energy_ = false;  ///< see account_for
+  double drift_ = 0, last_drift_ = 0;             ///< since the last sort, and of the last move, in cells
+  Failure failure_;
+  std::exception_ptr exception_;
+  std::mutex mutex_;
+  PhaseClock::Ticks measured_from_ = 0;
+  std::chrono::steady_clock::time_point measured_since_;
+  std::atomic<bool> abandoned_{false};  ///< the fused pass does not scatter any more
+};
+
+}  // namespace mpm::cpu

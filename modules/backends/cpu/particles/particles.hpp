@@ -1,0 +1,163 @@
+#pragma once
+// The particles of one body: chunks of 64, [component][64] contiguous in each, sorted into blocks of cells.
+// Positions are in cells from the first node of the particle's block, which keeps them exact in float.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "backends/cpu/aligned_array.hpp"
+#include "backends/cpu/particles/chunk_pool.hpp"
+#include "backends/cpu/particles/unit_order.hpp"
+#include "backends/cpu/scene.hpp"
+#include "backends/cpu/tiles/tile.hpp"
+
+namespace mpm::cpu {
+
+/// How far the lists of a block's particles may reach, in cells from its first node.
+struct ListBounds {
+  bool known = false;
+  double low[3], high[3];
+  void clear() {
+    std::fill(low, low + 3, std::numeric_limits<double>::max());
+    std::fill(high, high + 3, std::numeric_limits<double>::lowest());
+  }
+};
+
+template <int D>
+struct Block {
+  BlockCoordinates at{};
+  std::uint32_t first_chunk = 0, count = 0;
+  Reach reach;                                                  ///< of this step's stencils
+  std::array<std::int32_t, neighbour_count<D>> neighbours{-1};  ///< slots of the grid, see has_neighbours
+  /// Blocks of the grid, from this one, that its particles' lists may reach: always the neighbours.
+  std::array<std::int32_t, 3> first_active{-1, -1, -1}, last_active{1, 1, 1};
+  ListBounds bounds;                          ///< of the particles as the last gather moved them
+  std::uint32_t far = 0;                      ///< particles whose lists leave the tile
+  double kinetic_energy = 0, dissipated = 0;  ///< partial sums of the ledger, J
+  double scattered_energy = 0;                ///< the same of the particles when they scatter, J
+
+  /// Whether the grid has been built around it.
+  bool has_neighbours() const { return neighbours[0] >= 0; }
+};
+
+/// One field of state: its first component within a chunk and its declaration.
+struct StateField {
+  std::string name;
+  int first = 0, components = 1;
+};
+
+template <int D, class T>
+struct Particles {
+  // components of a chunk
+  static constexpr int position = 0, velocity = D;
+  int advection = -1;      ///< kept for the move pass of MUSL
+  int domain = -1;         ///< semi-side vectors in cells, row-major, columns are vectors
+  int next_domain = -1;    ///< where a step strains before its last use of the weights (Plan::strained_domain)
+  int circumference = -1;  ///< m, 2 pi r as seeded, which mass and volume of the body are times; axisymmetric only
+  int corners = -1;        ///< of a domain that the grid's velocity moves: [corner][D] cells, from the particle
+  int moved_corners = -1;  ///< where they go in this step, kept for the move pass of MUSL
+  int components = 2 * D;
+  int motion_components = D;  ///< from `velocity` on: it and the transfer's state
+  AlignedArray<T> half_size;  ///< [D][chunk_size] cells, of shapes that read it
+  std::vector<StateField> transfer_state, material_state;
+
+  ChunkPool pool;
+  std::vector<std::byte*> places;  ///< of the chunks: [components][chunk_size] values, then indices of seeding
+  std::vector<Block<D>> blocks;
+  ColouredUnits<D> units;
+  UnitOrder order;  ///< of these units
+  std::uint32_t chunks = 0;
+
+  std::size_t value_bytes() const { return std::size_t(components) * chunk_size<T> * sizeof(T); }
+  std::size_t chunk_bytes() const { return value_bytes() + chunk_size<T> * sizeof(std::int32_t); }
+  T* values_at(std::byte* place) const { return reinterpret_cast<T*>(place); }
+  std::int32_t* ids_at(std::byte* place) const { return reinterpret_cast<std::int32_t*>(place + value_bytes()); }
+
+  T* chunk(std::uint32_t i) { return values_at(places[i]); }
+  const T* chunk(std::uint32_t i) const { return values_at(places[i]); }
+  /// Indices in the order of seeding.
+  std::int32_t* ids(std::uint32_t i) { return ids_at(places[i]); }
+  const std::int32_t* ids(std::uint32_t i) const { return ids_at(places[i]); }
+};
+
+constexpr int padded(int count) {
+  return (count + int(MPM_LANES) - 1) / int(MPM_LANES) * int(MPM_LANES);
+}
+
+/// Calls run(chunk number, particles in it) over a block.
+template <class T, int D, class Run>
+inline void for_each_chunk(const Block<D>& block, Run&& run) {
+  for (std::uint32_t first = 0; first < block.count; first += chunk_size<T>)
+    run(block.first_chunk + first / chunk_size<T>,
+        static_cast<int>(std::min<std::uint32_t>(chunk_size<T>, block.count - first)));
+}
+
+/// The lanes after the last of a block's `count` particles hold copies of it.
+template <int D, class T>
+void fill_tail(const Particles<D, T>& particles, std::uint32_t count, std::byte* last_chunk) {
+  const int used = static_cast<int>((count - 1) % chunk_size<T>) + 1;
+  T* const values = particles.values_at(last_chunk);
+  std::int32_t* const ids = particles.ids_at(last_chunk);
+  for (int lane = used; lane < padded(used); ++lane) {
+    for (int c = 0; c < particles.components; ++c)
+      values[c * chunk_size<T> + lane] = values[c * chunk_size<T> + used - 1];
+    ids[lane] = ids[used - 1];
+  }
+}
+
+/// Position of a particle in cells from the domain's lower corner, wrapped on periodic axes.
+template <int D, class T>
+inline double cells_from_corner(const Domain& domain, const Block<D>& block, int axis, T relative) {
+  double x = block.at[axis] * block_side<D> + static_cast<double>(relative);
+  if (domain.periodic(axis)) {
+    const double period = domain.cells[axis];
+    x -= period * std::floor(x / period);
+    if (x >= period) x = 0;
+  }
+  return x;
+}
+
+/// What a sort works in, kept from one to the next so that its pages are touched once.
+struct SortSpace {
+  std::vector<std::uint16_t> key;                ///< of a particle: where it goes among the blocks around, and its cell
+  std::vector<std::uint64_t> leaving;            ///< of a chunk: bit k where particle k leaves its block
+  std::array<AlignedArray<std::byte>, 3> rows;   ///< particles on their way to another block, of three layers of blocks
+  std::vector<std::byte> far_rows;               ///< of those that go farther than to a neighbour
+  std::vector<std::vector<std::byte*>> unused;   ///< chunks at hand, a thread each
+  std::vector<AlignedArray<std::byte>> nowhere;  ///< a chunk a thread that nobody reads
+  std::uint64_t bytes() const {
+    std::uint64_t total =
+        key.capacity() * sizeof(key[0]) + leaving.capacity() * sizeof(leaving[0]) + far_rows.capacity();
+    for (const auto& layer : rows) total += layer.bytes();
+    return total;
+  }
+};
+
+/// Places seeded particles into chunks of provisional blocks; sort_particles then makes the real ones. `first_value`
+/// gives what a component of a chunk starts as; `affine`, where not negative, takes the gradient of the velocity.
+template <int D, class T>
+void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain,
+                    const std::vector<T>& first_value, int affine);
+
+/// How far ahead particles are sorted: by where the velocity of their nearest node leads, so that they are in the
+/// middle of their way while they belong to a block.
+template <class T>
+struct Foresight {
+  const T* velocities = nullptr;  ///< quads of the body's field; null: particles are sorted as they lie
+  T cells_a_velocity = 0;         ///< s/m of cells
+  T farthest = 0;                 ///< cells along any axis, below 1: particles stay within the tile of their block
+};
+
+/// Sorts into the blocks of stencils' first nodes (of lists: of positions less half a cell), at first and where it will
+/// last by cells within a block too; the same for any number of threads. Whoever stays in its block stays in its place,
+/// unless the block is put in order. Whether the list of blocks has changed. Unless `with_motion`, velocities and the
+/// transfer's state stay behind: they hold anything afterwards.
+template <int D, class T>
+bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion,
+                    const Foresight<T>& foresight = {});
+
+}  // namespace mpm::cpu

@@ -1,0 +1,65 @@
+#pragma once
+// Seeded particles into chunks of provisional blocks.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "backends/cpu/particles/particles.hpp"
+
+namespace mpm::cpu {
+
+/// Particles as they come, each into the last chunk of its block.
+template <int D, class T>
+void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain,
+                    const std::vector<T>& first_value, int affine) {
+  struct Seeded {
+    BlockCoordinates at{};
+    std::uint32_t count = 0;
+    std::vector<std::byte*> chunks;
+  };
+  std::vector<Seeded> found;
+  BlockTable table;
+  particles.pool.set_chunk_bytes(particles.chunk_bytes());
+  particles.pool.reserve((seeds.count() + chunk_size<T> - 1) / chunk_size<T>);
+  int known = -1;
+  seeds.for_each_batch([&](const SeedBatch& batch) {
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      double cells[D];
+      BlockCoordinates at{};
+      for (int a = 0; a < D; ++a) {
+        cells[a] = (batch.position[i * D + a] - domain.lower[a]) / domain.cell_size;
+        at[a] = static_cast<int>(std::floor(cells[a] / block_side<D>));
+      }
+      if (known < 0 || found[known].at != at) known = table.insert(at, static_cast<int>(found.size()));
+      if (known == static_cast<int>(found.size())) found.emplace_back().at = at;
+      Seeded& block = found[known];
+      const int lane = static_cast<int>(block.count++ % chunk_size<T>);
+      if (lane == 0) {
+        block.chunks.push_back(particles.pool.take());
+        for (int c = 0; c < particles.components; ++c)
+          std::fill_n(particles.values_at(block.chunks.back()) + c * chunk_size<T>, chunk_size<T>, first_value[c]);
+      }
+      T* const values = particles.values_at(block.chunks.back()) + lane;
+      particles.ids_at(block.chunks.back())[lane] = static_cast<std::int32_t>(batch.first + i);
+      for (int a = 0; a < D; ++a) {
+        values[(Particles<D, T>::position + a) * chunk_size<T>] = static_cast<T>(cells[a] - at[a] * block_side<D>);
+        values[(Particles<D, T>::velocity + a) * chunk_size<T>] = static_cast<T>(batch.velocity[i * D + a]);
+      }
+      for (int c = 0; affine >= 0 && c < D * D; ++c)
+        values[(affine + c) * chunk_size<T>] = static_cast<T>(batch.velocity_gradient[i * D * D + c]);
+    }
+  });
+  std::sort(found.begin(), found.end(), [](const Seeded& a, const Seeded& b) { return a.at < b.at; });
+  for (const Seeded& seeded : found) {
+    Block<D>& block = particles.blocks.emplace_back();
+    block.at = seeded.at;
+    block.first_chunk = particles.chunks;
+    block.count = seeded.count;
+    fill_tail(particles, seeded.count, seeded.chunks.back());
+    particles.chunks += static_cast<std::uint32_t>(seeded.chunks.size());
+    particles.places.insert(particles.places.end(), seeded.chunks.begin(), seeded.chunks.end());
+  }
+}
+
+}  // namespace mpm::cpu

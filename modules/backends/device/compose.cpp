@@ -1,0 +1,231 @@
+#include "backends/device/compose.hpp"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "backends/device/kernels/arguments.hpp"
+#include "kernel/polynomial_basis.hpp"
+#include "plan/compatibility.hpp"
+#include "support/files.hpp"
+
+namespace mpm::device {
+namespace {
+
+static_assert(wall_free == static_cast<int>(ConditionType::free) &&
+              wall_slip == static_cast<int>(ConditionType::slip) &&
+              wall_stick == static_cast<int>(ConditionType::stick) &&
+              wall_separate == static_cast<int>(ConditionType::separate) &&
+              wall_prescribed == static_cast<int>(ConditionType::prescribed) &&
+              wall_periodic == static_cast<int>(ConditionType::periodic));
+
+struct Header {
+  const char* path;
+  const char* text;
+};
+/// Written by the build from modules/kernel and modules/backends/device/kernels.
+constexpr Header headers[] = {
+#include MPM_KERNEL_HEADERS
+};
+
+/// The file of an #include directive with quotes or angle brackets, empty for any other line.
+std::string included_file(const std::string& line) {
+  std::istringstream words(line);
+  std::string first, second;
+  words >> first >> second;
+  if (first == "#" && second == "include")
+    words >> second;
+  else if (first != "#include")
+    return "";
+  return second;
+}
+
+bool opens_group(const std::string& line) {
+  return line.rfind("#if", line.find_first_not_of(' ')) == line.find_first_not_of(' ') &&
+         line.find("#if") != std::string::npos;
+}
+
+/// Puts texts one after another, each header once and before the first text that includes it.
+class Text {
+ public:
+  void add_header(const std::string& path, const std::string& wanted_by) {
+    if (!done_.insert(path).second) return;
+    const char* text = embedded_header(path);
+    if (!text)
+      throw ComposeError(wanted_by + " includes \"" + path +
+                         "\", which a device cannot see; include headers of modules/kernel only");
+    add_lines(text, path, /*functor=*/false);
+  }
+  void add_functor(const Plugin& plugin) {
+    const std::string name =
+        std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))) + " plugin " + std::string(plugin.id());
+    if (!done_.insert(name).second) return;
+    if (!plugin.descriptor->source || !*plugin.descriptor->source)
+      throw ComposeError(name + " carries no text of its functor; build it with mpm_add_plugin(... HEADER file)");
+    add_lines(plugin.descriptor->source, name, /*functor=*/true);
+  }
+  void add(const std::string& text) { out_ << text; }
+  std::string str() const { return out_.str(); }
+
+ private:
+  /// Includes of kernel headers are replaced by their text; those inside #if MPM_HOST, where only the host looks, are
+  /// dropped.
+  void add_lines(const char* text, const std::string& name, bool functor) {
+    std::istringstream lines(text);
+    std::string line;
+    int number = 0, depth = 0, host_depth = 0;  // depth at which #if MPM_HOST began, 0 outside
+    std::ostringstream body;
+    for (; std::getline(lines, line); body << line << "\n") {
+      ++number;
+      if (opens_group(line) && ++depth && !host_depth && line.find("#if MPM_HOST") != line.npos) host_depth = depth;
+      if (host_depth == depth && (line.rfind("#else", 0) == 0 || line.rfind("#elif", 0) == 0)) host_depth = 0;
+      if (line.rfind("#endif", 0) == 0 && depth-- == host_depth) host_depth = 0;
+      if (line.rfind("#pragma once", 0) == 0) line.clear();
+      const std::string file = included_file(line);
+      if (file.empty()) continue;
+      if (host_depth) {
+        line.clear();
+        continue;
+      }
+      const std::string where = name + ", line " + std::to_string(number);
+      if (file.front() != '"' || file.size() < 3 || (functor && file.rfind("\"kernel/", 0) != 0))
+        throw ComposeError(where + " includes " + file +
+                           ", which a device cannot see; a functor includes \"kernel/...\" headers only, and others "
+                           "inside #if MPM_HOST");
+      add_header(file.substr(1, file.size() - 2), where);
+      line.clear();
+    }
+    out_ << "#line 1 \"" << name << "\"\n" << body.str();
+  }
+
+  std::ostringstream out_;
+  std::set<std::string> done_;
+};
+
+std::string yes(bool value) {
+  return value ? "true" : "false";
+}
+
+/// The chosen types and what the tables say of them: functors keep their tables where only the host looks.
+std::string scene_text(const Choice& choice) {
+  const mpm_shape& shape = choice.shape->shape();
+  const unsigned traits = choice.transfer->transfer().traits;
+  const bool list = shape.form == MPM_NODE_LIST;
+  const auto type = [](const Plugin* plugin) { return "::mpm::" + std::string(plugin->descriptor->functor_name); };
+  const bool affine = traits & (MPM_GATHERS_AFFINE | MPM_STRESS_BY_AFFINE | MPM_STRAIN_BY_AFFINE);
+  std::ostringstream out;
+  out.precision(17);
+  out << "#line 1 \"scene\"\nnamespace mpm::device {\nstruct Scene {\n"
+      << "  static constexpr int dimension = " << choice.dimension << ";\n"
+      << "  static constexpr bool axisymmetric = " << yes(choice.axisymmetric) << ";\n"
+      << "  using Scalar = " << (choice.precision == Precision::single ? "float" : "double") << ";\n"
+      << "  using Shape = " << type(choice.shape) << ";\n  using Transfer = " << type(choice.transfer) << ";\n";
+  if (choice.filter) out << "  using Filter = " << type(choice.filter) << ";\n";
+  if (choice.contact) out << "  using Contact = " << type(choice.contact) << ";\n";
+  out << "  static constexpr bool contact = " << yes(choice.contact) << ", list = " << yes(list)
+      << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
+      << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
+      << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
+      << "  static constexpr int width = " << (list ? 1 : shape.width)
+      << ", list_capacity = " << (list ? shape.capacity[choice.dimension - 2] : 1) << ";\n"
+      << "  static constexpr bool moment_is_gradient = " << yes(shape.second_moment_kind == MPM_MOMENT_IS_GRADIENT)
+      << ", moment_per_particle = " << yes(shape.second_moment_kind == MPM_MOMENT_PER_PARTICLE) << ";\n"
+      << "  static constexpr double inverse_second_moment = "
+      << (shape.second_moment_kind == MPM_MOMENT_CONSTANT ? 1 / shape.second_moment : 0) << ";  // cells^-2\n"
+      << "  static constexpr bool affine = " << yes(affine) << ";  // D^-1 is wanted\n"
+      << "  static constexpr bool scatters_affine = " << yes(traits & (MPM_SCATTERS_AFFINE))
+      << ", gathers_increment = " << yes(traits & MPM_GATHERS_INCREMENT)
+      << ", reads_second_moment = " << yes(traits & MPM_READS_SECOND_MOMENT)
+      << ", stress_by_affine = " << yes(traits & MPM_STRESS_BY_AFFINE)
+      << ", strain_by_affine = " << yes(traits & MPM_STRAIN_BY_AFFINE) << ";\n"
+      << "  static constexpr int basis_order = " << choice.basis_order
+      << ", basis_functions = " << basis_functions(choice.dimension, choice.basis_order)
+      << ";  // polynomials beyond affine\n};\n";
+  for (std::size_t k = 0; k < choice.materials.size(); ++k)
+    out << "struct Scene" << k << " : Scene {\n  using Material = " << type(choice.materials[k]) << ";\n};\n";
+  out << "MPM_DEVICE_ENTRIES\n";
+  if (choice.contact) out << "MPM_DEVICE_CONTACT_ENTRIES\n";
+  if (choice.filter) out << "MPM_DEVICE_FILTER_ENTRIES\n";
+  for (std::size_t k = 0; k < choice.materials.size(); ++k) out << "MPM_DEVICE_MATERIAL_ENTRIES(" << k << ")\n";
+  out << "}  // namespace mpm::device\n";
+  return out.str();
+}
+
+/// The entries that the macros of kernels.hpp make: read from there, so that there is one list.
+std::vector<std::string> entry_names(const Choice& choice) {
+  std::vector<std::string> names;
+  std::istringstream lines(embedded_header("backends/device/kernels/kernels.hpp"));
+  std::string line, macro;
+  while (std::getline(lines, line)) {
+    if (line.rfind("#define ", 0) == 0) macro = line.substr(8, line.find_first_of(" (", 8) - 8);
+    const std::string start = "MPM_DEVICE_ENTRY(";
+    std::size_t at = line.find(start);
+    if (at == line.npos || line.rfind("//", 0) == 0) continue;
+    at += start.size();
+    const std::string name = line.substr(at, line.find(',', at) - at);
+    if (macro == "MPM_DEVICE_CONTACT_ENTRIES" && !choice.contact) continue;
+    if (macro == "MPM_DEVICE_FILTER_ENTRIES" && !choice.filter) continue;
+    if (macro != "MPM_DEVICE_MATERIAL_ENTRIES")
+      names.push_back(name);
+    else
+      for (std::size_t k = 0; k < choice.materials.size(); ++k)
+        names.push_back(name.substr(0, name.find("##")) + std::to_string(k));
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string Choice::name() const {
+  std::string text = std::to_string(dimension) + "-D " + (axisymmetric ? "axisymmetric " : "") +
+                     (precision == Precision::single ? "float" : "double") + ":";
+  std::vector<const Plugin*> plugins{shape, transfer, filter, contact};
+  plugins.insert(plugins.end(), materials.begin(), materials.end());
+  for (const Plugin* plugin : plugins)
+    if (plugin) text += " " + std::string(plugin->id());
+  if (basis_order > 0) text += ", polynomials of order " + std::to_string(basis_order);
+  return text;
+}
+
+Choice choice_of(const Experiment& experiment) {
+  Choice choice;
+  choice.dimension = experiment.dimension;
+  choice.precision = experiment.precision;
+  choice.axisymmetric = experiment.axisymmetric();
+  choice.shape = experiment.shape.plugin;
+  choice.transfer = experiment.transfer.plugin;
+  if (const int order = basis_order_of(experiment.transfer); order > 0)
+    choice.basis_order = std::min(order, static_cast<int>(choice.shape->shape().width) - 1);
+  if (experiment.filter) choice.filter = experiment.filter->plugin;
+  if (experiment.contact) choice.contact = experiment.contact->plugin;
+  for (const MaterialSpecification& material : experiment.materials)
+    choice.materials.push_back(material.component.plugin);
+  return choice;
+}
+
+const char* embedded_header(std::string_view path) {
+  for (const Header& header : headers)
+    if (path == header.path) return header.text;
+  return nullptr;
+}
+
+Composition compose(const Choice& choice) {
+  Text text;
+  text.add_header("backends/device/kernels/kernels.hpp", "the composer");
+  for (const Plugin* plugin : {choice.shape, choice.transfer, choice.filter, choice.contact})
+    if (plugin) text.add_functor(*plugin);
+  for (const Plugin* plugin : choice.materials) text.add_functor(*plugin);
+  text.add(scene_text(choice));
+  Composition composition{choice.name(), text.str(), "", entry_names(choice)};
+  composition.hash = output::sha256(composition.text);
+  return composition;
+}
+
+std::string cache_key(const Composition& composition, std::string_view compiler,
+                      const std::vector<std::string>& options) {
+  std::string all = composition.hash + "\n" + std::string(compiler);
+  for (const std::string& option : options) all += "\n" + option;
+  return output::sha256(all);
+}
+
+}  // namespace mpm::device

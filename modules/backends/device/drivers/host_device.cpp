@@ -1,0 +1,95 @@
+#include "backends/device/drivers/host_device.hpp"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+#include "support/files.hpp"
+
+extern char** environ;
+
+namespace mpm::device {
+namespace {
+
+/// A folder of its own under the system's folder for temporary files, removed at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "mpm_device_XXXXXX").string();
+    if (!mkdtemp(pattern.data())) throw output::MachineError::from_errno("create the folder", pattern, errno);
+    path_ = pattern;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Runs a program found on PATH with its output in `log`; returns its exit status. Throws CompilerError when there is
+/// none.
+int run_program(const std::vector<std::string>& words, const std::filesystem::path& log) {
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  pid_t child = 0;
+  const int error = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error)
+    throw CompilerError("no C++ compiler: cannot start \"" + words[0] + "\": " + std::strerror(error) +
+                        "; install g++ (Debian: apt install g++)");
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace
+
+std::vector<std::string> HostCompiler::all_options() const {
+  // The text sees the compiler's own functions only, as it does with NVRTC.
+  std::vector<std::string> all{"-std=c++17", "-DMPM_DEVICE_PASS=1", "-nostdinc",         "-nostdinc++", "-shared",
+                               "-fPIC",      "-fno-math-errno",     "-fno-trapping-math"};
+  all.insert(all.end(), options.begin(), options.end());
+  return all;
+}
+
+HostDevice::HostDevice(const Composition& composition, const HostCompiler& compiler) : name_(composition.name) {
+  const ScratchFolder folder;
+  const std::filesystem::path source = folder.path() / "composition.cpp", library = folder.path() / "composition.so",
+                              log = folder.path() / "messages.txt";
+  output::write_atomically(source, composition.text);
+  std::vector<std::string> words{compiler.program};
+  for (const std::string& option : compiler.all_options()) words.push_back(option);
+  for (const std::string& word : {source.string(), std::string("-o"), library.string(), std::string("-lm")})
+    words.push_back(word);
+  if (const int status = run_program(words, log); status != 0)
+    throw CompilerError("\"" + compiler.program + "\" does not compile the composition " + name_ + " (status " +
+                        std::to_string(status) + "):\n" + output::read_file(log));
+  void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!handle) throw CompilerError("the compiled composition " + name_ + " cannot be loaded: " + dlerror());
+  library_ = std::shared_ptr<void>(handle, dlclose);
+}
+
+void* HostDevice::entry(const std::string& phase) const {
+  void* function = dlsym(library_.get(), ("mpm_" + phase).c_str());
+  if (!function) throw std::logic_error("the composition " + name_ + " has no phase \"" + phase + "\"");
+  return function;
+}
+
+}  // namespace mpm::device

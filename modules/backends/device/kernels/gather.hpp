@@ -1,0 +1,142 @@
+#pragma once
+// Grid to particles: moments of a velocity field, the transfer's gather, and the move. A lane a particle.
+
+#include "backends/device/kernels/higher.hpp"
+#include "kernel/corner_domain.hpp"
+
+namespace mpm::device {
+
+/// Moments of `velocity` (and of velocity - before, where the transfer reads it) over a stencil.
+template <class Scene>
+MPM_HD GatheredMoments<Scene::dimension, typename Scene::Scalar> gathered_moments(
+    const Arguments<typename Scene::Scalar>& a, const Stencil<Scene>& stencil, const typename Scene::Scalar* velocity,
+    const typename Scene::Scalar* before) {
+  using T = typename Scene::Scalar;
+  constexpr int D = Scene::dimension;
+  GatheredMoments<D, T> moments{};
+  if constexpr (Scene::reads_second_moment) moments.second_moment = stencil.second_moment();
+  stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
+    const int node = node_index<D>(a, s.node);
+    for (int i = 0; i < D; ++i) {
+      const T v = velocity[i * a.node_count + node];
+      moments.velocity[i] += s.weight * v;
+      if constexpr (Scene::gathers_increment)
+        if (before) moments.velocity_increment[i] += s.weight * (v - before[i * a.node_count + node]);
+      for (int j = 0; j < D; ++j) {
+        if constexpr (Scene::affine) moments.affine(i, j) += v * s.affine[j];
+        moments.velocity_gradient(i, j) += v * s.gradient[j];
+      }
+    }
+  });
+  return moments;
+}
+
+/// Where the grid's multilinear velocity takes a particle's corners, with what moves it beyond the gathered velocity.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD void gather_corners(const Arguments<T>& a, int p, const Vec<Scene::dimension, T>& advection,
+                           const Vec<Scene::dimension, T>& gathered) {
+  constexpr int D = Scene::dimension;
+  const int stride = a.particles.stride;
+  const Vec<D, T> x = position_in_cells<D>(a, p);
+  Vec<D, T> corners[1 << D];
+  load_corners<D>(a.particles.corners, stride, p, corners);
+  for (int c = 0; c < 1 << D; ++c) {
+    const TentCell<D, T> cell(x, corners[c]);
+    Vec<D, T> v;
+    for (int i = 0; i < D; ++i) v[i] = advection[i] - gathered[i];
+    for (int which = 0; which < 1 << D; ++which) {
+      const T weight = cell.weight(which);
+      if (weight == T(0)) continue;
+      int node[D];
+      for (int i = 0; i < D; ++i) node[i] = cell.node(which, i);
+      const int index = node_index<D>(a, node);
+      for (int i = 0; i < D; ++i) v[i] += weight * a.grid.velocity[i * a.node_count + index];
+    }
+    for (int i = 0; i < D; ++i) corners[c][i] += a.dt * a.inverse_cell_size * v[i];
+  }
+  store_corners<D>(a.particles.moved_corners, stride, p, corners);
+}
+
+/// Gather pass; without `update_particles` only the velocity gradient that strains the particle (of USF and MUSL).
+template <class Scene>
+MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  using Transfer = typename Scene::Transfer;
+  using State = typename Transfer::template State<Scene::dimension, T>;
+  constexpr int D = Scene::dimension;
+  for_each_index(team, a.particles.count, [&](int p) {
+    const ParticleArrays<T>& particles = a.particles;
+    const int stride = particles.stride;
+    const Stencil<Scene> stencil(a, p);
+    if (!stencil.inside()) return Team::lower(a.first_failed, p);
+    const auto moments = gathered_moments<Scene>(a, stencil, a.grid.velocity, a.grid.velocity_before);
+    store_matrix(particles.velocity_gradient, stride, p,
+                 Scene::strain_by_affine ? moments.affine : moments.velocity_gradient);
+    if constexpr (Scene::axisymmetric) particles.hoop_rate[p] = moments.velocity[0] / particles.position[p];
+    if (!a.update_particles) return;
+    Vec<D, T> v = load<D>(particles.velocity, stride, p), advection;
+    State state = load_state<State>(particles.transfer_state, stride, p);
+    Transfer::gather(parameters_of<Transfer>(a.transfer_parameters), moments, a.dt, v, state, advection);
+    if (a.filtered) v = advection = moments.velocity;
+    store(particles.velocity, stride, p, v);
+    store(particles.advection, stride, p, advection);
+    if constexpr (Scene::sampled) gather_corners<Scene>(a, p, advection, moments.velocity);
+    store_state(particles.transfer_state, stride, p, state);
+    if constexpr (Scene::basis_functions > 0) {
+      Higher<Scene> higher(stencil);
+      higher.gather(a, a.grid.velocity);
+      higher.store(particles.transfer_state, stride, p);
+    }
+  });
+}
+
+/// Beyond a wall by more than this share of the domain a particle has left it; a separating wall lets half a cell
+/// through.
+template <class T>
+inline constexpr T position_tolerance = sizeof(T) == 4 ? T(1e-6) : T(1e-9);
+
+/// x += dt advection; periodic axes are wrapped. Frozen particles stay.
+template <class Scene>
+MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  constexpr int D = Scene::dimension;
+  for_each_index(team, a.particles.count, [&](int p) {
+    const int stride = a.particles.stride;
+    Vec<D, T> x = load<D>(a.particles.position, stride, p);
+    const Vec<D, T> v = load<D>(a.particles.advection, stride, p);
+    bool inside = true;
+    Vec<D, T> way;
+    for (int c = 0; c < D; ++c) way[c] = a.dt * v[c];
+    if constexpr (Scene::sampled) {  // the particle goes to the centroid of its moved corners
+      if (a.particles.frozen) return;
+      Vec<D, T> corners[1 << D];
+      load_corners<D>(a.particles.moved_corners, stride, p, corners);
+      const CornerDomain<D, T> domain = corner_domain<D, T>(corners);
+      const Vec<D, T> centre = centroid(domain, corners);
+      for (int c = 0; c < D; ++c) {
+        way[c] = a.cell_size * centre[c];
+        for (Vec<D, T>& corner : corners) corner[c] = corner[c] - centre[c];
+      }
+      store_corners<D>(a.particles.corners, stride, p, corners);
+      inside = domain.upright;
+    }
+    for (int c = 0; c < D; ++c) {
+      const T size = T(a.cells[c]) * a.cell_size;
+      if (!a.particles.frozen) x[c] += way[c];
+      T at = x[c] - a.lower[c];
+      if (a.walls[c][0] == wall_periodic) {
+        x[c] -= size * floor(at / size);
+        at = x[c] - a.lower[c];
+      }
+      const auto margin = [&](int side) {
+        return a.walls[c][side] == wall_separate ? T(0.5) * a.cell_size : position_tolerance<T> * size;
+      };
+      inside = inside && at >= -margin(0) && at <= size + margin(1);  // false for NaN
+    }
+    if constexpr (Scene::axisymmetric) inside = inside && x[0] > T(0);
+    store(a.particles.position, stride, p, x);
+    if (!inside) Team::lower(a.first_failed, p);
+  });
+}
+
+}  // namespace mpm::device

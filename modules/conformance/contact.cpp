@@ -1,0 +1,302 @@
+// Checks of contact laws: symmetry of the pair, restriction to approach, friction bound, energy and frame invariance.
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "conformance/support.hpp"
+
+namespace mpm::conformance {
+namespace {
+
+constexpr int full = MPM_BATCH;
+
+/// One node where two velocity fields meet.
+struct Pair {
+  double mass_a, mass_b, separation, area;
+  Vector3 velocity_a, velocity_b, normal;
+  double dt;
+
+  double reduced_mass() const { return mass_a * mass_b / (mass_a + mass_b); }
+};
+using Pairs = std::array<Pair, full>;
+
+/// lane % 4: 0 presses, 1 parts while it touches, 2 approaches at a distance, 3 parts at a distance.
+Pairs random_pairs(Random& random, int dimension) {
+  Pairs pairs;
+  for (int lane = 0; lane < full; ++lane) {
+    Pair& p = pairs[lane];
+    p.mass_a = random.logarithmic(1e-2, 1e2);
+    p.mass_b = random.logarithmic(1e-2, 1e2);
+    p.normal = random.direction(dimension);
+    p.separation = lane % 4 < 2 ? random.uniform(-0.1, -0.001) : random.uniform(0.5, 1);
+    p.area = random.logarithmic(1e-3, 1);
+    p.dt = 0x1p-10;
+    const Vector3 tangent = random.direction(dimension);
+    const double approach = (lane % 4 == 1 || lane % 4 == 3 ? -1 : 1) * random.uniform(0.1, 1),
+                 slide = random.uniform(0, 1);
+    const double along = dot(tangent, p.normal);
+    for (int i = 0; i < 3; ++i) p.velocity_a[i] = p.velocity_b[i] = 0;
+    for (int i = 0; i < dimension; ++i) {
+      p.velocity_b[i] = random.uniform(-1, 1);
+      p.velocity_a[i] = p.velocity_b[i] + approach * p.normal[i] + slide * (tangent[i] - along * p.normal[i]);
+    }
+  }
+  return pairs;
+}
+
+struct ContactBatch {
+  Variant variant;
+  int count;
+  double dt;
+  Array mass_a, mass_b, momentum_a, momentum_b, normal, separation, area, impulse, dissipated, status;
+
+  ContactBatch(const Variant& v, const Pairs& pairs, int entries) : variant(v), count(entries), dt(pairs[0].dt) {
+    const Element element = element_of(v);
+    const std::uint32_t n = static_cast<std::uint32_t>(entries);
+    for (Array* scalar : {&mass_a, &mass_b, &separation, &area, &dissipated}) *scalar = Array(element, 1, n);
+    for (Array* vector : {&momentum_a, &momentum_b, &normal, &impulse}) *vector = Array(element, v.dimension, n);
+    status = Array(Element::index, 1, n);
+    for (int lane = 0; lane < entries; ++lane) {
+      const Pair& p = pairs[lane];
+      mass_a.set(0, lane, p.mass_a);
+      mass_b.set(0, lane, p.mass_b);
+      separation.set(0, lane, p.separation);
+      area.set(0, lane, p.area);
+      for (int i = 0; i < v.dimension; ++i) {
+        momentum_a.set(i, lane, p.mass_a * p.velocity_a[i]);
+        momentum_b.set(i, lane, p.mass_b * p.velocity_b[i]);
+        normal.set(i, lane, p.normal[i]);
+      }
+    }
+  }
+
+  void apply(const Plugin& plugin, const ParameterSample& parameters) {
+    const mpm_contact_batch batch{static_cast<std::uint32_t>(count),
+                                  mass_a.stride(),
+                                  static_cast<std::uint32_t>(variant.dimension),
+                                  0,
+                                  dt,
+                                  mass_a.data(),
+                                  mass_b.data(),
+                                  momentum_a.data(),
+                                  momentum_b.data(),
+                                  normal.data(),
+                                  separation.data(),
+                                  area.data(),
+                                  impulse.data(),
+                                  dissipated.data(),
+                                  static_cast<std::int32_t*>(status.data())};
+    plugin.contact().apply[variant.precision][variant.dimension - 2](parameters.data(), &batch);
+  }
+
+  Vector3 vector(const Array& array, int lane) const {
+    Vector3 r{};
+    for (int i = 0; i < variant.dimension; ++i) r[i] = array(i, lane);
+    return r;
+  }
+  /// Velocity of b seen from a, before (0) or after (1) the impulse.
+  Vector3 jump(int lane, double after) const {
+    const Vector3 pa = vector(momentum_a, lane), pb = vector(momentum_b, lane), J = vector(impulse, lane);
+    Vector3 r;
+    for (int i = 0; i < 3; ++i)
+      r[i] = (pb[i] - after * J[i]) / mass_b(0, lane) - (pa[i] + after * J[i]) / mass_a(0, lane);
+    return r;
+  }
+  double kinetic_energy(int lane, double after) const {
+    const Vector3 pa = vector(momentum_a, lane), pb = vector(momentum_b, lane), J = vector(impulse, lane);
+    double energy = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double a = pa[i] + after * J[i], b = pb[i] - after * J[i];
+      energy += a * a / (2 * mass_a(0, lane)) + b * b / (2 * mass_b(0, lane));
+    }
+    return energy;
+  }
+};
+
+ContactBatch applied(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const Pairs& pairs,
+                     int count = full) {
+  ContactBatch batch(v, pairs, count);
+  batch.apply(plugin, parameters);
+  return batch;
+}
+
+double magnitude(const Vector3& v) {
+  return std::sqrt(dot(v, v));
+}
+
+/// Errors are counted in impulses of unit size: every jump of the random pairs is of order 1 m/s.
+double impulse_difference(const ContactBatch& x, const ContactBatch& y, int lane, double sign) {
+  const Vector3 a = x.vector(x.impulse, lane), b = y.vector(y.impulse, lane);
+  Vector3 difference;
+  for (int i = 0; i < 3; ++i) difference[i] = a[i] - sign * b[i];
+  return magnitude(difference);
+}
+
+bool is_weld(const Plugin& plugin) {
+  return plugin.contact().traits & MPM_BYPASSES_DETECTION;
+}
+
+/// What must hold of every single pair: no pull at a distance, no approach left, energy and status.
+void check_pairs(const Plugin& plugin, const ContactBatch& b, const Pairs& pairs, const std::string& where,
+                 Findings& findings) {
+  const Variant& v = b.variant;
+  Worst apart, approach, dissipated, energy, lost, sticking;
+  bool status = true;
+  for (int lane = 0; lane < full; ++lane) {
+    const Vector3 n = b.vector(b.normal, lane), after = b.jump(lane, 1), J = b.vector(b.impulse, lane);
+    const double m = pairs[lane].reduced_mass(), heat = b.dissipated(0, lane);
+    const double gain = (b.kinetic_energy(lane, 1) - b.kinetic_energy(lane, 0)) / (b.kinetic_energy(lane, 0) + m);
+    if (!is_weld(plugin) && lane % 4 != 0) apart.add(magnitude(J) / m, lane);
+    if (is_weld(plugin) || lane % 4 == 0) approach.add(-dot(after, n), lane);
+    dissipated.add(-heat / m, lane);
+    energy.add(gain, lane);
+    lost.add(heat / (b.kinetic_energy(lane, 0) + m) + gain, lane);
+    const int state = static_cast<int>(b.status(0, lane));
+    status &= (state == MPM_APART) == (magnitude(J) == 0) && state >= MPM_APART && state <= MPM_SLIPS;
+    if (state == MPM_STICKS) sticking.add(magnitude(after), lane);
+  }
+  const double bound = 256 * v.epsilon();
+  if (!is_weld(plugin) && !(plugin.contact().traits & MPM_PULLS))
+    findings.at_most("no_pull", v, apart, 0, "impulse over reduced mass of pairs that part or are apart" + where);
+  findings.at_most("no_approach_after", v, approach, bound, "approach left after the impulse, m/s" + where);
+  findings.at_most("dissipation_not_negative", v, dissipated, 0, "negative heat over reduced mass" + where);
+  findings.at_most("energy_never_grows", v, energy, bound, "relative gain of kinetic energy" + where);
+  findings.at_most("heat_below_loss", v, lost, bound, "heat reported beyond the kinetic energy lost, relative" + where);
+  findings.at_most("sticking_pair_moves_as_one", v, sticking, bound, "relative velocity of pairs that stick" + where);
+  findings.require("status [" + v.name() + "]", status, "apart exactly where the impulse is zero; 0, 1 or 2" + where);
+}
+
+/// |J_t| <= mu J_n with mu the largest coefficient of friction among the parameters.
+void check_friction(const Plugin& plugin, const ContactBatch& b, const ParameterSample& parameters, const Pairs& pairs,
+                    const std::string& where, Findings& findings) {
+  double mu = -1;
+  for (const mpm_parameter& p : plugin.parameters())
+    if (std::strstr(p.name, "friction")) mu = std::max(mu, parameter_value(plugin, parameters, p.name, 0));
+  if (mu < 0) return;
+  Worst excess;
+  for (int lane = 0; lane < full; ++lane) {
+    const Vector3 n = b.vector(b.normal, lane), J = b.vector(b.impulse, lane);
+    const double normal = -dot(J, n);
+    Vector3 tangential;
+    for (int i = 0; i < 3; ++i) tangential[i] = J[i] + normal * n[i];
+    excess.add((magnitude(tangential) - mu * normal) / pairs[lane].reduced_mass(), lane);
+  }
+  findings.at_most("friction_bound", b.variant, excess, 256 * b.variant.epsilon(),
+                   "|J_t| - mu J_n over reduced mass" + where);
+}
+
+/// Swapping the bodies flips the impulse; turning the frame turns it; a moving frame changes nothing.
+void check_symmetry(const Plugin& plugin, const ContactBatch& b, const ParameterSample& parameters, const Pairs& pairs,
+                    const Matrix3& rotation, const std::string& where, Findings& findings) {
+  Pairs swapped = pairs, turned = pairs, moving = pairs;
+  for (int lane = 0; lane < full; ++lane) {
+    std::swap(swapped[lane].mass_a, swapped[lane].mass_b);
+    std::swap(swapped[lane].velocity_a, swapped[lane].velocity_b);
+    swapped[lane].normal = product(scaled(Matrix3::identity(), -1), pairs[lane].normal);
+    turned[lane].velocity_a = product(rotation, pairs[lane].velocity_a);
+    turned[lane].velocity_b = product(rotation, pairs[lane].velocity_b);
+    turned[lane].normal = product(rotation, pairs[lane].normal);
+    for (int i = 0; i < b.variant.dimension; ++i)
+      for (Vector3* velocity : {&moving[lane].velocity_a, &moving[lane].velocity_b}) (*velocity)[i] += i + 1;
+  }
+  const ContactBatch s = applied(plugin, b.variant, parameters, swapped),
+                     t = applied(plugin, b.variant, parameters, turned);
+  const ContactBatch g = applied(plugin, b.variant, parameters, moving);
+  Worst swap, turn, move, heat;
+  for (int lane = 0; lane < full; ++lane) {
+    const double m = pairs[lane].reduced_mass();
+    swap.add(impulse_difference(s, b, lane, -1) / m, lane);
+    move.add(impulse_difference(g, b, lane, 1) / m, lane);
+    const Vector3 back = product(transposed(rotation), t.vector(t.impulse, lane)), J = b.vector(b.impulse, lane);
+    for (int i = 0; i < 3; ++i) turn.add(std::abs(back[i] - J[i]) / m, lane);
+    for (const ContactBatch* other : {&s, &t, &g})
+      heat.add(std::abs(other->dissipated(0, lane) - b.dissipated(0, lane)) / m, lane);
+  }
+  const double bound = 512 * b.variant.epsilon();
+  findings.at_most("pair_symmetry", b.variant, swap, bound, "|J + J of the swapped pair| over reduced mass" + where);
+  findings.at_most("rotation_of_frame", b.variant, turn, bound, "|Q^T J' - J| over reduced mass" + where);
+  findings.at_most("moving_frame", b.variant, move, bound, "|J' - J| over reduced mass" + where);
+  findings.at_most("heat_invariance", b.variant, heat, bound, "heat in swapped, turned and moving frames" + where);
+}
+
+void check_agreement(const ContactBatch& b, const ContactBatch& oracle, const Pairs& pairs, const std::string& where,
+                     Findings& findings) {
+  Worst impulse, heat;
+  bool status = true;
+  for (int lane = 0; lane < full; ++lane) {
+    const double m = pairs[lane].reduced_mass();
+    impulse.add(impulse_difference(b, oracle, lane, 1) / m, lane);
+    heat.add(std::abs(b.dissipated(0, lane) - oracle.dissipated(0, lane)) / m, lane);
+    status &= b.status(0, lane) == oracle.status(0, lane);
+  }
+  const double bound = 256 * b.variant.epsilon();
+  findings.at_most("agrees_with_scalar", b.variant, impulse, bound,
+                   "|J - J of scalar double| over reduced mass" + where);
+  findings.at_most("heat_agrees_with_scalar", b.variant, heat, bound, "heat against scalar double" + where);
+  findings.require("status_agrees_with_scalar [" + b.variant.name() + "]", status, "status of every pair" + where);
+}
+
+/// A pair's result must not depend on which pairs share its pack.
+void check_neighbours(const Plugin& plugin, const ContactBatch& b, const ParameterSample& parameters,
+                      const Pairs& pairs, const std::string& where, Findings& findings) {
+  constexpr int shift = 5;
+  Pairs moved = pairs;
+  std::rotate(moved.begin(), moved.begin() + shift, moved.end());
+  const ContactBatch m = applied(plugin, b.variant, parameters, moved);
+  bool same = true;
+  for (int lane = 0; lane < full; ++lane) {
+    const int other = (lane + full - shift) % full;
+    for (int i = 0; i < b.variant.dimension; ++i) same &= b.impulse(i, lane) == m.impulse(i, other);
+    same &= b.dissipated(0, lane) == m.dissipated(0, other);
+  }
+  findings.require("independent_of_neighbours [" + b.variant.name() + "]", same,
+                   "bit-equal results whichever pairs share the pack" + where);
+}
+
+void check_batches(const Plugin& plugin, const ContactBatch& reference, const ParameterSample& parameters,
+                   const Pairs& pairs, const std::string& where, Findings& findings) {
+  bool guards = true, written = true, same = true, inputs = true;
+  for (int count = MPM_LANES; count <= full; count += MPM_LANES) {
+    const ContactBatch untouched(reference.variant, pairs, count);
+    const ContactBatch b = applied(plugin, reference.variant, parameters, pairs, count);
+    for (const Array* out : {&b.impulse, &b.dissipated, &b.status})
+      guards &= out->guards_intact(), written &= out->all_written();
+    inputs &= b.mass_a == untouched.mass_a && b.mass_b == untouched.mass_b && b.momentum_a == untouched.momentum_a &&
+              b.momentum_b == untouched.momentum_b && b.normal == untouched.normal &&
+              b.separation == untouched.separation && b.area == untouched.area;
+    for (int lane = 0; lane < count; ++lane)
+      for (int i = 0; i < b.variant.dimension; ++i) same &= b.impulse(i, lane) == reference.impulse(i, lane);
+  }
+  const std::string variant = " [" + reference.variant.name() + "]";
+  findings.require("writes_inside_arrays" + variant, guards, "guards around the outputs" + where);
+  findings.require("writes_every_output" + variant, written, "no output element is left out" + where);
+  findings.require("inputs_untouched" + variant, inputs, "masses, momenta, normal, separation, area" + where);
+  findings.require("independent_of_batch" + variant, same, "counts of 16 to 64" + where);
+}
+
+}  // namespace
+
+void check_contact(const Plugin& plugin, Findings& findings) {
+  Random random(20240602);
+  for (const ParameterSample& parameters : sample_parameters(plugin, random))
+    for (const Variant& v : variants_of(*plugin.descriptor)) {
+      const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
+      const Pairs pairs = random_pairs(random, v.dimension);
+      findings.running("pairs and friction", v, where);
+      const ContactBatch b = applied(plugin, v, parameters, pairs);
+      check_pairs(plugin, b, pairs, where, findings);
+      check_friction(plugin, b, parameters, pairs, where, findings);
+      findings.running("symmetry and frames", v, where);
+      check_symmetry(plugin, b, parameters, pairs, random.rotation(v.dimension), where, findings);
+      findings.running("neighbours", v, where);
+      check_neighbours(plugin, b, parameters, pairs, where, findings);
+      findings.running("batches", v, where);
+      check_batches(plugin, b, parameters, pairs, where, findings);
+      if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
+      findings.running("agreement with scalar", v, where);
+      check_agreement(b, applied(plugin, {MPM_SCALAR_DOUBLE, v.dimension}, parameters, pairs), pairs, where, findings);
+    }
+}
+
+}  // namespace mpm::conformance

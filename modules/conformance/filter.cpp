@@ -1,0 +1,169 @@
+// Checks of velocity filters: passes, a uniform motion is kept, nodes do not mix, agreement of all instantiations.
+
+#include <algorithm>
+#include <array>
+
+#include "conformance/support.hpp"
+
+namespace mpm::conformance {
+namespace {
+
+constexpr int full = MPM_BATCH;
+
+/// One call of the plugin with all its arrays.
+struct FilterBatch {
+  Variant variant;
+  int count;
+  Array projected, increment, velocity;
+
+  FilterBatch(const Variant& v, int entries) : variant(v), count(entries) {
+    for (Array* array : {&projected, &increment, &velocity})
+      *array = Array(element_of(v), v.dimension, static_cast<std::uint32_t>(entries));
+  }
+
+  void update(const Plugin& plugin, const ParameterSample& parameters, int iteration) {
+    mpm_filter_batch batch{};
+    batch.count = static_cast<std::uint32_t>(count);
+    batch.stride = projected.stride();
+    batch.dimension = static_cast<std::uint32_t>(variant.dimension);
+    batch.iteration = static_cast<std::uint32_t>(iteration);
+    batch.projected = projected.data();
+    batch.increment = increment.data();
+    batch.velocity = velocity.data();
+    plugin.filter().update[variant.precision][variant.dimension - 2](parameters.data(), &batch);
+  }
+};
+
+/// Projected, increment and velocity of every node, m/s.
+struct FilterInput {
+  std::array<std::array<Vector3, full>, 3> field{};
+};
+
+FilterInput random_input(Random& random, int dimension) {
+  FilterInput input;
+  for (auto& field : input.field)
+    for (Vector3& v : field)
+      for (int i = 0; i < dimension; ++i) v[i] = random.uniform(-1, 1);
+  return input;
+}
+
+FilterBatch loaded(const Variant& v, const FilterInput& input, int count = full, int shift = 0) {
+  FilterBatch batch(v, count);
+  Array* const arrays[] = {&batch.projected, &batch.increment, &batch.velocity};
+  for (std::size_t f = 0; f < 3; ++f)
+    for (int lane = 0; lane < count; ++lane)
+      for (int i = 0; i < v.dimension; ++i)
+        arrays[f]->set(i, lane, input.field[f][static_cast<std::size_t>((lane + shift) % full)][i]);
+  return batch;
+}
+
+FilterBatch updated(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const FilterInput& input,
+                    int iteration, int count = full, int shift = 0) {
+  FilterBatch batch = loaded(v, input, count, shift);
+  batch.update(plugin, parameters, iteration);
+  return batch;
+}
+
+/// Largest difference of what two updates wrote, lane against lane + shift.
+Worst difference(const FilterBatch& a, const FilterBatch& b, int shift = 0) {
+  Worst worst;
+  for (int lane = 0; lane < std::min(a.count, b.count); ++lane)
+    for (int i = 0; i < a.variant.dimension; ++i) {
+      const int other = (lane + shift) % full;
+      worst.add(std::abs(a.increment(i, lane) - b.increment(i, other)), lane);
+      worst.add(std::abs(a.velocity(i, lane) - b.velocity(i, other)), lane);
+    }
+  return worst;
+}
+
+/// Where everything moves alike the projection changes nothing: no increment may be left to add.
+void check_translation(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, Random& random,
+                       int iteration, const std::string& where, Findings& findings) {
+  FilterInput uniform;
+  const Vector3 c = random.direction(v.dimension);
+  for (auto& field : uniform.field)
+    for (Vector3& value : field)
+      for (int i = 0; i < v.dimension; ++i) value[i] = static_cast<float>(c[i]);
+  const FilterBatch batch = updated(plugin, v, parameters, uniform, iteration);
+  Worst change;
+  for (int lane = 0; lane < full; ++lane)
+    for (int i = 0; i < v.dimension; ++i) change.add(std::abs(batch.velocity(i, lane) - uniform.field[2][0][i]), lane);
+  findings.at_most("uniform_motion_kept", v, change, 4 * v.epsilon(),
+                   "change of a uniform velocity whose projection is itself" + where);
+}
+
+/// u(a + b) against u(a) + u(b): reported, a filter may be nonlinear.
+double nonlinearity(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const FilterInput& a,
+                    const FilterInput& b, int iteration) {
+  FilterInput both = a;
+  for (std::size_t f = 0; f < 3; ++f)
+    for (std::size_t lane = 0; lane < full; ++lane)
+      for (int i = 0; i < v.dimension; ++i) both.field[f][lane][i] += b.field[f][lane][i];
+  const FilterBatch u = updated(plugin, v, parameters, a, iteration), w = updated(plugin, v, parameters, b, iteration);
+  FilterBatch sum = u;
+  for (int lane = 0; lane < full; ++lane)
+    for (int i = 0; i < v.dimension; ++i) {
+      sum.increment.set(i, lane, u.increment(i, lane) + w.increment(i, lane));
+      sum.velocity.set(i, lane, u.velocity(i, lane) + w.velocity(i, lane));
+    }
+  return difference(updated(plugin, v, parameters, both, iteration), sum).value;
+}
+
+/// Writes stay inside the arrays at every batch size, a node's result is its own, the projection stays as it was.
+void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const FilterInput& input,
+                   int iteration, const std::string& where, Findings& findings) {
+  constexpr int shift = 5;
+  const FilterBatch reference = updated(plugin, v, parameters, input, iteration);
+  bool guards = true, finite = true, inputs = true, same = true;
+  for (int count = MPM_LANES; count <= full; count += MPM_LANES) {
+    const FilterBatch b = updated(plugin, v, parameters, input, iteration, count);
+    for (const Array* out : {&b.increment, &b.velocity}) guards &= out->guards_intact();
+    inputs &= b.projected == loaded(v, input, count).projected;
+    same &= difference(b, reference).value == 0;
+    for (int lane = 0; lane < count; ++lane)
+      for (int i = 0; i < v.dimension; ++i)
+        finite &= std::isfinite(b.increment(i, lane)) && std::isfinite(b.velocity(i, lane));
+  }
+  const FilterBatch moved = updated(plugin, v, parameters, input, iteration, full, shift);
+  findings.require("writes_inside_arrays [" + v.name() + "]", guards, "guards around increment and velocity" + where);
+  findings.require("finite [" + v.name() + "]", finite, "increment and velocity of finite input" + where);
+  findings.require("inputs_untouched [" + v.name() + "]", inputs, "the projection" + where);
+  findings.require("independent_of_batch [" + v.name() + "]", same, "counts of 16 to 64" + where);
+  findings.require("independent_of_neighbours [" + v.name() + "]", difference(moved, reference, shift).value == 0,
+                   "bit-equal results whichever nodes share the batch" + where);
+}
+
+}  // namespace
+
+void check_filter(const Plugin& plugin, Findings& findings) {
+  findings.require("iterations_entry", plugin.filter().iterations != nullptr, "tells how many passes it wants");
+  if (!plugin.filter().iterations) return;
+  Random random(20240608);
+  for (const ParameterSample& parameters : sample_parameters(plugin, random)) {
+    const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
+    findings.running("number of passes" + where);
+    const std::int32_t passes = plugin.filter().iterations(parameters.data());
+    findings.require("iterations_not_negative", passes >= 0, std::to_string(passes) + " passes" + where);
+    findings.require("iterations_repeatable", passes == plugin.filter().iterations(parameters.data()),
+                     "the same answer at every call" + where);
+    for (const Variant& v : variants_of(*plugin.descriptor))
+      for (int iteration : {1, 2, 7}) {
+        const FilterInput input = random_input(random, v.dimension), other = random_input(random, v.dimension);
+        findings.running("uniform motion", v, where);
+        check_translation(plugin, v, parameters, random, iteration, where, findings);
+        findings.running("batches", v, where);
+        check_batches(plugin, v, parameters, input, iteration, where, findings);
+        findings.report("nonlinearity [" + v.name() + "]", nonlinearity(plugin, v, parameters, input, other, iteration),
+                        "|u(a + b) - u(a) - u(b)|" + where);
+        if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
+        findings.running("agreement with scalar", v, where);
+        const Variant oracle{MPM_SCALAR_DOUBLE, v.dimension};
+        findings.at_most("agrees_with_scalar", v,
+                         difference(updated(plugin, v, parameters, input, iteration),
+                                    updated(plugin, oracle, parameters, input, iteration)),
+                         16 * v.epsilon(), "increment and velocity against scalar double" + where);
+      }
+  }
+}
+
+}  // namespace mpm::conformance

@@ -1,0 +1,509 @@
+#include "plan/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <numeric>
+#include <sstream>
+
+#include "experiment/diagnostics.hpp"
+#include "kernel/polynomial_basis.hpp"
+#include "plan/compatibility.hpp"
+
+namespace mpm {
+namespace {
+
+/// Gathers the plan of one experiment; every entry says which line asked for it.
+class Planner {
+ public:
+  explicit Planner(const Experiment& experiment)
+      : experiment_(experiment),
+        transfer_(experiment.transfer.plugin->transfer()),
+        shape_(experiment.shape.plugin->shape()) {}
+
+  Plan make() {
+    refuse_impossible_combinations();
+    decide();
+    attributes();
+    channels();
+    passes();
+    estimate();
+    name_lines();
+    return std::move(plan_);
+  }
+
+ private:
+  std::string named(const Component& component) const {
+    return component.pointer + " \"" + std::string(component.plugin->id()) + "\"";
+  }
+
+  [[noreturn]] void refuse(const std::string& pointer, const std::string& message) const {
+    Problem problem{experiment_.file.string(), 0, 0, pointer, message};
+    for (const auto& [known, position] : experiment_.positions)
+      if (known == pointer) problem.line = position.first, problem.column = position.second;
+    throw InputError({problem});
+  }
+
+  void refuse_impossible_combinations() const {
+    const FilterSchedule& schedule = experiment_.filter_schedule;
+    Mix mix{experiment_.shape.plugin,
+            experiment_.transfer.plugin,
+            nullptr,
+            nullptr,
+            experiment_.solver.stress_update,
+            schedule.every_steps == 1 && schedule.every_time == 0 && schedule.every_courant == 0,
+            basis_order_of(experiment_.transfer)};
+    if (experiment_.filter) mix.filter = experiment_.filter->plugin;
+    if (experiment_.contact) mix.contact = experiment_.contact->plugin;
+    const auto refusal = refusal_of(mix);
+    if (!refusal) return refuse_common_schedules();
+    const Component& at = refusal->at == MPM_SHAPE      ? experiment_.shape
+                          : refusal->at == MPM_TRANSFER ? experiment_.transfer
+                          : refusal->at == MPM_FILTER   ? *experiment_.filter
+                                                        : *experiment_.contact;
+    refuse(at.pointer, refusal->reason);
+  }
+
+  /// A filter and a ledger that skip steps meet always, or never, where their numbers have a common divisor.
+  void refuse_common_schedules() const {
+    const FilterSchedule& schedule = experiment_.filter_schedule;
+    const int every = experiment_.output.ledger_every;
+    if (!experiment_.filter || schedule.every_time > 0 || schedule.every_courant > 0) return;
+    if (const int common = std::gcd(every, schedule.every_steps); common > 1)
+      refuse(
+          "/output/ledger_every",
+          std::to_string(every) + " and " + experiment_.filter->pointer + "/every_steps " +
+              std::to_string(schedule.every_steps) + " have the divisor " + std::to_string(common) +
+              " in common: the ledger would count the filter in too many steps or in none; take numbers without one, "
+              "or 1");
+  }
+
+  /// Puts the line of the file before each reason, which starts with a JSON pointer; a default has no line.
+  void name_lines() {
+    const auto name = [&](std::string& because) {
+      const std::string pointer = because.substr(0, because.find_first_of(" :"));
+      for (const auto& [known, position] : experiment_.positions)
+        if (known == pointer && position.first > 0) because = "line " + std::to_string(position.first) + ": " + because;
+    };
+    for (PlannedAttribute& attribute : plan_.attributes) name(attribute.because);
+    for (PlannedChannel& channel : plan_.channels) name(channel.because);
+    const std::function<void(std::vector<Pass>&)> name_passes = [&](std::vector<Pass>& passes) {
+      for (Pass& pass : passes) name(pass.because), name_passes(pass.children);
+    };
+    name_passes(plan_.passes);
+  }
+
+  void decide() {
+    const bool moment_is_gradient = shape_.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
+    plan_.contact = experiment_.contact.has_value();
+    plan_.ledger = experiment_.output.ledger;
+    plan_.ledger_every = experiment_.output.ledger_every;
+    plan_.velocity_increment = transfer_.traits & MPM_GATHERS_INCREMENT;
+    plan_.affine_moment = transfer_.traits & (MPM_GATHERS_AFFINE | MPM_STRAIN_BY_AFFINE | MPM_STRESS_BY_AFFINE);
+    plan_.velocity_gradient_moment = transfer_.traits & MPM_GATHERS_GRADIENT;
+    plan_.weight_gradients = !(transfer_.traits & MPM_STRESS_BY_AFFINE) || !(transfer_.traits & MPM_STRAIN_BY_AFFINE) ||
+                             plan_.contact || plan_.velocity_gradient_moment ||
+                             (plan_.affine_moment && moment_is_gradient);
+    plan_.particle_domain = experiment_.shape.plugin->descriptor->needs & MPM_NEEDS_DOMAIN;
+    plan_.sample_points = static_cast<int>(shape_.sample_points[experiment_.dimension - 2]);
+    plan_.second_moment = shape_.second_moment_kind == MPM_MOMENT_PER_PARTICLE &&
+                          (plan_.affine_moment || (transfer_.traits & MPM_AFFINE_CARRIES_ENERGY));
+    if (const int order = basis_order_of(experiment_.transfer); order > 0) {
+      plan_.basis_order = std::min(order, static_cast<int>(shape_.width) - 1);
+      plan_.basis_functions = basis_functions(experiment_.dimension, plan_.basis_order);
+    }
+    plan_.filter = experiment_.filter.has_value();
+    // The reference backend keeps the stencils of a step; the cpu backend evaluates them anew in every pass.
+    const bool strains_before_gather =
+        strains_before_forces() || (plan_.filter && filters_before_forces() && strains_after_forces());
+    plan_.strained_domain = plan_.particle_domain && strains_before_gather && experiment_.backend == "cpu";
+    plan_.kept_velocity = plan_.filter && (filters_before_forces() || strains_before_forces());
+    plan_.constrained_velocity =
+        plan_.filter && experiment_.filter_schedule.constrain_always && (plan_.contact || separates());
+    decide_fusion();
+    // A separating box decides twice, before and after the forces, so these may not come merged with the momentum.
+    plan_.separate_force = plan_.velocity_increment || plan_.contact || experiment_.body_force.has_value() ||
+                           separates() || strains_before_forces() || (plan_.filter && filters_before_forces());
+    plan_.force_for_ledger = plan_.ledger && !plan_.separate_force;
+    plan_.separate_force = plan_.separate_force || plan_.ledger;
+    plan_.kept_advection = experiment_.solver.stress_update == StressUpdate::modified_last;
+    plan_.initial_position = experiment_.exact.has_value() || experiment_.output.colour_by == "displacement" ||
+                             (experiment_.body_force && experiment_.body_force->uses_initial_position());
+  }
+
+  /// By the gradient of v-: USF, and half of USAVG.
+  bool strains_before_forces() const {
+    const StressUpdate update = experiment_.solver.stress_update;
+    return update == StressUpdate::first || update == StressUpdate::averaged;
+  }
+  /// By the gradient of v+ as it stands after the forces: USL, and half of USAVG.
+  bool strains_after_forces() const {
+    const StressUpdate update = experiment_.solver.stress_update;
+    return update == StressUpdate::last || update == StressUpdate::averaged;
+  }
+  /// The order as the file says it.
+  std::string named_order() const {
+    return std::string("/solver/stress_update ") +
+           (experiment_.solver.stress_update == StressUpdate::averaged ? "\"averaged\"" : "\"first\"");
+  }
+
+  bool filters_before_forces() const { return experiment_.filter->plugin->filter().traits & MPM_FILTERS_BEFORE_FORCES; }
+
+  /// Gather and the next scatter in one visit of a particle: legal where nothing needs the grid in between.
+  void decide_fusion() {
+    const PassChoice choice = experiment_.solver.passes;
+    std::string& why = plan_.why_not_fused;
+    if (experiment_.solver.stress_update != StressUpdate::last)
+      why = "/solver/stress_update: only USL strains and scatters at the same particle state";
+    else if (plan_.filter)
+      why = experiment_.filter->pointer + ": the filter reads the grid between gather and scatter";
+    else if (plan_.contact)
+      why = experiment_.contact->pointer + ": several velocity fields take two passes";
+    else if (shape_.form == MPM_NODE_LIST)
+      why = experiment_.shape.pointer + ": a list of nodes takes two passes";
+    else if (experiment_.backend != "cpu")
+      why = "/backend \"" + experiment_.backend + "\" keeps passes apart, as the textbook does";
+    // Separate passes sort where fused ones do, so that both add up in the same order. Images of a periodic axis may be
+    // missing on the other side until a scatter has found them.
+    plan_.sorts_before_gather = why.empty() && !any_face(ConditionType::periodic);
+    if (choice == PassChoice::separate) why = "/solver/passes \"separate\"";
+    plan_.fused = why.empty();
+    if (choice == PassChoice::fused && !plan_.fused) refuse("/solver/passes", "passes cannot be fused: " + why);
+  }
+
+  /// A wall or box that material may leave.
+  bool separates() const {
+    return any_face(ConditionType::separate) ||
+           std::any_of(experiment_.boxes.begin(), experiment_.boxes.end(),
+                       [](const BoxCondition& box) { return box.type == ConditionType::separate; });
+  }
+
+  bool any_face(ConditionType type) const {
+    for (int axis = 0; axis < experiment_.dimension; ++axis)
+      for (const FaceCondition& face : experiment_.faces[axis])
+        if (face.type == type) return true;
+    return false;
+  }
+
+  std::uint64_t scalar_bytes() const { return experiment_.precision == Precision::single ? 4 : 8; }
+
+  void attribute(int body, const std::string& name, int components, const std::string& because) {
+    plan_.attributes.push_back({body, name, components, components * scalar_bytes(), because});
+  }
+
+  void state(int body, const Component& component) {
+    for (const mpm_state& field : component.plugin->state())
+      attribute(body, field.name,
+                state_components(kept_shape(field, experiment_.axisymmetric()), experiment_.dimension),
+                named(component) + ": " + field.doc);
+  }
+
+  void attributes() {
+    const int D = experiment_.dimension;
+    for (int body = 0; body < static_cast<int>(experiment_.bodies.size()); ++body) {
+      const BodySpecification& specification = experiment_.bodies[body];
+      attribute(body, "position", D, specification.pointer + ": every particle");
+      attribute(body, "velocity", D, specification.pointer + ": every particle");
+      plan_.attributes.push_back(
+          {body, "identity", 1, 4, specification.pointer + ": results keep the order of seeding"});
+      if (experiment_.axisymmetric())
+        attribute(body, "circumference", 1,
+                  "/grid/symmetry \"axisymmetric\": a particle is a ring of volume and mass times 2 pi r");
+      if (plan_.initial_position)
+        attribute(body, "initial_position", D,
+                  experiment_.exact        ? experiment_.exact->pointer + ": errors are measured at X"
+                  : experiment_.body_force ? experiment_.body_force_pointer + ": the force depends on X"
+                                           : "/output/colour_by \"displacement\"");
+      if (plan_.kept_advection)
+        attribute(body, "advection_velocity", D,
+                  "/solver/stress_update \"modified_last\": positions wait for the remapped strain");
+      if (plan_.particle_domain)
+        attribute(body, "domain", D * D, named(experiment_.shape) + ": semi-side vectors of the particle's domain");
+      if (plan_.sample_points > 0) {
+        attribute(body, "corners", D * plan_.sample_points, named(experiment_.shape) + ": corners of the domain");
+        if (plan_.kept_advection)
+          attribute(body, "moved_corners", D * plan_.sample_points,
+                    "/solver/stress_update \"modified_last\": corners wait for the remapped strain");
+      }
+      if (plan_.strained_domain)
+        attribute(body, "strained_domain", D * D,
+                  strains_before_forces()
+                      ? named_order() + ": the weights of a step stay those before its strain"
+                      : named(*experiment_.filter) + ": the weights of a step stay those before its strain");
+      state(body, experiment_.transfer);
+      if (plan_.basis_functions > 0)
+        attribute(body, polynomial_coefficients, D * plan_.basis_functions,
+                  named(experiment_.transfer) + ": " + std::to_string(plan_.basis_functions) +
+                      " polynomials beyond the affine ones");
+      state(body, experiment_.materials[specification.material].component);
+    }
+  }
+
+  void channel(const std::string& name, int components, const std::string& because) {
+    // Nodes hold groups of four scalars, the width of a vector register's lane group.
+    const std::uint64_t scalars = (components + 3) / 4 * 4;
+    plan_.channels.push_back(
+        {name, components, experiment_.field_count, scalars * scalar_bytes() * experiment_.field_count, because});
+  }
+
+  void channels() {
+    const int D = experiment_.dimension;
+    channel("mass and momentum", D + 1, named(experiment_.transfer) + ": every transfer");
+    if (plan_.fused) channel("mass and momentum of the next step", D + 1, "/solver/passes: gather and scatter are one");
+    if (plan_.filter) channel("filter increment and projection", 8, named(*experiment_.filter));
+    if (plan_.kept_velocity)
+      channel("unfiltered velocity", D,
+              named(*experiment_.filter) + (filters_before_forces() ? ": strains; then the correction of the particles"
+                                                                    : ": the strain comes before the forces"));
+    if (plan_.constrained_velocity) {
+      const std::string because = named(*experiment_.filter) + ": an increment may take back what a one-sided law gave";
+      channel("velocity that conditions and contact added", D, because);
+      if (plan_.kept_velocity) channel("the same of the unfiltered velocity", D, because);
+    }
+    if (plan_.velocity_increment || plan_.ledger)
+      channel("velocity before the forces", D,
+              plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of velocity"
+                                       : why_for_ledger());
+    if (plan_.separate_force) channel("force", D, why_separate_force());
+    if (experiment_.body_force)
+      channel("body force", D, experiment_.body_force_pointer + ": its work is accounted for apart");
+    if (plan_.contact) {
+      channel("volume and its gradient", D + 1, experiment_.contact->pointer + "/normal \"average_volume_gradient\"");
+      channel("surface position", D, experiment_.contact->pointer + "/detection \"approach_and_position\"");
+    }
+  }
+
+  std::string why_for_ledger() const {
+    const std::string every = std::to_string(plan_.ledger_every);
+    return "/output/ledger: work of the forces" + (plan_.ledger_every > 1 ? ", in one step of " + every : "");
+  }
+
+  std::string why_separate_force() const {
+    if (plan_.velocity_increment) return named(experiment_.transfer) + ": gathers the change of velocity";
+    if (plan_.contact) return named(*experiment_.contact) + ": acts before and after the forces";
+    if (plan_.force_for_ledger) return why_for_ledger();
+    if (experiment_.body_force) return experiment_.body_force_pointer + ": work of the forces";
+    if (strains_before_forces()) return named_order() + ": stress after the momenta";
+    if (plan_.filter && filters_before_forces()) return named(*experiment_.filter) + ": filters before the forces";
+    return "/grid/boundaries \"separate\": the wall predicts with the forces";
+  }
+
+  Pass& pass(PassKind kind, const std::string& because) {
+    plan_.passes.push_back({});
+    plan_.passes.back().kind = kind;
+    plan_.passes.back().because = because;
+    return plan_.passes.back();
+  }
+
+  /// The filter's loop as a part of the tree.
+  void filter_loop(bool before_forces, bool remap = false, bool restores = false) {
+    const std::string filter = named(*experiment_.filter);
+    Pass& group = pass(PassKind::group, filter);
+    group.condition = PassCondition::when_filtered;
+    const auto child = [&](Pass& parent, PassKind kind, const std::string& because) -> Pass& {
+      Pass& pass = parent.children.emplace_back();
+      pass.kind = kind;
+      pass.because = because;
+      pass.before_forces = before_forces;
+      pass.remap = remap;
+      pass.restores = restores;
+      return pass;
+    };
+    const mpm_filter& functions = experiment_.filter->plugin->filter();
+    const int times = functions.iterations(experiment_.filter->parameters.data());
+    if (times < 0) refuse(experiment_.filter->pointer, "the filter asks for " + std::to_string(times) + " passes");
+    child(group, PassKind::begin_filter,
+          filter + (before_forces ? ": velocity before the forces" : ": velocity after the forces"));
+    if (times > 0) {
+      Pass repeat;
+      repeat.kind = PassKind::repeat;
+      repeat.times = times;
+      repeat.because = filter + ": passes of its loop";
+      child(repeat, PassKind::project, transfer_name() + ": gathers and scatters the increment");
+      child(repeat, PassKind::update_filter,
+            experiment_.filter_schedule.constrain_always ? filter + ": conditions and contact act on every increment"
+                                                         : experiment_.filter->pointer + "/constraints \"at_end\"");
+      group.children.push_back(std::move(repeat));
+    }
+    child(group, PassKind::end_filter, filter);
+  }
+
+  std::string transfer_name() const { return named(experiment_.transfer); }
+
+  void passes() {
+    const std::string transfer = transfer_name();
+    const std::string order = "/solver/stress_update";
+    const bool by_courant = plan_.filter && experiment_.filter_schedule.every_courant > 0;
+    if (!experiment_.solver.time_step || by_courant)
+      pass(PassKind::estimate_time_step, by_courant && experiment_.solver.time_step
+                                             ? experiment_.filter->pointer + "/every_courant"
+                                             : "/solver/time_step \"auto\"")
+          .every_steps = 8;
+    std::vector<Pass> outer;
+    if (plan_.fused) outer.swap(plan_.passes);
+    if (experiment_.backend == "cpu") pass(PassKind::sort, "/backend \"cpu\": particles stay in their blocks of cells");
+    pass(PassKind::reset_grid, transfer);
+    Pass& scatter = pass(PassKind::scatter, transfer);
+    scatter.momentum = true;
+    scatter.contact_fields = plan_.contact;
+    const bool averaged = experiment_.solver.stress_update == StressUpdate::averaged;
+    const double share = averaged ? 0.5 : 1;
+    const bool before = strains_before_forces(), after = strains_after_forces();
+    scatter.force = !before;
+    if (plan_.fused) {
+      outer.swap(plan_.passes);
+      Pass& group = pass(PassKind::group, "/solver/passes: the step before has scattered already, as a rule");
+      group.condition = PassCondition::unless_scattered;
+      group.children = std::move(outer);
+    }
+    pass(PassKind::momentum_to_velocity,
+         plan_.contact ? named(*experiment_.contact) + " before the forces; boundaries" : "boundaries");
+    // XPIC filters v- for the particles alone; FMPM's velocity strains too, so USF needs it before the forces as well.
+    const bool particles_only = plan_.filter && filters_before_forces();
+    const auto filtered_only = [&](PassKind kind, const std::string& because) -> Pass& {
+      Pass& group = pass(PassKind::group, because);
+      group.condition = PassCondition::when_filtered;
+      Pass& child = group.children.emplace_back();
+      child.kind = kind;
+      child.because = because;
+      return child;
+    };
+    if (particles_only) {
+      filter_loop(true, false, true);
+      filtered_only(PassKind::restore_velocity,
+                    named(*experiment_.filter) + ": forces and strain take what was not filtered")
+          .keeps_correction = true;
+    } else if (plan_.kept_velocity) {
+      filter_loop(true, false, true);
+    }
+    if (before) {
+      pass(PassKind::strain, named_order()).strain_share = share;
+      pass(PassKind::scatter, named_order() + ": stress at the new strain").force = true;
+    }
+    if (plan_.kept_velocity && !particles_only)
+      filtered_only(PassKind::restore_velocity, named(*experiment_.filter) + ": filters once more after the forces");
+    pass(PassKind::apply_forces,
+         plan_.contact ? named(*experiment_.contact) + " after the forces; boundaries" : "boundaries");
+    if (plan_.filter && !particles_only) filter_loop(false);
+    const auto strains = [&](Pass& pass) {
+      pass.strain_share = share;
+      pass.strains_again = averaged;
+    };
+    if (particles_only) {
+      if (after) strains(pass(PassKind::strain, order + ": by the unfiltered velocity"));
+      filtered_only(PassKind::add_correction, named(*experiment_.filter) + ": what the particles take");
+    }
+    if (plan_.sorts_before_gather)
+      pass(PassKind::sort, "/backend \"cpu\": particles that are about to leave the nodes around their block")
+          .keeps_grid = true;
+    Pass& gather = pass(plan_.fused ? PassKind::gather_scatter : PassKind::gather, transfer);
+    gather.strain = after && !particles_only;
+    if (gather.strain) strains(gather);
+    gather.move = experiment_.solver.stress_update != StressUpdate::modified_last;
+    if (plan_.fused) gather.momentum = gather.force = true;
+    if (gather.move) return;
+    Pass& again = pass(PassKind::scatter, order + " \"modified_last\": updated velocities, old positions");
+    again.momentum = again.remap = true;
+    pass(PassKind::momentum_to_velocity, order + " \"modified_last\"").remap = true;
+    if (plan_.filter && !particles_only) filter_loop(true, true);
+    pass(PassKind::strain, order + " \"modified_last\"");
+    pass(PassKind::move, order + " \"modified_last\": positions by the velocity gathered before");
+  }
+
+  // ---- memory, before anything is allocated ----------------------------------------------------------------------
+
+  /// Share of a body's bounding box that it fills, from a fixed low-discrepancy sample.
+  static double filled_share(const Geometry& geometry, const Vector3& lower, const Vector3& upper) {
+    constexpr int samples = 4096;
+    int inside = 0;
+    for (int k = 0; k < samples; ++k) {
+      const double u[3] = {std::fmod(0.5 + k * 0.8191725133961645, 1.0), std::fmod(0.5 + k * 0.6710436067037893, 1.0),
+                           std::fmod(0.5 + k * 0.5497004779019703, 1.0)};
+      Vector3 x{};
+      for (int c = 0; c < 3; ++c) x[c] = lower[c] + u[c] * (upper[c] - lower[c]);
+      inside += geometry.contains(x);
+    }
+    return std::max(inside, 1) / static_cast<double>(samples);
+  }
+
+  double estimated_particles(const BodySpecification& body) const {
+    auto [lower, upper] = body.geometry->bounds();
+    double count = 1;
+    for (int c = 0; c < experiment_.dimension; ++c) {
+      lower[c] = std::max(lower[c], experiment_.grid.lower[c]);
+      upper[c] = std::min(upper[c], experiment_.grid.upper[c]);
+      count *= std::max(0.0, (upper[c] - lower[c]) / experiment_.grid.cell_size * body.particles_per_cell_axis);
+    }
+    return count * filled_share(*body.geometry, lower, upper);
+  }
+
+  void estimate() {
+    const int D = experiment_.dimension;
+    const double padding = shape_.form == MPM_NODE_LIST ? 8 : 3;  // nodes beyond a wall: grid_padding_of(shape)
+    double particles = 0, particle_bytes = 0, occupied_cells = 0, domain_nodes = 1;
+    for (std::size_t b = 0; b < experiment_.bodies.size(); ++b) {
+      const double count = estimated_particles(experiment_.bodies[b]);
+      particles += count;
+      particle_bytes += count * static_cast<double>(plan_.bytes_per_particle(static_cast<int>(b)));
+      occupied_cells += count / std::pow(experiment_.bodies[b].particles_per_cell_axis, D);
+    }
+    for (int c = 0; c < D; ++c) domain_nodes *= experiment_.grid.cells[c] + 1 + 2 * padding;
+    // The cpu backend keeps blocks around particles only: a body's cells and a rim of about one block on every side.
+    const double rim = 12 * D * std::pow(occupied_cells, (D - 1.0) / D) * (D == 2 ? 8 : 4) / 4 + 4096;
+    const double nodes =
+        experiment_.backend == "reference" ? domain_nodes : std::min(domain_nodes * 2, 1.3 * occupied_cells + rim);
+    if (experiment_.backend == "cpu")
+      particle_bytes += particle_bytes * 3 / 10;  // of batches that are not full, and of those that a sort is moving
+    // The reference backend keeps stencils and all moments of a particle, and every value of a node side by side.
+    const bool list = shape_.form == MPM_NODE_LIST;
+    const double stencil = (list ? shape_.capacity[D - 2] * (100.0 + 12 * D) : std::pow(shape_.width, D) * 88.0) + 700;
+    if (experiment_.backend == "reference") particle_bytes += particles * stencil;
+    const double grid_bytes =
+        nodes * (experiment_.backend == "reference" ? 290.0 * experiment_.field_count
+                                                    : static_cast<double>(plan_.bytes_per_node()));
+    refuse_too_large(particles, particle_bytes, grid_bytes);
+    plan_.particles = static_cast<std::uint64_t>(particles);
+    plan_.nodes = static_cast<std::uint64_t>(nodes);
+    plan_.particle_bytes = static_cast<std::uint64_t>(particle_bytes);
+    plan_.grid_bytes = static_cast<std::uint64_t>(grid_bytes);
+  }
+
+  /// Free memory of the machine, or what its control group leaves.
+  static double available_bytes() {
+    double available = 8e9;
+    std::ifstream file("/proc/meminfo");
+    for (std::string line; std::getline(file, line);)
+      if (unsigned long long kilobytes = 0; std::sscanf(line.c_str(), "MemAvailable: %llu kB", &kilobytes) == 1)
+        available = static_cast<double>(kilobytes) * 1024.0;
+    double limit = 0, used = 0;
+    if (std::ifstream("/sys/fs/cgroup/memory.max") >> limit && std::ifstream("/sys/fs/cgroup/memory.current") >> used)
+      available = std::min(available, limit - used);
+    return available;
+  }
+
+  void refuse_too_large(double particles, double particle_bytes, double grid_bytes) const {
+    const double needed = particle_bytes + grid_bytes, available = available_bytes();
+    if (particles < 2e9 && needed < 0.9 * available) return;
+    std::ostringstream message;
+    message.precision(3);
+    message << "the scene needs about " << needed / 1e9 << " GB (" << particles << " particles, "
+            << particle_bytes / 1e9 << " GB of state, " << grid_bytes / 1e9 << " GB of grid), and " << available / 1e9
+            << " GB are free; use larger cells, fewer particles a cell or smaller bodies";
+    refuse("/grid/cell_size", message.str());
+  }
+
+  const Experiment& experiment_;
+  const mpm_transfer& transfer_;
+  const mpm_shape& shape_;
+  Plan plan_;
+};
+
+}  // namespace
+
+Plan make_plan(const Experiment& experiment) {
+  return Planner(experiment).make();
+}
+
+}  // namespace mpm

@@ -1,0 +1,305 @@
+#include "run/checkpoint.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <optional>
+
+#include "experiment/diagnostics.hpp"
+#include "output/checkpoint_file.hpp"
+#include "support/files.hpp"
+
+namespace mpm::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+/// What may change between the parts of a run: it acts at the end only, or on nothing that is recorded.
+constexpr const char* free_keys[] = {"/title",
+                                     "/description",
+                                     "/figures",
+                                     "/compare/expect",
+                                     "/limits",
+                                     "/solver/max_steps",
+                                     "/output/film",
+                                     "/output/checkpoint_every",
+                                     "/output/checkpoint_steps"};
+
+constexpr const char* start_anew = "or start anew without --resume (the unfinished run is then moved aside)";
+
+/// As it would be read back from a file.
+Json as_written(const Json& value) {
+  return Json::parse(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string escaped(const std::string& key) {
+  std::string text;
+  for (const char c : key) text += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return text;
+}
+
+struct Difference {
+  std::string pointer;
+  const Json *now, *then;  ///< null: not there
+};
+
+/// The first place at which two values differ, in the order of the file that is run now.
+std::optional<Difference> first_difference(const Json& now, const Json& then, const std::string& pointer = "") {
+  const bool both_objects = now.is_object() && then.is_object(), both_arrays = now.is_array() && then.is_array();
+  if (!both_objects && !both_arrays)
+    return now == then ? std::nullopt : std::optional(Difference{pointer, &now, &then});
+  const auto compare_child = [&](const std::string& name, const Json* a, const Json* b) -> std::optional<Difference> {
+    const std::string place = pointer + "/" + escaped(name);
+    if (a && b) return first_difference(*a, *b, place);
+    return Difference{place, a, b};
+  };
+  if (both_arrays) {
+    for (std::size_t k = 0; k < std::max(now.size(), then.size()); ++k)
+      if (auto found = compare_child(std::to_string(k), k < now.size() ? &now[k] : nullptr,
+                                     k < then.size() ? &then[k] : nullptr))
+        return found;
+    return std::nullopt;
+  }
+  for (const auto& [key, value] : now.items())
+    if (auto found = compare_child(key, &value, then.contains(key) ? &then[key] : nullptr)) return found;
+  for (const auto& [key, value] : then.items())
+    if (!now.contains(key)) return compare_child(key, nullptr, &value);
+  return std::nullopt;
+}
+
+std::string short_text(const Json* value) {
+  if (!value) return "not there";
+  const std::string text = value->dump();
+  return text.size() > 80 ? text.substr(0, 77) + "..." : text;
+}
+
+Json without_free_keys(const Json& experiment) {
+  Json kept = as_written(experiment);
+  for (const char* key : free_keys) {
+    const Json::json_pointer pointer(key);
+    if (!kept.contains(pointer)) continue;
+    Json& parent = kept.at(pointer.parent_pointer());
+    parent.erase(pointer.back());
+    if (parent.empty()) kept.erase(pointer.parent_pointer().back());  // as if the section had not been written
+  }
+  return kept;
+}
+
+std::string plugin_text(const Json& plugin) {
+  return plugin.value("version", "") + ", SHA-256 " + plugin.value("file_sha256", "").substr(0, 12);
+}
+
+/// Another program or other plugins would go on with other arithmetic.
+void refuse_other_program(const Json& now, const Json& then, const fs::path& path) {
+  const std::string version = then.value("version", "unknown");
+  if (then.value("program", "") != now["program"] || version != now["version"])
+    throw output::FolderRefused(path.string() + " was written by version " + version + " of the program, and this is " +
+                                now.value("version", "") + ": resume with that version, " + start_anew);
+}
+
+void refuse_other_plugins(const Json& now, const Json& then, const fs::path& path) {
+  const Json before = then.value("plugins", Json::array());
+  for (const Json& plugin : now["plugins"]) {
+    const auto same = std::find_if(before.begin(), before.end(), [&](const Json& other) {
+      return other.value("id", "") == plugin["id"] && other.value("kind", "") == plugin["kind"];
+    });
+    if (same != before.end() && *same == plugin) continue;
+    throw output::FolderRefused("plugin " + in_quotes(plugin["id"].get<std::string>()) + " is not the one that wrote " +
+                                path.string() + " (now " + plugin_text(plugin) + "; then " +
+                                (same == before.end() ? "none" : plugin_text(*same)) + "): put that one back, " +
+                                start_anew);
+  }
+}
+
+EarlierParts read_earlier_parts(ArchiveReader& archive) {
+  EarlierParts earlier;
+  archive.get("wall_seconds", earlier.wall_seconds);
+  std::size_t count = 0;
+  archive.get("passes", count);
+  for (std::size_t k = 0; k < count; ++k) {
+    std::string name;
+    archive.get("pass", name);
+    archive.get("seconds", earlier.seconds_by_pass[name]);
+  }
+  archive.get("resumed_from_steps", earlier.resumed_from_steps);
+  return earlier;
+}
+
+/// @throws output::CheckpointDamaged when an older one may do; anything else when that is no use.
+EarlierParts restore_from(const fs::path& path, Simulation& simulation, Recorder& recorder,
+                          const output::RunFolder& folder, const Json& identity) {
+  const output::CheckpointFile file = output::read_checkpoint(path);
+  refuse_other_program(identity, file.identity, path);
+  refuse_other_experiment(simulation.experiment(), file.identity.value("experiment", Json()), folder);
+  refuse_other_plugins(identity, file.identity, path);
+  try {
+    ArchiveReader archive(file.state);
+    EarlierParts earlier = read_earlier_parts(archive);
+    recorder.restore(archive);
+    simulation.restore(archive);
+    if (!archive.at_end()) throw ArchiveError("there is more than was expected");
+    earlier.resumed_from_steps.push_back(simulation.steps());
+    return earlier;
+  } catch (const ArchiveError& error) {
+    throw output::FolderRefused(path.string() + " is whole but holds another state than this program keeps (" +
+                                error.what() + "): resume with the program that wrote it, " + start_anew);
+  }
+}
+
+}  // namespace
+
+std::vector<const Plugin*> plugins_of(const Experiment& experiment) {
+  std::vector<const Plugin*> used{experiment.shape.plugin, experiment.transfer.plugin};
+  if (experiment.filter) used.push_back(experiment.filter->plugin);
+  if (experiment.contact) used.push_back(experiment.contact->plugin);
+  for (const MaterialSpecification& material : experiment.materials)
+    if (std::find(used.begin(), used.end(), material.component.plugin) == used.end())
+      used.push_back(material.component.plugin);
+  return used;
+}
+
+Json identity_of(const Experiment& experiment) {
+  Json identity{{"program", "mpm"}, {"version", MPM_VERSION}, {"plugins", Json::array()}};
+  for (const Plugin* plugin : plugins_of(experiment))
+    identity["plugins"].push_back({{"id", plugin->descriptor->id},
+                                   {"kind", kind_name(static_cast<mpm_kind>(plugin->descriptor->kind))},
+                                   {"version", plugin->descriptor->version},
+                                   {"file_sha256", output::sha256_of_file(plugin->file)}});
+  identity["experiment"] = as_written(experiment.resolved);
+  return identity;
+}
+
+void refuse_other_experiment(const Experiment& experiment, const Json& recorded, const output::RunFolder& folder) {
+  const Json now = without_free_keys(experiment.resolved), then = without_free_keys(recorded);
+  const auto difference = first_difference(now, then);
+  if (!difference) return;
+  const std::string message = "is " + short_text(difference->now) + ", and " + short_text(difference->then) +
+                              " in the run in " + folder.root().string() +
+                              ": a run is resumed with the experiment, --set and --backend that it was started with (" +
+                              (folder.root() / "experiment.json").string() + " holds them all), " + start_anew;
+  Problem problem{experiment.where(difference->pointer), 0, 0, difference->pointer, message};
+  for (const auto& [known, place] : experiment.positions)
+    if (known == difference->pointer && place.first > 0)
+      problem.file = experiment.file.string(), problem.line = place.first, problem.column = place.second;
+  throw InputError({problem});
+}
+
+std::optional<int> finished_with(const output::RunFolder& folder) {
+  const fs::path path = folder.root() / "summary.json";
+  // The checkpoints of a run that came to its end are removed last, after its report.
+  if (!fs::exists(path) || !output::checkpoints_in(folder.root() / "checkpoint").empty()) return std::nullopt;
+  const Json summary = Json::parse(output::read_file(path), nullptr, false);
+  const Json::json_pointer pointer("/outcome/exit_code");
+  if (!summary.is_object() || !summary.contains(pointer) || !summary[pointer].is_number_integer()) return std::nullopt;
+  const int code = summary[pointer].get<int>();
+  return code == 0 || code == 4 ? std::optional(code) : std::nullopt;
+}
+
+EarlierParts restore_newest(Simulation& simulation, Recorder& recorder, const output::RunFolder& folder,
+                            const Json& identity) {
+  const std::vector<fs::path> paths = output::checkpoints_in(folder.root() / "checkpoint");
+  if (paths.empty())
+    throw output::FolderRefused(folder.root().string() +
+                                " holds no checkpoint: the run ended before its first one (output/checkpoint_every, "
+                                "output/checkpoint_steps); start it anew without --resume");
+  std::string reasons;
+  for (const fs::path& path : paths) {
+    try {
+      EarlierParts earlier = restore_from(path, simulation, recorder, folder, identity);
+      if (!reasons.empty())
+        std::cerr << "warning: " << reasons << "; the one before is used, " << path.filename().string() << "\n";
+      return earlier;
+    } catch (const output::CheckpointDamaged& damage) {
+      reasons += (reasons.empty() ? "" : "; ") + std::string(damage.what());
+    }
+  }
+  throw output::FolderRefused(reasons +
+                              "; no other checkpoint is left: start anew without --resume (the unfinished "
+                              "run is then moved aside)");
+}
+
+Checkpoints::Checkpoints(const Simulation& simulation, Recorder& recorder, const output::RunFolder& folder,
+                         Json identity, EarlierParts earlier, Clock::time_point start)
+    : simulation_(simulation),
+      recorder_(recorder),
+      folder_(folder),
+      identity_(std::move(identity)),
+      earlier_(std::move(earlier)),
+      start_(start),
+      last_(Clock::now()),
+      last_step_(earlier_.resumed_from_steps.empty() ? -1 : earlier_.resumed_from_steps.back()) {}
+
+bool Checkpoints::due(long steps) const {
+  const OutputSpecification& output = simulation_.experiment().output;
+  const bool by_steps = output.checkpoint_steps > 0 && steps % output.checkpoint_steps == 0;
+  return by_steps || (output.checkpoint_seconds > 0 &&
+                      std::chrono::duration<double>(Clock::now() - last_).count() >= output.checkpoint_seconds);
+}
+
+void Checkpoints::write_if_due() {
+  // By the clock it may fall due after a step that was not to be observed: the next one then is.
+  if (due(simulation_.steps()) && simulation_.observed() && !simulation_.finished()) write();
+}
+
+bool Checkpoints::write() {
+  if (last_step_ == simulation_.steps()) return true;
+  try {
+    write_file();
+    last_step_ = simulation_.steps();
+    if (failing_) std::cerr << "checkpoints are written again\n";
+    failing_ = false;
+  } catch (const std::exception& error) {  // of the disk, or no memory for the copy
+    trouble_ = std::string("a checkpoint could not be written: ") + error.what();
+    if (!failing_)
+      std::cerr << "warning: " << trouble_ << "; the run goes on"
+                << (any() ? ", and the checkpoint before is kept" : "") << "\n";
+    failing_ = true;
+  }
+  last_ = Clock::now();
+  return !failing_;
+}
+
+void Checkpoints::write_file() {
+  ArchiveWriter archive;
+  archive.put("wall_seconds", earlier_.wall_seconds + std::chrono::duration<double>(Clock::now() - start_).count());
+  std::map<std::string, double> seconds_by_pass = earlier_.seconds_by_pass;
+  for (const auto& [name, seconds] : simulation_.seconds_by_pass()) seconds_by_pass[name] += seconds;
+  archive.put("passes", seconds_by_pass.size());
+  for (const auto& [name, seconds] : seconds_by_pass) {
+    archive.put("pass", name);
+    archive.put("seconds", seconds);
+  }
+  archive.put("resumed_from_steps", earlier_.resumed_from_steps);
+  recorder_.save(archive);
+  simulation_.save(archive);
+  identity_["step"] = simulation_.steps();
+  identity_["time"] = simulation_.time();
+  output::write_checkpoint(folder_.checkpoint() / output::checkpoint_name(simulation_.steps()), identity_,
+                           {archive.bytes().data(), archive.bytes().size()});
+  remove_older();
+}
+
+/// Leaves the one just written and the one that this process wrote or resumed from before it. Others are older, or were
+/// found damaged.
+void Checkpoints::remove_older() const {
+  const std::string newest = output::checkpoint_name(simulation_.steps()), before = output::checkpoint_name(last_step_);
+  std::error_code error;
+  for (const fs::path& path : output::checkpoints_in(folder_.root() / "checkpoint"))
+    if (const std::string name = path.filename().string(); name != newest && name != before) fs::remove(path, error);
+}
+
+bool Checkpoints::any() const {
+  return !output::checkpoints_in(folder_.root() / "checkpoint").empty();
+}
+
+void Checkpoints::remove() {
+  const fs::path folder = folder_.root() / "checkpoint";
+  std::error_code error;
+  // The snapshots last: while there is a checkpoint, what it counts on is there.
+  for (const fs::path& path : output::checkpoints_in(folder)) fs::remove(path, error);
+  fs::remove(folder / "snapshots.records", error);
+  fs::remove(folder, error);  // stays when somebody has put something else there
+}
+
+}  // namespace mpm::app

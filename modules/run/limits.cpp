@@ -1,0 +1,91 @@
+#include "run/limits.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "experiment/diagnostics.hpp"
+#include "output/summary_value.hpp"
+
+namespace mpm::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string three_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// A bound on a number of the summary: "at_least" or "at_most".
+struct Limit {
+  const char *metric, *kind;
+  std::optional<double> bound;  ///< nothing: the file asks for none
+  std::string not_judged;       ///< why, where it cannot be
+};
+
+/// Entry of `limits`; whether the number keeps its bound. One that is not finite keeps none.
+bool judge(const Limit& limit, const Json& summary, Json& entry) {
+  const double value = output::number_at(summary, limit.metric);
+  entry = {{"metric", limit.metric}};
+  if (limit.bound) entry[limit.kind] = *limit.bound;
+  entry["value"] = std::isfinite(value) ? Json(value) : Json(nullptr);
+  const std::string reason = limit.bound ? limit.not_judged : "no limit is asked for";
+  if (!reason.empty()) {
+    entry["not_judged"] = reason;
+    return true;
+  }
+  const bool held = std::string(limit.kind) == "at_least" ? value >= *limit.bound : value <= *limit.bound;
+  entry["held"] = held;
+  return held;
+}
+
+std::string why_no_gain_is_judged(const Experiment& experiment, const Json& summary) {
+  if (const auto isolated = experiment.limits.isolated; isolated && !*isolated) return "/limits/isolated is false";
+  const std::string work = experiment.limits.isolated ? "" : work_from_outside(experiment);
+  if (!work.empty()) return work;
+  return output::value_at(summary, "energy.total.gain") ? "" : "not recorded: the scene begins without energy";
+}
+
+}  // namespace
+
+std::string work_from_outside(const Experiment& experiment) {
+  if (experiment.body_force) return experiment.body_force_pointer + " works on the scene";
+  for (int axis = 0; axis < experiment.dimension; ++axis)
+    for (const FaceCondition& face : experiment.faces[axis]) {
+      if (face.velocity) return face.pointer + " works on the scene: the wall moves";
+      // A particle that comes in again at the other side has its height again.
+      if (face.type == ConditionType::periodic && experiment.gravity[axis] != 0)
+        return "/gravity works on the scene: it points along a periodic direction";
+    }
+  for (const BoxCondition& box : experiment.boxes)
+    if (box.velocity) return box.pointer + " works on the scene: its nodes are moved";
+  return "";
+}
+
+std::vector<std::string> judge_limits(const Experiment& experiment, Json& summary) {
+  const Limits& limits = experiment.limits;
+  const auto ratio = [&](int end) {
+    return limits.volume_ratio ? std::optional<double>((*limits.volume_ratio)[end]) : std::nullopt;
+  };
+  const Limit gain{"energy.total.gain", "at_most", limits.energy_gain, why_no_gain_is_judged(experiment, summary)};
+  const Limit smallest{"stability.smallest_volume_ratio", "at_least", ratio(0), ""};
+  const Limit largest{"stability.largest_volume_ratio", "at_most", ratio(1), ""};
+  std::vector<std::string> flags;
+  const auto number = [&](const Limit& limit) { return output::number_at(summary, limit.metric); };
+  Json entries = Json::array();
+  if (!judge(gain, summary, entries.emplace_back()))
+    flags.push_back("energy gain of " + three_digits(100 * number(gain)) + " % (limit " +
+                    number_text(100 * *gain.bound) + " %)");
+  if (!judge(smallest, summary, entries.emplace_back()))
+    flags.push_back("smallest volume ratio J " + three_digits(number(smallest)) + " (limit " +
+                    number_text(*smallest.bound) + ")");
+  if (!judge(largest, summary, entries.emplace_back()))
+    flags.push_back("largest volume ratio J " + three_digits(number(largest)) + " (limit " +
+                    number_text(*largest.bound) + ")");
+  summary["limits"] = std::move(entries);
+  summary["flags"] = flags;
+  return flags;
+}
+
+}  // namespace mpm::app

@@ -1,0 +1,283 @@
+#include "run/recorder.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "metrics/particle_quantities.hpp"
+#include "output/checkpoint_file.hpp"
+#include "output/film.hpp"
+#include "output/vtk.hpp"
+
+namespace mpm::app {
+namespace {
+
+/// Frames are held until the end, when the colour scale of the whole run is known; beyond this they are drawn at once.
+constexpr std::size_t held_bytes_limit = 512u << 20;
+
+std::string numbered(const char* stem, std::size_t index) {
+  char name[64];
+  std::snprintf(name, sizeof name, "%s_%04zu", stem, index);
+  return name;
+}
+
+std::pair<double, double> range_of(const std::vector<float>& values, std::pair<double, double> range) {
+  for (const float value : values)
+    if (std::isfinite(value)) range = {std::min<double>(range.first, value), std::max<double>(range.second, value)};
+  return range;
+}
+
+}  // namespace
+
+Recorder::Recorder(const Simulation& simulation, const Metrics& metrics, const output::RunFolder& folder)
+    : simulation_(simulation),
+      metrics_(metrics),
+      folder_(folder),
+      kept_snapshots_(folder.root() / "checkpoint/snapshots.records"),
+      latest_(metrics.initial()),
+      largest_energy_(metrics.initial().total_energy()) {}
+
+void Recorder::start() {
+  csv_.emplace(folder_.root() / "metrics.csv", metrics_.columns());
+}
+
+void Recorder::save(ArchiveWriter& archive) {
+  csv_->sync();
+  while (kept_snapshots_.count() < snapshots_.size()) {
+    const Snapshot& snapshot = snapshots_[kept_snapshots_.count()];
+    ArchiveWriter record;
+    record.put("time", snapshot.time);
+    record.put("step", snapshot.step);
+    record.put("positions", snapshot.positions);
+    record.put("values", snapshot.values);
+    record.put("domain_axes", snapshot.domain_axes);
+    kept_snapshots_.append({record.bytes().data(), record.bytes().size()});
+  }
+  archive.put("rows", csv_->bytes());
+  archive.put("snapshots", kept_snapshots_.index());
+  archive.put("last_row", last_row_);
+  archive.put("frames_taken", frames_taken_);
+  archive.put("frames_drawn", frames_drawn_);
+  archive.put("bytes_held", bytes_held_);
+  archive.put("vtk_files", vtk_files_.size());
+  for (const auto& [time, name] : vtk_files_) {
+    archive.put("vtk_time", time);
+    archive.put("vtk_name", name);
+  }
+  archive.put("latest", latest_);
+  archive.put("extremes",
+              std::array{largest_energy_, smallest_J_, largest_J_, largest_contact_force_, largest_penetration_});
+  archive.put("most_contact_nodes", most_contact_nodes_);
+}
+
+void Recorder::restore(ArchiveReader& archive) {
+  const std::filesystem::path table = folder_.root() / "metrics.csv";
+  std::size_t rows = 0;
+  archive.get("rows", rows);
+  if (!output::holds_whole_lines(table, rows))
+    throw output::CheckpointDamaged(table, "does not hold the rows written before the checkpoint");
+  std::string index;
+  archive.get("snapshots", index);
+  snapshots_.clear();
+  for (const std::string& bytes : kept_snapshots_.resume(index)) {
+    ArchiveReader record(bytes);
+    Snapshot& snapshot = snapshots_.emplace_back();
+    record.get("time", snapshot.time);
+    record.get("step", snapshot.step);
+    record.get("positions", snapshot.positions);
+    record.get("values", snapshot.values);
+    record.get("domain_axes", snapshot.domain_axes);
+  }
+  archive.get("last_row", last_row_);
+  archive.get("frames_taken", frames_taken_);
+  archive.get("frames_drawn", frames_drawn_);
+  archive.get("bytes_held", bytes_held_);
+  std::size_t files = 0;
+  archive.get("vtk_files", files);
+  vtk_files_.clear();
+  while (vtk_files_.size() < files) {
+    auto& [time, name] = vtk_files_.emplace_back();
+    archive.get("vtk_time", time);
+    archive.get("vtk_name", name);
+  }
+  archive.get("latest", latest_);
+  std::array<double, 5> extremes{};
+  archive.get("extremes", extremes);
+  largest_energy_ = extremes[0];
+  smallest_J_ = extremes[1];
+  largest_J_ = extremes[2];
+  largest_contact_force_ = extremes[3];
+  largest_penetration_ = extremes[4];
+  archive.get("most_contact_nodes", most_contact_nodes_);
+  output::cut_to(table, rows);
+  start();
+}
+
+bool Recorder::frame_due(double time) const {
+  const OutputSpecification& output = simulation_.experiment().output;
+  if (output.frames <= 0) return false;
+  // Frame k belongs to the first step at or after k / (frames - 1) of the end time: the step is never cut to fit.
+  const double next = output.frames == 1 ? 0.0
+                                         : simulation_.experiment().solver.end_time *
+                                               static_cast<double>(frames_taken_) / (output.frames - 1);
+  return frames_taken_ < static_cast<std::size_t>(output.frames) && time >= next * (1 - 1e-12);
+}
+
+bool Recorder::due(double time, long steps) const {
+  return steps % simulation_.experiment().output.metrics_every == 0 || frame_due(time);
+}
+
+void Recorder::record(bool last) {
+  const bool row_due = simulation_.steps() % simulation_.experiment().output.metrics_every == 0 || last;
+  if (row_due && last_row_ != simulation_.steps()) record_row();
+  if (frame_due(simulation_.time())) record_frame();
+}
+
+void Recorder::record_row() {
+  const Totals totals = metrics_.measure();
+  csv_->row(metrics_.row(totals));  // what fails is done before anything is counted
+  latest_ = totals;
+  last_row_ = simulation_.steps();
+  largest_energy_ = std::max(largest_energy_, latest_.total_energy());
+  smallest_J_ = std::min(smallest_J_, latest_.smallest_volume_ratio);
+  largest_J_ = std::max(largest_J_, latest_.largest_volume_ratio);
+  const ContactRecord& contact = simulation_.backend().contact_record();
+  largest_contact_force_ =
+      std::max(largest_contact_force_, std::hypot(contact.force[0], contact.force[1], contact.force[2]));
+  largest_penetration_ = std::max(largest_penetration_, contact.largest_penetration);
+  most_contact_nodes_ = std::max(most_contact_nodes_, contact.nodes);
+}
+
+void Recorder::record_frame() {
+  const Experiment& experiment = simulation_.experiment();
+  Snapshot snapshot{simulation_.time(), simulation_.steps(), {}, {}, {}};
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const BodyState state = simulation_.backend().body_state(body);
+    const std::vector<double> values = quantity(experiment, body, state, experiment.output.colour_by);
+    snapshot.positions.insert(snapshot.positions.end(), state.position.begin(), state.position.end());
+    snapshot.values.insert(snapshot.values.end(), values.begin(), values.end());
+    for (std::size_t k = 0; experiment.dimension == 2 && k < state.domain.size(); k += 4)
+      for (const std::size_t component : {0, 2, 1, 3})  // columns of the matrix are the semi-sides
+        snapshot.domain_axes.push_back(static_cast<float>(state.domain[k + component]));
+  }
+  if (experiment.output.vtk) write_vtk(frames_taken_);
+  const std::size_t bytes =
+      (snapshot.positions.size() + snapshot.values.size() + snapshot.domain_axes.size()) * sizeof(float);
+  if (bytes_held_ + bytes > held_bytes_limit)
+    draw(snapshot, frames_taken_, range_of(snapshot.values, {INFINITY, -INFINITY}));
+  else
+    snapshots_.push_back(std::move(snapshot));
+  bytes_held_ += bytes;
+  ++frames_taken_;
+}
+
+render::ParticleFrame Recorder::frame_template() const {
+  const Experiment& experiment = simulation_.experiment();
+  const QuantityDescription description = describe_quantity(experiment, experiment.output.colour_by);
+  render::ParticleFrame frame;
+  frame.dimension = experiment.dimension;
+  frame.lower = experiment.grid.lower;
+  frame.upper = experiment.grid.upper;
+  frame.quantity = description.label;
+  frame.unit = description.unit;
+  frame.cell_size = experiment.grid.cell_size;
+  frame.title = experiment.title;
+  frame.footnote = experiment.file.filename().string() + " · run " + folder_.root().filename().string();
+  if (description.name == "body") {
+    frame.map = render::ColourMap::categorical;
+    for (const BodySpecification& body : experiment.bodies) frame.categories.push_back(body.name);
+  } else if (description.name == "pressure") {
+    frame.map = render::ColourMap::diverging;
+  }
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const std::size_t count = simulation_.backend().body_state(body).position.size() / experiment.dimension;
+    frame.half_size.insert(frame.half_size.end(), count,
+                           0.5 * experiment.grid.cell_size / experiment.bodies[body].particles_per_cell_axis);
+  }
+  return frame;
+}
+
+void Recorder::draw(const Snapshot& snapshot, std::size_t index, std::pair<double, double> range) {
+  render::ParticleFrame frame = frame_template();
+  frame.positions.assign(snapshot.positions.begin(), snapshot.positions.end());
+  frame.values.assign(snapshot.values.begin(), snapshot.values.end());
+  frame.domain_axes.assign(snapshot.domain_axes.begin(), snapshot.domain_axes.end());
+  frame.time = snapshot.time;
+  frame.step = snapshot.step;
+  if (frame.map == render::ColourMap::diverging) {
+    const double limit = std::max(std::abs(range.first), std::abs(range.second));
+    range = {-limit, limit};
+  }
+  if (frame.map != render::ColourMap::categorical && range.first < range.second) frame.range = range;
+  render::write_frame(frame, folder_.frames() / numbered("frame", index));
+  ++frames_drawn_;
+}
+
+void Recorder::draw_frames() {
+  std::pair<double, double> range{INFINITY, -INFINITY};
+  for (const Snapshot& snapshot : snapshots_) range = range_of(snapshot.values, range);
+  for (std::size_t index = 0; index < snapshots_.size(); ++index) draw(snapshots_[index], index, range);
+  snapshots_.clear();
+  if (!simulation_.experiment().output.film || frames_drawn_ < 2) return;
+  if (!output::write_film(folder_.frames(), folder_.root() / "film.mp4", 20))
+    std::cerr << "no film: ffmpeg is not installed (apt-get install ffmpeg); the frames are there\n";
+}
+
+void Recorder::write_vtk(std::size_t index) {
+  const Experiment& experiment = simulation_.experiment();
+  output::ParticleSnapshot snapshot;
+  snapshot.dimension = experiment.dimension;
+  snapshot.time = simulation_.time();
+  output::PointField velocity{"velocity (m/s)", experiment.dimension, {}};
+  std::vector<output::PointField> scalars;
+  std::vector<std::string> names{"body", "pressure", "von_mises_stress", "volume_ratio"};
+  for (const MaterialSpecification& material : experiment.materials)
+    for (const mpm_state& field : material.component.plugin->state())
+      if (field.shape == MPM_STATE_SCALAR && std::find(names.begin(), names.end(), field.name) == names.end())
+        names.emplace_back(field.name);
+  for (const std::string& name : names) {
+    const std::string unit = describe_quantity(experiment, name).unit;
+    scalars.push_back({unit.empty() ? name : name + " (" + unit + ")", 1, {}});
+  }
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const BodyState state = simulation_.backend().body_state(body);
+    snapshot.positions.insert(snapshot.positions.end(), state.position.begin(), state.position.end());
+    velocity.values.insert(velocity.values.end(), state.velocity.begin(), state.velocity.end());
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const auto values = quantity(experiment, body, state, names[k]);
+      scalars[k].values.insert(scalars[k].values.end(), values.begin(), values.end());
+    }
+  }
+  snapshot.fields.push_back(std::move(velocity));
+  for (auto& scalar : scalars) snapshot.fields.push_back(std::move(scalar));
+  const std::string name = numbered("particles", index) + ".vtu";
+  output::write_vtu(folder_.vtk() / name, snapshot);
+  vtk_files_.resize(index);  // without what an attempt that failed has left
+  vtk_files_.emplace_back(simulation_.time(), name);
+  output::write_pvd(folder_.vtk() / "particles.pvd", vtk_files_);
+}
+
+std::function<std::function<void()>(Simulation&)> recording_in(const std::filesystem::path& folder) {
+  return [folder, number = 0](Simulation& simulation) mutable -> std::function<void()> {
+    struct Recording {
+      Metrics metrics;
+      output::RunFolder folder;
+      Recorder recorder;
+      Recording(Simulation& s, const std::filesystem::path& place)
+          : metrics(s), folder(output::RunFolder::create(place)), recorder(s, metrics, folder) {
+        recorder.start();
+        recorder.record();
+      }
+    };
+    // A child process may make one too.
+    const std::string name = std::to_string(getpid()) + "_" + std::to_string(number++);
+    const auto recording = std::make_shared<Recording>(simulation, folder / name);
+    return [recording] { recording->recorder.record(); };
+  };
+}
+
+}  // namespace mpm::app

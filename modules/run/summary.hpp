@@ -1,0 +1,35 @@
+#pragma once
+// summary.json: the last values of a run, what held and what did not.
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "run/recorder.hpp"
+
+namespace mpm::app {
+
+/// How a run ended.
+struct Outcome {
+  int exit_code = 0;
+  std::string status = "done";  ///< done, failed, expectation failed, limit broken, interrupted
+  std::string reason;
+};
+
+/// What a resumed run spent before: only what led to the result, not what was lost with a process that was killed.
+struct EarlierParts {
+  double wall_seconds = 0;
+  std::map<std::string, double> seconds_by_pass;
+  std::vector<long> resumed_from_steps;  ///< step of each resumption, the last one included
+};
+
+/// All groups but `expect`, `limits`, `flags` and `outcome`. `wall_seconds` is that of this process.
+nlohmann::ordered_json summarise(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder,
+                                 double wall_seconds, const EarlierParts& earlier);
+
+/// Adds the group `expect`; returns the sentences of those that do not hold. A metric that summary.json does not have
+/// counts as not held, with the names it has.
+std::vector<std::string> judge_expectations(const Experiment& experiment, nlohmann::ordered_json& summary);
+
+}  // namespace mpm::app
