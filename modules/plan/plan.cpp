@@ -26,8 +26,8 @@ class Planner {
   Plan make() {
     refuse_impossible_combinations();
     decide();
-    attributes();
-    channels();
+    particle_fields();
+    node_fields();
     passes();
     estimate();
     name_lines();
@@ -87,8 +87,7 @@ class Planner {
       for (const auto& [known, position] : experiment_.positions)
         if (known == pointer && position.first > 0) because = "line " + std::to_string(position.first) + ": " + because;
     };
-    for (PlannedAttribute& attribute : plan_.attributes) name(attribute.because);
-    for (PlannedChannel& channel : plan_.channels) name(channel.because);
+    for (Field& field : plan_.fields) name(field.because);
     const std::function<void(std::vector<Pass>&)> name_passes = [&](std::vector<Pass>& passes) {
       for (Pass& pass : passes) name(pass.because), name_passes(pass.children);
     };
@@ -97,6 +96,7 @@ class Planner {
 
   void decide() {
     const bool moment_is_gradient = shape_.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
+    plan_.velocity_fields = experiment_.field_count;
     plan_.contact = experiment_.contact.has_value();
     plan_.ledger = experiment_.output.ledger;
     plan_.ledger_every = experiment_.output.ledger_every;
@@ -189,90 +189,155 @@ class Planner {
 
   std::uint64_t scalar_bytes() const { return experiment_.precision == Precision::single ? 4 : 8; }
 
-  void attribute(int body, const std::string& name, int components, const std::string& because) {
-    plan_.attributes.push_back({body, name, components, components * scalar_bytes(), because});
+  // ---- fields ----------------------------------------------------------------------------------------------------
+
+  Field& particle_field(int body, const std::string& id, const std::string& unit, int components, First first,
+                        const std::string& because) {
+    Field field;
+    field.id = id, field.name = id, field.unit = unit;
+    field.owner = Owner::particle, field.body = body;
+    field.components = components, field.first = first;
+    field.bytes = components * scalar_bytes();
+    field.because = because;
+    plan_.fields.push_back(field);
+    return plan_.fields.back();
   }
 
-  void state(int body, const Component& component) {
-    for (const mpm_state& field : component.plugin->state())
-      attribute(body, field.name,
-                state_components(kept_shape(field, experiment_.axisymmetric()), experiment_.dimension),
-                named(component) + ": " + field.doc);
+  /// The state that a plugin declares.
+  void state(int body, const Component& component, Origin origin) {
+    for (const mpm_state& declared : component.plugin->state()) {
+      const First first = declared.initial == MPM_INITIAL_ZERO    ? First::zero
+                          : declared.initial == MPM_INITIAL_ONE   ? First::one
+                          : declared.shape == MPM_STATE_SYMMETRIC ? First::symmetric_identity
+                                                                  : First::identity;
+      particle_field(body, declared.name, declared.unit,
+                     state_components(kept_shape(declared, experiment_.axisymmetric()), experiment_.dimension), first,
+                     named(component) + ": " + declared.doc)
+          .origin = origin;
+    }
   }
 
-  void attributes() {
+  /// The order is that of the places in a particle's memory: what a gather may replace stands together.
+  void particle_fields() {
     const int D = experiment_.dimension;
     for (int body = 0; body < static_cast<int>(experiment_.bodies.size()); ++body) {
       const BodySpecification& specification = experiment_.bodies[body];
-      attribute(body, "position", D, specification.pointer + ": every particle");
-      attribute(body, "velocity", D, specification.pointer + ": every particle");
-      plan_.attributes.push_back(
-          {body, "identity", 1, 4, specification.pointer + ": results keep the order of seeding"});
-      if (experiment_.axisymmetric())
-        attribute(body, "circumference", 1,
-                  "/grid/symmetry \"axisymmetric\": a particle is a ring of volume and mass times 2 pi r");
-      if (plan_.initial_position)
-        attribute(body, "initial_position", D,
-                  experiment_.exact        ? experiment_.exact->pointer + ": errors are measured at X"
-                  : experiment_.body_force ? experiment_.body_force_pointer + ": the force depends on X"
-                                           : "/output/colour_by \"displacement\"");
-      if (plan_.kept_advection)
-        attribute(body, "advection_velocity", D,
-                  "/solver/stress_update \"modified_last\": positions wait for the remapped strain");
-      if (plan_.particle_domain)
-        attribute(body, "domain", D * D, named(experiment_.shape) + ": semi-side vectors of the particle's domain");
-      if (plan_.sample_points > 0) {
-        attribute(body, "corners", D * plan_.sample_points, named(experiment_.shape) + ": corners of the domain");
-        if (plan_.kept_advection)
-          attribute(body, "moved_corners", D * plan_.sample_points,
-                    "/solver/stress_update \"modified_last\": corners wait for the remapped strain");
-      }
-      if (plan_.strained_domain)
-        attribute(body, "strained_domain", D * D,
-                  strains_before_forces()
-                      ? named_order() + ": the weights of a step stay those before its strain"
-                      : named(*experiment_.filter) + ": the weights of a step stay those before its strain");
-      state(body, experiment_.transfer);
+      const auto seeded = [&](const std::string& id, const std::string& unit, int components,
+                              const std::string& because) -> Field& {
+        return particle_field(body, id, unit, components, First::seeded, because);
+      };
+      seeded("position", "m", D, specification.pointer + ": every particle");
+      seeded("velocity", "m/s", D, specification.pointer + ": every particle");
+      state(body, experiment_.transfer, Origin::transfer);
       if (plan_.basis_functions > 0)
-        attribute(body, polynomial_coefficients, D * plan_.basis_functions,
-                  named(experiment_.transfer) + ": " + std::to_string(plan_.basis_functions) +
-                      " polynomials beyond the affine ones");
-      state(body, experiment_.materials[specification.material].component);
+        particle_field(body, polynomial_coefficients, "m/s", D * plan_.basis_functions, First::zero,
+                       named(experiment_.transfer) + ": " + std::to_string(plan_.basis_functions) +
+                           " polynomials beyond the affine ones")
+            .origin = Origin::transfer;
+      state(body, experiment_.materials[specification.material].component, Origin::material);
+      Field& identity = seeded("identity", "", 1, specification.pointer + ": results keep the order of seeding");
+      identity.bytes = 4;
+      if (experiment_.axisymmetric())
+        seeded("circumference", "m", 1,
+               "/grid/symmetry \"axisymmetric\": a particle is a ring of volume and mass times 2 pi r");
+      if (plan_.initial_position)
+        seeded("initial_position", "m", D,
+               experiment_.exact        ? experiment_.exact->pointer + ": errors are measured at X"
+               : experiment_.body_force ? experiment_.body_force_pointer + ": the force depends on X"
+                                        : "/output/colour_by \"displacement\"")
+            .lifetime = Lifetime::seeded;
+      if (plan_.kept_advection)
+        particle_field(body, "advection_velocity", "m/s", D, First::zero,
+                       "/solver/stress_update \"modified_last\": positions wait for the remapped strain")
+            .lifetime = Lifetime::step;
+      if (plan_.sample_points > 0) {
+        particle_field(body, "corners", "cells", D * plan_.sample_points, First::half_size_corners,
+                       named(experiment_.shape) + ": corners of the domain");
+        if (plan_.kept_advection)
+          particle_field(body, "moved_corners", "cells", D * plan_.sample_points, First::half_size_corners,
+                         "/solver/stress_update \"modified_last\": corners wait for the remapped strain")
+              .lifetime = Lifetime::step;
+      }
+      if (plan_.particle_domain)
+        particle_field(body, "domain", "cells", D * D, First::half_size_diagonal,
+                       named(experiment_.shape) + ": semi-side vectors of the particle's domain");
+      if (plan_.strained_domain)
+        particle_field(body, "strained_domain", "cells", D * D, First::half_size_diagonal,
+                       strains_before_forces()
+                           ? named_order() + ": the weights of a step stay those before its strain"
+                           : named(*experiment_.filter) + ": the weights of a step stay those before its strain")
+            .lifetime = Lifetime::step;
     }
   }
 
-  void channel(const std::string& name, int components, const std::string& because) {
-    // Nodes hold groups of four scalars, the width of a vector register's lane group.
-    const std::uint64_t scalars = (components + 3) / 4 * 4;
-    plan_.channels.push_back(
-        {name, components, experiment_.field_count, scalars * scalar_bytes() * experiment_.field_count, because});
+  /// Nodes hold groups of four scalars, the width of a vector register's lane group; a scalar may stand in its vector's.
+  Field& node_field(const std::string& id, const std::string& unit, int components, const std::string& because,
+                    const std::string& beside = "") {
+    Field field;
+    field.id = id, field.name = id, field.unit = unit;
+    field.owner = Owner::node, field.lifetime = Lifetime::step;
+    field.components = components;
+    field.beside = beside;
+    if (beside.empty()) field.bytes = 4 * scalar_bytes() * experiment_.field_count;
+    field.because = because;
+    plan_.fields.push_back(field);
+    return plan_.fields.back();
   }
 
-  void channels() {
+  /// A field that particles are summed into.
+  Field& summed_field(const std::string& id, const std::string& unit, int components, AtWall at_wall, Folded folded,
+                      const std::string& because, const std::string& beside = "") {
+    Field& field = node_field(id, unit, components, because, beside);
+    field.at_wall = at_wall, field.folded = folded, field.cleared = true;
+    return field;
+  }
+
+  void node_fields() {
     const int D = experiment_.dimension;
-    channel("mass and momentum", D + 1, named(experiment_.transfer) + ": every transfer");
-    if (plan_.fused) channel("mass and momentum of the next step", D + 1, "/solver/passes: gather and scatter are one");
-    if (plan_.filter) channel("filter increment and projection", 8, named(*experiment_.filter));
+    const std::string transfer = named(experiment_.transfer) + ": every transfer";
+    summed_field("momentum", "kg m/s", D, AtWall::momentum, Folded::with_mass, transfer);
+    summed_field("mass", "kg", 1, AtWall::even, Folded::with_mass, transfer, "momentum");
+    node_field("velocity", "m/s", D, transfer).in_place_of = "momentum";
+    plan_.fields.back().bytes = 0;
+    if (plan_.fused) {
+      const std::string fused = "/solver/passes: gather and scatter are one";
+      node_field("next_momentum", "kg m/s", D, fused);
+      node_field("next_mass", "kg", 1, fused, "next_momentum");
+    }
+    if (plan_.filter) {
+      node_field("increment", "m/s", D, named(*experiment_.filter));
+      node_field("projection", "kg m/s", D, named(*experiment_.filter));
+    }
     if (plan_.kept_velocity)
-      channel("unfiltered velocity", D,
-              named(*experiment_.filter) + (filters_before_forces() ? ": strains; then the correction of the particles"
-                                                                    : ": the strain comes before the forces"));
+      node_field(
+          "unfiltered_velocity", "m/s", D,
+          named(*experiment_.filter) + (filters_before_forces() ? ": strains; then the correction of the particles"
+                                                                : ": the strain comes before the forces"));
     if (plan_.constrained_velocity) {
       const std::string because = named(*experiment_.filter) + ": an increment may take back what a one-sided law gave";
-      channel("velocity that conditions and contact added", D, because);
-      if (plan_.kept_velocity) channel("the same of the unfiltered velocity", D, because);
+      node_field("velocity_of_constraints", "m/s", D, because).name = "velocity that conditions and contact added";
+      if (plan_.kept_velocity)
+        node_field("unfiltered_velocity_of_constraints", "m/s", D, because).name =
+            "the same of the unfiltered velocity";
     }
     if (plan_.velocity_increment || plan_.ledger)
-      channel("velocity before the forces", D,
-              plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of velocity"
-                                       : why_for_ledger());
-    if (plan_.separate_force) channel("force", D, why_separate_force());
+      node_field("velocity_before", "m/s", D,
+                 plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of velocity"
+                                          : why_for_ledger())
+          .cleared = true;
+    if (plan_.separate_force) summed_field("force", "N", D, AtWall::vector, Folded::with_force, why_separate_force());
     if (experiment_.body_force)
-      channel("body force", D, experiment_.body_force_pointer + ": its work is accounted for apart");
+      summed_field("body_force", "N", D, AtWall::vector, Folded::with_force,
+                   experiment_.body_force_pointer + ": its work is accounted for apart");
     if (plan_.contact) {
-      channel("volume and its gradient", D + 1, experiment_.contact->pointer + "/normal \"average_volume_gradient\"");
-      channel("surface position", D, experiment_.contact->pointer + "/detection \"approach_and_position\"");
+      const std::string normal = experiment_.contact->pointer + "/normal \"average_volume_gradient\"";
+      summed_field("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, normal);
+      summed_field("volume", "m^3", 1, AtWall::even, Folded::with_mass, normal, "volume_gradient");
+      summed_field("mass_position", "kg m", D, AtWall::slip, Folded::with_mass,
+                   experiment_.contact->pointer + "/detection \"approach_and_position\"");
     }
+    for (Field& field : plan_.fields)
+      if (field.name == field.id) std::replace(field.name.begin(), field.name.end(), '_', ' ');
   }
 
   std::string why_for_ledger() const {

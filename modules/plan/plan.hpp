@@ -4,33 +4,17 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiment/experiment.hpp"
+#include "plan/field.hpp"
 
 namespace mpm {
 
 /// Name of the coefficients of polynomials beyond affine among a particle's transfer state: [function][D], m/s per
 /// power of a cell.
 inline constexpr const char* polynomial_coefficients = "polynomial_coefficients";
-
-/// One field every particle of a body carries.
-struct PlannedAttribute {
-  int body = 0;
-  std::string name;  ///< "position", "velocity", or a state field of the transfer or material
-  int components = 1;
-  std::uint64_t bytes_per_particle = 0;
-  std::string because;  ///< JSON pointer of what asked for it, and why
-};
-
-/// One group of values every node of a velocity field carries.
-struct PlannedChannel {
-  std::string name;
-  int components = 1;
-  int copies = 1;                    ///< velocity fields
-  std::uint64_t bytes_per_node = 0;  ///< of all copies
-  std::string because;
-};
 
 enum class PassKind {
   estimate_time_step,    ///< wave and particle speeds -> dt, the limiting particle named
@@ -84,8 +68,8 @@ struct Pass {
 };
 
 struct Plan {
-  std::vector<PlannedAttribute> attributes;
-  std::vector<PlannedChannel> channels;
+  std::vector<Field> fields;
+  int velocity_fields = 1;   ///< that a node holds all its fields for
   std::vector<Pass> passes;  ///< a tree: see Pass::children
 
   bool weight_gradients = false;    ///< a pass reads grad w
@@ -122,6 +106,11 @@ struct Plan {
   long accounts_within(long steps) const {
     return ledger && steps > 0 ? 1 + (steps - 1 + (ledger_every - 1) / 2) / ledger_every : 0;
   }
+
+  /// The field of nodes with this id; null where the scene has none.
+  const Field* node_field(std::string_view id) const;
+  /// The field of a body's particles that a table of this origin declares by this id; null where there is none.
+  const Field* particle_field(int body, std::string_view id, Origin origin = Origin::host) const;
 
   std::uint64_t bytes_per_particle(int body) const;
   std::uint64_t bytes_per_node() const;

@@ -83,33 +83,43 @@ void print(std::ostream& out, const std::vector<Pass>& passes, int depth) {
 
 }  // namespace
 
+const Field* Plan::node_field(std::string_view id) const {
+  for (const Field& field : fields)
+    if (field.owner == Owner::node && field.id == id) return &field;
+  return nullptr;
+}
+
+const Field* Plan::particle_field(int body, std::string_view id, Origin origin) const {
+  for (const Field& field : fields)
+    if (field.of_particles_of(body) && field.origin == origin && field.id == id) return &field;
+  return nullptr;
+}
+
 std::uint64_t Plan::bytes_per_particle(int body) const {
   std::uint64_t sum = 0;
-  for (const PlannedAttribute& attribute : attributes)
-    if (attribute.body == body) sum += attribute.bytes_per_particle;
+  for (const Field& field : fields) sum += field.of_particles_of(body) ? field.bytes : 0;
   return sum;
 }
 
 std::uint64_t Plan::bytes_per_node() const {
   std::uint64_t sum = 0;
-  for (const PlannedChannel& channel : channels) sum += channel.bytes_per_node;
+  for (const Field& field : fields) sum += field.owner == Owner::node ? field.bytes : 0;
   return sum;
 }
 
 nlohmann::ordered_json Plan::to_json() const {
   nlohmann::ordered_json json;
-  for (const PlannedAttribute& a : attributes)
-    json["attributes"].push_back({{"body", a.body},
-                                  {"name", a.name},
-                                  {"components", a.components},
-                                  {"bytes_per_particle", a.bytes_per_particle},
-                                  {"because", a.because}});
-  for (const PlannedChannel& c : channels)
-    json["fields"].push_back({{"name", c.name},
-                              {"components", c.components},
-                              {"copies", c.copies},
-                              {"bytes_per_node", c.bytes_per_node},
-                              {"because", c.because}});
+  for (const Field& field : fields) {
+    nlohmann::ordered_json row;
+    if (field.owner == Owner::particle) row["body"] = field.body;
+    row.update({{"name", field.id}, {"unit", field.unit}, {"components", field.components}});
+    row[field.owner == Owner::particle ? "bytes_per_particle" : "bytes_per_node"] = field.bytes;
+    if (!field.beside.empty()) row["beside"] = field.beside;
+    if (!field.in_place_of.empty()) row["in_place_of"] = field.in_place_of;
+    row["because"] = field.because;
+    json[field.owner == Owner::particle ? "attributes" : "fields"].push_back(std::move(row));
+  }
+  json["velocity_fields"] = velocity_fields;
   json["passes"] = mpm::to_json(passes);
   json["weight_gradients"] = weight_gradients;
   json["affine_moment"] = affine_moment;
@@ -126,21 +136,28 @@ nlohmann::ordered_json Plan::to_json() const {
 
 std::string Plan::to_text() const {
   std::ostringstream out;
-  out << "Attributes of a particle\n";
+  const auto print_field = [&](const Field& field) {
+    const std::string count = std::to_string(field.components) + (field.components > 1 ? " components" : " component");
+    const std::string bytes = !field.beside.empty()        ? "beside " + field.beside
+                              : !field.in_place_of.empty() ? "in place of " + field.in_place_of
+                                                           : std::to_string(field.bytes) + " B";
+    out << "    " << padded(field.name + (field.unit.empty() ? "" : " (" + field.unit + ")"), 32) << padded(count, 13)
+        << padded(bytes, 6) << field.because << "\n";
+  };
+  out << "Fields of a particle\n";
   int body = -1;
-  for (const PlannedAttribute& a : attributes) {
-    if (a.body != body) {
-      body = a.body;
+  for (const Field& field : fields) {
+    if (field.owner != Owner::particle) continue;
+    if (field.body != body) {
+      body = field.body;
       out << "  body " << body << ": " << bytes_per_particle(body) << " bytes a particle\n";
     }
-    out << "    " << padded(a.name, 26)
-        << padded(std::to_string(a.components) + " component" + (a.components > 1 ? "s" : ""), 13)
-        << padded(std::to_string(a.bytes_per_particle) + " B", 6) << a.because << "\n";
+    print_field(field);
   }
-  out << "Fields of a node: " << bytes_per_node() << " bytes\n";
-  for (const PlannedChannel& c : channels)
-    out << "    " << padded(c.name, 26) << padded(std::to_string(c.copies) + " x " + std::to_string(c.components), 13)
-        << padded(std::to_string(c.bytes_per_node) + " B", 6) << c.because << "\n";
+  out << "Fields of a node: " << bytes_per_node() << " bytes"
+      << (velocity_fields > 1 ? " for " + std::to_string(velocity_fields) + " velocity fields" : "") << "\n";
+  for (const Field& field : fields)
+    if (field.owner == Owner::node) print_field(field);
   out << "Passes of a step\n";
   print(out, passes, 0);
   out << "Gather and scatter: " << (fused ? "fused, one visit of a particle a step" : "two passes, " + why_not_fused)

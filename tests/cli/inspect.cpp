@@ -137,10 +137,12 @@ TEST_CASE("check says ok and writes nothing") {
 TEST_CASE("a single elastic body with MLS holds nothing that it does not use") {
   const Json plan = plan_of(without_ledger(ball()));
   CHECK(attributes(plan) ==
-        Words{"position 16", "velocity 16", "identity 4", "affine_velocity 32", "deformation_gradient 32"});
+        Words{"position 16", "velocity 16", "affine_velocity 32", "deformation_gradient 32", "identity 4"});
   CHECK(total(plan, "attributes", "bytes_per_particle") == 100);
-  CHECK(fields(plan) == Words{"mass and momentum 32", "mass and momentum of the next step 32"});
-  CHECK(plan["fields"][0]["copies"] == 1);
+  CHECK(fields(plan) == Words{"momentum 32", "mass 0", "velocity 0", "next_momentum 32", "next_mass 0"});
+  CHECK(plan["fields"][1]["beside"] == "momentum");
+  CHECK(plan["fields"][2]["in_place_of"] == "momentum");
+  CHECK(plan["velocity_fields"] == 1);
   CHECK(plan["fused"] == true);
   for (const char* flag : {"weight_gradients", "separate_force", "velocity_increment", "ledger"})
     CHECK(plan[flag] == false);
@@ -156,7 +158,7 @@ TEST_CASE("a single elastic body with MLS holds nothing that it does not use") {
   Json apart = without_ledger(ball());
   apart["solver"]["passes"] = "separate";
   const Json separate = plan_of(apart);
-  CHECK(fields(separate) == Words{"mass and momentum 32"});
+  CHECK(fields(separate) == Words{"momentum 32", "mass 0", "velocity 0"});
   CHECK(separate["why_not_fused"] == "/solver/passes \"separate\"");
   passes.clear();
   for (const Json& pass : separate["passes"]) passes.push_back(pass["name"]);
@@ -169,7 +171,7 @@ TEST_CASE("a single elastic body with MLS holds nothing that it does not use") {
   single["precision"] = "float";
   const Json half = plan_of(single);
   CHECK(total(half, "attributes", "bytes_per_particle") == 52);  // the identity stays 4 bytes
-  CHECK(fields(half) == Words{"mass and momentum 16", "mass and momentum of the next step 16"});
+  CHECK(fields(half) == Words{"momentum 16", "mass 0", "velocity 0", "next_momentum 16", "next_mass 0"});
 }
 
 TEST_CASE("the backend holds what the plan says, and the padding of its last batches") {
@@ -189,8 +191,8 @@ TEST_CASE("what is switched on adds its own rows, and each names the line that a
 
   const Json ledger = plan_of(ball());
   CHECK(attributes(ledger) == attributes(bare));
-  CHECK(fields(ledger) == Words{"mass and momentum 32", "mass and momentum of the next step 32",
-                                "velocity before the forces 32", "force 32"});
+  CHECK(fields(ledger) == Words{"momentum 32", "mass 0", "velocity 0", "next_momentum 32", "next_mass 0",
+                                "velocity_before 32", "force 32"});
   CHECK(because(ledger, "fields", "force") == "/output/ledger: work of the forces");
 
   Json scene = without_ledger(ball());
@@ -201,8 +203,8 @@ TEST_CASE("what is switched on adds its own rows, and each names the line that a
                              {"yield_stress", 100}};
   const Json plastic = plan_of(scene);
   CHECK(fields(plastic) == fields(bare));
-  CHECK(attributes(plastic) == Words{"position 16", "velocity 16", "identity 4", "affine_velocity 32",
-                                     "elastic_left_cauchy_green 32", "volume_ratio 8", "equivalent_plastic_strain 8"});
+  CHECK(attributes(plastic) == Words{"position 16", "velocity 16", "affine_velocity 32", "elastic_left_cauchy_green 32",
+                                     "volume_ratio 8", "equivalent_plastic_strain 8", "identity 4"});
   CHECK(
       because(plastic, "attributes", "equivalent_plastic_strain").starts_with("line 1: /materials/m \"von_mises\": "));
 
@@ -212,12 +214,12 @@ TEST_CASE("what is switched on adds its own rows, and each names the line that a
   CHECK(attributes(contact).size() == 2 * attributes(bare).size());
   CHECK(total(contact, "attributes", "bytes_per_particle") == 200);
   CHECK(fields(contact) ==
-        Words{"mass and momentum 64", "force 64", "volume and its gradient 64", "surface position 64"});
-  for (const Json& row : contact["fields"]) CHECK(row["copies"] == 2);
+        Words{"momentum 64", "mass 0", "velocity 0", "force 64", "volume_gradient 64", "volume 0", "mass_position 64"});
+  CHECK(contact["velocity_fields"] == 2);
   CHECK(contact["weight_gradients"] == true);
   CHECK(because(contact, "fields", "force") == "line 1: /contact \"coulomb\": acts before and after the forces");
-  CHECK(because(contact, "fields", "volume and its gradient").starts_with("/contact/normal "));
-  CHECK(because(contact, "fields", "surface position").starts_with("/contact/detection "));
+  CHECK(because(contact, "fields", "volume_gradient").starts_with("/contact/normal "));
+  CHECK(because(contact, "fields", "mass_position").starts_with("/contact/detection "));
 
   const Json flip = [] {
     Json with_flip = without_ledger(ball());

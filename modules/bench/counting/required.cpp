@@ -56,8 +56,9 @@ RequiredRow count_calls(const RequiredScene& scene, const CountedPlugins& plugin
   row.particles = run.simulation.particle_count();
   row.bytes_per_particle = plan.bytes_per_particle(0);
   row.bytes_per_node = plan.bytes_per_node();
-  for (const PlannedChannel& channel : plan.channels)
-    row.channels.push_back(channel.name + (channel.copies > 1 ? " x " + std::to_string(channel.copies) : ""));
+  for (const Field& field : plan.fields)
+    if (field.owner == Owner::node)
+      row.channels.push_back(field.id + (plan.velocity_fields > 1 ? " x " + std::to_string(plan.velocity_fields) : ""));
   append_passes(plan.passes, row.passes);
   run.steps(first_steps);
   plugins.clear();
