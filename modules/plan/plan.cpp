@@ -21,7 +21,8 @@ class Planner {
   explicit Planner(const Experiment& experiment)
       : experiment_(experiment),
         transfer_(experiment.transfer.plugin->transfer()),
-        shape_(experiment.shape.plugin->shape()) {}
+        shape_(experiment.shape.plugin->shape()),
+        needs_(backend_needs(experiment.backend)) {}
 
   Plan make() {
     refuse_impossible_combinations();
@@ -118,7 +119,7 @@ class Planner {
     // The reference backend keeps the stencils of a step; the cpu backend evaluates them anew in every pass.
     const bool strains_before_gather =
         strains_before_forces() || (plan_.filter && filters_before_forces() && strains_after_forces());
-    plan_.strained_domain = plan_.particle_domain && strains_before_gather && experiment_.backend == "cpu";
+    plan_.strained_domain = plan_.particle_domain && strains_before_gather && needs_.forgets_stencils;
     plan_.kept_velocity = plan_.filter && (filters_before_forces() || strains_before_forces());
     plan_.constrained_velocity =
         plan_.filter && experiment_.filter_schedule.constrain_always && (plan_.contact || separates());
@@ -163,7 +164,7 @@ class Planner {
       why = experiment_.contact->pointer + ": several velocity fields take two passes";
     else if (shape_.form == MPM_NODE_LIST)
       why = experiment_.shape.pointer + ": a list of nodes takes two passes";
-    else if (experiment_.backend != "cpu")
+    else if (!needs_.fuses)
       why = "/backend \"" + experiment_.backend + "\" keeps passes apart, as the textbook does";
     // Separate passes sort where fused ones do, so that both add up in the same order. Images of a periodic axis may be
     // missing on the other side until a scatter has found them.
@@ -246,16 +247,20 @@ class Planner {
                : experiment_.body_force ? experiment_.body_force_pointer + ": the force depends on X"
                                         : "/output/colour_by \"displacement\"")
             .lifetime = Lifetime::seeded;
-      if (plan_.kept_advection)
+      if (plan_.kept_advection || needs_.keeps_all_apart)
         particle_field(body, "advection_velocity", "m/s", D, First::zero,
-                       "/solver/stress_update \"modified_last\": positions wait for the remapped strain")
+                       plan_.kept_advection
+                           ? "/solver/stress_update \"modified_last\": positions wait for the remapped strain"
+                           : why_apart())
             .lifetime = Lifetime::step;
       if (plan_.sample_points > 0) {
         particle_field(body, "corners", "cells", D * plan_.sample_points, First::half_size_corners,
                        named(experiment_.shape) + ": corners of the domain");
-        if (plan_.kept_advection)
+        if (plan_.kept_advection || needs_.keeps_all_apart)
           particle_field(body, "moved_corners", "cells", D * plan_.sample_points, First::half_size_corners,
-                         "/solver/stress_update \"modified_last\": corners wait for the remapped strain")
+                         plan_.kept_advection
+                             ? "/solver/stress_update \"modified_last\": corners wait for the remapped strain"
+                             : why_apart())
               .lifetime = Lifetime::step;
       }
       if (plan_.particle_domain)
@@ -284,6 +289,15 @@ class Planner {
     return plan_.fields.back();
   }
 
+  /// Where the backend works in place, the field takes the memory of one that nobody reads any more.
+  void in_place_of(const std::string& other, Field& field) const {
+    if (needs_.keeps_all_apart) return;
+    field.in_place_of = other;
+    field.bytes = 0;
+  }
+
+  std::string why_apart() const { return "/backend \"" + experiment_.backend + "\" keeps all values apart"; }
+
   /// A field that particles are summed into.
   Field& summed_field(const std::string& id, const std::string& unit, int components, AtWall at_wall, Folded folded,
                       const std::string& because, const std::string& beside = "") {
@@ -297,8 +311,7 @@ class Planner {
     const std::string transfer = named(experiment_.transfer) + ": every transfer";
     summed_field("momentum", "kg m/s", D, AtWall::momentum, Folded::with_mass, transfer);
     summed_field("mass", "kg", 1, AtWall::even, Folded::with_mass, transfer, "momentum");
-    node_field("velocity", "m/s", D, transfer).in_place_of = "momentum";
-    plan_.fields.back().bytes = 0;
+    in_place_of("momentum", node_field("velocity", "m/s", D, transfer));
     if (plan_.fused) {
       const std::string fused = "/solver/passes: gather and scatter are one";
       node_field("next_momentum", "kg m/s", D, fused);
@@ -307,6 +320,9 @@ class Planner {
     if (plan_.filter) {
       node_field("increment", "m/s", D, named(*experiment_.filter));
       node_field("projection", "kg m/s", D, named(*experiment_.filter));
+      if (experiment_.filter_schedule.constrain_always)
+        in_place_of("projection", node_field("trial_velocity", "m/s", D,
+                                             named(*experiment_.filter) + ": before conditions and contact"));
     }
     if (plan_.kept_velocity)
       node_field(
@@ -408,7 +424,7 @@ class Planner {
           .every_steps = 8;
     std::vector<Pass> outer;
     if (plan_.fused) outer.swap(plan_.passes);
-    if (experiment_.backend == "cpu") pass(PassKind::sort, "/backend \"cpu\": particles stay in their blocks of cells");
+    if (needs_.sorts) pass(PassKind::sort, "/backend \"cpu\": particles stay in their blocks of cells");
     pass(PassKind::reset_grid, transfer);
     Pass& scatter = pass(PassKind::scatter, transfer);
     scatter.momentum = true;
@@ -562,10 +578,19 @@ class Planner {
   const Experiment& experiment_;
   const mpm_transfer& transfer_;
   const mpm_shape& shape_;
+  BackendNeeds needs_;
   Plan plan_;
 };
 
 }  // namespace
+
+BackendNeeds backend_needs(std::string_view backend) {
+  BackendNeeds needs;
+  needs.sorts = needs.fuses = needs.forgets_stencils = backend == "cpu";
+  needs.keeps_all_apart = backend != "cpu";
+  needs.keeps_weight_apart = backend == "reference";
+  return needs;
+}
 
 Plan make_plan(const Experiment& experiment) {
   return Planner(experiment).make();

@@ -118,6 +118,16 @@ struct Plan {
   std::string to_text() const;
 };
 
+/// How a backend works, as far as it changes what a step holds and does.
+struct BackendNeeds {
+  bool sorts = false;               ///< particles are put in order, and must stay so
+  bool fuses = false;               ///< a gather may scatter for the next step in one visit of a particle
+  bool forgets_stencils = false;    ///< weights are evaluated anew in every pass
+  bool keeps_all_apart = false;     ///< nothing is merged or shares memory
+  bool keeps_weight_apart = false;  ///< gravity has a field of its own among the forces
+};
+BackendNeeds backend_needs(std::string_view backend);
+
 /// Throws InputError when shape, transfer, contact and material cannot be combined, naming both and the reason,
 /// and when the scene needs more memory than the machine has (before anything is allocated).
 Plan make_plan(const Experiment& experiment);
