@@ -10,7 +10,7 @@
 #include "experiment/schema.hpp"
 #include "mpm/cli.hpp"
 #include "plan/compatibility.hpp"
-#include "plan/plan.hpp"
+#include "solvers/solver.hpp"
 
 namespace mpm::app {
 namespace {

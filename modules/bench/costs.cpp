@@ -282,14 +282,13 @@ struct ExtraPasses {
   bool strain_in_gather = false;  ///< the gather strains as well
 };
 
-void count_passes(const std::vector<Pass>& passes, ExtraPasses& count) {
-  for (const Pass& pass : passes) {
-    if (pass.condition != PassCondition::when_filtered) count_passes(pass.children, count);
-    if (pass.kind == PassKind::strain) ++count.strains, ++count.advances;
-    if (pass.kind == PassKind::scatter && pass.remap) ++count.remaps;
-    if ((pass.kind == PassKind::gather && pass.strain) || pass.kind == PassKind::gather_scatter)
-      count.strain_in_gather = true, ++count.advances;
-  }
+void count_passes(const Plan& plan, ExtraPasses& count) {
+  for_each_pass_as_a_rule(plan.step, [&](const Pass& pass) {
+    if (pass.has(Act::strain)) ++count.advances;
+    if (pass.has(Act::strain) && pass.has(Act::gather)) count.strain_in_gather = true;
+    if (pass.has(Act::strain) && !pass.has(Act::gather)) ++count.strains;
+    if (pass.has(Act::scatter_momentum) && pass.remap()) ++count.remaps;
+  });
 }
 
 /// Mean over the bodies by their shares of the particles.
@@ -328,7 +327,7 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
                            ? *run.filter_passes
                            : experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data());
   ExtraPasses extra;
-  count_passes(plan.passes, extra);
+  count_passes(plan, extra);
   const bool scatters_affine = w.has(MPM_SCATTERS_AFFINE);
   const bool gathers_affine = w.has(MPM_GATHERS_AFFINE) && !w.moment_is_gradient;
   const bool gathers_gradient = w.has(MPM_GATHERS_GRADIENT) || (w.has(MPM_GATHERS_AFFINE) && w.moment_is_gradient);

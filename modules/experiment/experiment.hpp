@@ -82,6 +82,7 @@ struct BodySpecification {
 };
 
 struct SolverSpecification {
+  std::string type = "explicit";
   StressUpdate stress_update = StressUpdate::last;
   std::optional<double> time_step;  ///< s; nothing: automatic
   double courant = 0.3;             ///< fraction of h / (wave speed + particle speed) when automatic

@@ -137,6 +137,7 @@ void ExperimentReader::read_header(const Fields& fields) {
 void ExperimentReader::read_solver(const Node* node) {
   const Fields fields(node, solver_section(), context_);
   SolverSpecification& solver = experiment_.solver;
+  solver.type = fields.text("type");
   solver.stress_update = static_cast<StressUpdate>(fields.choice("stress_update"));
   if (fields.text("time_step").empty()) solver.time_step = fields.number("time_step");
   solver.courant = fields.number("courant");

@@ -16,7 +16,8 @@ enum class Origin { host, transfer, material };
 enum class Lifetime {
   seeded,  ///< never changes: kept in double precision by the index of seeding, so it neither travels nor needs saving
   saved,   ///< from one step to the next: travels with its particle, stands in checkpoints
-  step     ///< holds nothing that a later step reads
+  step,    ///< holds nothing that a later step reads
+  pass     ///< holds nothing that another operator reads
 };
 
 /// What each component starts as. `seeded` values come from seeding itself; the identity is that of a row-major matrix

@@ -11,6 +11,7 @@
 #include "experiment/diagnostics.hpp"
 #include "kernel/polynomial_basis.hpp"
 #include "plan/compatibility.hpp"
+#include "plan/step_builder.hpp"
 
 namespace mpm {
 namespace {
@@ -24,21 +25,26 @@ class Planner {
         shape_(experiment.shape.plugin->shape()),
         needs_(backend_needs(experiment.backend)) {}
 
-  Plan make() {
+  Plan make(const std::function<void(StepBuilder&)>& solver_step) {
     refuse_impossible_combinations();
+    StepBuilder builder(experiment_);
+    solver_step(builder);
+    plan_.step = builder.take();
+    join_visits(plan_.step);
     decide();
+    surround_step();
+    if (plan_.fused) fuse(plan_.step);
     particle_fields();
     node_fields();
-    passes();
     estimate();
     name_lines();
+    describe_operators(plan_, experiment_);
+    check_step(plan_);
     return std::move(plan_);
   }
 
  private:
-  std::string named(const Component& component) const {
-    return component.pointer + " \"" + std::string(component.plugin->id()) + "\"";
-  }
+  static std::string named(const Component& component) { return StepBuilder::named(component); }
 
   [[noreturn]] void refuse(const std::string& pointer, const std::string& message) const {
     Problem problem{experiment_.file.string(), 0, 0, pointer, message};
@@ -89,10 +95,12 @@ class Planner {
         if (known == pointer && position.first > 0) because = "line " + std::to_string(position.first) + ": " + because;
     };
     for (Field& field : plan_.fields) name(field.because);
-    const std::function<void(std::vector<Pass>&)> name_passes = [&](std::vector<Pass>& passes) {
-      for (Pass& pass : passes) name(pass.because), name_passes(pass.children);
+    const std::function<void(Step&)> name_steps = [&](Step& step) {
+      name(step.because);
+      for (Operator& operation : step.pass.operators) name(operation.because);
+      for (Step& child : step.children) name_steps(child);
     };
-    name_passes(plan_.passes);
+    name_steps(plan_.step);
   }
 
   void decide() {
@@ -128,6 +136,7 @@ class Planner {
     plan_.separate_force = plan_.velocity_increment || plan_.contact || experiment_.body_force.has_value() ||
                            separates() || strains_before_forces() || (plan_.filter && filters_before_forces());
     plan_.force_for_ledger = plan_.ledger && !plan_.separate_force;
+    plan_.divides_with_forces = !plan_.filter && !plan_.separate_force && forces_follow_division(plan_.step);
     plan_.separate_force = plan_.separate_force || plan_.ledger;
     plan_.kept_advection = experiment_.solver.stress_update == StressUpdate::modified_last;
     plan_.initial_position = experiment_.exact.has_value() || experiment_.output.colour_by == "displacement" ||
@@ -152,20 +161,10 @@ class Planner {
 
   bool filters_before_forces() const { return experiment_.filter->plugin->filter().traits & MPM_FILTERS_BEFORE_FORCES; }
 
-  /// Gather and the next scatter in one visit of a particle: legal where nothing needs the grid in between.
   void decide_fusion() {
     const PassChoice choice = experiment_.solver.passes;
     std::string& why = plan_.why_not_fused;
-    if (experiment_.solver.stress_update != StressUpdate::last)
-      why = "/solver/stress_update: only USL strains and scatters at the same particle state";
-    else if (plan_.filter)
-      why = experiment_.filter->pointer + ": the filter reads the grid between gather and scatter";
-    else if (plan_.contact)
-      why = experiment_.contact->pointer + ": several velocity fields take two passes";
-    else if (shape_.form == MPM_NODE_LIST)
-      why = experiment_.shape.pointer + ": a list of nodes takes two passes";
-    else if (!needs_.fuses)
-      why = "/backend \"" + experiment_.backend + "\" keeps passes apart, as the textbook does";
+    why = why_not_fused(plan_.step, experiment_);
     // Separate passes sort where fused ones do, so that both add up in the same order. Images of a periodic axis may be
     // missing on the other side until a scatter has found them.
     plan_.sorts_before_gather = why.empty() && !any_face(ConditionType::periodic);
@@ -320,9 +319,12 @@ class Planner {
     if (plan_.filter) {
       node_field("increment", "m/s", D, named(*experiment_.filter));
       node_field("projection", "kg m/s", D, named(*experiment_.filter));
-      if (experiment_.filter_schedule.constrain_always)
-        in_place_of("projection", node_field("trial_velocity", "m/s", D,
-                                             named(*experiment_.filter) + ": before conditions and contact"));
+      if (experiment_.filter_schedule.constrain_always) {
+        Field& trial =
+            node_field("trial_velocity", "m/s", D, named(*experiment_.filter) + ": before conditions and contact");
+        trial.lifetime = Lifetime::pass;
+        in_place_of("projection", trial);
+      }
     }
     if (plan_.kept_velocity)
       node_field(
@@ -371,126 +373,37 @@ class Planner {
     return "/grid/boundaries \"separate\": the wall predicts with the forces";
   }
 
-  Pass& pass(PassKind kind, const std::string& because) {
-    plan_.passes.push_back({});
-    plan_.passes.back().kind = kind;
-    plan_.passes.back().because = because;
-    return plan_.passes.back();
-  }
+  // ---- the step ------------------------------------------------------------------------------------------------------
 
-  /// The filter's loop as a part of the tree.
-  void filter_loop(bool before_forces, bool remap = false, bool restores = false) {
-    const std::string filter = named(*experiment_.filter);
-    Pass& group = pass(PassKind::group, filter);
-    group.condition = PassCondition::when_filtered;
-    const auto child = [&](Pass& parent, PassKind kind, const std::string& because) -> Pass& {
-      Pass& pass = parent.children.emplace_back();
-      pass.kind = kind;
-      pass.because = because;
-      pass.before_forces = before_forces;
-      pass.remap = remap;
-      pass.restores = restores;
-      return pass;
+  /// What the backend and the automatic time step add to the solver's step.
+  void surround_step() {
+    std::vector<Step>& steps = plan_.step.children;
+    const auto pass = [](Act act, const std::string& because, int every_steps = 1) {
+      Step step;
+      step.kind = Step::Kind::pass;
+      step.pass.every_steps = every_steps;
+      Operator operation;
+      operation.act = act;
+      operation.because = because;
+      step.pass.add(std::move(operation));
+      return step;
     };
-    const mpm_filter& functions = experiment_.filter->plugin->filter();
-    const int times = functions.iterations(experiment_.filter->parameters.data());
-    if (times < 0) refuse(experiment_.filter->pointer, "the filter asks for " + std::to_string(times) + " passes");
-    child(group, PassKind::begin_filter,
-          filter + (before_forces ? ": velocity before the forces" : ": velocity after the forces"));
-    if (times > 0) {
-      Pass repeat;
-      repeat.kind = PassKind::repeat;
-      repeat.times = times;
-      repeat.because = filter + ": passes of its loop";
-      child(repeat, PassKind::project, transfer_name() + ": gathers and scatters the increment");
-      child(repeat, PassKind::update_filter,
-            experiment_.filter_schedule.constrain_always ? filter + ": conditions and contact act on every increment"
-                                                         : experiment_.filter->pointer + "/constraints \"at_end\"");
-      group.children.push_back(std::move(repeat));
+    if (plan_.sorts_before_gather) {
+      const auto gather = std::find_if(steps.begin(), steps.end(), [](const Step& step) {
+        return step.kind == Step::Kind::pass && step.pass.has(Act::gather);
+      });
+      steps.insert(gather, pass(Act::sort_ahead,
+                                "/backend \"cpu\": particles that are about to leave the nodes around their block"));
     }
-    child(group, PassKind::end_filter, filter);
-  }
-
-  std::string transfer_name() const { return named(experiment_.transfer); }
-
-  void passes() {
-    const std::string transfer = transfer_name();
-    const std::string order = "/solver/stress_update";
+    if (needs_.sorts)
+      steps.insert(steps.begin(), pass(Act::sort, "/backend \"cpu\": particles stay in their blocks of cells"));
     const bool by_courant = plan_.filter && experiment_.filter_schedule.every_courant > 0;
     if (!experiment_.solver.time_step || by_courant)
-      pass(PassKind::estimate_time_step, by_courant && experiment_.solver.time_step
-                                             ? experiment_.filter->pointer + "/every_courant"
-                                             : "/solver/time_step \"auto\"")
-          .every_steps = 8;
-    std::vector<Pass> outer;
-    if (plan_.fused) outer.swap(plan_.passes);
-    if (needs_.sorts) pass(PassKind::sort, "/backend \"cpu\": particles stay in their blocks of cells");
-    pass(PassKind::reset_grid, transfer);
-    Pass& scatter = pass(PassKind::scatter, transfer);
-    scatter.momentum = true;
-    scatter.contact_fields = plan_.contact;
-    const bool averaged = experiment_.solver.stress_update == StressUpdate::averaged;
-    const double share = averaged ? 0.5 : 1;
-    const bool before = strains_before_forces(), after = strains_after_forces();
-    scatter.force = !before;
-    if (plan_.fused) {
-      outer.swap(plan_.passes);
-      Pass& group = pass(PassKind::group, "/solver/passes: the step before has scattered already, as a rule");
-      group.condition = PassCondition::unless_scattered;
-      group.children = std::move(outer);
-    }
-    pass(PassKind::momentum_to_velocity,
-         plan_.contact ? named(*experiment_.contact) + " before the forces; boundaries" : "boundaries");
-    // XPIC filters v- for the particles alone; FMPM's velocity strains too, so USF needs it before the forces as well.
-    const bool particles_only = plan_.filter && filters_before_forces();
-    const auto filtered_only = [&](PassKind kind, const std::string& because) -> Pass& {
-      Pass& group = pass(PassKind::group, because);
-      group.condition = PassCondition::when_filtered;
-      Pass& child = group.children.emplace_back();
-      child.kind = kind;
-      child.because = because;
-      return child;
-    };
-    if (particles_only) {
-      filter_loop(true, false, true);
-      filtered_only(PassKind::restore_velocity,
-                    named(*experiment_.filter) + ": forces and strain take what was not filtered")
-          .keeps_correction = true;
-    } else if (plan_.kept_velocity) {
-      filter_loop(true, false, true);
-    }
-    if (before) {
-      pass(PassKind::strain, named_order()).strain_share = share;
-      pass(PassKind::scatter, named_order() + ": stress at the new strain").force = true;
-    }
-    if (plan_.kept_velocity && !particles_only)
-      filtered_only(PassKind::restore_velocity, named(*experiment_.filter) + ": filters once more after the forces");
-    pass(PassKind::apply_forces,
-         plan_.contact ? named(*experiment_.contact) + " after the forces; boundaries" : "boundaries");
-    if (plan_.filter && !particles_only) filter_loop(false);
-    const auto strains = [&](Pass& pass) {
-      pass.strain_share = share;
-      pass.strains_again = averaged;
-    };
-    if (particles_only) {
-      if (after) strains(pass(PassKind::strain, order + ": by the unfiltered velocity"));
-      filtered_only(PassKind::add_correction, named(*experiment_.filter) + ": what the particles take");
-    }
-    if (plan_.sorts_before_gather)
-      pass(PassKind::sort, "/backend \"cpu\": particles that are about to leave the nodes around their block")
-          .keeps_grid = true;
-    Pass& gather = pass(plan_.fused ? PassKind::gather_scatter : PassKind::gather, transfer);
-    gather.strain = after && !particles_only;
-    if (gather.strain) strains(gather);
-    gather.move = experiment_.solver.stress_update != StressUpdate::modified_last;
-    if (plan_.fused) gather.momentum = gather.force = true;
-    if (gather.move) return;
-    Pass& again = pass(PassKind::scatter, order + " \"modified_last\": updated velocities, old positions");
-    again.momentum = again.remap = true;
-    pass(PassKind::momentum_to_velocity, order + " \"modified_last\"").remap = true;
-    if (plan_.filter && !particles_only) filter_loop(true, true);
-    pass(PassKind::strain, order + " \"modified_last\"");
-    pass(PassKind::move, order + " \"modified_last\": positions by the velocity gathered before");
+      steps.insert(steps.begin(),
+                   pass(Act::estimate_time_step,
+                        by_courant && experiment_.solver.time_step ? experiment_.filter->pointer + "/every_courant"
+                                                                   : "/solver/time_step \"auto\"",
+                        8));
   }
 
   // ---- memory, before anything is allocated ----------------------------------------------------------------------
@@ -592,8 +505,8 @@ BackendNeeds backend_needs(std::string_view backend) {
   return needs;
 }
 
-Plan make_plan(const Experiment& experiment) {
-  return Planner(experiment).make();
+Plan assemble_plan(const Experiment& experiment, const std::function<void(StepBuilder&)>& solver_step) {
+  return Planner(experiment).make(solver_step);
 }
 
 }  // namespace mpm

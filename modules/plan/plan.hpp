@@ -9,6 +9,7 @@
 
 #include "experiment/experiment.hpp"
 #include "plan/field.hpp"
+#include "plan/step.hpp"
 
 namespace mpm {
 
@@ -16,61 +17,10 @@ namespace mpm {
 /// power of a cell.
 inline constexpr const char* polynomial_coefficients = "polynomial_coefficients";
 
-enum class PassKind {
-  estimate_time_step,    ///< wave and particle speeds -> dt, the limiting particle named
-  sort,                  ///< particles into blocks of cells, when they have moved (or will have, see keeps_grid)
-  reset_grid,            ///< all channels to zero
-  scatter,               ///< particles -> grid, what `momentum`, `force`, `contact_fields` say
-  momentum_to_velocity,  ///< fold walls and periodic images, v- = p / m, contact before the forces
-  apply_forces,          ///< p+ = p + dt f with boundary conditions, contact after the forces, v+
-  gather,                ///< grid -> particle velocity (and strain, move as said)
-  strain,                ///< grid velocity -> velocity gradient -> material state
-  move,                  ///< x += dt times the advection velocity kept by the gather
-  gather_scatter,    ///< gather, strain, move, and the next step's reset_grid and scatter in one visit of a particle
-  begin_filter,      ///< increment <- grid velocity (kept aside as well where `restores`)
-  project,           ///< projected <- S+ S increment, by the transfer's own gather and scatter
-  update_filter,     ///< the plugin's update at every node; conditions and contact; the increment's mass norm
-  end_filter,        ///< constraints where they act at the end only; the ledger's entry; ghosts
-  restore_velocity,  ///< grid velocity <- what begin_filter kept aside
-  add_correction,    ///< grid velocity += the correction kept aside; conditions and contact: what the particles take
-  group,             ///< children, under `condition`
-  repeat             ///< children up to `times`, until |increment| <= tolerance |first|
-};
-
-/// What decides whether a group is executed in a step.
-enum class PassCondition {
-  always,
-  unless_scattered,  ///< the previous step's gather_scatter has not filled the grid already
-  when_filtered      ///< the schedule says that this step is filtered
-};
-
-struct Pass {
-  PassKind kind = PassKind::reset_grid;
-  bool momentum = false;          ///< scatter: mass and momentum
-  bool force = false;             ///< scatter: internal (and body) force
-  bool contact_fields = false;    ///< scatter: volume gradient and surface position
-  bool strain = false;            ///< gather: also advance the material with the gathered velocity gradient
-  bool move = false;              ///< gather: also move the particles
-  double strain_share = 1;        ///< strain: of the step
-  bool strains_again = false;     ///< strain: the second one of the step
-  bool remap = false;             ///< scatter and momentum_to_velocity of MUSL: updated velocities, no forces follow
-  bool before_forces = false;     ///< filter passes: they act on v-, before the forces
-  bool restores = false;          ///< begin_filter: restore_velocity follows
-  bool keeps_grid = false;        ///< sort: the grid holds this step's velocities, which the gather reads next
-  bool keeps_correction = false;  ///< restore_velocity: what the filter added is kept for add_correction
-  int every_steps = 1;
-  PassCondition condition = PassCondition::always;
-  int times = 0;  ///< of repeat
-  std::string because;
-  std::vector<Pass> children;  ///< of group and repeat
-
-  std::string name() const;
-};
-
 struct Plan {
   std::vector<Field> fields;
-  int velocity_fields = 1;   ///< that a node holds all its fields for
-  std::vector<Pass> passes;  ///< a tree: see Pass::children
+  int velocity_fields = 1;  ///< that a node holds all its fields for
+  Step step;                ///< all that one step of time does
 
   bool weight_gradients = false;    ///< a pass reads grad w
   bool affine_moment = false;       ///< a pass gathers C
@@ -93,7 +43,8 @@ struct Plan {
   bool second_moment = false;             ///< the shape's second moment is evaluated a particle
   bool velocity_gradient_moment = false;  ///< the transfer gathers L
   bool sorts_before_gather = false;       ///< velocities that the gather replaces need not travel with the particles
-  bool fused = false;                     ///< a pass is gather_scatter
+  bool divides_with_forces = false;       ///< nothing but the ledger reads velocities between divide and accelerate
+  bool fused = false;                     ///< a gather scatters for the next step
   std::string why_not_fused;              ///< empty when fused
 
   std::uint64_t particles = 0, nodes = 0;  ///< estimates before seeding
@@ -127,9 +78,5 @@ struct BackendNeeds {
   bool keeps_weight_apart = false;  ///< gravity has a field of its own among the forces
 };
 BackendNeeds backend_needs(std::string_view backend);
-
-/// Throws InputError when shape, transfer, contact and material cannot be combined, naming both and the reason,
-/// and when the scene needs more memory than the machine has (before anything is allocated).
-Plan make_plan(const Experiment& experiment);
 
 }  // namespace mpm

@@ -1,4 +1,5 @@
 // A plan as a person and as a program reads it.
+#include <algorithm>
 #include <ostream>
 #include <sstream>
 
@@ -15,69 +16,100 @@ std::string padded(std::string text, std::size_t width) {
 }  // namespace
 
 std::string Pass::name() const {
-  switch (kind) {
-    case PassKind::estimate_time_step:
+  const bool half = share < 1;
+  if (fused()) return "gather, strain and scatter";
+  if (has(Act::gather)) return !has(Act::strain) ? "gather" : half ? "gather and half strain" : "gather and strain";
+  if (has(Act::scatter_momentum))
+    return remap() ? "scatter again" : has(Act::scatter_force) ? "scatter" : "scatter momentum";
+  switch (operators.front().act) {
+    case Act::estimate_time_step:
       return "estimate time step";
-    case PassKind::sort:
+    case Act::sort:
+    case Act::sort_ahead:
       return "sort";
-    case PassKind::reset_grid:
+    case Act::clear:
       return "reset grid";
-    case PassKind::scatter:
-      return remap ? "scatter again" : momentum && force ? "scatter" : momentum ? "scatter momentum" : "scatter force";
-    case PassKind::momentum_to_velocity:
-      return remap ? "momentum to velocity again" : "momentum to velocity";
-    case PassKind::apply_forces:
+    case Act::scatter_force:
+      return "scatter force";
+    case Act::divide:
+      return remap() ? "momentum to velocity again" : "momentum to velocity";
+    case Act::accelerate:
       return "apply forces";
-    case PassKind::gather:
-      return !strain ? "gather" : strain_share < 1 ? "gather and half strain" : "gather and strain";
-    case PassKind::strain:
-      return strain_share < 1 ? "half strain" : "strain";
-    case PassKind::move:
+    case Act::strain:
+      return half ? "half strain" : "strain";
+    case Act::move:
       return "move";
-    case PassKind::gather_scatter:
-      return "gather, strain and scatter";
-    case PassKind::begin_filter:
+    case Act::begin_filter:
       return "begin filter";
-    case PassKind::project:
+    case Act::project:
       return "project";
-    case PassKind::update_filter:
+    case Act::update_filter:
       return "update filter";
-    case PassKind::end_filter:
+    case Act::end_filter:
       return "end filter";
-    case PassKind::restore_velocity:
+    case Act::restore_velocity:
       return "restore velocity";
-    case PassKind::add_correction:
+    case Act::add_correction:
       return "add correction";
-    case PassKind::group:
-      return condition == PassCondition::unless_scattered ? "unless scattered"
-             : condition == PassCondition::when_filtered  ? "when filtered"
-                                                          : "group";
-    case PassKind::repeat:
-      return "repeat";
+    default:
+      return "";
   }
-  return "";
+}
+
+std::string Step::name() const {
+  switch (kind) {
+    case Kind::pass:
+      return pass.name();
+    case Kind::repeat_until:
+      return "repeat";
+    case Kind::when:
+      return condition == Condition::unless_scattered ? "unless scattered"
+             : condition == Condition::when_filtered  ? "when filtered"
+                                                      : "when the next dt is known";
+    default:
+      return "sequence";
+  }
 }
 
 namespace {
 
-nlohmann::ordered_json to_json(const std::vector<Pass>& passes) {
+/// A gather that may scatter ahead is told as the fused pass that it is as a rule.
+const Step& as_a_rule(const Step& step) {
+  return step.kind == Step::Kind::when && step.condition == Condition::may_scatter_ahead ? step.children.front() : step;
+}
+
+const std::string& because_of(const Step& step) {
+  return step.kind == Step::Kind::pass ? step.pass.operators.front().because : step.because;
+}
+
+nlohmann::ordered_json to_json(const std::vector<Step>& steps) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const Pass& p : passes) {
-    nlohmann::ordered_json json{{"name", p.name()}, {"every_steps", p.every_steps}, {"because", p.because}};
-    if (p.kind == PassKind::repeat) json["times"] = p.times;
-    if (!p.children.empty()) json["passes"] = to_json(p.children);
+  for (const Step& child : steps) {
+    const Step& step = as_a_rule(child);
+    nlohmann::ordered_json json{
+        {"name", step.name()}, {"every_steps", step.pass.every_steps}, {"because", because_of(step)}};
+    if (step.kind == Step::Kind::repeat_until) json["times"] = step.times;
+    for (const Operator& operation : step.pass.operators)
+      for (const auto& [key, names] : {std::pair{"reads", &operation.reads}, std::pair{"writes", &operation.writes},
+                                       std::pair{"adds", &operation.adds}})
+        for (const std::string& name : *names)
+          if (auto& known = json[key]; std::find(known.begin(), known.end(), name) == known.end())
+            known.push_back(name);
+    if (!step.children.empty()) json["passes"] = to_json(step.children);
     list.push_back(std::move(json));
   }
   return list;
 }
 
-void print(std::ostream& out, const std::vector<Pass>& passes, int depth) {
-  for (const Pass& p : passes) {
-    std::string cadence = p.every_steps > 1 ? "every " + std::to_string(p.every_steps) + " steps" : "";
-    if (p.kind == PassKind::repeat) cadence = "up to " + std::to_string(p.times) + (p.times > 1 ? " times" : " time");
-    out << "    " << padded(std::string(2 * static_cast<std::size_t>(depth), ' ') + p.name(), 30) << padded(cadence, 17)
-        << p.because << "\n";
-    print(out, p.children, depth + 1);
+void print(std::ostream& out, const std::vector<Step>& steps, int depth) {
+  for (const Step& child : steps) {
+    const Step& step = as_a_rule(child);
+    std::string cadence = step.pass.every_steps > 1 ? "every " + std::to_string(step.pass.every_steps) + " steps" : "";
+    if (step.kind == Step::Kind::repeat_until)
+      cadence = "up to " + std::to_string(step.times) + (step.times > 1 ? " times" : " time");
+    out << "    " << padded(std::string(2 * static_cast<std::size_t>(depth), ' ') + step.name(), 30)
+        << padded(cadence, 17) << because_of(step) << "\n";
+    print(out, step.children, depth + 1);
   }
 }
 
@@ -120,7 +152,7 @@ nlohmann::ordered_json Plan::to_json() const {
     json[field.owner == Owner::particle ? "attributes" : "fields"].push_back(std::move(row));
   }
   json["velocity_fields"] = velocity_fields;
-  json["passes"] = mpm::to_json(passes);
+  json["passes"] = mpm::to_json(step.children);
   json["weight_gradients"] = weight_gradients;
   json["affine_moment"] = affine_moment;
   json["separate_force"] = separate_force;
@@ -159,7 +191,7 @@ std::string Plan::to_text() const {
   for (const Field& field : fields)
     if (field.owner == Owner::node) print_field(field);
   out << "Passes of a step\n";
-  print(out, passes, 0);
+  print(out, step.children, 0);
   out << "Gather and scatter: " << (fused ? "fused, one visit of a particle a step" : "two passes, " + why_not_fused)
       << "\n";
   out << "Stencil: weights" << (weight_gradients ? " and gradients" : " only, no gradients") << "; force "

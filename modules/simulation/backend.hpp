@@ -154,7 +154,8 @@ struct StepInfo {
   double dt = 0, time = 0;  ///< s; time at the start of the step
   long step = 0;
   bool filtered = false;  ///< the filter acts in this step: gathered velocities replace those of the particles
-  double next_dt = 0;     ///< of the following step, for gather_scatter
+  double next_dt = 0;     ///< of the following step, where a gather scatters for it
+  double next_time = 0;   ///< s, when that begins
   bool observed = true;   ///< the state of the particles is read after this step
 };
 

@@ -6,11 +6,15 @@
 #include <sstream>
 
 #include "simulation/seeding.hpp"
+#include "solvers/solver.hpp"
 
 namespace mpm {
 
 Simulation::Simulation(const Experiment& experiment, const BackendFactory& make_backend)
-    : experiment_(experiment), plan_(make_plan(experiment)) {
+    : experiment_(experiment), plan_(make_plan(experiment)), solver_(solver_of(experiment)) {
+  for_each_pass(plan_.step, [&](const Pass& pass) {
+    if (pass.has(Act::estimate_time_step)) estimate_every_ = pass.every_steps;
+  });
   std::vector<SeededBody> bodies;
   for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body)
     bodies.push_back(seed_body(experiment, body));
@@ -19,29 +23,34 @@ Simulation::Simulation(const Experiment& experiment, const BackendFactory& make_
 }
 
 bool Simulation::finished() const {
-  return time_ >= experiment_.solver.end_time * (1 - 1e-12) || steps_ >= experiment_.solver.max_steps;
+  return ends_at(time_) || steps_ >= experiment_.solver.max_steps;
 }
 
-/// The fixed step, or courant h / (wave speed + particle speed); shortened to end at end_time. Nothing else changes it,
-/// so that the cadence of outputs changes no result.
-double Simulation::next_time_step() const {
+bool Simulation::ends_at(double time) const {
+  return time >= experiment_.solver.end_time * (1 - 1e-12);
+}
+
+/// The fixed step, or what the solver allows; shortened to end at end_time. Nothing else changes it, so that the cadence
+/// of outputs changes no result.
+double Simulation::time_step_from(double time) const {
   const double wanted = experiment_.solver.time_step.value_or(estimate_);
-  const double left = experiment_.solver.end_time - time_;
+  const double left = experiment_.solver.end_time - time;
   // A remainder of rounding is taken into the last step instead of making a tiny one.
   return left <= wanted * (1 + 1e-9) ? left : wanted;
 }
 
-void Simulation::estimate_time_step() {
+/// A fixed step multiplies instead of summing, so that rounding does not grow with the number of steps.
+double Simulation::end_of_step() const {
+  const bool fixed = experiment_.solver.time_step && dt_ == *experiment_.solver.time_step;
+  return fixed ? static_cast<double>(steps_ + 1) * dt_ : time_ + dt_;
+}
+
+void Simulation::take_limit() {
   const TimeStepLimit limit = backend_->time_step_limit();
   if (!(limit.speed > 0) || !std::isfinite(limit.speed))
     throw RunFailure("not a number: its wave or particle speed gives no time step", limit.body, limit.particle);
   estimated_speed_ = limit.speed;
-  estimate_ = experiment_.solver.courant * experiment_.grid.cell_size / limit.speed;
-  // FMPM(k) is stable to 1 / sqrt(k) of the unfiltered step (Nairn 2026, arXiv 2604.07307); XPIC, before the forces, is
-  // not the worse for its order.
-  if (plan_.filter && !(experiment_.filter->plugin->filter().traits & MPM_FILTERS_BEFORE_FORCES))
-    estimate_ /=
-        std::sqrt(1.0 + experiment_.filter->plugin->filter().iterations(experiment_.filter->parameters.data()));
+  estimate_ = solver_.limit(experiment_, {limit.speed}).seconds;
 }
 
 /// Whether the filter acts in the step that begins now.
@@ -58,76 +67,66 @@ bool Simulation::filter_due() {
 }
 
 /// The next step's scatter needs its dt: not before an estimate, and not when there is no next step.
-bool Simulation::may_fuse() const {
-  if (finished() || steps_ + 1 >= experiment_.solver.max_steps) return false;
-  return std::none_of(plan_.passes.begin(), plan_.passes.end(), [&](const Pass& pass) {
-    return pass.kind == PassKind::estimate_time_step && (steps_ + 1) % pass.every_steps == 0;
-  });
+bool Simulation::may_scatter_ahead() const {
+  return !ends_at(end_of_step()) && steps_ + 1 < experiment_.solver.max_steps && (steps_ + 1) % estimate_every_ != 0;
 }
 
-void Simulation::execute(const std::vector<Pass>& passes, StepInfo& step) {
-  for (const Pass& pass : passes)
-    if (steps_ % pass.every_steps == 0) execute(pass, step);
+void Simulation::execute(const Step& step, StepInfo& info) {
+  switch (step.kind) {
+    case Step::Kind::pass:
+      if (steps_ % step.pass.every_steps == 0) execute(step.pass, info);
+      return;
+    case Step::Kind::sequence:
+      for (const Step& child : step.children) execute(child, info);
+      return;
+    case Step::Kind::repeat_until:
+      for (int i = 0; i < step.times; ++i) {
+        for (const Step& child : step.children) execute(child, info);
+        ++filter_passes_;
+        const FilterRecord& record = backend_->filter_record();
+        if (record.last_norm <= experiment_.filter_schedule.tolerance * record.first_norm) return;
+      }
+      return;
+    case Step::Kind::when:
+      begin(info);
+      if (step.condition == Condition::may_scatter_ahead) return gather(step, info);
+      if (step.condition == Condition::when_filtered ? info.filtered : !scattered_)
+        for (const Step& child : step.children) execute(child, info);
+  }
 }
 
-void Simulation::execute(const Pass& pass, StepInfo& step) {
-  if (!chosen_ && pass.kind != PassKind::estimate_time_step) {
-    dt_ = step.dt = next_time_step();
-    step.filtered = filter_due();
-    chosen_ = true;
-  }
-  if (pass.kind == PassKind::group) {
-    const bool wanted = pass.condition == PassCondition::always ||
-                        (pass.condition == PassCondition::unless_scattered && !scattered_) ||
-                        (pass.condition == PassCondition::when_filtered && step.filtered);
-    if (wanted) execute(pass.children, step);
-    return;
-  }
-  if (pass.kind == PassKind::repeat) {
-    for (int i = 0; i < pass.times; ++i) {
-      execute(pass.children, step);
-      const FilterRecord& record = backend_->filter_record();
-      if (record.last_norm <= experiment_.filter_schedule.tolerance * record.first_norm) break;
-    }
-    return;
-  }
+/// The gather that ends a step, with the next step's scatter where that step's dt is known by now.
+void Simulation::gather(const Step& step, StepInfo& info) {
+  const bool ahead = may_scatter_ahead();
+  info.next_time = end_of_step();
+  info.next_dt = time_step_from(info.next_time);
+  observed_ = info.observed = !ahead || !wanted_ || wanted_(info.next_time, steps_ + 1);
+  execute(step.children[ahead ? 0 : 1], info);
+  scattered_ = ahead && backend_->scattered();
+}
+
+/// dt is chosen, and whether the filter acts, once the limit of the step is known.
+void Simulation::begin(StepInfo& info) {
+  if (chosen_) return;
+  dt_ = info.dt = time_step_from(time_);
+  info.filtered = filter_due();
+  chosen_ = true;
+}
+
+void Simulation::execute(const Pass& pass, StepInfo& info) {
+  const bool estimates = pass.has(Act::estimate_time_step);
+  if (!estimates) begin(info);
   const auto start = std::chrono::steady_clock::now();
-  backend_->execute(pass, step);
+  backend_->execute(pass, info);
   seconds_[pass.name()] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (pass.kind == PassKind::estimate_time_step) estimate_time_step();
-  if (pass.kind == PassKind::project) ++filter_passes_;
+  if (estimates) take_limit();
 }
 
 void Simulation::step() {
   StepInfo info{0, time_, steps_};
   chosen_ = false;
-  const double begin = time_;
-  // A fixed step multiplies instead of summing, so that rounding does not grow with the number of steps.
-  const auto end_time = [&] {
-    const bool fixed = experiment_.solver.time_step && dt_ == *experiment_.solver.time_step;
-    return fixed ? static_cast<double>(steps_ + 1) * dt_ : begin + dt_;
-  };
-  for (const Pass& pass : plan_.passes) {
-    if (pass.kind != PassKind::gather_scatter) {
-      if (steps_ % pass.every_steps == 0) execute(pass, info);
-      continue;
-    }
-    // What the following step will take for its dt is known now.
-    time_ = end_time();
-    info.next_dt = next_time_step();
-    const bool fuse = may_fuse();
-    observed_ = info.observed = !fuse || !wanted_ || wanted_(time_, steps_ + 1);
-    time_ = begin;
-    if (fuse) {
-      execute(pass, info);
-    } else {
-      Pass gather = pass;
-      gather.kind = PassKind::gather;
-      execute(gather, info);
-    }
-    scattered_ = fuse && backend_->scattered();
-  }
-  time_ = end_time();
+  execute(plan_.step, info);
+  time_ = end_of_step();
   if (++steps_ == 1) first_entries_ = backend_->ledger();
   smallest_ = steps_ == 1 ? dt_ : std::min(smallest_, dt_);
   largest_ = std::max(largest_, dt_);

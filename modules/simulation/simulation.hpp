@@ -2,6 +2,7 @@
 // A run: the plan's passes, step by step, on one backend.
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -10,6 +11,8 @@
 #include "simulation/backend.hpp"
 
 namespace mpm {
+
+struct Solver;
 
 /// Builds the backend that an experiment names (backends/make_backend.hpp).
 using BackendFactory = std::function<std::unique_ptr<Backend>(const Experiment&, const Plan&, std::vector<SeededBody>)>;
@@ -63,20 +66,26 @@ class Simulation {
   const std::map<std::string, double>& seconds_by_pass() const { return seconds_; }
 
  private:
-  double next_time_step() const;
-  void execute(const std::vector<Pass>& passes, StepInfo& step);
-  void execute(const Pass& pass, StepInfo& step);
-  void estimate_time_step();
-  bool may_fuse() const;
+  bool ends_at(double time) const;
+  double time_step_from(double time) const;
+  double end_of_step() const;
+  void execute(const Step& step, StepInfo& info);
+  void execute(const Pass& pass, StepInfo& info);
+  void gather(const Step& step, StepInfo& info);
+  void begin(StepInfo& info);
+  void take_limit();
+  bool may_scatter_ahead() const;
   bool filter_due();
 
   const Experiment& experiment_;
   Plan plan_;
+  const Solver& solver_;
   std::unique_ptr<Backend> backend_;
   double time_ = 0, dt_ = 0, estimate_ = 0, smallest_ = 0, largest_ = 0;
-  double estimated_speed_ = 0;  ///< m/s, of the last estimate
-  double filter_clock_ = 0;     ///< time or cells since the filter last acted
-  bool chosen_ = false;         ///< dt of this step is known
+  double estimated_speed_ = 0;                              ///< m/s, of the last estimate
+  long estimate_every_ = std::numeric_limits<long>::max();  ///< steps from one estimate to the next
+  double filter_clock_ = 0;                                 ///< time or cells since the filter last acted
+  bool chosen_ = false;                                     ///< dt of this step is known
   std::function<bool(double, long)> wanted_;
   bool observed_ = true;
   bool scattered_ = false;  ///< the grid holds this step's scatter already

@@ -3,7 +3,7 @@
 
 #include "cli/program.hpp"
 #include "experiment/diagnostics.hpp"
-#include "plan/plan.hpp"
+#include "solvers/solver.hpp"
 #include "study/study.hpp"
 #include "support/scene.hpp"
 

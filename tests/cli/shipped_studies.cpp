@@ -4,7 +4,7 @@
 #include "cli/program.hpp"
 #include "experiment/diagnostics.hpp"
 #include "mpm/cli.hpp"
-#include "plan/plan.hpp"
+#include "solvers/solver.hpp"
 #include "study/study.hpp"
 #include "support/scene.hpp"
 

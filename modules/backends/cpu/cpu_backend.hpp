@@ -59,6 +59,7 @@ class CpuBackend final : public Backend {
   FilterRecord filter_;
   TimeStepLimit limit_;
   bool scattered_ = false;   ///< the last gather_scatter left the next step's grid
+  Pass gather_alone_;        ///< a fused pass without what it does for the next step, once that was needed
   bool motion_kept_ = true;  ///< particles have the velocity and the transfer's state of the last step
   std::unique_ptr<Step> particle_step_;
   std::unique_ptr<GridStep<D, T>> grid_step_;
@@ -256,9 +257,9 @@ void CpuBackend<D, T, Components>::sort_between(const StepInfo& step) {
 
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
-  if (pass.remap) grid_.clear(motion);
+  if (pass.remap()) grid_.clear(motion);
   const double energy = particle_step_->scatter(pass, step);
-  if (pass.momentum && !pass.remap) grid_step_->set_particle_kinetic_energy(energy);
+  if (pass.has(Act::scatter_momentum) && !pass.remap()) grid_step_->set_particle_kinetic_energy(energy);
 }
 
 template <int D, class T, class Components>
@@ -280,19 +281,15 @@ template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepInfo& step) {
   scattered_ = false;
   if (particle_step_->must_sort_soon()) {
-    Pass gathers = pass;
-    gathers.kind = PassKind::gather;
-    return gather(gathers, step);
+    if (gather_alone_.operators.empty()) gather_alone_ = pass.before_next_step();
+    return gather(gather_alone_, step);
   }
   StepInfo now = step;
   now.observed = !may_pass_motion(step);
   wake_for_ledger(step.step + 1);
   for (const Channel c : {next_motion, force, body_force})
     if (grid_.has(c)) grid_.clear(c);
-  StepInfo next{step.next_dt, step.time + step.dt, step.step + 1};
-  // The very time that the simulation gives the next step: fixed steps are multiplied, not summed.
-  const auto& fixed = scene_.experiment.solver.time_step;
-  if (fixed && step.dt == *fixed) next.time = static_cast<double>(step.step + 1) * step.dt;
+  const StepInfo next{step.next_dt, step.next_time, step.step + 1};
   motion_kept_ = now.observed;
   const auto fused = particle_step_->gather_scatter(pass, now, next);
   account_for_gather(fused.gathered, step);
@@ -321,47 +318,48 @@ void CpuBackend<D, T, Components>::wake_for_ledger(long step) {
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::execute(const Pass& pass, const StepInfo& step) {
   grid_step_->set_accounted(scene_.plan.accounts_at(step.step));
-  switch (pass.kind) {
-    case PassKind::estimate_time_step:
+  switch (pass.operators.front().act) {
+    case Act::estimate_time_step:
       limit_ = particle_step_->time_step_limit();
       return;
-    case PassKind::sort:
-      return pass.keeps_grid ? sort_between(step) : sort_when_moved();
-    case PassKind::reset_grid:
+    case Act::sort:
+      return sort_when_moved();
+    case Act::sort_ahead:
+      return sort_between(step);
+    case Act::clear:
       wake_for_ledger(step.step);
       sort_when_moved();  // a plan without a sort pass
       if (scene_.list && particle_step_->widen_active_blocks()) grid_.rebuild(particles_, field_of_body_);
       return grid_.clear();
-    case PassKind::scatter:
+    case Act::scatter_momentum:
+    case Act::scatter_force:
       return scatter(pass, step);
-    case PassKind::momentum_to_velocity:
-      return grid_step_->momentum_to_velocity(pass.remap, step);
-    case PassKind::apply_forces:
+    case Act::divide:
+      return grid_step_->momentum_to_velocity(pass.remap(), step);
+    case Act::accelerate:
       return grid_step_->apply_forces(step);
-    case PassKind::gather:
-      return gather(pass, step);
-    case PassKind::strain:
+    case Act::gather:
+      return pass.fused() ? gather_scatter(pass, step) : gather(pass, step);
+    case Act::strain:
       ledger_.material += particle_step_->strain(pass, step);
       return;
-    case PassKind::move:
+    case Act::move:
       return particle_step_->move(step);
-    case PassKind::gather_scatter:
-      return gather_scatter(pass, step);
-    case PassKind::begin_filter:
+    case Act::begin_filter:
       return grid_step_->begin_filter(pass);
-    case PassKind::project:
+    case Act::project:
       grid_.clear(filter_projection);
       particle_step_->project(step);
       return grid_step_->project_increment(pass, step);
-    case PassKind::update_filter:
+    case Act::update_filter:
       return grid_step_->update_filter(pass, step);
-    case PassKind::end_filter:
+    case Act::end_filter:
       return grid_step_->end_filter(pass, step);
-    case PassKind::restore_velocity:
+    case Act::restore_velocity:
       return grid_step_->restore_velocity(pass);
-    case PassKind::add_correction:
+    case Act::add_correction:
       return grid_step_->add_correction(pass, step);
-    default:  // groups and repeats are the simulation's
+    default:  // the others share a visit with one of these
       throw std::logic_error("the cpu backend does not execute pass \"" + pass.name() + "\"");
   }
 }

@@ -203,37 +203,39 @@ class HostRun final : public Backend {
 
   void execute(const Pass& pass, const StepInfo& step) override {
     scene_.dt = static_cast<T>(step.dt);
-    switch (pass.kind) {
-      case PassKind::estimate_time_step:
+    switch (pass.operators.front().act) {
+      case Act::estimate_time_step:
         return estimate_time_step();
-      case PassKind::sort:
+      case Act::sort:
+      case Act::sort_ahead:
         return;  // the scatter sorts
-      case PassKind::reset_grid:
+      case Act::clear:
         return for_each_field("clear", nodes());
-      case PassKind::scatter:
+      case Act::scatter_momentum:
+      case Act::scatter_force:
         return scatter(pass);
-      case PassKind::momentum_to_velocity:
+      case Act::divide:
         return momentum_to_velocity(pass);
-      case PassKind::apply_forces:
+      case Act::accelerate:
         return apply_forces(step);
-      case PassKind::gather:
+      case Act::gather:
         return gather(pass, step);
-      case PassKind::strain:
+      case Act::strain:
         return strain(pass);
-      case PassKind::move:
+      case Act::move:
         return move();
-      case PassKind::begin_filter:
+      case Act::begin_filter:
         return begin_filter();
-      case PassKind::project:
+      case Act::project:
         return project();
-      case PassKind::update_filter:
+      case Act::update_filter:
         return update_filter();
-      case PassKind::end_filter:
+      case Act::end_filter:
         return end_filter(pass);
-      case PassKind::restore_velocity:
-        for_each_field(pass.keeps_correction ? "keep_correction" : "restore_velocity", vectors());
+      case Act::restore_velocity:
+        for_each_field(pass.has(Act::keep_correction) ? "keep_correction" : "restore_velocity", vectors());
         return for_each_field("velocity_to_momentum", vectors());
-      case PassKind::add_correction:
+      case Act::add_correction:
         return add_correction();
       default:
         throw std::logic_error("the host-run device does not execute pass \"" + pass.name() + "\"");
@@ -392,7 +394,7 @@ class HostRun final : public Backend {
   }
   void run_strain(const Pass& pass, Body<T>& body) {
     Arguments<T> a = arguments_of(body);
-    a.dt *= static_cast<T>(pass.strain_share);
+    a.dt *= static_cast<T>(pass.share);
     run_material("strain", a, body);
   }
   static constexpr const char* outside_grid =
@@ -419,29 +421,30 @@ class HostRun final : public Backend {
   }
 
   void scatter(const Pass& pass) {
-    if (pass.remap) for_each_field("clear", nodes(), true);
+    if (pass.remap()) for_each_field("clear", nodes(), true);
     for (Body<T>& body : bodies_) {
-      if (pass.momentum && !pass.remap) {
+      if (pass.has(Act::scatter_momentum) && !pass.remap()) {
         body.stencil_domain = body.domain;
         body.sort(scene_);
       }
-      if (pass.force || pass.contact_fields) run_material("stress", body);
+      if (pass.has(Act::scatter_force) || pass.has(Act::scatter_contact)) run_material("stress", body);
       Arguments<T> a = arguments_of(body);
-      a.momentum = pass.momentum, a.force = pass.force, a.contact_fields = pass.contact_fields, a.remap = pass.remap;
+      a.momentum = pass.has(Act::scatter_momentum), a.force = pass.has(Act::scatter_force),
+      a.contact_fields = pass.has(Act::scatter_contact), a.remap = pass.remap();
       run("scatter", a, body.blocks(), body, outside_grid);
     }
-    if (!pass.momentum) return;
-    for_each_axis("fold_masses", images_, pass.remap);
-    if (!pass.remap) for_each_axis("fold_forces", images_);
+    if (!pass.has(Act::scatter_momentum)) return;
+    for_each_axis("fold_masses", images_, pass.remap());
+    if (!pass.remap()) for_each_axis("fold_forces", images_);
   }
 
   void momentum_to_velocity(const Pass& pass) {
-    for_each_axis("fold_masses", walls_, pass.remap);
-    if (!pass.remap) for_each_axis("fold_forces", folded_axes());
+    for_each_axis("fold_masses", walls_, pass.remap());
+    if (!pass.remap()) for_each_axis("fold_forces", folded_axes());
     if (plan_.constrained_velocity) for_each_field("keep_free_velocity", vectors());
     for_each_field("impose_walls", nodes());
     if (plan_.contact) resolve_contact(nullptr);
-    for_each_field("momentum_to_velocity", nodes(), pass.remap);
+    for_each_field("momentum_to_velocity", nodes(), pass.remap());
     if (plan_.constrained_velocity) for_each_field("measure_constraints", vectors());
     for_each_axis("fill_velocities", filled_axes());
   }
@@ -462,9 +465,9 @@ class HostRun final : public Backend {
       Arguments<T> a = arguments_of(body);
       a.update_particles = true, a.filtered = step.filtered;
       run("gather", a, teams(body.count), body, outside_grid);
-      if (pass.strain) run_strain(pass, body);
+      if (pass.has(Act::strain)) run_strain(pass, body);
     }
-    if (pass.move) move();
+    if (pass.has(Act::move)) move();
   }
 
   void strain(const Pass& pass) {
@@ -586,7 +589,7 @@ class HostRun final : public Backend {
   void end_filter(const Pass& pass) {
     if (!experiment_.filter_schedule.constrain_always) constrain_velocity();
     for_each_axis("fill_velocities", filled_axes());
-    if (pass.restores) return;
+    if (pass.stage == Stage::before_forces) return;
     for_each_field("velocity_to_momentum", vectors());
   }
 

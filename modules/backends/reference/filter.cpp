@@ -15,7 +15,7 @@ namespace {
 
 /// Time of the wall's velocity: that of v- before the forces, of v+ after them.
 double time_of(const Pass& pass, const StepInfo& step) {
-  return pass.before_forces ? step.time : step.time + step.dt;
+  return pass.stage == Stage::after_forces ? step.time + step.dt : step.time;
 }
 
 }  // namespace
@@ -23,7 +23,8 @@ double time_of(const Pass& pass, const StepInfo& step) {
 void ReferenceBackend::begin_filter(const Pass& pass) {
   for_each_node([&](Node& node) {
     node.increment = node.velocity;
-    if (pass.restores) node.kept_velocity = node.velocity, node.kept_constrained = node.constrained;
+    if (pass.stage == Stage::before_forces)
+      node.kept_velocity = node.velocity, node.kept_constrained = node.constrained;
   });
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = grid_.mass_norm(&Node::increment);
@@ -102,9 +103,9 @@ void ReferenceBackend::call_filter(int field) {
 void ReferenceBackend::end_filter(const Pass& pass, const StepInfo& step) {
   if (!experiment_.filter_schedule.constrain_always) constrain_free_velocity(pass, step);
   grid_.fill_ghosts(time_of(pass, step));
-  if (pass.restores) return;  // the momentum stays that of the velocity kept aside
+  if (pass.stage == Stage::before_forces) return;  // the momentum stays that of the velocity kept aside
   for_each_node([](Node& node) { node.momentum = node.mass * node.velocity; });
-  if (pass.remap) return;
+  if (pass.remap()) return;
   const double filtered = accounted_ ? grid_.kinetic_energy() : 0.0;
   ledger_.filter += filtered - kinetic_energy_unfiltered_;
   kinetic_energy_after_ = filtered;
@@ -114,7 +115,7 @@ void ReferenceBackend::restore_velocity(const Pass& pass) {
   for_each_node([&](Node& node) {
     std::swap(node.velocity, node.kept_velocity);
     std::swap(node.constrained, node.kept_constrained);
-    if (!pass.keeps_correction) return;
+    if (!pass.has(Act::keep_correction)) return;
     node.kept_velocity -= node.velocity;
     node.kept_constrained -= node.constrained;
   });

@@ -14,17 +14,17 @@ void accelerate(Node& node, double dt) {
 
 void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& step) {
   const double before = accounted_ ? grid_.kinetic_energy() : 0.0;
-  grid_.fold_walls(step.time, pass.remap ? 0.0 : step.dt, pass.remap);
-  if (!pass.remap) grid_.fold_forces();
+  grid_.fold_walls(step.time, pass.remap() ? 0.0 : step.dt, pass.remap());
+  if (!pass.remap()) grid_.fold_forces();
   keep_free_velocity(false);
   impose_conditions(step.time);
-  if (accounted_ && !pass.remap) ledger_.boundary += grid_.kinetic_energy() - before;
-  if (plan_.contact) resolve_contact(step, false, pass.remap);
+  if (accounted_ && !pass.remap()) ledger_.boundary += grid_.kinetic_energy() - before;
+  if (plan_.contact) resolve_contact(step, false, pass.remap());
   for (int field = 0; field < grid_.field_count(); ++field)
     for (std::size_t i = 0; i < grid_.node_count(); ++i) {
       Node& node = grid_.node(field, i);
       node.velocity = node.mass > 0 ? Vector(node.momentum / node.mass) : Vector(Vector::Zero());
-      if (!pass.remap) node.velocity_before = node.velocity;
+      if (!pass.remap()) node.velocity_before = node.velocity;
     }
   measure_constraints();
   grid_.fill_ghosts(step.time);

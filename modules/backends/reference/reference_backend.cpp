@@ -21,38 +21,40 @@ ReferenceBackend::ReferenceBackend(const Experiment& experiment, const Plan& pla
 
 void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
   accounted_ = plan_.accounts_at(step.step);
-  switch (pass.kind) {
-    case PassKind::estimate_time_step:
+  switch (pass.operators.front().act) {
+    case Act::estimate_time_step:
       return estimate_time_step();
-    case PassKind::sort:
+    case Act::sort:
+    case Act::sort_ahead:
       return;  // particles stay in the order of seeding
-    case PassKind::reset_grid:
+    case Act::clear:
       return grid_.reset();
-    case PassKind::scatter:
+    case Act::scatter_momentum:
+    case Act::scatter_force:
       return scatter(pass, step);
-    case PassKind::momentum_to_velocity:
+    case Act::divide:
       return momentum_to_velocity(pass, step);
-    case PassKind::apply_forces:
+    case Act::accelerate:
       return apply_forces(step);
-    case PassKind::gather:
+    case Act::gather:
       return gather(pass, step);
-    case PassKind::strain:
+    case Act::strain:
       return strain(pass, step);
-    case PassKind::move:
+    case Act::move:
       return move(step);
-    case PassKind::begin_filter:
+    case Act::begin_filter:
       return begin_filter(pass);
-    case PassKind::project:
+    case Act::project:
       return project(pass, step);
-    case PassKind::update_filter:
+    case Act::update_filter:
       return update_filter(pass, step);
-    case PassKind::end_filter:
+    case Act::end_filter:
       return end_filter(pass, step);
-    case PassKind::restore_velocity:
+    case Act::restore_velocity:
       return restore_velocity(pass);
-    case PassKind::add_correction:
+    case Act::add_correction:
       return add_correction(pass, step);
-    default:  // gather_scatter is planned for the cpu only; groups and repetitions are the simulation's
+    default:  // the others share a visit with one of these
       throw std::logic_error("the reference backend does not execute pass \"" + pass.name() + "\"");
   }
 }

@@ -8,17 +8,17 @@
 namespace mpm::reference {
 
 void ReferenceBackend::scatter(const Pass& pass, const StepInfo& step) {
-  if (pass.remap) grid_.reset_momentum();
+  if (pass.remap()) grid_.reset_momentum();
   for (Particles& body : bodies_) {
-    if (!pass.remap && pass.momentum) body.find_stencils(grid_);
-    if (pass.momentum) scatter_momentum(body, pass.remap);
-    if (pass.force || pass.contact_fields) body.evaluate_stress();
-    if (pass.force) scatter_force(body, step.time);
-    if (pass.contact_fields) scatter_contact_fields(body);
+    if (!pass.remap() && pass.has(Act::scatter_momentum)) body.find_stencils(grid_);
+    if (pass.has(Act::scatter_momentum)) scatter_momentum(body, pass.remap());
+    if (pass.has(Act::scatter_force) || pass.has(Act::scatter_contact)) body.evaluate_stress();
+    if (pass.has(Act::scatter_force)) scatter_force(body, step.time);
+    if (pass.has(Act::scatter_contact)) scatter_contact_fields(body);
   }
-  if (!pass.momentum) return;
-  grid_.sum_images(pass.remap);
-  if (accounted_ && !pass.remap) ledger_.scatter += grid_.kinetic_energy() - particle_kinetic_energy();
+  if (!pass.has(Act::scatter_momentum)) return;
+  grid_.sum_images(pass.remap());
+  if (accounted_ && !pass.remap()) ledger_.scatter += grid_.kinetic_energy() - particle_kinetic_energy();
 }
 
 /// Node by node: w m, and w (b + A d).
@@ -130,10 +130,10 @@ void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
     body.gather(step.dt);
     if (step.filtered) body.take_gathered_velocity();
     if (plan_.sample_points > 0) gather_corners(body, step);
-    if (pass.strain) strain(body, pass.strain_share * step.dt);
+    if (pass.has(Act::strain)) strain(body, pass.share * step.dt);
   }
   if (accounted_) ledger_.gather += particle_kinetic_energy() - kinetic_energy_after_;
-  if (pass.move) move(step);
+  if (pass.has(Act::move)) move(step);
 }
 
 /// sum w v, sum w (v - v-), C = sum v (x) w D^-1 d and L = sum v (x) grad w of the given velocity, v+ as a rule.
@@ -162,7 +162,7 @@ void ReferenceBackend::gather_moments(Particles& body, Vector Node::*velocity_of
 void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {
   for (Particles& body : bodies_) {
     gather_moments(body, &Node::velocity);
-    strain(body, pass.strain_share * step.dt);
+    strain(body, pass.share * step.dt);
   }
 }
 

@@ -38,13 +38,6 @@ Experiment read(int dimension, const RequiredScene& scene, const ComponentLookup
   return read_experiment_text(required_base_scene(dimension), "required.json", lookup, options);
 }
 
-void append_passes(const std::vector<Pass>& passes, std::vector<std::string>& names) {
-  for (const Pass& pass : passes) {
-    if (pass.kind != PassKind::group && pass.kind != PassKind::repeat) names.push_back(pass.name());
-    append_passes(pass.children, names);
-  }
-}
-
 RequiredRow count_calls(const RequiredScene& scene, const CountedPlugins& plugins, const AfterStep& after_step) {
   const Experiment experiment = read(3, scene, plugins.lookup());
   plugins.attach(experiment);
@@ -59,7 +52,7 @@ RequiredRow count_calls(const RequiredScene& scene, const CountedPlugins& plugin
   for (const Field& field : plan.fields)
     if (field.owner == Owner::node)
       row.channels.push_back(field.id + (plan.velocity_fields > 1 ? " x " + std::to_string(plan.velocity_fields) : ""));
-  append_passes(plan.passes, row.passes);
+  for_each_pass_as_a_rule(plan.step, [&](const Pass& pass) { row.passes.push_back(pass.name()); });
   run.steps(first_steps);
   plugins.clear();
   run.steps(counted_steps);

@@ -32,8 +32,8 @@ double GridStep<D, T>::mass_norm_of_increment() {
 template <int D, class T>
 void GridStep<D, T>::begin_filter(const Pass& pass) {
   copy_velocity(motion, filter_increment);
-  if (pass.restores) copy_velocity(motion, kept_velocity);
-  if (pass.restores && grid_.has(constrained)) copy_velocity(constrained, kept_constrained);
+  if (pass.stage == Stage::before_forces) copy_velocity(motion, kept_velocity);
+  if (pass.stage == Stage::before_forces && grid_.has(constrained)) copy_velocity(constrained, kept_constrained);
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = mass_norm_of_increment();
   if (ledger_on()) kinetic_energy_unfiltered_ = kinetic_energy();
@@ -179,7 +179,7 @@ void GridStep<D, T>::end_filter(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
   if (!scene_.experiment.filter_schedule.constrain_always) constrain_free(time, step);
   fill_ghosts(time, false);
-  if (pass.remap || pass.restores) return;
+  if (pass.remap() || pass.stage == Stage::before_forces) return;
   if (ledger_on()) {
     const double energy = kinetic_energy();
     ledger_.filter += energy - kinetic_energy_unfiltered_;
@@ -189,8 +189,8 @@ void GridStep<D, T>::end_filter(const Pass& pass, const StepInfo& step) {
 
 template <int D, class T>
 void GridStep<D, T>::restore_velocity(const Pass& pass) {
-  restore(motion, kept_velocity, pass.keeps_correction);
-  if (grid_.has(constrained)) restore(constrained, kept_constrained, pass.keeps_correction);
+  restore(motion, kept_velocity, pass.has(Act::keep_correction));
+  if (grid_.has(constrained)) restore(constrained, kept_constrained, pass.has(Act::keep_correction));
 }
 
 template <int D, class T>

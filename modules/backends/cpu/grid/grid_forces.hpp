@@ -18,17 +18,7 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
   if (scene.plan.contact)
     for (int field = 0; field < scene.experiment.field_count; ++field)
       edges_.emplace_back(scene.experiment.shape, rows_per_cell(scene.experiment, field));
-  may_merge_ = may_merge();
-}
-
-/// Whether nothing but the ledger reads velocities before the forces, and conditions give the same without them.
-template <int D, class T>
-bool GridStep<D, T>::may_merge() const {
-  const Plan& plan = scene_.plan;
-  if (plan.filter || (plan.separate_force && !plan.force_for_ledger)) return false;
-  const auto divides = std::find_if(plan.passes.begin(), plan.passes.end(),
-                                    [](const Pass& pass) { return pass.kind == PassKind::momentum_to_velocity; });
-  return plan.passes.end() - divides > 1 && divides[1].kind == PassKind::apply_forces;
+  may_merge_ = scene.plan.divides_with_forces;
 }
 
 /// Calls visit(field, first node, partial sums) for every block of nodes of every field.

@@ -77,7 +77,6 @@ class GridStep {
   void add_gravity_corrections(double dt);
   void account_gravity_corrections(double dt);
   void accelerate(double dt);
-  bool may_merge() const;
   void divide_and_accelerate(double dt);
   void extend_largest_by_edges();
   void account_for_impulses(double dt);
@@ -85,7 +84,7 @@ class GridStep {
   void subtract_velocity_before();
 
   static double time_of(const Pass& pass, const StepInfo& step) {
-    return pass.before_forces || pass.remap ? step.time : step.time + step.dt;
+    return pass.stage == Stage::after_forces ? step.time + step.dt : step.time;
   }
   void copy_velocity(Channel from, Channel to);
   void restore(Channel channel, Channel kept_channel, bool keeps_correction);

@@ -64,9 +64,9 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
       block.bounds.clear();
       for_each_chunk_of(body, block,
                         [&](const Chunk& chunk) { work.moved.extend(gather_one(pass, step, chunk, work)); });
-      block.bounds.known = scene_.list && pass.move;
+      block.bounds.known = scene_.list && pass.has(Act::move);
     });
-  return sum_gathered(pass.move);
+  return sum_gathered(pass.has(Act::move));
 }
 
 /// Every block gathers from the grid and scatters what follows into next_motion and the forces, which nothing reads any
@@ -106,7 +106,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
           flush(body, block, work, c);
     });
   Fused result;
-  result.gathered = sum_gathered(pass.move);
+  result.gathered = sum_gathered(pass.has(Act::move));
   result.scattered = !abandoned_ && !must_sort();
   if (!result.scattered && !step.observed)
     throw std::logic_error("particles moved farther than the nodes around them, and their velocities were not kept");
@@ -121,12 +121,12 @@ template <int D, class T, class Components>
 [[gnu::noinline]] auto ParticleStep<D, T, Components>::gather_one(const Pass& pass, const StepInfo& step,
                                                                   const Chunk& chunk, Work& work) -> Moved {
   Wanted wanted;
-  wanted.transfer = true, wanted.strain = pass.strain;
+  wanted.transfer = true, wanted.strain = pass.has(Act::strain);
   gather_chunk(chunk, work, wanted);
   work.clock.lap(Phase::coefficients);
   States state = transfer_states(chunk);
   T* const velocity = chunk.motion;
-  T* const advection = pass.move ? work.advection : chunk.at(chunk.particles.advection);
+  T* const advection = pass.has(Act::move) ? work.advection : chunk.at(chunk.particles.advection);
   const mpm_gather_batch batch{static_cast<std::uint32_t>(chunk.end),
                                chunk_size<T>,
                                D,
@@ -147,13 +147,15 @@ template <int D, class T, class Components>
       for (T* const target : {velocity, advection})
         std::copy_n(work.velocity + c * chunk_size<T>, chunk.end, target + c * chunk_size<T>);
   const bool corners = chunk.particles.corners >= 0;
-  T* const moved = !corners ? nullptr : pass.move ? work.moved_corners.data() : chunk.at(chunk.particles.moved_corners);
+  T* const moved = !corners              ? nullptr
+                   : pass.has(Act::move) ? work.moved_corners.data()
+                                         : chunk.at(chunk.particles.moved_corners);
   if (corners) gather_corners(chunk, work, advection, step.dt, moved);
   if (sums_energy_) chunk.block.kinetic_energy += kinetic_energy(chunk, work);
   work.clock.lap(Phase::transfer);
-  if (pass.strain) advance_material(chunk, work, step.dt, pass);
+  if (pass.has(Act::strain)) advance_material(chunk, work, step.dt, pass);
   work.clock.lap(Phase::material);
-  if (!pass.move) return {};
+  if (!pass.has(Act::move)) return {};
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
     std::copy_n(chunk.at(chunk.particles.next_domain), D * D * chunk_size<T>, chunk.at(chunk.particles.domain));
   const Moved far = corners ? move_with_corners(chunk, work, moved)
@@ -367,7 +369,7 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass) {
   const bool dissipation = accounted_ && chunk.body.dissipates;
   mpm_material_batch request{};
-  request.dt = pass.strain_share * dt;
+  request.dt = pass.share * dt;
   const T* const velocity_gradient = scene_.has(MPM_STRAIN_BY_AFFINE) ? work.affine : work.gradient_of_velocity;
   request.velocity_gradient = velocity_gradient;
   if (scene_.axisymmetric) {  // b is free between gather and scatter
@@ -379,7 +381,7 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   if (evaluates_for_scatter(pass)) want_of_material(pass, work, request);
   update_material(chunk, request);
   if (chunk.particles.domain >= 0 && !chunk.body.frozen)
-    advance_domain(chunk, velocity_gradient, request.dt, pass.strains_again);
+    advance_domain(chunk, velocity_gradient, request.dt, pass.second_half());
   if (!dissipation) return;
   const T* const around = circumferences(chunk);
   const auto energies = [&](int p) {

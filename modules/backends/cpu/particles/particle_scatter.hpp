@@ -13,10 +13,11 @@ namespace mpm::cpu {
 template <int D, class T, class Components>
 std::vector<Channel> ParticleStep<D, T, Components>::scattered_channels(const Pass& pass, Channel momentum) const {
   std::vector<Channel> channels;
-  if (pass.momentum || (pass.force && !grid_.has(force))) channels.push_back(momentum);
+  if (pass.has(Act::scatter_momentum) || (pass.has(Act::scatter_force) && !grid_.has(force)))
+    channels.push_back(momentum);
   for (const Channel c : {force, body_force})
-    if (pass.force && grid_.has(c)) channels.push_back(c);
-  if (pass.contact_fields) channels.insert(channels.end(), {volume_gradient, mass_position});
+    if (pass.has(Act::scatter_force) && grid_.has(c)) channels.push_back(c);
+  if (pass.has(Act::scatter_contact)) channels.insert(channels.end(), {volume_gradient, mass_position});
   return channels;
 }
 
@@ -36,10 +37,10 @@ void ParticleStep<D, T, Components>::scatter_far(int body, Visit&& visit) {
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
   const std::vector<Channel> channels = scattered_channels(pass, motion);
-  const bool energies = scene_.plan.accounts_at(step.step) && pass.momentum && !pass.remap;
+  const bool energies = scene_.plan.accounts_at(step.step) && pass.has(Act::scatter_momentum) && !pass.remap();
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
-      const bool extends = pass.momentum && !pass.remap;
+      const bool extends = pass.has(Act::scatter_momentum) && !pass.remap();
       if (extends) begin_reach(block, work);
       block.scattered_energy = 0;
       block.far = 0;
@@ -67,8 +68,8 @@ double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo&
 /// What a pass that scatters wants of the material.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const {
-  if (pass.force) request.kirchhoff_stress = work.stress;
-  if (pass.contact_fields) request.volume_ratio = work.volume_ratio;
+  if (pass.has(Act::scatter_force)) request.kirchhoff_stress = work.stress;
+  if (pass.has(Act::scatter_contact)) request.volume_ratio = work.volume_ratio;
 }
 
 /// What a chunk gives its tiles; false, and nothing given, when a particle is outside of them or of its stencil.
@@ -78,20 +79,20 @@ template <int D, class T, class Components>
 [[gnu::noinline]] bool ParticleStep<D, T, Components>::scatter_chunk(const Pass& pass, const StepInfo& step,
                                                                      const Chunk& chunk, Work& work, Channel momentum,
                                                                      bool evaluated) {
-  const bool separate = grid_.has(force), merged = pass.force && !separate;
-  const bool by_gradient = pass.force && !scene_.stress_by_affine;
-  evaluate_shape(chunk, work, by_gradient || pass.contact_fields);
+  const bool separate = grid_.has(force), merged = pass.has(Act::scatter_force) && !separate;
+  const bool by_gradient = pass.has(Act::scatter_force) && !scene_.stress_by_affine;
+  evaluate_shape(chunk, work, by_gradient || pass.has(Act::scatter_contact));
   if (!stencils_hold(chunk, work)) return false;
-  if (!place_to_scatter(chunk, work, pass.momentum && !pass.remap && !work.far_only)) return false;
+  if (!place_to_scatter(chunk, work, pass.has(Act::scatter_momentum) && !pass.remap() && !work.far_only)) return false;
   work.clock.lap(Phase::weights);
-  if (!evaluated && (pass.force || pass.contact_fields)) {
+  if (!evaluated && (pass.has(Act::scatter_force) || pass.has(Act::scatter_contact))) {
     mpm_material_batch request{};
     want_of_material(pass, work, request);
     update_material(chunk, request);
     work.clock.lap(Phase::material);
   }
-  if (scene_.axisymmetric && pass.force) weigh_stress(chunk, work);
-  if (pass.momentum) {
+  if (scene_.axisymmetric && pass.has(Act::scatter_force)) weigh_stress(chunk, work);
+  if (pass.has(Act::scatter_momentum)) {
     momentum_coefficients(chunk, work);
     const bool adds_to_A = scene_.stress_by_affine && scene_.has(MPM_SCATTERS_AFFINE);
     const bool in_packing = merged && adds_to_A && !scene_.moment_of_particle;
@@ -105,11 +106,11 @@ template <int D, class T, class Components>
     add_to_tile(chunk, work, momentum, work.mass, true, affine, merged && by_gradient, stress);
     if (higher_kernels_.scatter) add_higher_to_tile(chunk, work, momentum, chunk.higher());
   }
-  if (pass.force && separate) {
+  if (pass.has(Act::scatter_force) && separate) {
     scatter_stress(chunk, work);
     if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, false, step.dt);
   }
-  if (pass.contact_fields) scatter_contact_fields(chunk, work);
+  if (pass.has(Act::scatter_contact)) scatter_contact_fields(chunk, work);
   return true;
 }
 

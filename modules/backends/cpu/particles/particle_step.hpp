@@ -281,7 +281,7 @@ class ParticleStep {
   bool scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work, Channel momentum,
                      bool evaluated);
   /// A fused pass asks its material for the strained state and for the stress that it scatters at once.
-  static bool evaluates_for_scatter(const Pass& pass) { return pass.kind == PassKind::gather_scatter && pass.strain; }
+  static bool evaluates_for_scatter(const Pass& pass) { return pass.fused() && pass.has(Act::strain); }
   void want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const;
   template <class Visit>
   void scatter_far(int body, Visit&& visit);

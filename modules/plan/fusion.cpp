@@ -1,0 +1,118 @@
+// Which operators one visit of a particle or node does. A visit may go on with the next operator where that reads
+// nothing that other particles or nodes have still to give; backends have these visits: what is scattered together, what
+// is gathered together, a filter's beginning and end, and (fused) a gather with the scatter of the next step.
+
+#include <algorithm>
+
+#include "plan/step_builder.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr bool scatters(Act act) {
+  return act == Act::scatter_momentum || act == Act::scatter_force || act == Act::scatter_contact;
+}
+
+/// Whether the visit `before` may go on with the first operator of `after`.
+bool joins(const Pass& before, const Pass& after) {
+  if (before.every_steps != after.every_steps || before.stage != after.stage) return false;
+  const Act last = before.operators.back().act, next = after.operators.front().act;
+  if (scatters(last)) return scatters(next);
+  if (before.has(Act::gather)) return next == Act::strain || next == Act::move;
+  return (last == Act::begin_filter && next == Act::keep_velocity) ||
+         (last == Act::restore_velocity && next == Act::keep_correction);
+}
+
+bool is_pass(const Step& step, Act act) {
+  return step.kind == Step::Kind::pass && step.pass.has(act);
+}
+
+const Pass* find_pass(const Step& step, Act act) {
+  const Pass* found = nullptr;
+  for_each_pass(step, [&](const Pass& pass) {
+    if (!found && pass.has(act)) found = &pass;
+  });
+  return found;
+}
+
+}  // namespace
+
+Pass Pass::before_next_step() const {
+  Pass own = *this;
+  own.operators.clear();
+  own.acts = 0;
+  for (const Operator& operation : operators) {
+    if (operation.act == Act::clear) break;
+    own.add(operation);
+  }
+  return own;
+}
+
+void join_visits(Step& step) {
+  std::vector<Step> joined;
+  for (Step& child : step.children) {
+    join_visits(child);
+    Step* const last = joined.empty() ? nullptr : &joined.back();
+    if (last && last->kind == Step::Kind::pass && child.kind == Step::Kind::pass && joins(last->pass, child.pass)) {
+      last->pass.share = std::min(last->pass.share, child.pass.share);
+      for (Operator& operation : child.pass.operators) last->pass.add(std::move(operation));
+    } else {
+      joined.push_back(std::move(child));
+    }
+  }
+  step.children = std::move(joined);
+}
+
+bool forces_follow_division(const Step& step) {
+  const auto divides = std::find_if(step.children.begin(), step.children.end(),
+                                    [](const Step& child) { return is_pass(child, Act::divide); });
+  return step.children.end() - divides > 1 && is_pass(divides[1], Act::accelerate);
+}
+
+std::string why_not_fused(const Step& step, const Experiment& experiment) {
+  const Pass& gather = *find_pass(step, Act::gather);
+  const bool whole_strain = gather.has(Act::strain) && gather.share == 1 && gather.has(Act::move);
+  if (experiment.solver.stress_update != StressUpdate::last)
+    return "/solver/stress_update: only USL strains and scatters at the same particle state";
+  if (find_pass(step, Act::project) || !whole_strain)
+    return experiment.filter->pointer + ": the filter reads the grid between gather and scatter";
+  if (find_pass(step, Act::scatter_contact))
+    return experiment.contact->pointer + ": several velocity fields take two passes";
+  if (experiment.shape.plugin->shape().form == MPM_NODE_LIST)
+    return experiment.shape.pointer + ": a list of nodes takes two passes";
+  if (!backend_needs(experiment.backend).fuses)
+    return "/backend \"" + experiment.backend + "\" keeps passes apart, as the textbook does";
+  return "";
+}
+
+/// What stands before the first pass over nodes that are filled becomes conditional; the last pass takes its operators
+/// on, for the next step. What is executed in some steps only stays first: it may change the next step's dt.
+void fuse(Step& step) {
+  std::vector<Step>& steps = step.children;
+  const auto is_cadenced = [](const Step& child) {
+    return child.kind == Step::Kind::pass && child.pass.every_steps > 1;
+  };
+  const auto begin = std::find_if_not(steps.begin(), steps.end(), is_cadenced);
+  const auto end = std::find_if(begin, steps.end(), [](const Step& child) { return is_pass(child, Act::divide); });
+  Step scattering;
+  scattering.kind = Step::Kind::when;
+  scattering.condition = Condition::unless_scattered;
+  scattering.because = "/solver/passes: the step before has scattered already, as a rule";
+  scattering.children.assign(std::make_move_iterator(begin), std::make_move_iterator(end));
+
+  Step gathering;
+  gathering.kind = Step::Kind::when;
+  gathering.condition = Condition::may_scatter_ahead;
+  gathering.because = "/solver/passes: gather and scatter are one";
+  Step ahead = steps.back();
+  for (const Step& child : scattering.children)
+    if (is_pass(child, Act::clear) || is_pass(child, Act::scatter_momentum))
+      for (const Operator& operation : child.pass.operators) ahead.pass.add(operation);  // in before_next_step's order
+  gathering.children = {std::move(ahead), std::move(steps.back())};
+  steps.back() = std::move(gathering);
+
+  const auto place = steps.erase(begin, end);
+  steps.insert(place, std::move(scattering));
+}
+
+}  // namespace mpm

@@ -1,0 +1,61 @@
+#include "solvers/explicit/explicit.hpp"
+
+#include <cmath>
+
+namespace mpm {
+
+void explicit_step(StepBuilder& step) {
+  const Experiment& scene = step.experiment();
+  const StressUpdate update = scene.solver.stress_update;
+  const bool averaged = update == StressUpdate::averaged, remaps = update == StressUpdate::modified_last;
+  const bool stress_first = update == StressUpdate::first || averaged;
+  const bool stress_last = update == StressUpdate::last || averaged;
+  const double share = averaged ? 0.5 : 1;
+  const std::string order = "/solver/stress_update", transfer = StepBuilder::named(scene.transfer);
+  const std::string first = order + (averaged ? " \"averaged\"" : " \"first\""), again = order + " \"modified_last\"";
+  const std::string contact = scene.contact ? StepBuilder::named(*scene.contact) : "";
+  FilterParts filter(step);
+
+  step.perform(Act::clear, transfer);
+  step.perform(Act::scatter_momentum, transfer);
+  if (!stress_first) step.perform(Act::scatter_force, transfer);
+  if (scene.contact) step.perform(Act::scatter_contact, contact);
+  step.perform(Act::divide, scene.contact ? contact + " before the forces; boundaries" : "boundaries");
+
+  filter.before_forces(stress_first);
+  if (stress_first) {
+    step.perform(Act::strain, first).share = share;
+    step.perform(Act::scatter_force, first + ": stress at the new strain");
+  }
+  filter.unfilter_for_forces(stress_first);
+
+  step.perform(Act::accelerate, scene.contact ? contact + " after the forces; boundaries" : "boundaries",
+               Stage::after_forces);
+  filter.after_forces();
+
+  if (filter.for_particles_only() && stress_last)
+    step.perform(Act::strain, order + ": by the unfiltered velocity", Stage::after_forces).share = share;
+  filter.before_gather();
+  step.perform(Act::gather, transfer, Stage::after_forces);
+  if (!filter.for_particles_only() && stress_last)
+    step.perform(Act::strain, transfer, Stage::after_forces).share = share;
+  if (!remaps) step.perform(Act::move, transfer, Stage::after_forces);
+  if (!remaps) return;
+
+  step.perform(Act::scatter_momentum, again + ": updated velocities, old positions", Stage::remapped);
+  step.perform(Act::divide, again, Stage::remapped);
+  filter.remapped();
+  step.perform(Act::strain, again, Stage::remapped);
+  step.perform(Act::move, again + ": positions by the velocity gathered before", Stage::remapped);
+}
+
+StepLimit explicit_limit(const Experiment& experiment, const TimeStepSpeeds& speeds) {
+  double seconds = experiment.solver.courant * experiment.grid.cell_size / speeds.speed;
+  // FMPM(k) is stable to 1 / sqrt(k) of the unfiltered step (Nairn 2026, arXiv 2604.07307); XPIC, before the forces, is
+  // not the worse for its order.
+  if (experiment.filter && !(experiment.filter->plugin->filter().traits & MPM_FILTERS_BEFORE_FORCES))
+    seconds /= std::sqrt(1.0 + experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data()));
+  return {seconds, "wave"};
+}
+
+}  // namespace mpm

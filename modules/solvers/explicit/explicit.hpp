@@ -1,0 +1,13 @@
+#pragma once
+// Explicit time integration: symplectic Euler, with the stress updated first, last, last from mapped-back velocities, or
+// half first and half last (docs/method.md).
+
+#include "plan/step_builder.hpp"
+#include "solvers/solver.hpp"
+
+namespace mpm {
+
+void explicit_step(StepBuilder& step);
+StepLimit explicit_limit(const Experiment& experiment, const TimeStepSpeeds& speeds);
+
+}  // namespace mpm
