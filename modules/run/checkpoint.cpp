@@ -93,7 +93,7 @@ std::string plugin_text(const Json& plugin) {
 /// Another program or other plugins would go on with other arithmetic.
 void refuse_other_program(const Json& now, const Json& then, const fs::path& path) {
   const std::string version = then.value("version", "unknown");
-  if (then.value("program", "") != now["program"] || version != now["version"])
+  if (then.value("program", "") != now["program"].get<std::string>() || version != now["version"].get<std::string>())
     throw output::FolderRefused(path.string() + " was written by version " + version + " of the program, and this is " +
                                 now.value("version", "") + ": resume with that version, " + start_anew);
 }
@@ -102,7 +102,8 @@ void refuse_other_plugins(const Json& now, const Json& then, const fs::path& pat
   const Json before = then.value("plugins", Json::array());
   for (const Json& plugin : now["plugins"]) {
     const auto same = std::find_if(before.begin(), before.end(), [&](const Json& other) {
-      return other.value("id", "") == plugin["id"] && other.value("kind", "") == plugin["kind"];
+      return other.value("id", "") == plugin["id"].get<std::string>() &&
+             other.value("kind", "") == plugin["kind"].get<std::string>();
     });
     if (same != before.end() && *same == plugin) continue;
     throw output::FolderRefused("plugin " + in_quotes(plugin["id"].get<std::string>()) + " is not the one that wrote " +

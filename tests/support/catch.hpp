@@ -4,6 +4,14 @@
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
 using Catch::Approx;
+using Catch::Matchers::ContainsSubstring;
 #else
 #include <catch2/catch.hpp>  // version 2 brings Approx into the global namespace by itself
+
+#include <string>
+
+/// The matcher that version 2 calls Contains, under its name in version 3.
+inline auto ContainsSubstring(const std::string& part) {
+  return Catch::Contains(part);
+}
 #endif
