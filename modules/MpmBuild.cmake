@@ -15,6 +15,10 @@ target_compile_options(mpm_flags INTERFACE -Wall -Wextra ${mpm_arithmetic_flags}
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(mpm_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized)
 endif()
+# Clang warns of each loop marked for lanes that it leaves as it is: that costs speed and is no mistake of the text.
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  target_compile_options(mpm_flags INTERFACE -Wno-pass-failed)
+endif()
 target_compile_options(mpm_flags INTERFACE ${mpm_instruction_set})
 if(MPM_WERROR)
   target_compile_options(mpm_flags INTERFACE -Werror)
