@@ -88,10 +88,10 @@ RemotePoint::RemotePoint(const Json& description) : name_(description.dump()), c
   ::signal(SIGPIPE, SIG_IGN);  // a process that died is an error of writing
   int to[2], from[2];
   if (::pipe2(to, O_CLOEXEC) != 0 || ::pipe2(from, O_CLOEXEC) != 0)
-    throw output::MachineError::from_errno("open a pipe for", "mpm bench", errno);
+    throw support::MachineError::from_errno("open a pipe for", "mpm bench", errno);
   std::cout.flush();
   process_ = ::fork();
-  if (process_ < 0) throw output::MachineError::from_errno("start", "mpm bench", errno);
+  if (process_ < 0) throw support::MachineError::from_errno("start", "mpm bench", errno);
   if (process_ == 0) {
     ::dup2(to[0], STDIN_FILENO);
     ::dup2(from[1], STDOUT_FILENO);
@@ -129,7 +129,7 @@ bench::Seconds RemotePoint::run(int steps) {
 Json RemotePoint::ask(const std::string& what) {
   const std::string line = what + "\n";
   if (::write(questions_, line.data(), line.size()) != static_cast<ssize_t>(line.size()))
-    throw output::MachineError::from_errno("write to", "a process of mpm bench", errno);
+    throw support::MachineError::from_errno("write to", "a process of mpm bench", errno);
   return hear();
 }
 
@@ -137,8 +137,8 @@ Json RemotePoint::hear() {
   std::string line;
   for (int c; (c = std::fgetc(answers_)) != EOF && c != '\n';) line += static_cast<char>(c);
   if (line.empty())
-    throw output::MachineError("mpm bench: the process of a point ended early (" + name_ +
-                               "); what it said stands above, most likely memory ran out");
+    throw support::MachineError("mpm bench: the process of a point ended early (" + name_ +
+                                "); what it said stands above, most likely memory ran out");
   return Json::parse(line);
 }
 

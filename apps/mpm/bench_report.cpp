@@ -68,16 +68,16 @@ void write_bench_report(const std::filesystem::path& folder, const bench::Json& 
                         const std::vector<bench::SectionResult>& results, BenchContext& context) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw output::MachineError::from_errno("make the folder", folder, error.value());
-  output::write_atomically(folder / "bench.json", document.dump(2) + "\n");
+  if (error) throw support::MachineError::from_errno("make the folder", folder, error.value());
+  support::write_atomically(folder / "bench.json", document.dump(2) + "\n");
   std::vector<bench::Target> targets;
   for (const bench::SectionResult& result : results) {
     for (const bench::Table& table : result.tables)
-      output::write_atomically(folder / (result.name + "_" + table.id + ".csv"), table.csv());
+      support::write_atomically(folder / (result.name + "_" + table.id + ".csv"), table.csv());
     targets.insert(targets.end(), result.targets.begin(), result.targets.end());
   }
-  if (!targets.empty()) output::write_atomically(folder / "targets.csv", bench::target_table(targets).csv());
-  output::write_atomically(folder / "report.md", report_text(document, results));
+  if (!targets.empty()) support::write_atomically(folder / "targets.csv", bench::target_table(targets).csv());
+  support::write_atomically(folder / "report.md", report_text(document, results));
   write_roofline(folder, context);
 }
 

@@ -138,9 +138,9 @@ std::vector<File> project(const std::string& kind, const std::string& id, const 
 void write(const std::vector<File>& files, const fs::path& folder) {
   std::error_code error;
   const bool made = fs::create_directories(folder, error);
-  if (error) throw output::MachineError::from_errno("make the folder", folder, error.value());
+  if (error) throw support::MachineError::from_errno("make the folder", folder, error.value());
   try {
-    for (const File& file : files) output::write_atomically(folder / file.name, file.text);
+    for (const File& file : files) support::write_atomically(folder / file.name, file.text);
   } catch (...) {
     for (const File& file : files) fs::remove(folder / file.name, error);
     if (made) fs::remove(folder, error);

@@ -22,6 +22,7 @@
 #include "run/limits.hpp"
 #include "run/summary.hpp"
 #include "support/files.hpp"
+#include "support/hash.hpp"
 
 namespace mpm::app {
 namespace {
@@ -81,8 +82,8 @@ nlohmann::ordered_json manifest(const Experiment& experiment, const RunOptions& 
                               {"version", MPM_VERSION},
                               {"command", options.command},
                               {"experiment_file", experiment.file.filename().string()}};
-  if (const std::string text = output::read_file(experiment.file); true)
-    json["experiment_sha256"] = output::sha256(text);
+  if (const std::string text = support::read_file(experiment.file); true)
+    json["experiment_sha256"] = support::sha256(text);
   json["seed"] = experiment.seed;
   json["threads"] = threads;
   json["machine"] = output::machine_description();
@@ -93,7 +94,7 @@ nlohmann::ordered_json manifest(const Experiment& experiment, const RunOptions& 
                                {"version", d.version},
                                {"summary", d.summary},
                                {"citation", d.citation},
-                               {"file_sha256", output::sha256_of_file(plugin->file)}});
+                               {"file_sha256", support::sha256_of_file(plugin->file)}});
   }
   return json;
 }
@@ -101,7 +102,7 @@ nlohmann::ordered_json manifest(const Experiment& experiment, const RunOptions& 
 /// That of the first part, with a line for each resumption, those included whose work was lost again.
 nlohmann::ordered_json resumed_manifest(const output::RunFolder& folder, const RunOptions& options, int threads,
                                         long step) {
-  auto json = nlohmann::ordered_json::parse(output::read_file(folder.root() / "manifest.json"), nullptr, false);
+  auto json = nlohmann::ordered_json::parse(support::read_file(folder.root() / "manifest.json"), nullptr, false);
   if (!json.is_object())
     throw output::FolderRefused((folder.root() / "manifest.json").string() +
                                 " is damaged; start anew without --resume (the unfinished run is then moved aside)");
@@ -189,7 +190,7 @@ Outcome step_or_say_why(Simulation& simulation, Recorder& recorder, Checkpoints&
                         const RunOptions& options) {
   try {
     return step_to_the_end(simulation, recorder, checkpoints, options);
-  } catch (const output::MachineError& error) {
+  } catch (const support::MachineError& error) {
     std::cerr << "the machine failed: " << error.what() << "\n";
     // The step is whole, and what could not be recorded of it is recorded when the run is resumed.
     checkpoints.write();
@@ -204,7 +205,7 @@ void draw(const Experiment& experiment, Recorder& recorder, const output::RunFol
   const std::string run = folder.root().filename().string();
   const RunLabel label{experiment.title.empty() ? experiment.file.stem().string() : experiment.title,
                        experiment.file.filename().string() + " · run " + run};
-  draw_figures(experiment.figures, output::read_csv(folder.root() / "metrics.csv"), label, folder.figures());
+  draw_figures(experiment.figures, support::read_csv(folder.root() / "metrics.csv"), label, folder.figures());
 }
 
 /// Draws frames and figures; what prevented that, or an empty string. The numbers are on disk by then.
@@ -226,7 +227,7 @@ Problem problem_at(const Experiment& experiment, const std::string& pointer, con
 }
 
 void refuse_figures_without_numbers(const Experiment& experiment, const Metrics& metrics) {
-  output::Table columns;
+  support::Table columns;
   columns.header = metrics.columns();
   columns.columns.resize(columns.header.size());
   std::vector<Problem> problems;
@@ -271,7 +272,7 @@ std::optional<int> already_finished(const Experiment& experiment, const output::
   const std::optional<int> code = finished_with(folder);
   if (!code) return std::nullopt;
   refuse_other_experiment(experiment,
-                          nlohmann::ordered_json::parse(output::read_file(folder.root() / "experiment.json")), folder);
+                          nlohmann::ordered_json::parse(support::read_file(folder.root() / "experiment.json")), folder);
   std::cerr << folder.root().string() << " holds a finished run (exit code " << *code << "): nothing was left to do\n";
   return code;
 }

@@ -19,9 +19,9 @@
 namespace mpm::app {
 namespace {
 
-using output::Table;
 using render::Plot;
 using render::Series;
+using support::Table;
 
 /// Unit of a recorded column, with its brackets: " (J/m)".
 std::string unit_of(const Table& table, const std::string& name) {
@@ -191,14 +191,14 @@ RecordedRun recorded(const std::filesystem::path& folder) {
   if (!std::filesystem::is_regular_file(numbers))
     refuse(folder, "holds no metrics.csv: the run ended before its first row");
   try {
-    run.metrics = output::read_csv(numbers);
+    run.metrics = support::read_csv(numbers);
   } catch (const std::exception& error) {
     refuse(folder, std::string("its numbers cannot be read: ") + error.what());
   }
   if (run.metrics.rows() == 0) refuse(numbers, "holds no row: the run ended before its first one");
   std::error_code ignored;
   if (const auto file = run.folder / "experiment.json"; std::filesystem::is_regular_file(file, ignored)) {
-    const auto experiment = nlohmann::json::parse(output::read_file(file), nullptr, false);
+    const auto experiment = nlohmann::json::parse(support::read_file(file), nullptr, false);
     if (experiment.is_object() && experiment.contains("title") && experiment["title"].is_string())
       run.title = experiment["title"].get<std::string>();
   }

@@ -20,10 +20,10 @@ struct RunLabel {
 
 /// Draws the named figures of one run into `folder` (made when missing). A figure whose columns the run did not record
 /// is refused with std::runtime_error naming what to switch on.
-void draw_figures(const std::vector<std::string>& names, const output::Table& metrics, const RunLabel& label,
+void draw_figures(const std::vector<std::string>& names, const support::Table& metrics, const RunLabel& label,
                   const std::filesystem::path& folder);
 
 /// The reason a figure cannot be drawn from these columns, or an empty string.
-std::string missing_for(const std::string& name, const output::Table& metrics);
+std::string missing_for(const std::string& name, const support::Table& metrics);
 
 }  // namespace mpm::app

@@ -28,7 +28,7 @@ Json study_json_in(const fs::path& folder) {
   std::error_code ignored;
   const fs::path file = folder / "study.json";
   if (!fs::is_regular_file(file, ignored)) return nullptr;
-  return Json::parse(output::read_file(file), nullptr, false);
+  return Json::parse(support::read_file(file), nullptr, false);
 }
 
 fs::path default_folder(const fs::path& file) {
@@ -47,7 +47,7 @@ fs::path folder_for(const StudyOptions& options) {
                                 " holds files that are not an earlier study (no study.json), and none of them will be "
                                 "touched; empty it, or choose another folder with --out");
   fs::create_directories(folder, error);
-  if (error) throw output::MachineError::from_errno("create the folder", folder, error.value());
+  if (error) throw support::MachineError::from_errno("create the folder", folder, error.value());
   return folder;
 }
 
@@ -65,7 +65,7 @@ void remove_temporary_files(const fs::path& folder) {
 }
 
 void write_study_json(const Results& results, const Json& machine, const fs::path& folder) {
-  output::write_atomically(
+  support::write_atomically(
       folder / "study.json",
       study::json_of(results, machine, MPM_VERSION).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
@@ -74,7 +74,7 @@ void write_study_json(const Results& results, const Json& machine, const fs::pat
 void remove_old_figures(const fs::path& folder) {
   std::error_code error;
   fs::remove_all(folder / "figures", error);
-  if (error) throw output::MachineError::from_errno("remove the old figures in", folder / "figures", error.value());
+  if (error) throw support::MachineError::from_errno("remove the old figures in", folder / "figures", error.value());
 }
 
 int code_of(const Results& results, const std::vector<std::string>& troubles) {
@@ -96,7 +96,7 @@ void print_end(const Results& results, const fs::path& folder) {
 
 /// Everything but study.json, which is written first: a figure that fails costs no numbers.
 std::vector<std::string> write_outputs(const Results& results, const Json& machine, const fs::path& folder) {
-  output::write_atomically(folder / "table.csv", study::table_csv(results));
+  support::write_atomically(folder / "table.csv", study::table_csv(results));
   remove_old_figures(folder);
   const auto troubles = study::draw_figures(results, folder);
   study::write_report(results, machine, MPM_VERSION, troubles, folder);

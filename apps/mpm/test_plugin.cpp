@@ -138,12 +138,12 @@ std::string place(const Verdict& verdict) {
 
 Verdict watch(const fs::path& file, double seconds) {
   int ends[2];
-  if (::pipe(ends) != 0) throw output::MachineError::from_errno("open a pipe for", file, errno);
-  const output::FileDescriptor reading(ends[0]);
-  output::FileDescriptor writing(ends[1]);
+  if (::pipe(ends) != 0) throw support::MachineError::from_errno("open a pipe for", file, errno);
+  const support::FileDescriptor reading(ends[0]);
+  support::FileDescriptor writing(ends[1]);
   std::cout.flush();
   const pid_t id = ::fork();
-  if (id < 0) throw output::MachineError::from_errno("start a process for", file, errno);
+  if (id < 0) throw support::MachineError::from_errno("start a process for", file, errno);
   if (id == 0) child(file, ends[1]);
   writing.close();
 

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "support/csv.hpp"
+#include "support/numbers.hpp"
+
 namespace mpm::bench {
 namespace {
 
@@ -17,13 +20,6 @@ std::string cell_text(const Cell& cell) {
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xc0) != 0x80; }));
-}
-
-std::string quoted_csv(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 bool is_number_column(const Table& table, std::size_t column) {
@@ -73,19 +69,20 @@ std::string Table::text() const {
 }
 
 std::string Table::csv() const {
-  std::string out;
-  for (std::size_t c = 0; c < columns.size(); ++c) out += (c ? "," : "") + quoted_csv(columns[c].header);
+  support::CsvText csv;
+  std::vector<std::string> cells;
+  for (const Column& column : columns) cells.push_back(column.header);
+  csv.row(cells);
   for (const auto& row : rows) {
-    out += "\n";
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      char number[32] = "";
-      if (const auto* value = std::get_if<double>(&row[c]); value && std::isfinite(*value))
-        std::snprintf(number, sizeof number, "%.17g", *value);
-      const auto* word = std::get_if<std::string>(&row[c]);
-      out += (c ? "," : "") + (word ? quoted_csv(*word) : std::string(number));
+    cells.clear();
+    for (const Cell& cell : row) {
+      const auto* word = std::get_if<std::string>(&cell);
+      const auto* number = std::get_if<double>(&cell);
+      cells.push_back(word ? *word : number && std::isfinite(*number) ? support::full_precision(*number) : "");
     }
+    csv.row(cells);
   }
-  return out + "\n";
+  return csv.text();
 }
 
 std::string Table::markdown() const {

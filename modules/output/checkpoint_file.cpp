@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "support/files.hpp"
+#include "support/hash.hpp"
 
 namespace mpm::output {
 namespace {
@@ -34,12 +35,12 @@ std::string_view bytes_of(const Header& header) {
 void write_checkpoint(const fs::path& path, const nlohmann::ordered_json& identity, std::string_view state) {
   const std::string text = identity.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   const Header header{magic, format_version, byte_order, text.size(), state.size()};
-  const std::string digest = sha256({bytes_of(header), text, state});
-  write_atomically(path, {bytes_of(header), digest, text, state});
+  const std::string digest = support::sha256({bytes_of(header), text, state});
+  support::write_atomically(path, {bytes_of(header), digest, text, state});
 }
 
 CheckpointFile read_checkpoint(const fs::path& path) {
-  const std::string bytes = read_file(path);
+  const std::string bytes = support::read_file(path);
   const auto refuse = [&](const std::string& reason) { throw CheckpointDamaged(path, reason); };
   const std::size_t shared = std::min(bytes.size(), magic.size());
   if (!std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(shared), magic.begin()))
@@ -57,7 +58,7 @@ CheckpointFile read_checkpoint(const fs::path& path) {
     refuse("is cut short or damaged: its length is not the one it names");
   const std::string_view all(bytes);
   const std::string_view text = all.substr(head, header.identity_bytes), state = all.substr(head + text.size());
-  if (all.substr(sizeof header, digest_digits) != sha256({bytes_of(header), text, state}))
+  if (all.substr(sizeof header, digest_digits) != support::sha256({bytes_of(header), text, state}))
     refuse("is damaged: its content does not match its SHA-256");
   CheckpointFile file{nlohmann::ordered_json::parse(text, nullptr, false), std::string(state)};
   if (!file.identity.is_object()) refuse("does not say what it belongs to");

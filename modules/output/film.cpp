@@ -38,7 +38,7 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     std::string name = (fs::temp_directory_path() / "mpm-film-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw MachineError::from_errno("create the folder", name, errno);
+    if (::mkdtemp(name.data()) == nullptr) throw support::MachineError::from_errno("create the folder", name, errno);
     path_ = name;
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
@@ -106,10 +106,10 @@ int run_program(const std::vector<std::string>& arguments, const fs::path& folde
   argv.push_back(nullptr);
   pid_t child = 0;
   const int error = ::posix_spawn(&child, argv[0], actions.get(), nullptr, argv.data(), environ);
-  if (error != 0) throw MachineError::from_errno("start", arguments[0], error);
+  if (error != 0) throw support::MachineError::from_errno("start", arguments[0], error);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) throw MachineError::from_errno("wait for", arguments[0], errno);
+    if (errno != EINTR) throw support::MachineError::from_errno("wait for", arguments[0], errno);
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
@@ -117,7 +117,7 @@ int run_program(const std::vector<std::string>& arguments, const fs::path& folde
 std::string last_lines(const fs::path& log, int count) {
   std::error_code ignored;
   if (!fs::exists(log, ignored)) return "(it printed nothing)";
-  std::string text = read_file(log);
+  std::string text = support::read_file(log);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   if (text.empty()) return "(it printed nothing)";
   std::size_t start = text.size();
@@ -142,9 +142,10 @@ void make_film(const fs::path& ffmpeg, const std::vector<fs::path>& frames, cons
   const int status = run_program(arguments_for(ffmpeg, part, rate), work.path(), log);
   if (status != 0 || !fs::exists(part, ignored)) {
     fs::remove(part, ignored);
-    throw MachineError("cannot write " + target.string() + ": ffmpeg stopped with status " + std::to_string(status) +
-                       ":\n" + last_lines(log, 8) +
-                       "\nthe frames are kept; replace the damaged one it names, or try the other of .mp4 and .webm");
+    throw support::MachineError(
+        "cannot write " + target.string() + ": ffmpeg stopped with status " + std::to_string(status) + ":\n" +
+        last_lines(log, 8) +
+        "\nthe frames are kept; replace the damaged one it names, or try the other of .mp4 and .webm");
   }
   fs::rename(part, target);
 }
@@ -154,12 +155,12 @@ void make_film(const fs::path& ffmpeg, const std::vector<fs::path>& frames, cons
 std::optional<fs::path> write_film(const fs::path& frames_folder, const fs::path& target, int frames_per_second) {
   check_request(target, frames_per_second);
   const std::optional<fs::path> ffmpeg = find_on_path("ffmpeg");
-  const std::vector<fs::path> frames = files_with_ending(frames_folder, {".png"});
+  const std::vector<fs::path> frames = support::files_with_ending(frames_folder, {".png"});
   if (!ffmpeg || frames.empty()) return std::nullopt;
   try {
     make_film(fs::absolute(*ffmpeg), frames, fs::absolute(target), frames_per_second);
   } catch (const fs::filesystem_error& error) {
-    throw MachineError::from_errno("write", target, error.code().value());
+    throw support::MachineError::from_errno("write", target, error.code().value());
   }
   return target;
 }

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "support/numbers.hpp"
+
 namespace mpm::output {
 namespace {
 
@@ -62,12 +64,6 @@ void append_escaped(std::string& html, char c) {
         html += c;
       }
   }
-}
-
-void drop_trailing_zeros(std::string& digits) {
-  if (digits.find('.') == std::string::npos) return;
-  digits.erase(digits.find_last_not_of('0') + 1);
-  if (digits.back() == '.') digits.pop_back();
 }
 
 std::string with_true_minus(std::string digits) {
@@ -208,14 +204,10 @@ std::string number_html(double value) {
   const std::size_t e = text.find('e');
   const int exponent = std::stoi(text.substr(e + 1));
   if (exponent >= -4 && exponent <= 5) {
-    const auto plain = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, 5 - exponent);
-    std::string digits(buffer, plain.ptr);
-    drop_trailing_zeros(digits);
-    return with_true_minus(digits);
+    return with_true_minus(support::without_trailing_zeros(support::fixed_point(value, 5 - exponent)));
   }
-  std::string mantissa = text.substr(0, e);
-  drop_trailing_zeros(mantissa);
-  return with_true_minus(mantissa) + "×10<sup>" + with_true_minus(std::to_string(exponent)) + "</sup>";
+  return with_true_minus(support::without_trailing_zeros(text.substr(0, e))) + "×10<sup>" +
+         with_true_minus(std::to_string(exponent)) + "</sup>";
 }
 
 std::string integer_html(std::int64_t value) {
@@ -227,12 +219,9 @@ std::string bytes_html(double bytes) {
   constexpr const char* units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
   int unit = 0;
   for (; std::abs(bytes) >= 1024.0 && unit < 4; ++unit) bytes /= 1024.0;
-  char buffer[64];
   const int decimals = unit == 0 && bytes == std::floor(bytes) ? 0 : std::abs(bytes) < 10.0 ? 2 : 1;
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, bytes, std::chars_format::fixed, decimals);
-  std::string digits(buffer, end.ptr);
-  drop_trailing_zeros(digits);
-  return with_true_minus(digits) + "\xC2\xA0" + units[unit];
+  return with_true_minus(support::without_trailing_zeros(support::fixed_point(bytes, decimals))) + "\xC2\xA0" +
+         units[unit];
 }
 
 std::string label_html(std::string_view key) {

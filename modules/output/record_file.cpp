@@ -5,15 +5,16 @@
 
 #include "output/checkpoint_file.hpp"
 #include "support/files.hpp"
+#include "support/hash.hpp"
 
 namespace mpm::output {
 
 void RecordFile::open() {
   std::error_code error;
   std::filesystem::create_directories(path_.parent_path(), error);
-  if (error) throw MachineError::from_errno("create the folder", path_.parent_path(), error.value());
-  file_ = FileDescriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
-  if (!file_.valid()) throw MachineError::from_errno("append to", path_, errno);
+  if (error) throw support::MachineError::from_errno("create the folder", path_.parent_path(), error.value());
+  file_ = support::FileDescriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
+  if (!file_.valid()) throw support::MachineError::from_errno("append to", path_, errno);
 }
 
 void RecordFile::append(std::string_view record) {
@@ -24,9 +25,9 @@ void RecordFile::append(std::string_view record) {
   if (error != 0) {
     // What was written in part is cut off now, or by the next append.
     [[maybe_unused]] const int ignored = ::ftruncate(file_.number(), static_cast<off_t>(bytes_));
-    throw MachineError::from_errno("append to", path_, error);
+    throw support::MachineError::from_errno("append to", path_, error);
   }
-  index_ += std::to_string(record.size()) + " " + sha256(record) + "\n";
+  index_ += std::to_string(record.size()) + " " + support::sha256(record) + "\n";
   bytes_ += record.size();
   ++count_;
 }
@@ -36,13 +37,13 @@ std::vector<std::string> RecordFile::resume(const std::string& index) {
   std::size_t bytes = 0;
   if (!index.empty()) {
     if (!std::filesystem::exists(path_)) throw CheckpointDamaged(path_, "is missing");
-    const std::string content = read_file(path_);
+    const std::string content = support::read_file(path_);
     std::istringstream lines(index);
     std::string digest;
     for (std::size_t size; lines >> size >> digest; bytes += size) {
       if (size > content.size() - bytes) throw CheckpointDamaged(path_, "is cut short");
       records.push_back(content.substr(bytes, size));
-      if (sha256(records.back()) != digest)
+      if (support::sha256(records.back()) != digest)
         throw CheckpointDamaged(path_,
                                 "is damaged: record " + std::to_string(records.size()) + " does not match its SHA-256");
     }

@@ -34,7 +34,7 @@ class RecordFile {
   void open();
 
   std::filesystem::path path_;
-  FileDescriptor file_;
+  support::FileDescriptor file_;
   std::string index_;
   std::size_t bytes_ = 0, count_ = 0;
 };

@@ -13,7 +13,7 @@ Json read_object(Run& run, const char* name) {
   const std::filesystem::path path = run.folder / name;
   if (!std::filesystem::is_regular_file(path, ignored)) return Json::object();
   constexpr bool throw_on_error = false, ignore_comments = true;
-  Json value = Json::parse(read_file(path), nullptr, throw_on_error, ignore_comments);
+  Json value = Json::parse(support::read_file(path), nullptr, throw_on_error, ignore_comments);
   if (value.is_object()) return value;
   run.unreadable.emplace_back(name);
   return Json::object();
@@ -62,7 +62,7 @@ void write_report(const std::filesystem::path& run_folder) {
     page += part(run);
   }
   page += "</main>\n</body>\n</html>\n";
-  write_atomically(run_folder / "report.html", page);
+  support::write_atomically(run_folder / "report.html", page);
 }
 
 }  // namespace mpm::output

@@ -17,7 +17,7 @@ constexpr std::uintmax_t largest_vector_figure = 2 << 20;  // a scatter of many 
 std::string image(const fs::path& path, const std::string& description) {
   const char* type = path.extension() == ".svg" ? "image/svg+xml" : "image/png";
   std::string html = "<img alt=\"" + escape_html(description) + "\" src=\"data:" + type + ";base64,";
-  append_base64(html, read_file(path));
+  support::append_base64(html, support::read_file(path));
   return html + "\">";
 }
 
@@ -30,7 +30,7 @@ std::string caption_of(const fs::path& path) {
 // One picture a figure: the vector twin, which is sharp at every width, unless it is very large and there are pixels.
 std::vector<fs::path> chosen_figures(const fs::path& folder) {
   std::vector<fs::path> chosen;
-  for (const fs::path& path : files_with_ending(folder, {".svg", ".png"})) {
+  for (const fs::path& path : support::files_with_ending(folder, {".svg", ".png"})) {
     const fs::path pixels = fs::path(path).replace_extension(".png"), vector = fs::path(path).replace_extension(".svg");
     std::error_code error;
     const bool take_pixels = fs::exists(pixels, error) &&
@@ -74,7 +74,7 @@ std::string figures(const Run& run) {
 }
 
 std::string frames(const Run& run) {
-  const std::vector<fs::path> all = files_with_ending(run.folder / "frames", {".png"});
+  const std::vector<fs::path> all = support::files_with_ending(run.folder / "frames", {".png"});
   if (all.empty()) return {};
   const std::vector<fs::path> shown = spread_evenly(all, most_frames);
   std::string html;

@@ -202,8 +202,9 @@ std::string reproduction(const Run& run) {
 
 std::string files(const Run& run) {
   std::vector<std::filesystem::path> found =
-      files_with_ending(run.folder, {".json", ".csv", ".mp4", ".webm", ".pvd", ".txt"});
-  for (auto& collection : files_with_ending(run.folder / "vtk", {".pvd"})) found.push_back(std::move(collection));
+      support::files_with_ending(run.folder, {".json", ".csv", ".mp4", ".webm", ".pvd", ".txt"});
+  for (auto& collection : support::files_with_ending(run.folder / "vtk", {".pvd"}))
+    found.push_back(std::move(collection));
   std::string html;
   for (const auto& path : found) {
     const std::string name = path.lexically_relative(run.folder).generic_string();

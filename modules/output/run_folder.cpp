@@ -56,7 +56,7 @@ void move_aside(const fs::path& folder) {
     if (!error) return;
     // Another program took this number between the check and the move.
     if (error != std::errc::directory_not_empty && error != std::errc::file_exists) {
-      throw MachineError::from_errno("move aside the earlier run in", folder, error.value());
+      throw support::MachineError::from_errno("move aside the earlier run in", folder, error.value());
     }
   }
 }
@@ -64,7 +64,7 @@ void move_aside(const fs::path& folder) {
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw MachineError::from_errno("create the folder", folder, error.value());
+  if (error) throw support::MachineError::from_errno("create the folder", folder, error.value());
 }
 
 void refuse_or_clear(const fs::path& root) {
@@ -89,7 +89,7 @@ RunFolder RunFolder::create(const fs::path& path) {
     make_folder(root);
     return RunFolder(root);
   } catch (const fs::filesystem_error& error) {
-    throw MachineError::from_errno("use the folder", path, error.code().value());
+    throw support::MachineError::from_errno("use the folder", path, error.code().value());
   }
 }
 
@@ -130,7 +130,7 @@ void RunFolder::write_json(std::string_view name, const nlohmann::ordered_json& 
 }
 
 void RunFolder::write_text(std::string_view name, std::string_view text) const {
-  write_atomically(root_ / name, text);
+  support::write_atomically(root_ / name, text);
 }
 
 }  // namespace mpm::output

@@ -61,7 +61,7 @@ class FolderLock {
   explicit FolderLock(const std::filesystem::path& folder);
 
  private:
-  FileDescriptor folder_;
+  support::FileDescriptor folder_;
 };
 
 }  // namespace mpm::output

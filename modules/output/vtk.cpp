@@ -1,7 +1,6 @@
 #include "output/vtk.hpp"
 
 #include <bit>
-#include <charconv>
 #include <cstdint>
 #include <numeric>
 #include <set>
@@ -10,17 +9,13 @@
 #include "output/html.hpp"
 #include "support/base64.hpp"
 #include "support/files.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::output {
 namespace {
 
 constexpr const char* byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 constexpr std::uint8_t vertex_cell = 1;  // VTK_VERTEX
-
-std::string exact(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
 
 template <typename T>
 constexpr const char* type_name();
@@ -47,7 +42,7 @@ void append_array(std::string& xml, const std::string& name, int components, con
   std::copy_n(reinterpret_cast<const char*>(values.data()), size, bytes.begin() + sizeof size);
   xml += std::string("        <DataArray type=\"") + type_name<T>() + "\" Name=\"" + escape_html(name) +
          "\" NumberOfComponents=\"" + std::to_string(components) + "\"" + more_attributes + " format=\"binary\">\n";
-  append_base64(xml, bytes);
+  support::append_base64(xml, bytes);
   xml += "\n        </DataArray>\n";
 }
 
@@ -132,17 +127,18 @@ void write_vtu(const std::filesystem::path& path, const ParticleSnapshot& snapsh
   xml += "      </Points>\n";
   append_vertices(xml, count);
   xml += "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n";
-  write_atomically(path, xml);
+  support::write_atomically(path, xml);
 }
 
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& time_and_file) {
   std::string xml = file_head("Collection", "0.1");
   xml += "  <Collection>\n";
   for (const auto& [time, file] : time_and_file) {
-    xml += "    <DataSet timestep=\"" + exact(time) + "\" group=\"\" part=\"0\" file=\"" + escape_html(file) + "\"/>\n";
+    xml += "    <DataSet timestep=\"" + support::shortest(time) + "\" group=\"\" part=\"0\" file=\"" +
+           escape_html(file) + "\"/>\n";
   }
   xml += "  </Collection>\n</VTKFile>\n";
-  write_atomically(path, xml);
+  support::write_atomically(path, xml);
 }
 
 }  // namespace mpm::output

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "render/files.hpp"
 #include "render/gl_canvas.hpp"
 #include "render/svg_canvas.hpp"
+#include "support/files.hpp"
 
 namespace mpm::render {
 namespace {
@@ -271,16 +271,20 @@ double lay_legend(const Canvas& canvas, const Theme& theme, std::span<const Lege
   return entries.empty() ? 0 : y + row - space.y0;
 }
 
+void write_part(const std::filesystem::path& stem, std::string_view extension, std::string_view bytes) {
+  support::write_atomically(support::with_suffix(stem, extension), bytes, support::Durability::of_program);
+}
+
 void write_all(const std::filesystem::path& stem, int width, int height, const std::string& title,
                const std::string& csv, const std::function<void(Canvas&)>& draw, bool with_svg) {
   const Image picture = rasterise(width, height, kSamples, [&](GlCanvas& canvas) { draw(canvas); });
-  write_file(with_suffix(stem, ".png"), encode_png(picture));
+  write_part(stem, ".png", encode_png(picture));
   if (with_svg) {
     SvgCanvas vector(width, height, title);
     draw(vector);
-    write_file(with_suffix(stem, ".svg"), vector.document());
+    write_part(stem, ".svg", vector.document());
   }
-  write_file(with_suffix(stem, ".csv"), csv);
+  write_part(stem, ".csv", csv);
 }
 
 void check_size(int width, int height) {

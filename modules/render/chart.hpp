@@ -112,8 +112,12 @@ struct LegendEntry {
 double lay_legend(const Canvas& canvas, const Theme& theme, std::span<const LegendEntry> entries, const Box& space,
                   Canvas* canvas_to_draw);
 
+/// Writes stem + extension, whole or not at all; not synced to the disk, because a figure can be drawn again.
+/// @throws support::MachineError.
+void write_part(const std::filesystem::path& stem, std::string_view extension, std::string_view bytes);
+
 /// Draws the same layout as STEM.png and, when `with_svg`, STEM.svg; writes `csv` as STEM.csv.
-/// @throws std::runtime_error naming path and cause.
+/// @throws support::MachineError when a file cannot be written.
 void write_all(const std::filesystem::path& stem, int width, int height, const std::string& title,
                const std::string& csv, const std::function<void(Canvas&)>& draw, bool with_svg = true);
 

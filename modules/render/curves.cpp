@@ -6,8 +6,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "render/files.hpp"
 #include "render/polyline.hpp"
+#include "support/csv.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::render {
 namespace {
@@ -370,7 +371,7 @@ std::string table_of(std::span<const Content> contents, const std::vector<std::s
                        [](const Shown& shown) { return !shown.data.point_names.empty(); });
   });
   const auto entry = [](const std::vector<std::string>& texts, std::size_t i) { return texts.empty() ? "" : texts[i]; };
-  CsvTable csv;
+  support::CsvText csv;
   std::vector<std::string> row{"series", "kind", x_label, y_label, "error", "point"};
   if (!panels.empty()) row.insert(row.begin(), "panel");
   if (has_names) row.insert(row.end(), {"name", "dominated by"});
@@ -381,9 +382,9 @@ std::string table_of(std::span<const Content> contents, const std::vector<std::s
       for (std::size_t i = 0; i < d.x.size(); ++i) {
         row = {d.label,
                name_of(d.kind),
-               full_precision(d.x[i]),
-               full_precision(d.y[i]),
-               d.error.empty() ? "" : full_precision(d.error[i]),
+               support::full_precision(d.x[i]),
+               support::full_precision(d.y[i]),
+               d.error.empty() ? "" : support::full_precision(d.error[i]),
                entry(d.point_labels, i)};
         if (!panels.empty()) row.insert(row.begin(), panels[k]);
         if (has_names) row.insert(row.end(), {entry(d.point_names, i), entry(d.dominated_by, i)});

@@ -8,10 +8,11 @@
 
 #include "render/chart.hpp"
 #include "render/field_colours.hpp"
-#include "render/files.hpp"
 #include "render/gl_canvas.hpp"
 #include "render/scene.hpp"
 #include "render/svg_canvas.hpp"
+#include "support/csv.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::render {
 namespace {
@@ -220,7 +221,7 @@ Image draw_space(const ParticleFrame& f, const Theme& theme, const std::vector<s
 
 std::string table_of(const ParticleFrame& f, const std::vector<std::size_t>& shown) {
   const std::size_t dim = static_cast<std::size_t>(f.dimension);
-  CsvTable csv;
+  support::CsvText csv;
   std::vector<std::string> cells;
   for (std::size_t d = 0; d < dim; ++d) cells.push_back(std::string(kAxisNames[d]) + " (m)");
   cells.push_back("half size (m)");
@@ -232,10 +233,11 @@ std::string table_of(const ParticleFrame& f, const std::vector<std::size_t>& sho
   csv.row(cells);
   for (const std::size_t i : shown) {
     cells.clear();
-    for (std::size_t d = 0; d < dim; ++d) cells.push_back(full_precision(f.positions[i * dim + d]));
-    cells.push_back(full_precision(f.half_size[i]));
-    for (std::size_t k = 0; k < components; ++k) cells.push_back(full_precision(f.domain_axes[i * components + k]));
-    cells.push_back(full_precision(f.values[i]));
+    for (std::size_t d = 0; d < dim; ++d) cells.push_back(support::full_precision(f.positions[i * dim + d]));
+    cells.push_back(support::full_precision(f.half_size[i]));
+    for (std::size_t k = 0; k < components; ++k)
+      cells.push_back(support::full_precision(f.domain_axes[i * components + k]));
+    cells.push_back(support::full_precision(f.values[i]));
     csv.row(cells);
   }
   return csv.text();
@@ -250,8 +252,8 @@ void write_frame(const ParticleFrame& frame, const std::filesystem::path& stem) 
   const FieldColours colours(frame, shown);
   const std::string csv = table_of(frame, shown);
   if (frame.dimension == 3) {
-    write_file(with_suffix(stem, ".png"), encode_png(draw_space(frame, theme, shown, colours)));
-    write_file(with_suffix(stem, ".csv"), csv);
+    write_part(stem, ".png", encode_png(draw_space(frame, theme, shown, colours)));
+    write_part(stem, ".csv", csv);
     return;
   }
   write_all(

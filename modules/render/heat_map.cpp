@@ -4,8 +4,9 @@
 #include <stdexcept>
 
 #include "render/chart.hpp"
-#include "render/files.hpp"
 #include "render/plot.hpp"
+#include "support/csv.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::render {
 namespace {
@@ -260,12 +261,12 @@ void draw_map(Canvas& canvas, const HeatMap& map, const Theme& theme) {
 }
 
 std::string table_of(const HeatMap& map) {
-  CsvTable csv;
+  support::CsvText csv;
   csv.row({map.y_label, map.x_label, map.value_label, "note"});
   for (std::size_t cell = 0; cell < map.values.size(); ++cell) {
     const double value = map.values[cell];
     csv.row({map.y_names[cell / map.x_names.size()], map.x_names[cell % map.x_names.size()],
-             std::isnan(value) ? "" : full_precision(value),
+             std::isnan(value) ? "" : support::full_precision(value),
              !map.notes.empty() && !map.notes[cell].empty() ? map.notes[cell]
              : std::isnan(value)                            ? "not run"
                                                             : ""});

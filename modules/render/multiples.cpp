@@ -6,7 +6,6 @@
 
 #include "render/chart.hpp"
 #include "render/curves.hpp"
-#include "render/files.hpp"
 #include "render/plot.hpp"
 
 namespace mpm::render {

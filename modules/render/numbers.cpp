@@ -1,9 +1,10 @@
 #include "render/numbers.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
+
+#include "support/numbers.hpp"
 
 namespace mpm::render {
 namespace {
@@ -46,10 +47,7 @@ std::string power_of_ten(int exponent) {
 }
 
 std::string fixed(double value, int decimals) {
-  char text[400];
-  const auto end =
-      std::to_chars(text, text + sizeof text, std::fabs(value), std::chars_format::fixed, std::clamp(decimals, 0, 17));
-  std::string digits(text, end.ptr);
+  std::string digits = support::fixed_point(std::fabs(value), decimals);
   const bool is_zero = digits.find_first_not_of("0.") == std::string::npos;
   const std::size_t whole = std::min(digits.find('.'), digits.size());
   if (whole >= 5) {
@@ -61,16 +59,10 @@ std::string fixed(double value, int decimals) {
 std::string compact(double value, int digits) {
   if (value == 0) return "0";
   if (!std::isfinite(value)) return std::isnan(value) ? "not a number" : value > 0 ? "∞" : std::string(kMinus) + "∞";
-  const auto trimmed = [](std::string text) {
-    if (text.find('.') == std::string::npos) return text;
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text;
-  };
   const int power = decade(std::fabs(value));
-  if (power >= -3 && power < 5) return trimmed(fixed(value, std::max(0, digits - 1 - power)));
+  if (power >= -3 && power < 5) return support::without_trailing_zeros(fixed(value, std::max(0, digits - 1 - power)));
   const double lead = value / std::pow(10.0, power);
-  const std::string text = trimmed(fixed(lead, digits - 1));
+  const std::string text = support::without_trailing_zeros(fixed(lead, digits - 1));
   if (text == "1") return power_of_ten(power);
   return text + "×" + power_of_ten(power);
 }

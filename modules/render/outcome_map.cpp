@@ -4,9 +4,10 @@
 #include <stdexcept>
 
 #include "render/chart.hpp"
-#include "render/files.hpp"
 #include "render/plot.hpp"
 #include "render/polyline.hpp"
+#include "support/csv.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::render {
 namespace {
@@ -139,17 +140,18 @@ void draw_map(Canvas& canvas, const OutcomeMap& map, const Theme& theme) {
 }
 
 std::string table_of(const OutcomeMap& map) {
-  CsvTable csv;
+  support::CsvText csv;
   csv.row({"what", map.x_label, map.y_label});
   for (std::size_t j = 0; j < map.y.size(); ++j) {
     for (std::size_t i = 0; i < map.x.size(); ++i) {
       const int k = map.outcome[j * map.x.size() + i];
-      csv.row({k < 0 ? "not run" : map.outcomes[static_cast<std::size_t>(k)], full_precision(map.x[i]),
-               full_precision(map.y[j])});
+      csv.row({k < 0 ? "not run" : map.outcomes[static_cast<std::size_t>(k)], support::full_precision(map.x[i]),
+               support::full_precision(map.y[j])});
     }
   }
   for (const Series& s : map.limits) {
-    for (std::size_t i = 0; i < s.x.size(); ++i) csv.row({s.label, full_precision(s.x[i]), full_precision(s.y[i])});
+    for (std::size_t i = 0; i < s.x.size(); ++i)
+      csv.row({s.label, support::full_precision(s.x[i]), support::full_precision(s.y[i])});
   }
   return csv.text();
 }

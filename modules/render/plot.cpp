@@ -5,7 +5,6 @@
 
 #include "render/chart.hpp"
 #include "render/curves.hpp"
-#include "render/files.hpp"
 
 namespace mpm::render {
 namespace {

@@ -4,9 +4,10 @@
 #include <stdexcept>
 
 #include "render/chart.hpp"
-#include "render/files.hpp"
 #include "render/plot.hpp"
 #include "render/polyline.hpp"
+#include "support/csv.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::render {
 namespace {
@@ -211,16 +212,16 @@ void draw_stacked(Canvas& canvas, const StackedPlot& plot, const Theme& theme, c
 }
 
 std::string table_of(const StackedPlot& plot, const std::vector<std::size_t>& rows) {
-  CsvTable csv;
+  support::CsvText csv;
   std::vector<std::string> cells{plot.x_label};
   for (const auto* list : {&plot.areas, &plot.lines}) {
     for (const Series& s : *list) cells.push_back(s.label + unit_of(plot.y_label));
   }
   csv.row(cells);
   for (const std::size_t row : rows) {
-    cells = {full_precision(plot.x[row])};
+    cells = {support::full_precision(plot.x[row])};
     for (const auto* list : {&plot.areas, &plot.lines}) {
-      for (const Series& s : *list) cells.push_back(full_precision(s.y[row]));
+      for (const Series& s : *list) cells.push_back(support::full_precision(s.y[row]));
     }
     csv.row(cells);
   }

@@ -1,22 +1,17 @@
 #include "render/svg_canvas.hpp"
 
-#include <array>
-#include <charconv>
 #include <vector>
 
 #include "render/font.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::render {
 namespace {
 
-// A hundredth of a pixel is finer than any printer; std::to_chars never writes a decimal comma.
+// A hundredth of a pixel is finer than any printer.
 std::string number(double value) {
-  std::array<char, 400> text;
-  auto* end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, 2).ptr;
-  while (end[-1] == '0') --end;
-  if (end[-1] == '.') --end;
-  std::string result(text.data(), end);
-  return result == "-0" ? "0" : result;
+  const std::string text = support::without_trailing_zeros(support::fixed_point(value, 2));
+  return text == "-0" ? "0" : text;
 }
 
 std::string attribute(std::string_view name, double value) {

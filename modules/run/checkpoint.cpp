@@ -7,6 +7,7 @@
 #include "experiment/diagnostics.hpp"
 #include "output/checkpoint_file.hpp"
 #include "support/files.hpp"
+#include "support/hash.hpp"
 
 namespace mpm::app {
 namespace {
@@ -166,7 +167,7 @@ Json identity_of(const Experiment& experiment) {
     identity["plugins"].push_back({{"id", plugin->descriptor->id},
                                    {"kind", kind_name(static_cast<mpm_kind>(plugin->descriptor->kind))},
                                    {"version", plugin->descriptor->version},
-                                   {"file_sha256", output::sha256_of_file(plugin->file)}});
+                                   {"file_sha256", support::sha256_of_file(plugin->file)}});
   identity["experiment"] = as_written(experiment.resolved);
   return identity;
 }
@@ -190,7 +191,7 @@ std::optional<int> finished_with(const output::RunFolder& folder) {
   const fs::path path = folder.root() / "summary.json";
   // The checkpoints of a run that came to its end are removed last, after its report.
   if (!fs::exists(path) || !output::checkpoints_in(folder.root() / "checkpoint").empty()) return std::nullopt;
-  const Json summary = Json::parse(output::read_file(path), nullptr, false);
+  const Json summary = Json::parse(support::read_file(path), nullptr, false);
   const Json::json_pointer pointer("/outcome/exit_code");
   if (!summary.is_object() || !summary.contains(pointer) || !summary[pointer].is_number_integer()) return std::nullopt;
   const int code = summary[pointer].get<int>();

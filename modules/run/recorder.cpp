@@ -78,7 +78,7 @@ void Recorder::restore(ArchiveReader& archive) {
   const std::filesystem::path table = folder_.root() / "metrics.csv";
   std::size_t rows = 0;
   archive.get("rows", rows);
-  if (!output::holds_whole_lines(table, rows))
+  if (!support::holds_whole_lines(table, rows))
     throw output::CheckpointDamaged(table, "does not hold the rows written before the checkpoint");
   std::string index;
   archive.get("snapshots", index);
@@ -113,7 +113,7 @@ void Recorder::restore(ArchiveReader& archive) {
   largest_contact_force_ = extremes[3];
   largest_penetration_ = extremes[4];
   archive.get("most_contact_nodes", most_contact_nodes_);
-  output::cut_to(table, rows);
+  support::cut_to(table, rows);
   start();
 }
 

@@ -24,14 +24,14 @@ class Recorder {
   void start();
 
   /// All that a recorder of the same run needs to go on as if it had recorded everything itself. Rows and snapshots are
-  /// on the disk when it returns. @throws output::MachineError.
+  /// on the disk when it returns. @throws support::MachineError.
   void save(ArchiveWriter& archive);
   /// In place of `start`: cuts off the rows written after `save`. @throws output::CheckpointDamaged when the folder
   /// does not hold what was recorded until then; nothing is changed in it by then. ArchiveError.
   void restore(ArchiveReader& archive);
 
   /// Records what is due after a step (or before the first). `last`: the run ends here, whatever is due. Recording the
-  /// same step again does nothing, or what failed the first time (output::MachineError).
+  /// same step again does nothing, or what failed the first time (support::MachineError).
   void record(bool last = false);
   /// Whether that is anything at `time` (s) after so many steps.
   bool due(double time, long steps) const;
@@ -63,7 +63,7 @@ class Recorder {
   const Simulation& simulation_;
   const Metrics& metrics_;
   const output::RunFolder& folder_;
-  std::optional<output::CsvAppender> csv_;
+  std::optional<support::CsvAppender> csv_;
   output::RecordFile kept_snapshots_;  ///< the first ones of snapshots_, for a resumed run
   long last_row_ = -1;
   std::size_t frames_taken_ = 0, frames_drawn_ = 0, bytes_held_ = 0;

@@ -289,7 +289,7 @@ void draw_curves(const Results& results, const FigureRequest& figure, const fs::
       const fs::path file = folder / alone.results.front()->folder / "metrics.csv";
       std::error_code ignored;
       if (alone.results.front()->folder.empty() || !fs::is_regular_file(file, ignored)) continue;
-      const output::Table table = output::read_csv(file);
+      const support::Table table = support::read_csv(file);
       const auto *time = table.find("time"), *column = table.find(figure.column);
       if (!time || !column) {
         ++missing;

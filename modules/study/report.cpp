@@ -211,7 +211,7 @@ void write_report(const Results& results, const Json& machine, const std::string
   if (!results.study.description.empty()) page += "<p>" + escape_html(results.study.description) + "</p>\n";
   page += outcome(results, troubles) + output::report::figures(pictures) + orders(results) + fronts(results) +
           all_results(results) + reasons(results) + probes(results) + reproduction(results, machine, version);
-  output::write_atomically(folder / "report.html", page + "</main>\n</body>\n</html>\n");
+  support::write_atomically(folder / "report.html", page + "</main>\n</body>\n</html>\n");
 }
 
 }  // namespace mpm::study

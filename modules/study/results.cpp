@@ -1,11 +1,12 @@
 #include "study/results.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
 #include "experiment/diagnostics.hpp"
+#include "support/csv.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::study {
 namespace {
@@ -73,16 +74,8 @@ Axis axis_from(const Json& json) {
   return axis;
 }
 
-std::string cell(std::string text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  for (std::size_t k = 0; (k = text.find('"', k)) != std::string::npos; k += 2) text.insert(k, 1, '"');
-  return '"' + text + '"';
-}
-
-std::string shortest(double value) {
-  if (!std::isfinite(value)) return "";
-  char text[40];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+std::string number_or_nothing(double value) {
+  return std::isfinite(value) ? support::shortest(value) : "";
 }
 
 std::string joined(const std::vector<std::string>& texts, const char* between) {
@@ -213,25 +206,20 @@ std::string table_csv(const Results& results) {
   for (const char* word : {"status", "reason", "flags"}) line.emplace_back(word);
   for (const Measure& measure : study.measures) line.push_back(measure.title());
   if (study.bisection) line.push_back("first unstable " + study.bisection->title());
-  std::string text;
-  const auto end_line = [&] {
-    for (std::string& entry : line) entry = cell(entry);
-    text += joined(line, ",") + "\n";
-    line.clear();
-  };
-  end_line();
+  support::CsvText table;
+  table.row(line);
   for (const Result& result : results.results) {
-    line.push_back(result.combination.name);
+    line = {result.combination.name};
     for (std::size_t k = 0; k < study.axes.size(); ++k)
       line.push_back(study.axes[k].choices[result.combination.choices[k]].label);
     line.emplace_back(name_of(result.outcome.status));
     line.push_back(result.outcome.reason);
     line.push_back(joined(result.flags, "; "));
-    for (const Measure& measure : study.measures) line.push_back(shortest(result.value(measure.name)));
-    if (study.bisection) line.push_back(shortest(result.unstable.value_or(not_measured)));
-    end_line();
+    for (const Measure& measure : study.measures) line.push_back(number_or_nothing(result.value(measure.name)));
+    if (study.bisection) line.push_back(number_or_nothing(result.unstable.value_or(not_measured)));
+    table.row(line);
   }
-  return text;
+  return table.text();
 }
 
 }  // namespace mpm::study

@@ -21,7 +21,7 @@ struct ExecutionOptions {
 };
 
 /// Makes, runs or takes over every combination. `read` carries what experiments may name; its overrides are not used.
-/// @throws InputError when the base is no JSON, or when every combination is refused; output::MachineError.
+/// @throws InputError when the base is no JSON, or when every combination is refused; support::MachineError.
 Results run_study(const Study& study, const Registry& registry, const ReadOptions& read,
                   const ExecutionOptions& options);
 

@@ -14,6 +14,7 @@
 
 #include "output/summary_value.hpp"
 #include "support/files.hpp"
+#include "support/hash.hpp"
 
 namespace mpm::study {
 namespace {
@@ -23,14 +24,14 @@ namespace fs = std::filesystem;
 Json read_json(const fs::path& file) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return Json::object();
-  Json json = Json::parse(output::read_file(file), nullptr, false);
+  Json json = Json::parse(support::read_file(file), nullptr, false);
   return json.is_object() ? json : Json::object();
 }
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw output::MachineError::from_errno("create the folder", folder, error.value());
+  if (error) throw support::MachineError::from_errno("create the folder", folder, error.value());
 }
 
 /// In the child: becomes the program. Only calls that are safe after a fork.
@@ -49,11 +50,11 @@ void make_folder(const fs::path& folder) {
 
 // ---- keys --------------------------------------------------------------------------------------------------------
 
-KeyMaker::KeyMaker(const fs::path& program) : program_(output::sha256_of_file(program)) {}
+KeyMaker::KeyMaker(const fs::path& program) : program_(support::sha256_of_file(program)) {}
 
 const std::string& KeyMaker::hash_of(const fs::path& file) {
   std::string& hash = hashes_[file];
-  if (hash.empty()) hash = output::sha256_of_file(file);
+  if (hash.empty()) hash = support::sha256_of_file(file);
   return hash;
 }
 
@@ -65,7 +66,7 @@ std::string KeyMaker::operator()(const Experiment& experiment) {
   if (experiment.filter) add(*experiment.filter);
   if (experiment.contact) add(*experiment.contact);
   for (const MaterialSpecification& material : experiment.materials) add(material.component);
-  return output::sha256(text);
+  return support::sha256(text);
 }
 
 // ---- runs --------------------------------------------------------------------------------------------------------
@@ -108,7 +109,7 @@ bool Runner::can_go_on(const PreparedRun& run) const {
 
 void Runner::write_record(const PreparedRun& run, const Outcome& outcome) const {
   const Json json{{"key", run.key}, {"status", name_of(outcome.status)}, {"reason", outcome.reason}};
-  output::write_atomically(record(run.name, ".json"), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  support::write_atomically(record(run.name, ".json"), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void Runner::start(const PreparedRun& run) {
@@ -116,9 +117,9 @@ void Runner::start(const PreparedRun& run) {
   if (!resumed) {
     std::error_code error;
     fs::remove_all(run_folder(run.name), error);
-    if (error) throw output::MachineError::from_errno("remove the stale run", run_folder(run.name), error.value());
+    if (error) throw support::MachineError::from_errno("remove the stale run", run_folder(run.name), error.value());
   }
-  output::write_atomically(record(run.name, ".experiment.json"), run.experiment.dump(2) + "\n");
+  support::write_atomically(record(run.name, ".experiment.json"), run.experiment.dump(2) + "\n");
   // What stands there if this process is killed as well.
   write_record(run, {Status::interrupted, "the study ended before it", false});
   spawn(run, resumed);
@@ -138,7 +139,7 @@ void Runner::spawn(const PreparedRun& run, bool resumed) {
   pointers.push_back(nullptr);
   const std::string log = record(run.name, ".log").string();
   const pid_t id = ::fork();
-  if (id < 0) throw output::MachineError::from_errno("start a process for", run_folder(run.name), errno);
+  if (id < 0) throw support::MachineError::from_errno("start a process for", run_folder(run.name), errno);
   if (id == 0) become(pointers, log.c_str());
   children_[id] = {run, resumed};
 }
@@ -172,7 +173,7 @@ std::string Runner::last_lines(const std::string& name) const {
   std::error_code ignored;
   const fs::path log = record(name, ".log");
   if (!fs::is_regular_file(log, ignored)) return "it printed nothing";
-  std::stringstream lines(output::read_file(log));
+  std::stringstream lines(support::read_file(log));
   const std::string place = record(name, ".experiment.json").string();
   std::string text;
   for (std::string line; std::getline(lines, line);) {

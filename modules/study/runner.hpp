@@ -23,7 +23,7 @@ struct PreparedRun {
 /// Names runs by what decides their results.
 class KeyMaker {
  public:
-  /// @throws output::MachineError when the program cannot be read.
+  /// @throws support::MachineError when the program cannot be read.
   explicit KeyMaker(const std::filesystem::path& program);
   std::string operator()(const Experiment& experiment);
 
@@ -46,7 +46,7 @@ class Runner {
   /// The outcome of an earlier call, when its run finished or failed with the same key and its numbers are there.
   std::optional<Outcome> earlier(const PreparedRun& run) const;
   /// Starts the process; goes on from the checkpoint of a run with the same key that was stopped.
-  /// @throws output::MachineError.
+  /// @throws support::MachineError.
   void start(const PreparedRun& run);
   std::size_t running() const { return children_.size(); }
 

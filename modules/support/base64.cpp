@@ -3,7 +3,7 @@
 #include <openssl/evp.h>
 #include <algorithm>
 
-namespace mpm::output {
+namespace mpm::support {
 
 void append_base64(std::string& text, std::string_view bytes) {
   constexpr std::size_t piece_size = 3 << 20;  // a multiple of 3, so that only the last piece is padded
@@ -26,4 +26,4 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-}  // namespace mpm::output
+}  // namespace mpm::support

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace mpm::output {
+namespace mpm::support {
 
 /// `bytes` in base64 with padding and no line breaks.
 std::string base64(std::string_view bytes);
@@ -12,4 +12,4 @@ std::string base64(std::string_view bytes);
 /// Appends base64 of `bytes` to `text`, without a copy in between.
 void append_base64(std::string& text, std::string_view bytes);
 
-}  // namespace mpm::output
+}  // namespace mpm::support

@@ -6,42 +6,24 @@
 #include <stdexcept>
 
 #include "support/files.hpp"
+#include "support/numbers.hpp"
 
-namespace mpm::output {
+namespace mpm::support {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string quoted(const std::string& name) {
-  if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-  std::string text = "\"";
-  for (const char c : name) {
-    if (c == '"') text += '"';
-    text += c == '\n' || c == '\r' ? ' ' : c;  // a row is always one line, so that a cut line can be recognised
-  }
-  return text + '"';
-}
-
 std::string header_line_of(const std::vector<std::string>& header) {
-  std::string line;
-  for (std::size_t i = 0; i < header.size(); ++i) {
-    if (i > 0) line += ',';
-    line += quoted(header[i]);
-  }
-  return line + '\n';
-}
-
-void append_number(std::string& line, double value) {
-  char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, value);
-  line.append(digits, end.ptr);
+  CsvText line;
+  line.row(header);
+  return line.text();
 }
 
 template <typename ValueAt>
 void append_row(std::string& text, std::size_t columns, ValueAt&& value_at) {
   for (std::size_t i = 0; i < columns; ++i) {
     if (i > 0) text += ',';
-    append_number(text, value_at(i));
+    append_shortest(text, value_at(i));
   }
   text += '\n';
 }
@@ -114,6 +96,24 @@ void require_even(const Table& table) {
 }
 
 }  // namespace
+
+std::string csv_cell(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string cell = "\"";
+  for (const char c : text) {
+    if (c == '"') cell += '"';
+    cell += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return cell + '"';
+}
+
+void CsvText::row(std::span<const std::string> cells) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0) text_ += ',';
+    text_ += csv_cell(cells[i]);
+  }
+  text_ += '\n';
+}
 
 CsvAppender::CsvAppender(fs::path path, const std::vector<std::string>& header)
     : path_(std::move(path)), columns_(header.size()) {
@@ -220,4 +220,4 @@ void cut_to(const fs::path& path, std::size_t bytes) {
   if (::truncate(path.c_str(), static_cast<off_t>(bytes)) != 0) throw MachineError::from_errno("shorten", path, errno);
 }
 
-}  // namespace mpm::output
+}  // namespace mpm::support

@@ -1,7 +1,8 @@
-// Tables of numbers: appended row by row while a run goes on, read back for figures.
+// Comma-separated tables: words and numbers of a figure, and rows of numbers that are appended while a run goes on.
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,7 +10,22 @@
 
 #include "support/file_descriptor.hpp"
 
-namespace mpm::output {
+namespace mpm::support {
+
+/// `text` as a cell of a table: in quotes where a comma, a quote or a line end asks for them (RFC 4180). A line end
+/// becomes a space, because a row is always one line: a line that a crash cut short can then be recognised.
+std::string csv_cell(std::string_view text);
+
+/// Collects rows of words and of numbers that are written already (support/numbers.hpp).
+class CsvText {
+ public:
+  void row(std::span<const std::string> cells);
+  void row(std::initializer_list<std::string> cells) { row(std::span<const std::string>(cells.begin(), cells.size())); }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
 
 /// Appends rows to a CSV file so that a killed process leaves whole rows.
 ///
@@ -68,4 +84,4 @@ bool holds_whole_lines(const std::filesystem::path& path, std::size_t bytes);
 /// MachineError.
 void cut_to(const std::filesystem::path& path, std::size_t bytes);
 
-}  // namespace mpm::output
+}  // namespace mpm::support

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-namespace mpm::output {
+namespace mpm::support {
 
 class FileDescriptor {
  public:
@@ -42,4 +42,4 @@ class FileDescriptor {
   int number_ = -1;
 };
 
-}  // namespace mpm::output
+}  // namespace mpm::support

@@ -1,16 +1,14 @@
 #include "support/files.hpp"
 
 #include <fcntl.h>
-#include <openssl/evp.h>
 #include <unistd.h>
 #include <atomic>
 #include <cstring>
-#include <memory>
 #include <sstream>
 
 #include "support/file_descriptor.hpp"
 
-namespace mpm::output {
+namespace mpm::support {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,41 +70,6 @@ void sync_folder_of(const fs::path& path) {
   if (handle.valid()) ::fsync(handle.number());
 }
 
-class Sha256 {
- public:
-  Sha256() { EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr); }
-  void add(const char* bytes, std::size_t count) { EVP_DigestUpdate(context_.get(), bytes, count); }
-  std::string hex() {
-    unsigned char digest[EVP_MAX_MD_SIZE];
-    unsigned int length = 0;
-    EVP_DigestFinal_ex(context_.get(), digest, &length);
-    std::string text;
-    for (unsigned int i = 0; i < length; ++i) {
-      text += "0123456789abcdef"[digest[i] >> 4];
-      text += "0123456789abcdef"[digest[i] & 15];
-    }
-    return text;
-  }
-
- private:
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_{EVP_MD_CTX_new(), &EVP_MD_CTX_free};
-};
-
-// Opens and reads a file piece by piece, so that hashing never holds it whole.
-template <typename Consume>
-void read_in_pieces(const fs::path& path, Consume&& consume) {
-  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!file.valid()) throw MachineError::from_errno("read", path, errno);
-  std::string buffer(1 << 16, '\0');
-  for (;;) {
-    const ssize_t count = ::read(file.number(), buffer.data(), buffer.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw MachineError::from_errno("read", path, errno);
-    if (count == 0) return;
-    consume(buffer.data(), static_cast<std::size_t>(count));
-  }
-}
-
 }  // namespace
 
 MachineError MachineError::from_errno(std::string_view action, const fs::path& path, int error) {
@@ -115,16 +78,16 @@ MachineError MachineError::from_errno(std::string_view action, const fs::path& p
   return MachineError(message.str());
 }
 
-void write_atomically(const fs::path& path, std::string_view bytes) {
-  write_atomically(path, {bytes});
+void write_atomically(const fs::path& path, std::string_view bytes, Durability durability) {
+  write_atomically(path, {bytes}, durability);
 }
 
-void write_atomically(const fs::path& path, std::initializer_list<std::string_view> pieces) {
+void write_atomically(const fs::path& path, std::initializer_list<std::string_view> pieces, Durability durability) {
   TemporaryFile temporary = open_temporary(path);
   int error = 0;
   for (const std::string_view piece : pieces)
     if (error == 0) error = temporary.file.write_all(piece);
-  if (error == 0 && ::fsync(temporary.file.number()) != 0) error = errno;
+  if (durability == Durability::on_disk && error == 0 && ::fsync(temporary.file.number()) != 0) error = errno;
   const int close_error = temporary.file.close();
   if (error == 0) error = close_error;
   if (error == 0 && std::rename(temporary.path.c_str(), path.c_str()) != 0) error = errno;
@@ -132,29 +95,32 @@ void write_atomically(const fs::path& path, std::initializer_list<std::string_vi
     ::unlink(temporary.path.c_str());
     throw MachineError::from_errno("write", path, error);
   }
-  sync_folder_of(path);
+  if (durability == Durability::on_disk) sync_folder_of(path);
 }
 
 std::string read_file(const fs::path& path) {
   std::string bytes;
-  read_in_pieces(path, [&](const char* piece, std::size_t count) { bytes.append(piece, count); });
+  read_in_pieces(path, [&](std::string_view piece) { bytes.append(piece); });
   return bytes;
 }
 
-std::string sha256_of_file(const fs::path& path) {
-  Sha256 hash;
-  read_in_pieces(path, [&](const char* piece, std::size_t count) { hash.add(piece, count); });
-  return hash.hex();
+void read_in_pieces(const fs::path& path, const std::function<void(std::string_view)>& consume) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.valid()) throw MachineError::from_errno("read", path, errno);
+  std::string buffer(1 << 16, '\0');
+  for (;;) {
+    const ssize_t count = ::read(file.number(), buffer.data(), buffer.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw MachineError::from_errno("read", path, errno);
+    if (count == 0) return;
+    consume(std::string_view(buffer).substr(0, static_cast<std::size_t>(count)));
+  }
 }
 
-std::string sha256(std::string_view bytes) {
-  return sha256({bytes});
+fs::path with_suffix(const fs::path& stem, std::string_view extension) {
+  fs::path path = stem;
+  path += extension;
+  return path;
 }
 
-std::string sha256(std::initializer_list<std::string_view> pieces) {
-  Sha256 hash;
-  for (const std::string_view piece : pieces) hash.add(piece.data(), piece.size());
-  return hash.hex();
-}
-
-}  // namespace mpm::output
+}  // namespace mpm::support

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace mpm::output {
+namespace mpm::support {
 namespace {
 
 namespace fs = std::filesystem;
@@ -54,4 +54,4 @@ std::vector<fs::path> files_with_ending(const fs::path& folder, std::initializer
   return files;
 }
 
-}  // namespace mpm::output
+}  // namespace mpm::support

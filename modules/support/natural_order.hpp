@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace mpm::output {
+namespace mpm::support {
 
 /// Compares texts with each run of digits taken as a number.
 bool naturally_less(std::string_view a, std::string_view b);
@@ -16,4 +16,4 @@ bool naturally_less(std::string_view a, std::string_view b);
 std::vector<std::filesystem::path> files_with_ending(const std::filesystem::path& folder,
                                                      std::initializer_list<std::string_view> endings);
 
-}  // namespace mpm::output
+}  // namespace mpm::support

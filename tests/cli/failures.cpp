@@ -22,7 +22,7 @@ void check_whole(const fs::path& run) {
     if (entry.path().extension() == ".json") json_in(entry.path());
   }
   if (!fs::exists(run / "metrics.csv")) return;
-  const auto table = mpm::output::read_csv(run / "metrics.csv");
+  const auto table = mpm::support::read_csv(run / "metrics.csv");
   CHECK(table.columns.size() > 10);
 }
 
@@ -35,7 +35,7 @@ void fails(const Json& scene, const Words& parts) {
     INFO(part);
     CHECK(has(reason, part));
   }
-  CHECK(mpm::output::read_csv(folder / "run/metrics.csv").rows() >= 1);
+  CHECK(mpm::support::read_csv(folder / "run/metrics.csv").rows() >= 1);
   check_whole(folder / "run");
 }
 
@@ -66,7 +66,7 @@ void interrupt_with(int signal) {
   const Json summary = json_in(folder / "run/summary.json");
   CHECK(summary["outcome"]["exit_code"] == 130);
   CHECK(summary["outcome"]["status"] == "interrupted");
-  const auto table = mpm::output::read_csv(folder / "run/metrics.csv");
+  const auto table = mpm::support::read_csv(folder / "run/metrics.csv");
   CHECK(!table.last_line_was_cut);
   CHECK(table.find("step")->back() == summary["steps"].get<double>());
   CHECK(table.find("time")->back() == summary["simulated_time"].get<double>());
@@ -117,7 +117,7 @@ TEST_CASE("3: max_steps before the end") {
   INFO(result.err);
   CHECK(result.code == 3);
   CHECK(has(result.err, "max_steps (7) was reached before end_time"));
-  CHECK(mpm::output::read_csv(folder / "run/metrics.csv").find("step")->back() == 7);
+  CHECK(mpm::support::read_csv(folder / "run/metrics.csv").find("step")->back() == 7);
 }
 
 TEST_CASE("5: the disk fills up") {
@@ -132,7 +132,7 @@ TEST_CASE("5: the disk fills up") {
   INFO(result.err);
   CHECK(result.code == 5);
   CHECK(has(result.err, "metrics.csv: No space left on device; free some space there"));
-  const auto table = mpm::output::read_csv(disk.path / "run/metrics.csv");
+  const auto table = mpm::support::read_csv(disk.path / "run/metrics.csv");
   CHECK(!table.last_line_was_cut);
   CHECK(table.rows() > 10);
   check_whole(disk.path / "run");
@@ -147,7 +147,7 @@ TEST_CASE("5: a file grows beyond its limit; summary and report still say what w
   INFO(result.err);
   CHECK(result.code == 5);
   CHECK(has(result.err, "metrics.csv: File too large; raise the limit on file size"));
-  const auto table = mpm::output::read_csv(folder / "run/metrics.csv");
+  const auto table = mpm::support::read_csv(folder / "run/metrics.csv");
   CHECK(!table.last_line_was_cut);
   CHECK(table.rows() > 100);
   const Json summary = json_in(folder / "run/summary.json");

@@ -5,7 +5,7 @@
 #include "cli/program.hpp"
 #include "support/csv.hpp"
 
-namespace output = mpm::output;
+namespace support = mpm::support;
 using namespace mpm::test;
 
 namespace {
@@ -93,7 +93,7 @@ TEST_CASE("the run folder holds what the contract says") {
   std::sort(ids.begin(), ids.end());
   CHECK(ids == Words{"apic", "bspline_quadratic", "coulomb", "neo_hookean"});
 
-  const auto table = mpm::output::read_csv(run / "metrics.csv");
+  const auto table = mpm::support::read_csv(run / "metrics.csv");
   CHECK(table.header.front() == "time (s)");
   CHECK(*table.find("step") == std::vector<double>{0, 4, 8, 12, 16, 20, 24, 28, 32, 36, 40});
 
@@ -250,7 +250,7 @@ TEST_CASE("a filtered run records what the filter did, and others say nothing of
   CHECK(filter["largest_growth"] > 0);
   // The loop contracts as long as no constraint acts on it; the warning says when one has broken that.
   CHECK((filter["largest_growth"] > 1 + 1e-9) == has(summary["warnings"].dump(), "its loop no longer contracts"));
-  const output::Table table = output::read_csv(folder / "filtered/metrics.csv");
+  const support::Table table = support::read_csv(folder / "filtered/metrics.csv");
   for (const char* column : {"ledger filter", "filter increment norm", "filter iterations"}) CHECK(table.find(column));
   CHECK(has(slurp(folder / "filtered/figures/dissipation.csv"), "filter"));
   CHECK(has(slurp(folder / "filtered/figures/ledger.csv"), "filter"));

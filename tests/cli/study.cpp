@@ -278,7 +278,7 @@ TEST_CASE("curves of every so many rows keep the first and the last") {
   const Result result = run_study(folder);
   INFO(result.err);
   REQUIRE(result.code == 0);
-  const auto recorded = mpm::output::read_csv(folder / "out/runs/pic/metrics.csv");
+  const auto recorded = mpm::support::read_csv(folder / "out/runs/pic/metrics.csv");
   REQUIRE(recorded.rows() == 26);
   const auto &time = *recorded.find("time"), &energy = *recorded.find("total energy");
   std::istringstream csv(slurp(folder / "out/figures/curves.csv"));

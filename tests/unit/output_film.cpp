@@ -9,6 +9,7 @@
 
 namespace fs = std::filesystem;
 using namespace mpm::output;
+using namespace mpm::support;
 using namespace mpm::output::testing;
 
 namespace {

@@ -7,7 +7,7 @@
 #include "backends/device/kernels/arguments.hpp"
 #include "kernel/polynomial_basis.hpp"
 #include "plan/compatibility.hpp"
-#include "support/files.hpp"
+#include "support/hash.hpp"
 
 namespace mpm::device {
 namespace {
@@ -217,7 +217,7 @@ Composition compose(const Choice& choice) {
   for (const Plugin* plugin : choice.materials) text.add_functor(*plugin);
   text.add(scene_text(choice));
   Composition composition{choice.name(), text.str(), "", entry_names(choice)};
-  composition.hash = output::sha256(composition.text);
+  composition.hash = support::sha256(composition.text);
   return composition;
 }
 
@@ -225,7 +225,7 @@ std::string cache_key(const Composition& composition, std::string_view compiler,
                       const std::vector<std::string>& options) {
   std::string all = composition.hash + "\n" + std::string(compiler);
   for (const std::string& option : options) all += "\n" + option;
-  return output::sha256(all);
+  return support::sha256(all);
 }
 
 }  // namespace mpm::device

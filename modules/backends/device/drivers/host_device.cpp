@@ -22,7 +22,7 @@ class ScratchFolder {
  public:
   ScratchFolder() {
     std::string pattern = (std::filesystem::temp_directory_path() / "mpm_device_XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw output::MachineError::from_errno("create the folder", pattern, errno);
+    if (!mkdtemp(pattern.data())) throw support::MachineError::from_errno("create the folder", pattern, errno);
     path_ = pattern;
   }
   ~ScratchFolder() {
@@ -73,14 +73,14 @@ HostDevice::HostDevice(const Composition& composition, const HostCompiler& compi
   const ScratchFolder folder;
   const std::filesystem::path source = folder.path() / "composition.cpp", library = folder.path() / "composition.so",
                               log = folder.path() / "messages.txt";
-  output::write_atomically(source, composition.text);
+  support::write_atomically(source, composition.text);
   std::vector<std::string> words{compiler.program};
   for (const std::string& option : compiler.all_options()) words.push_back(option);
   for (const std::string& word : {source.string(), std::string("-o"), library.string(), std::string("-lm")})
     words.push_back(word);
   if (const int status = run_program(words, log); status != 0)
     throw CompilerError("\"" + compiler.program + "\" does not compile the composition " + name_ + " (status " +
-                        std::to_string(status) + "):\n" + output::read_file(log));
+                        std::to_string(status) + "):\n" + support::read_file(log));
   void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) throw CompilerError("the compiled composition " + name_ + " cannot be loaded: " + dlerror());
   library_ = std::shared_ptr<void>(handle, dlclose);

@@ -1,5 +1,6 @@
-// Whole-or-absent files, hashes, CSV tables and run folders, also where the machine refuses.
+// Whole-or-absent files, hashes and CSV tables, also where the machine refuses.
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <cmath>
 #include <csignal>
@@ -7,17 +8,16 @@
 #include <fstream>
 #include <limits>
 
-#include "output/manifest.hpp"
-#include "output/run_folder.hpp"
-#include "output/summary_value.hpp"
+#include "support/base64.hpp"
 #include "support/catch.hpp"
 #include "support/csv.hpp"
 #include "support/files.hpp"
+#include "support/hash.hpp"
 #include "support/natural_order.hpp"
 #include "unit/output_support.hpp"
 
 namespace fs = std::filesystem;
-using namespace mpm::output;
+using namespace mpm::support;
 using namespace mpm::output::testing;
 
 namespace {
@@ -53,7 +53,7 @@ void write_plain(const fs::path& path, const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("an atomic write replaces the file and leaves nothing else", "[output][atomic]") {
+TEST_CASE("an atomic write replaces the file and leaves nothing else", "[support][atomic]") {
   const TemporaryFolder scratch;
   const fs::path path = scratch / "result.json";
   write_atomically(path, "old");
@@ -62,7 +62,7 @@ TEST_CASE("an atomic write replaces the file and leaves nothing else", "[output]
   CHECK(entries_in(scratch.path()) == 1);
 }
 
-TEST_CASE("a full disk keeps the old file, removes the temporary one and says what to do", "[output][atomic]") {
+TEST_CASE("a full disk keeps the old file, removes the temporary one and says what to do", "[support][atomic]") {
   const TemporaryFolder scratch;
   const fs::path path = scratch / "result.json";
   write_atomically(path, "old");
@@ -78,7 +78,29 @@ TEST_CASE("a full disk keeps the old file, removes the temporary one and says wh
   CHECK(entries_in(scratch.path()) == 1);
 }
 
-TEST_CASE("a path through a file, a missing folder and a folder as target are refused by name", "[output][atomic]") {
+TEST_CASE("a file that need not be on the disk is as whole or absent, and keeps the mode the user asked for",
+          "[support][atomic]") {
+  const TemporaryFolder scratch;
+  const fs::path path = scratch / "figure.svg";
+  const mode_t old_mask = ::umask(027);
+  write_atomically(path, "first, and long", Durability::of_program);
+  ::umask(old_mask);
+  CHECK(fs::status(path).permissions() == fs::perms(0640));
+  write_atomically(path, "second", Durability::of_program);
+  CHECK(read_file(path) == "second");
+  {
+    const FileSizeLimit limit(1000);
+    CHECK_THROWS_AS(write_atomically(path, std::string(5000, 'x'), Durability::of_program), MachineError);
+  }
+  CHECK(read_file(path) == "second");
+  CHECK(entries_in(scratch.path()) == 1);
+}
+
+TEST_CASE("a stem may hold a dot", "[support]") {
+  CHECK(with_suffix("run_0.5", ".png") == fs::path("run_0.5.png"));
+}
+
+TEST_CASE("a path through a file, a missing folder and a folder as target are refused by name", "[support][atomic]") {
   const TemporaryFolder scratch;
   write_atomically(scratch / "file", "text");
   fs::create_directory(scratch / "folder");
@@ -91,7 +113,7 @@ TEST_CASE("a path through a file, a missing folder and a folder as target are re
   CHECK(entries_in(scratch.path()) == 2);
 }
 
-TEST_CASE("the hash of a file is the published SHA-256", "[output][hash]") {
+TEST_CASE("the hash of a file is the published SHA-256", "[support][hash]") {
   const TemporaryFolder scratch;
   write_atomically(scratch / "abc", "abc");
   write_atomically(scratch / "empty", "");
@@ -101,7 +123,7 @@ TEST_CASE("the hash of a file is the published SHA-256", "[output][hash]") {
   CHECK_THROWS_AS(sha256_of_file(scratch / "absent"), MachineError);
 }
 
-TEST_CASE("a CSV table reads back bit for bit", "[output][csv]") {
+TEST_CASE("a CSV table reads back bit for bit", "[support][csv]") {
   using limits = std::numeric_limits<double>;
   const std::vector<double> hard = {0.0,
                                     -0.0,
@@ -134,7 +156,13 @@ TEST_CASE("a CSV table reads back bit for bit", "[output][csv]") {
   CHECK(read_file(scratch / "copy.csv") == read_file(scratch / "metrics.csv"));
 }
 
-TEST_CASE("a column is found with or without its unit, and by quoted names", "[output][csv]") {
+TEST_CASE("tables of words quote what must be quoted, and a row stays one line", "[support][csv]") {
+  CsvText table;
+  table.row({"plain", "with, comma", "say \"so\"", "two\nlines", ""});
+  CHECK(table.text() == "plain,\"with, comma\",\"say \"\"so\"\"\",\"two lines\",\n");
+}
+
+TEST_CASE("a column is found with or without its unit, and by quoted names", "[support][csv]") {
   const TemporaryFolder scratch;
   CsvAppender(scratch / "t.csv", {"time (s)", "angle, \"tilt\" (rad)", "f(x)"}).row(std::vector<double>{1, 2, 3});
   const Table table = read_csv(scratch / "t.csv");
@@ -146,7 +174,7 @@ TEST_CASE("a column is found with or without its unit, and by quoted names", "[o
   CHECK(table.find("mass") == nullptr);
 }
 
-TEST_CASE("a cut last line is left out, a malformed row is named by its line", "[output][csv]") {
+TEST_CASE("a cut last line is left out, a malformed row is named by its line", "[support][csv]") {
   const TemporaryFolder scratch;
   write_plain(scratch / "cut.csv", "a,b\n1,2\n3,4.5");
   const Table table = read_csv(scratch / "cut.csv");
@@ -168,7 +196,7 @@ TEST_CASE("a cut last line is left out, a malformed row is named by its line", "
   CHECK(read_csv(scratch / "none.csv").rows() == 0);
 }
 
-TEST_CASE("a full disk takes the row back whole, and writing can go on later", "[output][csv]") {
+TEST_CASE("a full disk takes the row back whole, and writing can go on later", "[support][csv]") {
   const TemporaryFolder scratch;
   CsvAppender csv(scratch / "m.csv", {"a", "b"});
   csv.row(std::vector<double>{1.5, 2.5});
@@ -184,7 +212,7 @@ TEST_CASE("a full disk takes the row back whole, and writing can go on later", "
   CHECK(read_file(scratch / "m.csv") == before + "3.25,4.25\n");
 }
 
-TEST_CASE("a process killed while it writes leaves whole rows", "[output][csv]") {
+TEST_CASE("a process killed while it writes leaves whole rows", "[support][csv]") {
   const TemporaryFolder scratch;
   const fs::path path = scratch / "m.csv";
   const pid_t child = ::fork();
@@ -202,7 +230,7 @@ TEST_CASE("a process killed while it writes leaves whole rows", "[output][csv]")
   CHECK(table.rows() > 0);
 }
 
-TEST_CASE("a resumed run continues its table, other columns are refused", "[output][csv]") {
+TEST_CASE("a resumed run continues its table, other columns are refused", "[support][csv]") {
   const TemporaryFolder scratch;
   const fs::path path = scratch / "m.csv";
   write_plain(path, "time (s),x\n0,1\n0.5,2\n1,3\n1.5");
@@ -215,61 +243,7 @@ TEST_CASE("a resumed run continues its table, other columns are refused", "[outp
   CHECK_NOTHROW(drop_rows_after(scratch / "absent.csv", 1.0));
 }
 
-TEST_CASE("a run folder is made with those above it, and an earlier run is moved aside", "[output][folder]") {
-  const TemporaryFolder scratch;
-  const fs::path path = scratch / "runs/first/";
-  const RunFolder first = RunFolder::create(path);
-  CHECK(first.root().filename() == "first");
-  first.write_json("manifest.json", {{"run", 1}});
-  write_atomically(first.frames() / "frame.png", "picture");
-  const RunFolder second = RunFolder::create(path);
-  CHECK(entries_in(second.root()) == 0);
-  CHECK(read_file(scratch / "runs/first.1/frames/frame.png") == "picture");
-  second.write_json("manifest.json", {{"run", 2}});
-  RunFolder::create(path);
-  CHECK(contains(read_file(scratch / "runs/first.1/manifest.json"), "1"));
-  CHECK(contains(read_file(scratch / "runs/first.2/manifest.json"), "2"));
-}
-
-TEST_CASE("a folder with other contents is refused with a remedy and left alone", "[output][folder]") {
-  const TemporaryFolder scratch;
-  fs::create_directory(scratch / "thesis");
-  write_plain(scratch / "thesis/chapter.tex", "years of work");
-  const std::string message = message_of<FolderRefused>([&] { RunFolder::create(scratch / "thesis"); });
-  CHECK(contains(message, "thesis"));
-  CHECK(contains(message, "--out"));
-  CHECK(read_file(scratch / "thesis/chapter.tex") == "years of work");
-  CHECK_THROWS_AS(RunFolder::create(scratch / "thesis/chapter.tex"), FolderRefused);
-  CHECK_THROWS_AS(RunFolder::create(scratch / "thesis/chapter.tex/run"), MachineError);
-  CHECK_THROWS_AS(RunFolder::open(scratch / "thesis"), FolderRefused);
-  fs::create_directories(scratch / "empty/figures");
-  CHECK_NOTHROW(RunFolder::create(scratch / "empty"));
-}
-
-TEST_CASE("JSON files are readable, and bad bytes or NaN do not lose them", "[output][folder]") {
-  const TemporaryFolder scratch;
-  const RunFolder run = RunFolder::create(scratch / "run");
-  run.write_json("manifest.json", {{"z", 1}, {"a", std::nan("")}, {"title", "bad \xFF byte"}});
-  const auto value = nlohmann::ordered_json::parse(read_file(run.root() / "manifest.json"));
-  CHECK(value.begin().key() == "z");
-  CHECK(value["a"].is_null());
-  CHECK(RunFolder::open(run.root()).root() == run.root());
-}
-
-TEST_CASE("the machine is described without names or paths", "[output][manifest]") {
-  const auto machine = machine_description();
-  CHECK(machine.at("cores").get<int>() >= 1);
-  CHECK(machine.at("memory_bytes").get<double>() > 1e8);
-  CHECK(contains(machine.at("compiler").get<std::string>(), "."));
-  CHECK(machine.contains("build_type"));
-  char host[256] = "";
-  ::gethostname(host, sizeof host - 1);
-  const std::string text = machine.dump();
-  CHECK_FALSE(contains(text, "/home"));
-  if (std::strlen(host) > 3) CHECK_FALSE(contains(text, host));
-}
-
-TEST_CASE("files are ordered as people count", "[output]") {
+TEST_CASE("files are ordered as people count", "[support]") {
   CHECK(naturally_less("frame_2.png", "frame_10.png"));
   CHECK_FALSE(naturally_less("frame_10.png", "frame_2.png"));
   CHECK(naturally_less("frame_009.png", "frame_10.png"));
@@ -278,13 +252,14 @@ TEST_CASE("files are ordered as people count", "[output]") {
   CHECK(naturally_less("a01", "a1") != naturally_less("a1", "a01"));
 }
 
-TEST_CASE("values of a summary by pointer and by path", "[output]") {
-  const Json json{{"error", {{"position", {{"rms", 0.25}}}}}, {"word", "x"}};
-  CHECK(number_at(json, "/error/position/rms") == 0.25);
-  CHECK(number_at(json, "error.position.rms") == 0.25);
-  for (const char* path : {"/error/velocity", "/word", "error.position", "/error/~", "", "/"})
-    CHECK(std::isnan(number_at(json, path)));
-  REQUIRE(value_at(json, "word"));
-  CHECK(*value_at(json, "word") == "x");
-  CHECK(!value_at(json, "error.velocity"));
+TEST_CASE("base64 is that of RFC 4648", "[support]") {
+  CHECK(base64("") == "");
+  CHECK(base64("f") == "Zg==");
+  CHECK(base64("foobar") == "Zm9vYmFy");
+  const std::string large(4 << 20, 'x');  // longer than one piece
+  CHECK(base64(large) == [&] {
+    std::string expected;
+    for (std::size_t i = 0; i < large.size() / 3; ++i) expected += "eHh4";
+    return expected + "eA==";
+  }());
 }

@@ -1,0 +1,40 @@
+#include "support/numbers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+namespace mpm::support {
+
+void append_shortest(std::string& text, double value) {
+  std::array<char, 32> digits;
+  text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+}
+
+std::string shortest(double value) {
+  std::string text;
+  append_shortest(text, value);
+  return text;
+}
+
+std::string full_precision(double value) {
+  std::array<char, 40> digits;
+  return {digits.data(),
+          std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 17).ptr};
+}
+
+std::string fixed_point(double value, int decimals) {
+  std::array<char, 400> digits;  // the largest double has 309 digits before its point
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed,
+                                       std::clamp(decimals, 0, 17))
+                             .ptr};
+}
+
+std::string without_trailing_zeros(std::string digits) {
+  if (digits.find('.') == std::string::npos) return digits;
+  digits.erase(digits.find_last_not_of('0') + 1);
+  if (digits.back() == '.') digits.pop_back();
+  return digits;
+}
+
+}  // namespace mpm::support

@@ -1,0 +1,23 @@
+// How a number becomes text that a program reads back. None of these depends on the locale.
+#pragma once
+
+#include <string>
+
+namespace mpm::support {
+
+/// The shortest text that reads back as the same double; "inf", "-inf" and "nan" where it is not finite.
+std::string shortest(double value);
+
+/// Appends shortest(value) to `text`.
+void append_shortest(std::string& text, double value);
+
+/// Seventeen significant digits, enough to read the same double back; columns of them are about equally wide.
+std::string full_precision(double value);
+
+/// Fixed notation: `decimals` digits (0 to 17; others are taken as the nearest) after the point, a point only with them.
+std::string fixed_point(double value, int decimals);
+
+/// A fixed notation without zeros at the end of its fraction, nor a point at its end: "2.50" becomes "2.5", "3.0" "3".
+std::string without_trailing_zeros(std::string digits);
+
+}  // namespace mpm::support

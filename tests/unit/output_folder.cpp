@@ -1,0 +1,81 @@
+// Run folders, the manifest and values of a summary.
+#include <unistd.h>
+#include <cmath>
+#include <cstring>
+
+#include "output/manifest.hpp"
+#include "output/run_folder.hpp"
+#include "output/summary_value.hpp"
+#include "support/catch.hpp"
+#include "support/files.hpp"
+#include "unit/output_support.hpp"
+
+namespace fs = std::filesystem;
+using namespace mpm::output;
+using namespace mpm::output::testing;
+using namespace mpm::support;
+
+TEST_CASE("a run folder is made with those above it, and an earlier run is moved aside", "[output][folder]") {
+  const TemporaryFolder scratch;
+  const fs::path path = scratch / "runs/first/";
+  const RunFolder first = RunFolder::create(path);
+  CHECK(first.root().filename() == "first");
+  first.write_json("manifest.json", {{"run", 1}});
+  write_atomically(first.frames() / "frame.png", "picture");
+  const RunFolder second = RunFolder::create(path);
+  CHECK(entries_in(second.root()) == 0);
+  CHECK(read_file(scratch / "runs/first.1/frames/frame.png") == "picture");
+  second.write_json("manifest.json", {{"run", 2}});
+  RunFolder::create(path);
+  CHECK(contains(read_file(scratch / "runs/first.1/manifest.json"), "1"));
+  CHECK(contains(read_file(scratch / "runs/first.2/manifest.json"), "2"));
+}
+
+TEST_CASE("a folder with other contents is refused with a remedy and left alone", "[output][folder]") {
+  const TemporaryFolder scratch;
+  fs::create_directory(scratch / "thesis");
+  write_atomically(scratch / "thesis/chapter.tex", "years of work");
+  const std::string message = message_of<FolderRefused>([&] { RunFolder::create(scratch / "thesis"); });
+  CHECK(contains(message, "thesis"));
+  CHECK(contains(message, "--out"));
+  CHECK(read_file(scratch / "thesis/chapter.tex") == "years of work");
+  CHECK_THROWS_AS(RunFolder::create(scratch / "thesis/chapter.tex"), FolderRefused);
+  CHECK_THROWS_AS(RunFolder::create(scratch / "thesis/chapter.tex/run"), MachineError);
+  CHECK_THROWS_AS(RunFolder::open(scratch / "thesis"), FolderRefused);
+  fs::create_directories(scratch / "empty/figures");
+  CHECK_NOTHROW(RunFolder::create(scratch / "empty"));
+}
+
+TEST_CASE("JSON files are readable, and bad bytes or NaN do not lose them", "[output][folder]") {
+  const TemporaryFolder scratch;
+  const RunFolder run = RunFolder::create(scratch / "run");
+  run.write_json("manifest.json", {{"z", 1}, {"a", std::nan("")}, {"title", "bad \xFF byte"}});
+  const auto value = nlohmann::ordered_json::parse(read_file(run.root() / "manifest.json"));
+  CHECK(value.begin().key() == "z");
+  CHECK(value["a"].is_null());
+  CHECK(RunFolder::open(run.root()).root() == run.root());
+}
+
+TEST_CASE("the machine is described without names or paths", "[output][manifest]") {
+  const auto machine = machine_description();
+  CHECK(machine.at("cores").get<int>() >= 1);
+  CHECK(machine.at("memory_bytes").get<double>() > 1e8);
+  CHECK(contains(machine.at("compiler").get<std::string>(), "."));
+  CHECK(machine.contains("build_type"));
+  char host[256] = "";
+  ::gethostname(host, sizeof host - 1);
+  const std::string text = machine.dump();
+  CHECK_FALSE(contains(text, "/home"));
+  if (std::strlen(host) > 3) CHECK_FALSE(contains(text, host));
+}
+
+TEST_CASE("values of a summary by pointer and by path", "[output]") {
+  const Json json{{"error", {{"position", {{"rms", 0.25}}}}}, {"word", "x"}};
+  CHECK(number_at(json, "/error/position/rms") == 0.25);
+  CHECK(number_at(json, "error.position.rms") == 0.25);
+  for (const char* path : {"/error/velocity", "/word", "error.position", "/error/~", "", "/"})
+    CHECK(std::isnan(number_at(json, path)));
+  REQUIRE(value_at(json, "word"));
+  CHECK(*value_at(json, "word") == "x");
+  CHECK(!value_at(json, "error.velocity"));
+}
