@@ -51,6 +51,7 @@ struct Field {
   AtWall at_wall = AtWall::none;
   Folded folded = Folded::never;
   bool cleared = false;     ///< of nodes: zero when a step's first scatter begins
+  bool for_ledger = false;  ///< of nodes: only the ledger reads it, so it may rest in the steps that have no entry
   std::string beside;       ///< of nodes: a scalar that is kept as the fourth of this vector's group of four
   std::string in_place_of;  ///< of nodes: shares memory with this field, which nobody reads any more
   std::uint64_t bytes = 0;  ///< a particle; a node with all its velocity fields

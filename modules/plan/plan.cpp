@@ -338,12 +338,16 @@ class Planner {
         node_field("unfiltered_velocity_of_constraints", "m/s", D, because).name =
             "the same of the unfiltered velocity";
     }
-    if (plan_.velocity_increment || plan_.ledger)
-      node_field("velocity_before", "m/s", D,
-                 plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of velocity"
-                                          : why_for_ledger())
-          .cleared = true;
-    if (plan_.separate_force) summed_field("force", "N", D, AtWall::vector, Folded::with_force, why_separate_force());
+    if (plan_.velocity_increment || plan_.ledger) {
+      Field& before =
+          node_field("velocity_before", "m/s", D,
+                     plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of velocity"
+                                              : why_for_ledger());
+      before.cleared = true, before.for_ledger = !plan_.velocity_increment;
+    }
+    if (plan_.separate_force)
+      summed_field("force", "N", D, AtWall::vector, Folded::with_force, why_separate_force()).for_ledger =
+          plan_.force_for_ledger;
     if (experiment_.body_force)
       summed_field("body_force", "N", D, AtWall::vector, Folded::with_force,
                    experiment_.body_force_pointer + ": its work is accounted for apart");

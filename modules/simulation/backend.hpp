@@ -26,6 +26,17 @@ struct SeedBatch {
   /// transfers that carry one (MPM_AFFINE_CARRIES_ENERGY, MPM_STARTS_WITH_GRADIENT: state 0), so that no spin is lost
   /// in the first step; its antisymmetric part with MPM_KEEPS_SPIN_ONLY; null otherwise.
   const double* velocity_gradient = nullptr;
+  /// Other fields of the plan that start as seeded, by id; count*components, particle-major.
+  std::vector<std::pair<std::string, const double*>> others = {};
+
+  /// What a particle field of the host starts as; null where the seeds do not say.
+  const double* values(std::string_view field) const {
+    if (field == "position" || field == "initial_position") return position;
+    if (field == "velocity") return velocity;
+    for (const auto& [id, first] : others)
+      if (id == field) return first;
+    return nullptr;
+  }
 };
 
 /// All of them: position, velocity, velocity_gradient as in SeedBatch.
@@ -53,6 +64,15 @@ struct SeededBody {
       visit({0, count, all.position.data(), all.velocity.data(),
              all.velocity_gradient.empty() ? nullptr : all.velocity_gradient.data()});
     };
+  }
+  /// All particles' values of a field that starts as seeded; empty where the seeds do not say.
+  std::vector<double> values(const Field& field) const {
+    std::vector<double> all;
+    for_each_batch([&](const SeedBatch& batch) {
+      if (const double* const first = batch.values(field.id))
+        all.insert(all.end(), first, first + batch.count * static_cast<std::size_t>(field.components));
+    });
+    return all;
   }
   /// For backends that keep doubles anyway.
   SeedArrays arrays() const {
@@ -84,6 +104,19 @@ struct BodyState {
   /// n*dimension*dimension, m^2: second moment of the shape at the particle's position; empty unless
   /// Plan::second_moment.
   std::vector<double> second_moment;
+  std::map<std::string, std::vector<double>> host_state;  ///< by id: saved fields without a member of their own
+
+  /// Where the values of a particle field stand.
+  std::vector<double>& of(const Field& field) {
+    if (field.origin == Origin::transfer) return transfer_state[field.id];
+    if (field.origin == Origin::material) return material_state[field.id];
+    for (const auto& [id, values] :
+         {std::pair{"position", &position}, std::pair{"velocity", &velocity},
+          std::pair{"initial_position", &initial_position}, std::pair{"circumference", &circumference},
+          std::pair{"domain", &domain}, std::pair{"corners", &corners}})
+      if (field.id == id) return *values;
+    return host_state[field.id];
+  }
 };
 
 /// Energy given to the kinetic energy by each cause, J, accumulated over the steps that the ledger takes. Each is

@@ -18,6 +18,7 @@
 // so corners are right.
 
 #include "experiment/experiment.hpp"
+#include "plan/field.hpp"
 
 namespace mpm {
 
@@ -38,9 +39,26 @@ constexpr double mirror_sign(ConditionType type, int axis, int component) {
   return component == axis ? -1 : 1;
 }
 
+/// The same at a face with this condition for fields with this rule; images at periodic faces are added as they are.
+constexpr double mirror_sign(AtWall rule, ConditionType type, int axis, int component) {
+  if (type == ConditionType::periodic || rule == AtWall::none || rule == AtWall::even) return 1;
+  return mirror_sign(rule == AtWall::slip ? ConditionType::slip : type, axis, component);
+}
+
 constexpr bool folds(ConditionType type) {
   return type == ConditionType::stick || type == ConditionType::slip || type == ConditionType::prescribed ||
          type == ConditionType::separate;
+}
+
+/// Whether nodes beyond a face with this condition are added to others.
+constexpr bool has_images(ConditionType type) {
+  return folds(type) || type == ConditionType::periodic;
+}
+
+/// Node that a node of an axis with images is added to: itself, unless it lies beyond a face.
+constexpr int image_of(int node, int cells, bool periodic) {
+  if (periodic) return ((node % cells) + cells) % cells;
+  return node < 0 ? -node : node > cells ? 2 * cells - node : node;
 }
 
 /// Whether a wall of this type holds `component` on its own nodes (separate decides by approach).

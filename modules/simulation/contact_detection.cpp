@@ -111,4 +111,15 @@ double EdgeModel::contact_offset(double edge) const {
   return -mean_position(-edge) - mean_position(edge);
 }
 
+std::vector<EdgeModel> edge_models(const Experiment& experiment) {
+  std::vector<EdgeModel> models;
+  for (int field = 0; experiment.contact && field < experiment.field_count; ++field) {
+    int rows = 8;
+    for (const BodySpecification& body : experiment.bodies)
+      if (body.field == field) rows = std::min(rows, body.particles_per_cell_axis);
+    models.emplace_back(experiment.shape, rows);
+  }
+  return models;
+}
+
 }  // namespace mpm

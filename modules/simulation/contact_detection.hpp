@@ -30,4 +30,8 @@ class EdgeModel {
   int rows_per_cell_;
 };
 
+/// One for each velocity field; none without contact. The coarsest body of a field tells its rows: its surface lags the
+/// most.
+std::vector<EdgeModel> edge_models(const Experiment& experiment);
+
 }  // namespace mpm

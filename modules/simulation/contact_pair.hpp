@@ -26,6 +26,12 @@ struct ContactGeometry {
 /// A pair whose lighter field holds less than this share of the mass is skipped (unless the law is a weld).
 inline constexpr double contact_prescreen = 1e-5;
 
+/// Whether a law is asked about two fields with these masses at a node.
+inline bool meet(double mass_a, double mass_b, bool weld) {
+  if (!(mass_a > 0) || !(mass_b > 0)) return false;
+  return weld || std::min(mass_a, mass_b) >= contact_prescreen * (mass_a + mass_b);
+}
+
 /// Shared average volume-gradient normal (Nairn 2013, CMES 92:271), separation by inverted edge models,
 /// area sqrt(2 V_total min V) / h (Nairn 2013, eq. 26).
 inline ContactGeometry contact_geometry(const ContactFieldNode& a, const ContactFieldNode& b, const EdgeModel& edge_a,

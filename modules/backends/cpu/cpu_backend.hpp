@@ -9,7 +9,7 @@
 namespace mpm::cpu {
 
 template <int D, class T, class Components = LoadedComponents<D, T>>
-class CpuBackend final : public Backend {
+class CpuBackend final : public Backend, NamedChannels {
   using Step = ParticleStep<D, T, Components>;
 
  public:
@@ -31,11 +31,8 @@ class CpuBackend final : public Backend {
   std::uint64_t grid_bytes() const override { return grid_.bytes(); }
 
  private:
-  void plan_channels();
   std::vector<Body<D, T>> make_bodies(std::vector<SeededBody>& seeds);
-  void lay_out_state(Particles<D, T>& particles, const Component& material) const;
   void measure_circumferences(Particles<D, T>& particles) const;
-  std::vector<T> first_values(const Particles<D, T>& particles, const Component& material, T half_size) const;
   void sort_all();
   void sort_when_moved();
   void sort_between(const StepInfo& step);
@@ -70,35 +67,11 @@ class CpuBackend final : public Backend {
 template <int D, class T, class Components>
 CpuBackend<D, T, Components>::CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds,
                                          int threads)
-    : scene_(experiment, plan, threads), grid_(scene_), particles_(seeds.size()) {
-  plan_channels();
+    : NamedChannels{plan}, scene_(experiment, plan, threads), grid_(scene_), particles_(seeds.size()) {
   std::vector<Body<D, T>> bodies = make_bodies(seeds);
   particle_step_ = std::make_unique<Step>(scene_, grid_, particles_, std::move(bodies));
   grid_step_ = std::make_unique<GridStep<D, T>>(scene_, grid_, ledger_, contact_, filter_);
   sort_all();
-}
-
-template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::plan_channels() {
-  const Plan& plan = scene_.plan;
-  grid_.plan_channel(motion);
-  if (plan.separate_force) grid_.plan_channel(force);
-  if (scene_.experiment.body_force) grid_.plan_channel(body_force);
-  if (plan.velocity_increment || plan.ledger) grid_.plan_channel(velocity_before);
-  if (plan.contact) {
-    grid_.plan_channel(volume_gradient);
-    grid_.plan_channel(mass_position);
-  }
-  if (plan.fused) grid_.plan_channel(next_motion);
-  if (plan.filter) {
-    grid_.plan_channel(filter_increment);
-    grid_.plan_channel(filter_projection);
-  }
-  if (plan.kept_velocity) grid_.plan_channel(kept_velocity);
-  if (plan.constrained_velocity) {
-    grid_.plan_channel(constrained);
-    if (plan.kept_velocity) grid_.plan_channel(kept_constrained);
-  }
 }
 
 template <int D, class T, class Components>
@@ -117,56 +90,22 @@ std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<Se
     body.update_material = material.update[lane_precision<T>][D - 2];
     body.dissipates = (material.traits & MPM_DISSIPATES) != 0;
     field_of_body_.push_back(body.field);
-    lay_out_state(particles_[i], *body.material);
+    particles_[i].lay_out(scene_.plan, body.index);
+    if (std::max(particles_[i].transfer_state.size(), particles_[i].material_state.size()) > Step::max_state_fields)
+      throw std::invalid_argument("the cpu backend takes at most 16 state fields a plugin");
     const T half = static_cast<T>(0.5 / experiment.bodies[i].particles_per_cell_axis);
     particles_[i].half_size.require(std::size_t(D) * chunk_size<T>);
     std::fill_n(particles_[i].half_size.data(), D * chunk_size<T>, half);
-    const int affine = seeds[i].with_gradient ? particles_[i].transfer_state[0].first : -1;
-    seed_particles(particles_[i], seeds[i], scene_.domain, first_values(particles_[i], *body.material, half), affine);
+    seed_particles(particles_[i], seeds[i], scene_.domain);
     measure_circumferences(particles_[i]);
-    if (scene_.plan.initial_position) body.initial_position = seeds[i].arrays().position;
+    for (const Field& field : scene_.plan.fields)
+      if (field.of_particles_of(body.index) && field.lifetime == Lifetime::seeded)
+        body.seeded[field.id] = seeds[i].values(field);
+    if (const auto found = body.seeded.find("initial_position"); found != body.seeded.end())
+      body.initial_position = found->second.data();
     seeds[i] = {};
   }
   return bodies;
-}
-
-template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::lay_out_state(Particles<D, T>& particles, const Component& material) const {
-  const auto add = [&](std::vector<StateField>& fields, const Plugin& plugin) {
-    for (const mpm_state& field : plugin.state()) {
-      const int components = state_components(kept_shape(field, scene_.axisymmetric), D);
-      fields.push_back({field.name, particles.components, components});
-      particles.components += components;
-    }
-    if (fields.size() > Step::max_state_fields)
-      throw std::invalid_argument("the cpu backend takes at most 16 state fields a plugin");
-  };
-  add(particles.transfer_state, *scene_.experiment.transfer.plugin);
-  if (const int functions = scene_.plan.basis_functions; functions > 0) {
-    particles.transfer_state.push_back({polynomial_coefficients, particles.components, D * functions});
-    particles.components += D * functions;
-  }
-  particles.motion_components = particles.components - Particles<D, T>::velocity;
-  add(particles.material_state, *material.plugin);
-  if (scene_.axisymmetric) particles.circumference = particles.components++;
-  if (scene_.plan.kept_advection) {
-    particles.advection = particles.components;
-    particles.components += D;
-  }
-  if (const int scalars = scene_.plan.sample_points * D; scalars > 0) {
-    particles.corners = particles.components;
-    particles.components += scalars;
-    if (scene_.plan.kept_advection) {
-      particles.moved_corners = particles.components;
-      particles.components += scalars;
-    }
-  }
-  if (!scene_.plan.particle_domain) return;
-  particles.domain = particles.components;
-  particles.components += D * D;
-  if (!scene_.plan.strained_domain) return;
-  particles.next_domain = particles.components;
-  particles.components += D * D;
 }
 
 /// 2 pi r of each particle where it was seeded.
@@ -182,32 +121,6 @@ void CpuBackend<D, T, Components>::measure_circumferences(Particles<D, T>& parti
             2 * std::numbers::pi *
             (scene_.domain.lower[0] + scene_.domain.cell_size * cells_from_corner(scene_.domain, block, 0, x[p])));
     });
-}
-
-/// What each component of a chunk starts as; domains start as half the undeformed particle's box in cells.
-template <int D, class T, class Components>
-std::vector<T> CpuBackend<D, T, Components>::first_values(const Particles<D, T>& particles, const Component& material,
-                                                          T half_size) const {
-  std::vector<T> values(particles.components, T(0));
-  const auto set = [&](const StateField& field, const mpm_state& declared) {
-    const bool symmetric = declared.shape == MPM_STATE_SYMMETRIC;
-    const mpm_state_shape shape = kept_shape(declared, scene_.axisymmetric);
-    const bool plane_strain = shape == MPM_STATE_DEFORMATION && D == 2;  // xx xy yx yy zz
-    for (int c = 0; c < field.components; ++c) {
-      const bool diagonal = symmetric ? c < 3 : plane_strain ? c == 0 || c >= 3 : c % (D + 1) == 0;
-      const bool one = declared.initial == MPM_INITIAL_ONE || (declared.initial == MPM_INITIAL_IDENTITY && diagonal);
-      values[field.first + c] = one ? T(1) : T(0);
-    }
-  };
-  const auto of_transfer = scene_.experiment.transfer.plugin->state();  // polynomials beyond affine follow: zero
-  for (std::size_t f = 0; f < of_transfer.size(); ++f) set(particles.transfer_state[f], of_transfer[f]);
-  for (std::size_t f = 0; f < particles.material_state.size(); ++f)
-    set(particles.material_state[f], material.plugin->state()[f]);
-  for (int k = 0; particles.corners >= 0 && k < scene_.plan.sample_points * D; ++k)
-    values[particles.corners + k] = k / D >> k % D & 1 ? half_size : -half_size;
-  for (const int first : {particles.domain, particles.next_domain})
-    for (int k = 0; first >= 0 && k < D * D; k += D + 1) values[first + k] = half_size;
-  return values;
 }
 
 template <int D, class T, class Components>
@@ -250,7 +163,7 @@ void CpuBackend<D, T, Components>::sort_between(const StepInfo& step) {
     if (ahead > 0) foresight.velocities = grid_.channel(motion, field_of_body_[body]);
     changed |= sort_particles(particles_[body], sort_space_, scene_, motion_kept_, foresight);
   }
-  if (changed) grid_.rebuild(particles_, field_of_body_, {motion, velocity_before});
+  if (changed) grid_.rebuild(particles_, field_of_body_, true);
   particle_step_->reach_own_cells(ahead > 0);
   particle_step_->set_drift(ahead);
 }
@@ -287,8 +200,6 @@ void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepIn
   StepInfo now = step;
   now.observed = !may_pass_motion(step);
   wake_for_ledger(step.step + 1);
-  for (const Channel c : {next_motion, force, body_force})
-    if (grid_.has(c)) grid_.clear(c);
   const StepInfo next{step.next_dt, step.next_time, step.step + 1};
   motion_kept_ = now.observed;
   const auto fused = particle_step_->gather_scatter(pass, now, next);
@@ -309,10 +220,7 @@ void CpuBackend<D, T, Components>::account_for_gather(const typename Step::Gathe
 /// Before the scatter of a step: what only the ledger reads rests in the steps that it leaves out.
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::wake_for_ledger(long step) {
-  const Plan& plan = scene_.plan;
-  const bool rests = plan.ledger && !plan.accounts_at(step);
-  if (plan.force_for_ledger) grid_.let_rest(force, rests);
-  if (!plan.velocity_increment) grid_.let_rest(velocity_before, rests);
+  grid_.let_ledger_rest(scene_.plan.ledger && !scene_.plan.accounts_at(step));
 }
 
 template <int D, class T, class Components>
@@ -373,7 +281,6 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
   BodyState state;
   state.volume = body.volume;
   state.mass = body.mass;
-  state.initial_position = body.initial_position;
   // Visits every particle: visit(block, values of its lane, index of seeding).
   const auto each = [&](auto&& visit) {
     for (const Block<D>& block : particles.blocks)
@@ -382,13 +289,19 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
           visit(block, particles.chunk(chunk) + p, static_cast<std::size_t>(particles.ids(chunk)[p]));
       });
   };
-  const auto copy = [&](int first, int components) {
-    std::vector<double> out(n * components);
+  for (const StoredField& stored : particles.fields) {
+    if (stored.field->lifetime != Lifetime::saved || stored.first == Particles<D, T>::position) continue;
+    const int place = stored.first - Particles<D, T>::velocity, components = stored.field->components;
+    if (place < particles.motion_components && !motion_kept_) continue;
+    const double unit = stored.field->unit == "cells" ? scene_.domain.cell_size : 1.0;
+    std::vector<double>& out = state.of(*stored.field);
+    out.resize(n * components);
     each([&](const Block<D>&, const T* values, std::size_t id) {
-      for (int c = 0; c < components; ++c) out[id * components + c] = values[(first + c) * chunk_size<T>];
+      for (int c = 0; c < components; ++c) out[id * components + c] = unit * values[(stored.first + c) * chunk_size<T>];
     });
-    return out;
-  };
+  }
+  for (const Field& field : scene_.plan.fields)
+    if (field.of_particles_of(index) && field.lifetime == Lifetime::seeded) state.of(field) = body.seeded.at(field.id);
   state.position.resize(n * D);
   each([&](const Block<D>& block, const T* values, std::size_t id) {
     for (int a = 0; a < D; ++a)
@@ -396,16 +309,6 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
           scene_.domain.lower[a] +
           scene_.domain.cell_size * cells_from_corner(scene_.domain, block, a, values[a * chunk_size<T>]);
   });
-  if (motion_kept_) state.velocity = copy(Particles<D, T>::velocity, D);
-  for (const StateField& field : particles.transfer_state)
-    if (motion_kept_) state.transfer_state[field.name] = copy(field.first, field.components);
-  for (const StateField& field : particles.material_state)
-    state.material_state[field.name] = copy(field.first, field.components);
-  if (particles.circumference >= 0) state.circumference = copy(particles.circumference, 1);
-  if (particles.domain >= 0) state.domain = copy(particles.domain, D * D);
-  for (double& side : state.domain) side *= scene_.domain.cell_size;
-  if (particles.corners >= 0) state.corners = copy(particles.corners, scene_.plan.sample_points * D);
-  for (double& corner : state.corners) corner *= scene_.domain.cell_size;
   if (scene_.plan.second_moment) state.second_moment = particle_step_->second_moments(index);
   return state;
 }
@@ -528,7 +431,8 @@ std::uint64_t CpuBackend<D, T, Components>::particle_bytes() const {
   for (const auto& particles : particles_)
     total += particles.pool.bytes() + particles.places.capacity() * sizeof(std::byte*) +
              particles.blocks.capacity() * sizeof(Block<D>);
-  for (const auto& body : particle_step_->bodies()) total += body.initial_position.size() * sizeof(double);
+  for (const auto& body : particle_step_->bodies())
+    for (const auto& [id, values] : body.seeded) total += values.size() * sizeof(double);
   return total;
 }
 

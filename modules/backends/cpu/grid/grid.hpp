@@ -6,27 +6,11 @@
 #include <vector>
 
 #include "backends/cpu/aligned_array.hpp"
+#include "backends/cpu/grid/channels.hpp"
 #include "backends/cpu/particles/particles.hpp"
 #include "backends/cpu/scene.hpp"
 
 namespace mpm::cpu {
-
-enum Channel {
-  motion,           ///< scattered momentum and mass; velocity and mass once it has been divided
-  velocity_before,  ///< v-, later the increment v+ - v-
-  force,
-  body_force,
-  volume_gradient,  ///< and volume
-  mass_position,
-  next_motion,        ///< scattered momentum and mass of the following step, by the fused pass
-  filter_increment,   ///< v* of the filter's loop
-  filter_projection,  ///< momentum S+ S v* and mass while it is scattered, then velocity; then the velocity before
-                      ///< conditions
-  kept_velocity,      ///< of the grid before the filter, with the mass
-  constrained,  ///< velocity that conditions and contact have added in the step; while they act, the one without it
-  kept_constrained,  ///< of kept_velocity
-  channel_count
-};
 
 /// A node beyond a wall (or an image of a periodic node) and the node it is folded onto.
 struct MirrorPair {
@@ -56,32 +40,38 @@ struct BoxNodes {
 template <int D, class T>
 class Grid {
  public:
-  explicit Grid(const Scene<D, T>& scene) : scene_(scene), fields_(scene.experiment.field_count) {}
+  explicit Grid(const Scene<D, T>& scene)
+      : scene_(scene), fields_(scene.experiment.field_count), next_motion_(channel_of(scene.plan, "next_momentum")) {
+    for (const Field* const field : channel_fields(scene.plan)) channels_.emplace_back().field = field;
+  }
 
-  void plan_channel(Channel channel) { planned_[channel] = true; }
-  /// A channel that rests keeps its memory, but nothing scatters, keeps or reads it.
-  void let_rest(Channel channel, bool resting) { resting_[channel] = resting; }
-  bool has(Channel channel) const { return planned_[channel] && !resting_[channel]; }
+  Channel channels() const { return static_cast<Channel>(channels_.size()); }
+  const Field& field(Channel channel) const { return *channels_[channel].field; }
+  bool has(Channel channel) const { return channel >= 0 && !channels_[channel].rests; }
+  /// Whether what only the ledger reads rests: it keeps its memory, but nothing scatters, keeps or reads it.
+  void let_ledger_rest(bool rests) {
+    for (Stored& channel : channels_) channel.rests = rests && channel.field->for_ledger;
+  }
   int fields() const { return fields_; }
   std::uint32_t slots() const { return static_cast<std::uint32_t>(found_.size()); }
   std::uint32_t nodes() const { return slots() * block_nodes; }
 
-  T* channel(Channel c, int field) { return data_[c].data() + std::size_t(field) * nodes() * 4; }
+  T* channel(Channel c, int field) { return channels_[c].data.data() + std::size_t(field) * nodes() * 4; }
   Quad<T>& quad(Channel c, int field, std::uint32_t node) {
     return reinterpret_cast<Quad<T>*>(channel(c, field))[node];
   }
 
   /// Active blocks are those of particles, their neighbours (and what their lists reach), and what folding needs;
   /// field_bits of a slot says which velocity fields may have mass there.
-  /// The others hold anything afterwards; `kept` channels keep their values where blocks stay, and get zeros elsewhere.
-  void rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body,
-               std::initializer_list<Channel> kept = {});
+  /// With `keeps`, what a gather may read keeps its values where blocks stay, and gets zeros elsewhere; all else holds
+  /// anything afterwards.
+  void rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body, bool keeps = false);
   /// Zero for what is scattered in a step.
   void clear();
   void clear(Channel c);
   /// Of all nodes and fields, along any axis.
   T largest_component(Channel c) const;
-  void swap(Channel a, Channel b) { std::swap(data_[a], data_[b]); }
+  void swap(Channel a, Channel b) { std::swap(channels_[a].data, channels_[b].data); }
 
   /// Number of a node from its coordinates; -1 where no block is active.
   std::int32_t find(const std::array<int, 3>& node) const {
@@ -99,11 +89,16 @@ class Grid {
   const std::vector<std::uint32_t>& shared_slots() const { return shared_; }
   std::uint64_t bytes() const {
     std::uint64_t total = renumbered_.bytes();
-    for (const auto& data : data_) total += data.bytes();
+    for (const Stored& channel : channels_) total += channel.data.bytes();
     return total;
   }
 
  private:
+  struct Stored {
+    const Field* field = nullptr;
+    AlignedArray<T> data;
+    bool rests = false;
+  };
   int activate(const BlockCoordinates& at, std::uint64_t field_bits);
   void activate_mirrors();
   void renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before,
@@ -112,26 +107,21 @@ class Grid {
   void number_edge_nodes();
   void list_boxes();
   bool may_touch(const BoxCondition& box, const BlockCoordinates& at) const;
-  bool beyond(int axis, int node) const {
-    return node < 0 || node > scene_.domain.cells[axis] ||
-           (scene_.domain.periodic(axis) && node == scene_.domain.cells[axis]);
+  int image(int axis, int node) const {
+    return image_of(node, scene_.domain.cells[axis], scene_.domain.periodic(axis));
   }
   /// No node of such a block is on or beyond a wall of this axis.
   bool inside(int axis, int block) const {
     return block > 0 && (block + 1) * block_side<D> <= scene_.domain.cells[axis];
   }
-  int mirrored(int axis, int node) const;
   /// Particles are wrapped when they are sorted: until then a list may reach a cell farther.
   int padding(int axis) const { return scene_.padding + (scene_.list && scene_.domain.periodic(axis) ? 2 : 0); }
-  bool folded_axis(int axis, int side) const {
-    const ConditionType type = scene_.domain.faces[axis][side];
-    return folds(type) || type == ConditionType::periodic;
-  }
+  bool folded_axis(int axis, int side) const { return has_images(scene_.domain.faces[axis][side]); }
 
   const Scene<D, T>& scene_;
   int fields_;
-  bool planned_[channel_count]{}, resting_[channel_count]{};
-  AlignedArray<T> data_[channel_count];
+  Channel next_motion_;
+  std::vector<Stored> channels_;
   AlignedArray<T> renumbered_;  ///< see renumber
   BlockTable table_;
   std::vector<BlockCoordinates> found_;
@@ -155,14 +145,6 @@ int Grid<D, T>::activate(const BlockCoordinates& at, std::uint64_t field_bits) {
   return slot;
 }
 
-/// Node that a node beyond a folding face is folded onto.
-template <int D, class T>
-int Grid<D, T>::mirrored(int axis, int node) const {
-  const int cells = scene_.domain.cells[axis];
-  if (scene_.domain.periodic(axis)) return ((node % cells) + cells) % cells;
-  return node < 0 ? -node : 2 * cells - node;
-}
-
 /// Folding a slot beyond a face needs the slots of its images; images of images follow as the list grows.
 template <int D, class T>
 void Grid<D, T>::activate_mirrors() {
@@ -174,13 +156,13 @@ void Grid<D, T>::activate_mirrors() {
         if (inside(axis, at[axis])) continue;
         for (int k = 0; k < block_side<D>; ++k) {
           const int node = at[axis] * block_side<D> + k;
-          if (!beyond(axis, node) || !folded_axis(axis, node > 0)) continue;
+          if (image(axis, node) == node || !folded_axis(axis, node > 0)) continue;
           if (node < -padding(axis) || node > scene_.domain.cells[axis] + padding(axis)) continue;
-          BlockCoordinates image = at;
-          image[axis] = mirrored(axis, node) >> block_bits<D>;
-          const int known = table_.find(image);
+          BlockCoordinates other = at;
+          other[axis] = image(axis, node) >> block_bits<D>;
+          const int known = table_.find(other);
           if (known >= 0 && (field_bits_[known] | field_bits_[slot]) == field_bits_[known]) continue;
-          activate(image, field_bits_[slot]);
+          activate(other, field_bits_[slot]);
           grew = true;
         }
       }
@@ -220,12 +202,9 @@ void Grid<D, T>::list_faces() {
         if (!folded_axis(axis, side)) continue;
         const int level = levels[axis] == 1 ? 1 : std::max({1, -index, index - cells});
         FaceNodes& face = faces_[first_face[axis] + 2 * (levels[axis] - level) + side];
-        if (beyond(axis, index)) {
-          node[axis] = mirrored(axis, index);
-          BlockCoordinates image{};
-          for (int a = 0; a < D; ++a) image[a] = node[a] >> block_bits<D>;
-          const std::uint32_t mirror =
-              static_cast<std::uint32_t>(table_.find(image)) * block_nodes + node_in_block<D>(node);
+        if (image(axis, index) != index) {
+          node[axis] = image(axis, index);
+          const std::uint32_t mirror = static_cast<std::uint32_t>(find(node));
           node[axis] = side ? cells : 0;
           face.pairs.push_back({number, mirror, 0, 0, scene_.domain.node_position(node, D)});
         } else if (index == 0 || index == cells) {
@@ -301,8 +280,7 @@ void Grid<D, T>::list_boxes() {
 }
 
 template <int D, class T>
-void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body,
-                         std::initializer_list<Channel> kept) {
+void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body, bool keeps) {
   const std::vector<BlockCoordinates> before = found_;
   table_.clear();
   found_.clear();
@@ -339,10 +317,10 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
   shared_.clear();
   for (std::uint32_t slot = 0; slot < slots(); ++slot)
     if ((field_bits_[slot] & (field_bits_[slot] - 1)) != 0) shared_.push_back(slot);
-  for (const Channel c : kept)
-    if (has(c)) renumber(c, before, slot_now);
-  for (int c = 0; c < channel_count; ++c)
-    if (planned_[c]) data_[c].require(std::size_t(fields_) * nodes() * 4);
+  // Forces have been used when a gather follows, and the next step's momenta come after it.
+  for (Channel c = 0; keeps && c < channels(); ++c)
+    if (has(c) && c != next_motion_ && field(c).folded != Folded::with_force) renumber(c, before, slot_now);
+  for (Stored& channel : channels_) channel.data.require(std::size_t(fields_) * nodes() * 4);
   list_faces();
   list_boxes();
 }
@@ -351,9 +329,10 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
 template <int D, class T>
 void Grid<D, T>::renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before,
                           const std::vector<std::int32_t>& slot_now) {
-  AlignedArray<T>& before = planned_[next_motion] ? data_[next_motion] : renumbered_;  // nothing reads it meanwhile
-  std::swap(data_[channel], before);
-  data_[channel].require(std::size_t(fields_) * nodes() * 4);
+  AlignedArray<T>& now = channels_[channel].data;
+  AlignedArray<T>& before = has(next_motion_) ? channels_[next_motion_].data : renumbered_;  // nothing reads it yet
+  std::swap(now, before);
+  now.require(std::size_t(fields_) * nodes() * 4);
   clear(channel);
   constexpr std::size_t scalars = block_nodes * 4;
   const std::int64_t count = static_cast<std::int64_t>(blocks_before.size());
@@ -362,26 +341,27 @@ void Grid<D, T>::renumber(Channel channel, const std::vector<BlockCoordinates>& 
     const int slot = slot_now[block] >= 0 ? slot_now[block] : table_.find(blocks_before[block]);
     for (int field = 0; slot >= 0 && field < fields_; ++field)
       std::copy_n(before.data() + (std::size_t(field) * count + block) * scalars, scalars,
-                  data_[channel].data() + (std::size_t(field) * slots() + slot) * scalars);
+                  now.data() + (std::size_t(field) * slots() + slot) * scalars);
   }
 }
 
 template <int D, class T>
 void Grid<D, T>::clear() {
-  for (const Channel c : {motion, velocity_before, force, body_force, volume_gradient, mass_position})
-    if (has(c)) clear(c);
+  for (Channel c = 0; c < channels(); ++c)
+    if (field(c).cleared && has(c)) clear(c);
 }
 
 template <int D, class T>
 T Grid<D, T>::largest_component(Channel c) const {
   using L = Lanes<T>;
   const std::int64_t scalars = std::int64_t(fields_) * nodes() * 4;
+  const T* const nodes_of_all = channels_[c].data.data();
   T largest = 0;
 #pragma omp parallel for num_threads(scene_.threads) schedule(static) reduction(max : largest)
   for (std::int64_t block = 0; block < scalars; block += block_nodes * 4) {
     L of_block(T(0));
     for (int s = 0; s < block_nodes * 4; s += L::width) {
-      const L values = L::load(data_[c].data() + block + s);
+      const L values = L::load(nodes_of_all + block + s);
       of_block = max(of_block, max(values, -values));
     }
     for (int i = 0; i < L::width; ++i)
@@ -392,7 +372,7 @@ T Grid<D, T>::largest_component(Channel c) const {
 
 template <int D, class T>
 void Grid<D, T>::clear(Channel c) {
-  T* const values = data_[c].data();
+  T* const values = channels_[c].data.data();
   const std::int64_t blocks = std::int64_t(fields_) * slots();
 #pragma omp parallel for num_threads(scene_.threads) schedule(static)
   for (std::int64_t i = 0; i < blocks; ++i) std::memset(values + i * block_nodes * 4, 0, block_nodes * 4 * sizeof(T));

@@ -48,15 +48,6 @@ struct GridStep<D, T>::ContactBatch {
   }
 };
 
-/// Rows of particles a cell of the coarsest body in a field: its surface lags the most.
-template <int D, class T>
-int GridStep<D, T>::rows_per_cell(const Experiment& experiment, int field) {
-  int rows = 8;
-  for (const BodySpecification& body : experiment.bodies)
-    if (body.field == field) rows = std::min(rows, body.particles_per_cell_axis);
-  return rows;
-}
-
 template <int D, class T>
 ContactFieldNode GridStep<D, T>::contact_node(int field, std::uint32_t node) {
   ContactFieldNode result;
@@ -117,8 +108,7 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
       ContactBatch batch;
       for (std::uint32_t node = slot * block_nodes; node < (slot + 1) * block_nodes; ++node) {
         const Q &va = motion_at(a, node), &vb = motion_at(b, node);
-        if (!(va[3] > 0) || !(vb[3] > 0)) continue;
-        if (!weld && std::min(va[3], vb[3]) < contact_prescreen * (static_cast<double>(va[3]) + vb[3])) continue;
+        if (!meet(va[3], vb[3], weld)) continue;
         const ContactGeometry geometry = contact_geometry(contact_node(a, node), contact_node(b, node), edges_[a],
                                                           edges_[b], scene_.domain.cell_size, D);
         if (geometry.valid || weld) batch.add(node, va, vb, geometry);

@@ -6,11 +6,9 @@
 namespace mpm::cpu {
 
 template <int D, class T>
-Quad<T> GridStep<D, T>::mirror_signs(const FaceNodes& face, bool as_slip) const {
+Quad<T> GridStep<D, T>::mirror_signs(const FaceNodes& face, AtWall rule) const {
   Q signs{1, 1, 1, 1};
-  if (face.periodic()) return signs;
-  const ConditionType type = as_slip ? ConditionType::slip : face.condition->type;
-  for (int c = 0; c < 3; ++c) signs[c] = static_cast<T>(mirror_sign(type, face.axis, c));
+  for (int c = 0; c < 3; ++c) signs[c] = static_cast<T>(mirror_sign(rule, face.condition->type, face.axis, c));
   return signs;
 }
 
@@ -44,40 +42,65 @@ bool GridStep<D, T>::approaches(const FaceNodes& face, int field, const MirrorPa
   return face.side == 0 ? speed < 0 : speed > 0;
 }
 
+/// Calls visit(field, pair) for the pairs of a face that this step folds, in order.
+template <int D, class T>
+template <class Visit>
+void GridStep<D, T>::for_each_folded(const FaceNodes& face, Visit&& visit) {
+  for (int field = 0; field < grid_.fields(); ++field)
+    for (std::size_t i = 0; i < face.pairs.size(); ++i)
+      if (face.pair_folds[field * face.pairs.size() + i]) visit(field, face.pairs[i]);
+}
+
+/// Momentum with the mass beside it, which moves with the wall. Folded ghosts are cleared, so that folding again does
+/// nothing.
+template <int D, class T>
+void GridStep<D, T>::fold_momentum(Channel channel, int field, const MirrorPair& pair, Q signs, Q wall_velocity) {
+  Q& ghost = grid_.quad(channel, field, pair.ghost);
+  const Q wall = ghost[3] * wall_velocity;
+  grid_.quad(channel, field, pair.mirror) += wall + signs * (ghost - wall);
+  ghost = Q{};
+}
+
+template <int D, class T>
+void GridStep<D, T>::fold_as_is(Channel channel, int field, const MirrorPair& pair, Q signs) {
+  Q& ghost = grid_.quad(channel, field, pair.ghost);
+  grid_.quad(channel, field, pair.mirror) += signs * ghost;
+  ghost = Q{};
+}
+
 template <int D, class T>
 void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bool remap, double time) {
   const MirrorPair& pair = face.pairs[index];
-  Q& ghost = motion_at(field, pair.ghost);
-  const Q signs = mirror_signs(face, false), slip_signs = mirror_signs(face, true);
-  Q wall = ghost[3] * wall_velocity(face.condition->velocity, pair.foot, time);
-  motion_at(field, pair.mirror) += wall + signs * (ghost - wall);
   if (!remap && has_gravity_ && !face.periodic()) {  // keeps the weight where it was until forces are folded
     double* const correction = gravity_correction_.data() + field * grid_.edge_nodes().size() * 4;
     for (int c = 0; c < D; ++c) {
-      const double weight = static_cast<double>(ghost[3]) * gravity_[c];
+      const double weight = static_cast<double>(motion_at(field, pair.ghost)[3]) * gravity_[c];
       correction[pair.ghost_edge * 4 + c] += weight;
       correction[pair.mirror_edge * 4 + c] -= weight;
     }
   }
-  ghost = Q{};
-  if (remap) return;
-  for (const Channel c : {volume_gradient, mass_position})
-    if (grid_.has(c)) grid_.quad(c, field, pair.mirror) += slip_signs * grid_.quad(c, field, pair.ghost);
+  for (const Channel c : folded_[static_cast<int>(Folded::with_mass)]) {
+    if (!grid_.has(c) || (remap && c != motion)) continue;
+    const AtWall rule = grid_.field(c).at_wall;
+    if (rule == AtWall::momentum)
+      fold_momentum(c, field, pair, mirror_signs(face, rule), wall_velocity(face.condition->velocity, pair.foot, time));
+    else
+      fold_as_is(c, field, pair, mirror_signs(face, rule));
+  }
 }
 
-/// On the wall itself: the mirror image takes away what of the contact channels points across it.
+/// On the wall itself: the mirror image takes away what of these channels points across it.
 template <int D, class T>
 void GridStep<D, T>::fold_wall_onto_itself(const FaceNodes& face, int field, double dt) {
   for (std::size_t i = 0; i < face.wall.size(); ++i) {
     const std::uint32_t node = face.wall[i], edge = face.wall_edge[i];
     if (face.condition->type == ConditionType::separate && !approaches(face, field, {node, node, edge, edge, {}}, dt))
       continue;
-    for (const Channel c : {volume_gradient, mass_position})
-      if (grid_.has(c)) grid_.quad(c, field, node)[face.axis] = 0;
+    for (const Channel c : slipping_) grid_.quad(c, field, node)[face.axis] = 0;
   }
 }
 
-/// Sums the images of periodic nodes: momenta, contact channels and forces.
+/// Sums the images of periodic nodes.
 template <int D, class T>
 void GridStep<D, T>::fold_images(bool remap, const StepInfo& step) {
   if (!remap) gravity_correction_.assign(has_gravity_ ? grid_.edge_nodes().size() * 4 * grid_.fields() : 0, 0.0);
@@ -105,34 +128,30 @@ void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step)
         face.pair_folds[field * face.pairs.size() + i] = folds;
         if (folds) fold_pair(face, i, field, remap, step.time);
       }
-      if (!periodic && !remap && grid_.has(volume_gradient)) fold_wall_onto_itself(face, field, dt);
+      if (!periodic && !remap && !slipping_.empty()) fold_wall_onto_itself(face, field, dt);
     }
   }
 }
 
-/// Forces follow the decisions of fold_faces. Folded ghosts are cleared, so that folding again does nothing.
+/// Forces follow the decisions of fold_faces.
 template <int D, class T>
 void GridStep<D, T>::fold_forces(bool periodic) {
-  const std::size_t edges = grid_.edge_nodes().size();
   for (const FaceNodes& face : grid_.faces()) {
     if (face.periodic() != periodic) continue;
-    const Q signs = mirror_signs(face, false);
-    for (int field = 0; field < grid_.fields(); ++field)
-      for (std::size_t i = 0; i < face.pairs.size(); ++i) {
-        if (!face.pair_folds[field * face.pairs.size() + i]) continue;
-        const MirrorPair& pair = face.pairs[i];
-        for (const Channel c : {force, body_force}) {
-          if (!grid_.has(c)) continue;
-          grid_.quad(c, field, pair.mirror) += signs * grid_.quad(c, field, pair.ghost);
-          grid_.quad(c, field, pair.ghost) = Q{};
-        }
-        if (!has_gravity_ || periodic) continue;
-        double* const correction = gravity_correction_.data() + field * edges * 4;
-        for (int c = 0; c < D; ++c) {
-          correction[pair.mirror_edge * 4 + c] += signs[c] * correction[pair.ghost_edge * 4 + c];
-          correction[pair.ghost_edge * 4 + c] = 0;
-        }
+    for (const Channel c : folded_[static_cast<int>(Folded::with_force)]) {
+      const Q signs = mirror_signs(face, grid_.field(c).at_wall);
+      if (grid_.has(c))
+        for_each_folded(face, [&](int field, const MirrorPair& pair) { fold_as_is(c, field, pair, signs); });
+    }
+    if (!has_gravity_ || periodic) continue;
+    const Q signs = mirror_signs(face, AtWall::vector);
+    for_each_folded(face, [&](int field, const MirrorPair& pair) {
+      double* const correction = gravity_correction_.data() + field * grid_.edge_nodes().size() * 4;
+      for (int c = 0; c < D; ++c) {
+        correction[pair.mirror_edge * 4 + c] += signs[c] * correction[pair.ghost_edge * 4 + c];
+        correction[pair.ghost_edge * 4 + c] = 0;
       }
+    });
   }
 }
 
@@ -141,20 +160,16 @@ template <int D, class T>
 void GridStep<D, T>::fill_ghosts(double time, bool increments) {
   auto& faces = grid_.faces();
   for (auto face = faces.rbegin(); face != faces.rend(); ++face) {
-    const Q signs = mirror_signs(*face, false);
-    for (std::size_t i = 0; i < face->pairs.size(); ++i) {
-      const MirrorPair& pair = face->pairs[i];
+    const Q signs = mirror_signs(*face, AtWall::vector);
+    for_each_folded(*face, [&](int field, const MirrorPair& pair) {
       const Q wall = wall_velocity(face->condition->velocity, pair.foot, time);
-      for (int field = 0; field < grid_.fields(); ++field) {
-        if (!face->pair_folds[field * face->pairs.size() + i]) continue;
-        Q& ghost = motion_at(field, pair.ghost);
-        const T mass = ghost[3];
-        ghost = wall + signs * (motion_at(field, pair.mirror) - wall);
-        ghost[3] = mass;
-        if (increments)
-          grid_.quad(velocity_before, field, pair.ghost) = signs * grid_.quad(velocity_before, field, pair.mirror);
-      }
-    }
+      Q& ghost = motion_at(field, pair.ghost);
+      const T mass = ghost[3];
+      ghost = wall + signs * (motion_at(field, pair.mirror) - wall);
+      ghost[3] = mass;
+      if (increments)
+        grid_.quad(velocity_before, field, pair.ghost) = signs * grid_.quad(velocity_before, field, pair.mirror);
+    });
   }
 }
 

@@ -45,18 +45,12 @@ template <int D, class T>
 void GridStep<D, T>::project_increment(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
   for (const FaceNodes& face : grid_.faces()) {  // images first, then walls, as fold_faces decided
-    const Q signs = mirror_signs(face, false);
-    for (std::size_t i = 0; i < face.pairs.size(); ++i) {
-      const MirrorPair& pair = face.pairs[i];
-      const Q velocity = filter_.iterations == 0 ? wall_velocity(face.condition->velocity, pair.foot, time) : Q{};
-      for (int field = 0; field < grid_.fields(); ++field) {
-        if (!face.pair_folds[field * face.pairs.size() + i]) continue;
-        Q& ghost = grid_.quad(filter_projection, field, pair.ghost);
-        const Q wall = ghost[3] * velocity;
-        grid_.quad(filter_projection, field, pair.mirror) += wall + signs * (ghost - wall);
-        ghost = Q{};
-      }
-    }
+    const Q signs = mirror_signs(face, AtWall::momentum);
+    for_each_folded(face, [&](int field, const MirrorPair& pair) {
+      const bool first = filter_.iterations == 0;
+      fold_momentum(filter_projection, field, pair, signs,
+                    first ? wall_velocity(face.condition->velocity, pair.foot, time) : Q{});
+    });
   }
   for_each_block([&](int field, std::uint32_t first, double*) {
     const Q* const nodes = &motion_at(field, first);
@@ -165,12 +159,10 @@ void GridStep<D, T>::update_filter(const Pass& pass, const StepInfo& step) {
   // An increment is a difference of velocities: walls mirror it as if they were at rest.
   auto& faces = grid_.faces();
   for (auto face = faces.rbegin(); face != faces.rend(); ++face) {
-    const Q signs = mirror_signs(*face, false);
-    for (std::size_t i = 0; i < face->pairs.size(); ++i)
-      for (int field = 0; field < grid_.fields(); ++field)
-        if (face->pair_folds[field * face->pairs.size() + i])
-          grid_.quad(filter_increment, field, face->pairs[i].ghost) =
-              signs * grid_.quad(filter_increment, field, face->pairs[i].mirror);
+    const Q signs = mirror_signs(*face, AtWall::vector);
+    for_each_folded(*face, [&](int field, const MirrorPair& pair) {
+      grid_.quad(filter_increment, field, pair.ghost) = signs * grid_.quad(filter_increment, field, pair.mirror);
+    });
   }
 }
 

@@ -10,14 +10,21 @@ namespace mpm::cpu {
 template <int D, class T>
 GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, ContactRecord& record,
                          FilterRecord& filter)
-    : scene_(scene), grid_(grid), ledger_(ledger), record_(record), filter_(filter) {
+    : NamedChannels{scene.plan},
+      scene_(scene),
+      grid_(grid),
+      ledger_(ledger),
+      record_(record),
+      filter_(filter),
+      edges_(edge_models(scene.experiment)) {
   for (int c = 0; c < D; ++c) {
     gravity_[c] = static_cast<T>(scene.experiment.gravity[c]);
     has_gravity_ = has_gravity_ || gravity_[c] != 0;
   }
-  if (scene.plan.contact)
-    for (int field = 0; field < scene.experiment.field_count; ++field)
-      edges_.emplace_back(scene.experiment.shape, rows_per_cell(scene.experiment, field));
+  for (Channel c = 0; c < grid.channels(); ++c) {
+    folded_[static_cast<int>(grid.field(c).folded)].push_back(c);
+    if (grid.field(c).at_wall == AtWall::slip) slipping_.push_back(c);
+  }
   may_merge_ = scene.plan.divides_with_forces;
 }
 

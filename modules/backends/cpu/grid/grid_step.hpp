@@ -10,7 +10,7 @@
 namespace mpm::cpu {
 
 template <int D, class T>
-class GridStep {
+class GridStep : NamedChannels {
  public:
   GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, ContactRecord& record, FilterRecord& filter);
 
@@ -45,7 +45,7 @@ class GridStep {
   bool ledger_on() const { return accounted_; }
   bool merges() const { return may_merge_ && !grid_.has(force); }
   Q& motion_at(int field, std::uint32_t node) { return grid_.quad(motion, field, node); }
-  Q mirror_signs(const FaceNodes& face, bool as_slip) const;
+  Q mirror_signs(const FaceNodes& face, AtWall rule) const;
   Q wall_velocity(const std::optional<VectorExpression>& velocity, const Vector3& x, double time) const;
   template <class Visit>
   void for_each_block(Visit&& visit);
@@ -63,6 +63,10 @@ class GridStep {
   void fold_images(bool remap, const StepInfo& step);
   void fold_walls(bool remap, const StepInfo& step);
   void fold_faces(bool periodic, bool remap, const StepInfo& step);
+  template <class Visit>
+  void for_each_folded(const FaceNodes& face, Visit&& visit);
+  void fold_momentum(Channel channel, int field, const MirrorPair& pair, Q signs, Q wall_velocity);
+  void fold_as_is(Channel channel, int field, const MirrorPair& pair, Q signs);
   void fold_pair(FaceNodes& face, std::size_t pair, int field, bool remap, double time);
   void fold_wall_onto_itself(const FaceNodes& face, int field, double dt);
   bool approaches(const FaceNodes& face, int field, const MirrorPair& pair, double dt);
@@ -104,7 +108,6 @@ class GridStep {
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
   ContactFieldNode contact_node(int field, std::uint32_t node);
-  static int rows_per_cell(const Experiment& experiment, int field);
 
   Q gravity_{};
   const Scene<D, T>& scene_;
@@ -112,7 +115,9 @@ class GridStep {
   Ledger& ledger_;
   ContactRecord& record_;
   FilterRecord& filter_;
-  std::vector<EdgeModel> edges_;
+  const std::vector<EdgeModel> edges_;
+  std::array<std::vector<Channel>, 3> folded_;  ///< [when]
+  std::vector<Channel> slipping_;               ///< vanish across a wall on its nodes
   /// Partial sums of account_for_block.
   enum Partial { of_internal_force, of_body_force, of_gravity, at_conditions, at_contact, of_motion, partial_count };
   std::vector<double> partials_;           ///< partial_count a block of a field, summed in order

@@ -15,7 +15,8 @@ namespace mpm::cpu {
 template <int D, class T, class Components>
 ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid,
                                              std::vector<Particles<D, T>>& particles, std::vector<Body<D, T>> bodies)
-    : scene_(scene),
+    : NamedChannels{scene.plan},
+      scene_(scene),
       grid_(grid),
       particles_(particles),
       bodies_(std::move(bodies)),
@@ -28,8 +29,7 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
   for (int thread = 0; thread < scene.threads; ++thread) {
     work_.push_back(std::make_unique<Work>());
     Work& work = *work_.back();
-    for (int c = 0; c < channel_count; ++c)
-      if (grid.has(static_cast<Channel>(c))) work.tile[c].require(kernels_.scalars);
+    work.tile.resize(grid.channels());
     work.velocity_tile.require(kernels_.scalars);
     if (scene.has(MPM_GATHERS_INCREMENT)) work.increment_tile.require(kernels_.scalars);
     if (scene.list) {
@@ -150,7 +150,7 @@ template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::States ParticleStep<D, T, Components>::material_states(
     const Chunk& chunk) const {
   States result{};
-  const std::vector<StateField>& fields = chunk.particles.material_state;
+  const std::vector<StoredField>& fields = chunk.particles.material_state;
   for (std::size_t f = 0; f < fields.size(); ++f) result.fields[f] = chunk.at(fields[f].first);
   return result;
 }
@@ -158,7 +158,7 @@ template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::States ParticleStep<D, T, Components>::transfer_states(
     const Chunk& chunk) const {
   States result{};
-  const std::vector<StateField>& fields = chunk.particles.transfer_state;
+  const std::vector<StoredField>& fields = chunk.particles.transfer_state;
   for (std::size_t f = 0; f < fields.size(); ++f) result.fields[f] = chunk.motion_at(fields[f].first);
   return result;
 }

@@ -77,6 +77,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
                                                                                               const StepInfo& step,
                                                                                               const StepInfo& next) {
   const std::vector<Channel> channels = scattered_channels(pass, next_motion);
+  for (const Channel c : channels) grid_.clear(c);
   for (auto& work : work_) work->moved = {};
   abandoned_ = false;
   const bool follows = scene_.plan.accounts_at(next.step);
@@ -120,8 +121,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
 template <int D, class T, class Components>
 [[gnu::noinline]] auto ParticleStep<D, T, Components>::gather_one(const Pass& pass, const StepInfo& step,
                                                                   const Chunk& chunk, Work& work) -> Moved {
-  Wanted wanted;
-  wanted.transfer = true, wanted.strain = pass.has(Act::strain);
+  const Wanted wanted{true, pass.has(Act::strain), motion};
   gather_chunk(chunk, work, wanted);
   work.clock.lap(Phase::coefficients);
   States state = transfer_states(chunk);
@@ -168,8 +168,7 @@ template <int D, class T, class Components>
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& step) {
   account_for(step);
-  Wanted wanted;
-  wanted.strain = true;
+  const Wanted wanted{false, true, motion};
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       kernels_.load(work.velocity_tile.data(), grid_.channel(motion, bodies_[body].field), block.neighbours.data(),
@@ -310,6 +309,7 @@ const T* ParticleStep<D, T, Components>::moments_for_transfer(const Chunk& chunk
 /// One pass of the filter's loop on the particles: v* is gathered and scattered again by the transfer itself.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::project(const StepInfo& step) {
+  open_tiles({filter_projection});
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     const int field = bodies_[body].field;
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
@@ -326,15 +326,14 @@ void ParticleStep<D, T, Components>::project(const StepInfo& step) {
 /// The transfer acts on a particle at rest with zero state, so that what it scatters is linear in v*.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const Chunk& chunk, Work& work) {
-  Wanted wanted;
-  wanted.transfer = true, wanted.channel = filter_increment;
+  const Wanted wanted{true, false, filter_increment};
   gather_chunk(chunk, work, wanted);
   T* const velocity = work.scratch_velocity.data();
   std::fill_n(velocity, D * chunk_size<T>, T(0));
   States state{};
   T* next = work.scratch_state.data();
   for (std::size_t f = 0; f < chunk.particles.transfer_state.size(); ++f) {
-    const int scalars = chunk.particles.transfer_state[f].components * chunk_size<T>;
+    const int scalars = chunk.particles.transfer_state[f].field->components * chunk_size<T>;
     state.fields[f] = std::fill_n(next, scalars, T(0)) - scalars;
     next += scalars;
   }

@@ -9,15 +9,23 @@
 
 namespace mpm::cpu {
 
+/// Every thread gets a tile of what a pass is about to scatter.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::open_tiles(const std::vector<Channel>& channels) {
+  for (auto& work : work_)
+    for (const Channel c : channels) work->tile[c].require(kernels_.scalars);
+}
+
 /// Channels that a scatter pass adds to, its momenta to `momentum`.
 template <int D, class T, class Components>
-std::vector<Channel> ParticleStep<D, T, Components>::scattered_channels(const Pass& pass, Channel momentum) const {
+std::vector<Channel> ParticleStep<D, T, Components>::scattered_channels(const Pass& pass, Channel momentum) {
   std::vector<Channel> channels;
   if (pass.has(Act::scatter_momentum) || (pass.has(Act::scatter_force) && !grid_.has(force)))
     channels.push_back(momentum);
   for (const Channel c : {force, body_force})
     if (pass.has(Act::scatter_force) && grid_.has(c)) channels.push_back(c);
   if (pass.has(Act::scatter_contact)) channels.insert(channels.end(), {volume_gradient, mass_position});
+  open_tiles(channels);
   return channels;
 }
 
@@ -306,8 +314,7 @@ void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work
     for (int a = 0; a < D; ++a) {
       x[a] = scene_.domain.lower[a] + scene_.domain.cell_size * cells_from_corner(scene_.domain, chunk.block, a,
                                                                                   position[a * chunk_size<T> + p]);
-      X[a] =
-          chunk.body.initial_position.empty() ? x[a] : chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
+      X[a] = chunk.body.initial_position ? chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a] : x[a];
     }
     const Vector3 f = expression(x, X, time);
     for (int c = 0; c < D; ++c)

@@ -104,7 +104,7 @@ struct alignas(page) Workspace {
   BoxWork<D, T> boxes;
   alignas(64) T quads[(1 + 2 * D) * 4 * chunk_size<T>];
   /// Zero between uses, so that the scatter may add.
-  AlignedArray<T> tile[channel_count];
+  std::vector<AlignedArray<T>> tile;  ///< [channel], of those that a pass scatters
   /// Tiles to gather from; only what the block reaches is valid.
   AlignedArray<T> velocity_tile, increment_tile;
   AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
@@ -139,8 +139,10 @@ struct Body {
   const Component* material = nullptr;
   std::int32_t (*update_material)(const void*, const mpm_material_batch*) = nullptr;
   bool dissipates = false;
-  std::vector<double> initial_position;  ///< m, by index of seeding, particle-major
-  std::array<T, D> first_place{};        ///< where in a block particles begin whose first node is the block's, cells
+  /// Fields that never change, by id; values by index of seeding, particle-major.
+  std::map<std::string, std::vector<double>> seeded;
+  const double* initial_position = nullptr;  ///< m, among them; null: nobody reads it
+  std::array<T, D> first_place{};  ///< where in a block particles begin whose first node is the block's, cells
 };
 
 /// Plugins as they were loaded, called through their tables. Another type with these members may call functors that
@@ -162,7 +164,7 @@ struct LoadedComponents {
 };
 
 template <int D, class T, class Components = LoadedComponents<D, T>>
-class ParticleStep {
+class ParticleStep : NamedChannels {
  public:
   static constexpr std::size_t max_state_fields = 16;
   ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std::vector<Particles<D, T>>& particles,
@@ -277,7 +279,8 @@ class ParticleStep {
   void note_inverted(const Chunk& chunk);
   double kinetic_energy(const Chunk& chunk, const Work& work) const;
 
-  std::vector<Channel> scattered_channels(const Pass& pass, Channel momentum) const;
+  std::vector<Channel> scattered_channels(const Pass& pass, Channel momentum);
+  void open_tiles(const std::vector<Channel>& channels);
   bool scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work, Channel momentum,
                      bool evaluated);
   /// A fused pass asks its material for the strained state and for the stress that it scatters at once.
@@ -311,7 +314,7 @@ class ParticleStep {
   /// What gather_chunk reads: velocities for the transfer, for the material, or the filter's increment.
   struct Wanted {
     bool transfer = false, strain = false;
-    Channel channel = motion;
+    Channel channel = -1;
   };
   void gather_chunk(const Chunk& chunk, Work& work, const Wanted& wanted);
   void gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment, bool gradient);

@@ -44,15 +44,15 @@ struct Block {
   bool has_neighbours() const { return neighbours[0] >= 0; }
 };
 
-/// One field of state: its first component within a chunk and its declaration.
-struct StateField {
-  std::string name;
-  int first = 0, components = 1;
+/// A field of the plan and its first component within a chunk.
+struct StoredField {
+  const Field* field = nullptr;
+  int first = 0;
 };
 
 template <int D, class T>
 struct Particles {
-  // components of a chunk
+  // first components of fields in a chunk; -1: the plan has none
   static constexpr int position = 0, velocity = D;
   int advection = -1;      ///< kept for the move pass of MUSL
   int domain = -1;         ///< semi-side vectors in cells, row-major, columns are vectors
@@ -60,10 +60,11 @@ struct Particles {
   int circumference = -1;  ///< m, 2 pi r as seeded, which mass and volume of the body are times; axisymmetric only
   int corners = -1;        ///< of a domain that the grid's velocity moves: [corner][D] cells, from the particle
   int moved_corners = -1;  ///< where they go in this step, kept for the move pass of MUSL
-  int components = 2 * D;
-  int motion_components = D;  ///< from `velocity` on: it and the transfer's state
-  AlignedArray<T> half_size;  ///< [D][chunk_size] cells, of shapes that read it
-  std::vector<StateField> transfer_state, material_state;
+  int components = 0;
+  int motion_components = 0;        ///< from `velocity` on: it and the transfer's state
+  AlignedArray<T> half_size;        ///< [D][chunk_size] cells, of shapes that read it
+  std::vector<StoredField> fields;  ///< all that a chunk holds beside the indices of seeding, in its order
+  std::vector<StoredField> transfer_state, material_state;
 
   ChunkPool pool;
   std::vector<std::byte*> places;  ///< of the chunks: [components][chunk_size] values, then indices of seeding
@@ -82,7 +83,39 @@ struct Particles {
   /// Indices in the order of seeding.
   std::int32_t* ids(std::uint32_t i) { return ids_at(places[i]); }
   const std::int32_t* ids(std::uint32_t i) const { return ids_at(places[i]); }
+
+  /// Gives the plan's fields of a body their places, in its order: what a gather may replace stands together.
+  void lay_out(const Plan& plan, int body);
 };
+
+template <int D, class T>
+void Particles<D, T>::lay_out(const Plan& plan, int body) {
+  const Field* const identity = plan.particle_field(body, "identity");  // the indices of seeding
+  const auto place = [&](std::string_view id) {
+    const Field* const field = plan.particle_field(body, id);
+    for (const StoredField& stored : fields)
+      if (stored.field == field) return stored.first;
+    return -1;
+  };
+  motion_components = D;
+  for (const Field& field : plan.fields) {
+    if (!field.of_particles_of(body) || field.lifetime == Lifetime::seeded || &field == identity) continue;
+    fields.push_back({&field, components});
+    if (field.origin == Origin::transfer) transfer_state.push_back(fields.back());
+    if (field.origin == Origin::transfer) motion_components += field.components;
+    if (field.origin == Origin::material) material_state.push_back(fields.back());
+    components += field.components;
+  }
+  const int last_of_motion = transfer_state.empty() ? velocity : transfer_state.back().first;
+  if (place("position") != position || place("velocity") != velocity || last_of_motion >= velocity + motion_components)
+    throw std::logic_error("the plan does not begin with position, velocity and the transfer's state");
+  advection = place("advection_velocity");
+  domain = place("domain");
+  next_domain = place("strained_domain");
+  circumference = place("circumference");
+  corners = place("corners");
+  moved_corners = place("moved_corners");
+}
 
 constexpr int padded(int count) {
   return (count + int(MPM_LANES) - 1) / int(MPM_LANES) * int(MPM_LANES);
@@ -137,11 +170,9 @@ struct SortSpace {
   }
 };
 
-/// Places seeded particles into chunks of provisional blocks; sort_particles then makes the real ones. `first_value`
-/// gives what a component of a chunk starts as; `affine`, where not negative, takes the gradient of the velocity.
+/// Places seeded particles into chunks of provisional blocks; sort_particles then makes the real ones.
 template <int D, class T>
-void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain,
-                    const std::vector<T>& first_value, int affine);
+void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain);
 
 /// How far ahead particles are sorted: by where the velocity of their nearest node leads, so that they are in the
 /// middle of their way while they belong to a block.

@@ -11,8 +11,7 @@ namespace mpm::cpu {
 
 /// Particles as they come, each into the last chunk of its block.
 template <int D, class T>
-void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain,
-                    const std::vector<T>& first_value, int affine) {
+void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain) {
   struct Seeded {
     BlockCoordinates at{};
     std::uint32_t count = 0;
@@ -23,7 +22,12 @@ void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const D
   particles.pool.set_chunk_bytes(particles.chunk_bytes());
   particles.pool.reserve((seeds.count() + chunk_size<T> - 1) / chunk_size<T>);
   int known = -1;
+  const int affine = seeds.with_gradient ? particles.transfer_state[0].first : -1;
   seeds.for_each_batch([&](const SeedBatch& batch) {
+    std::vector<std::pair<StoredField, const double*>> seeded;  // beside the position
+    for (const StoredField& stored : particles.fields)
+      if (stored.field->first == First::seeded && stored.first != Particles<D, T>::position)
+        if (const double* const values = batch.values(stored.field->id)) seeded.push_back({stored, values});
     for (std::size_t i = 0; i < batch.count; ++i) {
       double cells[D];
       BlockCoordinates at{};
@@ -37,15 +41,18 @@ void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const D
       const int lane = static_cast<int>(block.count++ % chunk_size<T>);
       if (lane == 0) {
         block.chunks.push_back(particles.pool.take());
-        for (int c = 0; c < particles.components; ++c)
-          std::fill_n(particles.values_at(block.chunks.back()) + c * chunk_size<T>, chunk_size<T>, first_value[c]);
+        for (const StoredField& stored : particles.fields)
+          for (int k = 0; k < stored.field->components; ++k)
+            std::fill_n(particles.values_at(block.chunks.back()) + (stored.first + k) * chunk_size<T>, chunk_size<T>,
+                        static_cast<T>(first_value(*stored.field, k, D, particles.half_size[0])));
       }
       T* const values = particles.values_at(block.chunks.back()) + lane;
       particles.ids_at(block.chunks.back())[lane] = static_cast<std::int32_t>(batch.first + i);
-      for (int a = 0; a < D; ++a) {
+      for (int a = 0; a < D; ++a)
         values[(Particles<D, T>::position + a) * chunk_size<T>] = static_cast<T>(cells[a] - at[a] * block_side<D>);
-        values[(Particles<D, T>::velocity + a) * chunk_size<T>] = static_cast<T>(batch.velocity[i * D + a]);
-      }
+      for (const auto& [stored, first] : seeded)
+        for (int k = 0, n = stored.field->components; k < n; ++k)
+          values[(stored.first + k) * chunk_size<T>] = static_cast<T>(first[i * n + k]);
       for (int c = 0; affine >= 0 && c < D * D; ++c)
         values[(affine + c) * chunk_size<T>] = static_cast<T>(batch.velocity_gradient[i * D * D + c]);
     }

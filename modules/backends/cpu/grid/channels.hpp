@@ -1,0 +1,54 @@
+#pragma once
+// Channels: the plan's fields of nodes as the grid keeps them, each a group of four scalars a node.
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "plan/plan.hpp"
+
+namespace mpm::cpu {
+
+/// Number of a field of nodes among those with a group of their own; -1: the scene has none. A scalar beside a vector
+/// is the fourth of its group, and a field in place of another has the other's.
+using Channel = int;
+
+inline std::vector<const Field*> channel_fields(const Plan& plan) {
+  std::vector<const Field*> fields;
+  for (const Field& field : plan.fields)
+    if (field.owner == Owner::node && field.beside.empty() && field.in_place_of.empty()) fields.push_back(&field);
+  return fields;
+}
+
+inline Channel channel_of(const Plan& plan, std::string_view id) {
+  const Field* const field = plan.node_field(id);
+  if (!field) return -1;
+  if (!field->beside.empty()) return channel_of(plan, field->beside);
+  if (!field->in_place_of.empty()) return channel_of(plan, field->in_place_of);
+  const std::vector<const Field*> fields = channel_fields(plan);
+  return static_cast<Channel>(std::find(fields.begin(), fields.end(), field) - fields.begin());
+}
+
+/// The channels that passes work on by name, resolved once a scene.
+struct NamedChannels {
+  const Plan& plan_;
+  /// Scattered momentum and mass; velocity and mass once it has been divided.
+  const Channel motion = channel_of(plan_, "momentum");
+  /// The same of the following step, scattered by the fused pass.
+  const Channel next_motion = channel_of(plan_, "next_momentum");
+  /// v-, later the increment v+ - v-.
+  const Channel velocity_before = channel_of(plan_, "velocity_before");
+  const Channel force = channel_of(plan_, "force"), body_force = channel_of(plan_, "body_force");
+  const Channel volume_gradient = channel_of(plan_, "volume_gradient");  ///< and volume
+  const Channel mass_position = channel_of(plan_, "mass_position");
+  const Channel filter_increment = channel_of(plan_, "increment");  ///< v* of the filter's loop
+  /// Momentum S+ S v* and mass while it is scattered, then velocity; then the velocity before conditions.
+  const Channel filter_projection = channel_of(plan_, "projection");
+  /// Of the grid before the filter, with the mass.
+  const Channel kept_velocity = channel_of(plan_, "unfiltered_velocity");
+  /// Velocity that conditions and contact have added in the step; while they act, the one without it.
+  const Channel constrained = channel_of(plan_, "velocity_of_constraints");
+  const Channel kept_constrained = channel_of(plan_, "unfiltered_velocity_of_constraints");  ///< of kept_velocity
+};
+
+}  // namespace mpm::cpu
