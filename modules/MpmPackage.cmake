@@ -16,7 +16,9 @@ install(TARGETS mpm_plugin_interface mpm_sandbox EXPORT mpm_sandboxTargets RUNTI
 get_property(plugin_targets GLOBAL PROPERTY MPM_PLUGIN_TARGETS)
 install(TARGETS ${plugin_targets} LIBRARY DESTINATION lib/mpm/plugins)
 install(DIRECTORY modules/kernel DESTINATION include/mpm FILES_MATCHING PATTERN *.hpp)
-install(FILES modules/plugin/abi.h modules/plugin/sdk.hpp DESTINATION include/mpm/plugin)
+install(FILES modules/plugin/abi.h modules/plugin/extensions.h modules/plugin/sdk.hpp modules/plugin/tables.hpp
+        DESTINATION include/mpm/plugin)
+install(DIRECTORY modules/plugin/sdk DESTINATION include/mpm/plugin FILES_MATCHING PATTERN *.hpp)
 install(EXPORT mpm_sandboxTargets NAMESPACE mpm_sandbox:: DESTINATION ${package_folder})
 install(FILES LICENSE DESTINATION share/doc/mpm_sandbox)
 

@@ -10,6 +10,7 @@
 #include "experiment/schema.hpp"
 #include "mpm/cli.hpp"
 #include "plan/compatibility.hpp"
+#include "plugin/extension_of.hpp"
 #include "solvers/solver.hpp"
 
 namespace mpm::app {
@@ -104,6 +105,10 @@ void print(const Plugin& plugin) {
     if (d.needs & MPM_NEEDS_HALF_SIZE) std::cout << "Needs the size of the undeformed particle\n";
     if (d.needs & MPM_NEEDS_DOMAIN) std::cout << "Needs the deformed domain of the particle, which it then carries\n";
   }
+  std::string extensions;
+  for (const KnownExtension& known : known_extensions())
+    if (plugin.extension(known.id)) extensions += std::string(extensions.empty() ? "" : ", ") + known.id;
+  if (!extensions.empty()) std::cout << "Extensions: " << extensions << "\n";
   std::cout << "\nParameters" << (plugin.parameters().empty() ? ": none\n" : "\n");
   for (const mpm_parameter& p : plugin.parameters())
     std::cout << "  " << p.name << (*p.unit ? std::string(" (") + p.unit + ")" : "") << ", default " << default_text(p)

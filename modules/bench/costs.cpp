@@ -1,33 +1,9 @@
 #include "bench/costs.hpp"
 
-#include <cmath>
-#include <string_view>
-
-#include "bench/counting.hpp"
 #include "kernel/corner_domain.hpp"
+#include "kernel/counted.hpp"
 #include "kernel/polynomial_basis.hpp"
-#include "materials/drucker_prager/drucker_prager.hpp"
-#include "materials/fixed_corotated/fixed_corotated.hpp"
-#include "materials/linear_elastic/linear_elastic.hpp"
-#include "materials/neo_hookean/neo_hookean.hpp"
-#include "materials/von_mises/von_mises.hpp"
-#include "shapes/b2gimp/b2gimp.hpp"
-#include "shapes/bspline_cubic/bspline_cubic.hpp"
-#include "shapes/bspline_quadratic/bspline_quadratic.hpp"
-#include "shapes/cpdi/cpdi.hpp"
-#include "shapes/cpdi2/cpdi2.hpp"
-#include "shapes/gimp/gimp.hpp"
-#include "shapes/gimp_contiguous/gimp_contiguous.hpp"
-#include "shapes/linear/linear.hpp"
-#include "transfers/aflip/aflip.hpp"
-#include "transfers/apic/apic.hpp"
-#include "transfers/asflip/asflip.hpp"
-#include "transfers/flip/flip.hpp"
-#include "transfers/mls/mls.hpp"
-#include "transfers/pic/pic.hpp"
-#include "transfers/polypic/polypic.hpp"
-#include "transfers/rpic/rpic.hpp"
-#include "transfers/tpic/tpic.hpp"
+#include "plugin/extension_of.hpp"
 
 namespace mpm::bench {
 namespace {
@@ -49,166 +25,43 @@ struct Wanted {
 
 // ---- plugins -----------------------------------------------------------------------------------------------------
 
-template <class F>
-const typename F::Parameters& parameters_of(const Component& component) {
-  using P = typename F::Parameters;
-  static const P none{};  // a functor without parameters has no block to point at
-  return component.parameters.empty() ? none : *reinterpret_cast<const P*>(component.parameters.data());
+/// What the plugin says of one call (mpm_costs); nothing where it does not.
+template <int D, class T>
+std::optional<mpm_cost> cost_of(const Component& component, mpm_cost_case of = {}) {
+  const auto* costs = extension_of<mpm_costs>(*component.plugin);
+  if (!costs) return std::nullopt;
+  of.dimension = D;
+  of.single_precision = sizeof(T) == 4;
+  mpm_cost cost{};
+  costs->count(component.parameters.data(), &of, &cost);
+  return cost;
 }
 
-/// Evaluations of one stencil, and nodes of a list.
+/// Evaluations of one stencil with what the host adds to them, and nodes of a list.
 struct ShapeCost {
   double plain = 0, with_gradient = 0;
   int width = 0;     ///< 0: a list
   double nodes = 0;  ///< of a list
 };
 
-constexpr int samples = 64;
-double sample(int k, int axis) {
-  const double u = 0.5 + (k + 1) * (axis == 0   ? 0.8191725133961645
-                                    : axis == 1 ? 0.6710436067037893
-                                                : 0.5497004779019703);
-  return 5 + u - std::floor(u);
-}
-
-template <class F, int D, class T>
-ShapeCost tensor_cost(const Component& component, double half_size, bool moment_of_particle) {
-  using S = Counted<T>;
-  const auto& p = parameters_of<F>(component);
-  const auto one_axis = [&](bool gradient) {
-    S base, w[F::width], g[F::width];
-    const long evaluation = count_operations([&] {
-      if constexpr (requires { F::evaluate(p, S(5.2), S(half_size), base, w, g); })
-        F::evaluate(p, S(5.2), S(half_size), base, w, gradient ? g : nullptr);
-      else
-        F::evaluate(p, S(5.2), base, w, gradient ? g : nullptr);
-    });
-    const int moments = moment_of_particle ? 3 * F::width + 1 : 0;  // sum w d^2 and its inverse
-    return static_cast<double>(evaluation + 1 + moments);           // the offset from the first node
-  };
-  return {D * one_axis(false), D * one_axis(true), F::width, 0};
-}
-
-/// The same of a box that follows the domain: its lengths are found once for all axes.
-template <class F, int D, class T>
-ShapeCost deformed_cost(const Component& component, double half_size, bool moment_of_particle) {
-  using S = Counted<T>;
-  ShapeCost cost = tensor_cost<F, D, T>(component, half_size, moment_of_particle);
-  Mat<D, S> domain{};
-  for (int a = 0; a < D; ++a) domain(a, a) = S(half_size);
-  const double lengths = static_cast<double>(
-      count_operations([&] { F::template half_lengths<D, S>(parameters_of<F>(component), domain); }));
-  cost.plain += lengths, cost.with_gradient += lengths;
-  return cost;
-}
-
-/// Corner c of a square or cube about the particle, as vectors from it.
-template <int D, class S>
-void set_corners(double half_size, Vec<D, S>* corners) {
-  for (int c = 0; c < 1 << D; ++c)
-    for (int a = 0; a < D; ++a) corners[c][a] = S(c >> a & 1 ? half_size : -half_size);
-}
-
-/// Mean over places in a cell. A list's weights and gradients are made together.
-template <class F, int D, class T>
-ShapeCost list_cost(const Component& component, double half_size, bool moment_of_particle) {
-  using S = Counted<T>;
-  const auto& p = parameters_of<F>(component);
-  ShapeCost cost;
-  Mat<D, S> domain{};
-  for (int a = 0; a < D; ++a) domain(a, a) = S(half_size);
-  Vec<D, S> corners[1 << D];
-  set_corners<D, S>(half_size, corners);
-  for (int k = 0; k < samples; ++k) {
-    Vec<D, S> x;
-    for (int a = 0; a < D; ++a) x[a] = S(sample(k, a));
-    NodeList<D, S, F::template capacity<D>> list;
-    const long evaluation = count_operations([&] {
-      if constexpr (requires { F::template sample_points<D>; })
-        F::evaluate(p, x, corners, list);
-      else
-        F::evaluate(p, x, domain, list);
-    });
-    cost.plain += static_cast<double>(evaluation) / samples;
-    cost.nodes += static_cast<double>(list.count) / samples;
-  }
-  cost.plain += cost.nodes * (D + (moment_of_particle ? 3 * D * D : 0));  // distances, and the moment's sum
-  cost.with_gradient = cost.plain;
-  return cost;
-}
-
 template <int D, class T>
 std::optional<ShapeCost> shape_cost(const Component& component, double half_size, const Wanted& wanted) {
-  const std::string_view id = component.plugin->id();
+  const auto evaluation = [&](bool gradients) {
+    mpm_cost_case of{};
+    of.half_size = half_size, of.gradients = gradients;
+    return cost_of<D, T>(component, of);
+  };
+  const auto plain = evaluation(false), with_gradient = evaluation(true);
+  if (!plain || !with_gradient) return std::nullopt;
   const bool moment = wanted.moment_of_particle && wanted.affine();
-  if (id == "linear") return tensor_cost<Linear, D, T>(component, half_size, false);
-  if (id == "bspline_cubic") return tensor_cost<BsplineCubic, D, T>(component, half_size, false);
-  if (id == "bspline_quadratic") return tensor_cost<BsplineQuadratic, D, T>(component, half_size, false);
-  if (id == "b2gimp") return tensor_cost<B2Gimp, D, T>(component, half_size, moment);
-  if (id == "gimp_contiguous") return deformed_cost<GimpContiguous, D, T>(component, half_size, moment);
-  if (id == "gimp") return tensor_cost<Gimp, D, T>(component, half_size, moment);
-  if (id == "cpdi") return list_cost<Cpdi, D, T>(component, half_size, moment);
-  if (id == "cpdi2") return list_cost<Cpdi2, D, T>(component, half_size, moment);
-  return std::nullopt;
-}
-
-template <class F, int D, class T>
-double transfer_round_trip(const Component& component) {
-  using S = Counted<T>;
-  const auto& p = parameters_of<F>(component);
-  Vec<D, S> v{}, out{};
-  Mat<D, S> A{};
-  typename F::template State<D, S> state{};
-  GatheredMoments<D, S> moments{};
-  return static_cast<double>(count_operations([&] {
-    F::gather(p, moments, S(1e-4), v, state, out);
-    F::scatter(p, S(1), v, state, out, A);
-  }));
-}
-
-template <int D, class T>
-std::optional<double> transfer_cost(const Component& component) {
-  const std::string_view id = component.plugin->id();
-  if (id == "pic") return transfer_round_trip<Pic, D, T>(component);
-  if (id == "flip") return transfer_round_trip<Flip, D, T>(component);
-  if (id == "apic") return transfer_round_trip<Apic, D, T>(component);
-  if (id == "mls") return transfer_round_trip<Mls, D, T>(component);
-  if (id == "tpic") return transfer_round_trip<Tpic, D, T>(component);
-  if (id == "rpic") return transfer_round_trip<Rpic, D, T>(component);
-  if (id == "aflip") return transfer_round_trip<Aflip, D, T>(component);
-  if (id == "asflip") return transfer_round_trip<Asflip, D, T>(component);
-  if (id == "polypic") return transfer_round_trip<Polypic, D, T>(component);
-  return std::nullopt;
-}
-
-/// Strain with the check of J, and stress; a second J of the same state is the compiler's to share.
-template <class F, int D, class T>
-double material_step(const Component& component, bool deforming) {
-  using S = Counted<T>;
-  const typename F::template Constants<S> constants(parameters_of<F>(component));
-  typename F::template State<D, S> state{};
-  const auto set = [&](auto& tensor) { tensor = std::decay_t<decltype(tensor)>::identity(); };
-  if constexpr (requires { state.deformation_gradient; }) set(state.deformation_gradient);
-  if constexpr (requires { state.elastic_left_cauchy_green; }) set(state.elastic_left_cauchy_green);
-  if constexpr (requires { state.volume_ratio; }) state.volume_ratio = S(1);
-  Mat<D, S> L{};
-  L(0, 1) = deforming ? S(1) : S(0);  // a shear of 1: far beyond any yield stress that the scenes use
-  return static_cast<double>(count_operations([&] {
-    F::advance(constants, L, S(1), state);
-    F::volume_ratio(state);
-    F::kirchhoff_stress(constants, state);
-  }));
-}
-
-template <int D, class T>
-std::optional<double> material_cost(const Component& component, bool deforming) {
-  const std::string_view id = component.plugin->id();
-  if (id == "neo_hookean") return material_step<NeoHookean, D, T>(component, deforming);
-  if (id == "von_mises") return material_step<VonMises, D, T>(component, deforming);
-  if (id == "fixed_corotated") return material_step<FixedCorotated, D, T>(component, deforming);
-  if (id == "linear_elastic") return material_step<LinearElastic, D, T>(component, deforming);
-  if (id == "drucker_prager") return material_step<DruckerPrager, D, T>(component, deforming);
-  return std::nullopt;
+  const mpm_shape& shape = component.plugin->shape();
+  if (shape.form == MPM_NODE_LIST) {  // weights and gradients are made together; distances, and the moment's sum
+    const double more = plain->nodes * (D + (moment ? 3 * D * D : 0));
+    return ShapeCost{plain->operations + more, with_gradient->operations + more, 0, plain->nodes};
+  }
+  const int width = static_cast<int>(shape.width);
+  const double more = D * (1 + (moment ? 3 * width + 1 : 0));  // the offset; sum w d^2 and its inverse
+  return ShapeCost{plain->operations + more, with_gradient->operations + more, width, 0};
 }
 
 // ---- the host's part ---------------------------------------------------------------------------------------------
@@ -239,8 +92,9 @@ template <int D, class T>
 double corner_cost(double half_size) {
   using S = Counted<T>;
   Vec<D, S> corners[1 << D], x;
-  set_corners<D, S>(half_size, corners);
-  for (int a = 0; a < D; ++a) x[a] = S(sample(0, a));
+  for (int c = 0; c < 1 << D; ++c)
+    for (int a = 0; a < D; ++a) corners[c][a] = S(c >> a & 1 ? half_size : -half_size);
+  for (int a = 0; a < D; ++a) x[a] = S(5.3);  // any place inside a cell
   const long moved = count_operations([&] { centroid(corner_domain<D, S>(corners), corners); });
   const long tents = count_operations([&] {
     const TentCell<D, S> cell(x, corners[0]);
@@ -298,9 +152,11 @@ std::optional<double> mean_material_cost(const Experiment& experiment, const Run
   for (std::size_t b = 0; b < experiment.bodies.size(); ++b) {
     const double share = run.body_shares.empty() ? (b == 0 ? 1 : 0) : run.body_shares[b];
     if (share == 0) continue;
-    const auto cost = material_cost<D, T>(experiment.materials[experiment.bodies[b].material].component, run.deforming);
+    mpm_cost_case of{};
+    of.flows = run.deforming;
+    const auto cost = cost_of<D, T>(experiment.materials[experiment.bodies[b].material].component, of);
     if (!cost) return std::nullopt;
-    mean += share * *cost;
+    mean += share * cost->operations;
   }
   return mean;
 }
@@ -317,9 +173,10 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
   w.moment_of_particle = shape_table.second_moment_kind == MPM_MOMENT_PER_PARTICLE;
   const double half_size = 0.5 / experiment.bodies[0].particles_per_cell_axis;
   const auto shape = shape_cost<D, T>(experiment.shape, half_size, w);
-  const auto transfer = transfer_cost<D, T>(experiment.transfer);
+  const auto transfer = cost_of<D, T>(experiment.transfer);
+  const auto filter = plan.filter ? cost_of<D, T>(*experiment.filter) : mpm_cost{};
   const auto material = mean_material_cost<D, T>(experiment, run);
-  if (!shape || !transfer || !material || (plan.ledger && !run.without_ledger)) return std::nullopt;
+  if (!shape || !transfer || !filter || !material || (plan.ledger && !run.without_ledger)) return std::nullopt;
   const auto stencil = [&](bool gradient) { return gradient ? shape->with_gradient : shape->plain; };
 
   const double loops = !plan.filter ? 0
@@ -338,7 +195,7 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
   Flops flops;
   flops.shape = stencil(gradient) + stencil(w.scatter_gradient()) + extra.strains * stencil(!strains_by_affine) +
                 extra.remaps * stencil(false) + loops * stencil(gathers_gradient);
-  flops.transfer = (1 + loops) * *transfer;
+  flops.transfer = (1 + loops) * transfer->operations;
   flops.material = extra.advances * *material;
   flops.gather = gather_cost(w, *shape, moment, gradient) + 2 * D +
                  extra.strains * gather_cost(w, *shape, strains_by_affine, !strains_by_affine) +
@@ -357,8 +214,9 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
   flops.scatter += merged + share * (apart - merged);
   if (w.contact)
     flops.scatter += scatter_cost(w, *shape, false, true, false) + scatter_cost(w, *shape, true, false, false);
-  flops.grid = (4 + extra.remaps + loops * 3) * D * experiment.field_count *
-               run.nodes_per_particle;  // p / m, + dt f / m, + dt g; a loop's p / m and update
+  // p / m, + dt f / m, + dt g; a loop's p / m and update.
+  flops.grid =
+      ((4 + extra.remaps) * D + loops * (D + filter->operations)) * experiment.field_count * run.nodes_per_particle;
   return flops;
 }
 

@@ -32,7 +32,7 @@ double nodes_per_particle(const Simulation& simulation);
 /// Of a simulation after its last step; materials count as flowing, the ledger's sums do not count.
 RunFacts facts_of(const Simulation& simulation);
 
-/// Operations a particle-step; nothing where a plugin is not known to the counter or the ledger adds its sums.
+/// Operations a particle-step; nothing where a plugin does not say its own (mpm_costs) or the ledger adds its sums.
 /// Nodes count once, whatever the number of velocity fields.
 std::optional<Flops> flops_per_particle(const Experiment& experiment, const Plan& plan, const RunFacts& run);
 

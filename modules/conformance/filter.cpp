@@ -4,6 +4,7 @@
 #include <array>
 
 #include "conformance/support.hpp"
+#include "plugin/extension_of.hpp"
 
 namespace mpm::conformance {
 namespace {
@@ -133,6 +134,42 @@ void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample
                    "bit-equal results whichever nodes share the batch" + where);
 }
 
+/// The largest gain of one mode by the whole loop: what the grid keeps `kept` of in a round trip, an increment of 1
+/// that stands alone, ends as a velocity of so much.
+double largest_gain(const Plugin& plugin, const ParameterSample& parameters, std::int32_t passes) {
+  const Variant v{MPM_SCALAR_DOUBLE, 2};
+  FilterBatch batch(v, full);
+  for (Array* array : {&batch.projected, &batch.increment, &batch.velocity})
+    for (int lane = 0; lane < full; ++lane)
+      for (int i = 0; i < 2; ++i) array->set(i, lane, 1);
+  for (std::int32_t pass = 1; pass <= passes; ++pass) {
+    for (int lane = 0; lane < full; ++lane)
+      for (int i = 0; i < 2; ++i) batch.projected.set(i, lane, batch.increment(i, lane) * lane / (full - 1));
+    batch.update(plugin, parameters, pass);
+  }
+  double gain = 0;
+  for (int lane = 0; lane < full; ++lane) gain = std::max(gain, std::abs(batch.velocity(0, lane)));
+  return gain;
+}
+
+/// A filter after the forces multiplies the stiffness of a mode by its gain, and the stable step by one over the root.
+void check_step_limit(const Plugin& plugin, const ParameterSample& parameters, std::int32_t passes,
+                      const std::string& where, Findings& findings) {
+  const auto* table = extension_of<mpm_filter_step_limit>(plugin);
+  const bool scalar =
+      (plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1) && (plugin.descriptor->dimensions & MPM_2D);
+  const bool after = !(plugin.filter().traits & MPM_FILTERS_BEFORE_FORCES);
+  if (table) {
+    const double limit = table->limit(parameters.data(), 1), twice = table->limit(parameters.data(), 2);
+    findings.require("step_limit_shortens", limit > 0 && limit <= 1, "of a step of 1 s, in s" + where);
+    findings.at_most("step_limit_proportional", std::abs(twice / limit - 2), 1e-12, "to the unfiltered step" + where);
+  }
+  if (!after || !scalar) return;
+  const double gain = largest_gain(plugin, parameters, passes), limit = table ? table->limit(parameters.data(), 1) : 1;
+  findings.at_most("step_limit_covers_gain", gain * limit * limit, 1 + 1e-12,
+                   "square of the step over the stable one, of the mode that the filter amplifies most" + where);
+}
+
 }  // namespace
 
 void check_filter(const Plugin& plugin, Findings& findings) {
@@ -146,6 +183,8 @@ void check_filter(const Plugin& plugin, Findings& findings) {
     findings.require("iterations_not_negative", passes >= 0, std::to_string(passes) + " passes" + where);
     findings.require("iterations_repeatable", passes == plugin.filter().iterations(parameters.data()),
                      "the same answer at every call" + where);
+    findings.running("limit of the step" + where);
+    check_step_limit(plugin, parameters, passes, where, findings);
     for (const Variant& v : variants_of(*plugin.descriptor))
       for (int iteration : {1, 2, 7}) {
         const FilterInput input = random_input(random, v.dimension), other = random_input(random, v.dimension);

@@ -7,6 +7,7 @@
 
 #include "conformance/support.hpp"
 #include "kernel/corner_domain.hpp"
+#include "plugin/extension_of.hpp"
 
 namespace mpm::conformance {
 namespace {
@@ -417,7 +418,8 @@ struct BoxBatch {
     batch.weight = weight.data();
     batch.gradient = gradient.data();
     batch.second_moment = second_moment.data();
-    plugin.shape().evaluate_box[variant.precision][variant.dimension - 2](parameters.data(), &batch);
+    extension_of<mpm_shape_boxes>(plugin)->evaluate[variant.precision][variant.dimension - 2](parameters.data(),
+                                                                                              &batch);
   }
 
   int nodes(int lane) const {
@@ -605,7 +607,7 @@ void check_list_shape(const Plugin& plugin, Findings& findings) {
       findings.running("batches", v, where);
       check_batches(plugin, v, parameters, input, where, findings);
       if (points_of(plugin, v.dimension) > 0) check_inside_out(plugin, v, parameters, input, where, findings);
-      if (shape.evaluate_box[v.precision][v.dimension - 2]) check_boxes(plugin, v, parameters, input, where, findings);
+      if (extension_of<mpm_shape_boxes>(plugin)) check_boxes(plugin, v, parameters, input, where, findings);
       if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
       findings.running("agreement with scalar", v, where);
       check_agreement(b, evaluated(plugin, {MPM_SCALAR_DOUBLE, v.dimension}, parameters, input), input, where,

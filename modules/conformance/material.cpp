@@ -1,22 +1,13 @@
 // Checks of materials: rest state, stress against energy, objectivity, energy balance, wave speed, admissibility.
-// Deformation is imposed as the host does it, by velocity gradients over a step, so that laws without F are checked
-// too.
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <limits>
 
-#include "conformance/support.hpp"
+#include "conformance/material_batch.hpp"
 
 namespace mpm::conformance {
 namespace {
-
-constexpr int full = MPM_BATCH;
-constexpr double step = 0x1p-6;  // s; a power of two, so that increments / step are exact
-
-/// One increment of I + dt L a lane.
-using Increments = std::array<Matrix3, full>;
 
 unsigned traits_of(const Plugin& plugin) {
   return plugin.material().traits;
@@ -26,119 +17,6 @@ unsigned traits_of(const Plugin& plugin) {
 bool is_finite_strain(const Plugin& plugin) {
   return traits_of(plugin) & (MPM_OBJECTIVE | MPM_HYPERELASTIC);
 }
-
-/// A batch of particles of one material, with all outputs; in axisymmetric scenes L has its zz.
-struct MaterialBatch {
-  const Plugin& plugin;
-  const ParameterSample& parameters;
-  Variant variant;
-  int count;
-  bool axisymmetric;
-  Array gradient, hoop, stress, energy, dissipated, wave, ratio;
-  std::vector<Array> state;
-
-  MaterialBatch(const Plugin& p, const Variant& v, const ParameterSample& sample, int entries = full,
-                bool around_axis = false)
-      : plugin(p), parameters(sample), variant(v), count(entries), axisymmetric(around_axis) {
-    const Element element = element_of(v);
-    const std::uint32_t n = static_cast<std::uint32_t>(entries);
-    gradient = Array(element, v.dimension * v.dimension, n);
-    stress = Array(element, v.symmetric(), n);
-    for (Array* scalar : {&hoop, &energy, &dissipated, &wave, &ratio}) *scalar = Array(element, 1, n);
-    for (mpm_state field : p.state()) {
-      const mpm_state_shape shape = kept_shape(field, axisymmetric);
-      field.shape = shape;
-      state.emplace_back(element, state_components(shape, v.dimension), n);
-      initialise(state.back(), field);
-    }
-  }
-
-  void initialise(Array& array, const mpm_state& field) const {
-    for (int c = 0; c < array.components(); ++c)
-      for (int lane = 0; lane < count; ++lane) array.set(c, lane, initial_value(field, c, variant.dimension));
-  }
-
-  /// Advances by the increments over one step; returns what the plugin returns.
-  std::int32_t advance(const Increments& increments, double dt = step) {
-    const int D = variant.dimension;
-    for (int lane = 0; lane < count; ++lane)
-      for (int i = 0; i < D; ++i)
-        for (int j = 0; j < D; ++j) gradient.set(i * D + j, lane, increments[lane](i, j) / dt);
-    for (int lane = 0; axisymmetric && lane < count; ++lane) hoop.set(0, lane, increments[lane](2, 2) / dt);
-    return update(gradient.data(), dt);
-  }
-  std::int32_t evaluate() { return update(nullptr, step); }
-
-  std::int32_t update(const void* velocity_gradient, double dt) {
-    std::vector<void*> fields;
-    for (Array& field : state) fields.push_back(field.data());
-    const mpm_material_batch batch{static_cast<std::uint32_t>(count),
-                                   gradient.stride(),
-                                   static_cast<std::uint32_t>(variant.dimension),
-                                   0,
-                                   dt,
-                                   velocity_gradient,
-                                   fields.data(),
-                                   stress.data(),
-                                   energy.data(),
-                                   dissipated.data(),
-                                   wave.data(),
-                                   ratio.data(),
-                                   axisymmetric ? hoop.data() : nullptr};
-    return plugin.material().update[variant.precision][variant.dimension - 2](parameters.data(), &batch);
-  }
-
-  Matrix3 tau(int lane) const {
-    Matrix3 t{};
-    for (int i = 0; i < 3; ++i) t(i, i) = stress(i, lane);
-    for (int c = 3; c < variant.symmetric(); ++c) {
-      const int i = variant.dimension == 2 || c == 5 ? 0 : c == 3 ? 1 : 0, j = variant.dimension == 2 || c == 5 ? 1 : 2;
-      t(i, j) = t(j, i) = stress(c, lane);
-    }
-    return t;
-  }
-};
-
-/// rho c^2 at rest: the size by which stress and energy errors are judged.
-double stiffness(const Plugin& plugin, const Variant& v, const ParameterSample& parameters) {
-  MaterialBatch rest(plugin, {MPM_SCALAR_DOUBLE, v.dimension}, parameters, MPM_LANES);
-  rest.evaluate();
-  return parameter_value(plugin, parameters, "density", 1) * rest.wave(0, 0) * rest.wave(0, 0);
-}
-
-/// `steps` increments that wander around one direction a lane and add up to `strain`; every fourth lane strains little,
-/// so that packs hold particles that yield beside some that do not.
-std::vector<Increments> random_path(Random& random, int dimension, int steps, double strain) {
-  Increments direction;
-  for (Matrix3& d : direction) d = random.matrix(dimension, 1);
-  std::vector<Increments> path(static_cast<std::size_t>(steps));
-  for (Increments& increments : path)
-    for (int lane = 0; lane < full; ++lane)
-      increments[lane] = scaled(sum(direction[lane], random.matrix(dimension, 1)),
-                                (lane % 4 == 3 ? 0.5 * (lane % 16 + 1) / 64 : 0.5) * strain / steps);
-  for (Increments& increments : path)
-    for (Matrix3& increment : increments)
-      for (double& entry : increment.m) entry = static_cast<float>(entry);
-  return path;
-}
-
-MaterialBatch after_path(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
-                         const std::vector<Increments>& path) {
-  MaterialBatch batch(plugin, v, parameters);
-  for (const Increments& increments : path) batch.advance(increments);
-  return batch;
-}
-
-struct Context {
-  const Plugin& plugin;
-  const Variant& variant;
-  const ParameterSample& parameters;
-  double modulus;  ///< rho c^2 at rest
-  std::string where;
-  Findings& findings;
-
-  MaterialBatch batch() const { return {plugin, variant, parameters}; }
-};
 
 void check_rest(const Context& c) {
   MaterialBatch rest = c.batch();
@@ -536,6 +414,36 @@ void check_batches(const Context& c, const Increments& increments) {
 
 }  // namespace
 
+/// rho c^2 at rest: the size by which stress and energy errors are judged.
+double stiffness(const Plugin& plugin, const Variant& v, const ParameterSample& parameters) {
+  MaterialBatch rest(plugin, {MPM_SCALAR_DOUBLE, v.dimension}, parameters, MPM_LANES);
+  rest.evaluate();
+  return parameter_value(plugin, parameters, "density", 1) * rest.wave(0, 0) * rest.wave(0, 0);
+}
+
+/// `steps` increments that wander around one direction a lane and add up to `strain`; every fourth lane strains little,
+/// so that packs hold particles that yield beside some that do not.
+std::vector<Increments> random_path(Random& random, int dimension, int steps, double strain) {
+  Increments direction;
+  for (Matrix3& d : direction) d = random.matrix(dimension, 1);
+  std::vector<Increments> path(static_cast<std::size_t>(steps));
+  for (Increments& increments : path)
+    for (int lane = 0; lane < full; ++lane)
+      increments[lane] = scaled(sum(direction[lane], random.matrix(dimension, 1)),
+                                (lane % 4 == 3 ? 0.5 * (lane % 16 + 1) / 64 : 0.5) * strain / steps);
+  for (Increments& increments : path)
+    for (Matrix3& increment : increments)
+      for (double& entry : increment.m) entry = static_cast<float>(entry);
+  return path;
+}
+
+MaterialBatch after_path(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
+                         const std::vector<Increments>& path) {
+  MaterialBatch batch(plugin, v, parameters);
+  for (const Increments& increments : path) batch.advance(increments);
+  return batch;
+}
+
 void check_material(const Plugin& plugin, Findings& findings) {
   const unsigned traits = traits_of(plugin);
   Random random(20240604);
@@ -566,6 +474,7 @@ void check_material(const Plugin& plugin, Findings& findings) {
       check_neighbours(c, path);
       findings.running("batches", v, c.where);
       check_batches(c, path.front());
+      check_material_extensions(c, path);
     }
 }
 

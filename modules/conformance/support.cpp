@@ -5,6 +5,8 @@
 #include <limits>
 #include <sstream>
 
+#include "plugin/extension_of.hpp"
+
 namespace mpm::conformance {
 
 // ---- small algebra -----------------------------------------------------------------------------------------------
@@ -286,6 +288,11 @@ ParameterSample sample(const Plugin& plugin, int combination, bool defaults, Ran
     combination /= choices;
     s.block[p.offset / sizeof(double)] = value;
     text << (text.tellp() > 0 ? " " : "") << p.name << "=" << value;
+  }
+  if (const auto* cell_size = extension_of<mpm_material_cell_size>(plugin)) {
+    const double value = random.logarithmic(1e-3, 1);
+    s.block[cell_size->offset / sizeof(double)] = value;
+    text << " cell_size=" << value;
   }
   s.text = text.str();
   return s;

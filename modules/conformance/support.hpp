@@ -147,5 +147,7 @@ void check_transfer(const Plugin& plugin, Findings& findings);
 void check_filter(const Plugin& plugin, Findings& findings);
 void check_contact(const Plugin& plugin, Findings& findings);
 void check_material(const Plugin& plugin, Findings& findings);
+/// Of every kind that says its own operation counts.
+void check_costs(const Plugin& plugin, Findings& findings);
 
 }  // namespace mpm::conformance

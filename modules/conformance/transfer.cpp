@@ -8,6 +8,7 @@
 
 #include "conformance/support.hpp"
 #include "kernel/polynomial_basis.hpp"
+#include "plugin/extension_of.hpp"
 
 namespace mpm::conformance {
 namespace {
@@ -510,9 +511,9 @@ struct Polynomials {
 /// polynomials give has neither momentum nor angular momentum.
 void check_polynomials(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
                        const Particles& particles, Random& random, const std::string& where, Findings& findings) {
-  const auto order_of = plugin.transfer().basis_order;
-  if (!order_of) return;
-  const int asked = order_of(parameters.data()), order = std::min(asked, 2), D = v.dimension;
+  const auto* polynomials = extension_of<mpm_transfer_polynomials>(plugin);
+  if (!polynomials) return;
+  const int asked = polynomials->order(parameters.data()), order = std::min(asked, 2), D = v.dimension;
   findings.require("basis_order [" + v.name() + "]", asked >= 0 && asked < static_cast<int>(MPM_BOX_WIDTH),
                    "0 to 3" + where);
   constexpr unsigned lower_orders = MPM_SCATTERS_AFFINE | MPM_GATHERS_AFFINE | MPM_AFFINE_CARRIES_ENERGY;

@@ -1,5 +1,6 @@
 // The plugins an experiment chooses, and whether they can do what it asks.
 #include "experiment/reader.hpp"
+#include "plugin/extension_of.hpp"
 
 namespace mpm {
 namespace {
@@ -52,6 +53,8 @@ ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_
     if (slot >= chosen.component.parameters.size()) continue;  // the registry refuses such a plugin
     chosen.component.parameters[slot] = chosen.fields->number(declared.name);
   }
+  if (const auto* cell_size = extension_of<mpm_material_cell_size>(*plugin))
+    chosen.component.parameters[cell_size->offset / sizeof(double)] = experiment_.grid.cell_size;
   chosen.resolved = chosen.fields->resolved;
   return chosen;
 }

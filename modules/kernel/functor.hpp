@@ -1,5 +1,5 @@
 #pragma once
-// The arguments that the host hands to functors, and the tables that describe them. Device-safe.
+// The arguments that the host hands to functors, and what several functors share. Device-safe.
 
 #include "kernel/tensor.hpp"
 
@@ -49,35 +49,24 @@ template <class Gradient>
 struct ElasticState {
   Gradient deformation_gradient;
 };
+/// What functors of such solids derive from, if no strain turns to heat.
+struct ElasticSolid {
+  template <int D, class S>
+  using State = ElasticState<Mat<D, S>>;
+  template <class S>
+  using AxisymmetricState = ElasticState<Deformation<2, S>>;
+
+  /// F <- (I + dt L) F. Returns the energy dissipated, J/m^3: none.
+  template <class Constants, class G, class S = typename G::Scalar>
+  MPM_HD static S advance(const Constants&, const G& L, scalar_of<S> dt, ElasticState<G>& state) {
+    state.deformation_gradient = advanced(state.deformation_gradient, L, dt);
+    return S(real<S>(0));
+  }
+
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S volume_ratio(const ElasticState<G>& state) {
+    return determinant(state.deformation_gradient);
+  }
+};
 
 }  // namespace mpm
-
-// Tables of parameters and state stand beside the functor, so that one file holds the method. The device pass skips
-// them.
-#if MPM_HOST
-#include <cstddef>
-#include <limits>
-
-#include "plugin/abi.h"
-namespace mpm {
-inline constexpr double unbounded = std::numeric_limits<double>::infinity();
-inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
-}  // namespace mpm
-
-/// Rows of a parameter table; `member` names both the key in the file and the double in Parameters.
-#define MPM_NUMBER_PARAMETER(member, unit, default_value, minimum, maximum, flags, doc)             \
-  {                                                                                                 \
-#member, unit, doc, "", MPM_NUMBER,                                                             \
-        static_cast < uint32_t>((flags) | ((default_value) == (default_value) ? 0 : MPM_REQUIRED)), \
-        offsetof(Parameters, member), 0, default_value, minimum, maximum                            \
-  }
-#define MPM_INTEGER_PARAMETER(member, default_value, minimum, maximum, doc)                   \
-  {                                                                                           \
-#member, "", doc, "", MPM_INTEGER, (default_value) == (default_value) ? 0 : MPM_REQUIRED, \
-        offsetof(Parameters, member), 0, default_value, minimum, maximum                      \
-  }
-#define MPM_BOOLEAN_PARAMETER(member, default_value, doc) \
-  { #member, "", doc, "", MPM_BOOLEAN, 0, offsetof(Parameters, member), 0, default_value, 0, 1 }
-#define MPM_CHOICE_PARAMETER(member, choices, default_index, doc) \
-  { #member, "", doc, choices, MPM_CHOICE, 0, offsetof(Parameters, member), 0, default_index, 0, 0 }
-#endif

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "plugin/extension_of.hpp"
+
 namespace mpm {
 namespace {
 
@@ -11,8 +13,9 @@ std::string named(const char* kind, const Plugin& plugin) {
 
 /// All orders that the choices among a transfer's parameters ask for, other parameters at their defaults.
 std::vector<int> basis_orders_of(const Plugin& transfer) {
-  const auto order_of = transfer.transfer().basis_order;
-  if (!order_of) return {0};
+  const auto* polynomials = extension_of<mpm_transfer_polynomials>(transfer);
+  if (!polynomials) return {0};
+  const auto order_of = polynomials->order;
   std::vector<double> block(transfer.descriptor->parameter_bytes / sizeof(double));
   for (const mpm_parameter& parameter : transfer.parameters())
     block[parameter.offset / sizeof(double)] =
@@ -65,8 +68,8 @@ std::optional<Refusal> refusal_of(const Mix& mix) {
 }
 
 int basis_order_of(const Component& transfer) {
-  const auto order = transfer.plugin->transfer().basis_order;
-  return order ? order(transfer.parameters.data()) : 0;
+  const auto* polynomials = extension_of<mpm_transfer_polynomials>(*transfer.plugin);
+  return polynomials ? polynomials->order(transfer.parameters.data()) : 0;
 }
 
 std::vector<Mix> all_mixes(const Registry& registry) {

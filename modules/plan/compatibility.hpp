@@ -18,7 +18,7 @@ struct Mix {
   const Plugin* contact = nullptr;  ///< or none
   StressUpdate stress_update = StressUpdate::last;
   bool filtered_every_step = true;
-  int basis_order = 0;  ///< of the transfer, as its parameters ask for it (mpm_transfer::basis_order)
+  int basis_order = 0;  ///< of the transfer, as its parameters ask for it (mpm_transfer_polynomials)
 };
 
 /// Highest power along an axis of the polynomials beyond affine that the transfer asks for; 0: none.

@@ -1,13 +1,16 @@
 /* The plugin boundary of MPM Sandbox, in plain C.
  *
  * A plugin is a shared object that exports ONE symbol, `mpm_plugin_library_v`, a constant `mpm_plugin_library`.
- * The host reads abi_version and struct_size before anything else and refuses a mismatch by name.
+ * The host reads abi_version before anything else and refuses a plugin of another version by name.
+ *
+ * Each component has a descriptor: what it is called, its parameters and state, and the core table of its kind, which
+ * holds what every component of the kind has. What only some have is an extension: a small table of its own, found by
+ * an id (plugin/extensions.h).
  *
  * Rules for every function reached from here:
  *  - any thread may call it, several at once, with disjoint batches; it keeps no global or static mutable state;
  *  - it never allocates, throws, prints, or keeps a pointer it was given after it returns;
- *  - it never parses JSON: the host validates against the tables below and hands a filled, fixed-layout block of
- * doubles.
+ *  - it never parses JSON: the host checks values against the tables below and hands over a filled block of doubles.
  *
  * Batches: arrays are laid out [component][stride], 64-byte aligned, stride >= count. `count` is a multiple of
  * MPM_LANES; the tail beyond the real particles holds copies of a valid particle, so every lane may be computed.
@@ -21,18 +24,15 @@
 extern "C" {
 #endif
 
-/* Version 1. Nothing in it changes or moves; fields are only added at the end of a struct, each time with a new
- * revision. A host takes plugins of its version and of its revision or an older one: it reads an older, shorter table
- * as if the missing fields were zero. */
-#define MPM_ABI_VERSION 1u
-#define MPM_ABI_REVISION 3u
-#define MPM_BATCH 64u    /* particles or nodes in a full batch */
-#define MPM_LANES 16u    /* counts are padded to a multiple of this */
-#define MPM_BOX_WIDTH 4u /* nodes an axis of mpm_box_batch */
+/* Unstable until 1.0 of the sandbox: any change of a struct or number below makes a new version, and a host takes
+ * plugins of its own version alone. */
+#define MPM_ABI_VERSION 2u
+#define MPM_BATCH 64u /* particles or nodes in a full batch */
+#define MPM_LANES 16u /* counts are padded to a multiple of this */
 
 enum mpm_kind { MPM_SHAPE = 1, MPM_TRANSFER = 2, MPM_FILTER = 3, MPM_CONTACT = 4, MPM_MATERIAL = 5 };
 
-/* Index into the entry tables. scalar_double is the plain instantiation that the reference backend uses as its oracle.
+/* Index into the entry tables. The reference backend takes the plain instantiation, MPM_SCALAR_DOUBLE, as its oracle.
  */
 enum mpm_precision { MPM_LANES_FLOAT = 0, MPM_LANES_DOUBLE = 1, MPM_SCALAR_DOUBLE = 2, MPM_PRECISIONS = 3 };
 
@@ -58,16 +58,19 @@ typedef struct mpm_parameter {
   double maximum;
 } mpm_parameter;
 
-/* Components in 2-D / 3-D: scalar 1/1, vector 2/3, matrix 4/9 (row-major), symmetric 4/6 (xx yy zz xy / xx yy zz yz xz
- * xy), deformation 5/9 (a matrix of three-dimensional space in plane strain: xx xy yx yy zz / row-major), plane
- * deformation 4/9 as a matrix, but 5 as a deformation in axisymmetric scenes: zz is 1 in plane strain and not kept. */
+/* Components in 2-D / 3-D:
+ *   scalar 1/1, vector 2/3, matrix 4/9 (row-major),
+ *   symmetric 4/6 (xx yy zz xy / xx yy zz yz xz xy),
+ *   deformation 5/9 (a matrix of three-dimensional space: xx xy yx yy zz / row-major),
+ *   plane deformation 4/9 as a matrix, but 5 as a deformation in axisymmetric scenes: zz is 1 in plane strain and is
+ *   not kept there. */
 enum mpm_state_shape {
   MPM_STATE_SCALAR = 0,
   MPM_STATE_VECTOR = 1,
   MPM_STATE_MATRIX = 2,
   MPM_STATE_SYMMETRIC = 3,
   MPM_STATE_DEFORMATION = 4,
-  MPM_STATE_PLANE_DEFORMATION = 5 /* since revision 3 */
+  MPM_STATE_PLANE_DEFORMATION = 5
 };
 enum mpm_state_initial { MPM_INITIAL_ZERO = 0, MPM_INITIAL_ONE = 1, MPM_INITIAL_IDENTITY = 2 };
 
@@ -116,25 +119,9 @@ typedef struct mpm_list_batch {
   void* weight;          /* [capacity][stride] out */
   void* gradient;        /* [capacity][D][stride] out: by position; null when the plan needs none */
   void* second_moment;   /* [D*D][stride] out: sum w d d^T, row-major; null unless per particle and needed */
-  /* Since revision 3. [sample_points][D][stride], cells from the particle; null unless the shape has such points. */
+  /* [sample_points][D][stride], cells from the particle; null unless the shape has such points. */
   const void* samples;
 } mpm_list_batch;
-/* The same particles' nodes as dense boxes, for hosts that take rows of nodes at once. A particle's nodes lie within
- * `extent` nodes an axis from `base`; a node (i, j, k) of the box has entry (i * MPM_BOX_WIDTH + j) * MPM_BOX_WIDTH +
- * k, zero where the list has none. Entries with i, j or k from `extent` on are undefined. Extent 0: no box holds the
- * particle's nodes (or its gradients, when these are wanted), and its list counts; all else but `base` is undefined. */
-typedef struct mpm_box_batch {
-  uint32_t count, stride, dimension, reserved;
-  const void* position; /* as in mpm_list_batch, as are the next two */
-  const void* half_size;
-  const void* domain;
-  int32_t* base;       /* [D][stride] out: first node of the box */
-  int32_t* extent;     /* [stride] out: 0, or at most MPM_BOX_WIDTH */
-  void* offset;        /* [D][stride] out: position - base */
-  void* weight;        /* [MPM_BOX_WIDTH^D][stride] out */
-  void* gradient;      /* [D][MPM_BOX_WIDTH^D][stride] out: by position; null when the plan needs none */
-  void* second_moment; /* [D*D][stride] out: as in mpm_list_batch */
-} mpm_box_batch;
 typedef struct mpm_shape {
   uint32_t form, width, second_moment_kind, reserved; /* width: nodes an axis of a tensor product, 2 to 4 */
   double second_moment;                               /* cells^2, of MPM_MOMENT_CONSTANT */
@@ -143,12 +130,10 @@ typedef struct mpm_shape {
   uint32_t capacity[2];                                           /* most nodes of a list, [dimension - 2] */
   double reach;                                                   /* of a list: see mpm_list_batch */
   void (*evaluate_list[MPM_PRECISIONS][2])(const void* parameters, const mpm_list_batch* batch); /* list, else null */
-  /* Since revision 1. Of a list, null when it has no boxes. */
-  void (*evaluate_box[MPM_PRECISIONS][2])(const void* parameters, const mpm_box_batch* batch);
-  /* Since revision 3. Of a list, [dimension - 2]: 0, or 4 and 8: each particle carries the corners of a quadrilateral
-   * and of a hexahedron as its domain (corner c is at the upper end along axis k where bit k of c is set), which the
-   * host moves with the grid's multilinear velocity and whose centroid the particle is. No node lies farther than the
-   * farthest corner + reach along an axis. A domain turned inside out has node_count 0, and the run stops. */
+  /* Of a list, [dimension - 2]: 0, or 4 and 8: each particle carries the corners of a quadrilateral and of a
+   * hexahedron as its domain (corner c is at the upper end along axis k where bit k of c is set), which the host moves
+   * with the grid's multilinear velocity and whose centroid the particle is. No node lies farther than the farthest
+   * corner + reach along an axis. A domain turned inside out has node_count 0, and the run stops. */
   uint32_t sample_points[2];
 } mpm_shape;
 
@@ -163,7 +148,6 @@ enum mpm_transfer_trait {
   MPM_STRAIN_BY_AFFINE = 16,      /* the velocity gradient that strains the particle is the affine moment itself */
   MPM_AFFINE_CARRIES_ENERGY = 32, /* the kinetic energy of state 0 (affine velocity) is m/2 tr(C D C^T) */
   MPM_GATHERS_GRADIENT = 64,      /* reads velocity_gradient */
-  /* Since revision 2. */
   MPM_READS_SECOND_MOMENT = 128,  /* reads second_moment */
   MPM_KEEPS_SPIN_ONLY = 256,      /* state 0 (affine velocity) is antisymmetric; the host starts it so */
   MPM_STARTS_WITH_GRADIENT = 512, /* state 0, a matrix, starts as the gradient of the first velocity field, as it does
@@ -190,7 +174,7 @@ typedef struct mpm_gather_batch {
   void* particle_velocity;        /* [D][stride] in: before, out: after */
   void* const* state;             /* in and out */
   void* advection_velocity;       /* [D][stride] out: velocity that moves the particle */
-  /* Since revision 2. [D*D][stride] D = sum w d d^T, cells^2; null where it is a multiple of the identity. */
+  /* [D*D][stride] D = sum w d d^T, cells^2; null where it is a multiple of the identity. */
   const void* second_moment;
 } mpm_gather_batch;
 typedef struct mpm_transfer {
@@ -198,12 +182,6 @@ typedef struct mpm_transfer {
   void (*scatter[MPM_PRECISIONS][2])(const void* parameters,
                                      const mpm_scatter_batch* batch); /* [precision][dimension - 2] */
   void (*gather[MPM_PRECISIONS][2])(const void* parameters, const mpm_gather_batch* batch);
-  /* Since revision 3. Null, or the highest power along an axis, 0 to 3, of the polynomials that a particle carries
-   * beyond b and A: products over the axes of polynomials orthogonal under the shape's weights (see
-   * kernel/polynomial_basis.hpp), as many an axis as the shape has nodes at most. The host carries, scatters (times
-   * the mass) and gathers their coefficients. 0: none. Needs a tensor product, and the traits MPM_SCATTERS_AFFINE,
-   * MPM_GATHERS_AFFINE and MPM_AFFINE_CARRIES_ENERGY. */
-  int32_t (*basis_order)(const void* parameters);
 } mpm_transfer;
 
 /* ---- filter ---------------------------------------------------------------------------------------------------
@@ -265,22 +243,25 @@ enum mpm_material_trait {
   MPM_HYPERELASTIC = 1, /* tau = (dpsi/dF) F^T: the conformance suite checks it */
   MPM_OBJECTIVE = 2,    /* tau(QF) = Q tau Q^T */
   MPM_DISSIPATES = 4,   /* dissipated_energy may be positive */
-  /* Since revision 3. 2-D entries read velocity_gradient_zz: the material runs in axisymmetric scenes. */
+  /* 2-D entries read velocity_gradient_zz: the material runs in axisymmetric scenes. */
   MPM_STRAINS_AROUND_AXIS = 8
 };
 typedef struct mpm_material_batch {
   uint32_t count, stride, dimension, reserved;
   double dt;
   const void* velocity_gradient; /* [D*D][stride], 1/s, row = velocity component; null: only evaluate */
-  void* const* state;            /* in and out */
-  void* kirchhoff_stress;        /* [symmetric][stride] out, Pa */
-  void* stored_energy;           /* [stride] out, J/m^3 */
-  void* dissipated_energy;       /* [stride] out, J/m^3, of this advance */
-  void* wave_speed;              /* [stride] out, m/s, of the fastest tangent wave */
-  void* volume_ratio;            /* [stride] out, J = det F */
-  /* Since revision 3. [stride], 1/s: zz of the velocity gradient, v_r / r in axisymmetric scenes (x = r, y the axis, z
-   * around it). Null in plane strain and 3-D and only there: without velocity_gradient its values are not read. */
+  /* [stride], 1/s: zz of the velocity gradient, v_r / r in axisymmetric scenes (x = r, y the axis, z around it). Null
+   * in plane strain and 3-D and only there: without velocity_gradient its values are not read. */
   const void* velocity_gradient_zz;
+  /* [stride], K; read by materials with the extension mpm_material_temperature alone. Null: the reference
+   * temperature of that extension everywhere. */
+  const void* temperature;
+  void* const* state;      /* in and out */
+  void* kirchhoff_stress;  /* [symmetric][stride] out, Pa */
+  void* stored_energy;     /* [stride] out, J/m^3 */
+  void* dissipated_energy; /* [stride] out, J/m^3, of this advance */
+  void* wave_speed;        /* [stride] out, m/s, of the fastest tangent wave */
+  void* volume_ratio;      /* [stride] out, J = det F */
 } mpm_material_batch;
 typedef struct mpm_material {
   uint32_t traits, reserved;
@@ -313,15 +294,14 @@ typedef struct mpm_descriptor {
   const void* kind_table;   /* mpm_shape, mpm_transfer, mpm_filter, mpm_contact or mpm_material */
   const char* functor_name; /* C++ name inside `source` */
   const char* source;       /* text of the functor's header, for run-time compilation */
+  /* The table of an extension by its id (plugin/extensions.h), or null where there is none of that id: always the same
+   * answer, which lives as long as the library. Null: no extensions. */
+  const void* (*extension)(const char* id);
 } mpm_descriptor;
 
 typedef struct mpm_plugin_library {
-  uint32_t abi_version;     /* MPM_ABI_VERSION the plugin was compiled with: first, read alone */
-  uint32_t struct_size;     /* sizeof(mpm_plugin_library) */
-  uint32_t abi_revision;    /* MPM_ABI_REVISION the plugin was compiled with */
-  uint32_t descriptor_size; /* sizeof(mpm_descriptor), the stride of `descriptors`; likewise the next two */
-  uint32_t parameter_size;
-  uint32_t state_size;
+  uint32_t abi_version; /* MPM_ABI_VERSION the plugin was compiled with: first, read alone */
+  uint32_t struct_size; /* sizeof(mpm_plugin_library) */
   uint32_t descriptor_count;
   uint32_t reserved;
   const mpm_descriptor* descriptors;

@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+
+#include "plugin/extension_of.hpp"
 
 namespace mpm {
 namespace {
@@ -57,25 +58,17 @@ class Library {
   void* handle_;
 };
 
-/// A table's size as the plugin has it: not above this program's, and whole 8-byte words.
-void check_size(const std::filesystem::path& file, const char* table, std::uint32_t theirs, std::size_t ours) {
-  if (theirs <= ours && theirs > 0 && theirs % alignof(void*) == 0) return;
-  refuse(file,
-         std::string("has ") + table + " of " + std::to_string(theirs) + " bytes, this program has " +
-             std::to_string(ours),
-         theirs > ours ? "rebuild the plugin against this version's headers, or use the newer program it was made for"
-                       : "the plugin's tables are wrong: build it with plugin/sdk.hpp");
+const std::string wrong_tables = "the plugin's tables are wrong: build it with plugin/sdk.hpp";
+
+/// A table's size as the plugin has it must be that of this program: versions are equal when this is asked.
+void check_size(const std::filesystem::path& file, const std::string& table, std::uint32_t theirs, std::size_t ours) {
+  if (theirs == ours) return;
+  refuse(file, "has " + table + " of " + std::to_string(theirs) + " bytes, this program has " + std::to_string(ours),
+         wrong_tables);
 }
 
-/// The first `bytes` of a plugin's struct in one of this program's, whose further fields stay zero.
-template <class Struct>
-Struct widened(const void* source, std::size_t bytes) {
-  Struct copy{};
-  std::memcpy(static_cast<void*>(&copy), source, bytes);
-  return copy;
-}
-
-mpm_plugin_library checked_library(const Library& loaded, const std::filesystem::path& file) {
+/// The version stands first and is read alone: nothing else need be where this program looks for it.
+const mpm_plugin_library& checked_library(const Library& loaded, const std::filesystem::path& file) {
   const void* symbol = loaded.symbol(MPM_PLUGIN_SYMBOL);
   if (!symbol)
     refuse(file, "exports no symbol `" MPM_PLUGIN_SYMBOL "`", "a plugin needs MPM_EXPORT_PLUGIN in one of its sources");
@@ -85,26 +78,9 @@ mpm_plugin_library checked_library(const Library& loaded, const std::filesystem:
            "was built for plugin ABI version " + std::to_string(version) + ", this program has version " +
                std::to_string(MPM_ABI_VERSION),
            "rebuild the plugin against this version's headers");
-  const std::uint32_t size = *(static_cast<const std::uint32_t*>(symbol) + 1);
-  // The sizes and revision stand before `descriptors`, which closes revision 0: no library table is shorter.
-  constexpr std::size_t least = offsetof(mpm_plugin_library, descriptors) + sizeof(void*);
-  if (size < least)
-    refuse(
-        file,
-        "has a library table of " + std::to_string(size) + " bytes, at least " + std::to_string(least) + " are needed",
-        "the plugin's tables are wrong: build it with plugin/sdk.hpp");
-  const auto library = widened<mpm_plugin_library>(symbol, std::min<std::size_t>(size, sizeof(mpm_plugin_library)));
-  if (library.abi_revision > MPM_ABI_REVISION)
-    refuse(file,
-           "was built for plugin ABI revision " + std::to_string(library.abi_revision) +
-               ", this program knows revisions up to " + std::to_string(MPM_ABI_REVISION),
-           "rebuild the plugin against this version's headers, or use the newer program it was made for");
-  check_size(file, "a library table", size, sizeof(mpm_plugin_library));
-  check_size(file, "descriptors", library.descriptor_size, sizeof(mpm_descriptor));
-  check_size(file, "parameter rows", library.parameter_size, sizeof(mpm_parameter));
-  check_size(file, "state rows", library.state_size, sizeof(mpm_state));
-  if (library.descriptor_count == 0 || !library.descriptors)
-    refuse(file, "holds no descriptor", "the plugin's tables are wrong: build it with plugin/sdk.hpp");
+  const auto& library = *static_cast<const mpm_plugin_library*>(symbol);
+  check_size(file, "a library table", library.struct_size, sizeof(mpm_plugin_library));
+  if (library.descriptor_count == 0 || !library.descriptors) refuse(file, "holds no descriptor", wrong_tables);
   return library;
 }
 
@@ -125,91 +101,76 @@ std::size_t table_size(std::uint32_t kind) {
   }
 }
 
-/// One descriptor with its rows and its kind's table, in this program's sizes.
-struct Tables {
-  mpm_descriptor descriptor{};
-  std::vector<mpm_parameter> parameters;
-  std::vector<mpm_state> state;
-  union {
-    mpm_shape shape;
-    mpm_transfer transfer;
-    mpm_filter filter;
-    mpm_contact contact;
-    mpm_material material;
-  } kind{};
-};
-
-/// `count` rows that lie `size` bytes apart.
-template <class Row>
-std::vector<Row> rows(const void* first, std::uint32_t count, std::uint32_t size) {
-  std::vector<Row> copies;
-  for (std::uint32_t k = 0; k < count; ++k)
-    copies.push_back(widened<Row>(static_cast<const char*>(first) + static_cast<std::size_t>(k) * size, size));
-  return copies;
-}
-
 /// Everything that the program takes for granted of a descriptor later on, whose rows may not be there at all.
 void check_descriptor(const mpm_descriptor& d, const std::filesystem::path& file) {
-  const std::string remedy = "the plugin's tables are wrong: build it with plugin/sdk.hpp";
   if (!d.id || !*d.id || !d.version || !d.summary || !d.citation || !d.manual || !d.functor_name || !d.source)
-    refuse(file, "has a descriptor without id, version, summary, citation, manual or functor source", remedy);
+    refuse(file, "has a descriptor without id, version, summary, citation, manual or functor source", wrong_tables);
   const std::string name = std::string("descriptor `") + d.id + "` ";
   const bool known = std::any_of(kinds.begin(), kinds.end(), [&](std::uint32_t kind) { return kind == d.kind; });
   if (!known || !d.kind_table || d.kind_table_size == 0)
     refuse(file,
            name + "has kind " + std::to_string(d.kind) + " with a table of " + std::to_string(d.kind_table_size) +
                " bytes",
-           remedy);
+           wrong_tables);
   const std::string table = "descriptor `" + std::string(d.id) + "` with a " +
                             std::string(kind_name(static_cast<mpm_kind>(d.kind))) + " table";
-  check_size(file, table.c_str(), d.kind_table_size, table_size(d.kind));
+  check_size(file, table, d.kind_table_size, table_size(d.kind));
   if ((d.parameter_count > 0 && !d.parameters) || (d.state_count > 0 && !d.state))
     refuse(file,
            name + "counts " + std::to_string(d.parameter_count) + " parameters and " + std::to_string(d.state_count) +
                " state fields, and one of the tables is null",
-           remedy);
+           wrong_tables);
 }
 
-void check_rows(const Tables& tables, const std::filesystem::path& file) {
-  const std::string remedy = "the plugin's tables are wrong: build it with plugin/sdk.hpp";
-  const std::string name = std::string("descriptor `") + tables.descriptor.id + "` ";
+void check_rows(const mpm_descriptor& d, const std::filesystem::path& file) {
+  const std::string name = std::string("descriptor `") + d.id + "` ";
   const auto incomplete = [&](const char* what, std::size_t row) {
-    refuse(file, name + "has an incomplete " + what + " in row " + std::to_string(row + 1), remedy);
+    refuse(file, name + "has an incomplete " + what + " in row " + std::to_string(row + 1), wrong_tables);
   };
   bool density = false;
-  for (std::size_t k = 0; k < tables.parameters.size(); ++k) {
-    const mpm_parameter& p = tables.parameters[k];
+  for (std::size_t k = 0; k < d.parameter_count; ++k) {
+    const mpm_parameter& p = d.parameters[k];
     if (!p.name || !p.unit || !p.doc || !p.choices || p.type > MPM_CHOICE ||
-        p.offset + sizeof(double) > tables.descriptor.parameter_bytes || p.offset % sizeof(double) != 0)
+        p.offset + sizeof(double) > d.parameter_bytes || p.offset % sizeof(double) != 0)
       incomplete("parameter", k);
     density |= std::strcmp(p.name, "density") == 0;
   }
-  for (std::size_t k = 0; k < tables.state.size(); ++k) {
-    const mpm_state& s = tables.state[k];
+  for (std::size_t k = 0; k < d.state_count; ++k) {
+    const mpm_state& s = d.state[k];
     if (!s.name || !*s.name || !s.unit || !s.doc || s.shape > MPM_STATE_PLANE_DEFORMATION ||
         s.initial > MPM_INITIAL_IDENTITY)
       incomplete("state field", k);
   }
-  if (tables.descriptor.kind == MPM_MATERIAL && !density)
-    refuse(file, name + "is a material without a parameter `density`", remedy);
+  if (d.kind == MPM_MATERIAL && !density)
+    refuse(file, name + "is a material without a parameter `density`", wrong_tables);
 }
 
-/// The checked copy of the descriptor at `source`. @throws PluginError.
-std::shared_ptr<const Tables> copied(const void* source, const mpm_plugin_library& library,
-                                     const std::filesystem::path& file) {
-  auto tables = std::make_shared<Tables>();
-  mpm_descriptor& d = tables->descriptor = widened<mpm_descriptor>(source, library.descriptor_size);
-  check_descriptor(d, file);
-  tables->parameters = rows<mpm_parameter>(d.parameters, d.parameter_count, library.parameter_size);
-  tables->state = rows<mpm_state>(d.state, d.state_count, library.state_size);
-  std::memset(static_cast<void*>(&tables->kind), 0, sizeof tables->kind);
-  std::memcpy(static_cast<void*>(&tables->kind), d.kind_table, d.kind_table_size);
-  check_rows(*tables, file);
-  d.parameters = tables->parameters.data();
-  d.state = tables->state.data();
-  d.kind_table = &tables->kind;
-  d.kind_table_size = static_cast<std::uint32_t>(table_size(d.kind));
-  return tables;
+/// The extensions that this program knows have its versions and belong to their kind.
+void check_extensions(const Plugin& plugin, const std::filesystem::path& file) {
+  for (const KnownExtension& known : known_extensions()) {
+    const void* table = plugin.extension(known.id);
+    if (!table) continue;
+    const std::string name = std::string("descriptor `") + plugin.descriptor->id + "` ";
+    if (known.kind != 0 && known.kind != plugin.descriptor->kind)
+      refuse(file,
+             name + "is a " + std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))) +
+                 " and offers the extension `" + known.id + "` of a " +
+                 std::string(kind_name(static_cast<mpm_kind>(known.kind))),
+             wrong_tables);
+    const std::uint32_t version = *static_cast<const std::uint32_t*>(table);
+    if (version != known.version)
+      refuse(file,
+             name + "offers the extension `" + known.id + "` of version " + std::to_string(version) +
+                 ", this program has version " + std::to_string(known.version),
+             "rebuild the plugin against this version's headers");
+  }
+  const mpm_descriptor& d = *plugin.descriptor;
+  if (const auto* cell_size = extension_of<mpm_material_cell_size>(plugin);
+      cell_size && (cell_size->offset % sizeof(double) != 0 || cell_size->offset + sizeof(double) > d.parameter_bytes))
+    refuse(file,
+           std::string("descriptor `") + d.id + "` takes the cell size at byte " + std::to_string(cell_size->offset) +
+               " of a block of " + std::to_string(d.parameter_bytes),
+           wrong_tables);
 }
 
 /// Folder of the running program.
@@ -257,6 +218,21 @@ std::span<const mpm_kind> all_kinds() {
   return kinds;
 }
 
+std::span<const KnownExtension> known_extensions() {
+  static constexpr KnownExtension all[] = {
+      extension_info<mpm_costs>,
+      extension_info<mpm_shape_boxes>,
+      extension_info<mpm_transfer_polynomials>,
+      extension_info<mpm_filter_step_limit>,
+      extension_info<mpm_material_trial>,
+      extension_info<mpm_material_tangent>,
+      extension_info<mpm_material_projection>,
+      extension_info<mpm_material_temperature>,
+      extension_info<mpm_material_cell_size>,
+  };
+  return all;
+}
+
 int state_components(mpm_state_shape shape, int dimension) {
   switch (shape) {
     case MPM_STATE_SCALAR:
@@ -288,16 +264,17 @@ void Registry::load(const std::filesystem::path& file) {
     return plugin.descriptor->kind == d.kind && plugin.id() == d.id;
   };
   for (std::uint32_t k = 0; k < library.descriptor_count; ++k) {
-    const char* first = reinterpret_cast<const char*>(library.descriptors);
-    const auto tables = copied(first + static_cast<std::size_t>(k) * library.descriptor_size, library, file);
-    const mpm_descriptor& d = tables->descriptor;
+    const mpm_descriptor& d = library.descriptors[k];
+    check_descriptor(d, file);
+    check_rows(d, file);
     const std::string name = std::string(kind_name(static_cast<mpm_kind>(d.kind))) + " `" + d.id + "`";
     if (const Plugin* earlier = find(static_cast<mpm_kind>(d.kind), d.id))
       refuse(file, "offers " + name + ", which " + earlier->file.string() + " already offers",
              "rename one of them or remove a folder from MPM_PLUGIN_PATH");
     if (std::any_of(found.begin(), found.end(), [&](const Plugin& plugin) { return offers(plugin, d); }))
       refuse(file, "offers " + name + " twice", "rename one of them");
-    found.push_back({&d, file, tables});
+    found.push_back({&d, file});
+    check_extensions(found.back(), file);
   }
   loaded.keep();
   plugins_.insert(plugins_.end(), found.begin(), found.end());

@@ -3,7 +3,6 @@
 // used.
 
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -19,12 +18,10 @@ class PluginError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One component as found. Its file stays loaded until the process ends; its tables are copies of this program's sizes,
-/// where fields that an older plugin lacks are zero.
+/// One component as found. Its file, and with it the descriptor, stays loaded until the process ends.
 struct Plugin {
   const mpm_descriptor* descriptor = nullptr;
   std::filesystem::path file;
-  std::shared_ptr<const void> tables{};  ///< what `descriptor` points into; null for a descriptor of constants
 
   std::string_view id() const { return descriptor->id; }
   std::span<const mpm_parameter> parameters() const { return {descriptor->parameters, descriptor->parameter_count}; }
@@ -34,6 +31,8 @@ struct Plugin {
   const mpm_filter& filter() const { return *static_cast<const mpm_filter*>(descriptor->kind_table); }
   const mpm_contact& contact() const { return *static_cast<const mpm_contact*>(descriptor->kind_table); }
   const mpm_material& material() const { return *static_cast<const mpm_material*>(descriptor->kind_table); }
+  /// The table of an extension, null where the plugin has none; extension_of() in plugin/extension_of.hpp knows types.
+  const void* extension(const char* id) const { return descriptor->extension ? descriptor->extension(id) : nullptr; }
 };
 
 /// "shape", "transfer", "filter", "contact", "material".

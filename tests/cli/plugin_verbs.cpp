@@ -181,8 +181,8 @@ TEST_CASE("test-plugin: what is no plugin, and wrong usage") {
   spill(folder / "text.so", std::string(200, 'a'));
   refused({"test-plugin", "text.so"}, "plugin text.so: is not a shared object");
   refused({"test-plugin", "."}, "is not a shared object");
-  broken(folder, "-DFIXTURE_REVISION=9");
-  refused({"test-plugin", "plugin.so"}, "plugin plugin.so: was built for plugin ABI revision 9, this program knows");
+  broken(folder, "-DFIXTURE_ABI=9");
+  refused({"test-plugin", "plugin.so"}, "plugin plugin.so: was built for plugin ABI version 9, this program has");
   refused({"test-plugin"}, "FILE");
   refused({"test-plugin", "plugin.so", "--seconds", "0"}, "--seconds");
   refused({"test-plugin", "plugin.so", "--second", "5"},

@@ -121,5 +121,5 @@ TEST_CASE("an installed sandbox writes, builds and tests plugins without its sou
   CHECK(result.code == 0);
   CHECK(has(result.out, "100% tests passed"));
   CHECK(has(result.out, "soft/soft.json: ok"));
-  CHECK(has(result.out, "abi.h\nsdk.hpp\n"));
+  CHECK(has(result.out, "abi.h\nextensions.h\nsdk\nsdk.hpp\ntables.hpp\n"));
 }

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "config/config_support.hpp"
+#include "plugin/extensions.h"
 #include "support/catch.hpp"
 
 using namespace mpm;
@@ -244,4 +245,23 @@ TEST_CASE("bodies may share a field", "[config]") {
   CHECK(e.field_count == 2);
   CHECK(e.bodies[1].field == 0);
   CHECK(e.bodies[2].field == 1);
+}
+
+TEST_CASE("a material that asks for the cell size gets it behind its parameters", "[config]") {
+  mpm_descriptor softening = descriptor("softening", MPM_MATERIAL, both, every_precision, elastic_parameters, 4);
+  softening.parameter_bytes += sizeof(double);
+  softening.extension = [](const char* id) -> const void* {
+    static constexpr mpm_material_cell_size table{MPM_MATERIAL_CELL_SIZE_VERSION, 4 * sizeof(double)};
+    return std::string_view(id) == MPM_MATERIAL_CELL_SIZE_ID ? &table : nullptr;
+  };
+  const Plugin plugin{&softening, "test"};
+  std::vector<const Plugin*> all{&plugin};
+  for (const mpm_kind kind : all_kinds())
+    for (const Plugin* other : components().of_kind(kind)) all.push_back(other);
+  const std::string text = replaced(two_discs, "\"neo_hookean\"", "\"softening\"");
+  const Experiment e = read_experiment_text(text, "test.json", ComponentLookup(all), options());
+  const std::vector<double>& block = e.materials.at(0).component.parameters;
+  REQUIRE(block.size() == 5);
+  CHECK(block[0] == 1000);
+  CHECK(block[4] == 0.025);
 }

@@ -7,6 +7,7 @@
 #include "contacts/coulomb/coulomb.hpp"
 #include "filters/fmpm/fmpm.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
+#include "plugin/extension_of.hpp"
 #include "plugin/sdk.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
 #include "shapes/cpdi/cpdi.hpp"
@@ -188,19 +189,16 @@ void long_box(const void* parameters, const mpm_box_batch* q) {
   sdk::box_batch<Cpdi, D, S>(parameters, q);
   q->base[q->count] = 0;
 }
-constexpr mpm_shape with_box_entries(mpm_shape table, decltype(mpm_shape{}.evaluate_box) const& entries) {
-  for (int precision = 0; precision < MPM_PRECISIONS; ++precision)
-    for (int d = 0; d < 2; ++d) table.evaluate_box[precision][d] = entries[precision][d];
-  return table;
-}
-constexpr mpm_shape leaning_box_table =
-    with_box_entries(sdk::list_table<Cpdi>, {{&leaning_box<2, Lanes<float>>, &leaning_box<3, Lanes<float>>},
-                                             {&leaning_box<2, Lanes<double>>, &leaning_box<3, Lanes<double>>},
-                                             {&leaning_box<2, double>, &leaning_box<3, double>}});
-constexpr mpm_shape long_box_table =
-    with_box_entries(sdk::list_table<Cpdi>, {{&long_box<2, Lanes<float>>, &long_box<3, Lanes<float>>},
-                                             {&long_box<2, Lanes<double>>, &long_box<3, Lanes<double>>},
-                                             {&long_box<2, double>, &long_box<3, double>}});
+constexpr mpm_shape_boxes leaning_boxes{MPM_SHAPE_BOXES_VERSION,
+                                        0,
+                                        {{&leaning_box<2, Lanes<float>>, &leaning_box<3, Lanes<float>>},
+                                         {&leaning_box<2, Lanes<double>>, &leaning_box<3, Lanes<double>>},
+                                         {&leaning_box<2, double>, &leaning_box<3, double>}}};
+constexpr mpm_shape_boxes long_boxes{MPM_SHAPE_BOXES_VERSION,
+                                     0,
+                                     {{&long_box<2, Lanes<float>>, &long_box<3, Lanes<float>>},
+                                      {&long_box<2, Lanes<double>>, &long_box<3, Lanes<double>>},
+                                      {&long_box<2, double>, &long_box<3, double>}}};
 
 struct CutsLongBoxes : GimpContiguous {  // keeps half of the weight of a box that its nodes do not hold
   template <class S>
@@ -245,7 +243,6 @@ constexpr mpm_shape large_moment_table{
     {0, 0},
     0,
     {},
-    {},
     {0, 0}};
 
 /// Leaves the off-diagonal of a list's second moment out.
@@ -269,7 +266,6 @@ constexpr mpm_shape diagonal_moment_table{MPM_NODE_LIST,
                                           {{&diagonal_moment<2, float>, &diagonal_moment<3, float>},
                                            {&diagonal_moment<2, double>, &diagonal_moment<3, double>},
                                            {&diagonal_moment<2, double>, &diagonal_moment<3, double>}},
-                                          {},
                                           {0, 0}};
 
 // ---- filters
@@ -328,6 +324,16 @@ constexpr mpm_filter writes_beyond_table{0,
 template <class Table>
 mpm_descriptor with_table(mpm_descriptor descriptor, const Table& table) {
   descriptor.kind_table = &table;
+  return descriptor;
+}
+
+/// The same descriptor with another table as its one extension.
+template <const auto& table>
+mpm_descriptor with_extension(mpm_descriptor descriptor) {
+  using Table = std::remove_cvref_t<decltype(table)>;
+  descriptor.extension = [](const char* id) -> const void* {
+    return std::string_view(id) == extension_info<Table>.id ? &table : nullptr;
+  };
   return descriptor;
 }
 
@@ -541,8 +547,8 @@ TEST_CASE("wrong boxes are caught") {
   check_caught(wrong_shape<BoxTooWide>, "box_extent");
   check_caught(wrong_shape<BoxLosesMoment>, "box_second_moment_agrees_with_list");
   check_caught(wrong_shape<BoxRoundsCells>, "box_translation");
-  check_caught(with_table(wrong_shape<Cpdi>, leaning_box_table), "box_independent_of_neighbours");
-  check_caught(with_table(wrong_shape<Cpdi>, long_box_table), "box_writes_inside_arrays");
+  check_caught(with_extension<leaning_boxes>(wrong_shape<Cpdi>), "box_independent_of_neighbours");
+  check_caught(with_extension<long_boxes>(wrong_shape<Cpdi>), "box_writes_inside_arrays");
 }
 
 TEST_CASE("wrong filters are caught") {

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "device/device_support.hpp"
+#include "plugin/extension_of.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -23,7 +24,7 @@ std::vector<device::Choice> every_plugin_once(int dimension, Precision precision
     device::Choice choice;
     choice.dimension = dimension, choice.precision = precision;
     choice.shape = shapes[k % shapes.size()], choice.transfer = transfers[k % transfers.size()];
-    if (choice.transfer->transfer().basis_order && choice.shape->shape().form == MPM_TENSOR_PRODUCT)
+    if (extension_of<mpm_transfer_polynomials>(*choice.transfer) && choice.shape->shape().form == MPM_TENSOR_PRODUCT)
       choice.basis_order = static_cast<int>(choice.shape->shape().width) - 1;
     if (k < filters.size()) choice.filter = filters[k];
     if (k < contacts.size()) choice.contact = contacts[k];

@@ -3,9 +3,9 @@
 #include "bench/baseline.hpp"
 
 #include "bench/costs.hpp"
-#include "bench/counting.hpp"
 #include "bench/measure.hpp"
 #include "bench/table.hpp"
+#include "kernel/counted.hpp"
 #include "kernel/tensor.hpp"
 #include "support/catch.hpp"
 #include "support/differences.hpp"

@@ -6,6 +6,7 @@
 
 #include "backends/cpu/grid/blocks.hpp"
 #include "plan/plan.hpp"
+#include "plugin/extension_of.hpp"
 #include "simulation/backend.hpp"
 #include "simulation/boundary.hpp"
 
@@ -48,7 +49,8 @@ struct Scene {
       capacity = static_cast<int>(shape.capacity[D - 2]);
       list_reach = shape.reach;
       evaluate_list = shape.evaluate_list[lane_precision<T>][D - 2];
-      evaluate_box = shape.evaluate_box[lane_precision<T>][D - 2];
+      if (const auto* boxes = extension_of<mpm_shape_boxes>(*e.shape.plugin))
+        evaluate_box = boxes->evaluate[lane_precision<T>][D - 2];
     } else {
       evaluate_shape = shape.evaluate[lane_precision<T>];
     }

@@ -7,6 +7,7 @@
 #include "backends/device/kernels/arguments.hpp"
 #include "kernel/polynomial_basis.hpp"
 #include "plan/compatibility.hpp"
+#include "plugin/extension_of.hpp"
 #include "support/hash.hpp"
 
 namespace mpm::device {
@@ -214,7 +215,13 @@ Composition compose(const Choice& choice) {
   text.add_header("backends/device/kernels/kernels.hpp", "the composer");
   for (const Plugin* plugin : {choice.shape, choice.transfer, choice.filter, choice.contact})
     if (plugin) text.add_functor(*plugin);
-  for (const Plugin* plugin : choice.materials) text.add_functor(*plugin);
+  for (const Plugin* plugin : choice.materials) {
+    if (extension_of<mpm_material_temperature>(*plugin))
+      throw ComposeError("material plugin " + std::string(plugin->id()) +
+                         " reads the temperature of particles, which kernels do not hand over; run it on backend cpu "
+                         "or reference");
+    text.add_functor(*plugin);
+  }
   text.add(scene_text(choice));
   Composition composition{choice.name(), text.str(), "", entry_names(choice)};
   composition.hash = support::sha256(composition.text);

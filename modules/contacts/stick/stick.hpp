@@ -2,6 +2,9 @@
 // A weld: both fields take their common velocity at every node they share, as a single field would.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

@@ -4,6 +4,9 @@
 // 2604.07307 (2026):   v = sum_{j<k} (I - S+S)^j v+,   residual (I - S+S)^k v.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 
@@ -13,6 +16,10 @@ struct Fmpm {
   };
 
   MPM_HD static int iterations(const Parameters& p) { return static_cast<int>(p.order) - 1; }
+
+  /// Stable to 1 / sqrt(k) of the unfiltered step (Nairn 2026, arXiv 2604.07307): what the grid hardly sees is
+  /// multiplied by up to k, and its stiffness with it.
+  static double step_limit(const Parameters& p, double unfiltered) { return unfiltered / sqrt(1.0 + iterations(p)); }
 
   /// v* <- v* - S+S v*; v <- v + v*.
   template <int D, class S>

@@ -5,6 +5,9 @@
 //   v = sum_{j<m} (I - S+S)^j S+ V,   V <- S v + dt S a.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

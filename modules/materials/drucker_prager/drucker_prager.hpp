@@ -11,6 +11,9 @@
 #include "kernel/elasticity.hpp"
 #include "kernel/functor.hpp"
 #include "kernel/svd.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 
@@ -219,6 +222,7 @@ struct DruckerPrager {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Young's modulus of the grains' packing at small strain"),

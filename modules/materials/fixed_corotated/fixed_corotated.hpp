@@ -8,10 +8,13 @@
 #include "kernel/elasticity.hpp"
 #include "kernel/functor.hpp"
 #include "kernel/polar.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 
-struct FixedCorotated {
+struct FixedCorotated : ElasticSolid {
   struct Parameters {
     double youngs_modulus, poisson_ratio, density;
   };
@@ -23,17 +26,6 @@ struct FixedCorotated {
           lambda(T(lame_lambda(p.youngs_modulus, p.poisson_ratio))),
           inverse_density(T(1 / p.density)) {}
   };
-  template <int D, class S>
-  using State = ElasticState<Mat<D, S>>;
-  template <class S>
-  using AxisymmetricState = ElasticState<Deformation<2, S>>;
-
-  /// Returns the energy dissipated, J/m^3: none.
-  template <class G, class S = typename G::Scalar>
-  MPM_HD static S advance(const Constants<scalar_of<S>>&, const G& L, scalar_of<S> dt, ElasticState<G>& state) {
-    state.deformation_gradient = advanced(state.deformation_gradient, L, dt);
-    return S(real<S>(0));
-  }
 
   /// F - R: of the size of the strain, so that little is lost where strains are small.
   template <int D, class S>
@@ -99,11 +91,6 @@ struct FixedCorotated {
   template <class S>
   MPM_HD static S largest_in_space(const Sym<3, S>& b) {
     return largest_eigenvalue_bound(b);
-  }
-
-  template <class G, class S = typename G::Scalar>
-  MPM_HD static S volume_ratio(const ElasticState<G>& state) {
-    return determinant(state.deformation_gradient);
   }
 
 #if MPM_HOST

@@ -5,10 +5,13 @@
 
 #include "kernel/elasticity.hpp"
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 
-struct LinearElastic {
+struct LinearElastic : ElasticSolid {
   struct Parameters {
     double youngs_modulus, poisson_ratio, density;
   };
@@ -22,17 +25,6 @@ struct LinearElastic {
               (lame_lambda(p.youngs_modulus, p.poisson_ratio) + 2 * shear_modulus(p.youngs_modulus, p.poisson_ratio)) /
               p.density))) {}
   };
-  template <int D, class S>
-  using State = ElasticState<Mat<D, S>>;
-  template <class S>
-  using AxisymmetricState = ElasticState<Deformation<2, S>>;
-
-  /// Returns the energy dissipated, J/m^3: none.
-  template <class G, class S = typename G::Scalar>
-  MPM_HD static S advance(const Constants<scalar_of<S>>&, const G& L, scalar_of<S> dt, ElasticState<G>& state) {
-    state.deformation_gradient = advanced(state.deformation_gradient, L, dt);
-    return S(real<S>(0));
-  }
 
   template <class G, class S = typename G::Scalar>
   MPM_HD static Sym<G::dimension, S> strain(const ElasticState<G>& state) {
@@ -67,11 +59,6 @@ struct LinearElastic {
   template <class G, class S = typename G::Scalar>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const ElasticState<G>&) {
     return S(c.longitudinal_speed);
-  }
-
-  template <class G, class S = typename G::Scalar>
-  MPM_HD static S volume_ratio(const ElasticState<G>& state) {
-    return determinant(state.deformation_gradient);
   }
 
 #if MPM_HOST

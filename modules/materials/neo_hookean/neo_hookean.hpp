@@ -6,10 +6,13 @@
 
 #include "kernel/elasticity.hpp"
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 
-struct NeoHookean {
+struct NeoHookean : ElasticSolid {
   struct Parameters {
     double youngs_modulus, poisson_ratio, density, form, volumetric_energy;
   };
@@ -26,17 +29,6 @@ struct NeoHookean {
           split(p.form != 0),
           volumetric(static_cast<VolumetricEnergy>(static_cast<int>(p.volumetric_energy))) {}
   };
-  template <int D, class S>
-  using State = ElasticState<Mat<D, S>>;
-  template <class S>
-  using AxisymmetricState = ElasticState<Deformation<2, S>>;
-
-  /// Returns the energy dissipated, J/m^3: none.
-  template <class G, class S = typename G::Scalar>
-  MPM_HD static S advance(const Constants<scalar_of<S>>&, const G& L, scalar_of<S> dt, ElasticState<G>& state) {
-    state.deformation_gradient = advanced(state.deformation_gradient, L, dt);
-    return S(real<S>(0));
-  }
 
   /// J^-2/3 b.
   template <int D, class S>
@@ -81,11 +73,6 @@ struct NeoHookean {
     const S largest = largest_eigenvalue_bound(b);
     const S longitudinal = c.mu * (largest + real<S>(1)) + c.modulus * volumetric_tangent(c.volumetric, J);
     return sqrt(c.inverse_density * max(longitudinal, c.mu * largest));
-  }
-
-  template <class G, class S = typename G::Scalar>
-  MPM_HD static S volume_ratio(const ElasticState<G>& state) {
-    return determinant(state.deformation_gradient);
   }
 
 #if MPM_HOST

@@ -6,6 +6,9 @@
 
 #include "kernel/elasticity.hpp"
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 
@@ -144,6 +147,7 @@ struct VonMises {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Young's modulus at small strain"),

@@ -4,6 +4,9 @@
 // Kirby & Berzins, Int. J. Numer. Meth. Engng 76 (2008) 922-948.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

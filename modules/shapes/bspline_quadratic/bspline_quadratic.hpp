@@ -3,6 +3,9 @@
 // Steffen, Kirby & Berzins, Int. J. Numer. Meth. Engng 76 (2008) 922-948, eq. 26.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

@@ -6,6 +6,9 @@
 // The second is the mean over the domain of the gradient of the multilinear field through the corners' values.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

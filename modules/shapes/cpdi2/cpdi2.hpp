@@ -6,6 +6,9 @@
 
 #include "kernel/corner_domain.hpp"
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

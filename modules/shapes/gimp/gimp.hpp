@@ -4,6 +4,9 @@
 //   w = 1 - (d^2 + l^2)/(2 l)  (|d| < l),   1 - |d|  (l <= |d| <= 1 - l),   (1 + l - |d|)^2/(4 l)  (to 1 + l).
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

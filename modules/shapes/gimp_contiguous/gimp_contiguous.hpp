@@ -7,6 +7,9 @@
 
 #include "kernel/functor.hpp"
 #include "kernel/polar.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

@@ -1,6 +1,6 @@
 #include "solvers/explicit/explicit.hpp"
 
-#include <cmath>
+#include "plugin/extension_of.hpp"
 
 namespace mpm {
 
@@ -51,10 +51,9 @@ void explicit_step(StepBuilder& step) {
 
 StepLimit explicit_limit(const Experiment& experiment, const TimeStepSpeeds& speeds) {
   double seconds = experiment.solver.courant * experiment.grid.cell_size / speeds.speed;
-  // FMPM(k) is stable to 1 / sqrt(k) of the unfiltered step (Nairn 2026, arXiv 2604.07307); XPIC, before the forces, is
-  // not the worse for its order.
-  if (experiment.filter && !(experiment.filter->plugin->filter().traits & MPM_FILTERS_BEFORE_FORCES))
-    seconds /= std::sqrt(1.0 + experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data()));
+  if (!experiment.filter) return {seconds, "wave"};
+  if (const auto* filtered = extension_of<mpm_filter_step_limit>(*experiment.filter->plugin))
+    return {filtered->limit(experiment.filter->parameters.data(), seconds), "filter order"};
   return {seconds, "wave"};
 }
 

@@ -3,6 +3,9 @@
 // Trans. Graph. 40 (2021) 109, with alpha = 1 - pic_fraction.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

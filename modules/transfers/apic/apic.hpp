@@ -4,6 +4,9 @@
 // Comput. Phys. 338 (2017) 137.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

@@ -4,6 +4,9 @@
 // w v+ + beta alpha (v - sum w v-)), beta = beta_max where the particle's surroundings open, else beta_min.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

@@ -3,6 +3,9 @@
 // by |symbol of S|^2. Harlow (1964), Methods Comput. Phys. 3:319-343.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

@@ -4,6 +4,9 @@
 // 1 are here and are APIC's; the host carries the others (kernel/polynomial_basis.hpp).
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

@@ -4,6 +4,9 @@
 // sum w d x m v, K = m sum w (d . d I - d d^T), omega = K^-1 L.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

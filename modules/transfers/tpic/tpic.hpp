@@ -3,6 +3,9 @@
 // gradient of the grid's field. Nakamura, Matsumura & Mizutani, Comput. Methods Appl. Mech. Engrg. 403 (2023) 115720.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

@@ -6,6 +6,9 @@
 // 187:529-541.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

@@ -6,6 +6,9 @@
 // Order 1 changes nothing. High orders keep all that the particles can represent and drop the noise they cannot.
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 
@@ -16,6 +19,9 @@ struct MyPlugin {
 
   /// Passes of the loop: the first term is the velocity itself.
   MPM_HD static int iterations(const Parameters& p) { return static_cast<int>(p.order) - 1; }
+
+  /// The longest stable step with the filter, s: what the grid hardly sees is multiplied by up to m.
+  static double step_limit(const Parameters& p, double unfiltered) { return unfiltered / sqrt(p.order); }
 
   /// One node in one pass (iteration counts from 1). projected = S+ S increment, m/s.
   template <int D, class S>

@@ -4,6 +4,9 @@
 //   N(d) = 3/4 - d^2 for |d| <= 1/2,   (3/2 - |d|)^2 / 2 for |d| <= 3/2,   sum w = 1,   sum w d = 0,   sum w d^2 = 1/4
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

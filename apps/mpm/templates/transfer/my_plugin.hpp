@@ -5,6 +5,9 @@
 //   from the grid  v <- sum w v+,   W <- (C - C^T) / 2,   C = sum v+ (x) w D^-1 d
 
 #include "kernel/functor.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
 
 namespace mpm {
 

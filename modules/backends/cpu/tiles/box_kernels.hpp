@@ -7,6 +7,7 @@
 
 #include "backends/cpu/tiles/quad.hpp"
 #include "backends/cpu/tiles/tile.hpp"
+#include "plugin/extensions.h"
 
 namespace mpm::cpu {
 

@@ -1,18 +1,20 @@
 #pragma once
-// A scalar that counts what is done with it: the functors of shapes, transfers and materials run over it as they run
-// over lanes, so the count of a step is that of the code, not an estimate.
+// A scalar that counts what is done with it: functors run over it as they run over lanes, so that the count of a step
+// is that of the code, not an estimate. Host only.
 //
 // +, -, *, / and sqrt count 1 each. log and exp count the operations of their polynomials in kernel/lanes.hpp. Signs,
 // comparisons, minima, selections and roundings count nothing.
 
 #include <cmath>
+#include <type_traits>
 
 #include "kernel/math.hpp"
 
-namespace mpm::bench {
+namespace mpm {
 
-/// Operations since it was last set to zero, of this thread.
-inline thread_local long operations = 0;
+/// Operations of this thread since it was last set to zero. Only count_operations() sets it, and puts back what it
+/// found, so that counts are as independent of each other as those of a local variable.
+inline thread_local long counted_operations = 0;
 
 template <class T>
 struct Counted {
@@ -30,7 +32,7 @@ struct Counted {
   static constexpr long exp_operations = 2 + 4 + 3 * (sizeof(T) == 4 ? 7 : 13) + 1;
 
   static constexpr Counted counted(T x, long by = 1) {
-    operations += by;
+    counted_operations += by;
     return Counted(x);
   }
   friend Counted operator+(Counted a, Counted b) { return counted(a.value + b.value); }
@@ -61,12 +63,12 @@ struct Counted {
 /// Operations that `run` does.
 template <class Run>
 long count_operations(Run&& run) {
-  const long before = operations;
-  operations = 0;
+  const long before = counted_operations;
+  counted_operations = 0;
   run();
-  const long result = operations;
-  operations = before;
+  const long result = counted_operations;
+  counted_operations = before;
   return result;
 }
 
-}  // namespace mpm::bench
+}  // namespace mpm

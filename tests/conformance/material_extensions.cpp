@@ -1,0 +1,268 @@
+// What materials, filters and others offer beyond their core tables is held to its words: right ones pass, and each
+// planted mistake is caught by the check that names it.
+
+#include <set>
+
+#include "conformance/conformance.hpp"
+#include "filters/fmpm/fmpm.hpp"
+#include "filters/xpic/xpic.hpp"
+#include "materials/drucker_prager/drucker_prager.hpp"
+#include "plugin/extension_of.hpp"
+#include "support/catch.hpp"
+#include "support/fixture_materials.hpp"
+
+namespace mpm {  // so that functors find mpm::floor and its like, as those of the modules do
+namespace {
+
+using test::BandHardening;
+using test::WarmRubber;
+
+constexpr const char* source = "struct Fixture {};";
+template <class F>
+constexpr mpm_descriptor material_of = sdk::material<F>(test::fixture_manual, source);
+
+std::vector<ConformanceFinding> findings(const mpm_descriptor& descriptor) {
+  return check_plugin(Plugin{&descriptor, "test"});
+}
+
+/// Names of the failed checks, without precision and dimension.
+std::set<std::string> failures(const mpm_descriptor& descriptor) {
+  std::set<std::string> names;
+  for (const ConformanceFinding& finding : findings(descriptor))
+    if (!finding.passed) names.insert(finding.check.substr(0, finding.check.find(" [")));
+  return names;
+}
+
+bool was_checked(const mpm_descriptor& descriptor, const std::string& check) {
+  for (const ConformanceFinding& finding : findings(descriptor))
+    if (finding.check.substr(0, finding.check.find(" [")) == check) return true;
+  return false;
+}
+
+void check_caught(const mpm_descriptor& descriptor, const std::string& check) {
+  const std::set<std::string> failed = failures(descriptor);
+  CAPTURE(failed);
+  CHECK(failed.count(check) == 1);
+}
+
+/// The same descriptor with another table as its one extension.
+template <const auto& table>
+mpm_descriptor with_extension(mpm_descriptor descriptor) {
+  using Table = std::remove_cvref_t<decltype(table)>;
+  descriptor.extension = [](const char* id) -> const void* {
+    return std::string_view(id) == extension_info<Table>.id ? &table : nullptr;
+  };
+  return descriptor;
+}
+
+#define ENTRIES(function)                                                   \
+  {                                                                         \
+    {&function<2, sdk::LanesFloat>, &function<3, sdk::LanesFloat>},         \
+        {&function<2, sdk::LanesDouble>, &function<3, sdk::LanesDouble>}, { \
+      &function<2, double>, &function<3, double>                            \
+    }                                                                       \
+  }
+
+// ---- mistakes ----------------------------------------------------------------------------------------------------
+
+template <int D, class S>
+std::int32_t commits(const void* parameters, const mpm_trial_batch* batch) {
+  mpm_trial_batch request = *batch;
+  if (!request.trial_state) request.trial_state = const_cast<void* const*>(batch->state);
+  return sdk::trial_batch<VonMises, D, S>(parameters, &request);
+}
+constexpr mpm_material_trial committing_trial{MPM_MATERIAL_TRIAL_VERSION, 0, ENTRIES(commits)};
+
+template <int D, class S>
+std::int32_t forgets_time(const void* parameters, const mpm_trial_batch* batch) {
+  mpm_trial_batch request = *batch;
+  request.dt *= 0.999;
+  return sdk::trial_batch<VonMises, D, S>(parameters, &request);
+}
+constexpr mpm_material_trial slow_trial{MPM_MATERIAL_TRIAL_VERSION, 0, ENTRIES(forgets_time)};
+
+/// Elastic where the law flows.
+template <int D, class S>
+std::int32_t stays_elastic(const void* parameters, const mpm_tangent_batch* batch) {
+  VonMises::Parameters strong = *static_cast<const VonMises::Parameters*>(parameters);
+  strong.yield_stress *= 1e9;
+  return sdk::tangent_batch<VonMises, D, S>(&strong, batch);
+}
+constexpr mpm_material_tangent elastic_tangent{MPM_MATERIAL_TANGENT_VERSION, 0, nullptr, ENTRIES(stays_elastic)};
+constexpr mpm_material_tangent silent_tangent{MPM_MATERIAL_TANGENT_VERSION, 0, "", {}};
+
+/// Packs of float lose the direction's sign.
+template <int D, class S>
+std::int32_t turns_packs(const void* parameters, const mpm_tangent_batch* batch) {
+  const std::int32_t index = sdk::tangent_batch<NeoHookean, D, S>(parameters, batch);
+  using T = scalar_of<S>;
+  if (sizeof(T) == 4)
+    for (std::uint32_t lane = 0; lane < batch->count; ++lane) static_cast<T*>(batch->stress_change)[lane] *= T(-1);
+  return index;
+}
+constexpr mpm_material_tangent turning_tangent{MPM_MATERIAL_TANGENT_VERSION, 0, nullptr, ENTRIES(turns_packs)};
+
+/// Adds a stretch along x to what the law returns to.
+template <int D, class S>
+std::int32_t stretches(const void* parameters, const mpm_projection_batch* batch) {
+  const std::int32_t index = sdk::projection_batch<DruckerPrager, D, S>(parameters, batch);
+  using T = scalar_of<S>;
+  for (std::uint32_t lane = 0; lane < batch->count; ++lane) static_cast<T*>(batch->state[0])[lane] *= T(0.9);
+  return index;
+}
+constexpr mpm_material_projection stretching_projection{MPM_MATERIAL_PROJECTION_VERSION, 0, ENTRIES(stretches)};
+template <int D, class S>
+std::int32_t does_nothing(const void*, const mpm_projection_batch*) {
+  return -1;
+}
+constexpr mpm_material_projection idle_projection{MPM_MATERIAL_PROJECTION_VERSION, 0, ENTRIES(does_nothing)};
+
+struct ColdRubber : WarmRubber {  // takes a temperature and does not look at it
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S warmth(const WarmState<G>&) {
+    return S(real<S>(0));
+  }
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static Sym<G::dimension, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const WarmState<G>& state) {
+    return NeoHookean::kirchhoff_stress(c.solid, solid(state));
+  }
+};
+constexpr mpm_material_temperature other_reference{MPM_MATERIAL_TEMPERATURE_VERSION, 0, 300};
+
+struct IgnoresCells : BandHardening {
+  template <class T>
+  struct Constants : VonMises::Constants<T> {
+    MPM_HD explicit Constants(const Parameters& p)
+        : VonMises::Constants<T>(
+              VonMises::Parameters{p.youngs_modulus, p.poisson_ratio, p.density, p.yield_stress, 0, 2}) {}
+  };
+};
+constexpr mpm_material_cell_size shared_place{MPM_MATERIAL_CELL_SIZE_VERSION, 0};
+
+struct RefusesTangent : NeoHookean {
+  static constexpr const char* no_tangent = "its stress is looked up in a table";
+};
+
+void counts_nothing(const void*, const mpm_cost_case*, mpm_cost* cost) {
+  *cost = {0, 0};
+}
+constexpr mpm_costs no_costs{MPM_COSTS_VERSION, 0, &counts_nothing};
+void counts_backwards(const void*, const mpm_cost_case* of, mpm_cost* cost) {
+  *cost = {of->dimension == 2 ? 9.0 : 4.0, 0};
+}
+constexpr mpm_costs backward_costs{MPM_COSTS_VERSION, 0, &counts_backwards};
+void counts_lists(const void*, const mpm_cost_case*, mpm_cost* cost) {
+  *cost = {5, 3};
+}
+constexpr mpm_costs list_costs{MPM_COSTS_VERSION, 0, &counts_lists};
+
+struct LongStep : Fmpm {  // as if the order took nothing
+  static double step_limit(const Parameters&, double unfiltered) { return unfiltered; }
+};
+struct FixedStep : Fmpm {
+  static double step_limit(const Parameters&, double) { return 1e-3; }
+};
+struct LongerStep : Fmpm {
+  static double step_limit(const Parameters&, double unfiltered) { return 2 * unfiltered; }
+};
+template <class F>
+constexpr mpm_descriptor filter_of = sdk::filter<F>(test::fixture_manual, source);
+
+}  // namespace
+
+TEST_CASE("materials with temperature and with cell size conform") {
+  for (const ConformanceFinding& finding : findings(material_of<WarmRubber>)) {
+    INFO(to_string(finding));
+    CHECK(finding.passed);
+  }
+  for (const ConformanceFinding& finding : findings(material_of<BandHardening>)) {
+    INFO(to_string(finding));
+    CHECK(finding.passed);
+  }
+  CHECK(was_checked(material_of<WarmRubber>, "temperature_matters"));
+  CHECK(was_checked(material_of<WarmRubber>, "tangent_around_axis"));
+  CHECK(was_checked(material_of<BandHardening>, "cell_size_matters"));
+  CHECK(was_checked(material_of<BandHardening>, "projection_once"));
+  CHECK_FALSE(was_checked(material_of<WarmRubber>, "projection_once"));
+  CHECK_FALSE(was_checked(material_of<WarmRubber>, "cell_size_matters"));
+}
+
+TEST_CASE("a trial that commits the state or is another update is caught") {
+  check_caught(with_extension<committing_trial>(material_of<VonMises>), "trial_keeps_state");
+  check_caught(with_extension<slow_trial>(material_of<VonMises>), "trial_equals_update");
+}
+
+TEST_CASE("a wrong tangent is caught, and none at all needs a reason") {
+  check_caught(with_extension<elastic_tangent>(material_of<VonMises>), "tangent_is_derivative");
+  check_caught(with_extension<elastic_tangent>(material_of<VonMises>), "tangent_around_axis");
+  check_caught(with_extension<turning_tangent>(material_of<NeoHookean>), "tangent_agrees_with_scalar");
+  check_caught(with_extension<silent_tangent>(material_of<VonMises>), "tangent_or_reason");
+  CHECK(failures(material_of<RefusesTangent>).empty());
+  CHECK_FALSE(was_checked(material_of<RefusesTangent>, "tangent_is_derivative"));
+}
+
+TEST_CASE("a wrong projection is caught") {
+  const std::set<std::string> failed = failures(with_extension<stretching_projection>(material_of<DruckerPrager>));
+  CAPTURE(failed);
+  CHECK(failed.count("projection_keeps_admissible") == 1);
+  CHECK(failed.count("projection_once") == 1);
+  CHECK(failed.count("projection_objective") == 1);
+  CHECK(failed.count("projection_lowers_energy") == 1);
+  check_caught(with_extension<idle_projection>(material_of<DruckerPrager>), "projection_is_admissible");
+}
+
+TEST_CASE("temperatures and cell sizes that do nothing are caught") {
+  check_caught(material_of<ColdRubber>, "temperature_matters");
+  check_caught(with_extension<other_reference>(material_of<WarmRubber>), "absent_temperature_is_reference");
+  check_caught(material_of<IgnoresCells>, "cell_size_matters");
+  check_caught(with_extension<shared_place>(material_of<BandHardening>), "cell_size_has_own_place");
+}
+
+TEST_CASE("wrong operation counts are caught") {
+  check_caught(with_extension<no_costs>(material_of<NeoHookean>), "costs_positive");
+  check_caught(with_extension<backward_costs>(material_of<NeoHookean>), "costs_ordered");
+  check_caught(with_extension<list_costs>(material_of<NeoHookean>), "costs_nodes");
+}
+
+TEST_CASE("a filter's limit of the step covers what it amplifies") {
+  CHECK(failures(filter_of<Fmpm>).empty());
+  CHECK(failures(filter_of<Xpic>).empty());
+  check_caught(filter_of<LongStep>, "step_limit_covers_gain");
+  check_caught(filter_of<FixedStep>, "step_limit_proportional");
+  check_caught(filter_of<LongerStep>, "step_limit_shortens");
+  mpm_descriptor without = filter_of<Fmpm>;
+  without.extension = nullptr;
+  check_caught(without, "step_limit_covers_gain");
+}
+
+TEST_CASE("the tangent of a tension test is Young's modulus where it is small, and less where metal flows") {
+  // One particle, confined at its sides: dtau_xx / deps_xx = lambda + 2 mu at rest. Beyond yield, without hardening, a
+  // shear adds no stress: dtau_xy / dgamma falls to zero as the shear grows.
+  const VonMises::Parameters metal{200e9, 0.3, 7800, 250e6, 0, 0};
+  const double lambda = lame_lambda(200e9, 0.3), mu = shear_modulus(200e9, 0.3);
+  alignas(64) double state[4 + 2][MPM_LANES]{}, gradient[4][MPM_LANES]{}, direction[4][MPM_LANES]{};
+  alignas(64) double change[4][MPM_LANES];
+  for (std::uint32_t lane = 0; lane < MPM_LANES; ++lane)
+    state[0][lane] = state[1][lane] = state[2][lane] = state[4][lane] = 1;
+  const void* const fields[] = {state[0], state[4], state[5]};
+  mpm_tangent_batch request{};
+  request.count = request.stride = MPM_LANES, request.dimension = 2, request.dt = 1;
+  request.velocity_gradient = gradient, request.direction = direction;
+  request.state = fields, request.stress_change = change;
+  const Plugin plugin{&material_of<VonMises>, "test"};
+  const auto* tangent = extension_of<mpm_material_tangent>(plugin);
+  REQUIRE(tangent);
+  for (double& entry : direction[0]) entry = 1;
+  CHECK(tangent->evaluate[MPM_SCALAR_DOUBLE][0](&metal, &request) == -1);
+  CHECK(change[0][0] == Approx(lambda + 2 * mu).epsilon(1e-12));
+  CHECK(change[1][0] == Approx(lambda).epsilon(1e-12));
+  for (int lane = 0; lane < 2; ++lane) {  // shears of 0.1 % (elastic) and 2 %
+    direction[0][lane] = 0, direction[1][lane] = 1;
+    gradient[1][lane] = lane == 0 ? 1e-3 : 2e-2;
+  }
+  tangent->evaluate[MPM_SCALAR_DOUBLE][0](&metal, &request);
+  CHECK(change[3][0] == Approx(mu).epsilon(1e-5));
+  CHECK(std::abs(change[3][1]) < 1e-3 * mu);
+}
+
+}  // namespace mpm

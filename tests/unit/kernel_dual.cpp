@@ -1,0 +1,137 @@
+// Derivatives that dual numbers carry, against those that calculus gives: of elementary functions, of the rotation of a
+// polar decomposition, and of functions of singular values where these are equal.
+
+#include "kernel/dual.hpp"
+
+#include <cmath>
+
+#include "kernel/lanes.hpp"
+#include "support/catch.hpp"
+
+using namespace mpm;
+
+namespace {
+
+using X = Dual<double>;
+
+X variable(double x) {
+  return {x, 1};
+}
+
+template <int D>
+Mat<D, X> along(const Mat<D, double>& A, const Mat<D, double>& dA) {
+  return with_derivatives(A, dA);
+}
+
+template <int D>
+Mat<D, double> difference(const Mat<D, double>& a, const Mat<D, double>& b) {
+  Mat<D, double> r;
+  for (int k = 0; k < D * D; ++k) r.m[k] = a.m[k] - b.m[k];
+  return r;
+}
+template <int D>
+double largest(const Mat<D, double>& a) {
+  double r = 0;
+  for (const double entry : a.m) r = std::max(r, std::abs(entry));
+  return r;
+}
+
+/// ln of the left stretch, U diag(ln s) U^T, whose derivative at F = I is the symmetric part of dF.
+template <int D>
+Mat<D, X> left_hencky_strain(const Mat<D, X>& F) {
+  const LeftStretches<D, X> parts = left_stretches(F);
+  Mat<D, X> r{};
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j)
+      for (int k = 0; k < D; ++k) r(i, j) = r(i, j) + parts.U(i, k) * log(parts.stretch[k]) * parts.U(j, k);
+  return r;
+}
+
+const Mat<3, double> some{{0.3, -0.7, 0.2, 0.5, 0.1, -0.4, 0.6, 0.9, -0.8}};
+
+}  // namespace
+
+TEST_CASE("derivatives of elementary functions") {
+  const X x = variable(0.7);
+  CHECK((x * x * x).derivative == Approx(3 * 0.7 * 0.7));
+  CHECK((2.0 / x).derivative == Approx(-2 / (0.7 * 0.7)));
+  CHECK((x / (x + 1.0)).derivative == Approx(1 / (1.7 * 1.7)));
+  CHECK(sqrt(x).derivative == Approx(0.5 / std::sqrt(0.7)));
+  CHECK(log(x).derivative == Approx(1 / 0.7));
+  CHECK(exp(-x).derivative == Approx(-std::exp(-0.7)));
+  CHECK(abs(variable(-0.7)).derivative == -1);
+  CHECK(floor(x).derivative == 0);
+  CHECK(max(x, 3.0 * x).derivative == 3);
+  CHECK(min(x, 3.0 * x).derivative == 1);
+  CHECK(select(x > 0.5, x * x, X(1.0)).derivative == Approx(1.4));
+  CHECK(sqrt(X(0, 1)).derivative == 0);  // a choice: there is none
+}
+
+TEST_CASE("packs carry the derivatives of each lane") {
+  using L = Lanes<double>;
+  alignas(64) double values[L::width], slopes[L::width];
+  for (int i = 0; i < L::width; ++i) values[i] = 0.5 + i, slopes[i] = 1.0 - i;
+  const Dual<L> x(L::load(values), L::load(slopes));
+  const Dual<L> y = select(x > 1.0, x * log(x), sqrt(x));
+  for (int i = 0; i < L::width; ++i) {
+    CHECK(y.value[i] == Approx(values[i] > 1 ? values[i] * std::log(values[i]) : std::sqrt(values[i])));
+    CHECK(y.derivative[i] ==
+          Approx(slopes[i] * (values[i] > 1 ? std::log(values[i]) + 1 : 0.5 / std::sqrt(values[i]))));
+  }
+}
+
+TEST_CASE("the rotation nearest to the identity turns with the skew part of its change alone") {
+  const auto R = nearest_rotation(along(Mat<3, double>::identity(), some));
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      CHECK(R(i, j).value == Approx(i == j ? 1 : 0).margin(1e-15));
+      CHECK(R(i, j).derivative == Approx(0.5 * (some(i, j) - some(j, i))).margin(1e-15));
+    }
+  // In the plane the angle of F is atan2(F10 - F01, F00 + F11).
+  const Mat<2, double> F{{1.3, -0.4, 0.6, 0.9}}, dF{{0.2, 0.5, -0.3, 0.7}};
+  const double s = F(1, 0) - F(0, 1), c = F(0, 0) + F(1, 1), ds = dF(1, 0) - dF(0, 1), dc = dF(0, 0) + dF(1, 1);
+  const double rate = (c * ds - s * dc) / (c * c + s * s), length = std::hypot(c, s);
+  const auto plane = nearest_rotation(along(F, dF));
+  CHECK(plane(1, 0).value == Approx(s / length));
+  CHECK(plane(1, 0).derivative == Approx(c / length * rate));
+  CHECK(plane(0, 0).derivative == Approx(-s / length * rate));
+}
+
+TEST_CASE("the rotation nearest to a matrix changes as differences say, however far its stretches are apart") {
+  for (const double stretch : {1.0, 3.0, 400.0}) {  // the last leaves the closed form to singular values
+    Mat<3, double> F = some;
+    for (int i = 0; i < 3; ++i) F(i, i) += i == 0 ? stretch + 1 : 2;
+    const Mat<3, double> dF{{0.1, 0.4, -0.3, 0.2, -0.6, 0.5, -0.1, 0.3, 0.7}};
+    Mat<3, double> ahead = F, behind = F;
+    const double h = 1e-5;
+    for (int k = 0; k < 9; ++k) ahead.m[k] += h * dF.m[k], behind.m[k] -= h * dF.m[k];
+    Mat<3, double> rate = difference(nearest_rotation(ahead), nearest_rotation(behind));
+    for (double& entry : rate.m) entry /= 2 * h;
+    CHECK(largest(difference(derivatives_of(nearest_rotation(along(F, dF))), rate)) < 1e-9);
+  }
+}
+
+TEST_CASE("functions of equal singular values have their derivative") {
+  // ln V at F = a I: dF_sym / a, although the directions of the stretches turn without limit.
+  for (const double a : {1.0, 0.4}) {
+    Mat<3, double> F{};
+    for (int i = 0; i < 3; ++i) F(i, i) = a;
+    const auto strain = left_hencky_strain(along(F, some));
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        CHECK(strain(i, j).derivative == Approx(0.5 * (some(i, j) + some(j, i)) / a).margin(1e-7));
+  }
+  const Mat<2, double> one = Mat<2, double>::identity(), change{{0.2, 0.5, -0.3, 0.7}};
+  const auto plane = left_hencky_strain(along(one, change));
+  CHECK(plane(0, 1).derivative == Approx(0.1).margin(1e-7));
+  CHECK(plane(1, 1).derivative == Approx(0.7).margin(1e-7));
+}
+
+TEST_CASE("singular values, put together again, change as the matrix does") {
+  Mat<3, double> F = some;
+  for (int i = 0; i < 3; ++i) F(i, i) += 1.5;
+  for (const Mat<3, double>& A : {F, Mat<3, double>::identity()}) {
+    const auto parts = singular_value_decomposition(along(A, some));
+    CHECK(largest(difference(derivatives_of(composed(parts.U, parts.values, parts.V)), some)) < 1e-7);
+  }
+}
