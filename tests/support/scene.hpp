@@ -11,6 +11,7 @@
 #include "backends/make_backend.hpp"
 #include "experiment/read.hpp"
 #include "metrics/metrics.hpp"
+#include "solvers/solver.hpp"
 
 namespace mpm::test {
 
