@@ -209,7 +209,10 @@ int run_command_line(int argc, char** argv) {
       app.add_subcommand("plan", "show what a run will hold and do, with bytes, and which line asked for it");
   add_experiment(*plan_verb, options);
   plan_verb->add_flag("--json", json, "as JSON");
-  plan_verb->callback([&] { code = guarded([&] { return plan(options, json); }); });
+  std::string graph;
+  plan_verb->add_option("--graph", graph, "writes the step as a picture (SVG): operators, fields, loops, and who asked")
+      ->type_name("OUT.svg");
+  plan_verb->callback([&] { code = guarded([&] { return plan(options, json, graph); }); });
 
   auto* list_verb = app.add_subcommand("list", "every plugin found, by kind");
   list_verb->add_flag("--json", json, "as JSON");

@@ -68,7 +68,7 @@ Registry load_registry();
 
 int run(const RunOptions& options);
 int check(const RunOptions& options);
-int plan(const RunOptions& options, bool json);
+int plan(const RunOptions& options, bool json, const std::string& graph);
 int list(bool json);
 /// Which components run together and which are refused, generated from the same function that refuses.
 int list_combinations(bool json);

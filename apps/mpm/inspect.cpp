@@ -12,6 +12,7 @@
 #include "plan/compatibility.hpp"
 #include "plugin/extension_of.hpp"
 #include "solvers/solver.hpp"
+#include "support/files.hpp"
 
 namespace mpm::app {
 namespace {
@@ -140,11 +141,15 @@ int check(const RunOptions& options) {
   return done;
 }
 
-int plan(const RunOptions& options, bool json) {
+int plan(const RunOptions& options, bool json, const std::string& graph) {
   const Registry registry = load_registry();
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const Plan plan = make_plan(experiment);
-  if (json)
+  if (!graph.empty()) {
+    const std::string title = experiment.title.empty() ? options.file.stem().string() : experiment.title;
+    support::write_atomically(graph, plan.to_svg("One step of: " + title));
+    std::cout << graph << "\n";
+  } else if (json)
     std::cout << plan.to_json().dump(2) << "\n";
   else
     std::cout << plan.to_text();

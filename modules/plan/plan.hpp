@@ -67,6 +67,8 @@ struct Plan {
   std::uint64_t bytes_per_node() const;
   nlohmann::ordered_json to_json() const;
   std::string to_text() const;
+  /// The step as a picture: operators, the fields that they use, loops and conditions, and who asked for each.
+  std::string to_svg(const std::string& title) const;
 };
 
 /// How a backend works, as far as it changes what a step holds and does.

@@ -484,13 +484,14 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
                                      0,
                                      step,
                                      in[0].data(),
+                                     nullptr,
+                                     nullptr,
                                      state.data(),
                                      out[1].data(),
                                      out[2].data(),
                                      out[3].data(),
                                      out[4].data(),
-                                     out[5].data(),
-                                     nullptr};
+                                     out[5].data()};
       plugin.material().update[MPM_SCALAR_DOUBLE][axis](parameters.data(), &batch);
     }
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "parity/parity.hpp"
+#include "plugin/extension_of.hpp"
 #include "support/results.hpp"
 
 using namespace mpm;

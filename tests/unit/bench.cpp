@@ -7,6 +7,7 @@
 #include "bench/table.hpp"
 #include "kernel/counted.hpp"
 #include "kernel/tensor.hpp"
+#include "solvers/solver.hpp"
 #include "support/catch.hpp"
 #include "support/differences.hpp"
 #include "support/scene.hpp"
