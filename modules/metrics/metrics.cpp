@@ -91,11 +91,13 @@ void Metrics::add_body(int body, Totals& totals) const {
     double x[3] = {}, v[3] = {};
     std::copy_n(&state.position[p * D], D, x);
     std::copy_n(&state.velocity[p * D], D, v);
-    const double speed_squared = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    const double speed_squared = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], speed = std::sqrt(speed_squared);
     totals.mass += m;
     totals.kinetic += 0.5 * m * speed_squared;
     totals.strain += state.volume * state.ring(p) * material.stored_energy[p];
-    totals.largest_speed = std::max(totals.largest_speed, std::sqrt(speed_squared));
+    totals.largest_speed = std::max(totals.largest_speed, speed);
+    totals.momentum_scale += m * speed;
+    totals.angular_momentum_scale += m * speed * std::hypot(x[0], x[1], x[2]);
     totals.smallest_volume_ratio = std::min(totals.smallest_volume_ratio, material.volume_ratio[p]);
     totals.largest_volume_ratio = std::max(totals.largest_volume_ratio, material.volume_ratio[p]);
     const auto L = cross(x, v);

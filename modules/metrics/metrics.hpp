@@ -21,6 +21,8 @@ struct Totals {
   std::array<double, 3> momentum{};                   ///< kg m/s
   std::array<double, 3> angular_momentum{};           ///< kg m^2/s about the centre of mass, affine part included
   std::array<double, 3> centre_of_mass{};             ///< m
+  /// sum m |v| and sum m |x| |v|: sizes of the terms that the momenta are sums of, against which those may be rounding.
+  double momentum_scale = 0, angular_momentum_scale = 0;
   double smallest_volume_ratio = 0, largest_volume_ratio = 0;
   double largest_speed = 0;                               ///< m/s
   double position_error_rms = 0, position_error_max = 0;  ///< m, against the exact solution

@@ -57,8 +57,8 @@ void write_report(const std::filesystem::path& run_folder) {
       "<meta name=\"color-scheme\" content=\"light dark\">\n<title>";
   page += report::title_text(run) + "</title>\n<style>" + report::style() + "</style>\n</head>\n<body>\n<main>\n";
   for (const auto part :
-       {report::heading, report::outcome, report::headline_numbers, report::expectations, report::figures,
-        report::frames, report::measurements, report::methods, report::plan, report::reproduction, report::files}) {
+       {report::heading, report::outcome, report::headline_numbers, report::expectations, report::frames,
+        report::figures, report::measurements, report::methods, report::plan, report::reproduction, report::files}) {
     page += part(run);
   }
   page += "</main>\n</body>\n</html>\n";

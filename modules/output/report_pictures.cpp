@@ -1,7 +1,10 @@
 // The figures and particle frames of the report, embedded so that the page is one file.
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "output/report_parts.hpp"
+#include "output/rounding.hpp"
 #include "support/base64.hpp"
 #include "support/files.hpp"
 #include "support/natural_order.hpp"
@@ -27,6 +30,16 @@ std::string caption_of(const fs::path& path) {
   return words;
 }
 
+// What a reader asks first comes first; figures of other names follow as people count.
+constexpr std::array<std::string_view, 9> reading_order{"energy",        "dissipation", "contact",
+                                                        "contact_nodes", "error",       "ledger",
+                                                        "volume_ratio",  "momentum",    "angular_momentum"};
+
+std::size_t place_of(const fs::path& figure) {
+  return static_cast<std::size_t>(std::find(reading_order.begin(), reading_order.end(), figure.stem().string()) -
+                                  reading_order.begin());
+}
+
 // One picture a figure: the vector twin, which is sharp at every width, unless it is very large and there are pixels.
 std::vector<fs::path> chosen_figures(const fs::path& folder) {
   std::vector<fs::path> chosen;
@@ -37,6 +50,8 @@ std::vector<fs::path> chosen_figures(const fs::path& folder) {
                              (!fs::exists(vector, error) || fs::file_size(vector, error) > largest_vector_figure);
     if (path == (take_pixels ? pixels : vector)) chosen.push_back(path);
   }
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [](const fs::path& a, const fs::path& b) { return place_of(a) < place_of(b); });
   return chosen;
 }
 
@@ -64,13 +79,19 @@ std::vector<fs::path> spread_evenly(const std::vector<fs::path>& all, std::size_
 }  // namespace
 
 std::string figures(const Run& run) {
-  std::string html;
+  const RoundingRule rule(run);
+  std::string html, folded;
   for (const fs::path& path : chosen_figures(run.folder / "figures")) {
     const std::string caption = caption_of(path);
-    html += "<figure>" + image(path, caption) + "<figcaption><b>" + escape_html(caption) + "</b><span>" +
-            twin_links(path) + "</span></figcaption></figure>\n";
+    const std::string figure = "<figure>" + image(path, caption) + "<figcaption><b>" + escape_html(caption) +
+                               "</b><span>" + twin_links(path) + "</span></figcaption></figure>";
+    if (const auto remark = rule.remark(path.stem().string()))
+      folded +=
+          "<details><summary><b>" + escape_html(caption) + "</b>: " + *remark + "</summary>" + figure + "</details>\n";
+    else
+      html += figure + "\n";
   }
-  return section("Figures", html);
+  return section("Figures", html + folded);
 }
 
 std::string frames(const Run& run) {

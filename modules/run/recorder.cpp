@@ -69,8 +69,8 @@ void Recorder::save(ArchiveWriter& archive) {
     archive.put("vtk_name", name);
   }
   archive.put("latest", latest_);
-  archive.put("extremes",
-              std::array{largest_energy_, smallest_J_, largest_J_, largest_contact_force_, largest_penetration_});
+  archive.put("extremes", std::array{largest_energy_, smallest_J_, largest_J_, largest_contact_force_,
+                                     largest_penetration_, momentum_scale_, angular_momentum_scale_});
   archive.put("most_contact_nodes", most_contact_nodes_);
 }
 
@@ -105,13 +105,15 @@ void Recorder::restore(ArchiveReader& archive) {
     archive.get("vtk_name", name);
   }
   archive.get("latest", latest_);
-  std::array<double, 5> extremes{};
+  std::array<double, 7> extremes{};
   archive.get("extremes", extremes);
   largest_energy_ = extremes[0];
   smallest_J_ = extremes[1];
   largest_J_ = extremes[2];
   largest_contact_force_ = extremes[3];
   largest_penetration_ = extremes[4];
+  momentum_scale_ = extremes[5];
+  angular_momentum_scale_ = extremes[6];
   archive.get("most_contact_nodes", most_contact_nodes_);
   support::cut_to(table, rows);
   start();
@@ -145,6 +147,8 @@ void Recorder::record_row() {
   largest_energy_ = std::max(largest_energy_, latest_.total_energy());
   smallest_J_ = std::min(smallest_J_, latest_.smallest_volume_ratio);
   largest_J_ = std::max(largest_J_, latest_.largest_volume_ratio);
+  momentum_scale_ = std::max(momentum_scale_, latest_.momentum_scale);
+  angular_momentum_scale_ = std::max(angular_momentum_scale_, latest_.angular_momentum_scale);
   const ContactRecord& contact = simulation_.backend().contact_record();
   largest_contact_force_ =
       std::max(largest_contact_force_, std::hypot(contact.force[0], contact.force[1], contact.force[2]));

@@ -44,6 +44,8 @@ class Recorder {
   double largest_volume_ratio() const { return largest_J_; }
   double largest_contact_force() const { return largest_contact_force_; }
   double largest_penetration() const { return largest_penetration_; }
+  double momentum_scale() const { return momentum_scale_; }
+  double angular_momentum_scale() const { return angular_momentum_scale_; }
   long most_contact_nodes() const { return most_contact_nodes_; }
 
  private:
@@ -71,6 +73,7 @@ class Recorder {
   std::vector<std::pair<double, std::string>> vtk_files_;
   Totals latest_;
   double largest_energy_ = 0, smallest_J_ = 1, largest_J_ = 1, largest_contact_force_ = 0, largest_penetration_ = 0;
+  double momentum_scale_ = 0, angular_momentum_scale_ = 0;  ///< largest of the rows
   long most_contact_nodes_ = 0;
 };
 

@@ -126,6 +126,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
     if (std::abs(start.angular_momentum[c]) > 1e-9 * scale_of_spin)
       json["momentum"]["angular"]["final_over_initial"][std::string(1, "xyz"[c])] =
           end.angular_momentum[c] / start.angular_momentum[c];
+  json["scales"] = {{"momentum", recorder.momentum_scale()}, {"angular_momentum", recorder.angular_momentum_scale()}};
   json["centre_of_mass"] = {{"initial", by_axis(start.centre_of_mass, first, experiment.dimension)},
                             {"final", by_axis(end.centre_of_mass, first, experiment.dimension)}};
   if (simulation.plan().contact) {

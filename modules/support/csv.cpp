@@ -1,8 +1,8 @@
 #include "support/csv.hpp"
 
 #include <fcntl.h>
-#include <charconv>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "support/files.hpp"
@@ -59,15 +59,9 @@ std::string_view without_unit(std::string_view name) {
   return has_unit ? trimmed(name.substr(0, bracket)) : name;
 }
 
-bool parse_number(std::string_view cell, double& value) {
-  cell = trimmed(cell);
-  if (cell.starts_with('+')) cell.remove_prefix(1);
-  if (cell.empty()) {
-    value = std::numeric_limits<double>::quiet_NaN();
-    return true;
-  }
-  const auto result = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return result.ec == std::errc{} && result.ptr == cell.data() + cell.size();
+// An empty cell is NaN.
+std::optional<double> cell_number(std::string_view cell) {
+  return trimmed(cell).empty() ? std::numeric_limits<double>::quiet_NaN() : number_in(cell);
 }
 
 std::runtime_error malformed(const fs::path& path, std::size_t line, const std::string& what) {
@@ -82,10 +76,27 @@ void append_cells(Table& table, std::string_view line, const fs::path& path, std
         "this row has " + std::to_string(cells.size()) + " cells, the header " + std::to_string(table.header.size()));
   }
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    double value = 0.0;
-    if (!parse_number(cells[i], value)) throw malformed(path, line_number, "'" + cells[i] + "' is not a number");
-    table.columns[i].push_back(value);
+    const std::optional<double> value = cell_number(cells[i]);
+    if (!value) throw malformed(path, line_number, "'" + cells[i] + "' is not a number");
+    table.columns[i].push_back(*value);
   }
+}
+
+// Calls `take` with each line that is not empty and its number. False when the last line has no end and was left out:
+// "0.12" may be the start of "0.1234", and no row is better than a wrong one.
+template <typename Take>
+bool for_each_line(const fs::path& path, Take&& take) {
+  const std::string bytes = read_file(path);
+  std::string_view rest = bytes;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // spreadsheets put this mark before their text
+  for (std::size_t line_number = 1; !rest.empty(); ++line_number) {
+    const auto end = rest.find('\n');
+    if (end == std::string_view::npos) return false;
+    const std::string_view line = trimmed(rest.substr(0, end));
+    rest.remove_prefix(end + 1);
+    if (!line.empty()) take(line, line_number);
+  }
+  return true;
 }
 
 void require_even(const Table& table) {
@@ -165,27 +176,22 @@ const std::vector<double>* Table::find(std::string_view name) const {
 }
 
 Table read_csv(const fs::path& path) {
-  const std::string bytes = read_file(path);
-  std::string_view rest = bytes;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // spreadsheets put this mark before their text
   Table table;
-  for (std::size_t line_number = 1; !rest.empty(); ++line_number) {
-    const auto end = rest.find('\n');
-    if (end == std::string_view::npos) {
-      table.last_line_was_cut = true;  // "0.12" may be the start of "0.1234": better no row than a wrong one
-      break;
-    }
-    const std::string_view line = trimmed(rest.substr(0, end));
-    rest.remove_prefix(end + 1);
-    if (line.empty()) continue;
+  table.last_line_was_cut = !for_each_line(path, [&](std::string_view line, std::size_t line_number) {
     if (table.header.empty()) {
       for (const std::string& cell : split_cells(line)) table.header.emplace_back(trimmed(cell));
       table.columns.resize(table.header.size());
     } else {
       append_cells(table, line, path, line_number);
     }
-  }
+  });
   return table;
+}
+
+std::vector<std::vector<std::string>> read_csv_cells(const fs::path& path) {
+  std::vector<std::vector<std::string>> rows;
+  for_each_line(path, [&](std::string_view line, std::size_t) { rows.push_back(split_cells(line)); });
+  return rows;
 }
 
 void write_csv(const fs::path& path, const Table& table) {
@@ -203,8 +209,8 @@ void drop_rows_after(const fs::path& path, double last) {
   std::size_t kept = bytes.find('\n') + 1;
   for (std::size_t end; (end = bytes.find('\n', kept)) != std::string::npos; kept = end + 1) {
     const std::string_view line(bytes.data() + kept, end - kept);
-    double first = 0.0;
-    if (!parse_number(line.substr(0, line.find(',')), first) || !(first <= last)) break;
+    const std::optional<double> first = cell_number(line.substr(0, line.find(',')));
+    if (!first || !(*first <= last)) break;
   }
   if (kept < bytes.size()) write_atomically(path, std::string_view(bytes).substr(0, kept));
 }

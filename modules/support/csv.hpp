@@ -70,6 +70,10 @@ struct Table {
 /// @throws MachineError when the file cannot be read; std::runtime_error naming path and line when a row is malformed.
 Table read_csv(const std::filesystem::path& path);
 
+/// Reads a table that also holds words (the twin of a figure): its whole lines, the header first, as cells.
+/// @throws MachineError when the file cannot be read.
+std::vector<std::vector<std::string>> read_csv_cells(const std::filesystem::path& path);
+
 /// Writes a whole table at once (the twin of a figure). @throws MachineError, std::invalid_argument on ragged columns.
 void write_csv(const std::filesystem::path& path, const Table& table);
 

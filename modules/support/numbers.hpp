@@ -1,7 +1,9 @@
 // How a number becomes text that a program reads back. None of these depends on the locale.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace mpm::support {
 
@@ -14,10 +16,15 @@ void append_shortest(std::string& text, double value);
 /// Seventeen significant digits, enough to read the same double back; columns of them are about equally wide.
 std::string full_precision(double value);
 
-/// Fixed notation: `decimals` digits (0 to 17; others are taken as the nearest) after the point, a point only with them.
+/// Fixed notation: `decimals` digits after the point (0 to 17; others are taken as the nearest), and a point only with
+/// them.
 std::string fixed_point(double value, int decimals);
 
 /// A fixed notation without zeros at the end of its fraction, nor a point at its end: "2.50" becomes "2.5", "3.0" "3".
 std::string without_trailing_zeros(std::string digits);
+
+/// The number that the whole of `text` is, blanks around it left out; a plus sign may stand before it. Nothing when it
+/// is none.
+std::optional<double> number_in(std::string_view text);
 
 }  // namespace mpm::support

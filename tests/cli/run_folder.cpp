@@ -109,6 +109,27 @@ TEST_CASE("the run folder holds what the contract says") {
   CHECK(!has(report, "<script src"));
 }
 
+TEST_CASE("the summary gives the sizes that momenta are held against, and the report folds what is rounding") {
+  const Folder folder;
+  Json scene = ball();
+  scene["bodies"][0]["velocity"] = {0.3, 0.4};
+  scene["figures"] = {"momentum", "energy"};
+  REQUIRE(run_scene(folder, scene).code == 0);
+  const Json summary = json_in(folder / "run/summary.json");
+  // A ball of 20 kg/m at 0.5 m/s, as heavy as its particles: sum m |v| is the momentum itself. |x| is convex, so that
+  // its mean over the ball is above that of the centre, which flies from (0.5, 0.5) to (0.53, 0.54).
+  const double p = std::hypot(summary["momentum"]["linear"]["initial"]["x"].get<double>(),
+                              summary["momentum"]["linear"]["initial"]["y"].get<double>());
+  CHECK(summary["scales"]["momentum"].get<double>() == Approx(p).epsilon(1e-12));
+  const double distance = summary["scales"]["angular_momentum"].get<double>() / p;
+  CHECK(distance > std::hypot(0.53, 0.54));
+  CHECK(distance < 1.03 * std::hypot(0.53, 0.54));
+  const std::string report = slurp(folder / "run/report.html");
+  CHECK(report.find("alt=\"energy\"") < report.find("alt=\"momentum\""));
+  CHECK(!has(report, "<details><summary><b>momentum</b>"));
+  CHECK(has(report, "<details><summary><b>angular momentum</b>: rounding"));
+}
+
 TEST_CASE("VTK's own reader reads what was written") {
   const Folder folder;
   const char* python = "/usr/bin/python3";

@@ -8,6 +8,7 @@
 #include "support/base64.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"
+#include "support/numbers.hpp"
 #include "unit/output_support.hpp"
 
 namespace fs = std::filesystem;
@@ -139,6 +140,98 @@ TEST_CASE("odd types anywhere in the record are shown, not fatal", "[output][rep
     run.write_json("summary.json", {{"energy", {{"ledger", value}}}, {"performance", {{"seconds_by_pass", value}}}});
     CHECK_NOTHROW(write_report(run.root()));
   }
+}
+
+namespace {
+
+/// The twin that render/curves.cpp writes: two curves of three points.
+void draw_curves(const RunFolder& run, const std::string& stem, const std::vector<double>& numbers) {
+  std::string twin = "series,kind,time t (s),\"y, shown\",error,point\n";
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    twin += std::string(k < 3 ? "p x" : "p y") + ",line," + std::to_string(k % 3) + "," +
+            mpm::support::full_precision(numbers[k]) + ",,\n";
+  write_atomically(run.figures() / (stem + ".csv"), twin);
+  write_atomically(run.figures() / (stem + ".png"), picture);
+}
+
+/// sum m |v| = 10 kg m/s, sum m |x| |v| = 40 kg m^2/s, 5 s, at most 8 J: energies are rounding to 8e-12 J.
+RunFolder run_with_sizes(const fs::path& path) {
+  RunFolder run = RunFolder::create(path);
+  run.write_json("summary.json", {{"simulated_time", 5.0},
+                                  {"scales", {{"momentum", 10.0}, {"angular_momentum", 40.0}}}});
+  write_atomically(run.root() / "metrics.csv",
+                   "time (s),kinetic energy (J),strain energy (J),gravitational energy (J)\n0,8,0,0\n5,1,2,-3\n");
+  return run;
+}
+
+bool is_folded(const std::string& html, const std::string& caption) {
+  return contains(html, "<details><summary><b>" + caption + "</b>: ");
+}
+
+}  // namespace
+
+TEST_CASE("figures stand in the order of a reader's questions, after the frames", "[output][report]") {
+  const TemporaryFolder scratch;
+  const RunFolder run = run_with_sizes(scratch / "run");
+  for (const char* stem : {"volume_ratio", "angular_momentum", "a_figure_of_my_own", "error", "ledger", "contact_nodes",
+                           "momentum", "contact", "dissipation", "energy"})
+    write_atomically(run.figures() / (std::string(stem) + ".png"), picture);
+  write_atomically(run.frames() / "frame_0000.png", picture);
+  const std::string html = report_of(run);
+  std::size_t last = 0;
+  for (const char* caption : {"frame 0000", "energy", "dissipation", "contact", "contact nodes", "error", "ledger",
+                              "volume ratio", "momentum", "angular momentum", "a figure of my own"}) {
+    const std::size_t place = html.find("alt=\"" + std::string(caption) + "\"");
+    CAPTURE(caption);
+    REQUIRE(place != std::string::npos);
+    CHECK(place > last);
+    last = place;
+  }
+}
+
+TEST_CASE("a figure of rounding is folded away behind the others, and says how small it is", "[output][report]") {
+  const TemporaryFolder scratch;
+  const RunFolder run = run_with_sizes(scratch / "run");
+  draw_curves(run, "momentum", {0, 9e-12, -3e-15, 0, 0, 1e-13});
+  draw_curves(run, "angular_momentum", {0, -1.01e-15, 0, 0, 0, 0});
+  draw_curves(run, "contact", {0, 0, 0, 0, 0, 0});
+  draw_curves(run, "volume_ratio", {1, 1 + 4.44e-16, 1, 1, 1, 1});
+  draw_curves(run, "error", {0, 3.9e-12, 0, 0, 0, 0});
+  draw_curves(run, "dissipation", {0, 7.9e-12, 0, 0, 0, 0});
+  write_atomically(run.figures() / "ledger.csv", "time t (s),\"filter, all (J)\",residual (J)\n0,1e-13,-7.9e-12\n");
+  write_atomically(run.figures() / "ledger.png", picture);
+  draw_curves(run, "energy", {8, 2, -3, 0, 0, 0});
+  const std::string html = report_of(run);
+  CHECK(contains(html, "<b>angular momentum</b>: rounding, at most 2.6×10<sup>−17</sup> of Σ m |x| |v|</summary>"));
+  CHECK(contains(html, "<b>contact</b>: zero throughout"));
+  for (const char* caption : {"momentum", "volume ratio", "error", "dissipation", "ledger"}) {
+    CAPTURE(caption);
+    CHECK(is_folded(html, caption));
+    CHECK(html.find("alt=\"" + std::string(caption) + "\"") > html.find("alt=\"energy\""));
+  }
+  CHECK_FALSE(is_folded(html, "energy"));
+}
+
+TEST_CASE("a figure that may show more than rounding is not folded", "[output][report]") {
+  const TemporaryFolder scratch;
+  const RunFolder run = run_with_sizes(scratch / "run");
+  draw_curves(run, "momentum", {0, 0, 0, 0, 0, -1.1e-11});     // one number is enough
+  draw_curves(run, "angular_momentum", {0, NAN, 0, 0, 0, 0});  // a run that broke down
+  draw_curves(run, "contact", {0, 2.1e-12, 0, 0, 0, 0});       // 10 kg m/s in 5 s are 2 N
+  draw_curves(run, "contact_nodes", {0, 1, 0, 0, 0, 0});
+  draw_curves(run, "volume_ratio", {1, 1, 1, 1, 1, 1 + 1.1e-12});
+  draw_curves(run, "error", {0, 4.1e-12, 0, 0, 0, 0});  // 4 m from the origin
+  draw_curves(run, "dissipation", {0, 8.1e-12, 0, 0, 0, 0});
+  write_atomically(run.figures() / "ledger.csv", "time t (s),filter (J),residual (J)\n0,0,0\n5,0,8.1e-12\n");
+  write_atomically(run.figures() / "ledger.png", picture);
+  draw_curves(run, "my_own", {0, 0, 0, 0, 0, 0});  // no size is known for it
+  CHECK_FALSE(contains(report_of(run), "<details><summary><b>"));
+
+  const RunFolder unknown = RunFolder::create(scratch / "no_summary");
+  write_atomically(unknown.root() / "metrics.csv", "time (s),kinetic energy (J)\n0,8\n5,what\n");
+  draw_curves(unknown, "momentum", {0, 0, 0, 0, 0, 0});
+  draw_curves(unknown, "dissipation", {0, 0, 0, 0, 0, 0});
+  CHECK_FALSE(contains(report_of(unknown), "<details><summary><b>"));
 }
 
 TEST_CASE("numbers are written for people", "[output][html]") {

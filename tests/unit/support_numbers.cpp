@@ -38,3 +38,13 @@ TEST_CASE("fixed notation, and its zeros", "[support]") {
   CHECK(without_trailing_zeros("3.00") == "3");
   CHECK(without_trailing_zeros("300") == "300");
 }
+
+TEST_CASE("a text is a number as a whole or not at all", "[support]") {
+  CHECK(number_in(" +2.5e-3\r") == 0.0025);
+  CHECK(number_in("-0.1") == -0.1);
+  CHECK(number_in("1e400") == std::nullopt);
+  for (const char* text : {"", "  ", "2,5", "1 2", "0x10", "five", "1e"}) {
+    CAPTURE(text);
+    CHECK_FALSE(number_in(text));
+  }
+}
