@@ -1,5 +1,5 @@
-// Checks of shapes that list their nodes: the identities of reference case A1 under random domains, each node once,
-// agreement of all instantiations, and of boxes with lists.
+// Checks of shapes that list their nodes: the identities of kernels under random domains, each node once, agreement of
+// all instantiations, and of boxes with lists.
 
 #include <algorithm>
 #include <array>
@@ -198,7 +198,7 @@ void check_nodes(const Plugin& plugin, const ListBatch& b, const ListInput& inpu
   findings.at_most("reach", v, beyond, 64 * v.epsilon(), "cells beyond sum |domain| + reach" + where);
 }
 
-/// Case A1, for any domain: sums over the nodes, and the value and slope of a random affine field.
+/// For any domain: sums over the nodes, and the value and slope of a random affine field.
 void check_sums(const Plugin& plugin, const ListBatch& b, const ListInput& input, Random& random,
                 const std::string& where, Findings& findings) {
   const Variant& v = b.variant;

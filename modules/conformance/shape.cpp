@@ -1,4 +1,4 @@
-// Checks of shape functions: the identities of reference case A1, and agreement of all instantiations.
+// Checks of shape functions: the identities of kernels (docs/verification.md), and agreement of all instantiations.
 
 #include <algorithm>
 #include <array>
@@ -163,7 +163,7 @@ StencilSums stencil_sums(const ShapeBatch& b, int lane) {
   return s;
 }
 
-/// Case A1: partition of unity, linear consistency, second moment.
+/// Partition of unity, linear consistency, second moment.
 void check_sums(const Plugin& plugin, const ShapeBatch& b, const std::string& where, Findings& findings) {
   const Variant& v = b.variant;
   Worst unity, gradient, linear, affine, constant, identity;

@@ -1,5 +1,5 @@
-// Checks of transfers: one round trip particles -> grid -> particles on a grid of the suite's own (reference case A2),
-// with quadratic B-splines, whose second moment h^2/4 is constant.
+// Checks of transfers: one round trip particles -> grid -> particles on a grid of the suite's own
+// (docs/verification.md), with quadratic B-splines, whose second moment h^2/4 is constant.
 
 #include <algorithm>
 #include <array>

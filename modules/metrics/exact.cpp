@@ -17,7 +17,7 @@ double value(const ExactChoice& choice, const std::string& name) {
   throw std::out_of_range("exact solution \"" + choice.type + "\" has no parameter \"" + name + "\"");
 }
 
-/// Case A7: symplectic Euler under gravity, exactly x = X + V t + g t (t + dt)/2 after whole steps dt.
+/// Free flight: symplectic Euler under gravity, exactly x = X + V t + g t (t + dt)/2 after whole steps dt.
 class FreeFall final : public ExactSolution {
  public:
   FreeFall(const Experiment& experiment, double dt) : gravity_(experiment.gravity), dt_(dt) {}
@@ -35,7 +35,7 @@ class FreeFall final : public ExactSolution {
   double dt_;
 };
 
-/// Case C5: rigid rotation in the x-y plane.
+/// Rigid rotation in the x-y plane.
 class RigidRotation final : public ExactSolution {
  public:
   RigidRotation(const ExactChoice& choice)
@@ -53,7 +53,7 @@ class RigidRotation final : public ExactSolution {
   double omega_, centre_[2];
 };
 
-/// Case C1: a fixed-free bar along x from the lower face, small strain, u = v0/w sin(b x) sin(w t), b = (2 mode - 1) pi
+/// A fixed-free bar along x from the lower face, small strain, u = v0/w sin(b x) sin(w t), b = (2 mode - 1) pi
 /// / 2L.
 class BarVibration final : public ExactSolution {
  public:
@@ -72,8 +72,8 @@ class BarVibration final : public ExactSolution {
   double amplitude_, b_, omega_;
 };
 
-/// Case C2 (Wallstedt & Guilkey 2008): u_i = A sin(pi X_i) sin(c pi t + phi_i), phi = (0, pi, 0), on the unit square or
-/// cube.
+/// A manufactured wave (Wallstedt & Guilkey 2008): u_i = A sin(pi X_i) sin(c pi t + phi_i), phi = (0, pi, 0), on the
+/// unit square or cube.
 class AxisAlignedWave final : public ExactSolution {
  public:
   AxisAlignedWave(const ExactChoice& choice, int dimension)
@@ -97,8 +97,8 @@ class AxisAlignedWave final : public ExactSolution {
   int dimension_;
 };
 
-/// Case C3 (Brannon, Kamojjala & Sadeghirad 2011): the ring 0.75 <= R <= 1.25 m about the origin, each circle turned by
-/// G sin(pi t / T) h(R), h = (1 - 16 (R - 1)^2)^2; h and h' vanish at both edges. h = 0 beyond them.
+/// The generalised vortex (Brannon, Kamojjala & Sadeghirad 2011): the ring 0.75 <= R <= 1.25 m about the origin, each
+/// circle turned by G sin(pi t / T) h(R), h = (1 - 16 (R - 1)^2)^2; h and h' vanish at both edges. h = 0 beyond them.
 class GeneralisedVortex final : public ExactSolution {
  public:
   GeneralisedVortex(const ExactChoice& choice)

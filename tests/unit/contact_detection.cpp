@@ -1,4 +1,4 @@
-// The one-dimensional edge model behind contact detection: the catalogue's check values, and its inverse.
+// The one-dimensional edge model behind contact detection: the check values of docs/verification.md, and its inverse.
 
 #include "simulation/contact_detection.hpp"
 

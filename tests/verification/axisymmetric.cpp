@@ -66,7 +66,7 @@ TEST_CASE("axisymmetric mass and energy are those of the whole body", "[axisymme
         Approx(1000 * 0.25 * std::numbers::pi * 0.3 * std::pow(0.8, 4) / 4).epsilon(0.02));
 }
 
-TEST_CASE("A7 axisymmetric free flight along the axis is exact", "[axisymmetric][A7]") {
+TEST_CASE("axisymmetric free flight along the axis is exact", "[axisymmetric][free_flight]") {
   const std::string text = R"J({
   "title": "flight", "dimension": 2, "backend": "cpu",
   "grid": {"symmetry": "axisymmetric", "cell_size": 0.1, "domain": [[0, 0], [1, 6]], "boundaries": {"all": "free", "x_min": "slip"}},
@@ -222,7 +222,7 @@ TEST_CASE("an axisymmetric impact is that of 3-D", "[axisymmetric]") {
   CHECK(flat.kinetic == Approx(space.kinetic).epsilon(0.05));
 }
 
-TEST_CASE("C9 a Taylor bar of copper keeps its length and foot", "[axisymmetric][C9]") {
+TEST_CASE("a Taylor bar of copper keeps its length and foot", "[axisymmetric][taylor_bar]") {
   ReadOptions options;
   options.exact = exact_solutions();
   const Experiment experiment =

@@ -1,5 +1,5 @@
-// Case C1: axial vibration of a fixed-free bar, small strain, 13 cells, one particle a cell. And the ledger on it: the
-// residual of time integration shrinks with the step at first order.
+// Axial vibration of a fixed-free bar, small strain, 13 cells, one particle a cell. And the ledger on it: the residual
+// of time integration shrinks with the step at first order.
 
 #include <cmath>
 #include <numbers>
@@ -44,7 +44,7 @@ std::vector<double> turning_times(Scene& scene, double& largest_energy_error) {
 
 }  // namespace
 
-TEST_CASE("C1 bar vibration: period and energy", "[C][C1]") {
+TEST_CASE("bar vibration: period and energy", "[bar]") {
   for (const int mode : {1, 2}) {
     INFO("mode " << mode);
     // 13 cells for the first mode; as many a wave length need 39 for the second, 26 are within the band.
@@ -62,7 +62,7 @@ TEST_CASE("C1 bar vibration: period and energy", "[C][C1]") {
   }
 }
 
-TEST_CASE("C1 velocity of the centre of mass", "[C][C1]") {
+TEST_CASE("bar vibration: velocity of the centre of mass", "[bar]") {
   Scene scene(bar, {set("/solver/end_time", "10")});
   const double mass = scene.metrics.initial().mass;
   CHECK(scene.metrics.initial().momentum[0] / mass ==
@@ -97,7 +97,7 @@ double order_of_residual(const std::string& backend, const std::string& shape, c
 
 }  // namespace
 
-TEST_CASE("the ledger's residual shrinks with the step at first order, with USAVG at second", "[C][ledger]") {
+TEST_CASE("the ledger's residual shrinks with the step at first order, with USAVG at second", "[ledger]") {
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string shape : {"linear", "bspline_quadratic"}) {
       INFO(backend << " " << shape);

@@ -1,6 +1,6 @@
-// What the internal force of a node does as a stressed particle crosses a cell face (catalogue, section 1). The
-// gradient of the tent jumps there, by 1/h at the outer nodes and 2/h at the one that is crossed; those of all wider
-// shapes do not. `ctest -V` shows the table.
+// What the internal force of a node does as a stressed particle crosses a cell face. The gradient of the tent jumps
+// there, by 1/h at the outer nodes and 2/h at the one that is crossed; those of all wider shapes do not. `ctest -V`
+// shows the table.
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +69,7 @@ std::vector<double> forces(const std::string& shape, double x) {
 
 }  // namespace
 
-TEST_CASE("the force of a node jumps by sigma V / h at a cell face on tents, on wider shapes it does not", "[A][A1]") {
+TEST_CASE("the force of a node jumps by sigma V / h at a cell face on tents, on wider shapes it does not", "[kernel]") {
   const LinearElastic::Constants<double> constants({1, 0, 1});
   const double pull = 0.25 * LinearElastic::kirchhoff_stress(
                                  constants, LinearElastic::State<2, double>{Mat<2, double>{{stretch, 0, 0, 1}}})(0, 0);

@@ -1,5 +1,5 @@
-// Case C4: a column of 50 m settles under its own weight and its particles cross cells on the way (AMPLE set-up, nu =
-// 0). Exact Cauchy stress: -density g (l0 - Y), whatever the material, since the area does not change.
+// A column of 50 m settles under its own weight and its particles cross cells on the way (AMPLE set-up, nu = 0). Exact
+// Cauchy stress: -density g (l0 - Y), whatever the material, since the area does not change.
 
 #include "support/catch.hpp"
 #include "support/scene.hpp"
@@ -69,7 +69,7 @@ Settled settle(const std::string& shape, double cell) {
 
 }  // namespace
 
-TEST_CASE("C4 a settling column: linear shapes stall at crossings, GIMP, CPDI and splines converge", "[C][C4]") {
+TEST_CASE("a settling column: linear shapes stall at crossings, GIMP, CPDI and splines converge", "[column]") {
   const std::vector<double> cells{2.5, 1.25, 0.625};
   const auto errors = [&](const char* shape) {
     std::vector<double> list;

@@ -78,7 +78,7 @@ std::vector<Vec<D, double>> random_corners(std::mt19937& random, double bend) {
 
 }  // namespace
 
-TEST_CASE("the means over a quadrilateral are those of the paper", "[A][A1][cpdi2]") {
+TEST_CASE("the means over a quadrilateral are those of the paper", "[kernel][cpdi2]") {
   // Sadeghirad et al. 2013: weights from the areas a and b, gradients from the opposite corners; corners in a ring.
   std::mt19937 random(4);
   for (int trial = 0; trial < 200; ++trial) {
@@ -103,7 +103,7 @@ TEST_CASE("the means over a quadrilateral are those of the paper", "[A][A1][cpdi
   }
 }
 
-TEST_CASE("8 Gauss points integrate a hexahedron exactly, and keep volume and affine fields", "[A][A1][cpdi2]") {
+TEST_CASE("8 Gauss points integrate a hexahedron exactly, and keep volume and affine fields", "[kernel][cpdi2]") {
   // Against 64 points; the divergence of x is the volume's own.
   const double place[4] = {.8611363115940526, .3399810435848563, -.3399810435848563, -.8611363115940526};
   const double share[4] = {.3478548451374538, .6521451548625461, .6521451548625461, .3478548451374538};
@@ -178,12 +178,12 @@ void check_parallelogram(std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("on a parallelogram CPDI2 is CPDI", "[A][A1][cpdi2]") {
+TEST_CASE("on a parallelogram CPDI2 is CPDI", "[kernel][cpdi2]") {
   std::mt19937 random(6);
   for (int trial = 0; trial < 100; ++trial) check_parallelogram<2>(random), check_parallelogram<3>(random);
 }
 
-TEST_CASE("under affine motion CPDI2 moves as CPDI, to rounding", "[A][cpdi2]") {
+TEST_CASE("under affine motion CPDI2 moves as CPDI, to rounding", "[cpdi2]") {
   // One long step: the field of bodies in free flight is affine only at the start, since C lags behind it. (With USAVG
   // CPDI's domain takes two half strains, (1 + dt L / 2)^2, and corners one way, 1 + dt L.)
   for (const std::string& backend : backends)
@@ -206,7 +206,7 @@ TEST_CASE("under affine motion CPDI2 moves as CPDI, to rounding", "[A][cpdi2]") 
     }
 }
 
-TEST_CASE("neighbours keep the corners they share with CPDI2, and do not with CPDI", "[A][A1][cpdi2]") {
+TEST_CASE("neighbours keep the corners they share with CPDI2, and do not with CPDI", "[kernel][cpdi2]") {
   for (const std::string& backend : backends)
     for (const std::string precision : {"double", "float"})
       for (const int dimension : {2, 3})
@@ -228,7 +228,7 @@ TEST_CASE("neighbours keep the corners they share with CPDI2, and do not with CP
         }
 }
 
-TEST_CASE("a particle of CPDI2 is the centroid of its domain, and momentum is kept", "[A][A2][cpdi2]") {
+TEST_CASE("a particle of CPDI2 is the centroid of its domain, and momentum is kept", "[round_trip][cpdi2]") {
   for (const std::string& backend : backends) {
     Scene scene(bending(2), {set("/backend", backend)});
     const Totals start = scene.metrics.initial(), end = scene.run_steps(60);

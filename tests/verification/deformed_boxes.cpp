@@ -48,7 +48,7 @@ std::pair<double, double> half_lengths(const BodyState& state, double cell_size,
 
 }  // namespace
 
-TEST_CASE("a quarter turn of a disc collapses the boxes of diag F and leaves those of diag U", "[A][gimp_contiguous]") {
+TEST_CASE("a quarter turn of a disc collapses the boxes of diag F and leaves those of diag U", "[gimp_contiguous]") {
   for (const std::string stretch_by : {"deformation_gradient", "right_stretch"}) {
     Scene scene(spinning, {R"(/shape={"type":"gimp_contiguous","stretch_by":")" + stretch_by + "\"}"});
     const auto start_F = half_lengths(scene.body(), 0.05, 0), start_U = half_lengths(scene.body(), 0.05, 1);
@@ -63,8 +63,7 @@ TEST_CASE("a quarter turn of a disc collapses the boxes of diag F and leaves tho
   }
 }
 
-TEST_CASE("the box follows a stretch, and a run stops by name where four nodes do not hold it",
-          "[A][gimp_contiguous]") {
+TEST_CASE("the box follows a stretch, and a run stops by name where four nodes do not hold it", "[gimp_contiguous]") {
   struct End {
     std::string cause;
     std::size_t particle = 0;
@@ -103,7 +102,7 @@ TEST_CASE("the box follows a stretch, and a run stops by name where four nodes d
 }
 
 TEST_CASE("a bar that is thrown from its clamp does not come apart while contiguous boxes are shorter than a cell",
-          "[A][gimp_contiguous]") {
+          "[gimp_contiguous]") {
   // Lesson 5's bar, stretched by 4. Finite differences (lessons_3_to_5.cpp) have its centre of mass at 0.467 m in the
   // end.
   const auto last = [](const std::string& shape, const std::string& particles) {

@@ -1,5 +1,4 @@
-// Cases C7 and A11: two colliding elastic discs (Sulsky, Chen & Schreyer 1994): conservation, symmetry, no gain of
-// energy.
+// Two colliding elastic discs (Sulsky, Chen & Schreyer 1994): conservation, symmetry, no gain of energy.
 
 #include <cmath>
 
@@ -35,7 +34,7 @@ const char* oblique = R"J({
 
 }  // namespace
 
-TEST_CASE("C7 before the discs meet nothing is lost", "[C][C7]") {
+TEST_CASE("two discs: before the discs meet nothing is lost", "[discs]") {
   for (const std::string transfer : {"pic", "flip", "apic", "mls"}) {
     Scene scene(discs, {set("/transfer/type", transfer), set("/solver/end_time", "1.3")});
     const Totals start = scene.metrics.initial(), end = scene.run();
@@ -47,7 +46,7 @@ TEST_CASE("C7 before the discs meet nothing is lost", "[C][C7]") {
   }
 }
 
-TEST_CASE("C7 and A11: collision conserves momentum and symmetry and never gains energy", "[C][C7][A11]") {
+TEST_CASE("two discs: collision conserves momentum and symmetry and never gains energy", "[discs][energy_gain]") {
   for (const std::string transfer : {"pic", "flip", "apic", "mls"})
     for (const std::string shape : {"linear", "bspline_quadratic"}) {
       INFO(transfer << " " << shape);
@@ -81,7 +80,7 @@ TEST_CASE("C7 and A11: collision conserves momentum and symmetry and never gains
     }
 }
 
-TEST_CASE("C7h oblique collision keeps angular momentum, with and without friction", "[C][C7]") {
+TEST_CASE("oblique collision keeps angular momentum, with and without friction", "[discs]") {
   for (const std::string friction : {"0", "0.3"})
     for (const std::string transfer : {"apic", "mls"}) {
       Scene scene(oblique, {set("/contact/friction", friction), set("/transfer/type", transfer)});

@@ -129,8 +129,8 @@ Energies collide(const std::vector<std::string>& settings) {
 
 }  // namespace
 
-TEST_CASE("A11 a filter and contact gain no energy in an impact", "[A][A11][contact][filters]") {
-  std::printf("A11, impact of discs under FMPM(k) with contact: scheme, largest and last energy\n");
+TEST_CASE("a filter and contact gain no energy in an impact", "[energy_gain][contact][filters]") {
+  std::printf("Energy gain, impact of discs under FMPM(k) with contact: scheme, largest and last energy\n");
   const auto check = [](const std::string& name, const std::vector<std::string>& settings) {
     const Energies e = collide(settings);
     std::printf("  %-40s %8.5f %8.5f\n", name.c_str(), e.largest, e.last);
@@ -154,11 +154,11 @@ TEST_CASE("A11 a filter and contact gain no energy in an impact", "[A][A11][cont
   check("reference", {filter("fmpm", 8), set("/backend", "reference")});
 }
 
-TEST_CASE("A11 contact at the end of the loop gains the more energy the higher the order",
-          "[A][A11][contact][filters]") {
+TEST_CASE("contact at the end of the loop gains the more energy the higher the order",
+          "[energy_gain][contact][filters]") {
   // The impulses of the law, made for the velocity at the end, are never filtered themselves: each order adds terms
   // that they do not see.
-  std::printf("A11, largest energy of the same impact: order, law on every increment, at the end\n");
+  std::printf("Energy gain, largest energy of the same impact: order, law on every increment, at the end\n");
   double before = 0;
   for (const int order : {2, 4, 8}) {
     const double inside = collide({filter("fmpm", order)}).largest,

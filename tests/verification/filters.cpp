@@ -1,6 +1,6 @@
-// Velocity filters (catalogue, section 3). The operator that a filter repeats, S+ S, is one visit of the particles: a
-// step of the transfer without time and forces. So FMPM(k) and XPIC(k) of a step are known combinations of the first k
-// steps without a filter: the oracle of this file, with every shape, transfer and wall.
+// Velocity filters. The operator that a filter repeats, S+ S, is one visit of the particles: a step of the transfer
+// without time and forces. So FMPM(k) and XPIC(k) of a step are known combinations of the first k steps without a
+// filter: the oracle of this file, with every shape, transfer and wall.
 
 #include <cmath>
 
@@ -196,7 +196,7 @@ TEST_CASE("a filter keeps a slip wall the plane of symmetry", "[filters][walls]"
       }
 }
 
-TEST_CASE("A7 filters do not act on free flight", "[filters][A][A7]") {
+TEST_CASE("filters do not act on free flight", "[filters][free_flight]") {
   for (const std::string& backend : backends)
     for (const auto& [shape, transfer] : pairs_of(shapes, all_transfers()))
       for (const auto& [type, order] : {std::pair{"fmpm", 4}, std::pair{"xpic", 3}})

@@ -1,4 +1,4 @@
-// Frozen bodies: case A3 with finite velocities on particles that keep their places and domains.
+// Frozen bodies: the damping of a wave with finite velocities on particles that keep their places and domains.
 
 #include "lattice.hpp"
 #include "support/catch.hpp"
@@ -17,7 +17,7 @@ Line finite_line() {
 
 }  // namespace
 
-TEST_CASE("A3 damping factors are exact at finite velocities on frozen particles", "[A][A3][frozen]") {
+TEST_CASE("damping factors are exact at finite velocities on frozen particles", "[damping][frozen]") {
   struct Row {
     const char *shape, *transfer;
     double offset;

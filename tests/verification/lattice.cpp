@@ -1,5 +1,5 @@
-// Cases A3 and A4: what one step does to a wave, and what it does to the null space. Both are exact for a periodic
-// lattice with one particle a cell. The table of A3 is in a3_transfer_damping.cpp.
+// Waves on a lattice: what one step does to a wave, and what it does to the null space. Both are exact for a periodic
+// lattice with one particle a cell. The table of damping factors is in transfer_damping.cpp.
 
 #include "lattice.hpp"
 #include "support/catch.hpp"
@@ -25,7 +25,7 @@ constexpr int modes[] = {1, 2, 4, 8};
 
 }  // namespace
 
-TEST_CASE("A3 damping of a mode by PIC, XPIC, FMPM and FLIP is that of the symbol", "[A][A3]") {
+TEST_CASE("damping of a mode by PIC, XPIC, FMPM and FLIP is that of the symbol", "[damping]") {
   for (const auto& [shape, offset] :
        {std::pair{"linear", 0.0}, std::pair{"bspline_quadratic", 0.0}, std::pair{"gimp", 0.0}, std::pair{"cpdi", 0.0},
         std::pair{"bspline_quadratic", 0.5}, std::pair{"gimp", 0.5}, std::pair{"cpdi", 0.5},
@@ -49,7 +49,7 @@ TEST_CASE("A3 damping of a mode by PIC, XPIC, FMPM and FLIP is that of the symbo
     }
 }
 
-TEST_CASE("A3 affine transfers damp by the fourth power of the wave number", "[A][A3]") {
+TEST_CASE("affine transfers damp by the fourth power of the wave number", "[damping]") {
   // 1 - (3/64) theta^4, against 1 - theta^2 / 4 of PIC; TPIC's gradient is APIC's affine matrix on this lattice.
   const double theta = 2 * std::numbers::pi / 32;
   for (const char* transfer : {"apic", "mls", "tpic", "polypic"}) {
@@ -72,7 +72,7 @@ TEST_CASE("A3 affine transfers damp by the fourth power of the wave number", "[A
   }
 }
 
-TEST_CASE("A4 the null space: FLIP keeps it, every other transfer and filter order removes it", "[A][A4]") {
+TEST_CASE("the null space: FLIP keeps it, every other transfer and filter order removes it", "[null_space]") {
   // Particles at 1/4 and 3/4 of their cell, with velocities +1 and -1: no node sees anything.
   const auto alternating = [](double x) { return x - std::floor(x) < 0.5 ? 1.0 : -1.0; };
   for (const char* shape :

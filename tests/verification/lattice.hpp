@@ -1,6 +1,6 @@
 #pragma once
-// A periodic line of particles on one row of cells: the layout of cases A3 to A6, whose factors and limits are
-// exact.
+// A periodic line of particles on one row of cells: the layout of damping, null space, critical step and stress update,
+// whose factors and limits are exact.
 
 #include <functional>
 #include <numbers>

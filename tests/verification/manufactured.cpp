@@ -1,5 +1,5 @@
-// Case C2: manufactured solution on the unit square (Wallstedt & Guilkey 2008), Neo-Hookean with (ln J)^2. The body
-// force is given by expressions of the initial position; observed orders are asserted.
+// Manufactured solution on the unit square (Wallstedt & Guilkey 2008), Neo-Hookean with (ln J)^2. The body force is
+// given by expressions of the initial position; observed orders are asserted.
 
 #include <cmath>
 
@@ -45,7 +45,7 @@ const std::vector<double> sizes{1.0 / 8, 1.0 / 16, 1.0 / 32};
 
 }  // namespace
 
-TEST_CASE("C2 second order without crossings, every shape and transfer", "[C][C2]") {
+TEST_CASE("manufactured wave: second order without crossings, every shape and transfer", "[wave]") {
   for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic"})
     for (const std::string transfer : {"flip", "apic", "mls"}) {
       const auto e = errors(shape, transfer, 0.0001);
@@ -55,7 +55,7 @@ TEST_CASE("C2 second order without crossings, every shape and transfer", "[C][C2
     }
 }
 
-TEST_CASE("C2 large deformation: B-splines converge, linear functions stall", "[C][C2]") {
+TEST_CASE("manufactured wave: large deformation: B-splines converge, linear functions stall", "[wave]") {
   for (const std::string transfer : {"flip", "apic", "mls"}) {
     const auto smooth = errors("bspline_quadratic", transfer, 0.05);
     INFO(transfer << " quadratic: " << smooth[0] << " " << smooth[1] << " " << smooth[2]);

@@ -1,6 +1,6 @@
-// MLS-MPM beside standard MPM (catalogue, section 2). MLS takes D^-1 w d where standard MPM takes grad w, for the
-// stress and for the strain. Both are exact on linear fields, so along an axis they can only differ by a multiple of
-// the next difference of the nodes:
+// MLS-MPM beside standard MPM. MLS takes D^-1 w d where standard MPM takes grad w, for the stress and for the strain.
+// Both are exact on linear fields, so along an axis they can only differ by a multiple of the next difference of the
+// nodes:
 //   quadratic splines   s (1 - 4 s^2) / (2 h) times (1, -2, 1),       s = the place beside the middle node, cells
 //   cubic splines      -f^2 (1 - f)^2 / (2 h) times (-1, 3, -3, 1),   f = the place between two nodes
 // since sum w d^3 = s (1/4 - s^2) of quadratic splines, and sum w d^4 = 1/3 - f^2 (1 - f)^2 of cubic ones, whose third
@@ -69,7 +69,7 @@ double largest_mismatch(double x, double second_moment, double multiple, const s
 
 }  // namespace
 
-TEST_CASE("the gradient of MLS differs from the spline's by a known difference of the nodes", "[A][A1][mls]") {
+TEST_CASE("the gradient of MLS differs from the spline's by a known difference of the nodes", "[kernel][mls]") {
   for (int k = 0; k <= 400; ++k) {
     const double x = 7 + k / 200.0, f = x - std::floor(x);
     INFO("at " << x);
@@ -140,7 +140,7 @@ Mat<2, double> total_stress(const BodyState& state) {
 
 }  // namespace
 
-TEST_CASE("the forces of MLS do the work of the stress on every affine field, as standard MPM's", "[A][A2][mls]") {
+TEST_CASE("the forces of MLS do the work of the stress on every affine field, as standard MPM's", "[round_trip][mls]") {
   // sum f_i x_i^T = -sum V0 tau, whatever the stress and the places, since sum (D^-1 w d) d^T = I = sum grad w d^T.
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string shape :
@@ -213,7 +213,7 @@ Difference gradients_differ(const std::string& shape, int cells) {
 
 }  // namespace
 
-TEST_CASE("the velocity gradient of MLS is off by h on quadratic splines and by h^2 on cubic ones", "[A][mls]") {
+TEST_CASE("the velocity gradient of MLS is off by h on quadratic splines and by h^2 on cubic ones", "[mls]") {
   std::printf("MLS less standard velocity gradient of a smooth field (1/s): cells, largest, not explained, order\n");
   for (const auto& [shape, order] : {std::pair{"bspline_quadratic", 1}, std::pair{"bspline_cubic", 2}}) {
     std::vector<double> sizes, errors, left;
@@ -255,7 +255,7 @@ Apart vibrate(const std::string& shape, int cells) {
 
 }  // namespace
 
-TEST_CASE("a wave with MLS is in the place of standard MPM to second order", "[A][mls]") {
+TEST_CASE("a wave with MLS is in the place of standard MPM to second order", "[mls]") {
   std::printf("A wave after a quarter period, MLS less standard: cells, places and strains over their amplitudes\n");
   for (const std::string shape : {"bspline_quadratic", "bspline_cubic"}) {
     std::vector<double> sizes, places, strains;

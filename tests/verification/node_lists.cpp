@@ -1,6 +1,6 @@
 // Shapes that need more than a position: GIMP and B2GIMP (the undeformed particle's box), cpGIMP (its box stretched
-// along the axes) and CPDI (its deformed domain, a list of nodes), with every transfer. Free flight (A7), conserved
-// momenta, affine fields (A2), what the domain becomes.
+// along the axes) and CPDI (its deformed domain, a list of nodes), with every transfer. Free flight, conserved momenta,
+// affine fields, what the domain becomes.
 
 #include <cmath>
 
@@ -71,7 +71,7 @@ void check_flight(const char* text, const std::vector<std::string>& overrides) {
 
 }  // namespace
 
-TEST_CASE("A7 free flight with sized shapes and Taylor transfer", "[A][A7]") {
+TEST_CASE("free flight with sized shapes and Taylor transfer", "[free_flight]") {
   for (const std::string& backend : backends)
     for (const std::string shape : {"gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2", "linear"})
       for (const std::string& transfer : transfers)
@@ -84,7 +84,7 @@ TEST_CASE("A7 free flight with sized shapes and Taylor transfer", "[A][A7]") {
         }
 }
 
-TEST_CASE("A7 free flight with sized shapes in 3-D", "[A][A7]") {
+TEST_CASE("free flight with sized shapes in 3-D", "[free_flight]") {
   for (const std::string& backend : backends)
     for (const std::string& shape : sized_shapes)
       for (const std::string transfer : {"flip", "apic", "tpic"}) {
@@ -93,7 +93,7 @@ TEST_CASE("A7 free flight with sized shapes in 3-D", "[A][A7]") {
       }
 }
 
-TEST_CASE("sized shapes conserve momentum", "[A][momentum]") {
+TEST_CASE("sized shapes conserve momentum", "[momentum]") {
   for (const std::string& backend : backends)
     for (const std::string& shape : sized_shapes)
       for (const std::string& transfer : transfers)
@@ -107,7 +107,7 @@ TEST_CASE("sized shapes conserve momentum", "[A][momentum]") {
         }
 }
 
-TEST_CASE("A2 affine transfers on sized shapes keep angular momentum over every transfer", "[A][A2]") {
+TEST_CASE("affine transfers on sized shapes keep angular momentum over every transfer", "[round_trip]") {
   // The moment D of a sized shape moves with the particle, and the affine part's spin m D : C with it: what is
   // conserved to rounding is each visit of the grid, not the move. Steps without time are visits alone; the forces have
   // no torque.
@@ -127,7 +127,7 @@ TEST_CASE("A2 affine transfers on sized shapes keep angular momentum over every 
       }
 }
 
-TEST_CASE("A2 an affine field comes back exactly", "[A][A2]") {
+TEST_CASE("an affine field comes back exactly", "[round_trip]") {
   // The first affine velocity is a central difference over 2e-4 cells of velocities up to 20 m/s: no better than this.
   const double seeded = 2.2e-16 * 20 / (1e-4 * 0.1);
   for (const std::string& backend : backends)

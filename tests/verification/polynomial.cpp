@@ -1,4 +1,4 @@
-// PolyPIC: what its polynomials conserve and reproduce (case A2), and that a whole basis loses nothing.
+// PolyPIC: what its polynomials conserve and reproduce, and that a whole basis loses nothing.
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ const std::vector<double>& coefficients(const BodyState& state) {
 
 }  // namespace
 
-TEST_CASE("A2 PolyPIC keeps momentum and angular momentum over every visit of the grid", "[A][A2][polypic]") {
+TEST_CASE("PolyPIC keeps momentum and angular momentum over every visit of the grid", "[round_trip][polypic]") {
   for (const std::string& backend : backends)
     for (const std::string shape :
          {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp"})
@@ -60,7 +60,7 @@ TEST_CASE("A2 PolyPIC keeps momentum and angular momentum over every visit of th
         }
 }
 
-TEST_CASE("A2 PolyPIC keeps angular momentum of a moving body on splines", "[A][A2][polypic]") {
+TEST_CASE("PolyPIC keeps angular momentum of a moving body on splines", "[round_trip][polypic]") {
   for (const std::string& backend : backends)
     for (const char* transfer : {multilinear, full}) {
       Scene scene(rough(2), {set("/backend", backend), set("/transfer", transfer), "/solver/time_step=1e-3",
@@ -71,8 +71,8 @@ TEST_CASE("A2 PolyPIC keeps angular momentum of a moving body on splines", "[A][
     }
 }
 
-TEST_CASE("A2 a whole basis loses nothing: gather and scatter of resting particles are the identity",
-          "[A][A2][polypic]") {
+TEST_CASE("a whole basis loses nothing: gather and scatter of resting particles are the identity",
+          "[round_trip][polypic]") {
   // One visit makes a field of the grid's; all later ones leave particles and energy as they are.
   for (const std::string& backend : backends)
     for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic"})
@@ -99,7 +99,7 @@ TEST_CASE("A2 a whole basis loses nothing: gather and scatter of resting particl
         }
 }
 
-TEST_CASE("A2 a multilinear field passes PolyPIC unchanged once its particles hold it", "[A][A2][polypic]") {
+TEST_CASE("a multilinear field passes PolyPIC unchanged once its particles hold it", "[round_trip][polypic]") {
   // The first coefficients are zero, so the field's own, h^2 times the factor of x y, are written into a saved state.
   const double h = 0.1, factor[2] = {3, -5};
   for (const std::string shape :

@@ -1,5 +1,5 @@
-// Case D4, second part: blocks that rest on one another. Contact carries the weight of what lies above; a single
-// velocity field carries it too, but is a weld: what rests on it cannot be lifted off.
+// Blocks that rest on one another. Contact carries the weight of what lies above; a single velocity field carries it
+// too, but is a weld: what rests on it cannot be lifted off.
 
 #include "support/catch.hpp"
 #include "support/scene.hpp"
@@ -39,7 +39,7 @@ double height_of(const Scene& scene, int body) {
 
 }  // namespace
 
-TEST_CASE("D4 the contacts of a resting stack carry what lies above them", "[D][D4]") {
+TEST_CASE("the contacts of a resting stack carry what lies above them", "[stack]") {
   for (const char* shape : {"bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi"}) {
     Scene scene(stack(frictionless, shape, 0), {"/solver/end_time=1.5"});
     while (scene.simulation.time() < 1) scene.simulation.step();
@@ -61,7 +61,7 @@ TEST_CASE("D4 the contacts of a resting stack carry what lies above them", "[D][
   }
 }
 
-TEST_CASE("D4 what rests can be lifted off a contact, and not off a single velocity field", "[D][D4]") {
+TEST_CASE("what rests can be lifted off a contact, and not off a single velocity field", "[stack]") {
   // Three times its weight upwards: the block leaves with 2 g, for 0.1 s.
   const auto lifted = [](const std::string& contact) {
     Scene scene(stack(contact, "bspline_quadratic", 3));

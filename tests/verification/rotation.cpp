@@ -1,9 +1,9 @@
-// Case C5: a spinning disc turns as a rigid body; what each transfer keeps of its angular momentum.
+// A spinning disc turns as a rigid body; what each transfer keeps of its angular momentum.
 //
 // FLIP with lumped masses does not keep it: a step adds sum_p m_p x_p x (sum_i w_ip dt f_i / m_i) = dt sum_i c_i x f_i
 // with c_i = sum_p w_ip m_p x_p / m_i, while the forces are free of torque about the nodes, sum_i x_i x f_i = 0. The
 // error dt sum_i (c_i - x_i) x f_i lives where c_i differs from x_i, at the free edge, and does not vanish with dt:
-// 1.8 % a turn here. It falls with the cells and with more particles; c5_spin_lost.cpp has the balance and ten turns of
+// 1.8 % a turn here. It falls with the cells and with more particles; spin_lost.cpp has the balance and ten turns of
 // FLIP. APIC keeps it to rounding.
 
 #include <cmath>
@@ -35,7 +35,7 @@ double kept_spin(Scene& scene, Totals& end) {
 
 }  // namespace
 
-TEST_CASE("C5 one turn: APIC, MLS and FLIP keep the spin, PIC loses it", "[C][C5]") {
+TEST_CASE("spinning disc, one turn: APIC, MLS and FLIP keep the spin, PIC loses it", "[spin]") {
   const double exact = 98.17477 * 2 * std::numbers::pi;  // pi rho R^4 / 2 times w
   for (const std::string transfer : {"apic", "mls", "flip"}) {
     Scene scene(disc, {set("/transfer/type", transfer)});
@@ -53,7 +53,7 @@ TEST_CASE("C5 one turn: APIC, MLS and FLIP keep the spin, PIC loses it", "[C][C5
   CHECK(kept_spin(scene, end) < 0.5);
 }
 
-TEST_CASE("C5 ten turns of APIC and MLS", "[C][C5][slow]") {
+TEST_CASE("spinning disc: ten turns of APIC and MLS", "[spin][slow]") {
   for (const std::string transfer : {"apic", "mls"}) {
     Scene scene(disc, {set("/transfer/type", transfer), set("/solver/end_time", "10")});
     Totals end;
@@ -62,7 +62,7 @@ TEST_CASE("C5 ten turns of APIC and MLS", "[C][C5][slow]") {
   }
 }
 
-TEST_CASE("A2 angular momentum of an affine transfer survives to rounding on every grid position", "[A][A2]") {
+TEST_CASE("angular momentum of an affine transfer survives to rounding on every grid position", "[round_trip]") {
   for (const std::string transfer : {"apic", "mls"})
     for (const std::string shape :
          {"bspline_quadratic", "bspline_cubic"})  // on `linear` D varies, and the affine part with it as particles move

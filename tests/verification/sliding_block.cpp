@@ -1,6 +1,6 @@
-// Case D1: Coulomb friction on an incline, the slope aligned with the grid (gravity is turned instead). The block spans
-// a periodic domain: its corners, where averaged volume gradients tilt the normal and drag (docs/method.md), are not
-// this case.
+// Coulomb friction on an incline, the slope aligned with the grid (gravity is turned instead). The block spans a
+// periodic domain: its corners, where averaged volume gradients tilt the normal and drag (docs/method.md), are not this
+// case.
 
 #include <cmath>
 #include <numbers>
@@ -34,7 +34,7 @@ double acceleration(const std::string& friction, const std::string& backend, dou
 
 }  // namespace
 
-TEST_CASE("D1 the block slides with g (sin - mu cos), or stays", "[D][D1]") {
+TEST_CASE("a block on an incline slides with g (sin - mu cos), or stays", "[friction]") {
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(3) / 2;
   for (const std::string backend : {"reference", "cpu"}) {
     INFO(backend);
@@ -44,7 +44,7 @@ TEST_CASE("D1 the block slides with g (sin - mu cos), or stays", "[D][D1]") {
   }
 }
 
-TEST_CASE("D1 close to sticking: the shear vibration of the sudden start fades", "[D][D1]") {
+TEST_CASE("a block on an incline close to sticking: the shear vibration of the sudden start fades", "[friction]") {
   Scene scene(incline, {set("/contact/friction", "0.5"), set("/solver/end_time", "1.2")});
   double middle = 0, middle_time = 0;
   while (!scene.simulation.finished()) {

@@ -1,5 +1,5 @@
 #pragma once
-// The disc of case C5.
+// A disc that spins once a second.
 
 #include "support/scene.hpp"
 

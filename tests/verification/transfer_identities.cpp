@@ -1,5 +1,5 @@
-// What the rigid and the affine FLIP transfers conserve and reproduce (case A2), what they do to a wave (A3) and to
-// the null space (A4), and how particles part with the separable one.
+// What the rigid and the affine FLIP transfers conserve and reproduce (round_trip.cpp), what they do to a wave and to
+// the null space, and how particles part with the separable one.
 
 #include <cmath>
 
@@ -38,7 +38,7 @@ const std::string aflip_without_pic = R"({"type": "aflip", "pic_fraction": 0})";
 
 }  // namespace
 
-TEST_CASE("A2 every transfer conserves momentum under stress", "[A][A2][momentum]") {
+TEST_CASE("every transfer conserves momentum under stress", "[round_trip][momentum]") {
   for (const std::string& backend : backends)
     for (const std::string& shape : shapes)
       for (const std::string transfer : {"rpic", "aflip", "asflip"})
@@ -53,7 +53,7 @@ TEST_CASE("A2 every transfer conserves momentum under stress", "[A][A2][momentum
         }
 }
 
-TEST_CASE("A2 RPIC keeps angular momentum over every visit of the grid, on every shape", "[A][A2]") {
+TEST_CASE("RPIC keeps angular momentum over every visit of the grid, on every shape", "[round_trip]") {
   // As of APIC: steps without time are visits alone, since the second moment moves with the particle on most shapes.
   for (const std::string& backend : backends)
     for (const std::string& shape : shapes)
@@ -72,7 +72,7 @@ TEST_CASE("A2 RPIC keeps angular momentum over every visit of the grid, on every
       }
 }
 
-TEST_CASE("A2 RPIC keeps angular momentum of a moving body on splines, AFLIP does not", "[A][A2]") {
+TEST_CASE("RPIC keeps angular momentum of a moving body on splines, AFLIP does not", "[round_trip]") {
   for (const std::string& backend : backends)
     for (const char* text : {rough_2d, rough_3d}) {
       if (backend == "reference" && text == rough_3d) continue;
@@ -87,7 +87,7 @@ TEST_CASE("A2 RPIC keeps angular momentum of a moving body on splines, AFLIP doe
     }
 }
 
-TEST_CASE("A2 rigid motion passes RPIC, shear does not", "[A][A2]") {
+TEST_CASE("rigid motion passes RPIC, shear does not", "[round_trip]") {
   const auto change = [](const std::string& backend, const std::string& shape, const std::string& velocity) {
     Scene scene(rough_2d, {set("/backend", backend), set("/shape/type", shape), set("/bodies/0/velocity", velocity),
                            set("/materials/m/youngs_modulus", "1e-6")});
@@ -105,7 +105,7 @@ TEST_CASE("A2 rigid motion passes RPIC, shear does not", "[A][A2]") {
     }
 }
 
-TEST_CASE("A2 an affine field passes AFLIP and ASFLIP unchanged, and moves ASFLIP's particles", "[A][A2]") {
+TEST_CASE("an affine field passes AFLIP and ASFLIP unchanged, and moves ASFLIP's particles", "[round_trip]") {
   const double gradient[4] = {0.7, -3, 5, -0.4}, dt = 1e-3;
   const double seeded = 2.2e-16 * 20 / (1e-4 * 0.1);
   for (const std::string& backend : backends)
@@ -132,7 +132,7 @@ TEST_CASE("A2 an affine field passes AFLIP and ASFLIP unchanged, and moves ASFLI
       }
 }
 
-TEST_CASE("A3 RPIC damps a compression wave as PIC, AFLIP keeps it", "[A][A3]") {
+TEST_CASE("RPIC damps a compression wave as PIC, AFLIP keeps it", "[damping]") {
   // A wave along a line has no spin. AFLIP without PIC keeps velocities; with a fraction a, the loss of APIC times a.
   const double theta = 2 * std::numbers::pi * 4 / 32, pic = std::pow(0.75 + std::cos(theta) / 4, 2);
   const auto factor = [](const std::string& transfer) {
@@ -148,7 +148,7 @@ TEST_CASE("A3 RPIC damps a compression wave as PIC, AFLIP keeps it", "[A][A3]") 
   CHECK(factor(R"({"type": "aflip", "pic_fraction": 1})") == Approx(.9839150429).epsilon(1e-9));
 }
 
-TEST_CASE("A11 AFLIP's energies swing by what the grid takes over what it gives back", "[A][A11]") {
+TEST_CASE("AFLIP's energies swing by what the grid takes over what it gives back", "[energy_gain]") {
   // In the middle of its cell a particle's wave reaches the nodes by s = cos(theta / 2), and by s a wave of theirs
   // comes back. AFLIP gives what is missing by C: the grid moves with u = s v + (1 - s^2) u = v / s, so de/dt = k v / s
   // against dv/dt = -k s e. Then s^2 e^2 + v^2 stays, and the strain energy of a wave at rest is 1 / s^2 of the kinetic
@@ -173,7 +173,7 @@ TEST_CASE("A11 AFLIP's energies swing by what the grid takes over what it gives 
   }
 }
 
-TEST_CASE("A4 AFLIP keeps the null space, RPIC removes it, and ASFLIP's particles part", "[A][A4]") {
+TEST_CASE("AFLIP keeps the null space, RPIC removes it, and ASFLIP's particles part", "[null_space]") {
   // Particles at 1/4 and 3/4 of their cell, with velocities +1 and -1: no node sees anything.
   const auto alternating = [](double x) { return x - std::floor(x) < 0.5 ? 1.0 : -1.0; };
   for (const std::string& backend : backends)
@@ -199,7 +199,7 @@ TEST_CASE("A4 AFLIP keeps the null space, RPIC removes it, and ASFLIP's particle
     }
 }
 
-TEST_CASE("ASFLIP that never separates is AFLIP", "[A][asflip]") {
+TEST_CASE("ASFLIP that never separates is AFLIP", "[asflip]") {
   for (const std::string& backend : backends)
     for (const std::string order : {"last", "modified_last"}) {
       const auto end = [&](const std::string& transfer) {

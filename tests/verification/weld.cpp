@@ -1,6 +1,6 @@
-// Case D4: two bodies of one material joined by a weld reproduce the single-field run; without a contact law bodies
-// that share the field weld by themselves. A filter does not see the interface either as long as the weld acts on every
-// increment; a weld at the end of each field's own filter is another method.
+// Two bodies of one material joined by a weld reproduce the single-field run; without a contact law bodies that share
+// the field weld by themselves. A filter does not see the interface either as long as the weld acts on every increment;
+// a weld at the end of each field's own filter is another method.
 
 #include <cmath>
 #include <cstdio>
@@ -44,7 +44,7 @@ double largest_difference(const Scene& a, const Scene& b) {
 
 }  // namespace
 
-TEST_CASE("D4 a welded interface is transparent to rounding", "[D][D4]") {
+TEST_CASE("a welded interface is transparent to rounding", "[weld]") {
   for (const auto& [shape, transfer] : pairs_of(shapes, transfers))
     for (const std::string order : {"last", "first", "modified_last", "averaged"})
       for (const std::string backend : {"reference", "cpu"}) {
@@ -62,7 +62,7 @@ TEST_CASE("D4 a welded interface is transparent to rounding", "[D][D4]") {
       }
 }
 
-TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the end is not", "[D][D4][filters]") {
+TEST_CASE("a weld on every increment is transparent to filters, a weld at the end is not", "[weld][filters]") {
   const std::string rough = R"J(["1+0.3*sin(40*x)","0.4*x+0.3*cos(31*x*y)"])J";
   double least = 1, most = 0;
   for (const std::string backend : {"reference", "cpu"})
@@ -108,14 +108,14 @@ TEST_CASE("D4 a weld on every increment is transparent to filters, a weld at the
         if (!whole || shape != "linear")
           CHECK(late > (periodic && transfer != "flip" ? 1e-4 : 1e-3));  // an affine field brings some of it along
       }
-  std::printf("D4, a weld at the end of a filter's loop: off by %.1e to %.1e m/s after a step\n", least, most);
+  std::printf("Weld at the end of a filter's loop: off by %.1e to %.1e m/s after a step\n", least, most);
 }
 
-TEST_CASE("D4 what a weld at the end loses grows with the order of the filter", "[D][D4][filters]") {
+TEST_CASE("what a weld at the end loses grows with the order of the filter", "[weld][filters]") {
   // Up to order 2 nothing: of the welded v- both fields' projections average to that of the single field. Later
   // increments start from projections that nothing has welded.
   const std::string rough = R"J(["1+0.3*sin(40*x)","0.4*x+0.3*cos(31*x*y)"])J";
-  std::printf("D4, a weld in the filter's loop: velocity after a step less that of one field (m/s)\n");
+  std::printf("Weld in the filter's loop: velocity after a step less that of one field (m/s)\n");
   for (const std::string shape : {"linear", "bspline_quadratic"})
     for (const std::string transfer : {"pic", "apic"})
       for (const std::string type : {"fmpm", "xpic"}) {

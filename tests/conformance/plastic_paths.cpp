@@ -1,6 +1,5 @@
-// Reference case B5: J2 plasticity at strains of 1e-4 and less. The numbers of the case belong to small strain; the law
-// here is one of finite strain, so its answers differ from them by terms of the order of the strain, relative: 3e-4 is
-// asked.
+// J2 plasticity at strains of 1e-4 and less. The exact numbers belong to small strain; the law here is one of finite
+// strain, so its answers differ from them by terms of the order of the strain, relative: 3e-4 is asked.
 
 #include <cmath>
 
@@ -13,8 +12,8 @@ using namespace mpm;
 using Mat3 = Mat<3, double>;
 using State3 = VonMises::State<3, double>;
 
-// G = 1000, K = 2000 of the case. The yield stress is 1/100 of the case's 10, so strains and stresses are 1/100 of the
-// case's.
+// G = 1000 and K = 2000 as in docs/verification.md. The yield stress is 1/100 of the 10 there, and so are strains and
+// stresses.
 constexpr double shear = 1000, bulk = 2000, yield = 0.1;
 constexpr double young = 9 * bulk * shear / (3 * bulk + shear);
 constexpr double poisson = (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear));
@@ -59,7 +58,7 @@ constexpr int steps = 100;
 
 }  // namespace
 
-TEST_CASE("B5: uniaxial strain, perfect plasticity") {
+TEST_CASE("von Mises: uniaxial strain, perfect plasticity") {
   Particle particle(0);
   const Mat3 increment{{1e-6, 0, 0, 0, 0, 0, 0, 0, 0}};
   for (int k = 1; k <= 200; ++k) {
@@ -72,7 +71,7 @@ TEST_CASE("B5: uniaxial strain, perfect plasticity") {
   }
 }
 
-TEST_CASE("B5: uniaxial stress yields at sy, hardens with E H / (E + H), unloads with E") {
+TEST_CASE("von Mises: uniaxial stress yields at sy, hardens with E H / (E + H), unloads with E") {
   const double hardening = young / 4, tangent = young * hardening / (young + hardening);
   Particle particle(hardening);
   const double yield_strain = yield / young, increment = 3 * yield_strain / steps;
@@ -89,7 +88,7 @@ TEST_CASE("B5: uniaxial stress yields at sy, hardens with E H / (E + H), unloads
   CHECK((top - particle.stress()(0, 0)) / (yield_strain / 10) == Approx(young).epsilon(1e-3));
 }
 
-TEST_CASE("B5: isotropic hardening yields in reverse at -(sy + H ep)") {
+TEST_CASE("von Mises: isotropic hardening yields in reverse at -(sy + H ep)") {
   const double hardening = young / 4, increment = yield / young / 50;
   Particle particle(hardening);
   for (int k = 0; k < 150; ++k) particle.pull(increment);
@@ -107,7 +106,7 @@ TEST_CASE("B5: isotropic hardening yields in reverse at -(sy + H ep)") {
   CHECK(particle.stress()(0, 0) == near(-(yield + hardening * particle.state.equivalent_plastic_strain)));
 }
 
-TEST_CASE("B5: simple shear yields at sy / sqrt 3 and hardens with G H / (3 G + H)") {
+TEST_CASE("von Mises: simple shear yields at sy / sqrt 3 and hardens with G H / (3 G + H)") {
   const double hardening = 600, yield_shear = yield / std::sqrt(3.0),
                slope = shear * hardening / (3 * shear + hardening);
   Particle particle(hardening);
@@ -122,7 +121,7 @@ TEST_CASE("B5: simple shear yields at sy / sqrt 3 and hardens with G H / (3 G + 
   }
 }
 
-TEST_CASE("B5: the dissipated energy of uniaxial strain is the plastic work") {
+TEST_CASE("von Mises: the dissipated energy of uniaxial strain is the plastic work") {
   // Perfect plasticity: sy times the equivalent plastic strain, to the order of the increment for a backward-Euler
   // return.
   Particle particle(0);

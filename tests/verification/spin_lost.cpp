@@ -1,4 +1,4 @@
-// Case C5: where FLIP and XPIC lose spin. The case asks that ten turns cost APIC, FLIP and XPIC less than 1 %.
+// Where FLIP and XPIC lose spin. The case asks that ten turns cost APIC, FLIP and XPIC less than 1 %.
 //
 // What a step of FLIP and of XPIC on PIC takes, exactly, is in spin_balance.hpp: lumped masses take it, and the filter.
 // What counts is the rim, where the centre c_i of the mass that node i holds lies inside of x_i. Nodes see a rigid turn
@@ -43,8 +43,8 @@ double kept_spin(const std::vector<std::string>& settings) {
 
 }  // namespace
 
-TEST_CASE("C5 the spin that FLIP and XPIC lose is what lumped masses and the filter take", "[C][C5]") {
-  std::printf("C5, an eighth of a turn: change of spin by lumped masses, motion, filter | sum, the run's | gap\n");
+TEST_CASE("the spin that FLIP and XPIC lose is what lumped masses and the filter take", "[spin]") {
+  std::printf("Spin, an eighth of a turn: change of spin by lumped masses, motion, filter | sum, the run's | gap\n");
   const auto balance = [](const std::string& name, std::vector<std::string> settings, int order) {
     settings.push_back(set("/solver/end_time", "0.125"));
     Scene scene = spinning(settings);
@@ -64,9 +64,9 @@ TEST_CASE("C5 the spin that FLIP and XPIC lose is what lumped masses and the fil
   }
 }
 
-TEST_CASE("C5 what one step of a filter takes of a rigid turn", "[C][C5]") {
+TEST_CASE("what one step of a filter takes of a rigid turn", "[spin]") {
   std::printf(
-      "C5, share of the spin that a step takes: order; from the nodes' masses, the first step of XPIC and FMPM\n");
+      "Spin, share of the spin that a step takes: order; from the nodes' masses, the first step of XPIC and FMPM\n");
   const Vectors x = pairs(spinning({}).body().position);
   double before = 1;
   for (const int order : {1, 2, 4, 8, 16}) {
@@ -100,8 +100,8 @@ TEST_CASE("C5 what one step of a filter takes of a rigid turn", "[C][C5]") {
 
 // The case as written cannot hold for XPIC on PIC at every step: ten turns are 9e4 steps and more. Even were the disc
 // rigid, 1 % would need d_m < 1e-7, and d_m falls only as 1/m^2; the lumped masses take more than the filter does.
-TEST_CASE("C5 XPIC at every step loses more than its filter takes of a rigid turn", "[C][C5]") {
-  std::printf("C5, XPIC on PIC: order; share of spin kept in a turn if the filter alone took it, kept, steps\n");
+TEST_CASE("XPIC at every step loses more than its filter takes of a rigid turn", "[spin]") {
+  std::printf("Spin, XPIC on PIC: order; share of spin kept in a turn if the filter alone took it, kept, steps\n");
   const Vectors start = pairs(spinning({}).body().position);
   for (const int order : {4, 8}) {
     // d_m hardly depends on how the disc lies on the grid; the mean over angles, by symmetry up to an eighth of a turn.
@@ -126,8 +126,8 @@ TEST_CASE("C5 XPIC at every step loses more than its filter takes of a rigid tur
   }
 }
 
-TEST_CASE("C5 FLIP loses less spin on finer cells and with more particles", "[C][C5]") {
-  std::printf("C5, FLIP: cells a diameter, particles a cell's edge; share of spin lost in half a turn\n");
+TEST_CASE("FLIP loses less spin on finer cells and with more particles", "[spin]") {
+  std::printf("Spin, FLIP: cells a diameter, particles a cell's edge; share of spin lost in half a turn\n");
   const auto lost = [](int cells, int particles) {
     const double loss = 1 - kept_spin({set("/grid/cell_size", digits(1.0 / cells)), set("/solver/end_time", "0.5"),
                                        set("/bodies/0/particles_per_cell_axis", std::to_string(particles))});
@@ -140,8 +140,8 @@ TEST_CASE("C5 FLIP loses less spin on finer cells and with more particles", "[C]
   CHECK(fine < 0.25 * coarse);  // of second order at least
 }
 
-TEST_CASE("C5 ten turns at the case's stiffness: APIC, XPIC on APIC and FLIP lose less than 1 %", "[C][C5][slow]") {
-  std::printf("C5, ten turns, density (w R)^2 / E = 1e-4: share of spin kept\n");
+TEST_CASE("spinning disc: ten turns of a stiff one: APIC, XPIC on APIC and FLIP lose less than 1 %", "[spin][slow]") {
+  std::printf("Spin, ten turns, density (w R)^2 / E = 1e-4: share of spin kept\n");
   const auto check = [](const char* name, std::vector<std::string> settings, double most_lost) {
     settings.push_back(set("/materials/m/youngs_modulus", digits(10 * modulus)));
     settings.push_back(set("/solver/end_time", "10"));

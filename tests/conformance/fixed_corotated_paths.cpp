@@ -1,5 +1,5 @@
-// Reference case B3: fixed corotated solid under imposed deformation. E = 1000, nu = 0.3. The tables give Cauchy
-// stress; the functor gives Kirchhoff stress. The tolerance 1e-7 relative covers their printed digits.
+// Fixed corotated solid under imposed deformation. E = 1000, nu = 0.3. The tables give Cauchy stress; the functor gives
+// Kirchhoff stress. The tolerance 1e-7 relative covers their printed digits.
 
 #include <cmath>
 #include <random>
@@ -73,7 +73,7 @@ double second_derivative(const Mat<D, double>& F, const Vec<D, double>& a, const
 
 }  // namespace
 
-TEST_CASE("B3: uniaxial strain") {
+TEST_CASE("fixed corotated: uniaxial strain") {
   const double rows[][3] = {{0.5, -673.07692, -288.46154}, {2, 1346.15385, 576.92308}};
   for (const auto& row : rows) {
     const Sym<3, double> sigma = cauchy(diagonal(row[0], 1, 1));
@@ -98,7 +98,7 @@ TEST_CASE("fixed corotated: uniaxial strain in closed form") {
   }
 }
 
-TEST_CASE("B3: simple shear, the table and the closed form") {
+TEST_CASE("fixed corotated: simple shear, the table and the closed form") {
   for (const double gamma : {1e-3, 0.1, 0.5, 2.0, 10.0}) {
     Mat<3, double> F = Mat<3, double>::identity();
     F(0, 1) = gamma;
@@ -120,7 +120,7 @@ TEST_CASE("B3: simple shear, the table and the closed form") {
   }
 }
 
-TEST_CASE("B3: an inverted particle has a finite stress") {
+TEST_CASE("fixed corotated: an inverted particle has a finite stress") {
   // Singular values 1, 1, -1/2 with R = I: tau = 2 mu (F - I) F + lambda (J - 1) J I.
   const Sym<3, double> tau = kirchhoff(diagonal(-0.5, 1, 1));
   CHECK(tau(0, 0) == Approx(2 * mu * 0.75 + lambda * 0.75).epsilon(1e-12));
@@ -134,7 +134,7 @@ TEST_CASE("B3: an inverted particle has a finite stress") {
   }
 }
 
-TEST_CASE("B3: P(QF) = Q P(F)") {
+TEST_CASE("fixed corotated: P(QF) = Q P(F)") {
   std::mt19937 numbers(3);
   const auto entry = [&] { return std::ldexp(static_cast<double>(numbers()), -31) - 1; };
   double worst = 0;

@@ -1,6 +1,6 @@
-// Case C4 with Hencky elasticity: a column of 50 m under its own weight, many crossings. Heights that particles come
-// to rest at are exact: a stretch l carries the stress E ln(l) / l. `ctest -V` shows the tables. The Neo-Hookean column
-// is in compaction.cpp.
+// Hencky elasticity: a column of 50 m under its own weight, many crossings. Heights that particles come to rest at are
+// exact: a stretch l carries the stress E ln(l) / l. `ctest -V` shows the tables. The Neo-Hookean column is in
+// compaction.cpp.
 //
 // Hencky elasticity at nu = 0 is that of drucker_prager (tau = 2 mu ln l = E ln l along the column) with a cohesion
 // that it never comes near.
@@ -91,7 +91,7 @@ Settled settle(const std::string& shape, const std::string& transfer, double cel
 
 }  // namespace
 
-TEST_CASE("C4 the closed form of the Hencky column", "[C][C4]") {
+TEST_CASE("the closed form of the Hencky column", "[column]") {
   CHECK(stretch_of(exact_stress(0)) == Approx(0.96224165).margin(5.1e-9));
   const double expected[] = {9.65834382, 24.28312072, 39.07767479, 49.03799142};
   for (std::size_t k = 0; k < marks.size(); ++k) CHECK(std::abs(exact_height(marks[k]) - expected[k]) < 5.1e-9);
@@ -119,9 +119,10 @@ std::vector<double> errors_on(const std::string& shape, const std::vector<double
 
 }  // namespace
 
-TEST_CASE("C4 heights of the Hencky column, and stress errors over four grids", "[C][C4]") {
+TEST_CASE("heights of the Hencky column, and stress errors over four grids", "[column]") {
   std::printf(
-      "C4, Hencky, FLIP: stress error on cells of 5, 2.5, 1.25, 0.625 m, orders; heights on the last, exact\n  %28s",
+      "Column, Hencky, FLIP: stress error on cells of 5, 2.5, 1.25, 0.625 m, orders; heights on the last, exact\n  "
+      "%28s",
       "");
   for (const double mark : marks) std::printf(" %.5f", exact_height(mark));
   std::printf("\n");
@@ -146,8 +147,8 @@ TEST_CASE("C4 heights of the Hencky column, and stress errors over four grids", 
   }
 }
 
-TEST_CASE("C4 on a finer grid boxes that do not shorten with the column stall too", "[C][C4][slow]") {
-  std::printf("C4, Hencky, FLIP: stress error on cells of 0.625, 0.3125 m, order; heights on the last\n");
+TEST_CASE("on a finer grid boxes that do not shorten with the column stall too", "[column][slow]") {
+  std::printf("Column, Hencky, FLIP: stress error on cells of 0.625, 0.3125 m, order; heights on the last\n");
   const std::vector<double> fine{0.625, 0.3125};
   std::vector<double> heights;
   for (const std::string shape : {"gimp_contiguous", "cpdi"})

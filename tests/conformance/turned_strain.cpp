@@ -1,4 +1,4 @@
-// Reference case C5h: a strained particle turned by 360 degrees in 7 steps; and what linear elasticity does instead.
+// A strained particle turned by 360 degrees in 7 steps; and what linear elasticity does instead.
 
 #include <cmath>
 #include <numbers>
@@ -51,7 +51,7 @@ void check_rotation(const typename Material::template Constants<double>& constan
 
 }  // namespace
 
-TEST_CASE("C5h: stress turns with the particle") {
+TEST_CASE("stress turns with the particle") {
   for (double form : {0, 1})
     for (double volumetric : {0, 1, 2})
       check_rotation<NeoHookean>(NeoHookean::Constants<double>({1000, 0.3, 1000, form, volumetric}), {Mat2::identity()},
@@ -62,7 +62,7 @@ TEST_CASE("C5h: stress turns with the particle") {
                              1000);
 }
 
-TEST_CASE("C5h: linear elasticity makes the false stress 2 (lambda + mu) (cos theta - 1) when turned") {
+TEST_CASE("linear elasticity makes the false stress 2 (lambda + mu) (cos theta - 1) when turned") {
   const LinearElastic::Constants<double> constants({1000, 0.3, 1000});
   for (double angle : {0.01, 0.5, 1.0, 2.0, std::numbers::pi}) {
     const Sym2 tau = LinearElastic::kirchhoff_stress(constants, LinearElastic::State<2, double>{rotation(angle)});

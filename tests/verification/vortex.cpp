@@ -1,5 +1,5 @@
-// Case C3: the generalised vortex, a manufactured solution of shear and rotation at constant volume on a ring. `ctest
-// -V` shows the tables.
+// The generalised vortex, a manufactured solution of shear and rotation at constant volume on a ring. `ctest -V` shows
+// the tables.
 //
 // The body force is that of experiments/studies/generalised_vortex.json. A published implementation of it has + r (g'
 // h)^2 sin(alpha) in its tangential term; the sign is minus (it follows from x = Q(alpha) X: the centripetal
@@ -121,7 +121,7 @@ bool falls(const std::vector<double>& e) {
 
 }  // namespace
 
-TEST_CASE("C3 the shipped body force is the case's, and balances the motion", "[C][C3]") {
+TEST_CASE("vortex: the shipped body force is the solution's, and balances the motion", "[vortex]") {
   const Experiment experiment = shipped(vortex);
   struct Row {
     double R, angle, t, bx, by;
@@ -144,7 +144,7 @@ TEST_CASE("C3 the shipped body force is the case's, and balances the motion", "[
     for (const double component : (*experiment.body_force)({R, 0, 0}, {R, 0, 0}, 0.3)) CHECK(component == 0);
 }
 
-TEST_CASE("C3 the published force with the other sign is that of another motion", "[C][C3]") {
+TEST_CASE("vortex: the published force with the other sign is that of another motion", "[vortex]") {
   const Experiment experiment = shipped(vortex);
   for (const double t : {0.31, 0.5, 0.83}) {
     const Vector3 X{0.9 * std::cos(0.7), 0.9 * std::sin(0.7), 0};
@@ -155,13 +155,14 @@ TEST_CASE("C3 the published force with the other sign is that of another motion"
                          b[1] + 2 * rate * rate * std::sin(alpha) * X[0]};
     const Vec2 found = force_by_differences(X[0], X[1], t);
     const double distance = std::hypot(published[0] - found[0], published[1] - found[1]);
-    std::printf("C3, t = %.2f: the published force is off by %.3g N/kg of %.3g\n", t, distance, std::hypot(b[0], b[1]));
+    std::printf("Vortex, t = %.2f: the published force is off by %.3g N/kg of %.3g\n", t, distance,
+                std::hypot(b[0], b[1]));
     CHECK((distance < 1e-5) == (t == 0.5));  // g' = 0 there
     CHECK((distance > 1) == (t != 0.5));
   }
 }
 
-TEST_CASE("C3 the exact solution that experiments name is the case's motion", "[C][C3]") {
+TEST_CASE("vortex: the exact solution that experiments name is this motion", "[vortex]") {
   const Experiment experiment = shipped(vortex);
   const auto exact = make_exact_solution(experiment, 0);
   for (const double R : {0.7, 0.8, 1.0, 1.2, 1.3})
@@ -181,8 +182,8 @@ TEST_CASE("C3 the exact solution that experiments name is the case's motion", "[
 }
 
 // J is 1. The rms of J - 1 converges; its largest value, at the ring's edges where the force jumps, falls more slowly.
-TEST_CASE("C3 a small twist: splines, boxes and domains converge, linear functions do not", "[C][C3]") {
-  std::printf("C3, G = 0.1, t = T / 2: rms error on 8, 16, 32 cells a metre (m), orders\n");
+TEST_CASE("vortex: a small twist: splines, boxes and domains converge, linear functions do not", "[vortex]") {
+  std::printf("Vortex, G = 0.1, t = T / 2: rms error on 8, 16, 32 cells a metre (m), orders\n");
   for (const std::string shape : {"gimp", "bspline_cubic", "cpdi2"}) {
     const Errors e = errors({8, 16, 32}, shape, "apic", 0.1, 0.5);
     INFO(shape);
@@ -196,9 +197,9 @@ TEST_CASE("C3 a small twist: splines, boxes and domains converge, linear functio
   CHECK_FALSE(falls(e.largest_volume));
 }
 
-TEST_CASE("C3 a full twist: GIMP and linear functions fail, splines and CPDI hold", "[C][C3]") {
+TEST_CASE("vortex: a full twist: GIMP and linear functions fail, splines and CPDI hold", "[vortex]") {
   // Shears have reached 3.6.
-  std::printf("C3, G = 1, t = 0.2: rms error on 8, 16, 32 cells a metre (m), orders\n");
+  std::printf("Vortex, G = 1, t = 0.2: rms error on 8, 16, 32 cells a metre (m), orders\n");
   for (const std::string shape : {"bspline_cubic", "cpdi", "cpdi2"}) {
     const Errors e = errors({8, 16, 32}, shape, "apic", 1, 0.2);
     INFO(shape);
@@ -215,17 +216,18 @@ TEST_CASE("C3 a full twist: GIMP and linear functions fail, splines and CPDI hol
   }
 }
 
-TEST_CASE("C3 a full twist: the volume of splines converges with three particles a cell and axis", "[C][C3][slow]") {
+TEST_CASE("vortex: a full twist: the volume of splines converges with three particles a cell and axis",
+          "[vortex][slow]") {
   // Two, which the shear has drawn 1.8 cells apart, leave J where it was on the finest grid.
-  std::printf("C3, G = 1, t = 0.2, 3 x 3 particles a cell: rms error on 8, 16, 32 cells a metre (m), orders\n");
+  std::printf("Vortex, G = 1, t = 0.2, 3 x 3 particles a cell: rms error on 8, 16, 32 cells a metre (m), orders\n");
   const Errors e = errors({8, 16, 32}, "bspline_cubic", "apic", 1, 0.2, 3);
   CHECK(order(e.place) > 1.8);
   CHECK(order(e.volume) > 1.6);
   CHECK(falls(e.largest_volume));
 }
 
-TEST_CASE("C3 a full twist at a shear of 5.8", "[C][C3][slow]") {
-  std::printf("C3, G = 1, t = 0.4: rms error on 16, 32 cells a metre (m), order; NaN: the run stopped\n");
+TEST_CASE("vortex: a full twist at a shear of 5.8", "[vortex][slow]") {
+  std::printf("Vortex, G = 1, t = 0.4: rms error on 16, 32 cells a metre (m), order; NaN: the run stopped\n");
   const double domains = errors({16, 32}, "cpdi", "apic", 1, 0.4).place.back();
   for (const std::string shape : {"bspline_quadratic", "bspline_cubic"}) {
     const double points = errors({16, 32}, shape, "apic", 1, 0.4).place.back();
@@ -235,11 +237,12 @@ TEST_CASE("C3 a full twist at a shear of 5.8", "[C][C3][slow]") {
   CHECK(domains < 0.006);
 }
 
-TEST_CASE("C3 a full twist there and back", "[C][C3][slow]") {
+TEST_CASE("vortex: a full twist there and back", "[vortex][slow]") {
   // Shears have been 7, and second order is lost: what went wrong on the way stays, since the ring as a whole is hardly
   // turned back in that time (its slowest swing in radius lasts 6 s). MLS-MPM comes through on every grid; with APIC,
   // FLIP, AFLIP and PolyPIC the ring leaves the domain or inverts on the finest.
-  std::printf("C3, G = 1, t = T: rms error on 8, 16, 32 or 16, 32 cells a metre (m), orders; NaN: the run stopped\n");
+  std::printf(
+      "Vortex, G = 1, t = T: rms error on 8, 16, 32 or 16, 32 cells a metre (m), orders; NaN: the run stopped\n");
   const Errors splines = errors({8, 16, 32}, "bspline_cubic", "mls", 1, 1, 4);
   CHECK(order(splines.place) > 0.5);
   CHECK(splines.place.back() < 0.045);

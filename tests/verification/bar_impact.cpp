@@ -1,5 +1,5 @@
-// Case C6: bars that meet: two equal bars, a bar on a rigid wall (VM265 of the ANSYS verification manual), and a wave
-// that meets a step in impedance. `ctest -V` shows the tables.
+// Bars that meet: two equal bars, a bar on a rigid wall (VM265 of the ANSYS verification manual), and a wave that meets
+// a step in impedance. `ctest -V` shows the tables.
 
 #include <algorithm>
 #include <cmath>
@@ -71,9 +71,10 @@ Impact meet(const std::vector<std::string>& settings) {
 
 }  // namespace
 
-TEST_CASE("C6 two equal bars exchange their velocities", "[C][C6]") {
+TEST_CASE("two equal bars exchange their velocities", "[impact]") {
   std::printf(
-      "C6, two bars: stress (Pa), speed behind the fronts (m/s), duration (s), left bar's end (m/s), energies kept\n");
+      "Bar impact, two bars: stress (Pa), speed behind the fronts (m/s), duration (s), left bar's end (m/s), energies "
+      "kept\n");
   std::printf("  %-22s %8.4f %8.4f %8.5f %8.4f %8.4f %8.4f\n", "exact", 10.0, 0.0, 0.02, -0.1, 1.0, 1.0);
   // What damps at the fronts leaves part of the energy behind: `kept` of it, and as much of the velocity.
   const auto check = [](const std::string& name, const std::vector<std::string>& settings, double kept) {
@@ -106,12 +107,12 @@ TEST_CASE("C6 two equal bars exchange their velocities", "[C][C6]") {
   }
 }
 
-TEST_CASE("C6 contact on every increment gives the shock of a single field", "[C][C6][contact][filters]") {
+TEST_CASE("contact on every increment gives the shock of a single field", "[impact][contact][filters]") {
   // Published: within 0.5 % from order 4 on. Periodic across: bars without corners, whose normals would be tilted.
   const std::vector<std::string> slab{set("/transfer/type", "pic"), set("/solver/time_step", "1e-5"),
                                       set("/solver/end_time", "0.00501"), set("/grid/boundaries/y_min", "periodic"),
                                       set("/grid/boundaries/y_max", "periodic")};
-  std::printf("C6, stress at the interface (Pa): shape, its place, order, two fields, one\n");
+  std::printf("Bar impact, stress at the interface (Pa): shape, its place, order, two fields, one\n");
   for (const std::string shape : {"linear", "bspline_quadratic", "cpdi"})
     for (const auto& [place, domain] :
          {std::pair{"node", "[[0,0],[3,0.01]]"}, std::pair{"middle of a cell", "[[-0.005,0],[3.005,0.01]]"}})
@@ -146,7 +147,7 @@ const char* on_wall = R"J({
 
 }  // namespace
 
-TEST_CASE("C6 a bar on a rigid wall (VM265)", "[C][C6]") {
+TEST_CASE("a bar on a rigid wall (VM265)", "[impact]") {
   constexpr double speed = 202.2, force = 9.4624e5, duration = 3.1199e-3, impact = 4.9456e-5;
   const double c = std::sqrt(3e7 / 0.73);
   CHECK(0.73 * c * speed == Approx(force).epsilon(1e-4));
@@ -155,8 +156,8 @@ TEST_CASE("C6 a bar on a rigid wall (VM265)", "[C][C6]") {
   // The manual's bar is linear at any strain; here sigma = E eps acts on the current volume, P = E eps / (1 + eps).
   // With eps = -v / U behind the front, density U^2 = E / (1 - v / U): the front moves at U = c (1 + v / 2 c + ...).
   const double front = 1 + speed / (2 * c);
-  std::printf("C6, VM265: force (N), begin and duration (s), rebound (m/s); exact %.5g %.5g %.5g %.5g\n", force, impact,
-              duration, speed);
+  std::printf("Bar impact, VM265: force (N), begin and duration (s), rebound (m/s); exact %.5g %.5g %.5g %.5g\n", force,
+              impact, duration, speed);
   for (const std::string transfer : {"flip", "apic"}) {
     Scene scene(on_wall, {set("/transfer/type", transfer)});
     const double mass = scene.metrics.initial().mass, full = mass * speed;
@@ -205,8 +206,8 @@ const char* step = R"J({
 
 }  // namespace
 
-TEST_CASE("C6 what a step in impedance passes on and throws back", "[C][C6]") {
-  std::printf("C6, impedance: shape, transfer, Z1 to Z2 | transmitted, exact | reflected, exact\n");
+TEST_CASE("what a step in impedance passes on and throws back", "[impact]") {
+  std::printf("Bar impact, impedance: shape, transfer, Z1 to Z2 | transmitted, exact | reflected, exact\n");
   for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic", "cpdi"})
     for (const std::string transfer : {shape == "bspline_quadratic" ? "apic" : "flip"})
       for (const bool hardens : {true, false}) {

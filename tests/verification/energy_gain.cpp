@@ -1,5 +1,5 @@
-// Case A11: an isolated elastic body never gains energy. A free block that vibrates in its lowest waves, at 0.3 of the
-// step that A5 allows; no particle leaves its cell. `ctest -V` shows the table.
+// An isolated elastic body never gains energy. A free block that vibrates in its lowest waves, at 0.3 of the largest
+// stable step (critical_step.cpp); no particle leaves its cell. `ctest -V` shows the table.
 
 #include <algorithm>
 #include <cstdio>
@@ -61,8 +61,8 @@ Energies energies_of(Scene& scene, const std::string& update) {
 
 }  // namespace
 
-TEST_CASE("A11 a free elastic block gains no energy", "[A][A11]") {
-  std::printf("A11: largest and last energy over the first, rise a period that lasts\n");
+TEST_CASE("a free elastic block gains no energy", "[energy_gain]") {
+  std::printf("Energy gain: largest and last energy over the first, rise a period that lasts\n");
   for (const auto& [shape, transfer] :
        pairs_of(shapes_present({"linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp",
                                 "cpdi", "cpdi2"}),
@@ -85,7 +85,7 @@ TEST_CASE("A11 a free elastic block gains no energy", "[A][A11]") {
       kept[update] = e.last;
     }
     if (transfer != "flip") continue;
-    // A6: USL takes energy out of the short wave, USF and MUSL leave it.
+    // USL takes energy out of the short wave, USF and MUSL leave it.
     INFO(shape);
     CHECK(kept["last"] < 0.8);
     CHECK(kept["modified_last"] > 0.95);

@@ -1,6 +1,6 @@
-// Case C2: the manufactured wave of Wallstedt & Guilkey (2008) in one, two and three dimensions, and at amplitudes that
-// cross cells: what converges and what does not. `ctest -V` shows the tables. Orders of every shape with every transfer
-// are in docs/studies/convergence.md; manufactured.cpp has more transfers at second order.
+// The manufactured wave of Wallstedt & Guilkey (2008) in one, two and three dimensions, and at amplitudes that cross
+// cells: what converges and what does not. `ctest -V` shows the tables. Orders of every shape with every transfer are
+// in docs/studies/convergence.md; manufactured.cpp has more transfers at second order.
 
 #include <array>
 #include <cmath>
@@ -39,7 +39,7 @@ double force_by_differences(const std::array<double, 3>& X, double t, double A, 
   return acceleration - slope / density;
 }
 
-/// The case's formula along an axis, as an expression.
+/// The wave's body force along an axis, as an expression.
 std::string force(int axis, int dimension) {
   const std::string letters = "XYZ", sign[] = {"", "-", ""};
   const auto F = [&](int a) { return "(1+" + sign[a] + "pi*A*cos(pi*" + letters[a] + ")*sin(c*pi*t))"; };
@@ -49,7 +49,7 @@ std::string force(int axis, int dimension) {
          "))+mu*(1+1/" + F(axis) + "^2)-E)";
 }
 
-/// A quarter of the case's time, where the square is stretched most, or all of it. At T each particle passes its place
+/// A quarter of a period T, where the square is stretched most, or all of it. At T each particle passes its place
 /// at full speed, and the half step by which velocities lag is pi c dt / 2 of the amplitude: there the step falls with
 /// h^2, so that first order in time is second in h.
 enum class Until { quarter, period };
@@ -127,7 +127,7 @@ const std::vector<std::string>& cube() {
 
 }  // namespace
 
-TEST_CASE("C2 the body force balances the motion, in 1-D, 2-D and 3-D", "[C][C2]") {
+TEST_CASE("manufactured wave: the body force balances the motion, in 1-D, 2-D and 3-D", "[wave]") {
   const Experiment experiment = shipped(wave);
   const ExpressionScope scope{
       .constants = {{"A", 0.05}, {"E", modulus}, {"rho", density}, {"c", speed}, {"mu", mu}, {"lam", lambda}}};
@@ -147,9 +147,9 @@ TEST_CASE("C2 the body force balances the motion, in 1-D, 2-D and 3-D", "[C][C2]
     }
 }
 
-TEST_CASE("C2 before cells are crossed all shapes are of second order, beyond not", "[C][C2]") {
+TEST_CASE("manufactured wave: before cells are crossed all shapes are of second order, beyond not", "[wave]") {
   for (const double A : {0.0001, 0.05, 0.1}) {
-    std::printf("C2, A = %g: rms error over A on 8, 16, 32 cells, orders\n", A);
+    std::printf("Wave, A = %g: rms error over A on 8, 16, 32 cells, orders\n", A);
     for (const std::string shape : {"linear", "gimp", "bspline_quadratic", "bspline_cubic", "cpdi"}) {
       const double order = observed_order(sizes, errors(shape, "aflip", A));
       INFO(shape << ", A = " << A << ": order " << order);
@@ -165,9 +165,10 @@ TEST_CASE("C2 before cells are crossed all shapes are of second order, beyond no
   }
 }
 
-TEST_CASE("C2 a whole period at the largest amplitude: cubic splines and CPDI stay of second order", "[C][C2]") {
+TEST_CASE("manufactured wave: a whole period at the largest amplitude: cubic splines and CPDI stay of second order",
+          "[wave]") {
   const std::vector<double> grids{1.0 / 8, 1.0 / 16, 1.0 / 24};
-  std::printf("C2, A = 0.1, t = T: rms error over A on 8, 16, 24 cells, orders\n");
+  std::printf("Wave, A = 0.1, t = T: rms error over A on 8, 16, 24 cells, orders\n");
   for (const auto& [shape, transfer] : {std::pair{"bspline_cubic", "apic"}, std::pair{"cpdi", "aflip"}}) {
     const auto list = errors(shape, transfer, 0.1, Until::period, grids);
     INFO(shape);
@@ -175,10 +176,10 @@ TEST_CASE("C2 a whole period at the largest amplitude: cubic splines and CPDI st
   }
 }
 
-TEST_CASE("C2 a whole period of every shape at every amplitude", "[C][C2][slow]") {
+TEST_CASE("manufactured wave: a whole period of every shape at every amplitude", "[wave][slow]") {
   const std::vector<double> grids{1.0 / 8, 1.0 / 16, 1.0 / 24};
   for (const double A : {0.0001, 0.05, 0.1}) {
-    std::printf("C2, A = %g, t = T: rms error over A on 8, 16, 24 cells, orders\n", A);
+    std::printf("Wave, A = %g, t = T: rms error over A on 8, 16, 24 cells, orders\n", A);
     for (const Plugin* plugin : plugins().of_kind(MPM_SHAPE))
       for (const std::string transfer : {"flip", "apic", "aflip"}) {
         if ((A < 0.001) != (transfer == "flip")) continue;
@@ -197,9 +198,9 @@ TEST_CASE("C2 a whole period of every shape at every amplitude", "[C][C2][slow]"
   }
 }
 
-TEST_CASE("C2 in one dimension", "[C][C2]") {
+TEST_CASE("manufactured wave: in one dimension", "[wave]") {
   const std::vector<std::string> shapes{"linear", "gimp", "bspline_cubic", "cpdi"};
-  std::printf("C2, A = 0.05, 1-D, t = T / 4: rms error over A on 8, 16, 32 cells, orders\n");
+  std::printf("Wave, A = 0.05, 1-D, t = T / 4: rms error over A on 8, 16, 32 cells, orders\n");
   for (const std::string& shape : shapes) {
     const auto list = line_errors(shape, 0.05, Until::quarter);
     INFO(shape);
@@ -209,7 +210,7 @@ TEST_CASE("C2 in one dimension", "[C][C2]") {
       CHECK(observed_order(sizes, list) > 1);
   }
   for (const double A : {0.0001, 0.05, 0.1}) {
-    std::printf("C2, A = %g, 1-D, t = T: rms error over A on 8, 16, 32 cells, orders\n", A);
+    std::printf("Wave, A = %g, 1-D, t = T: rms error over A on 8, 16, 32 cells, orders\n", A);
     for (const std::string& shape : shapes) {
       const double order = observed_order(sizes, line_errors(shape, A, Until::period));
       INFO(shape << ", A = " << A << ": order " << order);
@@ -225,11 +226,11 @@ TEST_CASE("C2 in one dimension", "[C][C2]") {
   }
 }
 
-TEST_CASE("C2 in three dimensions", "[C][C2]") {
+TEST_CASE("manufactured wave: in three dimensions", "[wave]") {
   const std::vector<double> grids{1.0 / 8, 1.0 / 16};
   auto words = cube();
   words.push_back("/solver/end_time=0.0025");
-  std::printf("C2, A = 0.05, 3-D, t = 0.0025: rms error over A on 8, 16 cells, order\n");
+  std::printf("Wave, A = 0.05, 3-D, t = 0.0025: rms error over A on 8, 16 cells, order\n");
   for (const std::string shape : {"linear", "bspline_cubic"}) {
     const auto list = errors(shape, "aflip", 0.05, Until::quarter, grids, words);
     INFO(shape);
@@ -238,10 +239,10 @@ TEST_CASE("C2 in three dimensions", "[C][C2]") {
   }
 }
 
-TEST_CASE("C2 a whole period in three dimensions", "[C][C2][slow]") {
+TEST_CASE("manufactured wave: a whole period in three dimensions", "[wave][slow]") {
   const std::vector<double> grids{1.0 / 8, 1.0 / 12, 1.0 / 16};
   for (const double A : {0.05, 0.1}) {
-    std::printf("C2, A = %g, 3-D, t = T: rms error over A on 8, 12, 16 cells, orders\n", A);
+    std::printf("Wave, A = %g, 3-D, t = T: rms error over A on 8, 12, 16 cells, orders\n", A);
     for (const std::string shape : {"linear", "bspline_cubic"}) {
       const auto list = errors(shape, "aflip", A, Until::period, grids, cube());
       INFO(shape << ", A = " << A);

@@ -1,4 +1,4 @@
-// Reference case B7: sand on triaxial paths, in Kirchhoff stresses; and what a gap opened in tension does afterwards.
+// Sand on triaxial paths, in Kirchhoff stresses; and what a gap opened in tension does afterwards.
 
 #include <algorithm>
 #include <cmath>
@@ -68,7 +68,7 @@ struct Particle {
 
 }  // namespace
 
-TEST_CASE("B7: triaxial compression fails at q = M p + k") {
+TEST_CASE("sand: triaxial compression fails at q = M p + k") {
   const double lateral = 1e5;
   for (double angle : {20.0, 30.0, 40.0})
     for (double cohesion : {0.0, 1e4, 5e4}) {
@@ -98,7 +98,7 @@ TEST_CASE("B7: triaxial compression fails at q = M p + k") {
     }
 }
 
-TEST_CASE("B7: the published numbers at 30 degrees") {
+TEST_CASE("sand: the published numbers at 30 degrees") {
   Particle sand(30 * degree, 0);
   sand.press_to(1e5);
   for (int step = 0; step < 60; ++step) sand.squeeze(1e-3, 1e5);
@@ -109,7 +109,7 @@ TEST_CASE("B7: the published numbers at 30 degrees") {
   CHECK(std::abs(c.slope * 2 * c.mu / (3 * c.lambda + 2 * c.mu) - 0.32659863) < 5e-9);
 }
 
-TEST_CASE("B7: flow at failure keeps the volume and dissipates q times the plastic strain") {
+TEST_CASE("sand: flow at failure keeps the volume and dissipates q times the plastic strain") {
   Particle sand(30 * degree, 0);
   sand.press_to(1e5);
   for (int step = 0; step < 60; ++step) sand.squeeze(1e-3, 1e5);
@@ -120,7 +120,7 @@ TEST_CASE("B7: flow at failure keeps the volume and dissipates q times the plast
   CHECK(sand.heat - heat == Approx(200e3 * -20 * std::log(1 - 1e-4)).epsilon(1e-6));
 }
 
-TEST_CASE("B7: dry sand carries no tension") {
+TEST_CASE("sand: dry sand carries no tension") {
   for (bool corrected : {true, false}) {
     Particle sand(30 * degree, 0, corrected);
     sand.press_to(1e4);

@@ -1,5 +1,5 @@
-// Case A3: the table of what one step does to a wave of 32 / n cells, for every transfer and shape that has a row, on
-// both backends. `ctest -V` shows it. Factors of other orders of filters and of FLIP are in lattice.cpp.
+// The table of what one step does to a wave of 32 / n cells, for every transfer and shape that has a row, on both
+// backends. `ctest -V` shows it. Factors of other orders of filters and of FLIP are in lattice.cpp.
 
 #include <array>
 #include <complex>
@@ -21,7 +21,7 @@ struct Row {
   std::vector<std::string> transfers;  // that coincide with the first on this lattice
   double offset = 0;                   // 0: at cell centres, or at 1/4 and 3/4 with two a cell; 1/2: on nodes
   int particles_per_cell = 1;
-  std::array<double, 4> factors;  // of modes 1, 2, 4, 8, as the case prints them
+  std::array<double, 4> factors;  // of modes 1, 2, 4, 8, as docs/verification.md prints them
   double printed = 1e-10;         // one unit of their last digit
   bool is_quotient = false;       // one step of the seeded mode, v'Mv / v'v: it is no mode of the lattice
 };
@@ -96,12 +96,12 @@ void check_row(const Row& row) {
 
 }  // namespace
 
-TEST_CASE("A3 the table of damping factors", "[A][A3]") {
+TEST_CASE("the table of damping factors", "[damping]") {
   // A wave along the line has no spin for RPIC to keep, and nothing across it for PolyPIC's product x y.
   const std::vector<std::string> quadratic{"bspline_quadratic", "gimp", "gimp_contiguous"},
       cubic{"bspline_cubic", "b2gimp"}, affine{"apic", "mls", "polypic"};
   const std::vector<std::string> centre{"linear", "bspline_quadratic", "gimp", "gimp_contiguous", "cpdi", "cpdi2"};
-  std::printf("A3, factor on the velocity of modes 1, 2, 4, 8 of 32 cells in one step\n");
+  std::printf("Damping, factor on the velocity of modes 1, 2, 4, 8 of 32 cells in one step\n");
   for (const Row& row : std::vector<Row>{
            {centre, {"pic", "rpic"}, 0, 1, {.9903926402, .9619397663, .8535533906, .5}},
            {quadratic, {"pic", "rpic"}, .5, 1, {.9904157155, .9623019116, .8589150429, .5625}},
@@ -115,7 +115,7 @@ TEST_CASE("A3 the table of damping factors", "[A][A3]") {
     check_row(row);
 }
 
-TEST_CASE("A3 FLIP with a share of PIC damps by that share", "[A][A3]") {
+TEST_CASE("FLIP with a share of PIC damps by that share", "[damping]") {
   for (const double share : {0.01, 0.1, 0.5})
     for (const int mode : modes) {
       const double s2 = std::pow(std::cos(std::numbers::pi * mode / 32), 2);
@@ -125,9 +125,9 @@ TEST_CASE("A3 FLIP with a share of PIC damps by that share", "[A][A3]") {
     }
 }
 
-TEST_CASE("A3 the order of dissipation: 2 of PIC, 4 of APIC, 2 m of XPIC(m) and FMPM(m)", "[A][A3]") {
+TEST_CASE("the order of dissipation: 2 of PIC, 4 of APIC, 2 m of XPIC(m) and FMPM(m)", "[damping]") {
   // The loss of the longest wave over that of half its length is 2^-order as both go to zero.
-  std::printf("A3, order of dissipation from waves of 64 and 32 cells\n");
+  std::printf("Damping, order of dissipation from waves of 64 and 32 cells\n");
   const auto check_order = [](const std::string& transfer, const std::string& with_filter, double order) {
     const auto loss = [&](int cells) {
       return 1 - factor({.shape = "bspline_quadratic",

@@ -1,7 +1,7 @@
-// Case C5: spinning bodies: mass moments, energy, what each transfer keeps of the spin, the stress of a disc that
-// spins steadily, and the turned stress of laws that conformance/cases_c5.cpp leaves out. `ctest -V` shows the tables.
+// Spinning bodies: mass moments, energy, what each transfer keeps of the spin, the stress of a disc that spins
+// steadily, and the turned stress of laws that conformance/turned_strain.cpp leaves out. `ctest -V` shows the tables.
 //
-// Ten turns, and what FLIP and XPIC lose and why: c5_spin_lost.cpp.
+// Ten turns, and what FLIP and XPIC lose and why: spin_lost.cpp.
 
 #include <cmath>
 #include <numbers>
@@ -31,8 +31,8 @@ Kept turn(const std::vector<std::string>& settings) {
 
 }  // namespace
 
-TEST_CASE("C5 moments and energies of disc and square", "[C][C5]") {
-  std::printf("C5: spin (kg m^2/s) and kinetic energy (J/m) at the start, 20, 40, 80 cells; exact\n");
+TEST_CASE("moments and energies of disc and square", "[spin]") {
+  std::printf("Spin: spin (kg m^2/s) and kinetic energy (J/m) at the start, 20, 40, 80 cells; exact\n");
   struct Row {
     const char* name;
     std::string geometry;
@@ -60,8 +60,8 @@ TEST_CASE("C5 moments and energies of disc and square", "[C][C5]") {
   }
 }
 
-TEST_CASE("C5 one turn of every transfer", "[C][C5]") {
-  std::printf("C5, one turn of the disc: share kept of spin and kinetic energy, rms error (m)\n");
+TEST_CASE("spinning disc: one turn of every transfer", "[spin]") {
+  std::printf("Spin, one turn of the disc: share kept of spin and kinetic energy, rms error (m)\n");
   const auto check = [](const std::string& name, const std::vector<std::string>& settings, double least, double most) {
     const Kept kept = turn(settings);
     std::printf("  %-12s %.12f %.6f %.4f\n", name.c_str(), kept.spin, kept.kinetic, kept.error);
@@ -86,7 +86,7 @@ TEST_CASE("C5 one turn of every transfer", "[C][C5]") {
   check("apic, xpic 4", {soft, courant, xpic}, 1 - 1e-10, 1 + 1e-10);
 }
 
-TEST_CASE("C5 linear elasticity makes false stress of a turn", "[C][C5]") {
+TEST_CASE("linear elasticity makes false stress of a turn", "[spin]") {
   // 2 (lambda + mu)(cos theta - 1) in the plane: at a quarter turn the disc would be crushed. Neo-Hookean keeps
   // the volume to what spinning stretches it by.
   for (const std::string material : {"linear_elastic", "neo_hookean"}) {
@@ -97,12 +97,12 @@ TEST_CASE("C5 linear elasticity makes false stress of a turn", "[C][C5]") {
     } catch (const RunFailure&) {
       energy = INFINITY;
     }
-    std::printf("C5, a tenth of a turn, %s: strain energy over kinetic %.4g\n", material.c_str(), energy);
+    std::printf("Spin, a tenth of a turn, %s: strain energy over kinetic %.4g\n", material.c_str(), energy);
     CHECK((energy < 0.01) == (material == "neo_hookean"));
   }
 }
 
-TEST_CASE("C5 the stress of a steadily spinning disc", "[C][C5]") {
+TEST_CASE("the stress of a steadily spinning disc", "[spin]") {
   // Set spinning without strain the disc breathes about the steady state of plane strain, in linear elasticity with
   //   s_r = K1 rho w^2 (R^2 - r^2), s_t = rho w^2 (K1 R^2 - K2 r^2), K1 = (3 - 2 nu)/(8 (1 - nu)), K2 = (1 + 2 nu)/(8
   //   (1 - nu)):
@@ -111,7 +111,7 @@ TEST_CASE("C5 the stress of a steadily spinning disc", "[C][C5]") {
                    K2 = (1 + 2 * nu) / (8 * (1 - nu)), scale = 1000 * spin * spin, modulus = 2.5e8;
   CHECK(K1 * scale * radius * radius == Approx(10714.2857).epsilon(1e-8));
   const double lambda = modulus * nu / ((1 + nu) * (1 - 2 * nu)), mu = modulus / (2 * (1 + nu));
-  std::printf("C5, steady disc: cells a diameter; mean stress in the middle and s_r, s_t at r = 0.25 (Pa)\n");
+  std::printf("Spin, steady disc: cells a diameter; mean stress in the middle and s_r, s_t at r = 0.25 (Pa)\n");
   for (const int n : {20, 40}) {
     Scene scene(spinning_disc, {set("/constants/w", "10"), set("/compare", "null"),
                                 set("/materials/m/youngs_modulus", digits(modulus)),
@@ -192,7 +192,7 @@ void add_sample(const Scene& scene, const std::vector<double>& X, double lambda,
 
 }  // namespace
 
-TEST_CASE("C5 the stress of a spinning square turns with it", "[C][C5]") {
+TEST_CASE("the stress of a spinning square turns with it", "[spin]") {
   // Without tractions int sigma dV = int density v x v dV - d/dt int density x x v dV: over many breaths the mean
   // stress is density w^2 side^2 / 12 along both axes. Halfway to an edge the stress along the edge is the larger one:
   // after an eighth of a turn as at the start, and after a whole one.
@@ -210,7 +210,7 @@ TEST_CASE("C5 the stress of a spinning square turns with it", "[C][C5]") {
       if (std::abs(scene.simulation.time() - middles[k]) < 0.04) add_sample(scene, X, lambda, mu, sums[k]);
   }
   std::printf(
-      "C5, square: turns; mean stress xx, yy, xy of its own axes, along and across an edge (Pa); exact mean %.2f\n",
+      "Spin, square: turns; mean stress xx, yy, xy of its own axes, along and across an edge (Pa); exact mean %.2f\n",
       exact);
   for (int k = 0; k < 3; ++k) {
     const SquareStress& sum = sums[k];
@@ -233,7 +233,7 @@ TEST_CASE("C5 the stress of a spinning square turns with it", "[C][C5]") {
   CHECK(end.position_error_rms < 1e-3);  // m
 }
 
-TEST_CASE("C5h the stress of a fixed corotated solid turns with it", "[C][C5]") {
+TEST_CASE("the stress of a fixed corotated solid turns with it", "[spin]") {
   using Matrix = Mat<2, double>;
   const FixedCorotated::Constants<double> constants({1000, 0.3, 1000});
   FixedCorotated::State<2, double> state{Matrix::identity()};

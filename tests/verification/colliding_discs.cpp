@@ -1,6 +1,6 @@
-// Case C7: the numbers of two colliding discs (Sulsky, Chen & Schreyer 1994; 40 x 40 cells, 2 x 2 particles a cell,
-// dt = 0.001 s): masses, kinetic energy, the time they touch, and what every transfer keeps of energy, momentum and
-// angular momentum. `ctest -V` shows the tables. Symmetry, and flight before contact, are in discs.cpp.
+// The numbers of two colliding discs (Sulsky, Chen & Schreyer 1994; 40 x 40 cells, 2 x 2 particles a cell, dt = 0.001
+// s): masses, kinetic energy, the time they touch, and what every transfer keeps of energy, momentum and angular
+// momentum. `ctest -V` shows the tables. Symmetry, and flight before contact, are in discs.cpp.
 
 #include <cmath>
 
@@ -38,8 +38,8 @@ constexpr double mass = 125.6637, kinetic = 2.51327412, touch = 1.58578644, cell
 
 }  // namespace
 
-TEST_CASE("C7 masses and kinetic energy tend to the discs'", "[C][C7]") {
-  std::printf("C7: mass of a disc (kg/m) and kinetic energy (J/m) on 40, 80, 160 cells, of %.4f and %.8f\n", mass,
+TEST_CASE("two discs: masses and kinetic energy tend to the discs'", "[discs]") {
+  std::printf("Discs: mass of a disc (kg/m) and kinetic energy (J/m) on 40, 80, 160 cells, of %.4f and %.8f\n", mass,
               kinetic);
   for (const int n : {40, 80, 160}) {
     const Scene scene(discs, {set("/grid/cell_size", digits(1.0 / n))});
@@ -101,7 +101,8 @@ void check_collision(const std::string& name, const Collision& found, double lea
 
 void print_heads() {
   std::printf(
-      "C7: touch at %.8f s; strain energy above 1e-6 and 1e-2 of the kinetic (s); total and kinetic energy kept at 3.5 "
+      "Discs: touch at %.8f s; strain energy above 1e-6 and 1e-2 of the kinetic (s); total and kinetic energy kept at "
+      "3.5 "
       "s, largest total | with a ledger: lost by transfers, by time integration\n",
       touch);
 }
@@ -113,7 +114,7 @@ std::vector<std::string> scheme(const std::string& shape, const std::string& tra
 
 }  // namespace
 
-TEST_CASE("C7 time of touch and energy of every transfer", "[C][C7]") {
+TEST_CASE("two discs: time of touch and energy of every transfer", "[discs]") {
   print_heads();
   const auto check = [](const std::string& shape, const std::string& transfer, const std::string& update, double least,
                         double most = 1.0001) {
@@ -135,14 +136,15 @@ TEST_CASE("C7 time of touch and energy of every transfer", "[C][C7]") {
   for (const std::string transfer : {"rpic", "pic"}) check("gimp", transfer, "last", 0.1, 0.3);
 }
 
-TEST_CASE("C7 what is lost goes in the transfers or by the time step", "[C][C7]") {
+TEST_CASE("two discs: what is lost goes in the transfers or by the time step", "[discs]") {
   print_heads();
   const auto lost = [](const std::string& name, const std::vector<std::string>& settings) {
     const Collision found = collide(settings + set("/output/ledger", "true"));
     check_collision(name, found, 0.75);
     return found;
   };
-  // FLIP's loss is USL's (A6: its determinant is below 1): it falls with the step, and MUSL has a tenth of it.
+  // FLIP's loss is USL's (its determinant is below 1, stress_update.cpp): it falls with the step, and MUSL has a tenth
+  // of it.
   const auto usl = scheme("bspline_quadratic", "flip");
   const double whole = 1 - lost("bspline_quadratic flip", usl).kept;
   CHECK(1 - lost("bspline_quadratic flip, dt/2", usl + set("/solver/time_step", "0.0005")).kept < 0.7 * whole);
@@ -153,7 +155,7 @@ TEST_CASE("C7 what is lost goes in the transfers or by the time step", "[C][C7]"
   CHECK(apic.transfers > 0.9 * (1 - apic.kept));
 }
 
-TEST_CASE("C7 losses fall with the step or with the cells", "[C][C7][slow]") {
+TEST_CASE("two discs: losses fall with the step or with the cells", "[discs][slow]") {
   print_heads();
   const auto lost = [](const std::string& name, const std::vector<std::string>& settings) {
     const Collision found = collide(settings);
@@ -194,9 +196,10 @@ TEST_CASE("C7 losses fall with the step or with the cells", "[C][C7][slow]") {
   CHECK(order_8 < 0.03);
 }
 
-TEST_CASE("C7h angular momentum of an oblique collision", "[C][C7]") {
-  std::printf("C7h: angular momentum at the start (kg m^2/s), exact %.8f without affine parts; share kept at 3 s\n",
-              1.77715318);
+TEST_CASE("angular momentum of an oblique collision", "[discs]") {
+  std::printf(
+      "Oblique discs: angular momentum at the start (kg m^2/s), exact %.8f without affine parts; share kept at 3 s\n",
+      1.77715318);
   const auto check = [](const std::string& name, const std::string& contact, const std::string& transfer) {
     Scene scene(discs, oblique + set("/contact", contact) + set("/transfer/type", transfer) +
                            set("/shape/type", "bspline_quadratic"));
@@ -221,8 +224,8 @@ TEST_CASE("C7h angular momentum of an oblique collision", "[C][C7]") {
 
 // On 40 cells FLIP, AFLIP and ASFLIP lose 0.9 to 1.5 % of L, all of it by lumped masses at the discs' free edges
 // (spin_balance.hpp). It falls with the cells: on 80 they keep L to 0.5 %.
-TEST_CASE("C7h the spin that FLIP, AFLIP and ASFLIP lose in a collision", "[C][C7]") {
-  std::printf("C7h, 40 cells: change of L by lumped masses, motion, filter | sum, the run's | gap\n");
+TEST_CASE("the spin that FLIP, AFLIP and ASFLIP lose in a collision", "[discs]") {
+  std::printf("Oblique discs, 40 cells: change of L by lumped masses, motion, filter | sum, the run's | gap\n");
   std::vector<double> coarse, fine;
   const std::vector<std::string> transfers{"flip", "aflip", "asflip"};
   const auto settings = [](const std::string& transfer) {
@@ -235,7 +238,7 @@ TEST_CASE("C7h the spin that FLIP, AFLIP and ASFLIP lose in a collision", "[C][C
     check_balance(transfer, found);
     coarse.push_back(std::abs(found.change));
   }
-  std::printf("C7h, 80 cells, dt = 0.002 s: share of L kept at 3 s\n");
+  std::printf("Oblique discs, 80 cells, dt = 0.002 s: share of L kept at 3 s\n");
   for (const std::string& transfer : transfers)
     for (const std::string& contact : {std::string("null"), friction}) {
       Scene scene(discs, settings(transfer) + set("/grid/cell_size", "0.0125") + set("/solver/time_step", "0.002") +

@@ -1,5 +1,5 @@
-// Case A6: dissipation and frequency of FLIP by the order of the stress update, exact for a periodic line with one
-// particle a cell at cell centres and linear functions. The amplitude q of a mode follows
+// Dissipation and frequency of FLIP by the order of the stress update, exact for a periodic line with one particle a
+// cell at cell centres and linear functions. The amplitude q of a mode follows
 //   q(n + 2) = trace q(n + 1) - det q(n),   det = 1 - z^2 (1 - s2), trace = 2 - z^2        of USL
 //                                           det = 1,               trace = 2 - s2 z^2      of USF and MUSL
 //                         the mean of USL's and USF's                                        of USAVG
@@ -59,8 +59,8 @@ int radian(const Wave& wave) {
 
 }  // namespace
 
-TEST_CASE("A6 USL dissipates, USAVG half of it, USF and MUSL do not, and each has its frequency", "[A][A6]") {
-  std::printf("A6: update, mode of 32 cells, C, factor a step (run, exact), radians a step (run, exact)\n");
+TEST_CASE("USL dissipates, USAVG half of it, USF and MUSL do not, and each has its frequency", "[stress_update]") {
+  std::printf("Stress update: update, mode of 32 cells, C, factor a step (run, exact), radians a step (run, exact)\n");
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string update : {"last", "first", "modified_last", "averaged"})
       for (const int mode : {1, 2, 4, 8})
@@ -80,8 +80,9 @@ TEST_CASE("A6 USL dissipates, USAVG half of it, USF and MUSL do not, and each ha
         }
 }
 
-TEST_CASE("A6 the published example: 0.9992755 a step, 0.484 after 1000 steps of USL, 1 of MUSL and USF", "[A][A6]") {
-  std::printf("A6: update, amplitude after 1000 steps, mode 2 of 32 cells, C = 0.5\n");
+TEST_CASE("decay of a wave in numbers: 0.9992755 a step, 0.484 after 1000 steps of USL, 1 of MUSL and USF",
+          "[stress_update]") {
+  std::printf("Stress update: update, amplitude after 1000 steps, mode 2 of 32 cells, C = 0.5\n");
   REQUIRE(std::sqrt(exact_wave("last", 2, 0.5).det) == Approx(0.9992755).epsilon(1e-7));
   for (const std::string update : {"last", "first", "modified_last"}) {
     const Wave wave = exact_wave(update, 2, 0.5);

@@ -1,5 +1,5 @@
-// Reference case A1 for shapes of 4 nodes that average over a box: B2GIMP over the box at the start, cpGIMP over one
-// that follows the deformation. The oracle is the mean itself, integrated piece by piece.
+// Kernel values of shapes of 4 nodes that average over a box: B2GIMP over the box at the start, cpGIMP over one that
+// follows the deformation. The oracle is the mean itself, integrated piece by piece.
 
 #include <cmath>
 #include <functional>
@@ -49,7 +49,7 @@ double box_mean(const std::function<double(double)>& f, double d, double l) {
   return sum / (2 * l);
 }
 
-/// Weights, slopes and the sums of case A1 of a box mean of `f`, for boxes of half length l.
+/// Weights, slopes and the sums of a box mean of `f`, for boxes of half length l.
 template <class Shape>
 void check_mean(const std::function<double(double)>& f, double l) {
   for (int k = -150; k <= 150; ++k) {
@@ -96,11 +96,11 @@ mpm::Mat<D, double> box(double x, double y) {
 
 }  // namespace
 
-TEST_CASE("A1: B2GIMP is the mean of the quadratic spline over the particle's box") {
+TEST_CASE("B2GIMP is the mean of the quadratic spline over the particle's box") {
   for (const double l : {0.5, 0.25, 1.0 / 6, 0.125, 0.05, 0.01}) check_mean<B2Gimp>(quadratic, l);
 }
 
-TEST_CASE("A1: B2GIMP tends to the quadratic spline and is the cubic one at a box one cell wide") {
+TEST_CASE("B2GIMP tends to the quadratic spline and is the cubic one at a box one cell wide") {
   for (int k = -200; k <= 200; ++k) {
     const double x = k / 77.0;
     const Axis<mpm::BsplineQuadratic> limit(x);
@@ -118,12 +118,12 @@ TEST_CASE("A1: B2GIMP tends to the quadratic spline and is the cubic one at a bo
   }
 }
 
-TEST_CASE("A1: the second moment of B2GIMP is 1/4 + l^2/3 everywhere") {
+TEST_CASE("the second moment of B2GIMP is 1/4 + l^2/3 everywhere") {
   for (const double l : {0.5, 0.25, 0.1, 1e-3})
     for (int k = -100; k < 100; ++k) CHECK(std::abs(second_moment<B2Gimp>(k / 17.0, l) - (0.25 + l * l / 3)) <= 1e-14);
 }
 
-TEST_CASE("A1: the slope of B2GIMP's slope is continuous, of uGIMP it jumps") {
+TEST_CASE("the slope of B2GIMP's slope is continuous, of uGIMP it jumps") {
   constexpr double step = 0x1p-20;
   const auto jump = [](auto&& slope, double x) {  // of the second derivative, over two steps
     const double below = (slope(x - step) - slope(x - 2 * step)) / step,
@@ -139,11 +139,11 @@ TEST_CASE("A1: the slope of B2GIMP's slope is continuous, of uGIMP it jumps") {
   CHECK(jump([](double x) { return Axis<mpm::Gimp>(x, 0.25).slope(0); }, 0.25) > 1);
 }
 
-TEST_CASE("A1: cpGIMP is the mean of the tent over boxes of up to two cells") {
+TEST_CASE("cpGIMP is the mean of the tent over boxes of up to two cells") {
   for (const double l : {1.0, 0.83, 0.7, 0.5, 0.3, 0.25, 0.1, 0.01}) check_mean<GimpContiguous>(tent, l);
 }
 
-TEST_CASE("A1: cpGIMP equals uGIMP at F = I, in lanes too") {
+TEST_CASE("cpGIMP equals uGIMP at F = I, in lanes too") {
   for (const double l : {0.5, 0.25, 1.0 / 6, 0.125, 0.01}) {
     CHECK(GimpContiguous::half_lengths<2>(by_F, box<2>(l, l))[1] == l);
     CHECK(std::abs(GimpContiguous::half_lengths<3>(by_U, box<3>(l, l))[2] - l) <= 4e-16 * l);
@@ -167,7 +167,7 @@ TEST_CASE("A1: cpGIMP equals uGIMP at F = I, in lanes too") {
   }
 }
 
-TEST_CASE("A1: a stretch along the axes is the same by diag F and by diag U") {
+TEST_CASE("a stretch along the axes is the same by diag F and by diag U") {
   for (const auto& parameters : {by_F, by_U}) {
     const auto flat = GimpContiguous::half_lengths<2>(parameters, box<2>(0.25 * 3, 0.25 * 0.4));
     const auto solid = GimpContiguous::half_lengths<3>(parameters, box<3>(0.25 * 3, 0.25 * 0.4));
@@ -178,7 +178,7 @@ TEST_CASE("A1: a stretch along the axes is the same by diag F and by diag U") {
   }
 }
 
-TEST_CASE("A1: at a turn by 90 degrees diag F has collapsed, diag U has not moved") {
+TEST_CASE("at a turn by 90 degrees diag F has collapsed, diag U has not moved") {
   const double l = 0.25;
   for (const int degrees : {0, 30, 60, 89, 90, 120, 180, 270}) {
     const double angle = degrees * std::numbers::pi / 180;
@@ -215,7 +215,7 @@ TEST_CASE("A1: at a turn by 90 degrees diag F has collapsed, diag U has not move
   CHECK(std::abs(drawn[1] - l) <= 1e-15);
 }
 
-TEST_CASE("A1: cpGIMP gives no weight where four nodes do not hold the box") {
+TEST_CASE("cpGIMP gives no weight where four nodes do not hold the box") {
   for (const double l : {1.0 + 1e-12, 2.0, 1e300, std::nan("")})
     for (const double x : {0.0, 0.3, 0.5}) {
       const Axis<GimpContiguous> axis(x, l);

@@ -1,5 +1,5 @@
 // The filters' series on Fourier modes, where S+S is a number: one particle in the middle of each cell with tents or
-// quadratic splines has S+S = cos^2(theta/2). (Catalogue, section 3; the residual of order k is (I - S+S)^k.)
+// quadratic splines has S+S = cos^2(theta/2). The residual of order k is (I - S+S)^k.
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Reference case A1: values of the kernels, at a node and elsewhere, and their second moments.
+// Values of the kernels, at a node and elsewhere, and their second moments.
 
 #include <cmath>
 
@@ -46,7 +46,7 @@ double cubic_slope(double d) {
 
 }  // namespace
 
-TEST_CASE("A1: kernels equal their piecewise formulas") {
+TEST_CASE("kernels equal their piecewise formulas") {
   for (int k = -250; k <= 250; ++k) {
     const double d = k / 125.0;
     CHECK(std::abs(weight_of_origin<mpm::BsplineQuadratic>(d) - quadratic(d)) <= 1e-15);
@@ -55,7 +55,7 @@ TEST_CASE("A1: kernels equal their piecewise formulas") {
   }
 }
 
-TEST_CASE("A1: values at a node are exact") {
+TEST_CASE("values at a node are exact") {
   CHECK(weight_of_origin<mpm::BsplineQuadratic>(-1) == 1.0 / 8);
   CHECK(weight_of_origin<mpm::BsplineQuadratic>(0) == 3.0 / 4);
   CHECK(weight_of_origin<mpm::BsplineQuadratic>(1) == 1.0 / 8);
@@ -69,7 +69,7 @@ TEST_CASE("A1: values at a node are exact") {
   CHECK(weight_of_origin<mpm::Linear>(1) == 0);
 }
 
-TEST_CASE("A1: the cubic spline is C2, and its gradient is that of the formula") {
+TEST_CASE("the cubic spline is C2, and its gradient is that of the formula") {
   for (int k = -250; k <= 250; ++k) {
     const double x = k / 77.0;
     double base, w[4], g[4];
@@ -94,7 +94,7 @@ TEST_CASE("A1: the cubic spline is C2, and its gradient is that of the formula")
   }
 }
 
-TEST_CASE("A1: second moments are 1/4 for the quadratic spline, 1/3 for the cubic, f (1 - f) for the tent") {
+TEST_CASE("second moments are 1/4 for the quadratic spline, 1/3 for the cubic, f (1 - f) for the tent") {
   for (int k = -40; k < 40; ++k) {
     const double x = k / 7.0, f = x - std::floor(x);
     CHECK(std::abs(second_moment<mpm::BsplineQuadratic>(x) - 0.25) <= 1e-14);
@@ -105,7 +105,7 @@ TEST_CASE("A1: second moments are 1/4 for the quadratic spline, 1/3 for the cubi
 
 namespace {
 
-/// uGIMP of case A1, distance d and half width l in cells.
+/// uGIMP by its piecewise formula, distance d and half width l in cells.
 double gimp(double d, double l) {
   d = std::abs(d);
   if (d < l) return 1 - (d * d + l * l) / (2 * l);
@@ -133,7 +133,7 @@ constexpr double half_sizes[] = {0.5, 0.25, 1.0 / 6, 0.125, 0.05, 0.01};
 
 }  // namespace
 
-TEST_CASE("A1: uGIMP equals its piecewise formula and its derivative") {
+TEST_CASE("uGIMP equals its piecewise formula and its derivative") {
   for (double l : half_sizes)
     for (int k = -200; k <= 200; ++k) {
       const double x = k / 100.0;
@@ -150,7 +150,7 @@ TEST_CASE("A1: uGIMP equals its piecewise formula and its derivative") {
     }
 }
 
-TEST_CASE("A1: uGIMP with a box one cell wide is the quadratic spline") {
+TEST_CASE("uGIMP with a box one cell wide is the quadratic spline") {
   for (int k = -250; k <= 250; ++k) {
     const double x = k / 77.0;
     const Axis axis(x, 0.5);
@@ -164,7 +164,7 @@ TEST_CASE("A1: uGIMP with a box one cell wide is the quadratic spline") {
   }
 }
 
-TEST_CASE("A1: uGIMP in lanes equals uGIMP in scalars") {
+TEST_CASE("uGIMP in lanes equals uGIMP in scalars") {
   using L = mpm::Lanes<double>;
   for (int first = 0; first < 400; first += L::width) {
     L x{}, l{}, base, w[3], g[3];
@@ -193,7 +193,7 @@ mpm::Cpdi::List<D, double> cpdi(const mpm::Vec<D, double>& x, const mpm::Mat<D, 
 
 }  // namespace
 
-TEST_CASE("A1: CPDI equals uGIMP where the box straddles no grid line") {
+TEST_CASE("CPDI equals uGIMP where the box straddles no grid line") {
   for (double l : {0.25, 0.125, 0.01})
     for (int k = 0; k <= 20; ++k)
       for (int m = 0; m <= 20; ++m) {
@@ -209,7 +209,7 @@ TEST_CASE("A1: CPDI equals uGIMP where the box straddles no grid line") {
       }
 }
 
-TEST_CASE("A1: CPDI differs from uGIMP where the box straddles a grid line in 2-D") {
+TEST_CASE("CPDI differs from uGIMP where the box straddles a grid line in 2-D") {
   // The corners' tents are averaged, not integrated: at a node the box of half length 1/4 gives it 9/16, not (7/8)^2.
   const auto list = cpdi<2>({{0, 0}}, {{0.25, 0, 0, 0.25}});
   double at_origin = 0;
@@ -219,7 +219,7 @@ TEST_CASE("A1: CPDI differs from uGIMP where the box straddles a grid line in 2-
   CHECK(list.count == 9);
 }
 
-TEST_CASE("A1: CPDI takes the mean over the domain of the corners' multilinear field") {
+TEST_CASE("CPDI takes the mean over the domain of the corners' multilinear field") {
   // One node, one corner at it, the others in cells that do not touch it: weight 1/4 and gradient R^-T s / 4.
   const mpm::Mat<2, double> R{{1.5, 0.25, -0.25, 1.25}};
   const auto list = cpdi<2>({{10 - 1.75, 20 - 1.0}}, R);
@@ -235,7 +235,7 @@ TEST_CASE("A1: CPDI takes the mean over the domain of the corners' multilinear f
   CHECK(found);
 }
 
-TEST_CASE("A1: a collapsed CPDI domain gives the mean of the tents' gradients") {
+TEST_CASE("a collapsed CPDI domain gives the mean of the tents' gradients") {
   for (const mpm::Mat<3, double>& R :
        {mpm::Mat<3, double>{}, mpm::Mat<3, double>{{0.3, 0.3, 0, 0.1, 0.1, 0, 0, 0, 0.25}}}) {
     const mpm::Vec<3, double> x{{4.3, -2.6, 0.45}};

@@ -1,5 +1,5 @@
-// Case A2: one visit of the grid by particles at random places, of two masses, without forces: what each transfer keeps
-// of momentum, spin, an affine field and any field. Shapes with a size are in node_lists.cpp too.
+// One visit of the grid by particles at random places, of two masses, without forces: what each transfer keeps of
+// momentum, spin, an affine field and any field. Shapes with a size are in node_lists.cpp too.
 
 #include <array>
 #include <cstdio>
@@ -64,8 +64,8 @@ Visit visit(const std::string& text, const std::vector<std::string>& overrides, 
 
 }  // namespace
 
-TEST_CASE("A2 particles of two masses at random places: momentum, spin, affine fields", "[A][A2]") {
-  std::printf("A2: change of an affine field (m/s); of momentum and of spin of any field, relative\n");
+TEST_CASE("round trip: particles of two masses at random places: momentum, spin, affine fields", "[round_trip]") {
+  std::printf("Round trip: change of an affine field (m/s); of momentum and of spin of any field, relative\n");
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string shape : {"bspline_quadratic", "bspline_cubic"})
       for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic"}) {
@@ -89,10 +89,11 @@ TEST_CASE("A2 particles of two masses at random places: momentum, spin, affine f
       }
 }
 
-TEST_CASE("A2 particles that carry an affine field itself get it back, velocities and gradients", "[A][A2]") {
+TEST_CASE("round trip: particles that carry an affine field itself get it back, velocities and gradients",
+          "[round_trip]") {
   // Seeded by the field's own gradient, which in the case above is a difference quotient.
   constexpr double B[4] = {0.7, -3, 5, -0.4};
-  std::printf("A2: change of an affine field (m/s) and of its gradient (1/s), seeded exactly\n");
+  std::printf("Round trip: change of an affine field (m/s) and of its gradient (1/s), seeded exactly\n");
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string shape : {"bspline_quadratic", "bspline_cubic"})
       for (const std::string transfer : {"apic", "mls", "tpic"}) {
@@ -126,7 +127,7 @@ TEST_CASE("A2 particles that carry an affine field itself get it back, velocitie
       }
 }
 
-TEST_CASE("A2 filters conserve momentum on particles of two masses", "[A][A2]") {
+TEST_CASE("round trip: filters conserve momentum on particles of two masses", "[round_trip]") {
   for (const char* filter : {R"({"type": "xpic", "order": 3})", R"({"type": "fmpm", "order": 4})"})
     for (const std::string backend : {"reference", "cpu"})
       for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic"}) {
@@ -137,7 +138,8 @@ TEST_CASE("A2 filters conserve momentum on particles of two masses", "[A][A2]") 
       }
 }
 
-TEST_CASE("A2 PIC keeps an affine field inside a uniform lattice, and loses spin at its edge", "[A][A2]") {
+TEST_CASE("round trip: PIC keeps an affine field inside a uniform lattice, and loses spin at its edge",
+          "[round_trip]") {
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic"}) {
       const std::vector<std::string> choice{set("/backend", backend), set("/shape/type", shape),

@@ -1,9 +1,9 @@
-// Case A5: the largest stable step C_max = c dt / h of a periodic elastic line with one particle a cell, found by
-// bisection through runs, for every order of the stress update, transfer and filter that the case has a column for.
-// `ctest -V` shows the table.
+// The largest stable step C_max = c dt / h of a periodic elastic line with one particle a cell, found by bisection
+// through runs, for every order of the stress update, transfer and filter that the table of docs/verification.md has a
+// column for. `ctest -V` shows the table.
 //
-// The table of the case is that of 16 cells, not of a long line. With s2 the squared symbol of the shape, z = dt times
-// that of its gradient, q = 1 - (1 - s2)^k and K = q / s2, the trace and determinant of one step of a wave are
+// That table is of 16 cells, not of a long line. With s2 the squared symbol of the shape, z = dt times that of its
+// gradient, q = 1 - (1 - s2)^k and K = q / s2, the trace and determinant of one step of a wave are
 //   USL-FLIP      2 - z^2           1 - z^2 (1 - s2)
 //   MUSL, USF     a + 1 - s2 z^2    a                          a = 1 of FLIP, s2 of PIC
 //   USL-XPIC(k)   q + 1 - z^2       q (1 - z^2) + s2 z^2       k = 1: PIC
@@ -197,8 +197,8 @@ void print_heading(const char* title) {
 
 }  // namespace
 
-TEST_CASE("A5 the table of the largest stable steps, found by runs", "[A][A5]") {
-  print_heading("A5, C_max of a line of 16 cells");
+TEST_CASE("the table of the largest stable steps, found by runs", "[critical_step]") {
+  print_heading("Critical step, C_max of a line of 16 cells");
   for (std::size_t r = 0; r < rows().size(); ++r) {
     const Row& row = rows()[r];
     const auto shapes = shapes_present(row.shapes);
@@ -220,8 +220,8 @@ TEST_CASE("A5 the table of the largest stable steps, found by runs", "[A][A5]") 
   }
 }
 
-TEST_CASE("A5 FMPM at cell centres is stable to 1 / sqrt(2 k)", "[A][A5]") {
-  std::printf("A5, C_max of FMPM(k), linear functions, particles at cell centres: k, runs, 1 / sqrt(2 k)\n");
+TEST_CASE("FMPM at cell centres is stable to 1 / sqrt(2 k)", "[critical_step]") {
+  std::printf("Critical step, C_max of FMPM(k), linear functions, particles at cell centres: k, runs, 1 / sqrt(2 k)\n");
   for (const int k : {1, 2, 3, 4, 6, 8, 16}) {
     const Column column{"", Scheme::fmpm, k, "pic", "last"};
     const double expected = 1 / std::sqrt(2.0 * k),
@@ -233,8 +233,8 @@ TEST_CASE("A5 FMPM at cell centres is stable to 1 / sqrt(2 k)", "[A][A5]") {
   }
 }
 
-// See a6_stress_update.cpp: z is 2 C sin(theta / 2) at cell centres and C sin(theta) on nodes.
-TEST_CASE("A5 averaged stress updates are stable to z = 2", "[A][A5]") {
+// See stress_update.cpp: z is 2 C sin(theta / 2) at cell centres and C sin(theta) on nodes.
+TEST_CASE("averaged stress updates are stable to z = 2", "[critical_step]") {
   for (const auto& [row, expected] : {std::pair{0, 1.0}, std::pair{2, 2.0}})
     for (const char* transfer : {"flip", "pic"}) {
       const Column column{"", Scheme::flip_other, 1, transfer, "averaged"};
@@ -244,7 +244,7 @@ TEST_CASE("A5 averaged stress updates are stable to z = 2", "[A][A5]") {
     }
 }
 
-TEST_CASE("A5 shapes that coincide have one limit, and so have both backends", "[A][A5]") {
+TEST_CASE("shapes that coincide have one limit, and so have both backends", "[critical_step]") {
   for (std::size_t r = 0; r < rows().size(); ++r)
     for (const std::string& shape : shapes_present(rows()[r].shapes))
       for (const Column& column : columns) {
@@ -258,8 +258,8 @@ TEST_CASE("A5 shapes that coincide have one limit, and so have both backends", "
       }
 }
 
-TEST_CASE("A5 a line of 32 cells has the limits of its own waves", "[A][A5]") {
-  print_heading("A5, C_max of a line of 32 cells: formula, runs at 1 % below and above");
+TEST_CASE("a line of 32 cells has the limits of its own waves", "[critical_step]") {
+  print_heading("Critical step, C_max of a line of 32 cells: formula, runs at 1 % below and above");
   for (std::size_t r = 0; r < rows().size(); ++r) {
     const auto shapes = shapes_present(rows()[r].shapes);
     if (shapes.empty()) continue;
@@ -278,7 +278,7 @@ TEST_CASE("A5 a line of 32 cells has the limits of its own waves", "[A][A5]") {
   CHECK(exact_limit(0, columns[5], 4096) == Approx(1 + root_half).epsilon(1e-5));
 }
 
-TEST_CASE("an unstable line ends as a failed run on both backends", "[A][A5]") {
+TEST_CASE("an unstable line ends as a failed run on both backends", "[critical_step]") {
   const auto noise = [](double x) { return 1e-8 * std::sin(1e4 * std::sin(12.9898 * x + 1)); };
   for (const std::string backend : {"reference", "cpu"}) {
     INFO(backend);

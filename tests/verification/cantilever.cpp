@@ -1,5 +1,5 @@
-// Case C8: large deflection of a cantilever under its own weight, against the inextensible elastica. PIC damps the beam
-// to rest (a balance of forces does not depend on the transfer); `ctest -V` shows the tables.
+// Large deflection of a cantilever under its own weight, against the inextensible elastica. PIC damps the beam to rest
+// (a balance of forces does not depend on the transfer); `ctest -V` shows the tables.
 
 #include <algorithm>
 #include <array>
@@ -120,7 +120,7 @@ Rest settle(double kappa, const std::vector<std::string>& more) {
 
 }  // namespace
 
-TEST_CASE("C8 the elastica's tip", "[C][C8]") {
+TEST_CASE("cantilever: the elastica's tip", "[cantilever]") {
   struct Row {
     double kappa, x, y, margin;
   };
@@ -158,20 +158,21 @@ Gap check_rest(const std::string& shape, double cell, double kappa, double bound
 
 void print_heads() {
   std::printf(
-      "C8: shape, cell (m), kappa | tip x, y over L | elastica, distance | with shear and stretch, distance | largest "
+      "Cantilever: shape, cell (m), kappa | tip x, y over L | elastica, distance | with shear and stretch, distance | "
+      "largest "
       "speed (m/s), misfit of neighbours\n");
 }
 
 }  // namespace
 
-TEST_CASE("C8 a beam at rest under its own weight", "[C][C8]") {
+TEST_CASE("cantilever: a beam at rest under its own weight", "[cantilever]") {
   print_heads();
   for (const double kappa : {.8, 2.}) check_rest("cpdi", 0.025, kappa, 0.01);
 }
 
 // With four cells through H, H / L = 1 / 20, the case's 1 % holds at every load on cpdi2. On cpdi it holds to kappa =
 // 6; at 10 neighbours no longer lie where their F says, and 1.6 % are left.
-TEST_CASE("C8 beams at rest, every load and finer cells", "[C][C8][slow]") {
+TEST_CASE("cantilever: beams at rest, every load and finer cells", "[cantilever][slow]") {
   print_heads();
   double misfit = 0;
   for (const double kappa : {2., 6., 10., 20.}) {

@@ -1,5 +1,5 @@
-// Case A4 with steps that have a length: velocities that no node sees move nothing and strain nothing, so FLIP keeps
-// them, and the places, for ever; everything else that returns what the grid has seen returns nothing. Orders and
+// The null space with steps that have a length: velocities that no node sees move nothing and strain nothing, so FLIP
+// keeps them, and the places, for ever; everything else that returns what the grid has seen returns nothing. Orders and
 // schedules of filters are in lattice.cpp. `ctest -V` shows the table.
 
 #include <cstdio>
@@ -10,10 +10,10 @@
 using namespace mpm;
 using namespace mpm::test;
 
-TEST_CASE("A4 what no node sees does not move", "[A][A4]") {
+TEST_CASE("what no node sees does not move", "[null_space]") {
   // Particles at 1/4 and 3/4 of their cell.
   const auto alternating = [](double x) { return x - std::floor(x) < 0.5 ? 1.0 : -1.0; };
-  std::printf("A4: largest velocity after one step, seeded with 1; FLIP: largest change in 100 steps\n");
+  std::printf("Null space: largest velocity after one step, seeded with 1; FLIP: largest change in 100 steps\n");
   for (const std::string& shape : shapes_present(
            {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2"}))
     for (const std::string backend : {"reference", "cpu"}) {

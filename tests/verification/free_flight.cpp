@@ -1,4 +1,4 @@
-// Case A7 for every shape, transfer and filter that the build has, in two and three dimensions: flight under gravity
+// Free flight of every shape, transfer and filter that the build has, in two and three dimensions: flight under gravity
 // through 20 cells with v = v0 + g n dt, x = x0 + v0 t + g t (t + dt) / 2, F = I, and domains as they were. `ctest -V`
 // shows the table. Every order of the stress update is in free_fall.cpp, node_lists.cpp and filters.cpp.
 
@@ -86,7 +86,7 @@ std::vector<std::pair<const Plugin*, std::string>> all_transfers() {
   return all;
 }
 
-/// As the catalogue has them: products of polynomials need nodes along axes, their powers all of a stencil's nodes.
+/// Which pairs exist: products of polynomials need nodes along axes, their powers all of a stencil's nodes.
 bool is_refused(const std::string& shape, const std::string& transfer) {
   if (transfer.find("polypic") == transfer.npos) return false;
   return shape.find("cpdi") == 0 || (transfer.find("full") != transfer.npos && shape.find("gimp") != shape.npos);
@@ -100,7 +100,8 @@ struct Count {
 const char *fmpm = R"("type": "fmpm", "order": 4)", *xpic = R"("type": "xpic", "order": 3)";
 
 void print_heading(const char* filters) {
-  std::printf("A7, 20 cells, %s: relative errors of position, velocity, momentum; of F; of domains\n", filters);
+  std::printf("Free flight, 20 cells, %s: relative errors of position, velocity, momentum; of F; of domains\n",
+              filters);
 }
 
 /// All pairs of shape and transfer on a backend, with a filter (its type and order) or none.
@@ -132,19 +133,20 @@ Count fly_all(int dimension, const std::string& backend, const std::string& filt
 
 }  // namespace
 
-TEST_CASE("A7 free flight of every shape with every transfer", "[A][A7]") {
+TEST_CASE("free flight of every shape with every transfer", "[free_flight]") {
   print_heading("no filter");
   CHECK(fly_all(2, "cpu", "") == Count{73, 7});
   CHECK(fly_all(3, "cpu", "") == Count{73, 7});
   CHECK(fly_all(2, "reference", "") == Count{73, 7});
 }
 
-TEST_CASE("A7 free flight of every shape with every transfer and FMPM", "[A][A7][filters]") {
+TEST_CASE("free flight of every shape with every transfer and FMPM", "[free_flight][filters]") {
   print_heading("FMPM(4), every third step with FLIP, AFLIP and ASFLIP");
   for (const int dimension : {2, 3}) CHECK(fly_all(dimension, "cpu", fmpm) == Count{73, 7});
 }
 
-TEST_CASE("A7 free flight of every shape with every transfer and a filter on both backends", "[A][A7][filters][slow]") {
+TEST_CASE("free flight of every shape with every transfer and a filter on both backends",
+          "[free_flight][filters][slow]") {
   print_heading("XPIC(3), every third step with FLIP, AFLIP and ASFLIP; the reference backend with FMPM(4) too");
   CHECK(fly_all(3, "reference", "") == Count{73, 7});
   for (const int dimension : {2, 3}) {
