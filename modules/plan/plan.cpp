@@ -137,7 +137,7 @@ class Planner {
                            separates() || strains_before_forces() || (plan_.filter && filters_before_forces());
     plan_.force_for_ledger = plan_.ledger && !plan_.separate_force;
     plan_.divides_with_forces = !plan_.filter && !plan_.separate_force && forces_follow_division(plan_.step);
-    plan_.separate_force = plan_.separate_force || plan_.ledger;
+    plan_.separate_force = plan_.separate_force || plan_.ledger || needs_.keeps_all_apart;
     plan_.kept_advection = experiment_.solver.stress_update == StressUpdate::modified_last;
     plan_.initial_position = experiment_.exact.has_value() || experiment_.output.colour_by == "displacement" ||
                              (experiment_.body_force && experiment_.body_force->uses_initial_position());
@@ -235,8 +235,8 @@ class Planner {
                            " polynomials beyond the affine ones")
             .origin = Origin::transfer;
       state(body, experiment_.materials[specification.material].component, Origin::material);
-      Field& identity = seeded("identity", "", 1, specification.pointer + ": results keep the order of seeding");
-      identity.bytes = 4;
+      if (needs_.sorts)
+        seeded("identity", "", 1, specification.pointer + ": results keep the order of seeding").bytes = 4;
       if (experiment_.axisymmetric())
         seeded("circumference", "m", 1,
                "/grid/symmetry \"axisymmetric\": a particle is a ring of volume and mass times 2 pi r");
@@ -338,11 +338,12 @@ class Planner {
         node_field("unfiltered_velocity_of_constraints", "m/s", D, because).name =
             "the same of the unfiltered velocity";
     }
-    if (plan_.velocity_increment || plan_.ledger) {
+    if (plan_.velocity_increment || plan_.ledger || needs_.keeps_all_apart) {
       Field& before =
           node_field("velocity_before", "m/s", D,
                      plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of velocity"
-                                              : why_for_ledger());
+                     : plan_.ledger           ? why_for_ledger()
+                                              : why_apart());
       before.cleared = true, before.for_ledger = !plan_.velocity_increment;
     }
     if (plan_.separate_force)
@@ -351,6 +352,8 @@ class Planner {
     if (experiment_.body_force)
       summed_field("body_force", "N", D, AtWall::vector, Folded::with_force,
                    experiment_.body_force_pointer + ": its work is accounted for apart");
+    if (needs_.keeps_weight_apart)
+      summed_field("weight", "N", D, AtWall::vector, Folded::with_force, "/gravity: its work is accounted for apart");
     if (plan_.contact) {
       const std::string normal = experiment_.contact->pointer + "/normal \"average_volume_gradient\"";
       summed_field("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, normal);
@@ -374,6 +377,7 @@ class Planner {
     if (experiment_.body_force) return experiment_.body_force_pointer + ": work of the forces";
     if (strains_before_forces()) return named_order() + ": stress after the momenta";
     if (plan_.filter && filters_before_forces()) return named(*experiment_.filter) + ": filters before the forces";
+    if (needs_.keeps_all_apart && !separates()) return why_apart();
     return "/grid/boundaries \"separate\": the wall predicts with the forces";
   }
 

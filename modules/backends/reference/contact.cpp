@@ -6,28 +6,24 @@
 #include "backends/reference/reference_backend.hpp"
 
 namespace mpm::reference {
-namespace {
 
-ContactFieldNode contact_view(const Node& node) {
-  ContactFieldNode view{node.mass, node.volume, {}, {}};
+ContactFieldNode ReferenceBackend::contact_view(std::size_t i) const {
+  ContactFieldNode view{mass_[i], volume_[i], {}, {}};
   for (int c = 0; c < 3; ++c)
-    view.volume_gradient[c] = node.volume_gradient[c], view.mass_position[c] = node.mass_position[c];
+    view.volume_gradient[c] = volume_gradient_[i][c], view.mass_position[c] = mass_position_[i][c];
   return view;
 }
 
-}  // namespace
-
-std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(int a, int b, std::size_t node,
+std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::size_t a, std::size_t b,
                                                                            const Vector& momentum_a,
                                                                            const Vector& momentum_b, double dt) const {
   const Component& law = *experiment_.contact;
   const bool weld = law.plugin->contact().traits & MPM_BYPASSES_DETECTION;
   const int D = experiment_.dimension;
-  const Node &node_a = grid_.node(a, node), &node_b = grid_.node(b, node);
-  if (node_a.mass <= 0 || node_b.mass <= 0) return {};
-  if (!weld && std::min(node_a.mass, node_b.mass) < contact_prescreen * (node_a.mass + node_b.mass)) return {};
+  if (!meet(mass_[a], mass_[b], weld)) return {};
+  const EdgeModel &edge_a = edges_[grid_.velocity_field_of(a)], &edge_b = edges_[grid_.velocity_field_of(b)];
   const ContactGeometry geometry =
-      contact_geometry(contact_view(node_a), contact_view(node_b), edges_[a], edges_[b], experiment_.grid.cell_size, D);
+      contact_geometry(contact_view(a), contact_view(b), edge_a, edge_b, experiment_.grid.cell_size, D);
   if (!geometry.valid && !weld) return {};
 
   // One pair, repeated over a full lane so that the plugin may compute whole lanes.
@@ -35,7 +31,7 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(int a
   std::array<double, n> mass_a, mass_b, separation, area, dissipated{};
   std::array<double, 3 * n> p_a, p_b, normal, impulse{};
   std::array<std::int32_t, n> status{};
-  mass_a.fill(node_a.mass), mass_b.fill(node_b.mass), separation.fill(geometry.separation), area.fill(geometry.area);
+  mass_a.fill(mass_[a]), mass_b.fill(mass_[b]), separation.fill(geometry.separation), area.fill(geometry.area);
   for (int c = 0; c < D; ++c)
     for (int lane = 0; lane < n; ++lane) {
       p_a[c * n + lane] = momentum_a[c];
@@ -66,29 +62,25 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(int a
 void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, bool remap) {
   if (after_forces) contact_ = {};
   Vector total_force = Vector::Zero(), total_change = Vector::Zero();
-  for (int a = 0; a < grid_.field_count(); ++a)
-    for (int b = a + 1; b < grid_.field_count(); ++b)
-      for (std::size_t i = 0; i < grid_.node_count(); ++i) {
-        Node &node_a = grid_.node(a, i), &node_b = grid_.node(b, i);
-        const auto pair = resolve_pair(a, b, i, node_a.momentum, node_b.momentum, step.dt);
-        if (!pair) continue;
-        const Vector& J = pair->impulse;
-        // Before the forces v- itself changes, at once; after them the impulse counts between v- and v+
-        // (account_for_impulses).
-        if (accounted_ && !after_forces && !remap)
-          ledger_.contact +=
-              J.dot(node_a.momentum + 0.5 * J) / node_a.mass - J.dot(node_b.momentum - 0.5 * J) / node_b.mass;
-        if (accounted_ && !remap) ledger_.friction += pair->dissipated;
-        const Vector sum = node_a.momentum + node_b.momentum;
-        node_a.momentum += J;
-        node_b.momentum -= J;
-        total_change += node_a.momentum + node_b.momentum - sum;
-        if (!after_forces || pair->status == MPM_APART) continue;
-        total_force += J / step.dt;
-        ++contact_.nodes;
-        ++(pair->status == MPM_STICKS ? contact_.sticking : contact_.slipping);
-        if (pair->has_normal) contact_.largest_penetration = std::max(contact_.largest_penetration, -pair->separation);
-      }
+  for_each_pair([&](std::size_t a, std::size_t b) {
+    const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step.dt);
+    if (!pair) return;
+    const Vector& J = pair->impulse;
+    // Before the forces v- itself changes, at once; after them the impulse counts between v- and v+
+    // (account_for_impulses).
+    if (accounted_ && !after_forces && !remap)
+      ledger_.contact += J.dot(momentum_[a] + 0.5 * J) / mass_[a] - J.dot(momentum_[b] - 0.5 * J) / mass_[b];
+    if (accounted_ && !remap) ledger_.friction += pair->dissipated;
+    const Vector sum = momentum_[a] + momentum_[b];
+    momentum_[a] += J;
+    momentum_[b] -= J;
+    total_change += momentum_[a] + momentum_[b] - sum;
+    if (!after_forces || pair->status == MPM_APART) return;
+    total_force += J / step.dt;
+    ++contact_.nodes;
+    ++(pair->status == MPM_STICKS ? contact_.sticking : contact_.slipping);
+    if (pair->has_normal) contact_.largest_penetration = std::max(contact_.largest_penetration, -pair->separation);
+  });
   if (after_forces) {
     for (int c = 0; c < 3; ++c) contact_.force[c] = total_force[c];
     contact_.momentum_residual = total_change.norm();

@@ -6,7 +6,7 @@
 
 namespace mpm::reference {
 
-Grid::Grid(const Experiment& experiment) : experiment_(experiment) {
+Grid::Grid(const Experiment& experiment, const Plan& plan) : experiment_(experiment) {
   padding_ = Eigen::Vector3i::Zero();
   extent_ = Eigen::Vector3i::Ones();
   for (int axis = 0; axis < experiment.dimension; ++axis) {
@@ -16,7 +16,11 @@ Grid::Grid(const Experiment& experiment) : experiment_(experiment) {
   for (int k = 0; k < extent_[2]; ++k)
     for (int j = 0; j < extent_[1]; ++j)
       for (int i = 0; i < extent_[0]; ++i) coordinates_.push_back(Eigen::Vector3i(i, j, k) - padding_);
-  fields_.assign(experiment.field_count, std::vector<Node>(coordinates_.size()));
+  for (const Field& field : plan.fields)
+    if (field.owner == Owner::node && field.components == 1)
+      scalar(field.id).allocate(field, size()), bytes_ += size() * sizeof(double);
+    else if (field.owner == Owner::node)
+      vector(field.id).allocate(field, size()), bytes_ += size() * sizeof(Vector);
   // In a domain of few cells a ghost's mirror is a ghost of the other wall: it is folded on after what it receives.
   for (int axis = 0; axis < experiment.dimension; ++axis) {
     auto& order = outermost_first_[axis];
@@ -31,16 +35,14 @@ Grid::Grid(const Experiment& experiment) : experiment_(experiment) {
 }
 
 void Grid::reset() {
-  for (auto& field : fields_) std::fill(field.begin(), field.end(), Node{});
+  for_each_field([](auto& field) { field.start(); });
   folds_.clear();
 }
 
-void Grid::reset_momentum() {
-  for (auto& field : fields_)
-    for (Node& node : field) {
-      node.mass = 0;
-      node.momentum = node.velocity = Vector::Zero();
-    }
+void Grid::reset(const std::vector<std::string>& ids) {
+  for_each_field([&](auto& field) {
+    if (std::find(ids.begin(), ids.end(), field.id_) != ids.end()) field.start();
+  });
   folds_.clear();
 }
 
@@ -60,155 +62,144 @@ Vector Grid::position(const Eigen::Vector3i& coordinates) const {
 
 double Grid::kinetic_energy() const {
   double sum = 0;
-  for (const auto& field : fields_)
-    for (const Node& node : field) sum += node.kinetic_energy();
+  for (std::size_t i = 0; i < size(); ++i) sum += mass_[i] > 0 ? 0.5 * momentum_[i].squaredNorm() / mass_[i] : 0.0;
   return sum;
 }
 
-double Grid::mass_norm(Vector Node::*velocity) const {
+double Grid::mass_norm(const VectorField& velocity) const {
   double sum = 0;
-  for (const auto& field : fields_)
-    for (const Node& node : field)
-      if (node.mass > 0) sum += node.mass * (node.*velocity).squaredNorm();
+  for (std::size_t i = 0; i < size(); ++i)
+    if (mass_[i] > 0) sum += mass_[i] * velocity[i].squaredNorm();
   return std::sqrt(sum);
 }
 
+Vector Grid::force(std::size_t i) const {
+  Vector sum = internal_force_[i];
+  if (experiment_.body_force) sum += body_force_[i];
+  return sum + weight_[i];
+}
+
 Vector Grid::wall_velocity(const Fold& fold, double time) const {
-  const FaceCondition& face = experiment_.faces[fold.axis][fold.side];
-  if (!face.velocity) return Vector::Zero();
-  Eigen::Vector3i foot = coordinates_[fold.ghost];
+  if (fold.side < 0 || !experiment_.faces[fold.axis][fold.side].velocity) return Vector::Zero();
+  Eigen::Vector3i foot = coordinates_[fold.ghost % node_count()];
   foot[fold.axis] = fold.side == 0 ? 0 : experiment_.grid.cells[fold.axis];
   const Vector x = position(foot);
-  return to_eigen((*face.velocity)({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time));
+  return to_eigen((*experiment_.faces[fold.axis][fold.side].velocity)({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time));
 }
 
-ConditionType Grid::type_of(const Fold& fold) const {
-  return fold.side < 0 ? ConditionType::periodic : experiment_.faces[fold.axis][fold.side].type;
-}
-
-Vector Grid::mirrored(const Vector& v, const Fold& fold, ConditionType as) {
+Vector Grid::mirrored(Vector v, const Fold& fold, AtWall rule) const {
   if (fold.side < 0) return v;
-  Vector r = v;
-  for (int c = 0; c < 3; ++c) r[c] *= mirror_sign(as, fold.axis, c);
-  return r;
+  const ConditionType type = experiment_.faces[fold.axis][fold.side].type;
+  for (int c = 0; c < 3; ++c) v[c] *= mirror_sign(rule, type, fold.axis, c);
+  return v;
+}
+
+void Grid::add_to_mirror(ScalarField& field, const Fold& fold, AtWall, const Vector&) const {
+  field[fold.mirror] += field[fold.ghost];
+}
+
+void Grid::add_to_mirror(VectorField& field, const Fold& fold, AtWall rule, const Vector& wall) const {
+  if (rule == AtWall::momentum)
+    field[fold.mirror] += wall + mirrored(field[fold.ghost] - wall, fold, rule);
+  else
+    field[fold.mirror] += mirrored(field[fold.ghost], fold, rule);
 }
 
 bool Grid::approaches_wall(const Fold& fold, double dt) const {
   const double inward = fold.side == 0 ? 1 : -1;
   double speed = 0;
-  for (const std::size_t index : {fold.ghost, fold.mirror}) {
-    const Node& node = fields_[fold.field][index];
-    if (node.mass > 0) speed += inward * (node.momentum + dt * node.force())[fold.axis] / node.mass;
-  }
+  for (const std::size_t i : {fold.ghost, fold.mirror})
+    if (mass_[i] > 0) speed += inward * (momentum_[i] + dt * force(i))[fold.axis] / mass_[i];
   return speed < 0;
 }
 
-void Grid::sum_images(bool remap) {
+void Grid::sum_images() {
   for (int axis = 0; axis < experiment_.dimension; ++axis)
-    if (experiment_.faces[axis][0].type == ConditionType::periodic) fold_axis(axis, 0, 0, remap);
-  if (!remap) fold_forces();
+    if (experiment_.faces[axis][0].type == ConditionType::periodic) fold_axis(axis, 0, 0);
+  fold_forces();
 }
 
-void Grid::fold_walls(double time, double dt, bool remap) {
+void Grid::fold_walls(double time, double dt) {
   for (int axis = 0; axis < experiment_.dimension; ++axis)
-    if (experiment_.faces[axis][0].type != ConditionType::periodic) fold_axis(axis, time, dt, remap);
+    if (experiment_.faces[axis][0].type != ConditionType::periodic) fold_axis(axis, time, dt);
+  for_each_field([](auto& field) { field.waits_ = false; });
 }
 
-void Grid::fold_axis(int axis, double time, double dt, bool remap) {
+void Grid::fold_axis(int axis, double time, double dt) {
   const int cells = experiment_.grid.cells[axis];
-  for (int field = 0; field < field_count(); ++field)
-    for (const std::size_t index : outermost_first_[axis]) {
-      Eigen::Vector3i target = coordinates_[index];
-      const int i = target[axis];
-      const ConditionType type = experiment_.faces[axis][i <= 0 ? 0 : 1].type;
-      Fold fold{field, index, index, axis, i <= 0 ? 0 : 1, 0};
-      if (type == ConditionType::periodic) {
-        if (i >= 0 && i < cells) continue;
-        target[axis] = ((i % cells) + cells) % cells;
-        fold.side = -1;
-      } else if (folds(type) && (i <= 0 || i >= cells)) {
-        target[axis] = i <= 0 ? -i : 2 * cells - i;
-      } else {
-        continue;
-      }
-      if (fields_[field][index].mass <= 0) continue;
-      fold.mirror = this->index(target);
+  for (int velocity_field = 0; velocity_field < velocity_fields(); ++velocity_field)
+    for (const std::size_t node : outermost_first_[axis]) {
+      Eigen::Vector3i target = coordinates_[node];
+      const int k = target[axis], side = k <= 0 ? 0 : 1;
+      const ConditionType type = experiment_.faces[axis][side].type;
+      const bool periodic = type == ConditionType::periodic;
+      if (!has_images(type) || (periodic ? k >= 0 && k < cells : k > 0 && k < cells)) continue;
+      target[axis] = image_of(k, cells, periodic);
+      const Fold fold{at(velocity_field, node), at(velocity_field, index(target)), axis, periodic ? -1 : side};
+      if (mass_[fold.ghost] <= 0) continue;
       if (type == ConditionType::separate && !approaches_wall(fold, dt)) continue;
-      if (fold.mirror != index)
-        fold_node(fold, time, remap);
-      else if (!remap)
-        fold_onto_itself(fields_[field][index], axis);
+      if (fold.mirror != fold.ghost)
+        fold_node(fold, time);
+      else
+        fold_onto_itself(fold.ghost, axis);
     }
 }
 
-void Grid::fold_node(Fold fold, double time, bool remap) {
-  Node& ghost = fields_[fold.field][fold.ghost];
-  fold.mass = ghost.mass;
-  Node& node = fields_[fold.field][fold.mirror];
-  const Vector wall = fold.side < 0 ? Vector(Vector::Zero()) : Vector(ghost.mass * wall_velocity(fold, time));
-  node.mass += ghost.mass;
-  node.momentum += wall + mirrored(ghost.momentum - wall, fold, type_of(fold));
-  ghost.mass = 0;
-  ghost.momentum = Vector::Zero();
-  if (!remap) {
-    node.volume += ghost.volume;
-    node.volume_gradient += mirrored(ghost.volume_gradient, fold, ConditionType::slip);
-    node.mass_position += mirrored(ghost.mass_position, fold, ConditionType::slip);
-  }
+void Grid::fold_node(Fold fold, double time) {
+  fold.mass = mass_[fold.ghost];
+  const Vector wall = fold.mass * wall_velocity(fold, time);
+  for_each_field([&](auto& field) {
+    if (field.waits_) add_to_mirror(field, fold, field.declared_->at_wall, wall);
+  });
+  mass_[fold.ghost] = 0;  // what else a node without mass holds is not read
+  momentum_[fold.ghost] = Vector::Zero();
   folds_.push_back(fold);
 }
 
-/// On the wall itself: the mirror image takes away what of the contact channels points across it.
-void Grid::fold_onto_itself(Node& node, int axis) {
-  node.volume_gradient[axis] = 0;
-  node.mass_position[axis] = 0;
-}
-
-void Grid::fold_projection(std::optional<double> time) {
-  for (const Fold& fold : folds_) {
-    Vector& ghost = fields_[fold.field][fold.ghost].projected;
-    const bool wall_moves = time && fold.side >= 0;
-    const Vector wall = wall_moves ? Vector(fold.mass * wall_velocity(fold, *time)) : Vector(Vector::Zero());
-    fields_[fold.field][fold.mirror].projected += wall + mirrored(ghost - wall, fold, type_of(fold));
-    ghost = Vector::Zero();
-  }
-  for (auto& field : fields_)
-    for (Node& node : field)
-      node.projected = node.mass > 0 ? Vector(node.projected / node.mass) : Vector(Vector::Zero());
-}
-
-void Grid::fill_increment_ghosts() {
-  for (auto fold = folds_.rbegin(); fold != folds_.rend(); ++fold)
-    fields_[fold->field][fold->ghost].increment =
-        mirrored(fields_[fold->field][fold->mirror].increment, *fold, type_of(*fold));
+/// On the wall itself: the mirror image takes away what points across it.
+void Grid::fold_onto_itself(std::size_t i, int axis) {
+  for (auto& [id, field] : vectors_)
+    if (field.waits_ && field.declared_->at_wall == AtWall::slip) field[i][axis] = 0;
 }
 
 void Grid::fold_forces() {
+  for_each_field([&](auto& field) {
+    if (field.folded(Folded::with_force)) fold_as(field, field.declared_->at_wall, {});
+  });
+}
+
+template <class Value>
+void Grid::fold_as(NodeField<Value>& field, AtWall rule, std::optional<double> time) {
   for (const Fold& fold : folds_) {
-    Node& ghost = fields_[fold.field][fold.ghost];
-    Node& node = fields_[fold.field][fold.mirror];
-    for (Vector Node::*force : {&Node::internal_force, &Node::body_force, &Node::gravity_force}) {
-      node.*force += mirrored(ghost.*force, fold, type_of(fold));
-      ghost.*force = Vector::Zero();
-    }
+    const Vector wall = time ? Vector(fold.mass * wall_velocity(fold, *time)) : Vector(Vector::Zero());
+    add_to_mirror(field, fold, rule, wall);
+    set_zero(field[fold.ghost]);
   }
 }
+template void Grid::fold_as(ScalarField&, AtWall, std::optional<double>);
+template void Grid::fold_as(VectorField&, AtWall, std::optional<double>);
 
-void Grid::fill_ghosts(double time) {
+void Grid::fill_velocity_ghosts(double time) {
   for (auto fold = folds_.rbegin(); fold != folds_.rend(); ++fold) {
-    Node& ghost = fields_[fold->field][fold->ghost];
-    const Node& node = fields_[fold->field][fold->mirror];
-    const ConditionType type = type_of(*fold);
-    const Vector wall = fold->side < 0 ? Vector(Vector::Zero()) : wall_velocity(*fold, time);
-    ghost.velocity = wall + mirrored(node.velocity - wall, *fold, type);
-    ghost.velocity_before = ghost.velocity - mirrored(node.velocity - node.velocity_before, *fold, type);
+    const std::size_t ghost = fold->ghost, mirror = fold->mirror;
+    const Vector wall = wall_velocity(*fold, time), change = velocity_[mirror] - velocity_before_[mirror];
+    velocity_[ghost] = wall + mirrored(velocity_[mirror] - wall, *fold, AtWall::vector);
+    velocity_before_[ghost] = velocity_[ghost] - mirrored(change, *fold, AtWall::vector);
   }
 }
 
-Held Grid::held(std::size_t index, const Vector& predicted, double time) const {
+template <class Value>
+void Grid::fill_ghosts(NodeField<Value>& field, AtWall rule) {
+  for (auto fold = folds_.rbegin(); fold != folds_.rend(); ++fold)
+    field[fold->ghost] = mirrored(field[fold->mirror], *fold, rule);
+}
+template void Grid::fill_ghosts(ScalarField&, AtWall);
+template void Grid::fill_ghosts(VectorField&, AtWall);
+
+Held Grid::held(std::size_t i, const Vector& predicted, double time) const {
   Held held;
-  const Eigen::Vector3i& at = coordinates_[index];
-  const Vector x = position(at);
+  const Eigen::Vector3i& node = coordinates_[i % node_count()];
+  const Vector x = position(node);
   const auto evaluate = [&](const std::optional<VectorExpression>& velocity) {
     return velocity ? to_eigen((*velocity)({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time)) : Vector(Vector::Zero());
   };
@@ -219,7 +210,7 @@ Held Grid::held(std::size_t index, const Vector& predicted, double time) const {
   for (int axis = 0; axis < experiment_.dimension; ++axis) {
     for (int side = 0; side < 2; ++side) {
       const FaceCondition& face = experiment_.faces[axis][side];
-      if (at[axis] != (side == 0 ? 0 : experiment_.grid.cells[axis])) continue;
+      if (node[axis] != (side == 0 ? 0 : experiment_.grid.cells[axis])) continue;
       // A separating wall holds what moves into it, at every imposition: contact may have turned the velocity.
       if (face.type == ConditionType::separate && (side == 0 ? predicted[axis] >= 0 : predicted[axis] <= 0)) continue;
       const Vector velocity = evaluate(face.velocity);

@@ -1,9 +1,11 @@
 #pragma once
-// The grid of the reference backend: every node of the domain and its padding, all values of a node side by side.
+// The grid of the reference backend: every node of the domain and its padding, and the plan's fields of the nodes.
 
 #include <Eigen/Core>
 #include <array>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "simulation/backend.hpp"
@@ -18,30 +20,45 @@ inline Vector to_eigen(const Vector3& v) {
   return {v[0], v[1], v[2]};
 }
 
-/// One velocity field at one node.
-struct Node {
-  double mass = 0;
-  Vector momentum = Vector::Zero();         ///< kg m/s
-  Vector internal_force = Vector::Zero();   ///< N
-  Vector body_force = Vector::Zero();       ///< N
-  Vector gravity_force = Vector::Zero();    ///< N
-  double volume = 0;                        ///< sum w V, m^3
-  Vector volume_gradient = Vector::Zero();  ///< sum V grad w, m^2
-  Vector mass_position = Vector::Zero();    ///< sum w m (x_p - x_node), kg m
-  Vector velocity_before = Vector::Zero();  ///< v-, m/s
-  Vector velocity = Vector::Zero();         ///< v+ (or v- until the forces are applied), m/s
+inline void set_zero(double& value) {
+  value = 0;
+}
+inline void set_zero(Vector& value) {
+  value.setZero();
+}
 
-  Vector increment = Vector::Zero();         ///< v* of the filter, m/s
-  Vector projected = Vector::Zero();         ///< S+ S v*, m/s (kg m/s until divided by the mass)
-  Vector kept_velocity = Vector::Zero();     ///< unfiltered, where a pass restores it, m/s
-  Vector constrained = Vector::Zero();       ///< what conditions and contact have added to `velocity` in this step, m/s
-  Vector kept_constrained = Vector::Zero();  ///< of kept_velocity, m/s
+/// One field of the nodes, read and written as momentum[i] with the i of Grid::at. A field that the plan does not have
+/// may be named, but using it throws std::logic_error.
+template <class Value>
+class NodeField {
+ public:
+  explicit NodeField(std::string id) : id_(std::move(id)) {}
+  Value& operator[](std::size_t i) { return refuse_unplanned(), values_[i]; }
+  const Value& operator[](std::size_t i) const { return refuse_unplanned(), values_[i]; }
 
-  bool held[3] = {false, false, false};  ///< components that a condition gives now
+ private:
+  friend class Grid;
+  void refuse_unplanned() const {
+    if (!declared_) throw std::logic_error("the plan has no field \"" + id_ + "\" of the nodes");
+  }
+  void allocate(const Field& declared, std::size_t size) {
+    declared_ = &declared;
+    values_.resize(size);
+    start();
+  }
+  void start() {
+    for (Value& value : values_) set_zero(value);
+    waits_ = folded(Folded::with_mass);
+  }
+  bool folded(Folded when) const { return declared_ && declared_->folded == when; }
 
-  Vector force() const { return internal_force + body_force + gravity_force; }
-  double kinetic_energy() const { return mass > 0 ? 0.5 * momentum.squaredNorm() / mass : 0.0; }
+  std::string id_;
+  const Field* declared_ = nullptr;
+  std::vector<Value> values_;
+  bool waits_ = false;  ///< until its ghosts are folded with the mass
 };
+using ScalarField = NodeField<double>;
+using VectorField = NodeField<Vector>;
 
 /// Components of a node's velocity that a condition gives.
 struct Held {
@@ -51,65 +68,89 @@ struct Held {
 
 class Grid {
  public:
-  explicit Grid(const Experiment& experiment);
+  Grid(const Experiment& experiment, const Plan& plan);
+  Grid(const Grid&) = delete;  // others refer to its fields
 
+  /// The plan's field of nodes with this id; it stays where it is.
+  ScalarField& scalar(const std::string& id) { return scalars_.try_emplace(id, id).first->second; }
+  VectorField& vector(const std::string& id) { return vectors_.try_emplace(id, id).first->second; }
+
+  /// All fields to zero.
   void reset();
-  /// Before the remap of MUSL: masses, momenta and velocities only.
-  void reset_momentum();
+  /// The same of these only, before particles are summed into them once more in a step (the remap of MUSL).
+  void reset(const std::vector<std::string>& ids);
 
   /// Index of a node from its coordinates (periodic axes not wrapped: images are folded).
   std::size_t index(const Eigen::Vector3i& coordinates) const;
   bool contains(const Eigen::Vector3i& coordinates) const;
   int padding() const { return padding_[0]; }  ///< nodes beyond a wall
   Vector position(const Eigen::Vector3i& coordinates) const;
-  Node& node(int field, std::size_t index) { return fields_[field][index]; }
-  const Node& node(int field, std::size_t index) const { return fields_[field][index]; }
-  int field_count() const { return static_cast<int>(fields_.size()); }
+  int velocity_fields() const { return experiment_.field_count; }
   std::size_t node_count() const { return coordinates_.size(); }
-  std::uint64_t bytes() const { return fields_.size() * node_count() * sizeof(Node); }
+  /// Where a field of the nodes keeps the value that a node has for a velocity field, and how many values it keeps.
+  std::size_t at(int velocity_field, std::size_t node) const { return velocity_field * node_count() + node; }
+  int velocity_field_of(std::size_t i) const { return static_cast<int>(i / node_count()); }
+  std::size_t size() const { return velocity_fields() * node_count(); }
+  std::uint64_t bytes() const { return bytes_; }
 
   double kinetic_energy() const;
   /// sqrt(sum m v.v) over all nodes that hold mass: ghosts that were folded have none. kg^1/2 m/s.
-  double mass_norm(Vector Node::*velocity) const;
+  double mass_norm(const VectorField& velocity) const;
+  Vector force(std::size_t i) const;  ///< N
 
-  /// Sums periodic images: all channels. Done first, before anything is measured: images are one node.
-  void sum_images(bool remap);
-  /// Adds the masses, momenta and contact channels of ghosts beyond walls to their mirrors (boundary.hpp). A separating
-  /// wall decides by p + dt f. `remap`: contact channels have been folded before.
-  void fold_walls(double time, double dt, bool remap);
+  /// Sums periodic images: all fields. Done first, before anything is measured: images are one node.
+  void sum_images();
+  /// Adds what was summed with the masses into ghosts beyond walls to their mirrors (boundary.hpp). A separating wall
+  /// decides by p + dt f.
+  void fold_walls(double time, double dt);
   /// The same for forces, which USF scatters later.
   void fold_forces();
+  /// Folds a field by a rule as momenta and masses were folded in this step. `time`: that of the walls' velocity;
+  /// nothing when the walls are at rest (what is folded is a difference).
+  template <class Value>
+  void fold_as(NodeField<Value>& field, AtWall rule, std::optional<double> time);
   /// Gives ghosts the mirrored velocities. `time` is that of the wall's velocity.
-  void fill_ghosts(double time);
-  /// Folds the projection as momenta and masses were folded in this step, and divides it by the mass. `time`: that of
-  /// the walls' velocity; nothing when the walls are at rest (what is projected is a difference).
-  void fold_projection(std::optional<double> time);
-  /// Gives ghosts the mirrored increments, walls at rest.
-  void fill_increment_ghosts();
+  void fill_velocity_ghosts(double time);
+  /// Gives ghosts the mirrored values by a rule, walls at rest.
+  template <class Value>
+  void fill_ghosts(NodeField<Value>& field, AtWall rule);
   /// What conditions hold at a node whose velocity would be `predicted` without them.
-  Held held(std::size_t index, const Vector& predicted, double time) const;
+  Held held(std::size_t i, const Vector& predicted, double time) const;
 
  private:
   struct Fold {
-    int field;
     std::size_t ghost, mirror;
     int axis, side;   ///< side < 0: a periodic image
     double mass = 0;  ///< of the ghost when it was folded, kg
   };
-  void fold_axis(int axis, double time, double dt, bool remap);
-  void fold_node(Fold fold, double time, bool remap);
-  static void fold_onto_itself(Node& node, int axis);
+  template <class Visit>
+  void for_each_field(Visit visit) {
+    for (auto& [id, field] : scalars_) visit(field);
+    for (auto& [id, field] : vectors_) visit(field);
+  }
+  void fold_axis(int axis, double time, double dt);
+  void fold_node(Fold fold, double time);
+  void fold_onto_itself(std::size_t i, int axis);
   bool approaches_wall(const Fold& fold, double dt) const;
   Vector wall_velocity(const Fold& fold, double time) const;
-  static Vector mirrored(const Vector& v, const Fold& fold, ConditionType as);
-  ConditionType type_of(const Fold& fold) const;
+  /// `wall`: momentum of the ghost's mass at the wall's velocity.
+  void add_to_mirror(ScalarField& field, const Fold& fold, AtWall rule, const Vector& wall) const;
+  void add_to_mirror(VectorField& field, const Fold& fold, AtWall rule, const Vector& wall) const;
+  double mirrored(double v, const Fold&, AtWall) const { return v; }  // all scalars are even
+  Vector mirrored(Vector v, const Fold& fold, AtWall rule) const;
 
   const Experiment& experiment_;
   Eigen::Vector3i extent_, padding_;
   std::vector<Eigen::Vector3i> coordinates_;
   std::array<std::vector<std::size_t>, 3> outermost_first_;  ///< nodes by distance beyond the walls of an axis
-  std::vector<std::vector<Node>> fields_;
+  std::map<std::string, ScalarField> scalars_;
+  std::map<std::string, VectorField> vectors_;
+  ScalarField& mass_ = scalar("mass");
+  VectorField &momentum_ = vector("momentum"), &velocity_ = vector("velocity"),
+              &velocity_before_ = vector("velocity_before"), &internal_force_ = vector("force"),
+              &body_force_ = vector("body_force"), &weight_ = vector("weight");
   std::vector<Fold> folds_;
+  std::uint64_t bytes_ = 0;
 };
 
 }  // namespace mpm::reference

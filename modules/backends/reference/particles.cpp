@@ -19,93 +19,62 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
       volume_(seeded.volume),
       frozen_(experiment.bodies[body].frozen),
       shape_(experiment, plan) {
-  const int D = dimension_;
-  position = make(D), velocity = make(D), advection = make(D);
-  const SeedArrays seeds = seeded.arrays();
-  for (std::size_t p = 0; p < count_; ++p)
-    for (int c = 0; c < D; ++c) {
-      position(c, p) = seeds.position[p * D + c];
-      velocity(c, p) = seeds.velocity[p * D + c];
-    }
-  pad(position), pad(velocity);
-  if (plan.initial_position) initial_position = position;
-  if (experiment.axisymmetric()) circumference_ = 2 * std::numbers::pi * position.topRows(1), hoop_rate_ = make(1);
-  b = make(D), A = make(D * D), stress = make(D == 2 ? 4 : 6), volume_ratio = make(1);
-  gathered_velocity = make(D), gathered_increment = make(D), gathered_affine = make(D * D),
-  gathered_gradient = make(D * D), velocity_gradient = make(D * D);
-  if (plan.particle_domain) {
-    domain_ = make(D * D);
-    for (int a = 0; a < D; ++a)
-      domain_.row(a * (D + 1)).setConstant(0.5 / experiment.bodies[body].particles_per_cell_axis);
-  }
-  if (plan.sample_points > 0) {
-    corners = moved_corners = make(plan.sample_points * D);
-    for (int corner = 0; corner < plan.sample_points; ++corner)
-      for (int a = 0; a < D; ++a)
-        corners.row(corner * D + a)
-            .setConstant((corner >> a & 1 ? 0.5 : -0.5) / experiment.bodies[body].particles_per_cell_axis);
-  }
-  initialise(transfer_state_, *transfer_.plugin);
-  if (plan.basis_functions > 0)
-    transfer_state_[polynomial_coefficients] = gathered_higher = higher = make(plan.basis_functions * D);
-  initialise(material_state_, *material_.plugin);
-  if (!seeds.velocity_gradient.empty()) {
-    Array& affine = transfer_state_.at(transfer_.plugin->state()[0].name);
-    for (std::size_t p = 0; p < count_; ++p)
-      for (int k = 0; k < D * D; ++k) affine(k, p) = seeds.velocity_gradient[p * D * D + k];
-    pad(affine);
-  }
+  seeded.for_each_batch([this](const SeedBatch& batch) { seed(batch); });
+  if (axisymmetric()) values("circumference") = 2 * std::numbers::pi * position.topRows(1);
+  for (Stored& stored : fields_) pad(stored.values);
 }
 
 Array Particles::make(int components) const {
   return Array::Zero(components, static_cast<Eigen::Index>(padded_));
 }
 
-void Particles::initialise(Fields& fields, const Plugin& plugin) {
-  for (const mpm_state& declared : plugin.state()) {
-    const mpm_state_shape shape = kept_shape(declared, experiment_.axisymmetric());
-    const int components = state_components(shape, dimension_);
-    Array& field = fields[declared.name] = make(components);
-    if (declared.initial == MPM_INITIAL_ONE) field.setOnes();
-    if (declared.initial == MPM_INITIAL_IDENTITY)
-      for (int i = 0; i < (declared.shape == MPM_STATE_SYMMETRIC ? 3 : dimension_); ++i)
-        field.row(declared.shape == MPM_STATE_SYMMETRIC ? i : i * (dimension_ + 1)).setOnes();
-    const bool plane_strain = shape == MPM_STATE_DEFORMATION && dimension_ == 2;  // xx xy yx yy zz
-    if (declared.initial == MPM_INITIAL_IDENTITY && plane_strain) field.row(4).setOnes();
-  }
+double Particles::half_size() const {
+  return 0.5 / experiment_.bodies[body_].particles_per_cell_axis;
 }
 
-std::vector<void*> Particles::pointers(Fields& fields, const Plugin& plugin) {
+std::deque<Particles::Stored> Particles::start_fields() const {
+  std::deque<Stored> fields;
+  for (const Field& declared : plan_.fields) {
+    if (!declared.of_particles_of(body_)) continue;
+    Array& values = fields.emplace_back(Stored{&declared, make(declared.components)}).values;
+    for (int k = 0; k < declared.components; ++k)
+      values.row(k).setConstant(first_value(declared, k, dimension_, half_size()));
+  }
+  return fields;
+}
+
+void Particles::seed(const SeedBatch& batch) {
+  const auto take = [&](Array& values, const double* first) {
+    for (std::size_t p = 0; first && p < batch.count; ++p)
+      for (Eigen::Index k = 0; k < values.rows(); ++k) values(k, batch.first + p) = first[p * values.rows() + k];
+  };
+  for (Stored& stored : fields_)
+    if (stored.declared->first == First::seeded) take(stored.values, batch.values(stored.declared->id));
+  if (batch.velocity_gradient)
+    take(values(transfer_.plugin->state()[0].name, Origin::transfer), batch.velocity_gradient);
+}
+
+const Array& Particles::values(std::string_view id, Origin origin) const {
+  for (const Stored& stored : fields_)
+    if (stored.declared->origin == origin && stored.declared->id == id) return stored.values;
+  throw std::logic_error("the plan has no field \"" + std::string(id) + "\" of the particles");
+}
+
+Array& Particles::values(std::string_view id, Origin origin) {
+  return const_cast<Array&>(std::as_const(*this).values(id, origin));
+}
+
+std::vector<void*> Particles::state_of(Origin plugin) {
   std::vector<void*> list;
-  for (const mpm_state& declared : plugin.state()) list.push_back(fields.at(declared.name).data());
+  for (Stored& stored : fields_)
+    if (stored.declared->origin == plugin) list.push_back(stored.values.data());
   return list;
 }
 
 std::uint64_t Particles::bytes() const {
   Eigen::Index scalars = 0;
-  for (const Array* array : {&position,
-                             &velocity,
-                             &initial_position,
-                             &advection,
-                             &b,
-                             &A,
-                             &stress,
-                             &volume_ratio,
-                             &gathered_velocity,
-                             &gathered_increment,
-                             &gathered_affine,
-                             &gathered_gradient,
-                             &velocity_gradient,
-                             &domain_,
-                             &circumference_,
-                             &hoop_rate_,
-                             &gathered_higher,
-                             &higher,
-                             &corners,
-                             &moved_corners})
-    scalars += array->size();
-  for (const auto* fields : {&transfer_state_, &material_state_})
-    for (const auto& [name, array] : *fields) scalars += array.size();
+  for (const Stored& stored : fields_) scalars += stored.values.size();
+  for (const Array& array : work_) scalars += array.size();
   return static_cast<std::uint64_t>(scalars) * sizeof(double);
 }
 
@@ -148,10 +117,12 @@ void Particles::pad(Array& array) const {
 }
 
 ShapeArguments Particles::shape_arguments() const {
-  ShapeArguments at{make(dimension_), make(dimension_), domain_, corners};
+  ShapeArguments at{make(dimension_), make(dimension_), {}, {}};
+  if (plan_.particle_domain) at.domain = values("domain");
+  if (plan_.sample_points > 0) at.corners = values("corners");
   for (int c = 0; c < dimension_; ++c)
     at.position.row(c) = (position.row(c).array() - experiment_.grid.lower[c]) / experiment_.grid.cell_size;
-  at.half_size.setConstant(0.5 / experiment_.bodies[body_].particles_per_cell_axis);
+  at.half_size.setConstant(half_size());
   return at;
 }
 
@@ -166,55 +137,54 @@ void Particles::find_stencils(const Grid& grid) {
   }
 }
 
-void Particles::call_scatter(const Array& velocities, Fields& states) {
+void Particles::scatter_coefficients() {
   const mpm_transfer& transfer = transfer_.plugin->transfer();
   Array mass = make(1);
   mass.setConstant(mass_);
-  if (axisymmetric()) mass = mass_ * circumference_;
-  const auto state = pointers(states, *transfer_.plugin);
+  if (axisymmetric()) mass = mass_ * *circumference_;
+  const auto state = state_of(Origin::transfer);
   const auto n = static_cast<std::uint32_t>(padded_);
   const mpm_scatter_batch batch{n,
                                 n,
                                 static_cast<std::uint32_t>(dimension_),
                                 0,
                                 mass.data(),
-                                velocities.data(),
+                                velocity.data(),
                                 state.data(),
                                 b.data(),
                                 transfer.traits & MPM_SCATTERS_AFFINE ? A.data() : nullptr};
   transfer.scatter[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
   if (plan_.basis_functions == 0) return;
-  higher = states.at(polynomial_coefficients);
+  higher = values(polynomial_coefficients, Origin::transfer);
   for (std::size_t p = 0; p < count_; ++p) higher.col(static_cast<Eigen::Index>(p)) *= mass(p);
 }
 
-void Particles::scatter_coefficients() {
-  call_scatter(velocity, transfer_state_);
-}
-
 void Particles::project_coefficients(double dt) {
-  Array velocities = make(dimension_), advections = make(dimension_);
-  Fields states = transfer_state_;
-  for (auto& [name, field] : states) field.setZero();
-  call_gather(dt, gathered_velocity, velocities, states, advections);
-  call_scatter(velocities, states);
+  const std::deque<Stored> kept = fields_;
+  velocity.setZero(), advection.setZero();
+  for (Stored& stored : fields_)
+    if (stored.declared->origin == Origin::transfer) stored.values.setZero();
+  gathered_increment = gathered_velocity;  // they were at rest
+  gather(dt);
+  scatter_coefficients();
+  for (std::size_t k = 0; k < fields_.size(); ++k) fields_[k].values = kept[k].values;
 }
 
 std::int32_t Particles::update_material(const mpm_material_batch& request) {
   mpm_material_batch batch = request;
-  const auto state = pointers(material_state_, *material_.plugin);
+  const auto state = state_of(Origin::material);
   batch.count = batch.stride = static_cast<std::uint32_t>(padded_);
   batch.dimension = static_cast<std::uint32_t>(dimension_);
   batch.state = state.data();
-  if (axisymmetric()) batch.velocity_gradient_zz = hoop_rate_.data();
+  if (axisymmetric()) batch.velocity_gradient_zz = hoop_rate.data();
   return material_.plugin->material().update[MPM_SCALAR_DOUBLE][dimension_ - 2](material_.parameters.data(), &batch);
 }
 
 void Particles::refuse_inverted(std::int32_t particle) const {
   if (particle < 0) return;
   const std::size_t p = std::min(static_cast<std::size_t>(particle), count_ - 1);
-  for (const auto& [name, field] : material_state_)
-    if (!field.col(static_cast<Eigen::Index>(p)).allFinite())
+  for (const Stored& stored : fields_)
+    if (stored.declared->origin == Origin::material && !stored.values.col(static_cast<Eigen::Index>(p)).allFinite())
       throw RunFailure("not a number: its deformation is no longer finite", body_, p);
   throw RunFailure("inverted: its volume ratio J is not positive", body_, p);
 }
@@ -228,17 +198,19 @@ void Particles::evaluate_stress() {
 
 double Particles::strain(double dt) {
   pad(velocity_gradient);
-  if (axisymmetric()) hoop_rate_ = gathered_velocity.row(0).array() / position.row(0).array(), pad(hoop_rate_);
+  if (axisymmetric()) hoop_rate = gathered_velocity.row(0).array() / position.row(0).array(), pad(hoop_rate);
   Array dissipated = make(1);
   mpm_material_batch batch{};
   batch.dt = dt;
   batch.velocity_gradient = velocity_gradient.data();
   batch.dissipated_energy = dissipated.data();
   refuse_inverted(update_material(batch));
-  if (plan_.particle_domain && !frozen_)  // (I + dt L) domain, as F
+  if (plan_.particle_domain && !frozen_) {
+    Array& domain = values("domain");  // (I + dt L) domain, as F
     for (std::size_t p = 0; p < padded_; ++p)
-      set(domain_, p, Matrix((Matrix::Identity() + dt * matrix(velocity_gradient, p)) * matrix(domain_, p)));
-  if (axisymmetric()) dissipated.array() *= circumference_.array();
+      set(domain, p, Matrix((Matrix::Identity() + dt * matrix(velocity_gradient, p)) * matrix(domain, p)));
+  }
+  if (axisymmetric()) dissipated.array() *= circumference_->array();
   return volume_ * dissipated.leftCols(count_).sum();
 }
 
@@ -254,11 +226,11 @@ Array Particles::moments_for_transfer() const {
   return moments;
 }
 
-void Particles::call_gather(double dt, const Array& increments, Array& velocities, Fields& states, Array& advections) {
+void Particles::gather(double dt) {
   const mpm_transfer& transfer = transfer_.plugin->transfer();
   for (Array* array : {&gathered_velocity, &gathered_increment, &gathered_affine, &gathered_gradient}) pad(*array);
   const Array moments = moments_for_transfer();
-  const auto state = pointers(states, *transfer_.plugin);
+  const auto state = state_of(Origin::transfer);
   const auto n = static_cast<std::uint32_t>(padded_);
   const mpm_gather_batch batch{n,
                                n,
@@ -266,19 +238,15 @@ void Particles::call_gather(double dt, const Array& increments, Array& velocitie
                                0,
                                dt,
                                gathered_velocity.data(),
-                               increments.data(),
+                               gathered_increment.data(),
                                gathered_affine.data(),
                                gathered_gradient.data(),
-                               velocities.data(),
+                               velocity.data(),
                                state.data(),
-                               advections.data(),
+                               advection.data(),
                                moments.size() ? moments.data() : nullptr};
   transfer.gather[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
-  if (plan_.basis_functions > 0) states.at(polynomial_coefficients) = gathered_higher;
-}
-
-void Particles::gather(double dt) {
-  call_gather(dt, gathered_increment, velocity, transfer_state_, advection);
+  if (plan_.basis_functions > 0) values(polynomial_coefficients, Origin::transfer) = gathered_higher;
 }
 
 void Particles::take_gathered_velocity() {
@@ -301,15 +269,15 @@ TimeStepLimit Particles::time_step_limit() {
 
 double Particles::kinetic_energy() const {
   const bool affine = transfer_.plugin->transfer().traits & MPM_AFFINE_CARRIES_ENERGY;
-  const Array* C = affine ? &transfer_state_.at(transfer_.plugin->state()[0].name) : nullptr;
+  const Array* C = affine ? &values(transfer_.plugin->state()[0].name, Origin::transfer) : nullptr;
+  const Array* beyond = plan_.basis_functions > 0 ? &values(polynomial_coefficients, Origin::transfer) : nullptr;
   double sum = 0;
   for (std::size_t p = 0; p < count_; ++p) {
     sum += 0.5 * mass(p) * column(velocity, p).squaredNorm();
     if (C) sum += 0.5 * mass(p) * (matrix(*C, p) * second_moments_[p] * matrix(*C, p).transpose()).trace();
     for (int k = 0; k < plan_.basis_functions; ++k)
       for (int c = 0; c < dimension_; ++c)
-        sum += 0.5 * mass(p) * higher_bases_[p].norm[k] *
-               std::pow(transfer_state_.at(polynomial_coefficients)(k * dimension_ + c, p), 2);
+        sum += 0.5 * mass(p) * higher_bases_[p].norm[k] * std::pow((*beyond)(k * dimension_ + c, p), 2);
   }
   return sum;
 }
@@ -322,45 +290,31 @@ BodyState Particles::state() const {
     return values;
   };
   BodyState result;
-  result.position = particle_major(position);
-  result.velocity = particle_major(velocity);
-  if (initial_position.size()) result.initial_position = particle_major(initial_position);
-  for (const auto& [name, array] : transfer_state_) result.transfer_state[name] = particle_major(array);
-  for (const auto& [name, array] : material_state_) result.material_state[name] = particle_major(array);
-  if (plan_.sample_points > 0) result.corners = particle_major(experiment_.grid.cell_size * corners);
-  if (plan_.particle_domain) result.domain = particle_major(experiment_.grid.cell_size * domain_);
+  for (const Stored& stored : fields_) {
+    const Field& declared = *stored.declared;
+    const bool cells = declared.origin == Origin::host && declared.unit == "cells";
+    if (declared.lifetime != Lifetime::step)
+      result.of(declared) = particle_major((cells ? experiment_.grid.cell_size : 1.0) * stored.values);
+  }
   if (plan_.second_moment) {
     const double h = experiment_.grid.cell_size;
     result.second_moment = particle_major(h * h * shape_.evaluate(shape_arguments()).second_moment);
   }
   result.volume = volume_;
   result.mass = mass_;
-  if (axisymmetric()) result.circumference = particle_major(circumference_);
   return result;
 }
 
-template <class Self, class Visit>
-void Particles::visit_saved(Self& self, Visit visit) {
-  visit("position", self.position);
-  visit("velocity", self.velocity);
-  visit("initial_position", self.initial_position);
-  visit("circumference", self.circumference_);
-  visit("domain", self.domain_);
-  visit("corners", self.corners);
-  for (auto& [name, field] : self.transfer_state_) visit(name, field);
-  for (auto& [name, field] : self.material_state_) visit(name, field);
-}
-
 void Particles::save(ArchiveWriter& archive) const {
-  visit_saved(*this, [&](const std::string& name, const Array& array) {
-    archive.put(name, array.data(), static_cast<std::size_t>(array.size()));
-  });
+  for (const auto& [declared, values] : fields_)
+    if (declared->lifetime == Lifetime::saved)
+      archive.put(declared->id, values.data(), static_cast<std::size_t>(values.size()));
 }
 
 void Particles::restore(ArchiveReader& archive) {
-  visit_saved(*this, [&](const std::string& name, Array& array) {
-    archive.get(name, array.data(), static_cast<std::size_t>(array.size()));
-  });
+  for (auto& [declared, values] : fields_)
+    if (declared->lifetime == Lifetime::saved)
+      archive.get(declared->id, values.data(), static_cast<std::size_t>(values.size()));
 }
 
 }  // namespace mpm::reference

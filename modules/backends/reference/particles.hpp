@@ -1,8 +1,8 @@
 #pragma once
 // The particles of one body in the reference backend, and their calls over the plugin boundary.
 
-#include <map>
-#include <string>
+#include <deque>
+#include <string_view>
 #include <vector>
 
 #include "backends/reference/stencil.hpp"
@@ -12,15 +12,19 @@ namespace mpm::reference {
 class Particles {
  public:
   Particles(const Experiment& experiment, const Plan& plan, int body, const SeededBody& seeded);
+  Particles(const Particles&) = delete;  // others refer to its arrays
 
   std::size_t count() const { return count_; }
   int field() const { return field_; }
   double mass(std::size_t p) const { return mass_ * ring(p); }
   double volume(std::size_t p) const { return volume_ * ring(p); }
-  bool axisymmetric() const { return circumference_.size() > 0; }
+  bool axisymmetric() const { return experiment_.axisymmetric(); }
   bool frozen() const { return frozen_; }
   std::uint64_t bytes() const;
 
+  /// The plan's field of these particles with this id. Throws std::logic_error where there is none.
+  Array& values(std::string_view id, Origin origin = Origin::host);
+  const Array& values(std::string_view id, Origin origin = Origin::host) const;
   Vector column(const Array& array, std::size_t p) const;
   Matrix matrix(const Array& array, std::size_t p) const;
   /// Symmetric tensor without its zz in 2-D.
@@ -62,30 +66,23 @@ class Particles {
   void save(ArchiveWriter& archive) const;
   void restore(ArchiveReader& archive);
 
-  Array position, velocity, initial_position, advection;
-  Array b, A, stress, volume_ratio;
-  Array gathered_velocity, gathered_increment, gathered_affine, gathered_gradient;
-  Array velocity_gradient;  ///< what strains the particle
-  Array corners;            ///< [points*D], cells from the particle; empty unless Plan::sample_points
-  Array moved_corners;      ///< where the grid's velocity takes them in this step, from the particle as it is yet
-  Array gathered_higher;    ///< [function][D], coefficients of the polynomials beyond affine, m/s
-  Array higher;             ///< the same times the mass, to scatter with b and A
-
  private:
-  using Fields = std::map<std::string, Array>;
+  struct Stored {
+    const Field* declared;
+    Array values;  ///< [component]
+  };
   Array make(int components) const;
+  Array& work(int components) { return work_.emplace_back(make(components)); }
+  std::deque<Stored> start_fields() const;
+  void seed(const SeedBatch& batch);
+  double half_size() const;  ///< of the undeformed particle's box, cells
+  /// The state of the transfer or the material, in declared order.
+  std::vector<void*> state_of(Origin plugin);
   ShapeArguments shape_arguments() const;
-  void call_scatter(const Array& velocities, Fields& states);
-  void call_gather(double dt, const Array& increments, Array& velocities, Fields& states, Array& advections);
-  /// What saving writes and restoring reads, in order.
-  template <class Self, class Visit>
-  static void visit_saved(Self& self, Visit visit);
   /// D as the transfer reads it, cells^2; empty where it does not or where D is a multiple of the identity.
   Array moments_for_transfer() const;
-  std::vector<void*> pointers(Fields& fields, const Plugin& plugin);
-  void initialise(Fields& fields, const Plugin& plugin);
   std::int32_t update_material(const mpm_material_batch& outputs);
-  double ring(std::size_t p) const { return axisymmetric() ? circumference_(0, p) : 1.0; }
+  double ring(std::size_t p) const { return circumference_ ? (*circumference_)(0, p) : 1.0; }
   void refuse_inverted(std::int32_t particle) const;
 
   const Experiment& experiment_;
@@ -97,13 +94,23 @@ class Particles {
   double mass_, volume_;  ///< in axisymmetric scenes per metre of circumference
   bool frozen_;
   Shape shape_;
-  Array circumference_;  ///< m, 2 pi r as seeded; empty unless axisymmetric
-  Array hoop_rate_;      ///< 1/s, v_r / r; empty unless axisymmetric
-  Array domain_;         ///< [D*D], cells, column k the k-th semi-side; empty unless Plan::particle_domain
-  Fields transfer_state_, material_state_;
   std::vector<Stencil> stencils_;
   std::vector<Matrix> second_moments_;  ///< m^2, with the stencils
   std::vector<HigherBasis> higher_bases_;
+  std::deque<Stored> fields_ = start_fields();  ///< in the order of the plan
+  std::deque<Array> work_;                      ///< nothing that a later step reads
+  const Array* const circumference_ = axisymmetric() ? &values("circumference") : nullptr;
+
+ public:
+  Array &position = values("position"), &velocity = values("velocity"), &advection = values("advection_velocity");
+  Array &b = work(dimension_), &A = work(dimension_ * dimension_);
+  Array &stress = work(dimension_ == 2 ? 4 : 6), &volume_ratio = work(1);
+  Array &gathered_velocity = work(dimension_), &gathered_increment = work(dimension_);
+  Array &gathered_affine = work(dimension_ * dimension_), &gathered_gradient = work(dimension_ * dimension_);
+  Array& gathered_higher = work(plan_.basis_functions * dimension_);  ///< [function][D], polynomials beyond affine, m/s
+  Array& higher = work(plan_.basis_functions * dimension_);           ///< the same times the mass, as b and A
+  Array& velocity_gradient = work(dimension_ * dimension_);           ///< what strains the particle
+  Array& hoop_rate = work(axisymmetric() ? 1 : 0);                    ///< 1/s, v_r / r
 };
 
 }  // namespace mpm::reference

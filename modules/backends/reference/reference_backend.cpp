@@ -11,12 +11,13 @@ namespace reference {
 
 ReferenceBackend::ReferenceBackend(const Experiment& experiment, const Plan& plan,
                                    const std::vector<SeededBody>& seeded)
-    : experiment_(experiment), plan_(plan), grid_(experiment) {
+    : experiment_(experiment),
+      plan_(plan),
+      grid_(experiment, plan),
+      held_(grid_.size()),
+      edges_(edge_models(experiment)) {
   for (std::size_t body = 0; body < seeded.size(); ++body)
     bodies_.emplace_back(experiment, plan, static_cast<int>(body), seeded[body]);
-  if (plan.contact)
-    for (int field = 0; field < experiment.field_count; ++field)
-      edges_.emplace_back(experiment.shape, rows_per_cell(field));
 }
 
 void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
@@ -65,13 +66,6 @@ std::uint64_t ReferenceBackend::particle_bytes() const {
   return sum;
 }
 
-int ReferenceBackend::rows_per_cell(int field) const {
-  int rows = 8;
-  for (const BodySpecification& body : experiment_.bodies)
-    if (body.field == field) rows = std::min(rows, body.particles_per_cell_axis);
-  return rows;
-}
-
 double ReferenceBackend::particle_kinetic_energy() const {
   double sum = 0;
   for (const Particles& body : bodies_) sum += body.kinetic_energy();
@@ -101,7 +95,7 @@ void ReferenceBackend::move(const StepInfo& step) {
       body.set(body.position, p, x);
     }
     body.pad(body.position);
-    if (plan_.sample_points > 0) body.pad(body.corners);
+    if (plan_.sample_points > 0) body.pad(body.values("corners"));
   }
 }
 
@@ -109,9 +103,11 @@ void ReferenceBackend::move(const StepInfo& step) {
 template <int D>
 Vector ReferenceBackend::move_corners(Particles& body, int index, std::size_t p) const {
   constexpr int points = 1 << D;
+  Array& corners = body.values("corners");
+  const Array& moved = body.values("moved_corners");
   Vec<D, double> corner[points];
   for (int c = 0; c < points; ++c)
-    for (int a = 0; a < D; ++a) corner[c][a] = body.moved_corners(c * D + a, p);
+    for (int a = 0; a < D; ++a) corner[c][a] = moved(c * D + a, p);
   const CornerDomain<D, double> domain = corner_domain<D, double>(corner);
   if (!domain.upright && std::isfinite(domain.volume))  // keep_inside names what is not a number
     throw RunFailure(domain_inside_out(*experiment_.shape.plugin), index, p);
@@ -119,7 +115,7 @@ Vector ReferenceBackend::move_corners(Particles& body, int index, std::size_t p)
   Vector way = Vector::Zero();
   for (int a = 0; a < D; ++a) {
     way[a] = experiment_.grid.cell_size * centre[a];
-    for (int c = 0; c < points; ++c) body.corners(c * D + a, p) = corner[c][a] - centre[a];
+    for (int c = 0; c < points; ++c) corners(c * D + a, p) = corner[c][a] - centre[a];
   }
   return way;
 }

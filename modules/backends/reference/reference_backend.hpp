@@ -4,6 +4,8 @@
 //  transfers.cpp: particles to grid and back; grid_step.cpp: momenta, conditions and forces; contact.cpp: pairs of
 //  fields; filter.cpp: velocity filters; reference_backend.cpp: the rest.
 
+#include <array>
+#include <deque>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -37,22 +39,20 @@ class ReferenceBackend final : public Backend {
   Vector move_corners(Particles& body, int index, std::size_t p) const;
   /// Wraps periodic axes; throws RunFailure where a particle is not a number or beyond a wall.
   void keep_inside(Vector& x, int body, std::size_t p) const;
-  /// Rows of particles a cell of the coarsest body in a field: its surface lags the most.
-  int rows_per_cell(int field) const;
   double particle_kinetic_energy() const;
 
   // ---- transfers.cpp
   void scatter(const Pass& pass, const StepInfo& step);
   void scatter_momentum(Particles& body, bool remap);
+  void scatter_affine(Particles& body, VectorField& momentum);
   void scatter_force(Particles& body, double time);
   void scatter_contact_fields(Particles& body);
   void gather(const Pass& pass, const StepInfo& step);
-  void gather_moments(Particles& body, Vector Node::*velocity);
+  void gather_moments(Particles& body, const VectorField& velocities);
   void strain(const Pass& pass, const StepInfo& step);
   void strain(Particles& body, double dt);
   void gather_corners(Particles& body, const StepInfo& step);
-  void add_higher(const Particles& body, std::size_t p, Vector Node::*momentum);
-  void gather_higher(Particles& body, Vector Node::*velocity_of);
+  void gather_higher(Particles& body, const VectorField& velocities);
 
   // ---- grid_step.cpp
   void momentum_to_velocity(const Pass& pass, const StepInfo& step);
@@ -61,10 +61,14 @@ class ReferenceBackend final : public Backend {
   void keep_free_velocity(bool after_forces);
   void measure_constraints();
   void apply_forces(const StepInfo& step);
-  void account_for_impulses(const Node& node, double dt);
+  void account_for_impulses(std::size_t i, double dt);
+  /// A node without mass has no velocity.
+  Vector over_mass(const Vector& momentum, std::size_t i) const {
+    return mass_[i] > 0 ? Vector(momentum / mass_[i]) : Vector(Vector::Zero());
+  }
 
   // ---- contact.cpp
-  /// What the law does to one pair of fields at one node.
+  /// What the law does to one pair of velocity fields at one node.
   struct PairResult {
     Vector impulse = Vector::Zero();  ///< added to a, taken from b, kg m/s
     double dissipated = 0;            ///< J
@@ -73,15 +77,15 @@ class ReferenceBackend final : public Backend {
     bool has_normal = false;
   };
   /// Nothing when the pair is skipped: a field is absent, too light, or there is no normal (and the law is no weld).
-  std::optional<PairResult> resolve_pair(int a, int b, std::size_t node, const Vector& momentum_a,
+  std::optional<PairResult> resolve_pair(std::size_t a, std::size_t b, const Vector& momentum_a,
                                          const Vector& momentum_b, double dt) const;
+  ContactFieldNode contact_view(std::size_t i) const;
   /// All pairs of fields, in order; conditions are imposed again and win.
   void resolve_contact(const StepInfo& step, bool after_forces, bool remap = false);
 
   // ---- filter.cpp
   void begin_filter(const Pass& pass);
   void project(const Pass& pass, const StepInfo& step);
-  void scatter_projection(Particles& body);
   void update_filter(const Pass& pass, const StepInfo& step);
   void call_filter(int field);
   void end_filter(const Pass& pass, const StepInfo& step);
@@ -92,17 +96,40 @@ class ReferenceBackend final : public Backend {
   void impose_on_velocity(double time);
   void resolve_contact_of_velocity(double dt);
 
-  /// Calls `visit(node)` for every node of every field.
+  /// Calls `visit(i)` for every node of every velocity field.
   template <class Visit>
   void for_each_node(Visit visit) {
-    for (int field = 0; field < grid_.field_count(); ++field)
-      for (std::size_t i = 0; i < grid_.node_count(); ++i) visit(grid_.node(field, i));
+    for (std::size_t i = 0; i < grid_.size(); ++i) visit(i);
+  }
+  /// Calls `visit(a, b)` for every two velocity fields at every node.
+  template <class Visit>
+  void for_each_pair(Visit visit) {
+    for (int a = 0; a < grid_.velocity_fields(); ++a)
+      for (int b = a + 1; b < grid_.velocity_fields(); ++b)
+        for (std::size_t node = 0; node < grid_.node_count(); ++node) visit(grid_.at(a, node), grid_.at(b, node));
   }
 
   const Experiment& experiment_;
   const Plan& plan_;
   Grid grid_;
-  std::vector<Particles> bodies_;
+  // Fields of the nodes, as the method's text names them.
+  ScalarField &mass_ = grid_.scalar("mass"), &volume_ = grid_.scalar("volume");
+  VectorField& momentum_ = grid_.vector("momentum");
+  VectorField& velocity_before_ = grid_.vector("velocity_before");  ///< v-
+  VectorField& velocity_ = grid_.vector("velocity");                ///< v+ (or v- until the forces are applied)
+  VectorField& internal_force_ = grid_.vector("force");
+  VectorField &body_force_ = grid_.vector("body_force"), &weight_ = grid_.vector("weight");
+  VectorField& volume_gradient_ = grid_.vector("volume_gradient");  ///< sum V grad w
+  VectorField& mass_position_ = grid_.vector("mass_position");      ///< sum w m (x_p - x_node)
+  VectorField& increment_ = grid_.vector("increment");              ///< v* of the filter
+  VectorField& projection_ = grid_.vector("projection");            ///< S+ S v*, a momentum until over_mass
+  VectorField& trial_velocity_ = grid_.vector("trial_velocity");
+  VectorField& unfiltered_ = grid_.vector("unfiltered_velocity");
+  /// What conditions and contact have added to the velocity in this step.
+  VectorField& constrained_ = grid_.vector("velocity_of_constraints");
+  VectorField& unfiltered_constrained_ = grid_.vector("unfiltered_velocity_of_constraints");
+  std::vector<std::array<bool, 3>> held_;  ///< components that a condition gives now
+  std::deque<Particles> bodies_;
   std::vector<EdgeModel> edges_;
   TimeStepLimit limit_;
   Ledger ledger_;

@@ -8,7 +8,7 @@
 namespace mpm::reference {
 
 void ReferenceBackend::scatter(const Pass& pass, const StepInfo& step) {
-  if (pass.remap()) grid_.reset_momentum();
+  if (pass.remap()) grid_.reset({"mass", "momentum"});
   for (Particles& body : bodies_) {
     if (!pass.remap() && pass.has(Act::scatter_momentum)) body.find_stencils(grid_);
     if (pass.has(Act::scatter_momentum)) scatter_momentum(body, pass.remap());
@@ -17,25 +17,37 @@ void ReferenceBackend::scatter(const Pass& pass, const StepInfo& step) {
     if (pass.has(Act::scatter_contact)) scatter_contact_fields(body);
   }
   if (!pass.has(Act::scatter_momentum)) return;
-  grid_.sum_images(pass.remap());
+  grid_.sum_images();
   if (accounted_ && !pass.remap()) ledger_.scatter += grid_.kinetic_energy() - particle_kinetic_energy();
 }
 
-/// Node by node: w m, and w (b + A d).
+/// Node by node: w m, and its weight; momenta as the transfer gives them.
 void ReferenceBackend::scatter_momentum(Particles& body, bool remap) {
-  const bool affine = experiment_.transfer.plugin->transfer().traits & MPM_SCATTERS_AFFINE;
   const Vector gravity = to_eigen(experiment_.gravity);
   body.scatter_coefficients();
+  for (std::size_t p = 0; p < body.count(); ++p)
+    for (const StencilNode& s : body.stencil(p)) {
+      const std::size_t i = grid_.at(body.field(), s.index);
+      mass_[i] += s.weight * body.mass(p);
+      if (!remap) weight_[i] += s.weight * body.mass(p) * gravity;
+    }
+  scatter_affine(body, momentum_);
+}
+
+/// Node by node: w (b + A d), and sum w c P over the polynomials beyond affine.
+void ReferenceBackend::scatter_affine(Particles& body, VectorField& momentum) {
+  const bool affine = experiment_.transfer.plugin->transfer().traits & MPM_SCATTERS_AFFINE;
+  const int D = experiment_.dimension;
   for (std::size_t p = 0; p < body.count(); ++p) {
     const Vector b = body.column(body.b, p);
     const Matrix A = affine ? body.matrix(body.A, p) : Matrix(Matrix::Zero());
-    for (const StencilNode& s : body.stencil(p)) {
-      Node& node = grid_.node(body.field(), s.index);
-      node.mass += s.weight * body.mass(p);
-      node.momentum += s.weight * (b + A * s.distance);
-      if (!remap) node.gravity_force += s.weight * body.mass(p) * gravity;
-    }
-    add_higher(body, p, &Node::momentum);
+    for (const StencilNode& s : body.stencil(p))
+      momentum[grid_.at(body.field(), s.index)] += s.weight * (b + A * s.distance);
+    for (int k = 0; k < plan_.basis_functions; ++k)
+      for (std::size_t n = 0; n < body.stencil(p).size(); ++n)
+        for (int c = 0; c < D; ++c)
+          momentum[grid_.at(body.field(), body.stencil(p)[n].index)][c] +=
+              body.higher_basis(p).given(k, static_cast<Eigen::Index>(n)) * body.higher(k * D + c, p);
   }
 }
 
@@ -43,13 +55,15 @@ void ReferenceBackend::scatter_momentum(Particles& body, bool remap) {
 void ReferenceBackend::gather_corners(Particles& body, const StepInfo& step) {
   const int D = experiment_.dimension;
   const double h = experiment_.grid.cell_size;
+  const Array& corners = body.values("corners");
+  Array& moved = body.values("moved_corners");
   for (std::size_t p = 0; p < body.count(); ++p) {
     const Vector own = body.column(body.advection, p) - body.column(body.gathered_velocity, p);
     for (int corner = 0; corner < plan_.sample_points; ++corner) {
       Vector velocity = own;
       Vector place = Vector::Zero(), lower = Vector::Zero();
       for (int a = 0; a < D; ++a) {
-        place[a] = (body.position(a, p) - experiment_.grid.lower[a]) / h + body.corners(corner * D + a, p);
+        place[a] = (body.position(a, p) - experiment_.grid.lower[a]) / h + corners(corner * D + a, p);
         lower[a] = std::floor(place[a]);
       }
       for (int which = 0; which < 1 << D; ++which) {
@@ -60,26 +74,15 @@ void ReferenceBackend::gather_corners(Particles& body, const StepInfo& step) {
           weight *= upper ? place[a] - lower[a] : 1 - (place[a] - lower[a]);
           node[a] += upper;
         }
-        if (weight != 0) velocity += weight * grid_.node(body.field(), grid_.index(node)).velocity;
+        if (weight != 0) velocity += weight * velocity_[grid_.at(body.field(), grid_.index(node))];
       }
-      for (int a = 0; a < D; ++a)
-        body.moved_corners(corner * D + a, p) = body.corners(corner * D + a, p) + step.dt / h * velocity[a];
+      for (int a = 0; a < D; ++a) moved(corner * D + a, p) = corners(corner * D + a, p) + step.dt / h * velocity[a];
     }
   }
 }
 
-/// sum w c P over the polynomials beyond affine.
-void ReferenceBackend::add_higher(const Particles& body, std::size_t p, Vector Node::*momentum) {
-  const int D = experiment_.dimension;
-  for (int k = 0; k < plan_.basis_functions; ++k)
-    for (std::size_t n = 0; n < body.stencil(p).size(); ++n)
-      for (int c = 0; c < D; ++c)
-        (grid_.node(body.field(), body.stencil(p)[n].index).*momentum)[c] +=
-            body.higher_basis(p).given(k, static_cast<Eigen::Index>(n)) * body.higher(k * D + c, p);
-}
-
 /// The coefficients of the polynomials beyond affine in the given velocity.
-void ReferenceBackend::gather_higher(Particles& body, Vector Node::*velocity_of) {
+void ReferenceBackend::gather_higher(Particles& body, const VectorField& velocities) {
   const int D = experiment_.dimension;
   if (plan_.basis_functions > 0) body.gathered_higher.setZero();
   for (std::size_t p = 0; p < body.count(); ++p)
@@ -87,7 +90,7 @@ void ReferenceBackend::gather_higher(Particles& body, Vector Node::*velocity_of)
       for (std::size_t n = 0; n < body.stencil(p).size(); ++n)
         for (int c = 0; c < D; ++c)
           body.gathered_higher(k * D + c, p) += body.higher_basis(p).taken(k, static_cast<Eigen::Index>(n)) *
-                                                (grid_.node(body.field(), body.stencil(p)[n].index).*velocity_of)[c];
+                                                velocities[grid_.at(body.field(), body.stencil(p)[n].index)][c];
 }
 
 /// f = -V0 tau grad w, or -V0 tau (w D^-1 d) when the transfer takes stress by the affine term, and around an axis
@@ -100,13 +103,13 @@ void ReferenceBackend::scatter_force(Particles& body, double time) {
     Vector force = Vector::Zero();
     if (experiment_.body_force) {
       const Vector x = body.column(body.position, p);
-      const Vector X = plan_.initial_position ? body.column(body.initial_position, p) : x;
+      const Vector X = plan_.initial_position ? body.column(body.values("initial_position"), p) : x;
       force = body.mass(p) * to_eigen((*experiment_.body_force)({x[0], x[1], x[2]}, {X[0], X[1], X[2]}, time));
     }
     for (const StencilNode& s : body.stencil(p)) {
-      Node& node = grid_.node(body.field(), s.index);
-      node.internal_force += s.weight * hoop - body.volume(p) * (tau * (by_affine ? s.affine : s.gradient));
-      node.body_force += s.weight * force;
+      const std::size_t i = grid_.at(body.field(), s.index);
+      internal_force_[i] += s.weight * hoop - body.volume(p) * (tau * (by_affine ? s.affine : s.gradient));
+      if (experiment_.body_force) body_force_[i] += s.weight * force;
     }
   }
 }
@@ -116,17 +119,17 @@ void ReferenceBackend::scatter_contact_fields(Particles& body) {
     const double volume = body.volume(p) * body.volume_ratio(0, p);
     const double section = body.axisymmetric() ? volume / (2 * std::numbers::pi * body.position(0, p)) : volume;
     for (const StencilNode& s : body.stencil(p)) {
-      Node& node = grid_.node(body.field(), s.index);
-      node.volume += s.weight * volume;
-      node.volume_gradient += section * s.gradient;  // of the section: a ring's volume grows away from the axis
-      node.mass_position -= s.weight * body.mass(p) * s.distance;
+      const std::size_t i = grid_.at(body.field(), s.index);
+      volume_[i] += s.weight * volume;
+      volume_gradient_[i] += section * s.gradient;  // of the section: a ring's volume grows away from the axis
+      mass_position_[i] -= s.weight * body.mass(p) * s.distance;
     }
   }
 }
 
 void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
   for (Particles& body : bodies_) {
-    gather_moments(body, &Node::velocity);
+    gather_moments(body, velocity_);
     body.gather(step.dt);
     if (step.filtered) body.take_gathered_velocity();
     if (plan_.sample_points > 0) gather_corners(body, step);
@@ -137,16 +140,16 @@ void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
 }
 
 /// sum w v, sum w (v - v-), C = sum v (x) w D^-1 d and L = sum v (x) grad w of the given velocity, v+ as a rule.
-void ReferenceBackend::gather_moments(Particles& body, Vector Node::*velocity_of) {
+void ReferenceBackend::gather_moments(Particles& body, const VectorField& velocities) {
   const bool strain_by_affine = experiment_.transfer.plugin->transfer().traits & MPM_STRAIN_BY_AFFINE;
   for (std::size_t p = 0; p < body.count(); ++p) {
     Vector velocity = Vector::Zero(), increment = Vector::Zero();
     Matrix affine = Matrix::Zero(), gradient = Matrix::Zero();
     for (const StencilNode& s : body.stencil(p)) {
-      const Node& node = grid_.node(body.field(), s.index);
-      const Vector& v = node.*velocity_of;
+      const std::size_t i = grid_.at(body.field(), s.index);
+      const Vector& v = velocities[i];
       velocity += s.weight * v;
-      increment += s.weight * (v - node.velocity_before);
+      increment += s.weight * (v - velocity_before_[i]);
       affine += v * s.affine.transpose();
       gradient += v * s.gradient.transpose();
     }
@@ -156,12 +159,12 @@ void ReferenceBackend::gather_moments(Particles& body, Vector Node::*velocity_of
     body.set(body.gathered_gradient, p, gradient);
     body.set(body.velocity_gradient, p, strain_by_affine ? affine : gradient);
   }
-  gather_higher(body, velocity_of);
+  gather_higher(body, velocities);
 }
 
 void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {
   for (Particles& body : bodies_) {
-    gather_moments(body, &Node::velocity);
+    gather_moments(body, velocity_);
     strain(body, pass.share * step.dt);
   }
 }
