@@ -114,7 +114,7 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
           .writes({"nodes/velocity", "nodes/trial_velocity", "nodes/increment", "nodes/velocity_of_constraints"});
       break;
     case Act::end_filter:
-      uses.reads({"nodes/velocity", "nodes/velocity_of_constraints", MPM_PAIRS})
+      uses.reads({"nodes/velocity", "nodes/increment", "nodes/velocity_of_constraints", MPM_PAIRS})
           .writes({"nodes/velocity", "nodes/velocity_of_constraints"});
       break;
     case Act::restore_velocity:

@@ -318,8 +318,9 @@ class Planner {
     }
     if (plan_.filter) {
       node_field("increment", "m/s", D, named(*experiment_.filter));
-      node_field("projection", "kg m/s", D, named(*experiment_.filter));
-      if (experiment_.filter_schedule.constrain_always) {
+      const bool loops = experiment_.filter->plugin->filter().iterations(experiment_.filter->parameters.data()) > 0;
+      if (loops) node_field("projection", "kg m/s", D, named(*experiment_.filter));
+      if (loops && experiment_.filter_schedule.constrain_always) {
         Field& trial =
             node_field("trial_velocity", "m/s", D, named(*experiment_.filter) + ": before conditions and contact");
         trial.lifetime = Lifetime::pass;

@@ -96,8 +96,8 @@ class Picture {
     ++rows_;
     for (const Step& child : step.children) add(child, depth + 1);
     const double x = margin + indent * depth - 6, y = y_of(first) - row_height / 2 + 2;
-    body_ << "<rect x=\"" << x << "\" y=\"" << y << "\" width=\"" << left_width - indent * depth << "\" height=\""
-          << row_height * (rows_ - first) - 4 << "\" rx=\"6\" fill=\"none\" stroke=\"#777\"/>\n";
+    body_ << "<rect x=\"" << x << "\" y=\"" << y << "\" width=\"" << left_width - 6 - 2 * indent * depth
+          << "\" height=\"" << row_height * (rows_ - first) - 4 << "\" rx=\"6\" fill=\"none\" stroke=\"#777\"/>\n";
   }
 
   void add(const Pass& pass, int depth) {

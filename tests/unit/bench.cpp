@@ -7,7 +7,6 @@
 #include "bench/table.hpp"
 #include "kernel/counted.hpp"
 #include "kernel/tensor.hpp"
-#include "solvers/solver.hpp"
 #include "support/catch.hpp"
 #include "support/differences.hpp"
 #include "support/scene.hpp"

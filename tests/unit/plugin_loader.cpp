@@ -207,10 +207,8 @@ TEST_CASE("a descriptor that makes no sense is refused") {
   CHECK(message_for(id) ==
         start(id) + "has a descriptor without id, version, summary, citation, manual or functor source" + wrong_tables);
   fixture::build_plugin(material, "-DFIXTURE_KIND=MPM_MATERIAL");
-  CHECK(message_for(material) ==
-        start(material) + "has descriptor `fixture` with a material table of " + table + " bytes, this program has " +
-            std::to_string(sizeof(mpm_material)) +
-            "; rebuild the plugin against this version's headers, or use the newer program it was made for");
+  CHECK(message_for(material) == start(material) + "has descriptor `fixture` with a material table of " + table +
+                                     " bytes, this program has " + std::to_string(sizeof(mpm_material)) + wrong_tables);
 }
 
 TEST_CASE("two files with one kind and id: the first folder wins, the second is named") {

@@ -19,7 +19,9 @@ struct Fmpm {
 
   /// Stable to 1 / sqrt(k) of the unfiltered step (Nairn 2026, arXiv 2604.07307): what the grid hardly sees is
   /// multiplied by up to k, and its stiffness with it.
-  static double step_limit(const Parameters& p, double unfiltered) { return unfiltered / sqrt(1.0 + iterations(p)); }
+  MPM_HD static double step_limit(const Parameters& p, double unfiltered) {
+    return unfiltered / sqrt(1.0 + iterations(p));
+  }
 
   /// v* <- v* - S+S v*; v <- v + v*.
   template <int D, class S>

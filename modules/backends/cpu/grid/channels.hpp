@@ -29,6 +29,15 @@ inline Channel channel_of(const Plan& plan, std::string_view id) {
   return static_cast<Channel>(std::find(fields.begin(), fields.end(), field) - fields.begin());
 }
 
+/// Of what an operator uses, as "nodes/momentum".
+inline std::vector<Channel> channels_of(const Plan& plan, const FieldNames& names) {
+  constexpr std::string_view nodes = "nodes/";
+  std::vector<Channel> channels;
+  for (const std::string_view name : names)
+    if (name.starts_with(nodes)) channels.push_back(channel_of(plan, name.substr(nodes.size())));
+  return channels;
+}
+
 /// The channels that passes work on by name, resolved once a scene.
 struct NamedChannels {
   const Plan& plan_;

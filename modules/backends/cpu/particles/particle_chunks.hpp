@@ -23,6 +23,10 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
       kernels_(scene.list ? tile_kernels_of_lists<D, T>() : tile_kernels<D, T>(scene.width)),
       list_kernels_(list_kernels<D, T>()),
       higher_kernels_(higher_kernels<D, T>(scene.width, scene.plan.basis_order)) {
+  for_each_pass(scene.plan.step, [&](const Pass& pass) {
+    for (const Operator& operation : pass.operators)
+      adds_[pass.fused()][static_cast<int>(operation.act)] = channels_of(scene.plan, operation.adds);
+  });
   int transfer_components = 0;
   for (const Particles<D, T>& body : particles)
     transfer_components = std::max(transfer_components, body.motion_components - D);
@@ -30,6 +34,9 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
     work_.push_back(std::make_unique<Work>());
     Work& work = *work_.back();
     work.tile.resize(grid.channels());
+    for (const auto& acts : adds_)
+      for (const auto& channels : acts)
+        for (const Channel c : channels) work.tile[c].require(kernels_.scalars);
     work.velocity_tile.require(kernels_.scalars);
     if (scene.has(MPM_GATHERS_INCREMENT)) work.increment_tile.require(kernels_.scalars);
     if (scene.list) {

@@ -76,7 +76,7 @@ template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::gather_scatter(const Pass& pass,
                                                                                               const StepInfo& step,
                                                                                               const StepInfo& next) {
-  const std::vector<Channel> channels = scattered_channels(pass, next_motion);
+  const std::vector<Channel> channels = scattered_channels(pass);
   for (const Channel c : channels) grid_.clear(c);
   for (auto& work : work_) work->moved = {};
   abandoned_ = false;
@@ -309,7 +309,6 @@ const T* ParticleStep<D, T, Components>::moments_for_transfer(const Chunk& chunk
 /// One pass of the filter's loop on the particles: v* is gathered and scattered again by the transfer itself.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::project(const StepInfo& step) {
-  open_tiles({filter_projection});
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     const int field = bodies_[body].field;
     for_each_block(body, true, [&](Block<D>& block, Work& work) {

@@ -9,23 +9,13 @@
 
 namespace mpm::cpu {
 
-/// Every thread gets a tile of what a pass is about to scatter.
+/// Channels that the operators of a pass add to.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::open_tiles(const std::vector<Channel>& channels) {
-  for (auto& work : work_)
-    for (const Channel c : channels) work->tile[c].require(kernels_.scalars);
-}
-
-/// Channels that a scatter pass adds to, its momenta to `momentum`.
-template <int D, class T, class Components>
-std::vector<Channel> ParticleStep<D, T, Components>::scattered_channels(const Pass& pass, Channel momentum) {
+std::vector<Channel> ParticleStep<D, T, Components>::scattered_channels(const Pass& pass) const {
   std::vector<Channel> channels;
-  if (pass.has(Act::scatter_momentum) || (pass.has(Act::scatter_force) && !grid_.has(force)))
-    channels.push_back(momentum);
-  for (const Channel c : {force, body_force})
-    if (pass.has(Act::scatter_force) && grid_.has(c)) channels.push_back(c);
-  if (pass.has(Act::scatter_contact)) channels.insert(channels.end(), {volume_gradient, mass_position});
-  open_tiles(channels);
+  for (const Operator& operation : pass.operators)
+    for (const Channel c : adds_[pass.fused()][static_cast<int>(operation.act)])
+      if (grid_.has(c) && std::find(channels.begin(), channels.end(), c) == channels.end()) channels.push_back(c);
   return channels;
 }
 
@@ -44,7 +34,7 @@ void ParticleStep<D, T, Components>::scatter_far(int body, Visit&& visit) {
 
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
-  const std::vector<Channel> channels = scattered_channels(pass, motion);
+  const std::vector<Channel> channels = scattered_channels(pass);
   const bool energies = scene_.plan.accounts_at(step.step) && pass.has(Act::scatter_momentum) && !pass.remap();
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     for_each_block(body, true, [&](Block<D>& block, Work& work) {

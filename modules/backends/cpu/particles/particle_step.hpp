@@ -104,7 +104,7 @@ struct alignas(page) Workspace {
   BoxWork<D, T> boxes;
   alignas(64) T quads[(1 + 2 * D) * 4 * chunk_size<T>];
   /// Zero between uses, so that the scatter may add.
-  std::vector<AlignedArray<T>> tile;  ///< [channel], of those that a pass scatters
+  std::vector<AlignedArray<T>> tile;  ///< [channel], of those that particles add to
   /// Tiles to gather from; only what the block reaches is valid.
   AlignedArray<T> velocity_tile, increment_tile;
   AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
@@ -279,8 +279,7 @@ class ParticleStep : NamedChannels {
   void note_inverted(const Chunk& chunk);
   double kinetic_energy(const Chunk& chunk, const Work& work) const;
 
-  std::vector<Channel> scattered_channels(const Pass& pass, Channel momentum);
-  void open_tiles(const std::vector<Channel>& channels);
+  std::vector<Channel> scattered_channels(const Pass& pass) const;
   bool scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work, Channel momentum,
                      bool evaluated);
   /// A fused pass asks its material for the strained state and for the stress that it scatters at once.
@@ -350,6 +349,7 @@ class ParticleStep : NamedChannels {
   TileKernels<D, T> kernels_;
   ListKernels<D, T> list_kernels_;
   HigherKernels<D, T> higher_kernels_;
+  std::array<std::array<std::vector<Channel>, act_count>, 2> adds_;  ///< [in a fused pass][act], what each adds to
   std::vector<std::unique_ptr<Work>> work_;
   std::vector<std::atomic<int>> units_;  ///< of a pass: UnitPass::State
   bool measures_drift_ = false;
