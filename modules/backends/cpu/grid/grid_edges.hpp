@@ -61,6 +61,7 @@ void GridStep<D, T>::fold_momentum(Channel channel, int field, const MirrorPair&
   ghost = Q{};
 }
 
+/// Folded ghosts are cleared here too.
 template <int D, class T>
 void GridStep<D, T>::fold_as_is(Channel channel, int field, const MirrorPair& pair, Q signs) {
   Q& ghost = grid_.quad(channel, field, pair.ghost);
@@ -84,8 +85,8 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
     const AtWall rule = grid_.field(c).at_wall;
     if (rule == AtWall::momentum)
       fold_momentum(c, field, pair, mirror_signs(face, rule), wall_velocity(face.condition->velocity, pair.foot, time));
-    else
-      fold_as_is(c, field, pair, mirror_signs(face, rule));
+    else  // the ghost keeps its own: where MUSL's remap does not fold it again, contact looks at it
+      grid_.quad(c, field, pair.mirror) += mirror_signs(face, rule) * grid_.quad(c, field, pair.ghost);
   }
 }
 
