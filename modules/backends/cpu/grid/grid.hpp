@@ -50,8 +50,11 @@ class Grid {
   bool has(Channel channel) const { return channel >= 0 && !channels_[channel].rests; }
   /// Whether what only the ledger reads rests: it keeps its memory, but nothing scatters, keeps or reads it.
   void let_ledger_rest(bool rests) {
+    if (rests == ledger_rests_) return;
+    ledger_rests_ = rests;
     for (Stored& channel : channels_) channel.rests = rests && channel.field->for_ledger;
   }
+  bool ledger_rests() const { return ledger_rests_; }
   int fields() const { return fields_; }
   std::uint32_t slots() const { return static_cast<std::uint32_t>(found_.size()); }
   std::uint32_t nodes() const { return slots() * block_nodes; }
@@ -121,6 +124,7 @@ class Grid {
   const Scene<D, T>& scene_;
   int fields_;
   Channel next_motion_;
+  bool ledger_rests_ = false;
   std::vector<Stored> channels_;
   AlignedArray<T> renumbered_;  ///< see renumber
   BlockTable table_;

@@ -80,13 +80,15 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
       correction[pair.mirror_edge * 4 + c] -= weight;
     }
   }
+  const Q slip_signs = remap || slipping_.empty() ? Q{} : mirror_signs(face, AtWall::slip);
   for (const Channel c : folded_[static_cast<int>(Folded::with_mass)]) {
     if (!grid_.has(c) || (remap && c != motion)) continue;
     const AtWall rule = grid_.field(c).at_wall;
     if (rule == AtWall::momentum)
       fold_momentum(c, field, pair, mirror_signs(face, rule), wall_velocity(face.condition->velocity, pair.foot, time));
     else  // the ghost keeps its own: where MUSL's remap does not fold it again, contact looks at it
-      grid_.quad(c, field, pair.mirror) += mirror_signs(face, rule) * grid_.quad(c, field, pair.ghost);
+      grid_.quad(c, field, pair.mirror) +=
+          (rule == AtWall::slip ? slip_signs : mirror_signs(face, rule)) * grid_.quad(c, field, pair.ghost);
   }
 }
 

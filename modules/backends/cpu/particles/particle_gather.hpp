@@ -76,7 +76,7 @@ template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::gather_scatter(const Pass& pass,
                                                                                               const StepInfo& step,
                                                                                               const StepInfo& next) {
-  const std::vector<Channel> channels = scattered_channels(pass);
+  const std::vector<Channel>& channels = scattered_channels(pass);
   for (const Channel c : channels) grid_.clear(c);
   for (auto& work : work_) work->moved = {};
   abandoned_ = false;

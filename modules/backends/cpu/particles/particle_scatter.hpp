@@ -11,8 +11,11 @@ namespace mpm::cpu {
 
 /// Channels that the operators of a pass add to.
 template <int D, class T, class Components>
-std::vector<Channel> ParticleStep<D, T, Components>::scattered_channels(const Pass& pass) const {
-  std::vector<Channel> channels;
+const std::vector<Channel>& ParticleStep<D, T, Components>::scattered_channels(const Pass& pass) {
+  const std::uint64_t key = std::uint64_t(pass.acts) << 1 | (grid_.ledger_rests() ? 1 : 0);
+  for (const auto& [known, channels] : scattered_channels_)
+    if (known == key) return channels;
+  std::vector<Channel>& channels = scattered_channels_.emplace_back(key, std::vector<Channel>{}).second;
   for (const Operator& operation : pass.operators)
     for (const Channel c : adds_[pass.fused()][static_cast<int>(operation.act)])
       if (grid_.has(c) && std::find(channels.begin(), channels.end(), c) == channels.end()) channels.push_back(c);
@@ -34,7 +37,7 @@ void ParticleStep<D, T, Components>::scatter_far(int body, Visit&& visit) {
 
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
-  const std::vector<Channel> channels = scattered_channels(pass);
+  const std::vector<Channel>& channels = scattered_channels(pass);
   const bool energies = scene_.plan.accounts_at(step.step) && pass.has(Act::scatter_momentum) && !pass.remap();
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     for_each_block(body, true, [&](Block<D>& block, Work& work) {

@@ -3,6 +3,7 @@
 // and goes through shape, material and transfer plugins in batches; tiles of nodes are private to a thread.
 
 #include <atomic>
+#include <deque>
 #include <exception>
 #include <limits>
 #include <map>
@@ -279,7 +280,7 @@ class ParticleStep : NamedChannels {
   void note_inverted(const Chunk& chunk);
   double kinetic_energy(const Chunk& chunk, const Work& work) const;
 
-  std::vector<Channel> scattered_channels(const Pass& pass) const;
+  const std::vector<Channel>& scattered_channels(const Pass& pass);
   bool scatter_chunk(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work, Channel momentum,
                      bool evaluated);
   /// A fused pass asks its material for the strained state and for the stress that it scatters at once.
@@ -349,6 +350,8 @@ class ParticleStep : NamedChannels {
   TileKernels<D, T> kernels_;
   ListKernels<D, T> list_kernels_;
   HigherKernels<D, T> higher_kernels_;
+  /// Of each pass so far, by its acts and whether the ledger rests.
+  std::deque<std::pair<std::uint64_t, std::vector<Channel>>> scattered_channels_;
   std::array<std::array<std::vector<Channel>, act_count>, 2> adds_;  ///< [in a fused pass][act], what each adds to
   std::vector<std::unique_ptr<Work>> work_;
   std::vector<std::atomic<int>> units_;  ///< of a pass: UnitPass::State
