@@ -142,9 +142,9 @@ void GridStep<D, T>::fold_forces(bool periodic) {
   for (const FaceNodes& face : grid_.faces()) {
     if (face.periodic() != periodic) continue;
     for (const Channel c : folded_[static_cast<int>(Folded::with_force)]) {
+      if (!grid_.has(c) || face.pairs.empty()) continue;
       const Q signs = mirror_signs(face, grid_.field(c).at_wall);
-      if (grid_.has(c))
-        for_each_folded(face, [&](int field, const MirrorPair& pair) { fold_as_is(c, field, pair, signs); });
+      for_each_folded(face, [&](int field, const MirrorPair& pair) { fold_as_is(c, field, pair, signs); });
     }
     if (!has_gravity_ || periodic) continue;
     const Q signs = mirror_signs(face, AtWall::vector);
