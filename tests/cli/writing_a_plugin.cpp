@@ -104,22 +104,27 @@ TEST_CASE("the page on writing a plugin, followed word for word in a folder with
 
 TEST_CASE("an installed sandbox writes, builds and tests plugins without its sources") {
   const Folder folder;
-  const std::string commands = preamble + std::string("cmake --install '" MPM_BUILD_DIR
-                                                      "' --prefix \"$PWD/an installed one\" >/dev/null\n"
-                                                      "PATH=\"$PWD/an installed one/bin:$PATH\"\n"
-                                                      "mpm list | grep neo_hookean\n"
-                                                      "mpm new material soft soft\n"
-                                                      "cmake -G Ninja -S soft -B soft/build\n"
-                                                      "cmake --build soft/build\n"
-                                                      "ctest --test-dir soft/build --output-on-failure\n"
-                                                      "MPM_PLUGIN_PATH=soft/build/plugins mpm check soft/soft.json\n"
-                                                      "! grep -rF '" MPM_SOURCE_DIR
-                                                      "' soft 'an installed one/lib/cmake' 'an installed one/include'\n"
-                                                      "ls 'an installed one/include/mpm/plugin'\n");
+  const std::string commands =
+      preamble + std::string("cmake --install '" MPM_BUILD_DIR
+                             "' --prefix \"$PWD/an installed one\" >/dev/null\n"
+                             "PATH=\"$PWD/an installed one/bin:$PATH\"\n"
+                             "mpm list | grep neo_hookean\n"
+                             "mpm new material soft soft\n"
+                             "cmake -G Ninja -S soft -B soft/build\n"
+                             "cmake --build soft/build\n"
+                             "ctest --test-dir soft/build --output-on-failure\n"
+                             "MPM_PLUGIN_PATH=soft/build/plugins mpm check soft/soft.json\n"
+                             "MPM_PLUGIN_PATH=soft/build/plugins mpm run soft/soft.json --out run "
+                             "--set /output/ledger=false --set /solver/end_time=0.01\n"
+                             "! grep -rF '" MPM_SOURCE_DIR
+                             "' soft 'an installed one/lib/cmake' 'an installed one/include'\n"
+                             "ls 'an installed one/include/mpm/plugin'\n");
   const Result result = Process(folder, {"/bin/sh", "-c", commands}).finish();
   INFO(result.out << result.err);
   CHECK(result.code == 0);
   CHECK(has(result.out, "100% tests passed"));
   CHECK(has(result.out, "soft/soft.json: ok"));
+  // The plugin's operations are counted without a word of it in the sandbox.
+  CHECK(json_in(folder / "run/summary.json")["performance"]["flops"].is_number());
   CHECK(has(result.out, "abi.h\nextensions.h\nsdk\nsdk.hpp\ntables.hpp\n"));
 }

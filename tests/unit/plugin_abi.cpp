@@ -23,6 +23,16 @@ TEST_CASE("abi.h compiles alone as C99, C11 and C++17") {
   }
 }
 
+TEST_CASE("kernel headers include kernel headers alone, and those of a compiler") {
+  for (const auto& entry : fixture::fs::directory_iterator(fixture::fs::path(MPM_SOURCE_DIR) / "modules" / "kernel")) {
+    std::ifstream lines(entry.path());
+    for (std::string line; std::getline(lines, line);) {
+      INFO(entry.path().filename() << ": " << line);
+      CHECK((line.rfind("#include \"", 0) != 0 || line.rfind("#include \"kernel/", 0) == 0));
+    }
+  }
+}
+
 TEST_CASE("the version is the first word of the library table, and tables are plain data") {
   CHECK(offsetof(mpm_plugin_library, abi_version) == 0);
   CHECK(offsetof(mpm_plugin_library, struct_size) == 4);
