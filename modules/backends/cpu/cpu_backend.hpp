@@ -50,6 +50,7 @@ class CpuBackend final : public Backend, NamedChannels {
   std::vector<Particles<D, T>> particles_;
   SortSpace sort_space_;
   bool grid_built_ = false;
+  long looked_at_step_ = -1;  ///< whether the ledger takes entries from it is known
   std::vector<int> field_of_body_;
   Ledger ledger_;
   ContactRecord contact_;
@@ -225,7 +226,10 @@ void CpuBackend<D, T, Components>::wake_for_ledger(long step) {
 
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::execute(const Pass& pass, const StepInfo& step) {
-  grid_step_->set_accounted(scene_.plan.accounts_at(step.step));
+  if (step.step != looked_at_step_) {
+    looked_at_step_ = step.step;
+    grid_step_->set_accounted(scene_.plan.accounts_at(step.step));
+  }
   switch (pass.operators.front().act) {
     case Act::estimate_time_step:
       limit_ = particle_step_->time_step_limit();
