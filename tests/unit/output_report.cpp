@@ -157,8 +157,8 @@ void draw_curves(const RunFolder& run, const std::string& stem, const std::vecto
 /// sum m |v| = 10 kg m/s, sum m |x| |v| = 40 kg m^2/s, 5 s, at most 8 J: energies are rounding to 8e-12 J.
 RunFolder run_with_sizes(const fs::path& path) {
   RunFolder run = RunFolder::create(path);
-  run.write_json("summary.json", {{"simulated_time", 5.0},
-                                  {"scales", {{"momentum", 10.0}, {"angular_momentum", 40.0}}}});
+  run.write_json("summary.json",
+                 {{"simulated_time", 5.0}, {"scales", {{"momentum", 10.0}, {"angular_momentum", 40.0}}}});
   write_atomically(run.root() / "metrics.csv",
                    "time (s),kinetic energy (J),strain energy (J),gravitational energy (J)\n0,8,0,0\n5,1,2,-3\n");
   return run;
