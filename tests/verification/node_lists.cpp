@@ -154,7 +154,7 @@ TEST_CASE("an affine field comes back exactly", "[round_trip]") {
       }
 }
 
-TEST_CASE("the domain of a CPDI particle follows the velocity gradient", "[B][cpdi]") {
+TEST_CASE("the domain of a CPDI particle follows the velocity gradient", "[cpdi]") {
   for (const std::string& backend : backends)
     for (const std::string order : {"last", "first", "modified_last"}) {
       INFO(backend << " " << order);
@@ -173,7 +173,7 @@ TEST_CASE("the domain of a CPDI particle follows the velocity gradient", "[B][cp
     }
 }
 
-TEST_CASE("a domain that reaches far beyond the edge stops the run by name", "[B][cpdi]") {
+TEST_CASE("a domain that reaches far beyond the edge stops the run by name", "[cpdi]") {
   // A shear of 80 in one step: the lower row stays, its domains reach 20 cells to either side.
   const char* sheared = R"J({
     "title": "sheared", "dimension": 2, "precision": "double", "backend": "reference",
@@ -197,7 +197,7 @@ TEST_CASE("a domain that reaches far beyond the edge stops the run by name", "[B
   }
 }
 
-TEST_CASE("GIMP with a box of one cell is the quadratic B-spline", "[B][gimp]") {
+TEST_CASE("GIMP with a box of one cell is the quadratic B-spline", "[gimp]") {
   for (const std::string& backend : backends)
     for (const std::string& transfer : transfers) {
       const std::vector<std::string> common{set("/backend", backend), set("/transfer/type", transfer),
@@ -212,7 +212,7 @@ TEST_CASE("GIMP with a box of one cell is the quadratic B-spline", "[B][gimp]") 
     }
 }
 
-TEST_CASE("B2GIMP with a box of one cell is the cubic B-spline, cpGIMP of a body at rest is GIMP", "[B][gimp]") {
+TEST_CASE("B2GIMP with a box of one cell is the cubic B-spline, cpGIMP of a body at rest is GIMP", "[gimp]") {
   for (const std::string& backend : backends)
     for (const std::string& transfer : transfers) {
       const auto end = [&](const std::string& shape, const std::string& velocity, const std::string& particles) {
@@ -234,7 +234,7 @@ TEST_CASE("B2GIMP with a box of one cell is the cubic B-spline, cpGIMP of a body
 }
 
 TEST_CASE("a slip wall is the plane of symmetry of a whole body, also where it is one cell from the other wall",
-          "[E][walls]") {
+          "[walls]") {
   const char* whole = R"J({
     "title": "whole", "dimension": 2, "precision": "double", "backend": "reference",
     "grid": {"cell_size": 0.1, "domain": [[-1, 0], [1, 1]], "boundaries": {"all": "free"}},
@@ -272,7 +272,7 @@ TEST_CASE("a slip wall is the plane of symmetry of a whole body, also where it i
       }
 }
 
-TEST_CASE("a layer one cell thick slides between slip walls unchanged", "[E][walls]") {
+TEST_CASE("a layer one cell thick slides between slip walls unchanged", "[walls]") {
   const char* layer = R"J({
     "title": "layer", "dimension": 2, "precision": "double", "backend": "reference",
     "grid": {"cell_size": 0.1, "domain": [[0, 0], [2, 0.1]], "boundaries": {"x_min": "periodic", "x_max": "periodic", "y_min": "slip", "y_max": "slip"}},

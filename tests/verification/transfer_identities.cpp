@@ -219,7 +219,7 @@ TEST_CASE("ASFLIP that never separates is AFLIP", "[asflip]") {
     }
 }
 
-TEST_CASE("with USAVG a CPDI domain takes both halves of the strain, by the weights of the step", "[B][cpdi]") {
+TEST_CASE("with USAVG a CPDI domain takes both halves of the strain, by the weights of the step", "[cpdi]") {
   const double gradient[4] = {0.7, -3, 5, -0.4}, dt = 1e-3, side = 0.1 / 6;
   double once[4], twice[4];  // (I + dt/2 L)^2
   for (int k = 0; k < 4; ++k) once[k] = (k % 3 == 0) + dt / 2 * gradient[k];
