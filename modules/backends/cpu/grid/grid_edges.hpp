@@ -86,9 +86,10 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
     const AtWall rule = grid_.field(c).at_wall;
     if (rule == AtWall::momentum)
       fold_momentum(c, field, pair, mirror_signs(face, rule), wall_velocity(face.condition->velocity, pair.foot, time));
-    else  // the ghost keeps its own: where MUSL's remap does not fold it again, contact looks at it
-      grid_.quad(c, field, pair.mirror) +=
-          (rule == AtWall::slip ? slip_signs : mirror_signs(face, rule)) * grid_.quad(c, field, pair.ghost);
+    else if (rule == AtWall::slip)  // the ghost keeps its own: where MUSL's remap does not fold it again, contact looks
+      grid_.quad(c, field, pair.mirror) += slip_signs * grid_.quad(c, field, pair.ghost);
+    else
+      fold_as_is(c, field, pair, mirror_signs(face, rule));
   }
 }
 
