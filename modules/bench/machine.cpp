@@ -1,7 +1,5 @@
 #include "bench/machine.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -10,6 +8,7 @@
 #include <thread>
 
 #include "kernel/lanes.hpp"
+#include "support/team.hpp"
 
 namespace mpm::bench {
 namespace {
@@ -46,11 +45,11 @@ double peak(int threads, int windows) {
   constexpr double flops = 2.0 * chains * Lanes<T>::width, window_seconds = 2e-3;
   volatile T one = 1;
   long repetitions = 20000;
+  support::Team team(threads);
   double best = 0;
   for (int window = 0; window < windows; ++window) {
     const auto start = Clock::now();
-#pragma omp parallel num_threads(threads)
-    multiply_add<T>(repetitions, one);
+    team.for_each(static_cast<std::size_t>(threads), [&](std::size_t) { multiply_add<T>(repetitions, one); });
     const double elapsed = seconds_since(start);
     const double rate = flops * static_cast<double>(repetitions) * threads / elapsed;
     if (rate > best) repetitions = std::max(1000L, static_cast<long>(repetitions * window_seconds / elapsed));
@@ -64,15 +63,14 @@ template <class Loop>
 double best_rate(int threads, std::size_t length, int streams, int repeats, Loop loop) {
   const std::size_t piece = std::min(length, std::size_t{4} << 20);
   double best = 0;
+  support::Team team(threads);
   for (int repeat = 0; repeat < repeats; ++repeat)
     for (std::size_t begin = 0; begin + piece <= length; begin += piece) {
       const auto start = Clock::now();
-#pragma omp parallel num_threads(threads)
-      {
-        const std::size_t lines = piece / 64, thread = static_cast<std::size_t>(omp_get_thread_num());
-        const std::size_t workers = static_cast<std::size_t>(omp_get_num_threads());
-        loop(begin + 64 * (lines * thread / workers), begin + 64 * (lines * (thread + 1) / workers));
-      }
+      const std::size_t lines = piece / 64, parts = static_cast<std::size_t>(threads);
+      team.for_each(parts, [&](std::size_t part) {
+        loop(begin + 64 * (lines * part / parts), begin + 64 * (lines * (part + 1) / parts));
+      });
       best = std::max(best, 4.0 * streams * static_cast<double>(piece) / seconds_since(start));
     }
   return best / 1e9;

@@ -2,6 +2,7 @@
 // What stays the same over a run: entry points, units, and which moments the chosen plugins need.
 
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include "backends/cpu/grid/blocks.hpp"
@@ -9,6 +10,7 @@
 #include "plugin/extension_of.hpp"
 #include "simulation/backend.hpp"
 #include "simulation/boundary.hpp"
+#include "support/team.hpp"
 
 namespace mpm::cpu {
 
@@ -36,7 +38,7 @@ struct Domain {
 template <int D, class T>
 struct Scene {
   Scene(const Experiment& e, const Plan& p, int thread_count)
-      : experiment(e), plan(p), threads(std::max(1, thread_count)) {
+      : experiment(e), plan(p), team(std::make_unique<support::Team>(thread_count)), threads(team->size()) {
     domain.lower = e.grid.lower;
     domain.cell_size = e.grid.cell_size;
     domain.cells = e.grid.cells;
@@ -78,7 +80,8 @@ struct Scene {
 
   const Experiment& experiment;
   const Plan& plan;
-  int threads = 1;
+  std::unique_ptr<support::Team> team;  ///< that shares the loops
+  int threads = 1;                      ///< of the team
   Domain domain;
   bool axisymmetric = false;  ///< x is the radius
 

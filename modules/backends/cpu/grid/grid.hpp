@@ -339,14 +339,13 @@ void Grid<D, T>::renumber(Channel channel, const std::vector<BlockCoordinates>& 
   now.require(std::size_t(fields_) * nodes() * 4);
   clear(channel);
   constexpr std::size_t scalars = block_nodes * 4;
-  const std::int64_t count = static_cast<std::int64_t>(blocks_before.size());
-#pragma omp parallel for num_threads(scene_.threads) schedule(static)
-  for (std::int64_t block = 0; block < count; ++block) {
+  const std::size_t count = blocks_before.size();
+  scene_.team->for_each(count, [&](std::size_t block) {
     const int slot = slot_now[block] >= 0 ? slot_now[block] : table_.find(blocks_before[block]);
     for (int field = 0; slot >= 0 && field < fields_; ++field)
       std::copy_n(before.data() + (std::size_t(field) * count + block) * scalars, scalars,
                   now.data() + (std::size_t(field) * slots() + slot) * scalars);
-  }
+  });
 }
 
 template <int D, class T>
@@ -358,28 +357,26 @@ void Grid<D, T>::clear() {
 template <int D, class T>
 T Grid<D, T>::largest_component(Channel c) const {
   using L = Lanes<T>;
-  const std::int64_t scalars = std::int64_t(fields_) * nodes() * 4;
   const T* const nodes_of_all = channels_[c].data.data();
-  T largest = 0;
-#pragma omp parallel for num_threads(scene_.threads) schedule(static) reduction(max : largest)
-  for (std::int64_t block = 0; block < scalars; block += block_nodes * 4) {
+  return scene_.team->template largest<T>(std::size_t(fields_) * slots(), [&](std::size_t block) {
     L of_block(T(0));
     for (int s = 0; s < block_nodes * 4; s += L::width) {
-      const L values = L::load(nodes_of_all + block + s);
+      const L values = L::load(nodes_of_all + block * block_nodes * 4 + s);
       of_block = max(of_block, max(values, -values));
     }
+    T largest = 0;
     for (int i = 0; i < L::width; ++i)
       if (i % 4 < D) largest = std::max(largest, of_block.v[i]);
-  }
-  return largest;
+    return largest;
+  });
 }
 
 template <int D, class T>
 void Grid<D, T>::clear(Channel c) {
   T* const values = channels_[c].data.data();
-  const std::int64_t blocks = std::int64_t(fields_) * slots();
-#pragma omp parallel for num_threads(scene_.threads) schedule(static)
-  for (std::int64_t i = 0; i < blocks; ++i) std::memset(values + i * block_nodes * 4, 0, block_nodes * 4 * sizeof(T));
+  scene_.team->for_each(std::size_t(fields_) * slots(), [&](std::size_t block) {
+    std::memset(values + block * block_nodes * 4, 0, block_nodes * 4 * sizeof(T));
+  });
 }
 
 }  // namespace mpm::cpu

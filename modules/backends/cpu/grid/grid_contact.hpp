@@ -123,8 +123,7 @@ void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
   const bool in_ledger = ledger_on() && (after_forces || recorded == Recorded::before_forces);
   const auto& slots = grid_.shared_slots();
   std::vector<ContactSums> sums(slots.size());
-#pragma omp parallel for num_threads(scene_.threads) schedule(dynamic, 4)
-  for (std::size_t i = 0; i < slots.size(); ++i) resolve_slot(slots[i], step, sums[i]);
+  scene_.team->for_each(slots.size(), 4, [&](std::size_t i, int) { resolve_slot(slots[i], step, sums[i]); });
 
   if (recorded == Recorded::filter) return;
   ContactRecord record;

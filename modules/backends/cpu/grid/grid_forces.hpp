@@ -40,11 +40,11 @@ void GridStep<D, T>::for_each_block(Visit&& visit) {
 template <int D, class T>
 template <class Visit>
 void GridStep<D, T>::visit_blocks(Visit&& visit) {
-  const std::int64_t slots = grid_.slots(), blocks = slots * grid_.fields();
-#pragma omp parallel for num_threads(scene_.threads) schedule(static)
-  for (std::int64_t i = 0; i < blocks; ++i)
+  const std::size_t slots = grid_.slots();
+  scene_.team->for_each(slots * grid_.fields(), [&](std::size_t i) {
     visit(static_cast<int>(i / slots), static_cast<std::uint32_t>(i % slots) * block_nodes,
           partials_.data() + partial_count * i);
+  });
 }
 
 template <int D, class T>
@@ -286,20 +286,18 @@ template <int D, class T>
 void GridStep<D, T>::divide_and_accelerate(double dt) {
   L change;
   for (int lane = 0; lane < L::width; ++lane) change.v[lane] = static_cast<T>(dt) * gravity_[lane % 4];
-  const std::int64_t blocks = std::int64_t(grid_.slots()) * grid_.fields();
-  T fastest = 0;
-#pragma omp parallel for num_threads(scene_.threads) schedule(static) reduction(max : fastest)
-  for (std::int64_t i = 0; i < blocks; ++i) {
+  largest_ = scene_.team->template largest<T>(std::size_t(grid_.slots()) * grid_.fields(), [&](std::size_t i) {
     L largest(T(0));
     for_each_pack(&motion_at(0, 0) + i * block_nodes, [&](int, L momentum, L mass) {
       const L velocity = momentum / mass + change;
       largest = max(largest, select(mass > T(0), abs(velocity), L(T(0))));
       return velocity;
     });
+    T fastest = 0;
     for (int lane = 0; lane < L::width; ++lane)
       if (lane % 4 < D) fastest = std::max(fastest, largest.v[lane]);
-  }
-  largest_ = fastest;
+    return fastest;
+  });
 }
 
 /// What walls, boxes and ghosts have given since; those that stand still give nothing larger than there was.

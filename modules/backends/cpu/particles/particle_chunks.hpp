@@ -1,8 +1,6 @@
 #pragma once
 // ParticleStep: loops over blocks and chunks, and what scatter and gather share.
 
-#include <omp.h>
-
 #include <cmath>
 #include <tuple>
 
@@ -104,18 +102,21 @@ void ParticleStep<D, T, Components>::for_each_block(int body, bool coloured, Vis
       if (!exception_) exception_ = std::current_exception();
     }
   };
-  UnitPass pass(particles.order, units_);
-  const int threads = coloured ? static_cast<int>(particles.order.of_thread.size()) : scene_.threads;
-#pragma omp parallel num_threads(threads)
-  {
-    const FlushDenormals flush;
-    Work& work = *work_[omp_get_thread_num()];
-    if (coloured) {
-      pass.run(omp_get_thread_num(), [&](const Unit& unit) { guarded(unit.first, unit.last, work); });
-    } else {
-#pragma omp for schedule(dynamic, 8)
-      for (std::size_t b = 0; b < particles.blocks.size(); ++b) guarded(b, b + 1, work);
-    }
+  if (coloured) {
+    UnitPass pass(particles.order, units_, scene_.team->spin());
+    const auto part = [&](int thread) {
+      const FlushDenormals flush;
+      pass.run(thread, [&](const Unit& unit) { guarded(unit.first, unit.last, *work_[thread]); });
+    };
+    if (particles.order.of_thread.size() > 1)
+      scene_.team->share(part);
+    else
+      part(0);
+  } else {
+    scene_.team->for_each_piece(particles.blocks.size(), 8, [&](std::size_t first, std::size_t last, int thread) {
+      const FlushDenormals flush;
+      guarded(first, last, *work_[thread]);
+    });
   }
   if (exception_) std::rethrow_exception(std::exchange(exception_, nullptr));
 }

@@ -5,11 +5,10 @@
 // before it have left, so that a sort needs little memory beside the particles. Nothing depends on which thread does
 // what.
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <mutex>
 #include <numeric>
 #include <tuple>
 #include <vector>
@@ -120,18 +119,26 @@ class Sorter {
     for (int c = gap + row_.left_behind(); c < particles_.components; ++c) use(c);
   }
 
+  /// Calls visit(i, thread) for first <= i < last, `grain` neighbours at a time.
+  template <class Visit>
+  void for_each(std::size_t first, std::size_t last, std::size_t grain, Visit&& visit) {
+    if (threads_ > 1) {
+      scene_.team->for_each(last - first, grain, [&](std::size_t i, int thread) { visit(first + i, thread); });
+    } else {
+      for (std::size_t i = first; i < last; ++i) visit(i, 0);
+    }
+  }
+
   // ---- where to
 
   void find_keys() {
-    const int n = static_cast<int>(sources_.size());
-#pragma omp parallel for num_threads(threads_) schedule(dynamic, 8)
-    for (int b = 0; b < n; ++b) {
+    for_each(0, sources_.size(), 8, [&](std::size_t b, int) {
       Source& source = sources_[b];
       source = {};
       for_each_chunk<T>(particles_.blocks[b],
                         [&](std::uint32_t chunk, int count) { find_keys_of(b, chunk, count, source); });
       source.leaving = std::accumulate(source.leavers.begin(), source.leavers.end(), 0u);
-    }
+    });
   }
 
   void find_keys_of(int b, std::uint32_t chunk, int count, Source& source) {
@@ -287,16 +294,14 @@ class Sorter {
 
   /// Before there is a grid. Two neighbours are found at once: each entry is written by one thread.
   void look_around_by_place() {
-    const int old = static_cast<int>(sources_.size());
-#pragma omp parallel for num_threads(threads_) schedule(static)
-    for (int b = 0; b < old; ++b) {
+    for_each(0, sources_.size(), 8, [&](std::size_t b, int) {
       targets_[b].around[here] = b;
       for (int k = 0; k < here; ++k) {
         const int found = table_.find(neighbour_at<D>(targets_[b].at, k));
         targets_[b].around[k] = found;
         if (found >= 0) targets_[found].around[neighbour_count<D> - 1 - k] = b;
       }
-    }
+    });
   }
 
   int target_at(const BlockCoordinates& at) {
@@ -372,9 +377,7 @@ class Sorter {
     particles_.order = ordered_units<D>(particles_.units, blocks_, scene_.threads);
     return same;
   }
-  static std::uint32_t chunks_of(std::uint32_t particles) {
-    return (particles + chunk_size<T> - 1) / chunk_size<T>;
-  }
+  static std::uint32_t chunks_of(std::uint32_t particles) { return (particles + chunk_size<T> - 1) / chunk_size<T>; }
 
   // ---- moving
 
@@ -430,9 +433,8 @@ class Sorter {
     send(0);
     for (int layer = 0; layer < n; ++layer) {
       if (layer + 1 < n) send(layer + 1);
-      const int first = static_cast<int>(layers_[layer]), last = static_cast<int>(layers_[layer + 1]);
-#pragma omp parallel for num_threads(threads_) schedule(dynamic, 4)
-      for (int i = first; i < last; ++i) receive(in_layers_[i], first_chunk(i + 1));
+      for_each(layers_[layer], layers_[layer + 1], 4,
+               [&](std::size_t i, int thread) { receive(in_layers_[i], first_chunk(i + 1), thread); });
     }
   }
 
@@ -476,10 +478,10 @@ class Sorter {
       source.rows = layer % 3;
     }
     if (rows.bytes() < count * row_bytes_) rows.require(count * row_bytes_ * 9 / 8);
-#pragma omp parallel for num_threads(threads_) schedule(dynamic, 4)
-    for (int i = first; i < last; ++i)
+    for_each(first, last, 4, [&](std::size_t i, int) {
       if (in_layers_[i] < sources_.size() && sources_[in_layers_[i]].leaving > 0)
         send_block(in_layers_[i], rows.data(), first_chunk(i + 1));
+    });
   }
 
   /// Of the old block at a place among the layers; none: beyond the last chunk.
@@ -543,10 +545,10 @@ class Sorter {
     return all;
   }
 
-  void receive(std::uint32_t number, std::uint32_t next_block) {
+  void receive(std::uint32_t number, std::uint32_t next_block, int thread) {
     const Target& target = targets_[number];
     const Change change = change_of(number);
-    std::vector<std::byte*>& unused = space_.unused[omp_get_thread_num()];
+    std::vector<std::byte*>& unused = space_.unused[thread];
     const bool existed = number < sources_.size();
     const std::uint32_t had = existed ? chunks_of(particles_.blocks[number].count) : 0;
     std::uint32_t kept = 0;  // chunks
@@ -558,7 +560,7 @@ class Sorter {
       for (std::uint32_t i = 0; i < has; ++i)
         places[i] = i < kept ? particles_.places[particles_.blocks[number].first_chunk + i] : take(unused);
       if (change == Change::mended) mend(number, next_block);
-      if (change == Change::anew) fill(number);
+      if (change == Change::anew) fill(number, thread);
     }
     for (std::uint32_t i = kept; i < had; ++i)
       give(unused, particles_.places[particles_.blocks[number].first_chunk + i]);
@@ -570,14 +572,14 @@ class Sorter {
       chunk = unused.back();
       unused.pop_back();
     } else {
-#pragma omp critical(mpm_chunk_pool)
+      const std::lock_guard lock(pool_mutex_);
       chunk = particles_.pool.take();
     }
     return chunk;
   }
   void give(std::vector<std::byte*>& unused, std::byte* chunk) {
     if (unused.size() < at_hand_) return unused.push_back(chunk);
-#pragma omp critical(mpm_chunk_pool)
+    const std::lock_guard lock(pool_mutex_);
     particles_.pool.give(chunk);
   }
 
@@ -638,7 +640,7 @@ class Sorter {
   }
 
   /// Makes a block anew, in the order of (cell, old order).
-  void fill(std::uint32_t number) {
+  void fill(std::uint32_t number, int thread) {
     const Target& target = targets_[number];
     const Block<D>& block = blocks_[target.number];
     const Incoming from = incoming(number);
@@ -659,7 +661,7 @@ class Sorter {
     for (int i = 0; i < from.count; ++i) {
       const Sent& sent = from.sent[i];
       if (sent.source == static_cast<std::int32_t>(number))
-        take_stayers(particles_.blocks[number], block, place, take_far_before);
+        take_stayers(particles_.blocks[number], block, place, take_far_before, thread);
       for (const std::byte* row = sent.first; row != sent.last; row += row_bytes_) {
         take_far_before(row_.tail(row).slot);
         read_row_of_cell(block, row, place);
@@ -686,10 +688,11 @@ class Sorter {
 
   /// Component by component, so that the old chunk is read in its own order; what leaves goes to where nobody looks.
   template <class TakeFar>
-  void take_stayers(const Block<D>& left, const Block<D>& block, std::uint32_t* place, TakeFar&& take_far_before) {
+  void take_stayers(const Block<D>& left, const Block<D>& block, std::uint32_t* place, TakeFar&& take_far_before,
+                    int thread) {
     T* to[chunk_size<T>];
     std::int32_t* id_to[chunk_size<T>];
-    std::byte* const nowhere = space_.nowhere[omp_get_thread_num()].data();
+    std::byte* const nowhere = space_.nowhere[thread].data();
     for_each_chunk<T>(left, [&](std::uint32_t chunk, int count) {
       const std::uint16_t* const key = space_.key.data() + std::size_t(chunk) * chunk_size<T>;
       prefetch(chunk + 1);
@@ -740,6 +743,7 @@ class Sorter {
   const Scene<D, T>& scene_;
   const Foresight<T> foresight_;
   int threads_;
+  std::mutex pool_mutex_;
   bool first_ = false;  ///< sort of these particles
   const RowFormat<D, T> row_;
   std::size_t row_bytes_, at_hand_ = 0;

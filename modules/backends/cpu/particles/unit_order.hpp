@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "backends/cpu/grid/blocks.hpp"
+#include "support/team.hpp"
 
 namespace mpm::cpu {
 
@@ -114,7 +115,10 @@ class UnitPass {
   /// Of a task.
   enum State : int { not_begun, begun, done };
 
-  UnitPass(const UnitOrder& order, std::vector<std::atomic<int>>& states) : order_(order), states_(states) {
+  /// `spin`: how long a thread looks at a unit in work before it sleeps.
+  UnitPass(const UnitOrder& order, std::vector<std::atomic<int>>& states,
+           std::chrono::microseconds spin = std::chrono::microseconds(0))
+      : order_(order), states_(states), spin_(spin) {
     if (states_.size() < order.tasks.size()) states_ = std::vector<std::atomic<int>>(order.tasks.size());
     for (auto& state : states_) state.store(not_begun, std::memory_order_relaxed);
   }
@@ -142,7 +146,7 @@ class UnitPass {
     for (int k = 0; k < task.waits_for; ++k) {
       const std::uint32_t before = task.neighbours[k];
       if (take(before)) work_on(before, visit);
-      states_[before].wait(begun);
+      support::wait_while(states_[before], static_cast<int>(begun), spin_);
     }
     visit(task.unit);
     states_[number].store(done);
@@ -151,6 +155,7 @@ class UnitPass {
 
   const UnitOrder& order_;
   std::vector<std::atomic<int>>& states_;
+  const std::chrono::microseconds spin_;
 };
 
 }  // namespace mpm::cpu
