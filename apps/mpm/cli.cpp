@@ -56,7 +56,8 @@ void add_study(CLI::App& verb, StudyOptions& options) {
                   "/json/pointer=value: replaces a value of the base experiment in every run; may be repeated")
       ->allow_extra_args(false);
   verb.add_option("--out", options.out, "study folder; default runs/<name of the file>");
-  verb.add_option("--jobs", options.jobs, "runs at a time; default all processors; 1 for undisturbed seconds")
+  verb.add_option("--jobs", options.jobs,
+                  "runs at a time; default as many as the processors have threads for; 1 for undisturbed seconds")
       ->check(CLI::Range(1, 1024));
   verb.add_option("--threads", options.threads, "of each run; default 1")->check(CLI::Range(1, 1024));
   verb.footer(
@@ -193,8 +194,10 @@ int run_command_line(int argc, char** argv) {
   add_experiment(*run_verb, options);
   run_verb->add_option("--out", options.out, "run folder; default runs/<name of the file>");
   run_verb
-      ->add_option("--threads", options.threads,
-                   "workers of the cpu backend; default all processors; results do not depend on it")
+      ->add_option(
+          "--threads", options.threads,
+          "of the cpu backend, at most one a processor; default all processors that it may use; results do not depend "
+          "on it")
       ->check(CLI::Range(1, 1024));
   run_verb->add_flag("--resume", options.resume,
                      "goes on with the unfinished run in the run folder, from its last checkpoint, bit for bit; with "

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <thread>
 
 #include "backends/make_backend.hpp"
 #include "experiment/diagnostics.hpp"
@@ -23,6 +22,8 @@
 #include "run/summary.hpp"
 #include "support/files.hpp"
 #include "support/hash.hpp"
+#include "support/processors.hpp"
+#include "support/team.hpp"
 
 namespace mpm::app {
 namespace {
@@ -86,6 +87,8 @@ nlohmann::ordered_json manifest(const Experiment& experiment, const RunOptions& 
     json["experiment_sha256"] = support::sha256(text);
   json["seed"] = experiment.seed;
   json["threads"] = threads;
+  json["processors"] = support::available_processors();
+  json["longest_spin_us"] = support::longest_spin().count();
   json["machine"] = output::machine_description();
   for (const Plugin* plugin : plugins_of(experiment)) {
     const mpm_descriptor& d = *plugin->descriptor;
@@ -326,6 +329,23 @@ Outcome finish(Outcome outcome, nlohmann::ordered_json summary, const Experiment
   return outcome;
 }
 
+struct Threads {
+  int most = 1;
+  bool find_number = false;  ///< as many as are fastest, up to the most; else exactly so many
+};
+
+/// Those asked for, but at most one for each processor that the process may use: more would only wait for one another's.
+Threads threads_for(const Experiment& experiment, const RunOptions& options) {
+  if (experiment.backend == "reference") return {};
+  const int processors = support::available_processors();
+  if (options.threads > processors)
+    std::cerr << "--threads " << options.threads << ": this process may use " << processors
+              << (processors == 1 ? " processor, and takes one thread\n"
+                                  : " processors, and takes as many threads as are fastest\n");
+  if (options.threads > 0 && options.threads <= processors) return {options.threads, false};
+  return {processors, true};
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
@@ -335,9 +355,8 @@ int run(const RunOptions& options) {
   const auto place = options.out.empty() ? std::filesystem::path("runs") / options.file.stem() : options.out;
   if (options.resume)
     if (const auto code = already_finished(experiment, open_to_resume(place))) return *code;
-  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const int threads = experiment.backend == "reference" ? 1 : options.threads > 0 ? options.threads : processors;
-  Simulation simulation(experiment, backend_factory(threads));
+  const auto [threads, find_number] = threads_for(experiment, options);
+  Simulation simulation(experiment, backend_factory(threads, find_number));
   const Metrics metrics(simulation);  // of step 0, also when the run goes on from a later one
   refuse_figures_without_numbers(experiment, metrics);
   refuse_velocities_that_are_no_numbers(simulation);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
-#include <thread>
 
 #include "experiment/diagnostics.hpp"
 #include "experiment/units.hpp"
@@ -16,6 +15,7 @@
 #include "study/report.hpp"
 #include "study/run_study.hpp"
 #include "support/files.hpp"
+#include "support/processors.hpp"
 
 namespace mpm::app {
 namespace {
@@ -244,9 +244,14 @@ int study(const StudyOptions& options) {
   study::ExecutionOptions execution;
   execution.program = fs::read_symlink("/proc/self/exe");
   execution.folder = folder;
-  execution.jobs =
-      options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  execution.threads = options.threads;
+  const int processors = support::available_processors();
+  const auto [jobs, threads] = study::share_processors(processors, options.jobs, options.threads);
+  if (threads < options.threads)
+    std::cerr << "each run has " << threads << (threads == 1 ? " thread" : " threads") << ", not " << options.threads
+              << ": " << jobs << (jobs == 1 ? " run" : " runs") << " at a time on " << processors
+              << (processors == 1 ? " processor\n" : " processors\n");
+  execution.jobs = jobs;
+  execution.threads = threads;
   execution.command = options.command;
   execution.stop_requested = stop_requested;
   execution.say = [](const std::string& line) { std::cerr << line << "\n"; };

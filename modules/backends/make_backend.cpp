@@ -17,11 +17,11 @@ int useful_threads(int wanted, const std::vector<SeededBody>& bodies) {
 
 }  // namespace
 
-BackendFactory backend_factory(int threads) {
-  return [threads](const Experiment& experiment, const Plan& plan, std::vector<SeededBody> bodies) {
+BackendFactory backend_factory(int threads, bool find_number) {
+  return [threads, find_number](const Experiment& experiment, const Plan& plan, std::vector<SeededBody> bodies) {
     if (experiment.backend == "reference") return make_reference_backend(experiment, plan, std::move(bodies));
     const int workers = useful_threads(threads, bodies);  // results do not depend on their number
-    return make_cpu_backend(experiment, plan, std::move(bodies), workers);
+    return make_cpu_backend(experiment, plan, std::move(bodies), workers, find_number);
   };
 }
 

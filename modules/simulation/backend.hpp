@@ -230,8 +230,10 @@ class Backend {
   virtual std::uint64_t grid_bytes() const = 0;
 };
 
-/// Both keep references to the experiment and the plan. `threads` is the number of workers of the cpu backend.
+/// Both keep references to the experiment and the plan. `threads` is the number of threads of the cpu
+/// backend; with `find_number` the most that it may use, of which it finds the number that is fastest.
 std::unique_ptr<Backend> make_reference_backend(const Experiment&, const Plan&, std::vector<SeededBody>);
-std::unique_ptr<Backend> make_cpu_backend(const Experiment&, const Plan&, std::vector<SeededBody>, int threads);
+std::unique_ptr<Backend> make_cpu_backend(const Experiment&, const Plan&, std::vector<SeededBody>, int threads,
+                                          bool find_number = false);
 
 }  // namespace mpm

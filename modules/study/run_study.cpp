@@ -1,5 +1,6 @@
 #include "study/run_study.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <deque>
@@ -222,6 +223,12 @@ class Execution {
 };
 
 }  // namespace
+
+Shares share_processors(int processors, int jobs, int threads) {
+  if (jobs > 0) return {jobs, std::clamp(processors / jobs, 1, threads)};
+  threads = std::min(threads, processors);
+  return {processors / threads, threads};
+}
 
 Results run_study(const Study& study, const Registry& registry, const ReadOptions& read,
                   const ExecutionOptions& options) {

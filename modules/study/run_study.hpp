@@ -20,6 +20,16 @@ struct ExecutionOptions {
   std::function<void(const std::string&)> say;  ///< progress, a line a call
 };
 
+/// How a study shares the processors among its runs.
+struct Shares {
+  int jobs = 1;     ///< runs at a time
+  int threads = 1;  ///< of each
+};
+/// Shares in which no more threads work than there are processors, each with one at least: `jobs` runs at a time where
+/// that is given (> 0), else as many as the processors have threads for; `threads` for each at most. Results do not
+/// depend on either.
+Shares share_processors(int processors, int jobs, int threads);
+
 /// Makes, runs or takes over every combination. `read` carries what experiments may name; its overrides are not used.
 /// @throws InputError when the base is no JSON, or when every combination is refused; support::MachineError.
 Results run_study(const Study& study, const Registry& registry, const ReadOptions& read,

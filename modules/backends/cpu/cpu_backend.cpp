@@ -13,14 +13,16 @@ extern template class ParticleStep<3, double>;
 }  // namespace cpu
 
 std::unique_ptr<Backend> make_cpu_backend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds,
-                                          int threads) {
+                                          int threads, bool find_number) {
   const bool single = experiment.precision == Precision::single;
   if (experiment.dimension == 2) {
-    if (single) return std::make_unique<cpu::CpuBackend<2, float>>(experiment, plan, std::move(seeds), threads);
-    return std::make_unique<cpu::CpuBackend<2, double>>(experiment, plan, std::move(seeds), threads);
+    if (single)
+      return std::make_unique<cpu::CpuBackend<2, float>>(experiment, plan, std::move(seeds), threads, find_number);
+    return std::make_unique<cpu::CpuBackend<2, double>>(experiment, plan, std::move(seeds), threads, find_number);
   }
-  if (single) return std::make_unique<cpu::CpuBackend<3, float>>(experiment, plan, std::move(seeds), threads);
-  return std::make_unique<cpu::CpuBackend<3, double>>(experiment, plan, std::move(seeds), threads);
+  if (single)
+    return std::make_unique<cpu::CpuBackend<3, float>>(experiment, plan, std::move(seeds), threads, find_number);
+  return std::make_unique<cpu::CpuBackend<3, double>>(experiment, plan, std::move(seeds), threads, find_number);
 }
 
 }  // namespace mpm

@@ -1,10 +1,14 @@
 #pragma once
 // The cpu backend: particles in chunks and blocks, a sparse grid, and the passes over both.
 
+#include <chrono>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 #include "backends/cpu/grid/grid_step.hpp"
 #include "backends/cpu/particles/particle_step.hpp"
+#include "support/pace.hpp"
 
 namespace mpm::cpu {
 
@@ -13,10 +17,18 @@ class CpuBackend final : public Backend, NamedChannels {
   using Step = ParticleStep<D, T, Components>;
 
  public:
-  CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds, int threads);
+  /// `find_number`: up to `threads` threads, as many as are fastest; else exactly so many.
+  CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds, int threads,
+             bool find_number = false);
 
   std::string_view name() const override { return "cpu"; }
-  void execute(const Pass& pass, const StepInfo& step) override;
+  void execute(const Pass& pass, const StepInfo& step) override {
+    if (!pace_) return execute_pass(pass, step);
+    const auto start = std::chrono::steady_clock::now();
+    if (step.step != paced_step_) keep_pace(step.step);
+    execute_pass(pass, step);
+    seconds_of_step_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
   TimeStepLimit time_step_limit() const override { return limit_; }
   BodyState body_state(int body) const override;
   const Ledger& ledger() const override { return ledger_; }
@@ -31,6 +43,16 @@ class CpuBackend final : public Backend, NamedChannels {
   std::uint64_t grid_bytes() const override { return grid_.bytes(); }
 
  private:
+  /// So many particles keep a thread busy for long enough that one more is worth its while on a quiet machine.
+  static constexpr std::size_t particles_for_a_thread = 20000;
+
+  void execute_pass(const Pass& pass, const StepInfo& step);
+  /// At the end of a step: how many threads the next one has.
+  void keep_pace(long next_step) {
+    if (seconds_of_step_ > 0) pace_->step_took(std::exchange(seconds_of_step_, 0.0));
+    scene_.team->use(pace_->threads(), !pace_->disturbed());
+    paced_step_ = next_step;
+  }
   std::vector<Body<D, T>> make_bodies(std::vector<SeededBody>& seeds);
   void measure_circumferences(Particles<D, T>& particles) const;
   void sort_all();
@@ -56,6 +78,9 @@ class CpuBackend final : public Backend, NamedChannels {
   ContactRecord contact_;
   FilterRecord filter_;
   TimeStepLimit limit_;
+  std::unique_ptr<support::Pace> pace_;  ///< null: there is one thread
+  long paced_step_ = -1;
+  double seconds_of_step_ = 0;
   bool scattered_ = false;   ///< the last gather_scatter left the next step's grid
   Pass gather_alone_;        ///< a fused pass without what it does for the next step, once that was needed
   bool motion_kept_ = true;  ///< particles have the velocity and the transfer's state of the last step
@@ -67,8 +92,15 @@ class CpuBackend final : public Backend, NamedChannels {
 
 template <int D, class T, class Components>
 CpuBackend<D, T, Components>::CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds,
-                                         int threads)
+                                         int threads, bool find_number)
     : NamedChannels{plan}, scene_(experiment, plan, threads), grid_(scene_), particles_(seeds.size()) {
+  if (scene_.threads > 1) {
+    std::size_t count = 0;
+    for (const SeededBody& body : seeds) count += body.count();
+    const int first = static_cast<int>(std::min<std::size_t>(count / particles_for_a_thread, 1 << 20));
+    pace_ = std::make_unique<support::Pace>(find_number ? 1 : scene_.threads, scene_.threads, first);
+    scene_.team->use(pace_->threads());
+  }
   std::vector<Body<D, T>> bodies = make_bodies(seeds);
   particle_step_ = std::make_unique<Step>(scene_, grid_, particles_, std::move(bodies));
   grid_step_ = std::make_unique<GridStep<D, T>>(scene_, grid_, ledger_, contact_, filter_);
@@ -225,7 +257,7 @@ void CpuBackend<D, T, Components>::wake_for_ledger(long step) {
 }
 
 template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::execute(const Pass& pass, const StepInfo& step) {
+void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo& step) {
   if (step.step != looked_at_step_) {
     looked_at_step_ = step.step;
     grid_step_->set_accounted(scene_.plan.accounts_at(step.step));
