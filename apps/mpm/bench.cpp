@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <iostream>
-#include <thread>
 
 #include "experiment/diagnostics.hpp"
 #include "mpm/bench_sections.hpp"
 #include "output/manifest.hpp"
+#include "support/processors.hpp"
 
 namespace mpm::app {
 namespace {
@@ -44,8 +44,7 @@ bench::Json head_of_document(const BenchOptions& options, int threads, int repea
 BenchContext::BenchContext(const Registry& registry, const BenchOptions& bench_options)
     : options(bench_options),
       suite(registry, bench_options.quick),
-      threads(bench_options.threads > 0 ? bench_options.threads
-                                        : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))) {
+      threads(bench_options.threads > 0 ? bench_options.threads : support::available_processors()) {
   if (options.quick) protocol = {2, 1, 0.005, false, false};
   if (options.repeats > 0) protocol.repeats = options.repeats;
   protocol.processor_time = options.processor_time;
@@ -78,6 +77,7 @@ const std::vector<BenchSection>& bench_sections() {
       {"required", "bytes, passes, calls and instructions of what is asked, counted", bench_required},
       {"growth", "cost and memory from 1e5 to 1e7 particles, a huge domain, start-up", bench_growth},
       {"accuracy", "float against double", bench_accuracy},
+      {"busy", "the default number of threads against the best, beside programs that keep processors busy", bench_busy},
   };
   return sections;
 }

@@ -84,6 +84,7 @@ bench::SectionResult bench_freedom(BenchContext& context);
 bench::SectionResult bench_required(BenchContext& context);
 bench::SectionResult bench_growth(BenchContext& context);
 bench::SectionResult bench_accuracy(BenchContext& context);
+bench::SectionResult bench_busy(BenchContext& context);
 
 /// Writes bench.json, a CSV a table, report.md and the roofline figure. Throws MachineError.
 void write_bench_report(const std::filesystem::path& folder, const bench::Json& document,

@@ -102,7 +102,15 @@ TEST_CASE("bench --quick measures every section", "[bench]") {
     CHECK(is_rate(row, "position_rms"));
     CHECK(row["position_largest"] < 1e-3);  // cells
   }
-  for (const char* section : {"standard", "options", "growth"})
+  const Json& busy = sections["busy"]["busy"];
+  for (const Json& loops : {Json(0), document["threads"]})
+    for (const char* threads : {"1", "default"}) {
+      const Json* row = row_with(busy, {{"busy", loops}, {"threads", threads}});
+      REQUIRE(row);
+      CHECK(is_rate(*row));
+      CHECK(is_rate(*row, "over_best"));
+    }
+  for (const char* section : {"standard", "options", "growth", "busy"})
     for (const Json& target : sections[section]["targets"]) {
       INFO(target.dump());
       CHECK(target["measured"].is_number());
