@@ -155,7 +155,7 @@ TEST_CASE("2: a scene too large for memory is refused at once, with the estimate
   const Result result = call(folder, {"run", "scene.json", "--out", "run"});
   INFO(result.err);
   CHECK(result.code == 2);
-  CHECK(result.seconds < 5);
+  CHECK(result.processor_seconds < 5);
   CHECK(has(result.err, "/grid/cell_size: the scene needs about"));
   CHECK(has(result.err, "GB of state"));
   CHECK(has(result.err, "are free; use larger cells"));

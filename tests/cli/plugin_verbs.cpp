@@ -151,13 +151,12 @@ TEST_CASE("test-plugin: a plugin that ends the process itself has not passed") {
 }
 
 TEST_CASE("test-plugin: an endless loop is stopped and named with the check that ran") {
-  const Result result = tested(in_space("for (volatile int i = 0;; ++i) {}"), {"--seconds", "0.5"});
+  const Result result = tested(in_space("for (volatile int i = 0;; ++i) {}"), {"--seconds", "3"});
   INFO(result.out);
   CHECK(result.code == 3);
   CHECK(has(result.out, "HUNG in shape fixture: sums and stencil [lanes double, 3-D]; unused=1\n"));
-  CHECK(has(result.out, "it did not end within 0.5 s and was stopped"));
-  CHECK(result.seconds >= 0.5);
-  CHECK(result.seconds < 20);
+  CHECK(has(result.out, "it did not end within 3 s and was stopped"));
+  CHECK(result.seconds >= 3);
 }
 
 TEST_CASE("test-plugin: a crash while the file is loaded") {

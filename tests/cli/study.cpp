@@ -234,11 +234,15 @@ TEST_CASE("a run that is killed is recorded, and run again by the next call") {
   CHECK(more.wait_until([&] { return has(slurp(folder / "out/records/pic.log"), "resumed from step"); }));
   more.send(SIGKILL);
   CHECK(more.finish().signal == SIGKILL);
-  // Its runs end with it: nothing is written any more.
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  const auto size = fs::file_size(folder / "out/runs/pic/metrics.csv");
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  CHECK(fs::file_size(folder / "out/runs/pic/metrics.csv") == size);
+  // Its runs end with it: soon nothing is written any more.
+  const auto size = [&] { return fs::file_size(folder / "out/runs/pic/metrics.csv"); };
+  bool still = false;
+  for (int look = 0; look < 100 && !still; ++look) {
+    const auto before = size();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    still = size() == before;
+  }
+  CHECK(still);
 }
 
 TEST_CASE("2: studies that cannot be run leave nothing behind") {
