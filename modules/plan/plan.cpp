@@ -124,7 +124,7 @@ class Planner {
       plan_.basis_functions = basis_functions(experiment_.dimension, plan_.basis_order);
     }
     plan_.filter = experiment_.filter.has_value();
-    // The reference backend keeps the stencils of a step; the cpu backend evaluates them anew in every pass.
+    // The reference backend keeps the stencils of a step; the others evaluate them anew in every pass.
     const bool strains_before_gather =
         strains_before_forces() || (plan_.filter && filters_before_forces() && strains_after_forces());
     plan_.strained_domain = plan_.particle_domain && strains_before_gather && needs_.forgets_stencils;
@@ -456,7 +456,7 @@ class Planner {
     // The cpu backend keeps blocks around particles only: a body's cells and a rim of about one block on every side.
     const double rim = 12 * D * std::pow(occupied_cells, (D - 1.0) / D) * (D == 2 ? 8 : 4) / 4 + 4096;
     const double nodes =
-        experiment_.backend == "reference" ? domain_nodes : std::min(domain_nodes * 2, 1.3 * occupied_cells + rim);
+        experiment_.backend == "cpu" ? std::min(domain_nodes * 2, 1.3 * occupied_cells + rim) : domain_nodes;
     if (experiment_.backend == "cpu")
       particle_bytes += particle_bytes * 3 / 10;  // of batches that are not full, and of those that a sort is moving
     // The reference backend keeps stencils and all moments of a particle, and every value of a node side by side.
@@ -508,9 +508,9 @@ class Planner {
 
 BackendNeeds backend_needs(std::string_view backend) {
   BackendNeeds needs;
-  needs.sorts = needs.fuses = needs.forgets_stencils = backend == "cpu";
-  needs.keeps_all_apart = backend != "cpu";
-  needs.keeps_weight_apart = backend == "reference";
+  needs.sorts = needs.fuses = backend == "cpu";
+  needs.forgets_stencils = backend != "reference";
+  needs.keeps_all_apart = needs.keeps_weight_apart = backend != "cpu";
   return needs;
 }
 

@@ -77,7 +77,7 @@ struct BackendNeeds {
   bool fuses = false;               ///< a gather may scatter for the next step in one visit of a particle
   bool forgets_stencils = false;    ///< weights are evaluated anew in every pass
   bool keeps_all_apart = false;     ///< nothing is merged or shares memory
-  bool keeps_weight_apart = false;  ///< gravity has a field of its own among the forces
+  bool keeps_weight_apart = false;  ///< gravity's force has a field of its own, "weight"
 };
 BackendNeeds backend_needs(std::string_view backend);
 

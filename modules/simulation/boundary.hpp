@@ -18,6 +18,7 @@
 // so corners are right.
 
 #include "experiment/experiment.hpp"
+#include "operators/edges.hpp"
 #include "plan/field.hpp"
 
 namespace mpm {
@@ -33,37 +34,31 @@ inline int grid_padding_of(const mpm_shape& shape) {
 /// Why a run ends in which a particle comes to r <= 0.
 inline constexpr const char* reached_axis = "reached the axis r = 0, where its ring has no circumference";
 
-/// Sign with which component `component` of a vector is mirrored at a wall normal to `axis`.
+static_assert(static_cast<int>(ConditionType::free) == wall_free &&
+              static_cast<int>(ConditionType::stick) == wall_stick &&
+              static_cast<int>(ConditionType::slip) == wall_slip &&
+              static_cast<int>(ConditionType::separate) == wall_separate &&
+              static_cast<int>(ConditionType::prescribed) == wall_prescribed &&
+              static_cast<int>(ConditionType::periodic) == wall_periodic);
+static_assert(static_cast<int>(AtWall::none) == rule_none && static_cast<int>(AtWall::even) == rule_even &&
+              static_cast<int>(AtWall::momentum) == rule_momentum && static_cast<int>(AtWall::vector) == rule_vector &&
+              static_cast<int>(AtWall::slip) == rule_slip);
+
+// The decisions of operators/edges.hpp in the words of an experiment and a plan.
 constexpr double mirror_sign(ConditionType type, int axis, int component) {
-  if (type == ConditionType::stick || type == ConditionType::prescribed) return -1;
-  return component == axis ? -1 : 1;
+  return mirror_sign(static_cast<int>(type), axis, component);
 }
-
-/// The same at a face with this condition for fields with this rule; images at periodic faces are added as they are.
 constexpr double mirror_sign(AtWall rule, ConditionType type, int axis, int component) {
-  if (type == ConditionType::periodic || rule == AtWall::none || rule == AtWall::even) return 1;
-  return mirror_sign(rule == AtWall::slip ? ConditionType::slip : type, axis, component);
+  return mirror_sign(static_cast<int>(rule), static_cast<int>(type), axis, component);
 }
-
 constexpr bool folds(ConditionType type) {
-  return type == ConditionType::stick || type == ConditionType::slip || type == ConditionType::prescribed ||
-         type == ConditionType::separate;
+  return folds(static_cast<int>(type));
 }
-
-/// Whether nodes beyond a face with this condition are added to others.
 constexpr bool has_images(ConditionType type) {
-  return folds(type) || type == ConditionType::periodic;
+  return has_images(static_cast<int>(type));
 }
-
-/// Node that a node of an axis with images is added to: itself, unless it lies beyond a face.
-constexpr int image_of(int node, int cells, bool periodic) {
-  if (periodic) return ((node % cells) + cells) % cells;
-  return node < 0 ? -node : node > cells ? 2 * cells - node : node;
-}
-
-/// Whether a wall of this type holds `component` on its own nodes (separate decides by approach).
 constexpr bool holds(ConditionType type, int axis, int component) {
-  return folds(type) && mirror_sign(type, axis, component) < 0;
+  return holds(static_cast<int>(type), axis, component);
 }
 
 }  // namespace mpm

@@ -10,11 +10,7 @@ using namespace mpm::test;
 namespace {
 
 device::Choice usual_choice() {
-  device::Choice choice;
-  choice.shape = plugins().find(MPM_SHAPE, "bspline_quadratic");
-  choice.transfer = plugins().find(MPM_TRANSFER, "apic");
-  choice.materials = {plugins().find(MPM_MATERIAL, "neo_hookean")};
-  return choice;
+  return device_choice_of(device_experiment(Mix{}.text(), "double"));
 }
 
 /// A copy of the usual shape whose functor's text is another.

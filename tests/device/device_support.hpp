@@ -29,11 +29,10 @@ inline std::string device_choice(const Plugin& plugin) {
   return text + "}";
 }
 
-/// A mix with this plugin in it and the usual partners elsewhere; `more` keeps the ledger off, which the device lacks.
+/// A mix with this plugin in it and the usual partners elsewhere.
 inline Mix mix_with(const Plugin& plugin, int dimension) {
   Mix mix;
   mix.dimension = dimension;
-  mix.more = R"(, "output": {"ledger": false})";
   const std::string choice = device_choice(plugin);
   switch (plugin.descriptor->kind) {
     case MPM_SHAPE:
@@ -54,13 +53,18 @@ inline Mix mix_with(const Plugin& plugin, int dimension) {
   return mix;
 }
 
-/// Passes as the reference backend takes them; that one has no float, so it is chosen afterwards.
+/// No file names this backend: it is chosen afterwards, and so is float, which the reference backend has not.
 inline Experiment device_experiment(const std::string& text, const std::string& precision,
                                     std::vector<std::string> overrides = {}) {
   for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
   Experiment experiment = experiment_from(text, overrides);
   if (precision == "float") experiment.precision = Precision::single;
+  experiment.backend = "device";
   return experiment;
+}
+
+inline device::Choice device_choice_of(const Experiment& experiment) {
+  return device::choice_of(experiment, make_plan(experiment));
 }
 
 /// Compiled compositions, each once a process.
@@ -103,9 +107,12 @@ class DeviceScene {
   DeviceScene(const std::string& text, const std::string& precision, const device::TeamShape& team = {},
               const std::vector<std::string>& overrides = {})
       : experiment(device_experiment(text, precision, overrides)),
-        simulation(experiment, [team](const Experiment& e, const Plan& plan, const std::vector<SeededBody>& bodies) {
-          return device::make_host_run(e, plan, bodies, Devices::shared().of(device::choice_of(e)), team);
-        }) {}
+        simulation(experiment,
+                   [team](const Experiment& e, const Plan& plan, const std::vector<SeededBody>& bodies) {
+                     return device::make_host_run(e, plan, bodies, Devices::shared().of(device::choice_of(e, plan)),
+                                                  team);
+                   }),
+        metrics(simulation) {}
   void run() {
     while (!simulation.finished()) simulation.step();
   }
@@ -113,6 +120,7 @@ class DeviceScene {
 
   const Experiment experiment;
   Simulation simulation;
+  Metrics metrics;
 };
 
 /// Largest difference of two bodies' states, each value over the scene's scale of it.
@@ -123,6 +131,7 @@ inline double state_difference(const Experiment& experiment, const BodyState& ex
                           difference(expected.velocity, found.velocity, speed));
   worst = std::max(worst, difference(expected.domain, found.domain, h));
   worst = std::max(worst, difference(expected.corners, found.corners, h));
+  worst = std::max(worst, difference(expected.second_moment, found.second_moment, h * h));
   const auto fields = [&](const auto& a, const auto& b, double scale) {
     REQUIRE(a.size() == b.size());
     for (const auto& [name, values] : a) worst = std::max(worst, difference(values, b.at(name), scale));
@@ -132,10 +141,10 @@ inline double state_difference(const Experiment& experiment, const BodyState& ex
   return worst;
 }
 
-/// Largest of all bodies.
+/// Largest of all bodies, and of the ledger's entries over the kinetic energy at the start.
 template <class Reference>
 double scene_difference(const Reference& reference, const DeviceScene& found) {
-  double worst = 0;
+  double worst = difference(ledger_values(reference), ledger_values(found), reference.metrics.initial().kinetic);
   for (int body = 0; body < static_cast<int>(reference.experiment.bodies.size()); ++body)
     worst = std::max(worst, state_difference(reference.experiment, reference.body(body), found.body(body)));
   return worst;

@@ -12,11 +12,11 @@ const std::vector<std::string> precisions{"double", "float"};
 /// Compositions of these mixes in both precisions, compiled side by side.
 void prepare(const std::vector<Mix>& mixes, const std::vector<std::string>& in = precisions) {
   std::vector<device::Choice> choices;
-  std::set<std::string> names;
+  std::set<std::string> texts;
   for (const Mix& mix : mixes)
     for (const std::string& precision : in) {
-      const device::Choice choice = device::choice_of(device_experiment(mix.text(), precision));
-      if (names.insert(choice.name()).second) choices.push_back(choice);
+      const device::Choice choice = device_choice_of(device_experiment(mix.text(), precision));
+      if (texts.insert(device::compose(choice).hash).second) choices.push_back(choice);
     }
   Devices::shared().prepare(choices);
 }

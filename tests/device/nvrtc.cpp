@@ -6,33 +6,36 @@
 #include <thread>
 
 #include "device/device_support.hpp"
-#include "plugin/extension_of.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
 
 namespace {
 
-/// Compositions that hold every plugin at least once: the k-th of each kind together, with all materials.
-std::vector<device::Choice> every_plugin_once(int dimension, Precision precision) {
+/// Mixes that hold every plugin at least once: the k-th of each kind together, or apart where these are refused.
+std::vector<Mix> every_plugin_once(int dimension) {
   const auto shapes = plugins().of_kind(MPM_SHAPE), transfers = plugins().of_kind(MPM_TRANSFER),
              filters = plugins().of_kind(MPM_FILTER), contacts = plugins().of_kind(MPM_CONTACT),
              materials = plugins().of_kind(MPM_MATERIAL);
-  const std::size_t most = std::max({shapes.size(), transfers.size(), filters.size(), contacts.size()});
-  std::vector<device::Choice> choices;
+  const std::size_t most =
+      std::max({shapes.size(), transfers.size(), filters.size(), contacts.size(), materials.size()});
+  std::vector<Mix> mixes;
   for (std::size_t k = 0; k < most; ++k) {
-    device::Choice choice;
-    choice.dimension = dimension, choice.precision = precision;
-    choice.shape = shapes[k % shapes.size()], choice.transfer = transfers[k % transfers.size()];
-    if (extension_of<mpm_transfer_polynomials>(*choice.transfer) && choice.shape->shape().form == MPM_TENSOR_PRODUCT)
-      choice.basis_order = static_cast<int>(choice.shape->shape().width) - 1;
-    if (k < filters.size()) choice.filter = filters[k];
-    if (k < contacts.size()) choice.contact = contacts[k];
-    for (std::size_t m = k; m < materials.size(); m += most) choice.materials.push_back(materials[m]);
-    if (choice.materials.empty()) choice.materials.push_back(materials[k % materials.size()]);
-    choices.push_back(choice);
+    const Plugin *const shape = shapes[k % shapes.size()], *const transfer = transfers[k % transfers.size()],
+                        *const material = materials[k % materials.size()];
+    Mix mix = mix_with(*shape, dimension);
+    mix.transfer = device_choice(*transfer), mix.material = device_choice(*material);
+    if (k < filters.size()) mix.filter = device_choice(*filters[k]);
+    if (k < contacts.size()) mix.contact = device_choice(*contacts[k]);
+    if (!is_refused(mix)) {
+      mixes.push_back(mix);
+      continue;
+    }
+    for (const Plugin* plugin : {shape, transfer, material}) mixes.push_back(mix_with(*plugin, dimension));
+    if (k < filters.size()) mixes.push_back(mix_with(*filters[k], dimension));
+    if (k < contacts.size()) mixes.push_back(mix_with(*contacts[k], dimension));
   }
-  return choices;
+  return mixes;
 }
 
 }  // namespace
@@ -47,11 +50,13 @@ TEST_CASE("every plugin compiles to machine code with NVRTC where it is installe
   }
   std::vector<device::Composition> compositions;
   for (const int dimension : {2, 3})
-    for (const Precision precision : {Precision::double_, Precision::single})
-      for (device::Choice& choice : every_plugin_once(dimension, precision)) {
-        compositions.push_back(device::compose(choice));
-        choice.axisymmetric = true;
-        if (dimension == 2) compositions.push_back(device::compose(choice));
+    for (const Mix& mix : every_plugin_once(dimension))
+      for (const std::string precision : {"double", "float"}) {
+        const std::string text = mix.text();
+        compositions.push_back(device::compose(device_choice_of(device_experiment(text, precision))));
+        if (dimension == 2)
+          compositions.push_back(device::compose(device_choice_of(device_experiment(
+              text, precision, {set("/grid/symmetry", "axisymmetric"), set("/gravity", "[0, -1.3]")}))));
       }
   REQUIRE(compositions.size() >= 4 * plugins().of_kind(MPM_SHAPE).size());
   std::vector<device::Cubin> cubins(compositions.size());

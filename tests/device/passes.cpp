@@ -13,7 +13,6 @@ const Plugin& plugin(mpm_kind kind, const std::string& id) {
   return *found;
 }
 
-const std::string ledger_off = R"(, "output": {"ledger": false})";
 const std::vector<std::string> orders{"last", "first", "modified_last", "averaged"};
 
 }  // namespace
@@ -193,23 +192,9 @@ TEST_CASE("a particle that cannot go on stops a run on the host-run device", "[d
   }
 }
 
-TEST_CASE("the host-run device refuses what its kernels do not do", "[device]") {
-  Mix mix = mix_with(plugin(MPM_TRANSFER, "pic"), 2);
-  SECTION("the ledger") {
-    mix.more = "";
-    CHECK_THROWS_WITH(DeviceScene(mix.text(), "double"), ContainsSubstring("/output/ledger"));
-  }
-  SECTION("body forces") {
-    mix.more += R"(, "body_force": ["x", 0])";
-    CHECK_THROWS_WITH(DeviceScene(mix.text(), "double"), ContainsSubstring("body forces"));
-  }
-  SECTION("walls of a given velocity") {
-    mix.boundaries = R"({"all": "slip", "x_min": {"type": "prescribed", "velocity": [0.1, 0]}})";
-    CHECK_THROWS_WITH(DeviceScene(mix.text(), "double"), ContainsSubstring("given velocity"));
-  }
-  SECTION("too large a team") {
-    CHECK_THROWS_WITH(DeviceScene(mix.text(), "double", {257, false}), ContainsSubstring("256 lanes"));
-  }
+TEST_CASE("the host-run device refuses a team that shared memory has no room for", "[device]") {
+  const Mix mix = mix_with(plugin(MPM_TRANSFER, "pic"), 2);
+  CHECK_THROWS_WITH(DeviceScene(mix.text(), "double", {257, false}), ContainsSubstring("256 lanes"));
 }
 
 TEST_CASE("axisymmetric scenes and frozen bodies on the host-run device", "[device][axisymmetric]") {

@@ -162,21 +162,24 @@ inline void compare_states(const Scene& reference, const Scene& cpu, double epsi
   }
 }
 
-inline std::vector<double> ledger_values(const Scene& scene) {
+template <class AnyScene>
+std::vector<double> ledger_values(const AnyScene& scene) {
   const Ledger& l = scene.simulation.backend().ledger();
   return {l.scatter,  l.gather,  l.internal_force, l.gravity,  l.body_force,
           l.boundary, l.contact, l.friction,       l.material, l.filter};
 }
 
 /// Passes and norms of the filter's last loop; `scale` is that of sqrt(m) v.
-inline std::vector<double> filter_values(const Scene& scene, double scale) {
+template <class AnyScene>
+std::vector<double> filter_values(const AnyScene& scene, double scale) {
   const FilterRecord& f = scene.simulation.backend().filter_record();
   return {static_cast<double>(f.iterations), f.first_norm / scale, f.last_norm / scale};
 }
 
 /// Force over the scene's scale. Counts of nodes are no part of it: a pair whose approach is zero to rounding (after a
 /// contact that made it so) touches or not by its rounding, with an impulse of rounding either way.
-inline std::vector<double> contact_values(const Scene& scene, double scale) {
+template <class AnyScene>
+std::vector<double> contact_values(const AnyScene& scene, double scale) {
   const ContactRecord& c = scene.simulation.backend().contact_record();
   return {c.force[0] / scale, c.force[1] / scale, c.force[2] / scale};
 }

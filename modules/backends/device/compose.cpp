@@ -4,27 +4,23 @@
 #include <set>
 #include <sstream>
 
-#include "backends/device/kernels/arguments.hpp"
+#include "backends/device/kernels/fields.hpp"
 #include "kernel/polynomial_basis.hpp"
-#include "plan/compatibility.hpp"
 #include "plugin/extension_of.hpp"
 #include "support/hash.hpp"
 
 namespace mpm::device {
 namespace {
 
-static_assert(wall_free == static_cast<int>(ConditionType::free) &&
-              wall_slip == static_cast<int>(ConditionType::slip) &&
-              wall_stick == static_cast<int>(ConditionType::stick) &&
-              wall_separate == static_cast<int>(ConditionType::separate) &&
-              wall_prescribed == static_cast<int>(ConditionType::prescribed) &&
-              wall_periodic == static_cast<int>(ConditionType::periodic));
+static_assert(never_folded == static_cast<int>(Folded::never) &&
+              folded_with_mass == static_cast<int>(Folded::with_mass) &&
+              folded_with_force == static_cast<int>(Folded::with_force));
 
 struct Header {
   const char* path;
   const char* text;
 };
-/// Written by the build from modules/kernel and modules/backends/device/kernels.
+/// Written by the build from modules/kernel, modules/operators and modules/backends/device/kernels.
 constexpr Header headers[] = {
 #include MPM_KERNEL_HEADERS
 };
@@ -107,6 +103,54 @@ std::string yes(bool value) {
   return value ? "true" : "false";
 }
 
+/// What particles are summed into by the scatter itself: the weight follows from the masses.
+bool is_scattered(const Field& field) {
+  return field.cleared && field.folded != Folded::never && field.id != "weight";
+}
+
+/// The scene's fields by number and by place in a scatter, and the list of those of nodes.
+void write_fields(std::ostream& out, const Choice& choice) {
+  std::ostringstream numbers, places, visits;
+  int place = 0;
+  for (std::size_t k = 0; k < choice.node_fields.size(); ++k) {
+    const Field& field = choice.node_fields[k];
+    const bool scattered = is_scattered(field);
+    numbers << "    static constexpr int " << field.id << " = " << k << ";\n";
+    if (scattered) places << "    static constexpr int " << field.id << " = " << place << ";\n";
+    visits << "    visit(NodeField<" << k << ", " << field.components << ", " << static_cast<int>(field.at_wall) << ", "
+           << static_cast<int>(field.folded) << ", " << yes(field.cleared) << ", " << (scattered ? place : -1)
+           << ">{});  // " << field.id << "\n";
+    if (scattered) place += field.components;
+  }
+  out << "  struct Node : NoNodeFields {\n"
+      << numbers.str() << "  };\n  struct Place : NoNodeFields {\n"
+      << places.str() << "  };\n  static constexpr int scattered = " << place << ";\n"
+      << "  template <class Visit>\n  MPM_HD static void for_each_node_field(Visit visit) {\n"
+      << visits.str() << "  }\n  struct Particle : NoParticleFields {\n";
+  const auto& particle = choice.particle_fields;
+  const auto write = [&](const std::string& id, int number) {
+    if (number >= 0) out << "    static constexpr int " << id << " = " << number << ";\n";
+  };
+  for (const Field& field : particle)
+    if (field.origin == Origin::host) write(field.id, number_of(particle, field.id));
+  write("transfer_state", first_of(particle, Origin::transfer));
+  write(polynomial_coefficients, number_of(particle, polynomial_coefficients, Origin::transfer));
+  write("material_state", static_cast<int>(std::count_if(particle.begin(), particle.end(), [](const Field& field) {
+          return field.origin != Origin::material;
+        })));
+  out << "  };\n";
+}
+
+/// Whether there is a place for what the ledger asks of particles.
+bool keeps_ledger(const Choice& choice) {
+  return number_of(choice.particle_fields, "dissipated") >= 0;
+}
+
+/// Whether the filter ever projects.
+bool has_filter_loop(const Choice& choice) {
+  return number_of(choice.node_fields, "projection") >= 0;
+}
+
 /// The chosen types and what the tables say of them: functors keep their tables where only the host looks.
 std::string scene_text(const Choice& choice) {
   const mpm_shape& shape = choice.shape->shape();
@@ -138,15 +182,21 @@ std::string scene_text(const Choice& choice) {
       << ", gathers_increment = " << yes(traits & MPM_GATHERS_INCREMENT)
       << ", reads_second_moment = " << yes(traits & MPM_READS_SECOND_MOMENT)
       << ", stress_by_affine = " << yes(traits & MPM_STRESS_BY_AFFINE)
-      << ", strain_by_affine = " << yes(traits & MPM_STRAIN_BY_AFFINE) << ";\n"
+      << ", strain_by_affine = " << yes(traits & MPM_STRAIN_BY_AFFINE)
+      << ", affine_carries_energy = " << yes(traits & MPM_AFFINE_CARRIES_ENERGY) << ";\n"
+      << "  static constexpr bool ledger = " << yes(keeps_ledger(choice)) << ";\n"
       << "  static constexpr int basis_order = " << choice.basis_order
       << ", basis_functions = " << basis_functions(choice.dimension, choice.basis_order)
-      << ";  // polynomials beyond affine\n};\n";
+      << ";  // polynomials beyond affine\n";
+  write_fields(out, choice);
+  out << "};\n";
   for (std::size_t k = 0; k < choice.materials.size(); ++k)
     out << "struct Scene" << k << " : Scene {\n  using Material = " << type(choice.materials[k]) << ";\n};\n";
   out << "MPM_DEVICE_ENTRIES\n";
+  if (keeps_ledger(choice)) out << "MPM_DEVICE_LEDGER_ENTRIES\n";
   if (choice.contact) out << "MPM_DEVICE_CONTACT_ENTRIES\n";
   if (choice.filter) out << "MPM_DEVICE_FILTER_ENTRIES\n";
+  if (has_filter_loop(choice)) out << "MPM_DEVICE_FILTER_LOOP_ENTRIES\n";
   for (std::size_t k = 0; k < choice.materials.size(); ++k) out << "MPM_DEVICE_MATERIAL_ENTRIES(" << k << ")\n";
   out << "}  // namespace mpm::device\n";
   return out.str();
@@ -164,8 +214,10 @@ std::vector<std::string> entry_names(const Choice& choice) {
     if (at == line.npos || line.rfind("//", 0) == 0) continue;
     at += start.size();
     const std::string name = line.substr(at, line.find(',', at) - at);
+    if (macro == "MPM_DEVICE_LEDGER_ENTRIES" && !keeps_ledger(choice)) continue;
     if (macro == "MPM_DEVICE_CONTACT_ENTRIES" && !choice.contact) continue;
     if (macro == "MPM_DEVICE_FILTER_ENTRIES" && !choice.filter) continue;
+    if (macro == "MPM_DEVICE_FILTER_LOOP_ENTRIES" && !has_filter_loop(choice)) continue;
     if (macro != "MPM_DEVICE_MATERIAL_ENTRIES")
       names.push_back(name);
     else
@@ -188,15 +240,16 @@ std::string Choice::name() const {
   return text;
 }
 
-Choice choice_of(const Experiment& experiment) {
+Choice choice_of(const Experiment& experiment, const Plan& plan) {
   Choice choice;
   choice.dimension = experiment.dimension;
   choice.precision = experiment.precision;
   choice.axisymmetric = experiment.axisymmetric();
   choice.shape = experiment.shape.plugin;
   choice.transfer = experiment.transfer.plugin;
-  if (const int order = basis_order_of(experiment.transfer); order > 0)
-    choice.basis_order = std::min(order, static_cast<int>(choice.shape->shape().width) - 1);
+  choice.basis_order = plan.basis_order;
+  choice.node_fields = node_fields(experiment, plan);
+  choice.particle_fields = particle_fields(experiment, plan, 0);
   if (experiment.filter) choice.filter = experiment.filter->plugin;
   if (experiment.contact) choice.contact = experiment.contact->plugin;
   for (const MaterialSpecification& material : experiment.materials)

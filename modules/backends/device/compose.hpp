@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiment/experiment.hpp"
+#include "backends/device/fields.hpp"
 
 namespace mpm::device {
 
@@ -21,14 +21,15 @@ struct Choice {
   const Plugin* filter = nullptr;
   const Plugin* contact = nullptr;
   std::vector<const Plugin*> materials;
-  int basis_order = 0;  ///< as in Plan
+  int basis_order = 0;                              ///< as in Plan
+  std::vector<Field> node_fields, particle_fields;  ///< numbered (backends/device/fields.hpp); of any one body
 
   /// "2-D double: linear apic coulomb neo_hookean", for messages.
   std::string name() const;
 };
 
 /// Everything a run of the experiment needs; its materials in the experiment's order.
-Choice choice_of(const Experiment& experiment);
+Choice choice_of(const Experiment& experiment, const Plan& plan);
 
 /// A functor's text that cannot be composed; the message names the plugin, the line and the remedy.
 class ComposeError : public std::runtime_error {

@@ -4,127 +4,79 @@
 #include <array>
 #include <climits>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 
-#include "backends/device/kernels/filter.hpp"  // largest_team
+#include "backends/device/conditions.hpp"
+#include "backends/device/field_arrays.hpp"
+#include "backends/device/kernels/sums.hpp"  // largest_team
 #include "simulation/boundary.hpp"
 #include "simulation/contact_pair.hpp"
 
 namespace mpm::device {
 namespace {
 
-/// Whether component k of a declared field is one at the start.
-bool starts_as_one(const mpm_state& field, int k, int dimension, bool axisymmetric) {
-  if (field.initial == MPM_INITIAL_ZERO) return false;
-  if (field.initial == MPM_INITIAL_ONE) return true;
-  if (field.shape == MPM_STATE_SYMMETRIC) return k < 3;
-  const bool deformation = kept_shape(field, axisymmetric) == MPM_STATE_DEFORMATION;
-  return k % (dimension + 1) == 0 || (deformation && k == dimension * dimension);
-}
-
+/// The particles of one body.
 template <class T>
 struct Body {
-  const Component *transfer, *material;
-  int field = 0, material_number = 0, count = 0, dimension = 2, basis_functions = 0;
-  bool axisymmetric = false, frozen = false;
+  const Component* material;
+  int field = 0, material_number = 0, count = 0, dimension = 2;
+  bool frozen = false;
   T mass = 0, volume = 0, half_size = 0;
-  std::vector<T> position, velocity, advection, domain, corners, moved_corners, stencil_domain, transfer_state,
-      material_state, stress, volume_ratio, velocity_gradient, wave_speed, circumference, hoop_rate;
+  FieldArrays<T> arrays;
+  std::vector<double> initial_position;  ///< particle-major; empty unless planned
   std::vector<int> block_cell, block_begin, order;
 
   Body(const Experiment& experiment, const Plan& plan, int index, const SeededBody& seeded)
-      : transfer(&experiment.transfer), dimension(experiment.dimension), axisymmetric(experiment.axisymmetric()) {
+      : dimension(experiment.dimension), arrays(particle_fields(experiment, plan, index), seeded.count()) {
     const BodySpecification& body = experiment.bodies[index];
     frozen = body.frozen;
     material = &experiment.materials[body.material].component;
-    const int D = dimension;
     field = body.field, material_number = body.material, count = static_cast<int>(seeded.count());
     mass = static_cast<T>(seeded.mass), volume = static_cast<T>(seeded.volume);
-    half_size = static_cast<T>(0.5 / body.particles_per_cell_axis);
-    const SeedArrays seeds = seeded.arrays();
-    position = columns(seeds.position, D), velocity = columns(seeds.velocity, D);
-    advection.resize(velocity.size());
-    basis_functions = plan.basis_functions;
-    transfer_state = initial_state(*transfer->plugin);
-    transfer_state.resize(transfer_state.size() + static_cast<std::size_t>(basis_functions) * D * count, T(0));
-    material_state = initial_state(*material->plugin);
-    const std::vector<T> gradient = columns(seeds.velocity_gradient, D * D);
-    std::copy(gradient.begin(), gradient.end(), transfer_state.begin());  // the affine velocity is the first field
-    if (plan.particle_domain) {
-      domain.resize(static_cast<std::size_t>(D) * D * count);
-      for (int c = 0; c < D; ++c)
-        std::fill_n(domain.begin() + static_cast<long>(c * (D + 1)) * count, count, half_size);
-    }
-    for (int k = 0; k < plan.sample_points * D; ++k)
-      corners.insert(corners.end(), count, k / D >> k % D & 1 ? half_size : -half_size);
-    moved_corners = corners;
-    stress.resize(static_cast<std::size_t>(D == 2 ? 4 : 6) * count), volume_ratio.resize(count);
-    velocity_gradient.resize(static_cast<std::size_t>(D) * D * count), wave_speed.resize(count);
-    if (!axisymmetric) return;
-    hoop_rate.resize(count), circumference.resize(count);
-    for (int p = 0; p < count; ++p)
-      circumference[p] = static_cast<T>(2 * std::numbers::pi * seeds.position[static_cast<std::size_t>(p) * D]);
+    const double half = 0.5 / body.particles_per_cell_axis;
+    half_size = static_cast<T>(half);
+    for (int number = 0; number < static_cast<int>(arrays.fields().size()); ++number)
+      for (int k = 0; k < arrays.fields()[number].components; ++k)
+        std::fill_n(arrays.of(number) + static_cast<std::size_t>(k) * arrays.count(), count,
+                    static_cast<T>(first_value(arrays.fields()[number], k, dimension, half)));
+    take(seeded.arrays(), plan.particle_field(index, "initial_position") != nullptr);
   }
 
-  /// [particle][component] to [component][particle].
-  std::vector<T> columns(const std::vector<double>& values, int components) const {
-    std::vector<T> result(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i)
-      result[i % components * count + i / components] = static_cast<T>(values[i]);
-    return result;
+  /// What seeding gives.
+  void take(const SeedArrays& seeds, bool keeps_positions) {
+    arrays.take(number("position"), seeds.position);
+    arrays.take(number("velocity"), seeds.velocity);
+    if (!seeds.velocity_gradient.empty())
+      arrays.take(first_of(arrays.fields(), Origin::transfer), seeds.velocity_gradient);
+    if (T* const circumference = arrays.of("circumference"))
+      for (int p = 0; p < count; ++p)
+        circumference[p] =
+            static_cast<T>(2 * std::numbers::pi * seeds.position[static_cast<std::size_t>(p) * dimension]);
+    if (keeps_positions) initial_position = seeds.position;
   }
-  std::vector<double> particle_major(const T* array, int components, double unit = 1) const {
-    std::vector<double> result(static_cast<std::size_t>(components) * count);
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] = unit * array[i % components * count + i / components];
-    return result;
+  int number(std::string_view id) const { return number_of(arrays.fields(), id); }
+
+  /// Of a vector's array.
+  double component(const T* array, int p, int c) const { return array[static_cast<std::size_t>(c) * count + p]; }
+  Vector3 vector(const T* array, int p) const {
+    Vector3 v{};
+    for (int c = 0; c < dimension; ++c) v[c] = component(array, p, c);
+    return v;
   }
 
-  std::vector<T> initial_state(const Plugin& plugin) const {
-    std::vector<T> state;
-    for (const mpm_state& declared : plugin.state())
-      for (int k = 0; k < state_components(kept_shape(declared, axisymmetric), dimension); ++k)
-        state.insert(state.end(), count, starts_as_one(declared, k, dimension, axisymmetric) ? T(1) : T(0));
-    return state;
-  }
-  std::map<std::string, std::vector<double>> fields(const std::vector<T>& state, const Plugin& plugin) const {
-    std::map<std::string, std::vector<double>> result;
-    const T* at = state.data();
-    for (const mpm_state& declared : plugin.state()) {
-      const int components = state_components(kept_shape(declared, axisymmetric), dimension);
-      result[declared.name] = particle_major(at, components);
-      at += static_cast<long>(components) * count;
-    }
-    return result;
-  }
-
-  ParticleArrays<T> arrays() {
-    return {count,
-            count,
-            mass,
-            volume,
-            half_size,
-            position.data(),
-            velocity.data(),
-            advection.data(),
-            domain.empty() ? nullptr : domain.data(),
-            corners.empty() ? nullptr : corners.data(),
-            corners.empty() ? nullptr : moved_corners.data(),
-            stencil_domain.empty() ? nullptr : stencil_domain.data(),
-            transfer_state.data(),
-            material_state.data(),
-            stress.data(),
-            volume_ratio.data(),
-            velocity_gradient.data(),
-            wave_speed.data(),
-            axisymmetric ? circumference.data() : nullptr,
-            axisymmetric ? hoop_rate.data() : nullptr,
-            frozen ? 1 : 0};
+  ParticleArrays<T> table() {
+    ParticleArrays<T> table{count, count, mass, volume, half_size, frozen ? 1 : 0, {}};
+    arrays.point(table.field);
+    return table;
   }
 
   /// Particles into blocks of cells, blocks in order of their cells. A position that is no number goes to block 0,
   /// where the scatter reports it.
   void sort(const Arguments<T>& a) {
+    const T* const position = arrays.of("position");
     std::map<std::array<int, 3>, std::vector<int>> blocks;
     for (int p = 0; p < count; ++p) {
       std::array<int, 3> cell{};
@@ -144,37 +96,20 @@ struct Body {
   int blocks() const { return static_cast<int>(block_begin.size()) - 1; }
 };
 
+/// The nodes of one velocity field.
 template <class T>
-struct Field {
-  std::vector<T> mass, momentum, force, velocity_before, velocity, volume, volume_gradient, mass_position, increment,
-      projected, trial_velocity, kept_velocity, constrained, kept_constrained;
-  std::vector<int> folded;
+struct VelocityField {
+  FieldArrays<T> arrays;
+  std::vector<int> folded, held;
 
-  Field(const Plan& plan, std::size_t nodes, int D) : mass(nodes), folded(nodes) {
-    for (auto* channel : {&momentum, &force, &velocity_before, &velocity}) channel->resize(D * nodes);
-    if (plan.contact) volume.resize(nodes), volume_gradient.resize(D * nodes), mass_position.resize(D * nodes);
-    if (plan.filter)
-      for (auto* channel : {&increment, &projected, &trial_velocity, &kept_velocity}) channel->resize(D * nodes);
-    if (plan.constrained_velocity) constrained.resize(D * nodes), kept_constrained.resize(D * nodes);
+  VelocityField(const Experiment& experiment, const Plan& plan, std::size_t nodes)
+      : arrays(node_fields(experiment, plan), nodes), folded(nodes), held(plan.ledger ? nodes : 0) {}
+  NodeArrays<T> table() {
+    NodeArrays<T> table{{}, folded.data(), held.empty() ? nullptr : held.data()};
+    arrays.point(table.field);
+    return table;
   }
-  GridArrays<T> arrays() {
-    const auto pointer = [](std::vector<T>& channel) { return channel.empty() ? nullptr : channel.data(); };
-    return {pointer(mass),
-            pointer(momentum),
-            pointer(force),
-            pointer(velocity_before),
-            pointer(velocity),
-            pointer(volume),
-            pointer(volume_gradient),
-            pointer(mass_position),
-            pointer(increment),
-            pointer(projected),
-            pointer(trial_velocity),
-            pointer(kept_velocity),
-            pointer(constrained),
-            pointer(kept_constrained),
-            folded.data()};
-  }
+  std::uint64_t bytes() const { return arrays.bytes() + (folded.size() + held.size()) * sizeof(int); }
 };
 
 template <class T>
@@ -182,27 +117,32 @@ class HostRun final : public Backend {
  public:
   HostRun(const Experiment& experiment, const Plan& plan, const std::vector<SeededBody>& seeded, HostDevice device,
           const TeamShape& team)
-      : experiment_(experiment), plan_(plan), device_(std::move(device)), team_(team) {
-    refuse_what_kernels_lack();
-    describe_scene();
+      : experiment_(experiment),
+        plan_(plan),
+        device_(std::move(device)),
+        team_(team),
+        scene_(described(experiment)),
+        conditions_(experiment, scene_),
+        edges_(edge_models(experiment)) {
+    if (team.lanes < 1 || team.lanes > largest_team)
+      throw std::invalid_argument("a team has 1 to " + std::to_string(largest_team) + " lanes");
+    scene_.first_failed = &first_failed_;
     for (std::size_t body = 0; body < seeded.size(); ++body)
       bodies_.emplace_back(experiment, plan, static_cast<int>(body), seeded[body]);
     const std::size_t nodes = scene_.node_count, D = experiment.dimension;
-    for (int field = 0; field < experiment.field_count; ++field)
-      fields_.emplace_back(plan, nodes, experiment.dimension);
+    for (int field = 0; field < experiment.field_count; ++field) fields_.emplace_back(experiment, plan, nodes);
     for (int axis = 0; axis < experiment.dimension; ++axis) (periodic(axis) ? images_ : walls_).push_back(axis);
     if (!plan.contact) return;
-    for (int field = 0; field < experiment.field_count; ++field)
-      edges_.emplace_back(experiment.shape, rows_per_cell(field));
     active_.resize(nodes), status_.resize(nodes);
-    normal_.resize(D * nodes), impulse_.resize(D * nodes);
-    separation_.resize(nodes), area_.resize(nodes), dissipated_.resize(nodes);
+    normal_.resize(D * nodes), impulse_.resize(D * nodes), unbalanced_.resize(D * nodes);
+    separation_.resize(nodes), area_.resize(nodes), work_.resize(nodes), dissipated_.resize(nodes);
   }
 
   std::string_view name() const override { return "host-run device"; }
 
   void execute(const Pass& pass, const StepInfo& step) override {
     scene_.dt = static_cast<T>(step.dt);
+    accounted_ = plan_.accounts_at(step.step);
     switch (pass.operators.front().act) {
       case Act::estimate_time_step:
         return estimate_time_step();
@@ -213,9 +153,9 @@ class HostRun final : public Backend {
         return for_each_field("clear", nodes());
       case Act::scatter_momentum:
       case Act::scatter_force:
-        return scatter(pass);
+        return scatter(pass, step);
       case Act::divide:
-        return momentum_to_velocity(pass);
+        return momentum_to_velocity(pass, step);
       case Act::accelerate:
         return apply_forces(step);
       case Act::gather:
@@ -225,19 +165,18 @@ class HostRun final : public Backend {
       case Act::move:
         return move();
       case Act::begin_filter:
-        return begin_filter();
+        return begin_filter(pass);
       case Act::project:
-        return project();
+        return project(pass, step);
       case Act::update_filter:
-        return update_filter();
+        return update_filter(pass, step);
       case Act::end_filter:
-        return end_filter(pass);
+        return end_filter(pass, step);
       case Act::restore_velocity:
-        for_each_field(pass.has(Act::keep_correction) ? "keep_correction" : "restore_velocity", vectors());
-        return for_each_field("velocity_to_momentum", vectors());
+        return for_each_field(pass.has(Act::keep_correction) ? "keep_correction" : "restore_velocity", vectors());
       case Act::add_correction:
-        return add_correction();
-      default:
+        return add_correction(pass, step);
+      default:  // the others share a visit with one of these
         throw std::logic_error("the host-run device does not execute pass \"" + pass.name() + "\"");
     }
   }
@@ -247,115 +186,145 @@ class HostRun final : public Backend {
   const ContactRecord& contact_record() const override { return contact_; }
   const FilterRecord& filter_record() const override { return filter_; }
   bool scattered() const override { return false; }
-  void save(ArchiveWriter&) const override { throw std::logic_error("the host-run device saves no checkpoints"); }
-  void restore(ArchiveReader&) override { throw std::logic_error("the host-run device reads no checkpoints"); }
+
   std::uint64_t particle_bytes() const override {
-    std::uint64_t scalars = 0;
-    for (const Body<T>& body : bodies_)
-      scalars += body.position.size() + body.velocity.size() + 2 * body.corners.size() + body.advection.size() +
-                 body.domain.size() + body.stencil_domain.size() + body.transfer_state.size() +
-                 body.material_state.size() + body.stress.size() + body.volume_ratio.size() +
-                 body.velocity_gradient.size() + body.wave_speed.size();
-    return scalars * sizeof(T);
+    std::uint64_t sum = 0;
+    for (const Body<T>& body : bodies_) sum += body.arrays.bytes();
+    return sum;
   }
   std::uint64_t grid_bytes() const override {
-    const std::uint64_t D = experiment_.dimension;
-    return fields_.size() * scene_.node_count *
-           ((1 + 4 * D + (plan_.contact ? 1 + 2 * D : 0) + (plan_.filter ? 4 * D : 0)) * sizeof(T) + sizeof(int));
+    std::uint64_t sum = 0;
+    for (const VelocityField<T>& field : fields_) sum += field.bytes();
+    return sum;
+  }
+
+  void save(ArchiveWriter& archive) const override {
+    for (const Body<T>& body : bodies_)
+      for_each_saved(body, [&](const Field& field, int number) {
+        archive.put(field.id, body.arrays.of(number), body.arrays.size(number));
+      });
+    archive.put("ledger", ledger_);
+    archive.put("contact", contact_);
+    archive.put("filter", filter_);
+    archive.put("limit speeds", std::array{limit_.speed, limit_.wave_speed});
+    archive.put("limit particle",
+                std::array<std::uint64_t, 2>{static_cast<std::uint64_t>(limit_.body), limit_.particle});
+  }
+  void restore(ArchiveReader& archive) override {
+    for (Body<T>& body : bodies_) {
+      for_each_saved(body, [&](const Field& field, int number) {
+        archive.get(field.id, body.arrays.of(number), body.arrays.size(number));
+      });
+      // A step strains its domains further from where the last one left them.
+      if (T* const strained = body.arrays.of("strained_domain"))
+        std::copy_n(body.arrays.of("domain"), body.arrays.size(body.number("domain")), strained);
+    }
+    archive.get("ledger", ledger_);
+    archive.get("contact", contact_);
+    archive.get("filter", filter_);
+    std::array<double, 2> speeds{};
+    std::array<std::uint64_t, 2> particle{};
+    archive.get("limit speeds", speeds);
+    archive.get("limit particle", particle);
+    limit_ = {speeds[0], speeds[1], static_cast<int>(particle[0]), particle[1]};
   }
 
   BodyState body_state(int index) const override {
-    const Body<T>& body = bodies_[index];
-    const int D = experiment_.dimension;
+    Body<T> body = bodies_[index];  // a copy, into which the second moments go
+    if (plan_.second_moment) {
+      int failed = INT_MAX;
+      Arguments<T> a = scene_;
+      a.particles = body.table(), a.first_failed = &failed;
+      device_.run("second_moments", a, teams(body.count), team_);
+      if (failed != INT_MAX) throw RunFailure(outside_grid, index, static_cast<std::size_t>(failed));
+    }
+    const double h = experiment_.grid.cell_size;
+    const auto of = [&](const char* id, double unit = 1) {
+      const int number = body.number(id);
+      return number < 0 ? std::vector<double>() : body.arrays.index_major(number, unit);
+    };
     BodyState state;
-    state.position = body.particle_major(body.position.data(), D);
-    state.velocity = body.particle_major(body.velocity.data(), D);
-    state.transfer_state = body.fields(body.transfer_state, *body.transfer->plugin);
-    if (const int scalars = body.basis_functions * D; scalars > 0)
-      state.transfer_state[polynomial_coefficients] = body.particle_major(
-          body.transfer_state.data() + body.transfer_state.size() - static_cast<std::size_t>(scalars) * body.count,
-          scalars);
-    state.material_state = body.fields(body.material_state, *body.material->plugin);
+    state.position = of("position"), state.velocity = of("velocity");
+    state.initial_position = body.initial_position;
+    for (int number = 0; number < static_cast<int>(body.arrays.fields().size()); ++number) {
+      const Field& field = body.arrays.fields()[number];
+      if (field.origin != Origin::host)
+        (field.origin == Origin::transfer ? state.transfer_state : state.material_state)[field.id] =
+            body.arrays.index_major(number);
+    }
     state.mass = body.mass, state.volume = body.volume;
-    if (body.axisymmetric) state.circumference = body.particle_major(body.circumference.data(), 1);
-    if (!body.corners.empty())
-      state.corners = body.particle_major(body.corners.data(), plan_.sample_points * D, experiment_.grid.cell_size);
-    if (!body.domain.empty()) state.domain = body.particle_major(body.domain.data(), D * D, experiment_.grid.cell_size);
+    state.circumference = of("circumference");
+    state.corners = of("corners", h), state.domain = of("domain", h);
+    state.second_moment = of("second_moment", h * h);
     return state;
   }
 
  private:
   // ---- the scene ---------------------------------------------------------------------------------------------------
 
-  void refuse_what_kernels_lack() const {
-    const auto refuse = [](const std::string& what) {
-      throw std::invalid_argument("the device kernels do not do " + what + " yet; use the backend \"cpu\"");
-    };
-    for (int axis = 0; axis < experiment_.dimension; ++axis)
-      for (const FaceCondition& face : experiment_.faces[axis])
-        if (face.type == ConditionType::prescribed || face.velocity) refuse("walls of a given velocity");
-    if (!experiment_.boxes.empty()) refuse("boxes of conditions");
-    if (experiment_.body_force) refuse("body forces");
-    if (plan_.ledger) refuse("the energy ledger (\"/output/ledger\": false turns it off)");
-    if (team_.lanes < 1 || team_.lanes > largest_team)
-      throw std::invalid_argument("a team has 1 to " + std::to_string(largest_team) + " lanes");
-  }
-
-  void describe_scene() {
-    const GridSpecification& grid = experiment_.grid;
-    scene_ = {};
-    scene_.cell_size = static_cast<T>(grid.cell_size);
-    scene_.inverse_cell_size = static_cast<T>(1 / grid.cell_size);
-    scene_.node_count = 1;
+  static Arguments<T> described(const Experiment& experiment) {
+    const GridSpecification& grid = experiment.grid;
+    Arguments<T> scene{};
+    scene.cell_size = static_cast<T>(grid.cell_size);
+    scene.inverse_cell_size = static_cast<T>(1 / grid.cell_size);
+    scene.node_count = 1;
     for (int c = 0; c < 3; ++c) {
-      const bool used = c < experiment_.dimension;
-      scene_.lower[c] = static_cast<T>(grid.lower[c]);
-      scene_.gravity[c] = static_cast<T>(experiment_.gravity[c]);
-      scene_.cells[c] = used ? grid.cells[c] : 0;
-      scene_.padding[c] = used ? grid_padding_of(experiment_.shape.plugin->shape()) : 0;
-      scene_.extent[c] = scene_.cells[c] + 1 + 2 * scene_.padding[c];
-      scene_.node_count *= scene_.extent[c];
+      const bool used = c < experiment.dimension;
+      scene.lower[c] = static_cast<T>(grid.lower[c]);
+      scene.gravity[c] = static_cast<T>(experiment.gravity[c]);
+      scene.cells[c] = used ? grid.cells[c] : 0;
+      scene.padding[c] = used ? grid_padding_of(experiment.shape.plugin->shape()) : 0;
+      scene.extent[c] = scene.cells[c] + 1 + 2 * scene.padding[c];
+      scene.node_count *= scene.extent[c];
       for (int side = 0; side < 2; ++side)
-        scene_.walls[c][side] = used ? static_cast<int>(experiment_.faces[c][side].type) : wall_free;
+        scene.walls[c][side] = used ? static_cast<int>(experiment.faces[c][side].type) : wall_free;
     }
     const auto block = [](const std::optional<Component>& component) {
       return component ? component->parameters.data() : nullptr;
     };
-    scene_.shape_parameters = experiment_.shape.parameters.data();
-    scene_.transfer_parameters = experiment_.transfer.parameters.data();
-    scene_.filter_parameters = block(experiment_.filter), scene_.contact_parameters = block(experiment_.contact);
-    scene_.first_failed = &first_failed_;
+    scene.shape_parameters = experiment.shape.parameters.data();
+    scene.transfer_parameters = experiment.transfer.parameters.data();
+    scene.filter_parameters = block(experiment.filter), scene.contact_parameters = block(experiment.contact);
+    return scene;
   }
 
   bool periodic(int axis) const { return scene_.walls[axis][0] == wall_periodic; }
   int nodes() const { return scene_.node_count; }
   int vectors() const { return experiment_.dimension * scene_.node_count; }
-  int rows_per_cell(int field) const {
-    int rows = 8;
-    for (const BodySpecification& body : experiment_.bodies)
-      if (body.field == field) rows = std::min(rows, body.particles_per_cell_axis);
-    return rows;
+
+  /// Calls visit(field, number) for what a checkpoint holds, in order.
+  template <class AnyBody, class Visit>
+  static void for_each_saved(AnyBody& body, Visit visit) {
+    for (int number = 0; number < static_cast<int>(body.arrays.fields().size()); ++number)
+      if (body.arrays.fields()[number].lifetime == Lifetime::saved) visit(body.arrays.fields()[number], number);
   }
 
   // ---- launching ---------------------------------------------------------------------------------------------------
 
   int teams(int indices) const { return (indices + team_.lanes - 1) / team_.lanes; }
 
+  /// What phases over the grid are told beside the scene.
+  struct Manner {
+    bool remap = false, after_forces = false, walls_at_rest = false;
+  };
+  Arguments<T> arguments_of(VelocityField<T>& field, const Manner& manner) {
+    Arguments<T> a = scene_;
+    a.grid = field.table(), a.iteration = static_cast<int>(filter_.iterations + 1);
+    a.remap = manner.remap, a.after_forces = manner.after_forces, a.walls_at_rest = manner.walls_at_rest;
+    return a;
+  }
+
   /// One phase over `indices` of every field's grid.
-  void for_each_field(const std::string& phase, int indices, bool remap = false) {
-    for (Field<T>& field : fields_) {
-      Arguments<T> a = scene_;
-      a.grid = field.arrays(), a.remap = remap, a.iteration = static_cast<int>(filter_.iterations + 1);
-      device_.run(phase, a, teams(indices), team_);
-    }
+  void for_each_field(const std::string& phase, int indices, const Manner& manner = {}) {
+    for (VelocityField<T>& field : fields_) device_.run(phase, arguments_of(field, manner), teams(indices), team_);
   }
 
   /// One phase of folds along the lines of every one of these axes.
-  void for_each_axis(const std::string& phase, const std::vector<int>& axes, bool remap = false) {
+  void for_each_axis(const std::string& phase, const std::vector<int>& axes, const Manner& manner = {}) {
     for (const int axis : axes)
-      for (Field<T>& field : fields_) {
-        Arguments<T> a = scene_;
-        a.grid = field.arrays(), a.axis = axis, a.remap = remap;
+      for (VelocityField<T>& field : fields_) {
+        Arguments<T> a = arguments_of(field, manner);
+        a.axis = axis;
         device_.run(phase, a, teams(nodes() / scene_.extent[axis]), team_);
       }
   }
@@ -373,11 +342,30 @@ class HostRun final : public Backend {
 
   Arguments<T> arguments_of(Body<T>& body) {
     Arguments<T> a = scene_;
-    a.particles = body.arrays();
-    a.grid = fields_[body.field].arrays();
+    a.particles = body.table();
+    a.grid = fields_[body.field].table();
     a.material_parameters = body.material->parameters.data();
     a.blocks = {body.block_cell.data(), body.block_begin.data(), body.order.data()};
     return a;
+  }
+
+  /// A phase that sums in teams; what the teams have summed, added up in order.
+  template <std::size_t count = 1>
+  std::array<double, count> sum(const std::string& phase, Arguments<T> a, int indices) {
+    std::vector<double> partial(count * static_cast<std::size_t>(teams(indices)));
+    a.partial_sums = partial.data();
+    device_.run(phase, a, teams(indices), team_);
+    std::array<double, count> sums{};
+    for (std::size_t k = 0; k < partial.size(); ++k) sums[k % count] += partial[k];
+    return sums;
+  }
+  double sum_over_nodes(const std::string& phase) {
+    double total = 0;
+    for (VelocityField<T>& field : fields_) total += sum(phase, arguments_of(field, {}), nodes())[0];
+    return total;
+  }
+  double sum_over_particles(const std::string& phase, Body<T>& body) {
+    return sum(phase, arguments_of(body), body.count)[0];
   }
 
   /// Runs a phase and stops the run where it reports a particle.
@@ -396,6 +384,7 @@ class HostRun final : public Backend {
     Arguments<T> a = arguments_of(body);
     a.dt *= static_cast<T>(pass.share);
     run_material("strain", a, body);
+    if (accounted_) ledger_.material += sum_over_particles("energy_dissipated", body);
   }
   static constexpr const char* outside_grid =
       "its stencil reaches beyond the grid or does not hold its domain, or its position is not a number";
@@ -409,64 +398,108 @@ class HostRun final : public Backend {
       run_material("wave_speed", body);
       for (int p = 0; p < body.count; ++p) {
         double square = 0;
-        for (int c = 0; c < experiment_.dimension; ++c) {
-          const double v = body.velocity[static_cast<std::size_t>(c) * body.count + p];
-          square += v * v;
-        }
-        const double speed = body.wave_speed[p] + std::sqrt(square);
-        if (speed > limit_.speed)
-          limit_ = {speed, body.wave_speed[p], static_cast<int>(index), static_cast<std::size_t>(p)};
+        for (const double v : body.vector(body.arrays.of("velocity"), p)) square += v * v;
+        const double wave = body.arrays.of("wave_speed")[p], speed = wave + std::sqrt(square);
+        if (speed > limit_.speed) limit_ = {speed, wave, static_cast<int>(index), static_cast<std::size_t>(p)};
       }
     }
   }
 
-  void scatter(const Pass& pass) {
-    if (pass.remap()) for_each_field("clear", nodes(), true);
+  void scatter(const Pass& pass, const StepInfo& step) {
+    const bool enters = pass.has(Act::scatter_momentum) && !pass.remap();  // the step begins
+    const bool force = pass.has(Act::scatter_force);
+    if (pass.remap()) for_each_field("clear", nodes(), {true});
+    double energy = 0;
     for (Body<T>& body : bodies_) {
-      if (pass.has(Act::scatter_momentum) && !pass.remap()) {
-        body.stencil_domain = body.domain;
-        body.sort(scene_);
-      }
-      if (pass.has(Act::scatter_force) || pass.has(Act::scatter_contact)) run_material("stress", body);
+      if (enters) body.sort(scene_);
+      if (force || pass.has(Act::scatter_contact)) run_material("stress", body);
+      if (force) evaluate_body_force(body, step.time);
       Arguments<T> a = arguments_of(body);
-      a.momentum = pass.has(Act::scatter_momentum), a.force = pass.has(Act::scatter_force),
+      a.momentum = pass.has(Act::scatter_momentum), a.force = force;
       a.contact_fields = pass.has(Act::scatter_contact), a.remap = pass.remap();
       run("scatter", a, body.blocks(), body, outside_grid);
+      if (accounted_ && enters) energy += sum_over_particles("energy_of_particles", body);
     }
     if (!pass.has(Act::scatter_momentum)) return;
-    for_each_axis("fold_masses", images_, pass.remap());
-    if (!pass.remap()) for_each_axis("fold_forces", images_);
+    if (enters) for_each_field("weigh", nodes());
+    for_each_axis("fold_masses", images_, {pass.remap()});
+    if (!enters) return;
+    for_each_axis("fold_forces", images_);
+    if (!accounted_) return;
+    scattered_energy_ = sum_over_nodes("energy_of_momenta");
+    ledger_.scatter += scattered_energy_ - energy;
   }
 
-  void momentum_to_velocity(const Pass& pass) {
-    for_each_axis("fold_masses", walls_, pass.remap());
+  /// The experiment's body force at every particle.
+  void evaluate_body_force(Body<T>& body, double time) {
+    if (!experiment_.body_force) return;
+    const T* const position = body.arrays.of("position");
+    T* const acceleration = body.arrays.of("body_acceleration");
+    const std::size_t D = experiment_.dimension;
+    for (int p = 0; p < body.count; ++p) {
+      const Vector3 x = body.vector(position, p);
+      Vector3 X = x;
+      for (std::size_t c = 0; c < D && !body.initial_position.empty(); ++c) X[c] = body.initial_position[p * D + c];
+      const Vector3 value = (*experiment_.body_force)(x, X, time);
+      for (std::size_t c = 0; c < D; ++c) acceleration[c * body.count + p] = static_cast<T>(value[c]);
+    }
+  }
+
+  void momentum_to_velocity(const Pass& pass, const StepInfo& step) {
+    const bool accounted = accounted_ && !pass.remap();
+    conditions_.evaluate(step.time, scene_);
+    for_each_axis("fold_masses", walls_, {pass.remap()});
     if (!pass.remap()) for_each_axis("fold_forces", folded_axes());
-    if (plan_.constrained_velocity) for_each_field("keep_free_velocity", vectors());
-    for_each_field("impose_walls", nodes());
-    if (plan_.contact) resolve_contact(nullptr);
-    for_each_field("momentum_to_velocity", nodes(), pass.remap());
-    if (plan_.constrained_velocity) for_each_field("measure_constraints", vectors());
+    for_each_field("divide", vectors());
+    keep_free_velocity({});
+    for_each_field("impose_conditions", nodes());
+    if (accounted) ledger_.boundary += sum_over_nodes("energy_of_velocities") - scattered_energy_;
+    if (plan_.contact) {
+      resolve_contact(step.dt, pass.remap() ? Recorded::nothing : Recorded::before_forces);
+      const double before = accounted ? sum_over_nodes("energy_of_velocities") : 0.0;
+      for_each_field("impose_conditions", nodes());
+      if (accounted) ledger_.boundary += sum_over_nodes("energy_of_velocities") - before;
+    }
+    measure_constraints();
+    if (!pass.remap()) for_each_field("keep_velocity", vectors());
     for_each_axis("fill_velocities", filled_axes());
   }
 
   void apply_forces(const StepInfo& step) {
+    const Manner after{false, true};
+    conditions_.evaluate(step.time + step.dt, scene_);
     for_each_axis("fold_forces", folded_axes());  // what USF scattered after the momenta were folded
-    for_each_field("accelerate", vectors());
-    if (plan_.constrained_velocity) for_each_field("keep_free_velocity", vectors());
-    for_each_field("impose_walls", nodes());
-    if (plan_.contact) resolve_contact(&step);
-    for_each_field("update_velocity", nodes());
-    if (plan_.constrained_velocity) for_each_field("measure_constraints", vectors());
+    for_each_field("accelerate", nodes());
+    keep_free_velocity(after);
+    for_each_field("impose_conditions", nodes(), after);
+    if (plan_.contact) {
+      resolve_contact(step.dt, Recorded::after_forces);
+      for_each_field("impose_conditions", nodes(), after);
+    }
+    measure_constraints();
+    if (accounted_) account_for_impulses();
     for_each_axis("fill_velocities", filled_axes());
   }
 
+  void account_for_impulses() {
+    for (VelocityField<T>& field : fields_) {
+      const auto work = sum<5>("work_of_forces", arguments_of(field, {}), nodes());
+      ledger_.internal_force += work[0], ledger_.body_force += work[1], ledger_.gravity += work[2];
+      ledger_.boundary += work[3], ledger_.contact += work[4];
+    }
+    energy_after_ = sum_over_nodes("energy_of_velocities");
+  }
+
   void gather(const Pass& pass, const StepInfo& step) {
+    double energy = 0;
     for (Body<T>& body : bodies_) {
       Arguments<T> a = arguments_of(body);
       a.update_particles = true, a.filtered = step.filtered;
       run("gather", a, teams(body.count), body, outside_grid);
+      if (accounted_) energy += sum_over_particles("energy_of_particles", body);  // while weights are those of the step
       if (pass.has(Act::strain)) run_strain(pass, body);
     }
+    if (accounted_) ledger_.gather += energy - energy_after_;
     if (pass.has(Act::move)) move();
   }
 
@@ -487,31 +520,37 @@ class HostRun final : public Backend {
 
   // ---- contact -----------------------------------------------------------------------------------------------------
 
-  /// The law on every pair of fields, then walls again. With a step the pair's force goes to the record.
-  void resolve_contact(const StepInfo* step) {
-    if (step) contact_ = {};
+  /// What of contact goes to the ledger, and to the record.
+  enum class Recorded { nothing, before_forces, after_forces };
+
+  /// The law on every pair of fields.
+  void resolve_contact(double dt, Recorded recorded) {
+    if (recorded == Recorded::after_forces) contact_ = {};
+    std::array<double, 3> unbalanced{};
     for (std::size_t a = 0; a < fields_.size(); ++a)
       for (std::size_t b = a + 1; b < fields_.size(); ++b) {
         find_pairs(a, b);
         Arguments<T> arguments = scene_;
-        arguments.grid = fields_[a].arrays(), arguments.other = fields_[b].arrays();
-        arguments.contact = {active_.data(),  normal_.data(),     separation_.data(), area_.data(),
-                             impulse_.data(), dissipated_.data(), status_.data()};
+        arguments.grid = fields_[a].table(), arguments.other = fields_[b].table();
+        arguments.contact = {active_.data(),     normal_.data(), separation_.data(), area_.data(),  impulse_.data(),
+                             unbalanced_.data(), work_.data(),   dissipated_.data(), status_.data()};
         device_.run("contact", arguments, teams(nodes()), team_);
-        if (step) record_pairs(step->dt);
+        if (recorded != Recorded::nothing && accounted_) account_for_pairs(recorded);
+        if (recorded == Recorded::after_forces) record_pairs(dt, unbalanced);
       }
-    for_each_field("impose_walls", nodes());
+    if (recorded == Recorded::after_forces)
+      contact_.momentum_residual = std::hypot(unbalanced[0], unbalanced[1], unbalanced[2]);
   }
 
   /// Normal, separation and area at every node that two fields share (simulation/contact_pair.hpp).
   void find_pairs(std::size_t a, std::size_t b) {
     const bool weld = experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION;
     const int D = experiment_.dimension, n = nodes();
+    const ContactFields fields_of_a(fields_[a]), fields_of_b(fields_[b]);
     for (int node = 0; node < n; ++node) {
-      const ContactFieldNode of_a = contact_view(fields_[a], node), of_b = contact_view(fields_[b], node);
+      const ContactFieldNode of_a = fields_of_a.at(node, D, n), of_b = fields_of_b.at(node, D, n);
       active_[node] = 0;
-      if (of_a.mass <= 0 || of_b.mass <= 0) continue;
-      if (!weld && std::min(of_a.mass, of_b.mass) < contact_prescreen * (of_a.mass + of_b.mass)) continue;
+      if (!meet(of_a.mass, of_b.mass, weld)) continue;
       const ContactGeometry geometry =
           contact_geometry(of_a, of_b, edges_[a], edges_[b], experiment_.grid.cell_size, D);
       if (!geometry.valid && !weld) continue;
@@ -520,17 +559,37 @@ class HostRun final : public Backend {
       separation_[node] = static_cast<T>(geometry.separation), area_[node] = static_cast<T>(geometry.area);
     }
   }
-  ContactFieldNode contact_view(const Field<T>& field, int node) const {
-    ContactFieldNode view{field.mass[node], field.volume[node], {}, {}};
-    for (int c = 0; c < experiment_.dimension; ++c) {
-      const std::size_t at = static_cast<std::size_t>(c) * nodes() + node;
-      view.volume_gradient[c] = field.volume_gradient[at], view.mass_position[c] = field.mass_position[at];
+  /// What detection reads of one velocity field.
+  struct ContactFields {
+    const T *mass, *volume, *volume_gradient, *mass_position;
+    explicit ContactFields(const VelocityField<T>& field)
+        : mass(field.arrays.of("mass")),
+          volume(field.arrays.of("volume")),
+          volume_gradient(field.arrays.of("volume_gradient")),
+          mass_position(field.arrays.of("mass_position")) {}
+    ContactFieldNode at(int node, int dimension, int nodes) const {
+      ContactFieldNode view{mass[node], volume[node], {}, {}};
+      for (int c = 0; c < dimension; ++c) {
+        const std::size_t at = static_cast<std::size_t>(c) * nodes + node;
+        view.volume_gradient[c] = volume_gradient[at], view.mass_position[c] = mass_position[at];
+      }
+      return view;
     }
-    return view;
-  }
-  void record_pairs(double dt) {
+  };
+  /// Before the forces v- itself changes, at once; after them the impulse counts between v- and v+ (work_of_forces).
+  void account_for_pairs(Recorded recorded) {
     for (int node = 0; node < nodes(); ++node) {
-      if (!active_[node] || status_[node] == MPM_APART) continue;
+      if (!active_[node]) continue;
+      if (recorded == Recorded::before_forces) ledger_.contact += work_[node];
+      ledger_.friction += dissipated_[node];
+    }
+  }
+  void record_pairs(double dt, std::array<double, 3>& unbalanced) {
+    for (int node = 0; node < nodes(); ++node) {
+      if (!active_[node]) continue;
+      for (int c = 0; c < experiment_.dimension; ++c)
+        unbalanced[c] += unbalanced_[static_cast<std::size_t>(c) * nodes() + node];
+      if (status_[node] == MPM_APART) continue;
       for (int c = 0; c < experiment_.dimension; ++c)
         contact_.force[c] += impulse_[static_cast<std::size_t>(c) * nodes() + node] / dt;
       ++contact_.nodes;
@@ -541,63 +600,76 @@ class HostRun final : public Backend {
 
   // ---- filter ------------------------------------------------------------------------------------------------------
 
-  /// sqrt(sum m v*.v*), the teams' sums added on the host.
-  double increment_norm() {
-    double sum = 0;
-    std::vector<T> partial(teams(nodes()));
-    for (Field<T>& field : fields_) {
-      Arguments<T> a = scene_;
-      a.grid = field.arrays(), a.partial_sums = partial.data();
-      device_.run("increment_norm", a, teams(nodes()), team_);
-      for (const T part : partial) sum += part;
-    }
-    return std::sqrt(sum);
+  /// Time of the walls' velocity: that of v- before the forces, of v+ after them.
+  static double time_of(const Pass& pass, const StepInfo& step) {
+    return pass.stage == Stage::after_forces ? step.time + step.dt : step.time;
   }
 
-  void begin_filter() {
+  double increment_norm() { return std::sqrt(sum_over_nodes("increment_norm")); }
+
+  void begin_filter(const Pass& pass) {
     for_each_field("begin_filter", vectors());
+    if (pass.has(Act::keep_velocity)) for_each_field("keep_unfiltered", vectors());
     filter_.iterations = 0;
     filter_.first_norm = filter_.last_norm = increment_norm();
+    if (accounted_) energy_unfiltered_ = sum_over_nodes("energy_of_velocities");
   }
 
-  void project() {
+  /// The first increment is a velocity, which a moving wall mirrors about its own; later ones are differences.
+  void project(const Pass& pass, const StepInfo& step) {
+    conditions_.evaluate(time_of(pass, step), scene_);
     for_each_field("clear_projection", vectors());
     for (Body<T>& body : bodies_) run("project", arguments_of(body), body.blocks(), body, outside_grid);
-    for_each_axis("fold_projection", folded_axes());
+    for_each_axis("fold_projection", folded_axes(), {false, false, filter_.iterations > 0});
   }
 
-  void update_filter() {
+  void update_filter(const Pass& pass, const StepInfo& step) {
     for_each_field("update_filter", nodes());
     if (experiment_.filter_schedule.constrain_always) {
-      constrain_velocity();
+      constrain_velocity(pass, step);
       for_each_field("correct_increment", vectors());
     }
-    filter_.take_norm(increment_norm());
+    filter_.take_norm(increment_norm(), 4500.0 * static_cast<double>(std::numeric_limits<T>::epsilon()));
     for_each_axis("fill_increments", filled_axes());
   }
 
-  /// Walls, contact and walls again on the grid's velocity without what they have added so far.
-  void constrain_velocity() {
-    if (plan_.constrained_velocity) for_each_field("take_free_velocity", vectors());
-    for_each_field("velocity_to_momentum", vectors());
-    for_each_field("impose_walls", nodes());
-    if (plan_.contact) resolve_contact(nullptr);
-    for_each_field("update_velocity", nodes());
+  void keep_free_velocity(const Manner& manner) {
+    if (plan_.constrained_velocity) for_each_field("keep_free_velocity", vectors(), manner);
+  }
+  void measure_constraints() {
     if (plan_.constrained_velocity) for_each_field("measure_constraints", vectors());
   }
 
-  void end_filter(const Pass& pass) {
-    if (!experiment_.filter_schedule.constrain_always) constrain_velocity();
-    for_each_axis("fill_velocities", filled_axes());
-    if (pass.stage == Stage::before_forces) return;
-    for_each_field("velocity_to_momentum", vectors());
+  /// Conditions, contact and conditions again on the grid's velocity without what they have added so far, and on no
+  /// one's record.
+  void constrain_velocity(const Pass& pass, const StepInfo& step) {
+    conditions_.evaluate(time_of(pass, step), scene_);
+    if (plan_.constrained_velocity) for_each_field("take_free_velocity", vectors());
+    for_each_field("impose_conditions", nodes());
+    if (plan_.contact) {
+      resolve_contact(step.dt, Recorded::nothing);
+      for_each_field("impose_conditions", nodes());
+    }
+    measure_constraints();
   }
 
-  void add_correction() {
-    for_each_field("add_correction", vectors());
-    constrain_velocity();
+  void end_filter(const Pass& pass, const StepInfo& step) {
+    conditions_.evaluate(time_of(pass, step), scene_);
+    if (!experiment_.filter_schedule.constrain_always) constrain_velocity(pass, step);
     for_each_axis("fill_velocities", filled_axes());
-    for_each_field("velocity_to_momentum", vectors());
+    if (pass.stage != Stage::after_forces || !accounted_) return;
+    energy_after_ = sum_over_nodes("energy_of_velocities");
+    ledger_.filter += energy_after_ - energy_unfiltered_;
+  }
+
+  void add_correction(const Pass& pass, const StepInfo& step) {
+    const double unfiltered = accounted_ ? sum_over_nodes("energy_of_velocities") : 0.0;
+    for_each_field("add_correction", vectors());
+    constrain_velocity(pass, step);
+    for_each_axis("fill_velocities", filled_axes());
+    if (!accounted_) return;
+    energy_after_ = sum_over_nodes("energy_of_velocities");
+    ledger_.filter += energy_after_ - unfiltered;
   }
 
   const Experiment& experiment_;
@@ -605,17 +677,22 @@ class HostRun final : public Backend {
   HostDevice device_;
   TeamShape team_;
   Arguments<T> scene_;
+  Conditions<T> conditions_;
   std::vector<Body<T>> bodies_;
-  std::vector<Field<T>> fields_;
+  std::vector<VelocityField<T>> fields_;
   std::vector<int> images_, walls_;  ///< axes
   std::vector<EdgeModel> edges_;
   std::vector<int> active_, status_;
-  std::vector<T> normal_, separation_, area_, impulse_, dissipated_;
+  std::vector<T> normal_, separation_, area_, impulse_, unbalanced_, work_, dissipated_;
   int first_failed_ = INT_MAX;
   TimeStepLimit limit_;
-  Ledger ledger_;  ///< stays empty: refused where it is asked for
+  Ledger ledger_;
+  bool accounted_ = false;  ///< the ledger takes its entries from the step under way
   ContactRecord contact_;
   FilterRecord filter_;
+  double scattered_energy_ = 0;   ///< kinetic energy of the grid as scattered, images summed, J
+  double energy_after_ = 0;       ///< of the grid when particles gather from it
+  double energy_unfiltered_ = 0;  ///< of the grid when the filter began
 };
 
 }  // namespace

@@ -7,9 +7,8 @@
 
 namespace mpm::device {
 
-/// `device` is a composition of choice_of(experiment); a team has 1 to 256 lanes.
-/// Throws std::invalid_argument for what kernels do not do yet: prescribed walls, boxes of conditions, body forces and
-/// the energy ledger ("/output/ledger": false turns it off).
+/// `device` is a composition of choice_of(experiment, plan), and the plan that of an experiment with the backend
+/// "device". Throws std::invalid_argument where a team has not 1 to 256 lanes.
 std::unique_ptr<Backend> make_host_run(const Experiment& experiment, const Plan& plan,
                                        const std::vector<SeededBody>& seeded, const HostDevice& device,
                                        const TeamShape& team);

@@ -2,6 +2,7 @@
 // Reading and writing the columns of arrays, parameter blocks, and where a node lies.
 
 #include "backends/device/kernels/arguments.hpp"
+#include "backends/device/kernels/fields.hpp"
 #include "backends/device/kernels/team.hpp"
 #include "kernel/functor.hpp"
 
@@ -55,6 +56,21 @@ template <class State, class T>
 MPM_HD void store_state(T* array, int stride, int index, const State& state) {
   const T* flat = reinterpret_cast<const T*>(&state);
   for (int k = 0; k < scalars_of<State, T>; ++k) array[k * stride + index] = flat[k];
+}
+
+/// What a particle keeps of its transfer.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD auto transfer_state(const ParticleArrays<T>& particles, int p) {
+  using State = typename Scene::Transfer::template State<Scene::dimension, T>;
+  if constexpr (scalars_of < State, T >> 0)
+    return load_state<State>(particles.field[Scene::Particle::transfer_state], particles.stride, p);
+  else
+    return State{};
+}
+template <class Scene, class State, class T = typename Scene::Scalar>
+MPM_HD void store_transfer_state(const ParticleArrays<T>& particles, int p, const State& state) {
+  if constexpr (scalars_of < State, T >> 0)
+    store_state(particles.field[Scene::Particle::transfer_state], particles.stride, p, state);
 }
 
 /// The host's block of doubles as the functor's own struct; the pointer may be null for a functor without parameters.

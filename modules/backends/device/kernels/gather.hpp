@@ -3,6 +3,7 @@
 
 #include "backends/device/kernels/higher.hpp"
 #include "kernel/corner_domain.hpp"
+#include "operators/edges.hpp"
 
 namespace mpm::device {
 
@@ -36,10 +37,12 @@ template <class Scene, class T = typename Scene::Scalar>
 MPM_HD void gather_corners(const Arguments<T>& a, int p, const Vec<Scene::dimension, T>& advection,
                            const Vec<Scene::dimension, T>& gathered) {
   constexpr int D = Scene::dimension;
+  using P = typename Scene::Particle;
   const int stride = a.particles.stride;
-  const Vec<D, T> x = position_in_cells<D>(a, p);
+  const T* const velocity = a.grid.field[Scene::Node::velocity];
+  const Vec<D, T> x = position_in_cells<Scene>(a, p);
   Vec<D, T> corners[1 << D];
-  load_corners<D>(a.particles.corners, stride, p, corners);
+  load_corners<D>(a.particles.field[P::corners], stride, p, corners);
   for (int c = 0; c < 1 << D; ++c) {
     const TentCell<D, T> cell(x, corners[c]);
     Vec<D, T> v;
@@ -50,11 +53,11 @@ MPM_HD void gather_corners(const Arguments<T>& a, int p, const Vec<Scene::dimens
       int node[D];
       for (int i = 0; i < D; ++i) node[i] = cell.node(which, i);
       const int index = node_index<D>(a, node);
-      for (int i = 0; i < D; ++i) v[i] += weight * a.grid.velocity[i * a.node_count + index];
+      for (int i = 0; i < D; ++i) v[i] += weight * velocity[i * a.node_count + index];
     }
     for (int i = 0; i < D; ++i) corners[c][i] += a.dt * a.inverse_cell_size * v[i];
   }
-  store_corners<D>(a.particles.moved_corners, stride, p, corners);
+  store_corners<D>(a.particles.field[P::moved_corners], stride, p, corners);
 }
 
 /// Gather pass; without `update_particles` only the velocity gradient that strains the particle (of USF and MUSL).
@@ -62,30 +65,47 @@ template <class Scene>
 MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using Transfer = typename Scene::Transfer;
-  using State = typename Transfer::template State<Scene::dimension, T>;
+  using N = typename Scene::Node;
+  using P = typename Scene::Particle;
   constexpr int D = Scene::dimension;
   for_each_index(team, a.particles.count, [&](int p) {
     const ParticleArrays<T>& particles = a.particles;
     const int stride = particles.stride;
     const Stencil<Scene> stencil(a, p);
     if (!stencil.inside()) return Team::lower(a.first_failed, p);
-    const auto moments = gathered_moments<Scene>(a, stencil, a.grid.velocity, a.grid.velocity_before);
-    store_matrix(particles.velocity_gradient, stride, p,
+    const T* before = nullptr;
+    if constexpr (Scene::gathers_increment) before = a.grid.field[N::velocity_before];
+    const auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::velocity], before);
+    store_matrix(particles.field[P::velocity_gradient], stride, p,
                  Scene::strain_by_affine ? moments.affine : moments.velocity_gradient);
-    if constexpr (Scene::axisymmetric) particles.hoop_rate[p] = moments.velocity[0] / particles.position[p];
+    if constexpr (Scene::axisymmetric)
+      particles.field[P::hoop_rate][p] = moments.velocity[0] / particles.field[P::position][p];
     if (!a.update_particles) return;
-    Vec<D, T> v = load<D>(particles.velocity, stride, p), advection;
-    State state = load_state<State>(particles.transfer_state, stride, p);
+    Vec<D, T> v = load<D>(particles.field[P::velocity], stride, p), advection;
+    auto state = transfer_state<Scene>(particles, p);
     Transfer::gather(parameters_of<Transfer>(a.transfer_parameters), moments, a.dt, v, state, advection);
     if (a.filtered) v = advection = moments.velocity;
-    store(particles.velocity, stride, p, v);
-    store(particles.advection, stride, p, advection);
+    store(particles.field[P::velocity], stride, p, v);
+    store(particles.field[P::advection_velocity], stride, p, advection);
     if constexpr (Scene::sampled) gather_corners<Scene>(a, p, advection, moments.velocity);
-    store_state(particles.transfer_state, stride, p, state);
+    store_transfer_state<Scene>(particles, p, state);
     if constexpr (Scene::basis_functions > 0) {
       Higher<Scene> higher(stencil);
-      higher.gather(a, a.grid.velocity);
-      higher.store(particles.transfer_state, stride, p);
+      higher.gather(a, a.grid.field[N::velocity]);
+      higher.store(particles, p);
+    }
+  });
+}
+
+/// The shape's second moment at each particle, cells^2: what metrics read.
+template <class Scene>
+MPM_HD void second_moments(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using P = typename Scene::Particle;
+  for_each_index(team, a.particles.count, [&](int p) {
+    if constexpr (P::second_moment >= 0) {
+      const Stencil<Scene> stencil(a, p);
+      if (!stencil.inside()) return Team::lower(a.first_failed, p);
+      store_matrix(a.particles.field[P::second_moment], a.particles.stride, p, stencil.second_moment());
     }
   });
 }
@@ -99,30 +119,31 @@ inline constexpr T position_tolerance = sizeof(T) == 4 ? T(1e-6) : T(1e-9);
 template <class Scene>
 MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
+  using P = typename Scene::Particle;
   constexpr int D = Scene::dimension;
   for_each_index(team, a.particles.count, [&](int p) {
+    if (a.particles.frozen) return;
     const int stride = a.particles.stride;
-    Vec<D, T> x = load<D>(a.particles.position, stride, p);
-    const Vec<D, T> v = load<D>(a.particles.advection, stride, p);
+    Vec<D, T> x = load<D>(a.particles.field[P::position], stride, p);
+    const Vec<D, T> v = load<D>(a.particles.field[P::advection_velocity], stride, p);
     bool inside = true;
     Vec<D, T> way;
     for (int c = 0; c < D; ++c) way[c] = a.dt * v[c];
     if constexpr (Scene::sampled) {  // the particle goes to the centroid of its moved corners
-      if (a.particles.frozen) return;
       Vec<D, T> corners[1 << D];
-      load_corners<D>(a.particles.moved_corners, stride, p, corners);
+      load_corners<D>(a.particles.field[P::moved_corners], stride, p, corners);
       const CornerDomain<D, T> domain = corner_domain<D, T>(corners);
       const Vec<D, T> centre = centroid(domain, corners);
       for (int c = 0; c < D; ++c) {
         way[c] = a.cell_size * centre[c];
         for (Vec<D, T>& corner : corners) corner[c] = corner[c] - centre[c];
       }
-      store_corners<D>(a.particles.corners, stride, p, corners);
+      store_corners<D>(a.particles.field[P::corners], stride, p, corners);
       inside = domain.upright;
     }
     for (int c = 0; c < D; ++c) {
       const T size = T(a.cells[c]) * a.cell_size;
-      if (!a.particles.frozen) x[c] += way[c];
+      x[c] += way[c];
       T at = x[c] - a.lower[c];
       if (a.walls[c][0] == wall_periodic) {
         x[c] -= size * floor(at / size);
@@ -134,8 +155,11 @@ MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
       inside = inside && at >= -margin(0) && at <= size + margin(1);  // false for NaN
     }
     if constexpr (Scene::axisymmetric) inside = inside && x[0] > T(0);
-    store(a.particles.position, stride, p, x);
+    store(a.particles.field[P::position], stride, p, x);
     if (!inside) Team::lower(a.first_failed, p);
+    if constexpr (P::strained_domain >= 0)  // no weights of this step are needed any more
+      store_matrix(a.particles.field[P::domain], stride, p,
+                   load_matrix<D>(a.particles.field[P::strained_domain], stride, p));
   });
 }
 

@@ -45,18 +45,41 @@ class Higher {
     });
   }
 
-  /// They lie behind the declared fields of the transfer's state.
-  MPM_HD void load(const T* state, int stride, int particle) {
-    for (int k = 0; k < scalars; ++k) coefficient[k] = state[(first + k) * stride + particle];
+  /// sum over the polynomials of |c|^2 sum w P^2: what they add to the particle's v^2.
+  MPM_HD T squares() const {
+    T sum = 0;
+    for_each_product<D>(Scene::basis_order, [&](int function, const int* power) {
+      T norm = 1;
+      for (int c = 0; c < D; ++c) norm *= axis_[c].norm[power[c]];
+      for (int i = 0; i < D; ++i) sum += norm * coefficient[function * D + i] * coefficient[function * D + i];
+    });
+    return sum;
   }
-  MPM_HD void store(T* state, int stride, int particle) const {
-    for (int k = 0; k < scalars; ++k) state[(first + k) * stride + particle] = coefficient[k];
+
+  MPM_HD void load(const ParticleArrays<T>& particles, int p) {
+    for (int k = 0; k < scalars; ++k)
+      coefficient[k] = particles.field[Scene::Particle::polynomial_coefficients][k * particles.stride + p];
+  }
+  MPM_HD void store(const ParticleArrays<T>& particles, int p) const {
+    for (int k = 0; k < scalars; ++k)
+      particles.field[Scene::Particle::polynomial_coefficients][k * particles.stride + p] = coefficient[k];
   }
 
  private:
-  static constexpr int first = scalars_of<typename Scene::Transfer::template State<D, T>, T>;
   const Stencil<Scene>& stencil_;
   AxisBasis<K, T> axis_[D];
 };
+
+/// The particle's polynomials beyond affine where the scene has them.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD auto higher_of(const Arguments<T>& a, const Stencil<Scene>& stencil, int p) {
+  if constexpr (Scene::basis_functions > 0) {
+    Higher<Scene> higher(stencil);
+    higher.load(a.particles, p);
+    return higher;
+  } else {
+    return 0;
+  }
+}
 
 }  // namespace mpm::device

@@ -1,46 +1,58 @@
 #pragma once
 // All kernels, and their entries by name. The composer defines Scene, and Scene0, Scene1 ... with a material each,
-// in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_CONTACT_ENTRIES and MPM_DEVICE_FILTER_ENTRIES where
-// the scene has these, and MPM_DEVICE_MATERIAL_ENTRIES(n) for each material.
+// in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_LEDGER_ENTRIES, MPM_DEVICE_CONTACT_ENTRIES,
+// MPM_DEVICE_FILTER_ENTRIES and MPM_DEVICE_FILTER_LOOP_ENTRIES where the scene has these, and MPM_DEVICE_MATERIAL_ENTRIES(n) for each material.
 
 #include "backends/device/kernels/contact.hpp"
 #include "backends/device/kernels/filter.hpp"
 #include "backends/device/kernels/gather.hpp"
 #include "backends/device/kernels/grid.hpp"
+#include "backends/device/kernels/ledger.hpp"
 #include "backends/device/kernels/material.hpp"
 #include "backends/device/kernels/scatter.hpp"
 
 #define MPM_DEVICE_ENTRIES                                                           \
   MPM_DEVICE_ENTRY(mpm_clear, clear<Scene>, 1)                                       \
   MPM_DEVICE_ENTRY(mpm_scatter, scatter<Scene>, mpm::device::scatter_scalars<Scene>) \
+  MPM_DEVICE_ENTRY(mpm_weigh, weigh<Scene>, 1)                                       \
   MPM_DEVICE_ENTRY(mpm_fold_masses, fold_masses<Scene>, 1)                           \
   MPM_DEVICE_ENTRY(mpm_fold_forces, fold_forces<Scene>, 1)                           \
   MPM_DEVICE_ENTRY(mpm_fill_velocities, fill_velocities<Scene>, 1)                   \
-  MPM_DEVICE_ENTRY(mpm_impose_walls, impose_walls<Scene>, 1)                         \
-  MPM_DEVICE_ENTRY(mpm_momentum_to_velocity, momentum_to_velocity<Scene>, 1)         \
-  MPM_DEVICE_ENTRY(mpm_update_velocity, update_velocity<Scene>, 1)                   \
+  MPM_DEVICE_ENTRY(mpm_divide, divide<Scene>, 1)                                     \
+  MPM_DEVICE_ENTRY(mpm_impose_conditions, impose_conditions<Scene>, 1)               \
+  MPM_DEVICE_ENTRY(mpm_keep_velocity, keep_velocity<Scene>, 1)                       \
   MPM_DEVICE_ENTRY(mpm_accelerate, accelerate<Scene>, 1)                             \
   MPM_DEVICE_ENTRY(mpm_gather, gather<Scene>, 1)                                     \
-  MPM_DEVICE_ENTRY(mpm_move, move<Scene>, 1)
+  MPM_DEVICE_ENTRY(mpm_move, move<Scene>, 1)                                         \
+  MPM_DEVICE_ENTRY(mpm_second_moments, second_moments<Scene>, 1)
+
+#define MPM_DEVICE_LEDGER_ENTRIES                                                                               \
+  MPM_DEVICE_ENTRY(mpm_energy_of_momenta, energy_of_momenta<Scene>, (mpm::device::sum_scalars<Scene, 1>))       \
+  MPM_DEVICE_ENTRY(mpm_energy_of_velocities, energy_of_velocities<Scene>, (mpm::device::sum_scalars<Scene, 1>)) \
+  MPM_DEVICE_ENTRY(mpm_work_of_forces, work_of_forces<Scene>, (mpm::device::sum_scalars<Scene, 5>))             \
+  MPM_DEVICE_ENTRY(mpm_energy_of_particles, energy_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 1>))   \
+  MPM_DEVICE_ENTRY(mpm_energy_dissipated, energy_dissipated<Scene>, (mpm::device::sum_scalars<Scene, 1>))
 
 #define MPM_DEVICE_CONTACT_ENTRIES MPM_DEVICE_ENTRY(mpm_contact, contact<Scene>, 1)
 
-#define MPM_DEVICE_FILTER_ENTRIES                                                    \
-  MPM_DEVICE_ENTRY(mpm_begin_filter, begin_filter<Scene>, 1)                         \
+#define MPM_DEVICE_FILTER_ENTRIES                                          \
+  MPM_DEVICE_ENTRY(mpm_begin_filter, begin_filter<Scene>, 1)               \
+  MPM_DEVICE_ENTRY(mpm_keep_unfiltered, keep_unfiltered<Scene>, 1)         \
+  MPM_DEVICE_ENTRY(mpm_keep_correction, keep_correction<Scene>, 1)         \
+  MPM_DEVICE_ENTRY(mpm_add_correction, add_correction<Scene>, 1)           \
+  MPM_DEVICE_ENTRY(mpm_restore_velocity, restore_velocity<Scene>, 1)       \
+  MPM_DEVICE_ENTRY(mpm_keep_free_velocity, keep_free_velocity<Scene>, 1)   \
+  MPM_DEVICE_ENTRY(mpm_take_free_velocity, take_free_velocity<Scene>, 1)   \
+  MPM_DEVICE_ENTRY(mpm_measure_constraints, measure_constraints<Scene>, 1) \
+  MPM_DEVICE_ENTRY(mpm_increment_norm, increment_norm<Scene>, (mpm::device::sum_scalars<Scene, 1>))
+
+#define MPM_DEVICE_FILTER_LOOP_ENTRIES                                               \
   MPM_DEVICE_ENTRY(mpm_clear_projection, clear_projection<Scene>, 1)                 \
   MPM_DEVICE_ENTRY(mpm_project, project<Scene>, mpm::device::project_scalars<Scene>) \
   MPM_DEVICE_ENTRY(mpm_fold_projection, fold_projection<Scene>, 1)                   \
   MPM_DEVICE_ENTRY(mpm_update_filter, update_filter<Scene>, 1)                       \
-  MPM_DEVICE_ENTRY(mpm_velocity_to_momentum, velocity_to_momentum<Scene>, 1)         \
   MPM_DEVICE_ENTRY(mpm_correct_increment, correct_increment<Scene>, 1)               \
-  MPM_DEVICE_ENTRY(mpm_fill_increments, fill_increments<Scene>, 1)                   \
-  MPM_DEVICE_ENTRY(mpm_keep_correction, keep_correction<Scene>, 1)                   \
-  MPM_DEVICE_ENTRY(mpm_add_correction, add_correction<Scene>, 1)                     \
-  MPM_DEVICE_ENTRY(mpm_restore_velocity, restore_velocity<Scene>, 1)                 \
-  MPM_DEVICE_ENTRY(mpm_keep_free_velocity, keep_free_velocity<Scene>, 1)             \
-  MPM_DEVICE_ENTRY(mpm_take_free_velocity, take_free_velocity<Scene>, 1)             \
-  MPM_DEVICE_ENTRY(mpm_measure_constraints, measure_constraints<Scene>, 1)           \
-  MPM_DEVICE_ENTRY(mpm_increment_norm, increment_norm<Scene>, mpm::device::largest_team)
+  MPM_DEVICE_ENTRY(mpm_fill_increments, fill_increments<Scene>, 1)
 
 #define MPM_DEVICE_MATERIAL_ENTRIES(n)                  \
   MPM_DEVICE_ENTRY(mpm_stress_##n, stress<Scene##n>, 1) \

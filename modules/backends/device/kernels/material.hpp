@@ -19,9 +19,11 @@ struct MaterialState<Scene, true> {
 /// L of a particle; with its zz in axisymmetric scenes.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD auto velocity_gradient_of(const ParticleArrays<T>& particles, int p) {
-  const Mat<Scene::dimension, T> L = load_matrix<Scene::dimension>(particles.velocity_gradient, particles.stride, p);
+  using P = typename Scene::Particle;
+  const Mat<Scene::dimension, T> L =
+      load_matrix<Scene::dimension>(particles.field[P::velocity_gradient], particles.stride, p);
   if constexpr (Scene::axisymmetric)
-    return Deformation<2, T>{L, particles.hoop_rate[p]};
+    return Deformation<2, T>{L, particles.field[P::hoop_rate][p]};
   else
     return L;
 }
@@ -34,10 +36,10 @@ MPM_HD void for_each_state(const Team& team, const Arguments<typename Scene::Sca
   using State = typename MaterialState<Scene, Scene::axisymmetric>::type;
   const typename Material::template Constants<T> constants(parameters_of<Material>(a.material_parameters));
   for_each_index(team, a.particles.count, [&](int p) {
-    State state = load_state<State>(a.particles.material_state, a.particles.stride, p);
+    State state = load_state<State>(a.particles.field[Scene::Particle::material_state], a.particles.stride, p);
     body(constants, p, state);
     const T J = Material::volume_ratio(state);
-    a.particles.volume_ratio[p] = J;
+    a.particles.field[Scene::Particle::volume_ratio][p] = J;
     if (!(J > T(0))) Team::lower(a.first_failed, p);
   });
 }
@@ -50,7 +52,8 @@ MPM_HD void stress(const Team& team, const Arguments<typename Scene::Scalar>& a)
   constexpr int D = Scene::dimension;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, const auto& state) {
     const Sym<D, T> tau = Material::kirchhoff_stress(constants, state);
-    for (int k = 0; k < Sym<D, T>::size; ++k) a.particles.stress[k * a.particles.stride + p] = tau.s[k];
+    for (int k = 0; k < Sym<D, T>::size; ++k)
+      a.particles.field[Scene::Particle::stress][k * a.particles.stride + p] = tau.s[k];
   });
 }
 
@@ -58,16 +61,19 @@ MPM_HD void stress(const Team& team, const Arguments<typename Scene::Scalar>& a)
 template <class Scene>
 MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using Material = typename Scene::Material;
+  using P = typename Scene::Particle;
   constexpr int D = Scene::dimension;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, auto& state) {
     const int stride = a.particles.stride;
     const auto L = velocity_gradient_of<Scene>(a.particles, p);
-    Material::advance(constants, L, a.dt, state);
-    store_state(a.particles.material_state, stride, p, state);
-    if constexpr ((Scene::list && !Scene::sampled) || Scene::deformed)
+    [[maybe_unused]] const auto dissipated = Material::advance(constants, L, a.dt, state);
+    if constexpr (P::dissipated >= 0) a.particles.field[P::dissipated][p] = dissipated;
+    store_state(a.particles.field[P::material_state], stride, p, state);
+    if constexpr (P::domain >= 0) {
+      auto* const domain = a.particles.field[P::strained_domain >= 0 ? P::strained_domain : P::domain];
       if (!a.particles.frozen)
-        store_matrix(a.particles.domain, stride, p,
-                     advanced(load_matrix<D>(a.particles.domain, stride, p), in_plane(L), a.dt));
+        store_matrix(domain, stride, p, advanced(load_matrix<D>(domain, stride, p), in_plane(L), a.dt));
+    }
   });
 }
 
@@ -76,7 +82,7 @@ template <class Scene>
 MPM_HD void wave_speed(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using Material = typename Scene::Material;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, const auto& state) {
-    a.particles.wave_speed[p] = Material::wave_speed(constants, state);
+    a.particles.field[Scene::Particle::wave_speed][p] = Material::wave_speed(constants, state);
   });
 }
 

@@ -42,10 +42,11 @@ MPM_HD Vec<D, T> product(const Mat<D, T>& a, const Vec<D, T>& x) {
 }
 
 /// The particle's position in cells.
-template <int D, class T>
-MPM_HD Vec<D, T> position_in_cells(const Arguments<T>& a, int p) {
-  Vec<D, T> x = load<D>(a.particles.position, a.particles.stride, p);
-  for (int c = 0; c < D; ++c) x[c] = (x[c] - a.lower[c]) * a.inverse_cell_size;
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD Vec<Scene::dimension, T> position_in_cells(const Arguments<T>& a, int p) {
+  Vec<Scene::dimension, T> x =
+      load<Scene::dimension>(a.particles.field[Scene::Particle::position], a.particles.stride, p);
+  for (int c = 0; c < Scene::dimension; ++c) x[c] = (x[c] - a.lower[c]) * a.inverse_cell_size;
   return x;
 }
 
@@ -62,11 +63,11 @@ class StencilOf<Scene, false> {
  public:
   MPM_HD StencilOf(const Arguments<T>& a, int p) : inside_(true) {
     const auto parameters = parameters_of<Shape>(a.shape_parameters);
-    const Vec<D, T> x = position_in_cells<D>(a, p);
+    const Vec<D, T> x = position_in_cells<Scene>(a, p);
     Vec<D, T> half_length{};
     if constexpr (Scene::deformed)
       half_length = Shape::template half_lengths<D, T>(
-          parameters, load_matrix<D>(a.particles.stencil_domain, a.particles.stride, p));
+          parameters, load_matrix<D>(a.particles.field[Scene::Particle::domain], a.particles.stride, p));
     for (int c = 0; c < D; ++c) {
       T first;
       if constexpr (Scene::deformed)
@@ -148,7 +149,7 @@ class StencilOf<Scene, true> {
   static constexpr int D = Scene::dimension;
 
  public:
-  MPM_HD StencilOf(const Arguments<T>& a, int p) : inside_(true), position_(position_in_cells<D>(a, p)) {
+  MPM_HD StencilOf(const Arguments<T>& a, int p) : inside_(true), position_(position_in_cells<Scene>(a, p)) {
     for (int c = 0; c < D; ++c)  // false for NaN
       inside_ = inside_ && position_[c] >= T(-a.padding[c]) && position_[c] <= T(a.cells[c] + a.padding[c]);
     list_.count = 0;
@@ -156,11 +157,11 @@ class StencilOf<Scene, true> {
     const auto parameters = parameters_of<Shape>(a.shape_parameters);
     if constexpr (Scene::sampled) {
       Vec<D, T> corners[1 << D];
-      load_corners<D>(a.particles.corners, a.particles.stride, p, corners);
+      load_corners<D>(a.particles.field[Scene::Particle::corners], a.particles.stride, p, corners);
       Shape::evaluate(parameters, position_, corners, list_);
       inside_ = list_.count > 0;
     } else {
-      const Mat<D, T> domain = load_matrix<D>(a.particles.stencil_domain, a.particles.stride, p);
+      const Mat<D, T> domain = load_matrix<D>(a.particles.field[Scene::Particle::domain], a.particles.stride, p);
       Shape::evaluate(parameters, position_, domain, list_);
     }
     for (int k = 0; k < list_.count; ++k)

@@ -1,0 +1,66 @@
+#include "backends/device/fields.hpp"
+
+#include <algorithm>
+
+namespace mpm::device {
+namespace {
+
+/// A field that holds nothing between steps.
+Field working_field(const std::string& id, const std::string& unit, int components) {
+  Field field;
+  field.id = field.name = id, field.unit = unit;
+  field.components = components;
+  field.lifetime = Lifetime::step;
+  field.because = "the device's phases are apart";
+  return field;
+}
+
+}  // namespace
+
+std::vector<Field> node_fields(const Experiment&, const Plan& plan) {
+  std::vector<Field> fields;
+  std::copy_if(plan.fields.begin(), plan.fields.end(), std::back_inserter(fields),
+               [](const Field& field) { return field.owner == Owner::node; });
+  // A projection is folded as the masses were, which are no longer there.
+  if (plan.node_field("projection"))
+    fields.push_back(working_field("folded_mass", "kg", 1)), fields.back().owner = Owner::node;
+  return fields;
+}
+
+std::vector<Field> particle_fields(const Experiment& experiment, const Plan& plan, int body) {
+  const int D = experiment.dimension;
+  std::vector<Field> fields, material;
+  for (const Field& field : plan.fields) {
+    if (!field.of_particles_of(body) || field.lifetime == Lifetime::seeded) continue;
+    if (field.origin == Origin::host && field.id == "identity") continue;  // particles keep the order of seeding
+    (field.origin == Origin::material ? material : fields).push_back(field);
+  }
+  const auto work = [&](const char* id, const char* unit, int components) {
+    fields.push_back(working_field(id, unit, components));
+    fields.back().body = body;
+  };
+  work("stress", "Pa", D == 2 ? 4 : 6);  // symmetric, Kirchhoff
+  work("volume_ratio", "", 1);
+  work("velocity_gradient", "1/s", D * D);
+  if (experiment.axisymmetric()) work("hoop_rate", "1/s", 1);  // v_r / r
+  work("wave_speed", "m/s", 1);
+  if (plan.ledger) work("dissipated", "J/m^3", 1);
+  if (experiment.body_force) work("body_acceleration", "m/s^2", D);
+  if (plan.second_moment) work("second_moment", "cells^2", D * D);
+  fields.insert(fields.end(), material.begin(), material.end());
+  return fields;
+}
+
+int number_of(const std::vector<Field>& fields, std::string_view id, Origin origin) {
+  const auto found = std::find_if(fields.begin(), fields.end(),
+                                  [&](const Field& field) { return field.origin == origin && field.id == id; });
+  return found == fields.end() ? -1 : static_cast<int>(found - fields.begin());
+}
+
+int first_of(const std::vector<Field>& fields, Origin origin) {
+  const auto found =
+      std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.origin == origin; });
+  return found == fields.end() ? -1 : static_cast<int>(found - fields.begin());
+}
+
+}  // namespace mpm::device
