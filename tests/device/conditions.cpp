@@ -164,3 +164,31 @@ TEST_CASE("a restored run on the host-run device goes on bit for bit", "[device]
       CHECK(different(all_results(whole.simulation), all_results(resumed.simulation)) == 0);
     }
 }
+
+TEST_CASE("particles keep what is added to the plan's list on the host-run device", "[device]") {
+  Mix mix;
+  mix.contact = coulomb, mix.transfer = flip;
+  for (const std::string precision : {"double", "float"}) {
+    const Experiment experiment = device_experiment(mix.text(), precision);
+    Plan plan = make_plan(experiment);
+    for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+      Field stretch;
+      stretch.id = stretch.name = "stretch", stretch.body = body, stretch.components = 4;
+      stretch.first = First::identity;
+      plan.fields.push_back(stretch);
+    }
+    Simulation run(experiment, [&](const Experiment& e, const Plan&, const std::vector<SeededBody>& seeds) {
+      return device::make_host_run(e, plan, seeds, Devices::shared().of(device::choice_of(e, plan)), {});
+    });
+    DeviceScene plain(mix.text(), precision);
+    for (int k = 0; k < 9; ++k) run.step(), plain.simulation.step();
+    ArchiveWriter archive;
+    run.save(archive);
+    ArchiveReader reader(archive.bytes());
+    run.restore(reader);
+    CHECK(different(all_results(plain.simulation), all_results(run)) == 0);
+    const std::vector<double> stretch = run.backend().body_state(1).host_state.at("stretch");
+    REQUIRE(stretch.size() == 4 * run.particle_count(1));
+    for (std::size_t i = 0; i < stretch.size(); ++i) REQUIRE(stretch[i] == (i % 4 == 0 || i % 4 == 3 ? 1 : 0));
+  }
+}

@@ -12,6 +12,7 @@ namespace {
 struct SmallGrid {
   int nodes;
   std::vector<std::vector<double>> arrays;
+  std::map<std::string, double*> of;  ///< by the field's id
   double *mass, *momentum, *velocity;
   std::vector<int> folded;
   device::Arguments<double> a{};
@@ -20,10 +21,9 @@ struct SmallGrid {
     for (const Field& field : fields) {
       arrays.emplace_back(field.components * nodes);
       a.grid.field[arrays.size() - 1] = arrays.back().data();
-      if (field.id == "mass") mass = arrays.back().data();
-      if (field.id == "momentum") momentum = arrays.back().data();
-      if (field.id == "velocity") velocity = arrays.back().data();
+      of[field.id] = arrays.back().data();
     }
+    mass = of.at("mass"), momentum = of.at("momentum"), velocity = of.at("velocity");
     std::fill_n(mass, nodes, 1.0);
     std::fill_n(momentum, nodes, 1.0);
     std::fill_n(momentum + nodes, nodes, 2.0);
@@ -45,6 +45,14 @@ int reflections(int i) {
 
 device::Choice usual_choice() {
   return device_choice_of(device_experiment(Mix{}.text(), "double"));
+}
+
+Field summed_field(const std::string& id, int components, AtWall at_wall, Folded folded) {
+  Field field;
+  field.id = field.name = id, field.owner = Owner::node, field.components = components;
+  field.lifetime = Lifetime::step, field.cleared = true;
+  field.at_wall = at_wall, field.folded = folded;
+  return field;
 }
 
 }  // namespace
@@ -86,4 +94,45 @@ TEST_CASE("in a domain of one cell ghosts fold from wall to wall until they are 
       CHECK(grid.velocity[grid.node(i, j)] == sign_x * (10 + (i & 1)));
       CHECK(grid.velocity[grid.nodes + grid.node(i, j)] == sign_y * (20 + (j & 1)));
     }
+}
+
+TEST_CASE("nodes clear and fold what is added to the plan's list on the host-run device", "[device]") {
+  const Experiment experiment = device_experiment(Mix{}.text(), "double");
+  Plan plan = make_plan(experiment);
+  plan.fields.push_back(summed_field("heat", 1, AtWall::even, Folded::with_mass));
+  plan.fields.push_back(summed_field("couple", 2, AtWall::vector, Folded::with_force));
+  plan.fields.push_back(summed_field("normal", 2, AtWall::slip, Folded::with_mass));
+  const device::Choice choice = device::choice_of(experiment, plan);
+  const device::HostDevice device = Devices::shared().of(choice);
+  SmallGrid grid(8, choice.node_fields);
+  grid.a.walls[0][1] = wall_stick;
+  for (std::vector<double>& array : grid.arrays) std::fill(array.begin(), array.end(), 3.0);
+  const auto all = [&](const std::string& id, int component, double value) {
+    std::fill_n(grid.of.at(id) + component * grid.nodes, grid.nodes, value);
+  };
+  const auto value = [&](const std::string& id, int component, int i) {
+    return grid.of.at(id)[component * grid.nodes + grid.node(i, 1)];
+  };
+  device.run("clear", grid.a, grid.nodes, {1, false});
+  for (const std::string id : {"heat", "couple", "normal", "mass", "momentum"}) CHECK(value(id, 0, 2) == 0);
+  CHECK(value("couple", 1, 2) == 0);
+
+  all("mass", 0, 1), all("heat", 0, 1);
+  for (const std::string id : {"couple", "normal"}) all(id, 0, 1), all(id, 1, 2);
+  device.run("fold_masses", grid.a, 3, {3, false});
+  device.run("fold_forces", grid.a, 3, {3, false});
+  for (const int i : {1, 7}) {
+    INFO("node " << i << " of 8");
+    CHECK(value("heat", 0, i) == 2);
+    CHECK(value("normal", 0, i) == 0);
+    CHECK(value("normal", 1, i) == 4);
+    CHECK(value("couple", 0, i) == 0);
+    CHECK(value("couple", 1, i) == (i == 1 ? 4 : 0));  // slip mirrors what lies across the wall, stick everything
+  }
+  CHECK(value("normal", 0, 0) == 0);  // vanishes on the wall
+  CHECK(value("normal", 1, 0) == 2);
+  CHECK(value("couple", 0, 0) == 1);
+  CHECK(value("heat", 0, 4) == 1);
+  CHECK(value("heat", 0, -1) == 0);  // has been given away
+  CHECK(value("couple", 1, -1) == 0);
 }

@@ -42,20 +42,22 @@ struct Body {
       for (int k = 0; k < arrays.fields()[number].components; ++k)
         std::fill_n(arrays.of(number) + static_cast<std::size_t>(k) * arrays.count(), count,
                     static_cast<T>(first_value(arrays.fields()[number], k, dimension, half)));
-    take(seeded.arrays(), plan.particle_field(index, "initial_position") != nullptr);
+    take(seeded);
+    if (const Field* const place = plan.particle_field(index, "initial_position"))
+      initial_position = seeded.values(*place);
   }
 
   /// What seeding gives.
-  void take(const SeedArrays& seeds, bool keeps_positions) {
-    arrays.take(number("position"), seeds.position);
-    arrays.take(number("velocity"), seeds.velocity);
+  void take(const SeededBody& seeded) {
+    for (int number = 0; number < static_cast<int>(arrays.fields().size()); ++number)
+      if (arrays.fields()[number].first == First::seeded) arrays.take(number, seeded.values(arrays.fields()[number]));
+    const SeedArrays seeds = seeded.arrays();
     if (!seeds.velocity_gradient.empty())
       arrays.take(first_of(arrays.fields(), Origin::transfer), seeds.velocity_gradient);
     if (T* const circumference = arrays.of("circumference"))
       for (int p = 0; p < count; ++p)
         circumference[p] =
             static_cast<T>(2 * std::numbers::pi * seeds.position[static_cast<std::size_t>(p) * dimension]);
-    if (keeps_positions) initial_position = seeds.position;
   }
   int number(std::string_view id) const { return number_of(arrays.fields(), id); }
 
@@ -239,23 +241,13 @@ class HostRun final : public Backend {
       if (failed != INT_MAX) throw RunFailure(outside_grid, index, static_cast<std::size_t>(failed));
     }
     const double h = experiment_.grid.cell_size;
-    const auto of = [&](const char* id, double unit = 1) {
-      const int number = body.number(id);
-      return number < 0 ? std::vector<double>() : body.arrays.index_major(number, unit);
-    };
     BodyState state;
-    state.position = of("position"), state.velocity = of("velocity");
+    for_each_saved(body, [&](const Field& field, int number) {
+      state.of(field) = body.arrays.index_major(number, field.unit == "cells" ? h : 1);
+    });
     state.initial_position = body.initial_position;
-    for (int number = 0; number < static_cast<int>(body.arrays.fields().size()); ++number) {
-      const Field& field = body.arrays.fields()[number];
-      if (field.origin != Origin::host)
-        (field.origin == Origin::transfer ? state.transfer_state : state.material_state)[field.id] =
-            body.arrays.index_major(number);
-    }
     state.mass = body.mass, state.volume = body.volume;
-    state.circumference = of("circumference");
-    state.corners = of("corners", h), state.domain = of("domain", h);
-    state.second_moment = of("second_moment", h * h);
+    if (plan_.second_moment) state.second_moment = body.arrays.index_major(body.number("second_moment"), h * h);
     return state;
   }
 

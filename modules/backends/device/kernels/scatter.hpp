@@ -110,7 +110,7 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
       for (int k = 0; k < Sym<D, T>::size; ++k) tau.s[k] = particles.field[P::stress][k * stride + p];
     [[maybe_unused]] const auto higher = higher_of<Scene>(a, stencil, p);
     stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
-      T values[Scene::scattered];
+      T values[Scene::scattered] = {};  // nothing of what no formula here knows
       const T mass = s.weight * mass_of_particle;
       values[Place::mass] = mass;
       for (int i = 0; i < D; ++i) {
