@@ -43,7 +43,7 @@ TEST_CASE("shipped experiments begin on the host-run device as on the reference 
   int count = 0;
   for (const fs::path& file : shipped_experiments()) {
     INFO(file);
-    const std::string text = output::read_file(file);
+    const std::string text = support::read_file(file);
     const Experiment experiment = device_experiment(text, "double");
     const Plan plan = make_plan(experiment);
     REQUIRE(plan.ledger);  // asked for where nothing else is said
