@@ -66,4 +66,24 @@ class VectorExpression {
   std::array<std::array<bool, 3>, 3> varies_{};
 };
 
+/// One number or formula of the same variables: the first component of a VectorExpression.
+class ScalarExpression {
+ public:
+  ScalarExpression() = default;  ///< zero
+  explicit ScalarExpression(double constant) : first_(Vector3{constant, 0, 0}) {}
+  explicit ScalarExpression(VectorExpression first) : first_(std::move(first)) {}
+
+  double operator()(const Vector3& x, const Vector3& X, double t) const { return first_(x, X, t)[0]; }
+  /// At many positions, which are the initial ones too.
+  void evaluate(std::span<const Vector3> x, double t, double* result) const { first_.evaluate(0, x, t, result); }
+
+  bool is_constant() const { return first_.is_constant(); }
+  bool uses_time() const { return first_.uses_time(); }
+  /// Whether it changes along an axis when position and initial position do.
+  bool varies(int axis) const { return first_.varies(0, axis); }
+
+ private:
+  VectorExpression first_;
+};
+
 }  // namespace mpm

@@ -278,6 +278,16 @@ Node parse_located(std::string_view text, const std::string& file) {
   return std::move(builder.root);
 }
 
+const Node& nearest_node(const Node& root, std::string_view pointer) {
+  Node* nearest = &const_cast<Node&>(root);
+  for (const std::string& key : pointer_keys(pointer)) {
+    Node* const next = child(*nearest, key);
+    if (!next) break;
+    nearest = next;
+  }
+  return *nearest;
+}
+
 Node read_located(const std::filesystem::path& file) {
   const std::string name = file.string();
   std::error_code error;

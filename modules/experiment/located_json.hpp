@@ -48,6 +48,9 @@ struct Member {
 /// Parses text. Throws InputError on a syntax error, a repeated key or nesting beyond 64 levels; `file` names it there.
 Node parse_located(std::string_view text, const std::string& file);
 
+/// The value at a JSON pointer or, where there is none, the nearest around it.
+const Node& nearest_node(const Node& root, std::string_view pointer);
+
 /// Reads and parses a file. Throws InputError also when it is missing, a directory, unreadable or empty.
 Node read_located(const std::filesystem::path& file);
 

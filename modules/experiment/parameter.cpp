@@ -61,6 +61,11 @@ ParameterSpec parameter(std::string name, ParameterType type, std::string unit, 
   return spec;
 }
 
+ParameterSpec& ParameterSpec::made_of(Section section) {
+  table = std::make_shared<const Section>(std::move(section));
+  return *this;
+}
+
 ParameterSpec from_plugin(const mpm_parameter& declared) {
   ParameterSpec spec = parameter(declared.name, static_cast<ParameterType>(declared.type),
                                  declared.unit ? declared.unit : "", declared.doc ? declared.doc : "");
@@ -107,6 +112,8 @@ std::string describe_expected(const ParameterSpec& spec) {
       return "a string";
     case ParameterType::vector:
       return spec.components ? "a list of " + per_axis + " numbers" : "a list of numbers, one an axis";
+    case ParameterType::expression:
+      return describe_unit(spec.unit) + range_text(spec) + " or an expression";
     case ParameterType::expression_vector:
       return "a list of numbers or expressions, one an axis";
     case ParameterType::points:
@@ -149,6 +156,13 @@ const Fields::Value& Fields::value(std::string_view name) const {
   const auto found = values_.find(name);
   if (found == values_.end()) throw std::logic_error("section " + section_.name + " has no key " + std::string(name));
   return found->second;
+}
+
+Fields Fields::nested(std::string_view name) const {
+  const Node* const object = node(name);
+  for (const ParameterSpec& spec : section_.parameters)
+    if (spec.name == name && spec.table) return {object, *spec.table, context_};
+  throw std::logic_error("key " + std::string(name) + " of section " + section_.name + " has no table");
 }
 
 void Fields::check_keys() {
@@ -197,6 +211,7 @@ void Fields::use_default(const ParameterSpec& spec, Value& value) {
     for (std::size_t i = 0; i < count; ++i) value.vector[i] = value.resolved[i].get<double>();
     value.expression = VectorExpression(value.vector);
   }
+  if (spec.type == ParameterType::expression) value.expression = VectorExpression(Vector3{value.number, 0, 0});
 }
 
 bool Fields::wrong_type(const ParameterSpec& spec, const Node& node) {
@@ -219,8 +234,10 @@ bool Fields::read_value(const ParameterSpec& spec, const Node& node, Value& valu
       return read_text(spec, node, value);
     case ParameterType::vector:
       return read_vector(spec, node, value.vector, value.resolved);
-    case ParameterType::expression_vector:
+    case ParameterType::expression:
       return read_expression(spec, node, value);
+    case ParameterType::expression_vector:
+      return read_expression_vector(spec, node, value);
     case ParameterType::points:
       return read_points(spec, node, value);
     case ParameterType::names:
@@ -266,14 +283,18 @@ bool Fields::read_number(const ParameterSpec& spec, const Node& node, Value& val
   }
   if (!read_si(node, spec.unit, expected, value.number, context_)) return false;
   if (!in_range(spec, value.number)) {
-    const std::string written = node.type == Node::Type::string ? " (" + node.text + ")" : "";
-    context_.problem(node, "out of range: expected " + expected + ", got " + number_text(value.number) + written);
+    report_range(spec, node, value.number);
     value.number = 0;
     return false;
   }
   value.resolved = value.number;
   if (integer && std::abs(value.number) < 9e15) value.resolved = std::llround(value.number);
   return true;
+}
+
+void Fields::report_range(const ParameterSpec& spec, const Node& node, double value) {
+  const std::string written = node.type == Node::Type::string ? " (" + node.text + ")" : "";
+  context_.problem(node, "out of range: expected " + describe_expected(spec) + ", got " + number_text(value) + written);
 }
 
 bool Fields::read_text(const ParameterSpec& spec, const Node& node, Value& value) {
@@ -357,37 +378,60 @@ bool Fields::read_points(const ParameterSpec& spec, const Node& node, Value& val
   return good;
 }
 
-bool Fields::read_expression(const ParameterSpec& spec, const Node& node, Value& value) {
-  if (node.type != Node::Type::array) return wrong_type(spec, node);
-  bool good = right_length(spec, node);
+ExpressionScope Fields::scope_of(const ParameterSpec& spec) const {
   ExpressionScope scope{spec.variables, context_.constants};
   if (context_.dimension == 2)
     std::erase_if(scope.variables, [](char letter) { return letter == 'z' || letter == 'Z'; });
+  return scope;
+}
+
+/// One number or formula; `expected` is what a message says there should be.
+bool Fields::read_term(const ParameterSpec& spec, const Node& node, const std::string& expected,
+                       VectorExpression::Term& term, OrderedJson& out) {
+  if (node.type == Node::Type::string && !looks_like_quantity(node.text)) {
+    term = node.text;
+    out = node.text;
+    try {
+      VectorExpression(std::span(&term, 1), scope_of(spec));
+    } catch (const ExpressionError& error) {
+      context_.problem(node, error.what());
+      return false;
+    }
+    return true;
+  }
+  double number = 0;
+  const bool good = read_si(node, spec.unit, expected, number, context_);
+  term = number;
+  out = number;
+  return good;
+}
+
+bool Fields::read_expression(const ParameterSpec& spec, const Node& node, Value& value) {
+  VectorExpression::Term term;
+  if (!read_term(spec, node, describe_expected(spec), term, value.resolved)) return false;
+  value.expression = VectorExpression(std::span(&term, 1), scope_of(spec));
+  const double constant = value.expression({}, {}, 0)[0];
+  if (!value.expression.is_constant() || in_range(spec, constant)) return true;
+  report_range(spec, node, constant);
+  return false;
+}
+
+bool Fields::read_expression_vector(const ParameterSpec& spec, const Node& node, Value& value) {
+  if (node.type != Node::Type::array) return wrong_type(spec, node);
+  bool good = right_length(spec, node);
+  const std::string expected = describe_unit(spec.unit) + " or an expression";
   std::vector<VectorExpression::Term> terms;
   value.resolved = OrderedJson::array();
   for (std::size_t i = 0; i < std::min<std::size_t>(node.items.size(), 3); ++i) {
     const Node& item = node.items[i];
-    if (item.type == Node::Type::null && spec.may_leave_free) {
+    VectorExpression::Term& term = terms.emplace_back(0.0);
+    OrderedJson& out = value.resolved.emplace_back(nullptr);
+    if (item.type == Node::Type::null && spec.may_leave_free)
       value.held[i] = false;
-      terms.emplace_back(0.0);
-      value.resolved.push_back(nullptr);
-    } else if (item.type == Node::Type::string && !looks_like_quantity(item.text)) {
-      terms.emplace_back(item.text);
-      value.resolved.push_back(item.text);
-      try {
-        VectorExpression(std::span(&terms.back(), 1), scope);
-      } catch (const ExpressionError& error) {
-        context_.problem(item, error.what());
-        good = false;
-      }
-    } else {
-      double number = 0;
-      good &= read_si(item, spec.unit, describe_unit(spec.unit) + " or an expression", number, context_);
-      terms.emplace_back(number);
-      value.resolved.push_back(number);
-    }
+    else
+      good &= read_term(spec, item, expected, term, out);
   }
-  if (good) value.expression = VectorExpression(terms, scope);
+  if (good) value.expression = VectorExpression(terms, scope_of(spec));
   return good;
 }
 

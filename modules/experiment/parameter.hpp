@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -27,11 +28,14 @@ enum class ParameterType {
   choice,  ///< a string out of `choices`
   string,
   vector,             ///< as many numbers as the experiment has dimensions
-  expression_vector,  ///< the same, each a number, a number with a unit, or a formula
+  expression,         ///< a number, a number with a unit, or a formula
+  expression_vector,  ///< as many of them as the experiment has dimensions
   points,             ///< list of vectors, from `least_items` to `most_items`
   names,              ///< list of strings, each once; out of `choices` unless that is empty
-  nested              ///< read by code of its own; `definition` names its schema
+  nested              ///< read by code of its own; its schema is its `table`, or `definition` names it
 };
+
+struct Section;
 
 /// One key of a section. The chained setters let tables read as sentences.
 struct ParameterSpec {
@@ -52,6 +56,7 @@ struct ParameterSpec {
   int components = 0;                                ///< of a vector; 0: as the dimension of the experiment
   std::size_t least_items = 0, most_items = 100000;  ///< of points
   std::string definition;                            ///< of nested
+  std::shared_ptr<const Section> table;              ///< of nested: the keys, where one place alone has them
   std::uint32_t offset = 0;                          ///< of a plugin's parameter, in its block
 
   ParameterSpec& needed() { return required = true, *this; }
@@ -68,6 +73,7 @@ struct ParameterSpec {
   ParameterSpec& with_components(int count) { return components = count, *this; }
   ParameterSpec& items(std::size_t least, std::size_t most) { return least_items = least, most_items = most, *this; }
   ParameterSpec& defined_as(std::string name_) { return definition = std::move(name_), *this; }
+  ParameterSpec& made_of(Section section);
 };
 
 /// Starts the description of a key.
@@ -117,10 +123,13 @@ class Fields {
   const std::vector<Vector3>& points(std::string_view name) const { return value(name).points; }
   const std::vector<std::string>& names(std::string_view name) const { return value(name).names; }
   const VectorExpression& expression(std::string_view name) const { return value(name).expression; }
+  ScalarExpression scalar_expression(std::string_view name) const { return ScalarExpression(value(name).expression); }
   /// Components of an expression vector that are not null.
   const std::array<bool, 3>& held(std::string_view name) const { return value(name).held; }
   /// The file says null where the key may be null.
   bool is_null(std::string_view name) const { return value(name).is_null; }
+  /// The fields of a nested key that has a table; all defaults when it is absent.
+  Fields nested(std::string_view name) const;
   /// The value as it stands in the file; null when absent.
   const Node* node(std::string_view name) const { return value(name).node; }
   /// The value, or the whole object when absent: where a problem about it belongs.
@@ -155,6 +164,11 @@ class Fields {
   bool read_vector(const ParameterSpec& spec, const Node& node, Vector3& vector, OrderedJson& out);
   bool read_points(const ParameterSpec& spec, const Node& node, Value& value);
   bool read_expression(const ParameterSpec& spec, const Node& node, Value& value);
+  bool read_expression_vector(const ParameterSpec& spec, const Node& node, Value& value);
+  ExpressionScope scope_of(const ParameterSpec& spec) const;
+  bool read_term(const ParameterSpec& spec, const Node& node, const std::string& expected, VectorExpression::Term& term,
+                 OrderedJson& out);
+  void report_range(const ParameterSpec& spec, const Node& node, double value);
   bool right_length(const ParameterSpec& spec, const Node& node);
   bool wrong_type(const ParameterSpec& spec, const Node& node);
 

@@ -6,17 +6,6 @@
 namespace mpm {
 namespace {
 
-/// The node at the end of a path of keys, or the last that is there.
-const Node& deepest(const Node& root, std::initializer_list<const char*> keys) {
-  const Node* node = &root;
-  for (const char* key : keys) {
-    const Node* const next = node->find(key);
-    if (!next) break;
-    node = next;
-  }
-  return *node;
-}
-
 bool starts_with(const std::string& text, const char* start) {
   return text.rfind(start, 0) == 0;
 }
@@ -26,28 +15,28 @@ bool starts_with(const std::string& text, const char* start) {
 void ExperimentReader::check_axisymmetric() {
   if (!experiment_.axisymmetric()) return;
   if (context_.dimension == 3)
-    return problem(deepest(root_, {"grid", "symmetry"}),
+    return problem(nearest_node(root_, "/grid/symmetry"),
                    "axisymmetric scenes are 2-D (x the radius, y the axis); set \"dimension\" to 2");
   check_axis();
   if (experiment_.gravity[0] != 0)
-    problem(deepest(root_, {"gravity"}), "gravity has no radial component in an axisymmetric scene: [0, " +
-                                             number_text(experiment_.gravity[1]) + "] acts along the axis");
+    problem(nearest_node(root_, "/gravity"), "gravity has no radial component in an axisymmetric scene: [0, " +
+                                                 number_text(experiment_.gravity[1]) + "] acts along the axis");
   for (const MaterialSpecification& material : experiment_.materials) {
     const Plugin* const plugin = material.component.plugin;
     if (plugin && !(plugin->material().traits & MPM_STRAINS_AROUND_AXIS))
-      problem(deepest(root_, {"materials", material.name.c_str(), "type"}),
+      problem(nearest_node(root_, material.component.pointer + "/type"),
               "material " + in_quotes(plugin->id()) +
                   " does not read the strain around the axis (velocity_gradient_zz), which axisymmetric scenes need");
   }
   if (experiment_.exact && experiment_.exact->type != "free_fall")
-    problem(deepest(root_, {"compare", "exact"}), "exact solution " + in_quotes(experiment_.exact->type) +
-                                                      " is one of plane strain, not of an axisymmetric scene");
+    problem(nearest_node(root_, "/compare/exact"), "exact solution " + in_quotes(experiment_.exact->type) +
+                                                       " is one of plane strain, not of an axisymmetric scene");
   for (const Expectation& expectation : experiment_.expectations) {
     const std::string& metric = expectation.metric;
     const bool radial = metric.size() > 2 && metric.substr(metric.size() - 2) == ".x" &&
                         (starts_with(metric, "momentum.linear") || starts_with(metric, "centre_of_mass"));
     if (radial || starts_with(metric, "momentum.angular"))
-      problem(deepest(root_, {"compare", "expect"}),
+      problem(nearest_node(root_, "/compare/expect"),
               "an axisymmetric body has no " + in_quotes(metric) +
                   ": over whole rings it is zero by symmetry and is not recorded");
   }
@@ -57,10 +46,12 @@ void ExperimentReader::check_axisymmetric() {
 void ExperimentReader::check_axis() {
   const GridSpecification& grid = experiment_.grid;
   const FaceCondition &inner = experiment_.faces[0][0], &outer = experiment_.faces[0][1];
-  const auto face = [&](const char* name) -> const Node& { return deepest(root_, {"grid", "boundaries", name}); };
+  const auto face = [&](const char* name) -> const Node& {
+    return nearest_node(root_, std::string("/grid/boundaries/") + name);
+  };
   if (grid_good_ && grid.lower[0] < 0)
-    problem(deepest(root_, {"grid", "domain"}), "an axisymmetric domain has no radius below 0, but x begins at " +
-                                                    number_text(grid.lower[0]) + " m; begin at 0 or above");
+    problem(nearest_node(root_, "/grid/domain"), "an axisymmetric domain has no radius below 0, but x begins at " +
+                                                     number_text(grid.lower[0]) + " m; begin at 0 or above");
   if (inner.type == ConditionType::periodic || outer.type == ConditionType::periodic)
     return problem(face(inner.type == ConditionType::periodic ? "x_min" : "x_max"),
                    "an axisymmetric scene is not periodic along its radius; y, the axis, may be");
@@ -71,8 +62,7 @@ void ExperimentReader::check_axis() {
 void ExperimentReader::check_frozen() {
   for (std::size_t i = 0; i < experiment_.bodies.size(); ++i) {
     if (!experiment_.bodies[i].frozen) continue;
-    const Node& bodies = *root_.find("bodies");
-    const Node& place = deepest(bodies.items[i], {"frozen"});
+    const Node& place = nearest_node(root_, experiment_.bodies[i].pointer + "/frozen");
     const std::string name = "body " + in_quotes(experiment_.bodies[i].name) + " is frozen: ";
     if (experiment_.gravity != Vector3{})
       problem(place,

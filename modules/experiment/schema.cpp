@@ -1,5 +1,6 @@
 #include "experiment/schema.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "experiment/sections.hpp"
@@ -15,6 +16,8 @@ constexpr const char* quantity_pattern = "^\\s*[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)
 Json reference(const std::string& definition) {
   return {{"$ref", "#/$defs/" + definition}};
 }
+
+Json section_schema(const Section& section);
 
 Json list_of(Json items) {
   return {{"type", "array"}, {"items", std::move(items)}};
@@ -64,6 +67,8 @@ Json value_schema(const ParameterSpec& spec) {
       return strings_of(spec);
     case ParameterType::vector:
       return vector_of(spec, quantity(number, {}));
+    case ParameterType::expression:
+      return {{"type", Json::array({"number", "string"})}};
     case ParameterType::expression_vector: {
       Json types = Json::array({"number", "string"});
       if (spec.may_leave_free) types.push_back("null");
@@ -81,9 +86,10 @@ Json value_schema(const ParameterSpec& spec) {
       return schema;
     }
     case ParameterType::nested: {
+      Json object = spec.table ? section_schema(*spec.table) : reference(spec.definition);
+      if (spec.required) return object;
       // null takes an optional section away, so that a study can switch it off.
-      if (spec.required) return reference(spec.definition);
-      return {{"anyOf", Json::array({reference(spec.definition), {{"type", "null"}}})}};
+      return {{"anyOf", Json::array({std::move(object), {{"type", "null"}}})}};
     }
   }
   return {};
@@ -139,7 +145,8 @@ Json face_condition_schema() {
   const std::vector<Section> kinds = face_condition_kinds();
   Json names = Json::array();
   for (const Section& kind : kinds) {
-    if (kind.parameters.empty()) names.push_back(kind.name);
+    const auto& keys = kind.parameters;
+    if (std::none_of(keys.begin(), keys.end(), [](auto& key) { return key.required; })) names.push_back(kind.name);
   }
   return {{"anyOf", Json::array({{{"enum", std::move(names)}}, choice_schema(kinds)})}};
 }

@@ -77,6 +77,11 @@ const NamedDimension named_dimensions[] = {
     {dimension(1, 1, -1), "a momentum"},
     {dimension(1, 0, -2), "a stiffness per area"},
     {dimension(0, 2, -1), "a diffusivity"},
+    {dimension(1, 1, -3, -1), "a thermal conductivity"},
+    {dimension(0, 2, -2, -1), "a specific heat capacity"},
+    {dimension(0, 2, -2), "an energy per mass"},
+    {dimension(1, 0, -3), "a heat flux"},
+    {dimension(1, 0, -3, -1), "a heat transfer coefficient"},
 };
 
 std::string dimension_name(const Dimension& wanted) {
@@ -188,6 +193,8 @@ class UnitParser {
   }
 
   Unit look_up(const std::string& name) const {
+    if (name == "degC" || name == "C")
+      throw UnitError("degrees Celsius have another zero and are no unit here; write kelvin, which are 273.15 more");
     std::vector<std::string> known;
     for (const Symbol& symbol : symbols) {
       if (name == symbol.name) return {symbol.multiplier, symbol.divisor, symbol.dimension};

@@ -31,6 +31,10 @@ TEST_CASE("quantities are converted to SI exactly where decimals allow", "[units
   CHECK(to_si("7 µm", "m") == 7e-6);
   CHECK(to_si("1 rad/s", "1/s") == 1);
   CHECK(to_si("12 ms", "any") == 0.012);
+  CHECK(to_si("2.22 W/(m K)", "W/(m K)") == 2.22);
+  CHECK(to_si("2.09 kJ/(kg K)", "J/(kg K)") == 2090);
+  CHECK(to_si("334 kJ/kg", "J/kg") == 334000);
+  CHECK(to_si("1.5 W/cm^2", "W/m^2") == 15000);
 }
 
 TEST_CASE("quantities of the wrong kind say what was expected", "[units]") {
@@ -43,6 +47,13 @@ TEST_CASE("quantities of the wrong kind say what was expected", "[units]") {
         "expected a pressure (Pa), got the string \"5\" without a unit; drop the quotes for SI, or add one");
   CHECK(error_of("5", "") == "expected a number, got the string \"5\"; drop the quotes");
   CHECK(error_of("5 GPA", "Pa") == "unknown unit \"GPA\"; did you mean \"GPa\"?");
+  CHECK(error_of("5 kg", "W/(m K)") == "expected a thermal conductivity (W/(m K)), got a mass (kg)");
+  CHECK(error_of("5 kg", "J/(kg K)") == "expected a specific heat capacity (J/(kg K)), got a mass (kg)");
+  CHECK(error_of("5 kg", "J/kg") == "expected an energy per mass (J/kg), got a mass (kg)");
+  CHECK(error_of("5 W/(m^2 K)", "W/m^2") ==
+        "expected a heat flux (W/m^2), got a heat transfer coefficient (W/(m^2 K))");
+  CHECK(error_of("20 °C", "K") ==
+        "degrees Celsius have another zero and are no unit here; write kelvin, which are 273.15 more");
   CHECK(error_of("5 m^x", "m") == "the unit \"m^x\" is not understood: expected a whole power such as ^2 or ^-1");
   CHECK(error_of("5 kg/(m s", "Pa s") == "the unit \"kg/(m s\" is not understood: a ')' is missing");
   CHECK(error_of("5 m/", "m") == "the unit \"m/\" is not understood: a unit is missing at the end");
