@@ -44,11 +44,24 @@ struct GridSpecification {
 
 enum class ConditionType { free, stick, slip, separate, prescribed, periodic };
 
+/// How heat comes in at a wall or into a box of nodes.
+enum class HeatExchange { none, fixed_temperature, flux, convection, heating };
+
+struct ThermalCondition {
+  HeatExchange exchange = HeatExchange::none;
+  /// Of x y z t: the temperature that is held or lies beyond the wall, K; the flux into the body, W/m^2; or the power
+  /// that all nodes of a box share by their mass, W (in plane strain a metre of depth).
+  ScalarExpression value;
+  double coefficient = 0;  ///< of convection, W/(m^2 K)
+  std::string pointer;
+};
+
 /// What holds on a face of the domain. Stick, slip and separate mirror the material beyond the wall (docs/method.md).
 struct FaceCondition {
   ConditionType type = ConditionType::slip;
   std::optional<VectorExpression> velocity;  ///< of the wall, m/s, for `prescribed` (function of t, x, y, z)
   std::string pointer;
+  ThermalCondition thermal;
 };
 
 /// What holds on the nodes inside a box.
@@ -61,11 +74,35 @@ struct BoxCondition {
                            true};  ///< `prescribed`: components that are given (null in the file leaves one free)
   std::optional<VectorExpression> velocity;
   std::string pointer;
+  ThermalCondition thermal;
+};
+
+/// How one phase of a material conducts and stores heat.
+struct ThermalProperties {
+  double conductivity = 0;   ///< W/(m K)
+  double heat_capacity = 0;  ///< J/(kg K)
+};
+
+/// Melting and freezing at one temperature. Particles that are melted by half or more have the melted values.
+struct PhaseChange {
+  double temperature = 0;  ///< K
+  double latent_heat = 0;  ///< J/kg
+  ThermalProperties melted;
+  std::vector<double> melted_parameters;  ///< the material's whole parameter block, its density that of the solid
+  std::string pointer;
+};
+
+struct Thermal {
+  ThermalProperties solid;
+  double dissipation_to_heat = 0;  ///< share of the dissipated energy that warms the particle
+  std::optional<PhaseChange> phase_change;
+  std::string pointer;
 };
 
 struct MaterialSpecification {
   std::string name;
   Component component;
+  std::optional<Thermal> thermal;
 };
 
 struct BodySpecification {
@@ -78,6 +115,7 @@ struct BodySpecification {
   bool frozen = false;        ///< particles keep their places and domains; velocity and material state evolve
   VectorExpression velocity;  ///< initial, m/s, function of x, y, z
   std::optional<VectorExpression> initial_displacement_gradient;  ///< unused until a case needs it
+  std::optional<ScalarExpression> temperature;                    ///< initial, K, function of x, y, z
   std::string pointer;
 };
 
@@ -168,6 +206,8 @@ struct Experiment {
 
   nlohmann::ordered_json resolved;  ///< the file with overrides applied and every default filled: re-runnable
 
+  /// Whether particles carry a temperature: then every body's material conducts, and every body has one.
+  bool has_temperature() const;
   bool axisymmetric() const { return grid.symmetry == Symmetry::axisymmetric; }
 
   /// "file:line:column" of a JSON pointer's value, for messages that arise after reading.

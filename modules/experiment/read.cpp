@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "experiment/reader.hpp"
+#include "experiment/thermal.hpp"
 
 namespace mpm {
 namespace {
@@ -77,6 +78,7 @@ Experiment ExperimentReader::read() {
   read_limits(fields.node("limits"));
   check_axisymmetric();
   check_frozen();
+  check_temperature(root_, experiment_, context_);
 
   if (!context_.problems.empty()) throw InputError(std::move(context_.problems));
   experiment_.resolved = in_table_order(resolved_, section);

@@ -41,6 +41,7 @@ OrderedJson ExperimentReader::read_body(const Node& node) {
   body.jitter = fields.number("jitter");
   body.frozen = fields.boolean("frozen");
   body.velocity = fields.expression("velocity");
+  if (fields.given("temperature")) body.temperature = fields.scalar_expression("temperature");
   body.material = material_index(fields);
   if (fields.valid("name") && body.name.empty()) problem(fields.place("name"), "a body needs a name");
   for (const BodySpecification& other : experiment_.bodies) {

@@ -1,5 +1,6 @@
 // The plugins an experiment chooses, and whether they can do what it asks.
 #include "experiment/reader.hpp"
+#include "experiment/thermal.hpp"
 #include "plugin/extension_of.hpp"
 
 namespace mpm {
@@ -105,7 +106,9 @@ void ExperimentReader::read_materials(const Node* node) {
   for (const Member& member : node->members) {
     if (member.key.empty()) context_.problem(member.at, member.value.pointer, "a material needs a name");
     Chosen chosen = read_component(member.value, MPM_MATERIAL);
-    experiment_.materials.push_back({member.key, std::move(chosen.component)});
+    std::optional<Thermal> thermal;
+    if (chosen.fields) thermal = read_thermal(*chosen.fields, chosen.component, context_, chosen.resolved);
+    experiment_.materials.push_back({member.key, std::move(chosen.component), std::move(thermal)});
     resolved[member.key] = std::move(chosen.resolved);
   }
 }

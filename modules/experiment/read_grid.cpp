@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "experiment/reader.hpp"
+#include "experiment/thermal.hpp"
 
 namespace mpm {
 namespace {
@@ -13,7 +14,7 @@ std::string face_name(int axis, int side) {
 }
 
 ConditionType condition_type(const std::string& name) {
-  if (name == "free") return ConditionType::free;
+  if (name == "free" || name == "thermal") return ConditionType::free;
   if (name == "stick") return ConditionType::stick;
   if (name == "separate") return ConditionType::separate;
   if (name == "prescribed") return ConditionType::prescribed;
@@ -110,12 +111,15 @@ OrderedJson ExperimentReader::read_face(const Node& node, FaceCondition& face) {
   face.type = condition_type(kind->name);
   const Fields fields(&node, *kind, context_);
   face.velocity.reset();
-  if (face.type != ConditionType::prescribed) return kind->name;
+  OrderedJson resolved = fields.resolved;
+  face.thermal = read_thermal_condition(fields, context_, resolved);
+  if (face.type != ConditionType::prescribed)
+    return face.thermal.exchange == HeatExchange::none ? OrderedJson(kind->name) : resolved;
   if (node.type == Node::Type::string) {
     problem(node, "needs a velocity: {\"type\": \"prescribed\", \"velocity\": [...]}");
   }
   face.velocity = fields.expression("velocity");
-  return fields.resolved;
+  return resolved;
 }
 
 void ExperimentReader::check_periodic(const Fields& fields) {
@@ -171,8 +175,12 @@ OrderedJson ExperimentReader::read_node_condition(const Node& node) {
     box.held = fields.held("velocity");
     box.velocity = fields.expression("velocity");
   }
+  OrderedJson resolved = fields.resolved;
+  box.thermal = read_thermal_condition(fields, context_, resolved);
+  if (kind->name == "thermal" && box.thermal.exchange == HeatExchange::none)
+    problem(node, "does nothing: give \"temperature\" or \"heating\"");
   experiment_.boxes.push_back(std::move(box));
-  return fields.resolved;
+  return resolved;
 }
 
 }  // namespace mpm

@@ -1,5 +1,7 @@
 #include "experiment/sections.hpp"
 
+#include "experiment/thermal.hpp"
+
 namespace mpm {
 namespace {
 
@@ -29,6 +31,11 @@ std::vector<ParameterSpec> filter_schedule() {
           .to(1)
           .standard(0),
   };
+}
+
+std::vector<ParameterSpec> joined(std::vector<ParameterSpec> first, const std::vector<ParameterSpec>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
 }
 
 ParameterSpec axis(std::string doc) {
@@ -108,34 +115,39 @@ Section boundaries_section(int dimension) {
 }
 
 std::vector<Section> face_condition_kinds() {
+  const std::vector<ParameterSpec> heat = wall_heat_parameters();
   return {
-      kind("slip", "No motion through the wall, free motion along it.", {}),
-      kind("stick", "No motion at the wall.", {}),
-      kind("separate", "As slip, but material may leave the wall.", {}),
+      kind("slip", "No motion through the wall, free motion along it.", heat),
+      kind("stick", "No motion at the wall.", heat),
+      kind("separate", "As slip, but material may leave the wall.", heat),
       kind("free", "No condition.", {}),
       kind("periodic", "Joined to the opposite face.", {}),
       kind("prescribed", "The wall moves at a given velocity.",
-           {parameter("velocity", Type::expression_vector, "m/s", "Velocity of the wall, of x y z and t.")
-                .over("xyzt")
-                .needed()}),
+           joined({parameter("velocity", Type::expression_vector, "m/s", "Velocity of the wall, of x y z and t.")
+                       .over("xyzt")
+                       .needed()},
+                  heat)),
   };
 }
 
 std::vector<Section> node_condition_kinds() {
   const ParameterSpec lower = parameter("lower", Type::vector, "m", "Lower corner of the box of nodes.").needed();
   const ParameterSpec upper = parameter("upper", Type::vector, "m", "Upper corner of the box of nodes.").needed();
+  const auto box = [&](std::string name, std::string doc, std::vector<ParameterSpec> own) {
+    return kind(std::move(name), std::move(doc), joined(joined({lower, upper}, std::move(own)), box_heat_parameters()));
+  };
   return {
-      kind("stick", "The nodes are held.", {lower, upper}),
-      kind("slip", "The nodes are held along one axis.", {lower, upper, axis("Axis that is held.").needed()}),
-      kind("separate", "The nodes are held along one axis, one way only.",
-           {lower, upper, axis("Axis that is held.").needed(),
-            parameter("side", Type::choice, "", "Way along the axis that stays open.").of({"+", "-"}).standard("+")}),
-      kind("prescribed", "The nodes move at a given velocity; null leaves a component free.",
-           {lower, upper,
-            parameter("velocity", Type::expression_vector, "m/s", "Velocity, of x y z and t.")
-                .over("xyzt")
-                .leave_free()
-                .needed()}),
+      box("stick", "The nodes are held.", {}),
+      box("slip", "The nodes are held along one axis.", {axis("Axis that is held.").needed()}),
+      box("separate", "The nodes are held along one axis, one way only.",
+          {axis("Axis that is held.").needed(),
+           parameter("side", Type::choice, "", "Way along the axis that stays open.").of({"+", "-"}).standard("+")}),
+      box("prescribed", "The nodes move at a given velocity; null leaves a component free.",
+          {parameter("velocity", Type::expression_vector, "m/s", "Velocity, of x y z and t.")
+               .over("xyzt")
+               .leave_free()
+               .needed()}),
+      box("thermal", "The nodes move freely, and are held at a temperature or heated.", {}),
   };
 }
 
@@ -178,6 +190,7 @@ Section body_section() {
               .to(8)
               .standard(2),
           parameter("velocity", Type::expression_vector, "m/s", "Initial velocity, of x y z.").over("xyz").standard(0),
+          body_temperature(),
           parameter("jitter", Type::number, "", "Random shift of each particle, in particle spacings.")
               .from(0)
               .to(0.5)
@@ -332,6 +345,7 @@ std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind
                                        .of({"approach_and_position"})
                                        .standard("approach_and_position"));
     }
+    if (wanted == MPM_MATERIAL) section.parameters.push_back(thermal_parameter(*plugin));
     if (wanted == MPM_FILTER) {
       for (const ParameterSpec& spec : filter_schedule()) section.parameters.push_back(spec);
     }

@@ -1,0 +1,64 @@
+// What scenes with temperature cannot have, with the plugins of the build.
+#include <set>
+
+#include "experiment/read.hpp"
+#include "experiment/thermal.hpp"
+#include "support/catch.hpp"
+
+using namespace mpm;
+
+namespace {
+
+const Registry& plugins() {
+  static const Registry registry = Registry::from_folders(Registry::default_folders());
+  return registry;
+}
+
+Experiment experiment_from(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  ReadOptions options;
+  options.overrides = overrides;
+  return read_experiment_text(text, "test.json", ComponentLookup(plugins()), options);
+}
+
+}  // namespace
+
+TEST_CASE("two transfers do not carry a temperature, for stated reasons", "[config]") {
+  std::set<std::string> refused;
+  for (const Plugin* transfer : plugins().of_kind(MPM_TRANSFER)) {
+    CHECK_FALSE((transfer->id() != "rpic" && refusal_of_temperature(*transfer, 0)));
+    if (refusal_of_temperature(*transfer, transfer->id() == "polypic" ? 1 : 0))
+      refused.insert(std::string(transfer->id()));
+  }
+  CHECK(refused == std::set<std::string>{"polypic", "rpic"});
+  const auto reason = [](const char* id, int order) {
+    return refusal_of_temperature(*plugins().find(MPM_TRANSFER, id), order).value_or("carried");
+  };
+  CHECK(reason("rpic", 0) ==
+        "transfer \"rpic\" keeps the spin of a velocity alone, and a temperature has none; choose transfer \"apic\"");
+  CHECK(reason("polypic", 2) ==
+        "transfer \"polypic\" carries polynomials of a velocity beyond the affine ones, and none of a temperature; "
+        "choose transfer \"apic\"");
+}
+
+TEST_CASE("no heat passes the axis of an axisymmetric scene", "[config]") {
+  const std::string scene = R"J({ "dimension": 2,
+    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]], "symmetry": "axisymmetric",
+             "boundaries": {"all": {"type": "slip", "temperature": 300}}},
+    "shape": {"type": "linear"}, "transfer": {"type": "flip"},
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000,
+                        "thermal": {"conductivity": 1, "heat_capacity": 1}}},
+    "bodies": [{"name": "b", "material": "m", "temperature": 300,
+                "geometry": {"type": "box", "lower": [0, 0.2], "upper": [0.4, 0.4]}}],
+    "solver": {"end_time": 1}})J";
+  try {
+    experiment_from(scene);
+    FAIL("accepted");
+  } catch (const InputError& error) {
+    REQUIRE(error.problems().size() == 1);
+    CHECK(error.problems()[0].pointer == "/grid/boundaries/all/temperature");
+    CHECK(error.problems()[0].message ==
+          "x_min is the axis r = 0, which is no wall and lets no heat through; set \"x_min\" to \"slip\"");
+  }
+  const Experiment wall = experiment_from(scene, {"/grid/boundaries/x_min=slip"});
+  CHECK(wall.faces[0][1].thermal.exchange == HeatExchange::fixed_temperature);
+}
