@@ -31,7 +31,9 @@ enum class AtWall {
   even,      ///< as it is
   momentum,  ///< each component with the sign of the wall's condition, relative to the wall's own motion
   vector,    ///< each component with the sign of the wall's condition
-  slip       ///< the component across the wall changes its sign, whatever the condition; on the wall it vanishes
+  heat,      ///< even, but with the other sign at walls of a fixed temperature, relative to what that temperature holds
+  heat_rate,  ///< even, but with the other sign at walls of a fixed temperature
+  slip        ///< the component across the wall changes its sign, whatever the condition; on the wall it vanishes
 };
 
 /// When a field's ghosts are folded.

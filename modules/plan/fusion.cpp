@@ -10,7 +10,8 @@ namespace mpm {
 namespace {
 
 constexpr bool scatters(Act act) {
-  return act == Act::scatter_momentum || act == Act::scatter_force || act == Act::scatter_contact;
+  return act == Act::scatter_momentum || act == Act::scatter_force || act == Act::scatter_contact ||
+         act == Act::scatter_heat;
 }
 
 /// Whether the visit `before` may go on with the first operator of `after`.
@@ -18,7 +19,8 @@ bool joins(const Pass& before, const Pass& after) {
   if (before.every_steps != after.every_steps || before.stage != after.stage) return false;
   const Act last = before.operators.back().act, next = after.operators.front().act;
   if (scatters(last)) return scatters(next);
-  if (before.has(Act::gather)) return next == Act::strain || next == Act::move;
+  if (before.has(Act::gather))
+    return next == Act::gather_heat || next == Act::strain || next == Act::move || next == Act::change_phase;
   return (last == Act::begin_filter && next == Act::keep_velocity) ||
          (last == Act::restore_velocity && next == Act::keep_correction);
 }
@@ -78,6 +80,8 @@ std::string why_not_fused(const Step& step, const Experiment& experiment) {
     return experiment.filter->pointer + ": the filter reads the grid between gather and scatter";
   if (find_pass(step, Act::scatter_contact))
     return experiment.contact->pointer + ": several velocity fields take two passes";
+  if (const Pass* conducts = find_pass(step, Act::conduct))
+    return conducts->operators.front().because + ": temperature takes two passes";
   if (experiment.shape.plugin->shape().form == MPM_NODE_LIST)
     return experiment.shape.pointer + ": a list of nodes takes two passes";
   if (!backend_needs(experiment.backend).fuses)

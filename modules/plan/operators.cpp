@@ -45,6 +45,12 @@ class Uses {
 // What contact and one-sided walls look at.
 #define MPM_PAIRS "nodes/volume", "nodes/volume_gradient", "nodes/mass_position"
 
+/// The transfer's state for the temperature, field by field.
+void use_temperature_state(FieldNames& names, const Plan& plan) {
+  for (const Field& field : plan.fields)
+    if (field.of_particles_of(0) && field.id.rfind(temperature_state, 0) == 0) names.push_back("particles/" + field.id);
+}
+
 void describe(Operator& operation, const Pass& pass, const Plan& plan, const Experiment& experiment) {
   operation.reads.clear(), operation.writes.clear(), operation.adds.clear();
   operation.where = Where::nodes;
@@ -92,6 +98,39 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
       uses.reads({"nodes/momentum", "nodes/mass", "nodes/next_momentum", "nodes/next_mass", MPM_PAIRS})
           .writes({"nodes/velocity", "nodes/velocity_of_constraints"});
       if (!pass.remap()) uses.writes({"nodes/velocity_before"});
+      break;
+    case Act::scatter_heat:
+      operation.where = Where::particles;
+      uses.reads({MPM_STENCIL, "particles/temperature", "particles/melted_fraction", "particles/circumference"})
+          .adds({"nodes/heat", "nodes/heat_capacity"});
+      use_temperature_state(operation.reads, plan);
+      break;
+    case Act::divide_heat:
+      uses.reads({"nodes/heat", "nodes/heat_capacity"}).writes({"nodes/temperature", "nodes/temperature_before"});
+      break;
+    case Act::conduct:
+      operation.where = Where::particles;
+      uses.reads({MPM_STENCIL, "nodes/temperature", "particles/material", "particles/melted_fraction",
+                  "particles/circumference"})
+          .adds({"nodes/heat_rate"});
+      break;
+    case Act::heat:
+      uses.reads(
+              {"nodes/temperature", "nodes/temperature_before", "nodes/heat_capacity", "nodes/heat_rate", "nodes/mass"})
+          .writes({"nodes/temperature"});
+      break;
+    case Act::gather_heat:
+      operation.where = Where::particles;
+      uses.reads({MPM_STENCIL, "particles/temperature", "nodes/temperature"});
+      if (experiment.transfer.plugin->transfer().traits & MPM_GATHERS_INCREMENT)
+        uses.reads({"nodes/temperature_before"});
+      uses.writes({"particles/temperature"});
+      use_temperature_state(operation.writes, plan);
+      break;
+    case Act::change_phase:
+      operation.where = Where::particles;
+      uses.reads({"particles/temperature", "particles/melted_fraction"})
+          .writes({"particles/temperature", "particles/melted_fraction"});
       break;
     case Act::accelerate:
       uses.reads({"nodes/velocity", "nodes/mass", "nodes/force", "nodes/body_force", "nodes/weight",

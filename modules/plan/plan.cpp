@@ -217,6 +217,20 @@ class Planner {
     }
   }
 
+  /// The transfer acts on the temperature as on the first component of a velocity, of a particle whose mass is its heat
+  /// capacity: of its state a matrix keeps one row, a vector one scalar.
+  void temperature_fields(int body) {
+    const auto& thermal = experiment_.materials[experiment_.bodies[body].material].thermal;
+    if (!thermal) return;
+    particle_field(body, "temperature", "K", 1, First::seeded, thermal->pointer);
+    for (const mpm_state& declared : experiment_.transfer.plugin->state())
+      particle_field(body, temperature_state + std::string(declared.name), "K/m",
+                     declared.shape == MPM_STATE_MATRIX ? experiment_.dimension : 1, First::zero,
+                     named(experiment_.transfer) + ": acts on the temperature too");
+    if (thermal->phase_change)
+      particle_field(body, "melted_fraction", "", 1, First::seeded, thermal->phase_change->pointer);
+  }
+
   /// The order is that of the places in a particle's memory: what a gather may replace stands together.
   void particle_fields() {
     const int D = experiment_.dimension;
@@ -235,6 +249,7 @@ class Planner {
                            " polynomials beyond the affine ones")
             .origin = Origin::transfer;
       state(body, experiment_.materials[specification.material].component, Origin::material);
+      temperature_fields(body);
       if (needs_.sorts)
         seeded("identity", "", 1, specification.pointer + ": results keep the order of seeding").bytes = 4;
       if (experiment_.axisymmetric())
@@ -362,8 +377,19 @@ class Planner {
       summed_field("mass_position", "kg m", D, AtWall::slip, Folded::with_mass,
                    experiment_.contact->pointer + "/detection \"approach_and_position\"");
     }
+    if (experiment_.has_temperature()) temperature_fields_of_nodes();
     for (Field& field : plan_.fields)
       if (field.name == field.id) std::replace(field.name.begin(), field.name.end(), '_', ' ');
+  }
+
+  void temperature_fields_of_nodes() {
+    const std::string because = experiment_.materials[experiment_.bodies[0].material].thermal->pointer;
+    summed_field("heat", "J", 1, AtWall::heat, Folded::with_mass, because);
+    summed_field("heat_capacity", "J/K", 1, AtWall::even, Folded::with_mass, because, "heat");
+    in_place_of("heat", node_field("temperature", "K", 1, because));
+    summed_field("heat_rate", "W", 1, AtWall::heat_rate, Folded::with_force, because);
+    if (plan_.velocity_increment || plan_.ledger || needs_.keeps_all_apart)
+      node_field("temperature_before", "K", 1, because).cleared = true;
   }
 
   std::string why_for_ledger() const {

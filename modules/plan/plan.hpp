@@ -17,6 +17,9 @@ namespace mpm {
 /// power of a cell.
 inline constexpr const char* polynomial_coefficients = "polynomial_coefficients";
 
+/// What the id of a particle field begins with that is the transfer's state for the temperature: of a matrix its row 0.
+inline constexpr const char* temperature_state = "temperature_of_";
+
 struct Plan {
   std::vector<Field> fields;
   int velocity_fields = 1;  ///< that a node holds all its fields for

@@ -35,6 +35,16 @@ std::string Pass::name() const {
       return remap() ? "momentum to velocity again" : "momentum to velocity";
     case Act::accelerate:
       return "apply forces";
+    case Act::scatter_heat:
+      return "scatter heat";
+    case Act::divide_heat:
+      return "heat to temperature";
+    case Act::conduct:
+      return "conduct";
+    case Act::heat:
+      return "heat";
+    case Act::change_phase:
+      return "change phase";
     case Act::strain:
       return half ? "half strain" : "strain";
     case Act::move:

@@ -17,8 +17,12 @@ enum class Act {
   scatter_momentum,    ///< particles -> mass and momentum of nodes
   scatter_force,       ///< particles -> forces of nodes (into the momentum, times dt, where they have no field)
   scatter_contact,     ///< particles -> volume, its gradient and the place of the surface
+  scatter_heat,        ///< particles -> heat and heat capacity of nodes
   divide,              ///< fold walls and periodic images, v- = p / m, conditions, contact before the forces
   accelerate,          ///< p+ = p + dt f with conditions, contact after the forces, v+
+  divide_heat,         ///< fold, temperature before = heat / capacity, fixed temperatures
+  conduct,             ///< on particles: gradient of the temperature -> heat flux -> rates of nodes
+  heat,                ///< temperature after: rates, walls' flux and convection, heating of boxes, fixed temperatures
   begin_filter,        ///< increment <- grid velocity
   keep_velocity,       ///< and the grid velocity is kept aside
   project,             ///< projection <- S+ S increment, by the transfer's own gather and scatter
@@ -28,10 +32,12 @@ enum class Act {
   keep_correction,     ///< and what the filter had added is kept aside instead
   add_correction,      ///< grid velocity += the correction kept aside; conditions and contact
   gather,              ///< grid -> particle velocity and the transfer's state
+  gather_heat,         ///< grid -> particle temperature and the transfer's state for it
   strain,              ///< grid velocity -> velocity gradient -> material state
-  move                 ///< x += dt times the advection velocity of the gather
+  move,                ///< x += dt times the advection velocity of the gather
+  change_phase         ///< heat beyond the melting temperature becomes latent, and back
 };
-inline constexpr int act_count = static_cast<int>(Act::move) + 1;
+inline constexpr int act_count = static_cast<int>(Act::change_phase) + 1;
 
 /// What one instance of an operator works on.
 enum class Where { particles, nodes, scene };

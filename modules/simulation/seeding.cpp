@@ -93,9 +93,25 @@ class Seeder {
     }
     if (affine_) differentiate();
     if (affine_ && (experiment_.transfer.plugin->transfer().traits & MPM_KEEPS_SPIN_ONLY)) keep_spin();
-    visit({given_, n, position_.data(), velocity_.data(), affine_ ? gradient_.data() : nullptr});
+    seed_temperature();
+    visit({given_, n, position_.data(), velocity_.data(), affine_ ? gradient_.data() : nullptr, others_});
     given_ += n;
     points_.clear();
+  }
+
+  /// What is warmer than the melting temperature is melted.
+  void seed_temperature() {
+    if (!body_.temperature) return;
+    std::vector<double>& temperature = fields_["temperature"];
+    temperature.clear();
+    for (const Vector3& x : points_) temperature.push_back((*body_.temperature)(x, x, 0));
+    others_ = {{"temperature", temperature.data()}};
+    const auto& thermal = experiment_.materials[body_.material].thermal;
+    if (!thermal || !thermal->phase_change) return;
+    std::vector<double>& melted = fields_["melted_fraction"];
+    melted.clear();
+    for (const double T : temperature) melted.push_back(T > thermal->phase_change->temperature ? 1 : 0);
+    others_.emplace_back("melted_fraction", melted.data());
   }
 
   /// Central differences: exact for affine fields to rounding.
@@ -139,6 +155,8 @@ class Seeder {
   std::size_t given_ = 0;
   std::vector<Vector3> points_, ahead_, behind_;
   std::vector<double> position_, velocity_, gradient_, values_, behind_values_;
+  std::map<std::string, std::vector<double>> fields_;
+  std::vector<std::pair<std::string, const double*>> others_;
 };
 
 }  // namespace

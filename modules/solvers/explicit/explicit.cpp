@@ -14,14 +14,27 @@ void explicit_step(StepBuilder& step) {
   const std::string order = "/solver/stress_update", transfer = StepBuilder::named(scene.transfer);
   const std::string first = order + (averaged ? " \"averaged\"" : " \"first\""), again = order + " \"modified_last\"";
   const std::string contact = scene.contact ? StepBuilder::named(*scene.contact) : "";
+  const bool heats = scene.has_temperature();
+  const std::string thermal = heats ? scene.materials[scene.bodies[0].material].thermal->pointer : "";
   FilterParts filter(step);
+  const auto melts = [&] {
+    for (const MaterialSpecification& material : scene.materials)
+      if (material.thermal && material.thermal->phase_change)
+        return (void)step.perform(Act::change_phase, material.thermal->phase_change->pointer, Stage::after_forces);
+  };
 
   step.perform(Act::clear, transfer);
   step.perform(Act::scatter_momentum, transfer);
   if (!stress_first) step.perform(Act::scatter_force, transfer);
   if (scene.contact) step.perform(Act::scatter_contact, contact);
+  if (heats) step.perform(Act::scatter_heat, thermal);
   step.perform(Act::divide, scene.contact ? contact + " before the forces; boundaries" : "boundaries");
 
+  if (heats) {
+    step.perform(Act::divide_heat, thermal);
+    step.perform(Act::conduct, thermal);
+    step.perform(Act::heat, thermal, Stage::after_forces);
+  }
   filter.before_forces(stress_first);
   if (stress_first) {
     step.perform(Act::strain, first).share = share;
@@ -37,16 +50,18 @@ void explicit_step(StepBuilder& step) {
     step.perform(Act::strain, order + ": by the unfiltered velocity", Stage::after_forces).share = share;
   filter.before_gather();
   step.perform(Act::gather, transfer, Stage::after_forces);
+  if (heats) step.perform(Act::gather_heat, thermal, Stage::after_forces);
   if (!filter.for_particles_only() && stress_last)
     step.perform(Act::strain, transfer, Stage::after_forces).share = share;
   if (!remaps) step.perform(Act::move, transfer, Stage::after_forces);
-  if (!remaps) return;
+  if (!remaps) return melts();
 
   step.perform(Act::scatter_momentum, again + ": updated velocities, old positions", Stage::remapped);
   step.perform(Act::divide, again, Stage::remapped);
   filter.remapped();
   step.perform(Act::strain, again, Stage::remapped);
   step.perform(Act::move, again + ": positions by the velocity gathered before", Stage::remapped);
+  melts();
 }
 
 StepLimit explicit_limit(const Experiment& experiment, const TimeStepSpeeds& speeds) {
