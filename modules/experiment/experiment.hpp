@@ -64,6 +64,11 @@ struct FaceCondition {
   ThermalCondition thermal;
 };
 
+/// Whether heat comes in through the wall by a flux, so that the area that a body covers of it counts.
+inline bool passes_heat(const FaceCondition& face) {
+  return face.thermal.exchange == HeatExchange::flux || face.thermal.exchange == HeatExchange::convection;
+}
+
 /// What holds on the nodes inside a box.
 struct BoxCondition {
   ConditionType type = ConditionType::stick;

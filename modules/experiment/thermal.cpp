@@ -229,6 +229,11 @@ void check_temperature(const Node& root, const Experiment& experiment, ReadConte
     return;
   }
   for (const BodySpecification& body : experiment.bodies) check_body(root, experiment, body, context);
+  if (experiment.filter)
+    context.problem(nearest_node(root, experiment.filter->pointer),
+                    "filter " + in_quotes(experiment.filter->plugin->id()) +
+                        " acts on velocities alone, and a scene with temperature needs one that acts on both; remove the "
+                        "filter, or \"thermal\"");
   const ThermalCondition& axis = experiment.faces[0][0].thermal;
   if (experiment.axisymmetric() && experiment.grid.lower[0] == 0 && axis.exchange != HeatExchange::none)
     context.problem(nearest_node(root, axis.pointer),

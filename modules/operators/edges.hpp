@@ -10,7 +10,7 @@ namespace mpm {
 enum Wall : int { wall_free = 0, wall_stick, wall_slip, wall_separate, wall_prescribed, wall_periodic };
 
 /// How a field is folded at a wall, in the order of AtWall.
-enum Rule : int { rule_none = 0, rule_even, rule_momentum, rule_vector, rule_slip };
+enum Rule : int { rule_none = 0, rule_even, rule_momentum, rule_vector, rule_heat, rule_heat_rate, rule_slip };
 
 /// Sign with which component `component` of a vector is mirrored at a wall normal to `axis`; images at periodic faces
 /// are taken as they are.
@@ -20,10 +20,17 @@ MPM_HD constexpr int mirror_sign(int wall, int axis, int component) {
   return component == axis ? -1 : 1;
 }
 
-/// The same of a field with this rule.
-MPM_HD constexpr int mirror_sign(int rule, int wall, int axis, int component) {
+/// The same of a field with this rule, at a wall that is held at a temperature or not.
+MPM_HD constexpr int mirror_sign(int rule, int wall, bool holds_temperature, int axis, int component) {
   if (wall == wall_periodic || rule == rule_none || rule == rule_even) return 1;
+  if (rule == rule_heat || rule == rule_heat_rate) return holds_temperature ? -1 : 1;
   return mirror_sign(rule == rule_slip ? int(wall_slip) : wall, axis, component);
+}
+
+/// Whether what is mirrored is relative to what the wall's own velocity or temperature makes of the ghost's mass or heat
+/// capacity.
+MPM_HD constexpr bool is_relative_to_wall(int rule) {
+  return rule == rule_momentum || rule == rule_heat;
 }
 
 /// Whether the material continues beyond a wall as its mirror image.

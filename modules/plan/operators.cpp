@@ -102,7 +102,8 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
     case Act::scatter_heat:
       operation.where = Where::particles;
       uses.reads({MPM_STENCIL, "particles/temperature", "particles/melted_fraction", "particles/circumference"})
-          .adds({"nodes/heat", "nodes/heat_capacity"});
+          .adds({"nodes/heat", "nodes/heat_capacity", "nodes/heated_volume"});
+      if (plan.node_field("heated_volume")) uses.reads({"particles/material"});
       use_temperature_state(operation.reads, plan);
       break;
     case Act::divide_heat:
@@ -116,7 +117,8 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
       break;
     case Act::heat:
       uses.reads(
-              {"nodes/temperature", "nodes/temperature_before", "nodes/heat_capacity", "nodes/heat_rate", "nodes/mass"})
+              {"nodes/temperature", "nodes/temperature_before", "nodes/heat_capacity", "nodes/heat_rate",
+               "nodes/heated_volume", "nodes/mass"})
           .writes({"nodes/temperature"});
       break;
     case Act::gather_heat:

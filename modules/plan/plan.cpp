@@ -108,6 +108,7 @@ class Planner {
     plan_.velocity_fields = experiment_.field_count;
     plan_.contact = experiment_.contact.has_value();
     plan_.ledger = experiment_.output.ledger;
+    plan_.heat_ledger = plan_.ledger && experiment_.has_temperature();
     plan_.ledger_every = experiment_.output.ledger_every;
     plan_.velocity_increment = transfer_.traits & MPM_GATHERS_INCREMENT;
     plan_.affine_moment = transfer_.traits & (MPM_GATHERS_AFFINE | MPM_STRAIN_BY_AFFINE | MPM_STRESS_BY_AFFINE);
@@ -388,8 +389,16 @@ class Planner {
     summed_field("heat_capacity", "J/K", 1, AtWall::even, Folded::with_mass, because, "heat");
     in_place_of("heat", node_field("temperature", "K", 1, because));
     summed_field("heat_rate", "W", 1, AtWall::heat_rate, Folded::with_force, because);
-    if (plan_.velocity_increment || plan_.ledger || needs_.keeps_all_apart)
-      node_field("temperature_before", "K", 1, because).cleared = true;
+    if (plan_.velocity_increment || needs_.keeps_all_apart)
+      node_field("temperature_before", "K", 1,
+                 plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of temperature"
+                                          : why_apart())
+          .cleared = true;
+    for (const auto& faces : experiment_.faces)
+      for (const FaceCondition& face : faces)
+        if (passes_heat(face) && !plan_.node_field("heated_volume"))
+          summed_field("heated_volume", "m^3", 1, AtWall::even, Folded::with_mass,
+                       face.thermal.pointer + ": makes the area of the wall that a node stands for");
   }
 
   std::string why_for_ledger() const {

@@ -33,6 +33,7 @@ struct Plan {
   bool ledger = false;
   int ledger_every = 1;                   ///< steps between entries of the ledger
   bool force_for_ledger = false;          ///< nothing but the ledger asks for separate_force
+  bool heat_ledger = false;               ///< the heat that comes and goes is recorded in every step
   bool initial_position = false;          ///< particles keep X
   bool kept_advection = false;            ///< MUSL: the advection velocity waits for `move`
   bool filter = false;                    ///< the grid keeps an increment and its projection

@@ -166,6 +166,19 @@ struct ContactRecord {
   double momentum_residual = 0;                ///< kg m/s, sum of the pair's impulses: zero to rounding
 };
 
+/// Heat that came and went, J, since the run began. Each row is summed where it is applied; content and latent heat of
+/// the particles change by the sum of all rows.
+struct HeatLedger {
+  double scatter = 0;      ///< heat of the nodes less that of the particles that gave it
+  double gather = 0;       ///< heat of the particles less that of the nodes that they took it from
+  double walls = 0;        ///< from walls that are held at a temperature
+  double flux = 0;         ///< through walls with a heat flux
+  double convection = 0;   ///< through walls with convection
+  double boxes = 0;        ///< heating of boxes of nodes, and what holds their temperature
+  double dissipation = 0;  ///< of the energy that materials dissipate, the share that warms them
+  double sum() const { return scatter + gather + walls + flux + convection + boxes + dissipation; }
+};
+
 struct TimeStepLimit {
   double speed = 0;       ///< largest wave speed + particle speed, m/s
   double wave_speed = 0;  ///< of that particle
@@ -207,6 +220,8 @@ class Backend {
   virtual BodyState body_state(int body) const = 0;
   /// Of the steps with Plan::accounts_at.
   virtual const Ledger& ledger() const = 0;
+  /// Of all steps, where Plan::heat_ledger; else nothing.
+  virtual HeatLedger heat_ledger() const { return {}; }
   virtual const ContactRecord& contact_record() const = 0;
   virtual const FilterRecord& filter_record() const = 0;
 

@@ -10,6 +10,8 @@
 //    force like the others: a ghost of mass m folds m g with the same signs (so the mirror node's weight is (m + sign
 //    m_ghost) g by component, not (m + m_ghost) g). The wall's velocity is taken at the foot of the node on the wall,
 //    at t for v- and at t + dt for v+.
+//  A wall that is held at a temperature mirrors the heat beyond it relative to that temperature, with the other sign; all
+//    other walls mirror it as it is.
 //  separate: ghosts fold as slip while the mirrored pair approaches (predicted with the forces), else they are ordinary
 //    nodes; nodes on the wall are held while they would move into it.
 //  free: ghosts are ordinary nodes.
@@ -42,14 +44,18 @@ static_assert(static_cast<int>(ConditionType::free) == wall_free &&
               static_cast<int>(ConditionType::periodic) == wall_periodic);
 static_assert(static_cast<int>(AtWall::none) == rule_none && static_cast<int>(AtWall::even) == rule_even &&
               static_cast<int>(AtWall::momentum) == rule_momentum && static_cast<int>(AtWall::vector) == rule_vector &&
+              static_cast<int>(AtWall::heat) == rule_heat && static_cast<int>(AtWall::heat_rate) == rule_heat_rate &&
               static_cast<int>(AtWall::slip) == rule_slip);
 
 // The decisions of operators/edges.hpp in the words of an experiment and a plan.
 constexpr double mirror_sign(ConditionType type, int axis, int component) {
   return mirror_sign(static_cast<int>(type), axis, component);
 }
-constexpr double mirror_sign(AtWall rule, ConditionType type, int axis, int component) {
-  return mirror_sign(static_cast<int>(rule), static_cast<int>(type), axis, component);
+inline bool holds_temperature(const FaceCondition& face) {
+  return face.thermal.exchange == HeatExchange::fixed_temperature;
+}
+inline double mirror_sign(AtWall rule, const FaceCondition& face, int axis, int component) {
+  return mirror_sign(static_cast<int>(rule), static_cast<int>(face.type), holds_temperature(face), axis, component);
 }
 constexpr bool folds(ConditionType type) {
   return folds(static_cast<int>(type));

@@ -17,7 +17,7 @@ struct TimeStepSpeeds {
 /// The largest step that a solver takes.
 struct StepLimit {
   double seconds = 0;
-  std::string_view reason;  ///< "wave", "filter order", "diffusion"
+  std::string_view reason;  ///< "wave", "filter order", "diffusion", "convection"
 };
 
 struct Solver {

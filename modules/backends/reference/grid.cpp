@@ -89,8 +89,8 @@ Vector Grid::wall_velocity(const Fold& fold, double time) const {
 
 Vector Grid::mirrored(Vector v, const Fold& fold, AtWall rule) const {
   if (fold.side < 0) return v;
-  const ConditionType type = experiment_.faces[fold.axis][fold.side].type;
-  for (int c = 0; c < 3; ++c) v[c] *= mirror_sign(rule, type, fold.axis, c);
+  const FaceCondition& face = experiment_.faces[fold.axis][fold.side];
+  for (int c = 0; c < 3; ++c) v[c] *= mirror_sign(rule, face, fold.axis, c);
   return v;
 }
 

@@ -1,8 +1,39 @@
 #include "solvers/explicit/explicit.hpp"
 
+#include <limits>
+
 #include "plugin/extension_of.hpp"
 
 namespace mpm {
+
+namespace {
+
+/// What the largest diffusivity of any phase allows, courant h^2 / (2 D alpha), and what convection at a wall does, whose
+/// node has the heat capacity of half a cell. Densities are those of the material as seeded.
+StepLimit thermal_limit(const Experiment& experiment) {
+  StepLimit limit{std::numeric_limits<double>::infinity(), "diffusion"};
+  const double h = experiment.grid.cell_size, courant = experiment.solver.courant;
+  const auto take = [&](double seconds, std::string_view reason) {
+    if (seconds < limit.seconds) limit = {seconds, reason};
+  };
+  const auto phase = [&](const ThermalProperties& properties, double density) {
+    const double capacity = density * properties.heat_capacity;
+    take(courant * h * h * capacity / (2 * experiment.dimension * properties.conductivity), "diffusion");
+    for (const auto& faces : experiment.faces)
+      for (const FaceCondition& face : faces)
+        if (face.thermal.coefficient > 0) take(courant * h * capacity / (2 * face.thermal.coefficient), "convection");
+  };
+  for (const BodySpecification& body : experiment.bodies) {
+    const MaterialSpecification& material = experiment.materials[body.material];
+    if (!material.thermal) continue;
+    const double density = material.component.parameter("density");
+    phase(material.thermal->solid, density);
+    if (material.thermal->phase_change) phase(material.thermal->phase_change->melted, density);
+  }
+  return limit;
+}
+
+}  // namespace
 
 void explicit_step(StepBuilder& step) {
   const Experiment& scene = step.experiment();
@@ -65,11 +96,12 @@ void explicit_step(StepBuilder& step) {
 }
 
 StepLimit explicit_limit(const Experiment& experiment, const TimeStepSpeeds& speeds) {
-  double seconds = experiment.solver.courant * experiment.grid.cell_size / speeds.speed;
-  if (!experiment.filter) return {seconds, "wave"};
-  if (const auto* filtered = extension_of<mpm_filter_step_limit>(*experiment.filter->plugin))
-    return {filtered->limit(experiment.filter->parameters.data(), seconds), "filter order"};
-  return {seconds, "wave"};
+  StepLimit limit{experiment.solver.courant * experiment.grid.cell_size / speeds.speed, "wave"};
+  if (experiment.filter)
+    if (const auto* filtered = extension_of<mpm_filter_step_limit>(*experiment.filter->plugin))
+      limit = {filtered->limit(experiment.filter->parameters.data(), limit.seconds), "filter order"};
+  const StepLimit thermal = thermal_limit(experiment);
+  return thermal.seconds < limit.seconds ? thermal : limit;
 }
 
 }  // namespace mpm

@@ -8,7 +8,7 @@ namespace mpm::cpu {
 template <int D, class T>
 Quad<T> GridStep<D, T>::mirror_signs(const FaceNodes& face, AtWall rule) const {
   Q signs{1, 1, 1, 1};
-  for (int c = 0; c < 3; ++c) signs[c] = static_cast<T>(mirror_sign(rule, face.condition->type, face.axis, c));
+  for (int c = 0; c < 3; ++c) signs[c] = static_cast<T>(mirror_sign(rule, *face.condition, face.axis, c));
   return signs;
 }
 

@@ -88,7 +88,7 @@ MPM_HD void fold_field(const Arguments<T>& a, const Fold& fold, T mass) {
     T* const values = a.grid.field[F::number] + c * a.node_count;
     T of_wall = T(0);
     if constexpr (F::at_wall == rule_momentum) of_wall = mass * velocity_of_wall(a, fold, c);
-    const T sign = T(mirror_sign(F::at_wall, fold.wall, fold.axis, c));
+    const T sign = T(mirror_sign(F::at_wall, fold.wall, false, fold.axis, c));
     values[fold.mirror] += mirrored(values[fold.ghost], sign, of_wall);
     values[fold.ghost] = T(0);
   }
