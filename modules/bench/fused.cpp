@@ -4,6 +4,7 @@
 
 #include "backends/cpu/cpu_backend.hpp"
 #include "backends/cpu/particles/particle_gather.hpp"
+#include "backends/cpu/particles/particle_heat.hpp"
 #include "backends/cpu/particles/particle_scatter.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
 #include "plugin/sdk.hpp"

@@ -19,6 +19,9 @@ inline constexpr const char* polynomial_coefficients = "polynomial_coefficients"
 
 /// What the id of a particle field begins with that is the transfer's state for the temperature: of a matrix its row 0.
 inline constexpr const char* temperature_state = "temperature_of_";
+inline std::string temperature_state_of(const std::string& state_of_transfer) {
+  return temperature_state + state_of_transfer;
+}
 
 struct Plan {
   std::vector<Field> fields;

@@ -32,6 +32,7 @@ class CpuBackend final : public Backend, NamedChannels {
   TimeStepLimit time_step_limit() const override { return limit_; }
   BodyState body_state(int body) const override;
   const Ledger& ledger() const override { return ledger_; }
+  HeatLedger heat_ledger() const override { return heat_ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
   const FilterRecord& filter_record() const override { return filter_; }
   bool scattered() const override { return scattered_; }
@@ -62,7 +63,8 @@ class CpuBackend final : public Backend, NamedChannels {
   void gather(const Pass& pass, const StepInfo& step);
   void gather_scatter(const Pass& pass, const StepInfo& step);
   bool may_pass_motion(const StepInfo& step) const;
-  void account_for_gather(const typename Step::Gathered& gathered, const StepInfo& step);
+  void account_for_gather(const Pass& pass, const typename Step::Gathered& gathered, const StepInfo& step);
+  void account_for_strain(const typename Step::Gathered& dissipation, const StepInfo& step);
   void wake_for_ledger(long step);
   std::string signature() const;
   void restore_particles(ArchiveReader& archive, Particles<D, T>& particles);
@@ -75,6 +77,7 @@ class CpuBackend final : public Backend, NamedChannels {
   long looked_at_step_ = -1;  ///< whether the ledger takes entries from it is known
   std::vector<int> field_of_body_;
   Ledger ledger_;
+  HeatLedger heat_ledger_;
   ContactRecord contact_;
   FilterRecord filter_;
   TimeStepLimit limit_;
@@ -103,7 +106,7 @@ CpuBackend<D, T, Components>::CpuBackend(const Experiment& experiment, const Pla
   }
   std::vector<Body<D, T>> bodies = make_bodies(seeds);
   particle_step_ = std::make_unique<Step>(scene_, grid_, particles_, std::move(bodies));
-  grid_step_ = std::make_unique<GridStep<D, T>>(scene_, grid_, ledger_, contact_, filter_);
+  grid_step_ = std::make_unique<GridStep<D, T>>(scene_, grid_, ledger_, heat_ledger_, contact_, filter_);
   sort_all();
 }
 
@@ -122,6 +125,9 @@ std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<Se
     const mpm_material& material = body.material->plugin->material();
     body.update_material = material.update[lane_precision<T>][D - 2];
     body.dissipates = (material.traits & MPM_DISSIPATES) != 0;
+    const auto& thermal = experiment.materials[experiment.bodies[i].material].thermal;
+    body.thermal = thermal ? &*thermal : nullptr;
+    body.warms_itself = body.dissipates && thermal && thermal->dissipation_to_heat > 0;
     field_of_body_.push_back(body.field);
     particles_[i].lay_out(scene_.plan, body.index);
     if (std::max(particles_[i].transfer_state.size(), particles_[i].material_state.size()) > Step::max_state_fields)
@@ -206,12 +212,13 @@ void CpuBackend<D, T, Components>::scatter(const Pass& pass, const StepInfo& ste
   if (pass.remap()) grid_.clear(motion);
   const double energy = particle_step_->scatter(pass, step);
   if (pass.has(Act::scatter_momentum) && !pass.remap()) grid_step_->set_particle_kinetic_energy(energy);
+  if (pass.has(Act::scatter_heat)) grid_step_->set_particle_heat(particle_step_->scattered_heat());
 }
 
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step) {
   motion_kept_ = true;
-  account_for_gather(particle_step_->gather(pass, step), step);
+  account_for_gather(pass, particle_step_->gather(pass, step), step);
 }
 
 /// Whether a fused pass may leave velocities and the transfer's state behind: nobody reads them, and no particle can
@@ -236,7 +243,7 @@ void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepIn
   const StepInfo next{step.next_dt, step.next_time, step.step + 1};
   motion_kept_ = now.observed;
   const auto fused = particle_step_->gather_scatter(pass, now, next);
-  account_for_gather(fused.gathered, step);
+  account_for_gather(pass, fused.gathered, step);
   scattered_ = fused.scattered;
   if (!scattered_) return;
   grid_.swap(motion, next_motion);
@@ -244,10 +251,20 @@ void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepIn
 }
 
 template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::account_for_gather(const typename Step::Gathered& gathered, const StepInfo& step) {
+void CpuBackend<D, T, Components>::account_for_gather(const Pass& pass, const typename Step::Gathered& gathered,
+                                                      const StepInfo& step) {
+  if (pass.has(Act::gather_heat)) heat_ledger_.gather += gathered.heat - grid_step_->heat_after();
+  heat_ledger_.dissipation += gathered.heat_of_dissipation;
   if (!scene_.plan.accounts_at(step.step)) return;
   ledger_.gather += gathered.kinetic_energy - grid_step_->kinetic_energy_after();
   ledger_.material += gathered.dissipated;
+}
+
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::account_for_strain(const typename Step::Gathered& dissipation,
+                                                      const StepInfo& step) {
+  if (scene_.plan.accounts_at(step.step)) ledger_.material += dissipation.dissipated;
+  heat_ledger_.dissipation += dissipation.heat_of_dissipation;
 }
 
 /// Before the scatter of a step: what only the ledger reads rests in the steps that it leaves out.
@@ -285,7 +302,15 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
     case Act::gather:
       return pass.fused() ? gather_scatter(pass, step) : gather(pass, step);
     case Act::strain:
-      ledger_.material += particle_step_->strain(pass, step);
+      return account_for_strain(particle_step_->strain(pass, step), step);
+    case Act::divide_heat:
+      return grid_step_->heat_to_temperature(step);
+    case Act::conduct:
+      return particle_step_->conduct();
+    case Act::heat:
+      return grid_step_->apply_heat(step);
+    case Act::change_phase:
+      ledger_.material += particle_step_->change_phases(step);
       return;
     case Act::move:
       return particle_step_->move(step);
@@ -362,6 +387,7 @@ void CpuBackend<D, T, Components>::save(ArchiveWriter& archive) const {
   archive.put("drift", particle_step_->drift());
   archive.put("last_drift", particle_step_->last_drift());
   archive.put("ledger", ledger_);
+  if (scene_.plan.heat_ledger) archive.put("heat_ledger", heat_ledger_);
   archive.put("contact", contact_);
   archive.put("filter", filter_);
   archive.put("speed", limit_.speed);
@@ -398,6 +424,7 @@ void CpuBackend<D, T, Components>::restore(ArchiveReader& archive) {
   archive.get("drift", drift);
   archive.get("last_drift", last_drift);
   archive.get("ledger", ledger_);
+  if (scene_.plan.heat_ledger) archive.get("heat_ledger", heat_ledger_);
   archive.get("contact", contact_);
   archive.get("filter", filter_);
   archive.get("speed", limit_.speed);

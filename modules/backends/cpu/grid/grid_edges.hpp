@@ -51,13 +51,15 @@ void GridStep<D, T>::for_each_folded(const FaceNodes& face, Visit&& visit) {
       if (face.pair_folds[field * face.pairs.size() + i]) visit(field, face.pairs[i]);
 }
 
-/// Momentum with the mass beside it, which moves with the wall. Folded ghosts are cleared, so that folding again does
-/// nothing.
+/// What a wall's own velocity or temperature makes of a ghost's mass or heat capacity, which stand beside the value.
+/// Folded ghosts are cleared, so that folding again does nothing.
 template <int D, class T>
-void GridStep<D, T>::fold_momentum(Channel channel, int field, const MirrorPair& pair, Q signs, Q wall_velocity) {
+void GridStep<D, T>::fold_relative(Channel channel, int field, const MirrorPair& pair, Q signs, Q of_wall) {
   Q& ghost = grid_.quad(channel, field, pair.ghost);
-  const Q wall = ghost[3] * wall_velocity;
-  grid_.quad(channel, field, pair.mirror) += wall + signs * (ghost - wall);
+  const Q wall = ghost[3] * of_wall;
+  const Q folded = wall + signs * (ghost - wall);
+  if (channel == heat) heat_of_folds_ += static_cast<double>(folded[0]) - ghost[0];
+  grid_.quad(channel, field, pair.mirror) += folded;
   ghost = Q{};
 }
 
@@ -84,8 +86,10 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
   for (const Channel c : folded_[static_cast<int>(Folded::with_mass)]) {
     if (!grid_.has(c) || (remap && c != motion)) continue;
     const AtWall rule = grid_.field(c).at_wall;
-    if (rule == AtWall::momentum)
-      fold_momentum(c, field, pair, mirror_signs(face, rule), wall_velocity(face.condition->velocity, pair.foot, time));
+    if (is_relative_to_wall(static_cast<int>(rule)))
+      fold_relative(c, field, pair, mirror_signs(face, rule),
+                    rule == AtWall::heat ? wall_temperature(*face.condition, pair.foot, time)
+                                         : wall_velocity(face.condition->velocity, pair.foot, time));
     else if (rule == AtWall::slip)  // the ghost keeps its own: where MUSL's remap does not fold it again, contact looks
       grid_.quad(c, field, pair.mirror) += slip_signs * grid_.quad(c, field, pair.ghost);
     else
@@ -107,6 +111,7 @@ void GridStep<D, T>::fold_wall_onto_itself(const FaceNodes& face, int field, dou
 /// Sums the images of periodic nodes.
 template <int D, class T>
 void GridStep<D, T>::fold_images(bool remap, const StepInfo& step) {
+  if (!remap) heat_of_folds_ = 0;
   if (!remap) gravity_correction_.assign(has_gravity_ ? grid_.edge_nodes().size() * 4 * grid_.fields() : 0, 0.0);
   fold_faces(true, remap, step);
   if (!remap) fold_forces(true);
@@ -145,7 +150,10 @@ void GridStep<D, T>::fold_forces(bool periodic) {
     for (const Channel c : folded_[static_cast<int>(Folded::with_force)]) {
       if (!grid_.has(c) || face.pairs.empty()) continue;
       const Q signs = mirror_signs(face, grid_.field(c).at_wall);
-      for_each_folded(face, [&](int field, const MirrorPair& pair) { fold_as_is(c, field, pair, signs); });
+      for_each_folded(face, [&](int field, const MirrorPair& pair) {
+        if (c == heat_rate) rate_of_folds_ += (signs[0] - 1) * static_cast<double>(grid_.quad(c, field, pair.ghost)[0]);
+        fold_as_is(c, field, pair, signs);
+      });
     }
     if (!has_gravity_ || periodic) continue;
     const Q signs = mirror_signs(face, AtWall::vector);

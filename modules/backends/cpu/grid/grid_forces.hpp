@@ -4,19 +4,22 @@
 #include <algorithm>
 
 #include "backends/cpu/grid/grid_step.hpp"
+#include "simulation/wall_heat.hpp"
 
 namespace mpm::cpu {
 
 template <int D, class T>
-GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, ContactRecord& record,
-                         FilterRecord& filter)
+GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, HeatLedger& heat_ledger,
+                         ContactRecord& record, FilterRecord& filter)
     : NamedChannels{scene.plan},
       scene_(scene),
       grid_(grid),
       ledger_(ledger),
+      heat_ledger_(heat_ledger),
       record_(record),
       filter_(filter),
-      edges_(edge_models(scene.experiment)) {
+      edges_(edge_models(scene.experiment)),
+      wall_shares_(scene.plan.node_field("heated_volume") ? wall_shares(scene.experiment) : std::vector<double>()) {
   for (int c = 0; c < D; ++c) {
     gravity_[c] = static_cast<T>(scene.experiment.gravity[c]);
     has_gravity_ = has_gravity_ || gravity_[c] != 0;

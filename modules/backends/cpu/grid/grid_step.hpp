@@ -12,7 +12,8 @@ namespace mpm::cpu {
 template <int D, class T>
 class GridStep : NamedChannels {
  public:
-  GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, ContactRecord& record, FilterRecord& filter);
+  GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, HeatLedger& heat_ledger, ContactRecord& record,
+           FilterRecord& filter);
 
   /// Folds what was scattered, divides by mass, imposes conditions and contact before the forces.
   void momentum_to_velocity(bool remap, const StepInfo& step);
@@ -20,6 +21,14 @@ class GridStep : NamedChannels {
   void apply_forces(const StepInfo& step);
   /// Of the velocities after apply_forces, along any axis.
   T largest_component() const { return merges() ? largest_ : grid_.largest_component(motion); }
+
+  /// T- = H / C with the temperatures that walls and boxes hold.
+  void heat_to_temperature(const StepInfo& step);
+  /// T+ = T- + dt R / C, with what comes through walls and into boxes.
+  void apply_heat(const StepInfo& step);
+  /// Of the particles when they scattered it, and of the nodes when particles take it, J; the ledger's.
+  void set_particle_heat(double sum) { particle_heat_ = sum; }
+  double heat_after() const { return heat_after_; }
 
   /// Passes of the filter's loop: see PassKind. project_increment takes what the particles have scattered.
   void begin_filter(const Pass& pass);
@@ -65,7 +74,7 @@ class GridStep : NamedChannels {
   void fold_faces(bool periodic, bool remap, const StepInfo& step);
   template <class Visit>
   void for_each_folded(const FaceNodes& face, Visit&& visit);
-  void fold_momentum(Channel channel, int field, const MirrorPair& pair, Q signs, Q wall_velocity);
+  void fold_relative(Channel channel, int field, const MirrorPair& pair, Q signs, Q of_wall);
   void fold_as_is(Channel channel, int field, const MirrorPair& pair, Q signs);
   void fold_pair(FaceNodes& face, std::size_t pair, int field, bool remap, double time);
   void fold_wall_onto_itself(const FaceNodes& face, int field, double dt);
@@ -86,6 +95,14 @@ class GridStep : NamedChannels {
   void account_for_impulses(double dt);
   void account_for_block(int field, std::uint32_t first, double dt, const std::uint8_t* held, double* partial);
   void subtract_velocity_before();
+
+  Q wall_temperature(const FaceCondition& face, const Vector3& x, double time) const;
+  template <class Change>
+  double for_each_temperature(Change&& change);
+  void heat_through(const FaceNodes& face, double time, double dt);
+  void heat_box(const BoxNodes& box, double time, double dt);
+  void impose_temperatures(double time);
+  void fill_temperature_ghosts(double time);
 
   static double time_of(const Pass& pass, const StepInfo& step) {
     return pass.stage == Stage::after_forces ? step.time + step.dt : step.time;
@@ -113,6 +130,7 @@ class GridStep : NamedChannels {
   const Scene<D, T>& scene_;
   Grid<D, T>& grid_;
   Ledger& ledger_;
+  HeatLedger& heat_ledger_;
   ContactRecord& record_;
   FilterRecord& filter_;
   const std::vector<EdgeModel> edges_;
@@ -126,6 +144,9 @@ class GridStep : NamedChannels {
                                     ///< slots; the ledger's
   std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
   double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0, kinetic_energy_unfiltered_ = 0;
+  const std::vector<double> wall_shares_;  ///< see simulation/wall_heat.hpp; empty where no wall needs them
+  double particle_heat_ = 0, heat_after_ = 0;
+  double heat_of_folds_ = 0, rate_of_folds_ = 0;  ///< J and W that walls gave while their ghosts were folded
   bool has_gravity_ = false;
   bool may_merge_ = false;  ///< see merges: momentum_to_velocity leaves the division to apply_forces
   bool accounted_ = false;  ///< the ledger takes its entries from the step under way

@@ -48,7 +48,7 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
       work.higher.require(std::size_t(scene.plan.basis_functions) * D * chunk_size<T>);
     if (scene.plan.fused && scene.has(MPM_REPLACES_MOTION))
       work.passing_motion.require(std::size_t(D + transfer_components) * chunk_size<T>);
-    if (!scene.plan.filter) continue;
+    if (!scene.plan.filter && !scene.experiment.has_temperature()) continue;
     work.scratch_velocity.require(std::size_t(D) * chunk_size<T>);
     work.scratch_state.require(std::size_t(std::max(transfer_components, 1)) * chunk_size<T>);
   }
@@ -369,7 +369,9 @@ void ParticleStep<D, T, Components>::update_material(const Chunk& chunk, mpm_mat
   request.dimension = D;
   request.state = state.fields;
   if (scene_.axisymmetric && !request.velocity_gradient) request.velocity_gradient_zz = chunk.values;  // not read
-  if (Components::update_material(chunk.body, request) >= 0) note_inverted(chunk);
+  const std::int32_t inverted =
+      chunk.body.may_melt() ? update_by_phase(chunk, request) : Components::update_material(chunk.body, request);
+  if (inverted >= 0) note_inverted(chunk);
 }
 
 /// Finds the lowest index among the inadmissible particles of a chunk.

@@ -43,11 +43,13 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
   if (moved) account_for_move();
   throw_failure();
   Gathered sum;
-  if (!accounted_) return sum;  // blocks lie with the threads that worked on them
+  if (!accounted_ && !scene_.plan.heat_ledger) return sum;  // blocks lie with the threads that worked on them
   for (const auto& particles : particles_)
     for (const Block<D>& block : particles.blocks) {
       sum.kinetic_energy += block.kinetic_energy;
       sum.dissipated += block.dissipated;
+      sum.heat += block.heat;
+      sum.heat_of_dissipation += block.heat_of_dissipation;
     }
   return sum;
 }
@@ -59,8 +61,9 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
   for (auto& work : work_) work->moved = {};
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
+      block.kinetic_energy = block.dissipated = block.heat_of_dissipation = 0;
+      if (pass.has(Act::gather_heat)) gather_heat(body, block, work, step);
       load_velocities(body, block, work);
-      block.kinetic_energy = block.dissipated = 0;
       block.bounds.clear();
       for_each_chunk_of(body, block,
                         [&](const Chunk& chunk) { work.moved.extend(gather_one(pass, step, chunk, work)); });
@@ -121,7 +124,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
 template <int D, class T, class Components>
 [[gnu::noinline]] auto ParticleStep<D, T, Components>::gather_one(const Pass& pass, const StepInfo& step,
                                                                   const Chunk& chunk, Work& work) -> Moved {
-  const Wanted wanted{true, pass.has(Act::strain), motion};
+  const Wanted wanted{true, pass.has(Act::strain), motion, velocity_before};
   gather_chunk(chunk, work, wanted);
   work.clock.lap(Phase::coefficients);
   States state = transfer_states(chunk);
@@ -155,6 +158,7 @@ template <int D, class T, class Components>
   work.clock.lap(Phase::transfer);
   if (pass.has(Act::strain)) advance_material(chunk, work, step.dt, pass);
   work.clock.lap(Phase::material);
+  if (pass.has(Act::change_phase) && chunk.body.may_melt()) change_phases(chunk, work);
   if (!pass.has(Act::move)) return {};
   if (chunk.particles.next_domain >= 0)  // no pass of this step needs the old weights any more
     std::copy_n(chunk.at(chunk.particles.next_domain), D * D * chunk_size<T>, chunk.at(chunk.particles.domain));
@@ -166,25 +170,21 @@ template <int D, class T, class Components>
 }
 
 template <int D, class T, class Components>
-double ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& step) {
+auto ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& step) -> Gathered {
   account_for(step);
   const Wanted wanted{false, true, motion};
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       kernels_.load(work.velocity_tile.data(), grid_.channel(motion, bodies_[body].field), block.neighbours.data(),
                     block.reach);
-      block.dissipated = 0;
+      block.dissipated = block.heat_of_dissipation = 0;
       block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         gather_chunk(chunk, work, wanted);
         advance_material(chunk, work, step.dt, pass);
       });
     });
-  throw_failure();
-  double sum = 0;
-  for (std::size_t body = 0; accounted_ && body < particles_.size(); ++body)
-    for (const Block<D>& block : particles_[body].blocks) sum += block.dissipated;
-  return sum;
+  return sum_gathered(false);
 }
 
 /// Sums over the nodes of a chunk's particles, as quads: in the tile, or on the grid for lists that leave it.
@@ -226,8 +226,8 @@ void ParticleStep<D, T, Components>::gather_chunk(const Chunk& chunk, Work& work
   if (moment && scene_.moment_of_particle) apply_inverse_moments(chunk, work);
   if (affine && scene_.moment_is_gradient)
     std::copy(work.gradient_of_velocity, work.gradient_of_velocity + D * D * chunk_size<T>, work.affine);
-  if (wanted.transfer && wanted.channel == motion && scene_.has(MPM_GATHERS_INCREMENT)) {
-    gather_moments(chunk, work, work.increment_tile.data(), velocity_before, false, false);
+  if (wanted.transfer && wanted.increments >= 0 && scene_.has(MPM_GATHERS_INCREMENT)) {
+    gather_moments(chunk, work, work.increment_tile.data(), wanted.increments, false, false);
     for (int p = 0; p < n; p += Lanes<T>::width) {
       Lanes<T> increment[4];
       load_quads<T>(work.quads + 4 * p, increment);
@@ -365,7 +365,7 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
 /// of the material.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass) {
-  const bool dissipation = accounted_ && chunk.body.dissipates;
+  const bool dissipation = chunk.body.warms_itself || (accounted_ && chunk.body.dissipates);
   mpm_material_batch request{};
   request.dt = pass.share * dt;
   const T* const velocity_gradient = scene_.has(MPM_STRAIN_BY_AFFINE) ? work.affine : work.gradient_of_velocity;
@@ -380,7 +380,8 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   update_material(chunk, request);
   if (chunk.particles.domain >= 0 && !chunk.body.frozen)
     advance_domain(chunk, velocity_gradient, request.dt, pass.second_half());
-  if (!dissipation) return;
+  if (chunk.body.warms_itself) warm_by_dissipation(chunk, work);
+  if (!dissipation || !accounted_) return;
   const T* const around = circumferences(chunk);
   const auto energies = [&](int p) {
     const Lanes<T> energy = Lanes<T>::load(work.scalar + p);

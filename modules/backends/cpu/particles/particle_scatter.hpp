@@ -44,6 +44,7 @@ double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo&
       const bool extends = pass.has(Act::scatter_momentum) && !pass.remap();
       if (extends) begin_reach(block, work);
       block.scattered_energy = 0;
+      if (pass.has(Act::scatter_heat)) block.heat = 0;
       block.far = 0;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         if (!scatter_chunk(pass, step, chunk, work, motion, false)) {
@@ -51,6 +52,7 @@ double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo&
           return note_too_long(chunk, work);
         }
         if (energies) block.scattered_energy += kinetic_energy(chunk, work);
+        if (pass.has(Act::scatter_heat)) block.heat += heat_of(chunk, work);
         if (scene_.list) block.far += static_cast<std::uint32_t>(work.lists.far_of_chunk);
       });
       if (extends) end_reach(block, work);
@@ -66,11 +68,25 @@ double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo&
   return sum;
 }
 
+template <int D, class T, class Components>
+double ParticleStep<D, T, Components>::scattered_heat() const {
+  double sum = 0;
+  for (const auto& particles : particles_)
+    for (const Block<D>& block : particles.blocks) sum += block.heat;
+  return sum;
+}
+
+/// Whether current volumes are scattered.
+template <int D, class T, class Components>
+bool ParticleStep<D, T, Components>::wants_volume(const Pass& pass) const {
+  return pass.has(Act::scatter_contact) || (pass.has(Act::scatter_heat) && grid_.has(heated_volume));
+}
+
 /// What a pass that scatters wants of the material.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const {
   if (pass.has(Act::scatter_force)) request.kirchhoff_stress = work.stress;
-  if (pass.has(Act::scatter_contact)) request.volume_ratio = work.volume_ratio;
+  if (wants_volume(pass)) request.volume_ratio = work.volume_ratio;
 }
 
 /// What a chunk gives its tiles; false, and nothing given, when a particle is outside of them or of its stencil.
@@ -86,7 +102,7 @@ template <int D, class T, class Components>
   if (!stencils_hold(chunk, work)) return false;
   if (!place_to_scatter(chunk, work, pass.has(Act::scatter_momentum) && !pass.remap() && !work.far_only)) return false;
   work.clock.lap(Phase::weights);
-  if (!evaluated && (pass.has(Act::scatter_force) || pass.has(Act::scatter_contact))) {
+  if (!evaluated && (pass.has(Act::scatter_force) || wants_volume(pass))) {
     mpm_material_batch request{};
     want_of_material(pass, work, request);
     update_material(chunk, request);
@@ -112,6 +128,7 @@ template <int D, class T, class Components>
     if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, false, step.dt);
   }
   if (pass.has(Act::scatter_contact)) scatter_contact_fields(chunk, work);
+  if (pass.has(Act::scatter_heat)) scatter_heat(chunk, work);
   return true;
 }
 

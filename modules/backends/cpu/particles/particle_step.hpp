@@ -140,6 +140,9 @@ struct Body {
   const Component* material = nullptr;
   std::int32_t (*update_material)(const void*, const mpm_material_batch*) = nullptr;
   bool dissipates = false;
+  const Thermal* thermal = nullptr;  ///< null: particles have no temperature
+  bool warms_itself = false;         ///< a share of what it dissipates becomes heat
+  bool may_melt() const;
   /// Fields that never change, by id; values by index of seeding, particle-major.
   std::map<std::string, std::vector<double>> seeded;
   const double* initial_position = nullptr;  ///< m, among them; null: nobody reads it
@@ -175,7 +178,13 @@ class ParticleStep : NamedChannels {
   double scatter(const Pass& pass, const StepInfo& step);
   struct Gathered {
     double kinetic_energy = 0, dissipated = 0;  ///< J, with the ledger on
+    double heat = 0, heat_of_dissipation = 0;   ///< J, with temperature
   };
+  /// Sum of the heat that the last scatter of momenta took along, J.
+  double scattered_heat() const;
+  void conduct();
+  /// Energy that the ledger calls dissipated, J.
+  double change_phases(const StepInfo& step);
   Gathered gather(const Pass& pass, const StepInfo& step);
   struct Fused {
     Gathered gathered;
@@ -186,7 +195,7 @@ class ParticleStep : NamedChannels {
   Fused gather_scatter(const Pass& pass, const StepInfo& step, const StepInfo& next);
   /// Momentum of the filter's increment, gathered and scattered again, into filter_projection.
   void project(const StepInfo& step);
-  double strain(const Pass& pass, const StepInfo& step);  ///< energy dissipated, J
+  Gathered strain(const Pass& pass, const StepInfo& step);  ///< what is dissipated alone
   void move(const StepInfo& step);
   TimeStepLimit time_step_limit();
 
@@ -285,6 +294,7 @@ class ParticleStep : NamedChannels {
                      bool evaluated);
   /// A fused pass asks its material for the strained state and for the stress that it scatters at once.
   static bool evaluates_for_scatter(const Pass& pass) { return pass.fused() && pass.has(Act::strain); }
+  bool wants_volume(const Pass& pass) const;
   void want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const;
   template <class Visit>
   void scatter_far(int body, Visit&& visit);
@@ -307,6 +317,19 @@ class ParticleStep : NamedChannels {
   void scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt);
   void scatter_contact_fields(const Chunk& chunk, Work& work);
 
+  bool melted(const Chunk& chunk, int p) const;
+  T of_phase(const Chunk& chunk, int p, double ThermalProperties::*value) const;
+  void fill_heat_capacities(const Chunk& chunk, Work& work) const;
+  double heat_of(const Chunk& chunk, const Work& work) const;
+  States temperature_as_motion(const Chunk& chunk, Work& work) const;
+  void scatter_heat(const Chunk& chunk, Work& work);
+  void conduct_chunk(const Chunk& chunk, Work& work);
+  void gather_heat(int body, Block<D>& block, Work& work, const StepInfo& step);
+  void gather_heat(const Chunk& chunk, Work& work, const StepInfo& step);
+  void warm_by_dissipation(const Chunk& chunk, Work& work) const;
+  void change_phases(const Chunk& chunk, Work& work);
+  std::int32_t update_by_phase(const Chunk& chunk, const mpm_material_batch& request);
+
   void load_velocities(int body, const Block<D>& block, Work& work);
   void flush(int body, const Block<D>& block, Work& work, Channel channel);
   Moved gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
@@ -315,6 +338,7 @@ class ParticleStep : NamedChannels {
   struct Wanted {
     bool transfer = false, strain = false;
     Channel channel = -1;
+    Channel increments = -1;  ///< that transfers of increments take
   };
   void gather_chunk(const Chunk& chunk, Work& work, const Wanted& wanted);
   void gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment, bool gradient);

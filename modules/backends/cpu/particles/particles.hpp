@@ -39,6 +39,7 @@ struct Block {
   std::uint32_t far = 0;                      ///< particles whose lists leave the tile
   double kinetic_energy = 0, dissipated = 0;  ///< partial sums of the ledger, J
   double scattered_energy = 0;                ///< the same of the particles when they scatter, J
+  double heat = 0, heat_of_dissipation = 0;   ///< of the particles when they last scattered or gathered, J
 
   /// Whether the grid has been built around it.
   bool has_neighbours() const { return neighbours[0] >= 0; }
@@ -60,11 +61,13 @@ struct Particles {
   int circumference = -1;  ///< m, 2 pi r as seeded, which mass and volume of the body are times; axisymmetric only
   int corners = -1;        ///< of a domain that the grid's velocity moves: [corner][D] cells, from the particle
   int moved_corners = -1;  ///< where they go in this step, kept for the move pass of MUSL
+  int temperature = -1, melted_fraction = -1;
   int components = 0;
   int motion_components = 0;        ///< from `velocity` on: it and the transfer's state
   AlignedArray<T> half_size;        ///< [D][chunk_size] cells, of shapes that read it
   std::vector<StoredField> fields;  ///< all that a chunk holds beside the indices of seeding, in its order
   std::vector<StoredField> transfer_state, material_state;
+  std::vector<StoredField> temperature_state;  ///< in the order of transfer_state
 
   ChunkPool pool;
   std::vector<std::byte*> places;  ///< of the chunks: [components][chunk_size] values, then indices of seeding
@@ -115,6 +118,11 @@ void Particles<D, T>::lay_out(const Plan& plan, int body) {
   circumference = place("circumference");
   corners = place("corners");
   moved_corners = place("moved_corners");
+  temperature = place("temperature");
+  melted_fraction = place("melted_fraction");
+  for (const StoredField& state : transfer_state)
+    for (const StoredField& stored : fields)
+      if (stored.field->id == temperature_state_of(state.field->id)) temperature_state.push_back(stored);
 }
 
 constexpr int padded(int count) {
