@@ -24,6 +24,28 @@ MPM_HD S area_of_wall_node(S volume, S cell_size, S circumference) {
   return S(2) * volume / cell_size * circumference;
 }
 
+/// How much more heat than the ghost the mirror image gives to the mirror, where the temperature goes on beyond the wall by
+/// its gradient there (K/m, inward) instead of bending back. `distance` is the ghost's from the wall, `capacity_inward`
+/// the inward component of its capacity times the place of its particles from it: zero where the transfer scatters the
+/// particles' own gradients.
+template <class S>
+MPM_HD S heat_beyond_wall(S gradient, S distance, S capacity, S capacity_inward) {
+  return S(2) * gradient * (distance * capacity - capacity_inward);
+}
+
+/// The ghost's temperature, where it goes on beyond the wall by its gradient.
+template <class S>
+MPM_HD S temperature_beyond_wall(S mirrored_temperature, S gradient, S distance) {
+  return mirrored_temperature - S(2) * gradient * distance;
+}
+
+/// Flux that convection drives into the wall, W/m^2. `at_wall` is the temperature that the folded weights make of the
+/// nodes; the flux itself changes it by `beyond` (WallWeights), m, over the conductivity.
+template <class S>
+MPM_HD S convected_flux(S coefficient, S outside, S at_wall, S beyond, S conductivity) {
+  return coefficient * (outside - at_wall) / (S(1) + coefficient * beyond / conductivity);
+}
+
 /// Whether a particle has the melted phase's parameters.
 template <class S>
 MPM_HD bool is_melted(S melted_fraction) {

@@ -44,6 +44,8 @@ class Uses {
 #define MPM_STENCIL "particles/position", "particles/domain", "particles/corners"
 // What contact and one-sided walls look at.
 #define MPM_PAIRS "nodes/volume", "nodes/volume_gradient", "nodes/mass_position"
+// What walls that heat comes through look at.
+#define MPM_HEATED_WALL "nodes/heated_volume", "nodes/volume_conductivity", "nodes/capacity_position"
 
 /// The transfer's state for the temperature, field by field.
 void use_temperature_state(FieldNames& names, const Plan& plan) {
@@ -102,12 +104,13 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
     case Act::scatter_heat:
       operation.where = Where::particles;
       uses.reads({MPM_STENCIL, "particles/temperature", "particles/melted_fraction", "particles/circumference"})
-          .adds({"nodes/heat", "nodes/heat_capacity", "nodes/heated_volume"});
+          .adds({"nodes/heat", "nodes/heat_capacity", MPM_HEATED_WALL});
       if (plan.node_field("heated_volume")) uses.reads({"particles/material"});
       use_temperature_state(operation.reads, plan);
       break;
     case Act::divide_heat:
-      uses.reads({"nodes/heat", "nodes/heat_capacity"}).writes({"nodes/temperature", "nodes/temperature_before"});
+      uses.reads({"nodes/heat", "nodes/heat_capacity", MPM_HEATED_WALL})
+          .writes({"nodes/temperature", "nodes/temperature_before"});
       break;
     case Act::conduct:
       operation.where = Where::particles;
@@ -116,9 +119,8 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
           .adds({"nodes/heat_rate"});
       break;
     case Act::heat:
-      uses.reads(
-              {"nodes/temperature", "nodes/temperature_before", "nodes/heat_capacity", "nodes/heat_rate",
-               "nodes/heated_volume", "nodes/mass"})
+      uses.reads({"nodes/temperature", "nodes/temperature_before", "nodes/heat_capacity", "nodes/heat_rate",
+                  MPM_HEATED_WALL, "nodes/mass"})
           .writes({"nodes/temperature"});
       break;
     case Act::gather_heat:

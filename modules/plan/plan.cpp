@@ -390,15 +390,22 @@ class Planner {
     in_place_of("heat", node_field("temperature", "K", 1, because));
     summed_field("heat_rate", "W", 1, AtWall::heat_rate, Folded::with_force, because);
     if (plan_.velocity_increment || needs_.keeps_all_apart)
-      node_field("temperature_before", "K", 1,
-                 plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of temperature"
-                                          : why_apart())
+      node_field(
+          "temperature_before", "K", 1,
+          plan_.velocity_increment ? named(experiment_.transfer) + ": gathers the change of temperature" : why_apart())
           .cleared = true;
     for (const auto& faces : experiment_.faces)
-      for (const FaceCondition& face : faces)
-        if (passes_heat(face) && !plan_.node_field("heated_volume"))
-          summed_field("heated_volume", "m^3", 1, AtWall::even, Folded::with_mass,
-                       face.thermal.pointer + ": makes the area of the wall that a node stands for");
+      for (const FaceCondition& face : faces) {
+        if (!passes_heat(face) || plan_.node_field("heated_volume")) continue;
+        const std::string& wall = face.thermal.pointer;
+        summed_field("heated_volume", "m^3", 1, AtWall::even, Folded::with_mass,
+                     wall + ": makes the area of the wall that a node stands for");
+        summed_field("volume_conductivity", "W m^2/K", 1, AtWall::even, Folded::with_mass,
+                     wall + ": makes the gradient of the temperature at the wall", "heated_volume");
+        if ((experiment_.transfer.plugin->transfer().traits & MPM_SCATTERS_AFFINE) == 0)
+          summed_field("capacity_position", "J m/K", experiment_.dimension, AtWall::slip, Folded::with_mass,
+                       wall + ": " + named(experiment_.transfer) + " carries no gradient to the mirror image");
+      }
   }
 
   std::string why_for_ledger() const {

@@ -170,13 +170,14 @@ struct ContactRecord {
 /// the particles change by the sum of all rows.
 struct HeatLedger {
   double scatter = 0;      ///< heat of the nodes less that of the particles that gave it
+  double images = 0;       ///< what mirrored heat and held nodes make of it before the step; FLIP takes that back
   double gather = 0;       ///< heat of the particles less that of the nodes that they took it from
   double walls = 0;        ///< from walls that are held at a temperature
   double flux = 0;         ///< through walls with a heat flux
   double convection = 0;   ///< through walls with convection
   double boxes = 0;        ///< heating of boxes of nodes, and what holds their temperature
   double dissipation = 0;  ///< of the energy that materials dissipate, the share that warms them
-  double sum() const { return scatter + gather + walls + flux + convection + boxes + dissipation; }
+  double sum() const { return scatter + images + gather + walls + flux + convection + boxes + dissipation; }
 };
 
 struct TimeStepLimit {

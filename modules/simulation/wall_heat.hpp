@@ -7,8 +7,16 @@
 
 namespace mpm {
 
-/// Shares of the heat through the area of a wall node that it and the next nodes inward take: the shape's weights at the
-/// wall, mirrored there. They sum to 1. Shapes that list their nodes count as linear.
-std::vector<double> wall_shares(const Experiment& experiment);
+/// A shape's weights at a wall, folded there. Shapes that average over a particle's
+/// domain, which no point of a wall has, count as the linear one that they average.
+struct WallWeights {
+  /// Of the node on the wall and the next ones inward: they share the heat that comes through the wall, and the
+  /// temperature at the wall is their sum but for what the gradient there makes of the nodes beyond. They sum to 1.
+  std::vector<double> shares;
+  /// Twice the sum of weight times distance of the nodes beyond the wall, cells: where the temperature rises by g a cell
+  /// inward, the wall is colder by this times g than the shares say.
+  double beyond = 0;
+};
+WallWeights wall_weights(const Experiment& experiment);
 
 }  // namespace mpm

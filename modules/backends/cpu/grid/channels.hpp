@@ -53,7 +53,8 @@ struct NamedChannels {
   /// Heat and its capacity; temperature and capacity once it has been divided.
   const Channel heat = channel_of(plan_, "heat"), heat_rate = channel_of(plan_, "heat_rate");
   const Channel temperature_before = channel_of(plan_, "temperature_before");  ///< later the increment
-  const Channel heated_volume = channel_of(plan_, "heated_volume");
+  const Channel heated_volume = channel_of(plan_, "heated_volume");            ///< and volume times conductivity
+  const Channel capacity_position = channel_of(plan_, "capacity_position");
   const Channel filter_increment = channel_of(plan_, "increment");  ///< v* of the filter's loop
   /// Momentum S+ S v* and mass while it is scattered, then velocity; then the velocity before conditions.
   const Channel filter_projection = channel_of(plan_, "projection");

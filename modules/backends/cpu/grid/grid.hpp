@@ -17,6 +17,7 @@ struct MirrorPair {
   std::uint32_t ghost, mirror;
   std::uint32_t ghost_edge, mirror_edge;  ///< the same nodes among the edge nodes
   Vector3 foot;                           ///< of the ghost on the wall, m
+  double distance;                        ///< of the ghost from the wall, m
 };
 
 /// Nodes that one face of the domain concerns.
@@ -28,6 +29,7 @@ struct FaceNodes {
   std::vector<std::uint32_t> wall_edge;  ///< the same among the edge nodes, or ~0
   std::vector<Vector3> wall_position;
   std::vector<std::uint8_t> pair_folds;  ///< decided each step: [field * pairs + i]
+  std::vector<double> folded_capacity;   ///< J/K, of the ghosts when they were folded, likewise; with temperature only
 
   bool periodic() const { return condition->type == ConditionType::periodic; }
 };
@@ -210,7 +212,8 @@ void Grid<D, T>::list_faces() {
           node[axis] = image(axis, index);
           const std::uint32_t mirror = static_cast<std::uint32_t>(find(node));
           node[axis] = side ? cells : 0;
-          face.pairs.push_back({number, mirror, 0, 0, scene_.domain.node_position(node, D)});
+          const double distance = scene_.domain.cell_size * std::max(-index, index - cells);
+          face.pairs.push_back({number, mirror, 0, 0, scene_.domain.node_position(node, D), distance});
         } else if (index == 0 || index == cells) {
           if (scene_.domain.periodic(axis)) continue;
           face.wall.push_back(number);
@@ -221,6 +224,7 @@ void Grid<D, T>::list_faces() {
   }
   for (FaceNodes& face : faces_) {
     face.pair_folds.assign(face.pairs.size() * fields_, 0);
+    face.folded_capacity.assign(scene_.experiment.has_temperature() ? face.pairs.size() * fields_ : 0, 0);
   }
   number_edge_nodes();
 }

@@ -51,15 +51,13 @@ void GridStep<D, T>::for_each_folded(const FaceNodes& face, Visit&& visit) {
       if (face.pair_folds[field * face.pairs.size() + i]) visit(field, face.pairs[i]);
 }
 
-/// What a wall's own velocity or temperature makes of a ghost's mass or heat capacity, which stand beside the value.
-/// Folded ghosts are cleared, so that folding again does nothing.
+/// Momentum with the mass beside it, which moves with the wall. Folded ghosts are cleared, so that folding again does
+/// nothing.
 template <int D, class T>
-void GridStep<D, T>::fold_relative(Channel channel, int field, const MirrorPair& pair, Q signs, Q of_wall) {
+void GridStep<D, T>::fold_momentum(Channel channel, int field, const MirrorPair& pair, Q signs, Q wall_velocity) {
   Q& ghost = grid_.quad(channel, field, pair.ghost);
-  const Q wall = ghost[3] * of_wall;
-  const Q folded = wall + signs * (ghost - wall);
-  if (channel == heat) heat_of_folds_ += static_cast<double>(folded[0]) - ghost[0];
-  grid_.quad(channel, field, pair.mirror) += folded;
+  const Q wall = ghost[3] * wall_velocity;
+  grid_.quad(channel, field, pair.mirror) += wall + signs * (ghost - wall);
   ghost = Q{};
 }
 
@@ -86,10 +84,10 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
   for (const Channel c : folded_[static_cast<int>(Folded::with_mass)]) {
     if (!grid_.has(c) || (remap && c != motion)) continue;
     const AtWall rule = grid_.field(c).at_wall;
-    if (is_relative_to_wall(static_cast<int>(rule)))
-      fold_relative(c, field, pair, mirror_signs(face, rule),
-                    rule == AtWall::heat ? wall_temperature(*face.condition, pair.foot, time)
-                                         : wall_velocity(face.condition->velocity, pair.foot, time));
+    if (rule == AtWall::momentum)
+      fold_momentum(c, field, pair, mirror_signs(face, rule), wall_velocity(face.condition->velocity, pair.foot, time));
+    else if (rule == AtWall::heat)
+      fold_heat(face, index, field, time);
     else if (rule == AtWall::slip)  // the ghost keeps its own: where MUSL's remap does not fold it again, contact looks
       grid_.quad(c, field, pair.mirror) += slip_signs * grid_.quad(c, field, pair.ghost);
     else
@@ -102,7 +100,8 @@ template <int D, class T>
 void GridStep<D, T>::fold_wall_onto_itself(const FaceNodes& face, int field, double dt) {
   for (std::size_t i = 0; i < face.wall.size(); ++i) {
     const std::uint32_t node = face.wall[i], edge = face.wall_edge[i];
-    if (face.condition->type == ConditionType::separate && !approaches(face, field, {node, node, edge, edge, {}}, dt))
+    if (face.condition->type == ConditionType::separate &&
+        !approaches(face, field, {node, node, edge, edge, {}, 0}, dt))
       continue;
     for (const Channel c : slipping_) grid_.quad(c, field, node)[face.axis] = 0;
   }
@@ -137,6 +136,8 @@ void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step)
         face.pair_folds[field * face.pairs.size() + i] = folds;
         if (folds) fold_pair(face, i, field, remap, step.time);
       }
+      if (!remap && grid_.has(capacity_position) && passes_heat(*face.condition))
+        fold_heat_onto_itself(face, field, step.time);
       if (!periodic && !remap && !slipping_.empty()) fold_wall_onto_itself(face, field, dt);
     }
   }

@@ -48,7 +48,7 @@ void GridStep<D, T>::project_increment(const Pass& pass, const StepInfo& step) {
     const Q signs = mirror_signs(face, AtWall::momentum);
     for_each_folded(face, [&](int field, const MirrorPair& pair) {
       const bool first = filter_.iterations == 0;
-      fold_relative(filter_projection, field, pair, signs,
+      fold_momentum(filter_projection, field, pair, signs,
                     first ? wall_velocity(face.condition->velocity, pair.foot, time) : Q{});
     });
   }

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "backends/cpu/grid/grid_step.hpp"
-#include "simulation/wall_heat.hpp"
 
 namespace mpm::cpu {
 
@@ -19,7 +18,7 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
       record_(record),
       filter_(filter),
       edges_(edge_models(scene.experiment)),
-      wall_shares_(scene.plan.node_field("heated_volume") ? wall_shares(scene.experiment) : std::vector<double>()) {
+      wall_weights_(scene.plan.node_field("heated_volume") ? wall_weights(scene.experiment) : WallWeights()) {
   for (int c = 0; c < D; ++c) {
     gravity_[c] = static_cast<T>(scene.experiment.gravity[c]);
     has_gravity_ = has_gravity_ || gravity_[c] != 0;

@@ -9,12 +9,83 @@
 
 namespace mpm::cpu {
 
-/// Nothing but a wall that is held at a temperature has one of its own.
+/// Number of the node at a place, or of one that lies `cells` farther along an axis; ~0 where no block is.
 template <int D, class T>
-Quad<T> GridStep<D, T>::wall_temperature(const FaceCondition& face, const Vector3& x, double time) const {
-  Q result{};
-  if (holds_temperature(face)) result[0] = static_cast<T>(face.thermal.value(x, x, time));
-  return result;
+std::uint32_t GridStep<D, T>::node_at_place(const Vector3& x, int axis, int cells) const {
+  std::array<int, 3> node{};
+  for (int a = 0; a < D; ++a)
+    node[a] = static_cast<int>(std::lround((x[a] - scene_.domain.lower[a]) / scene_.domain.cell_size));
+  node[axis] += cells;
+  return static_cast<std::uint32_t>(grid_.find(node));
+}
+
+/// W/m^2 into a body at a node of the wall; nothing where it does not reach. Before heat is `divided` the node itself
+/// stands for the wall's temperature.
+template <int D, class T>
+double GridStep<D, T>::flux_through(const FaceNodes& face, int field, const Vector3& x, double time, bool divided) {
+  const ThermalCondition& condition = face.condition->thermal;
+  const double given = condition.value(x, x, time);
+  if (condition.exchange == HeatExchange::flux) return given;
+  const std::uint32_t node = node_at_place(x, face.axis, 0);
+  const Q of_node = grid_.quad(heat, field, node), volume = grid_.quad(heated_volume, field, node);
+  if (!divided) return condition.coefficient * (given - static_cast<double>(of_node[0]) / of_node[3]);
+  double at_wall = 0;
+  for (std::size_t k = 0; k < wall_weights_.shares.size(); ++k) {
+    const std::uint32_t next = node_at_place(x, face.axis, face.side == 0 ? static_cast<int>(k) : -static_cast<int>(k));
+    if (next != ~0u) at_wall += wall_weights_.shares[k] * grid_.quad(heat, field, next)[0];
+  }
+  return convected_flux(condition.coefficient, given, at_wall, wall_weights_.beyond * scene_.domain.cell_size,
+                        static_cast<double>(volume[3]) / volume[0]);
+}
+
+/// K/m inward at a node of a wall that heat comes through; else zero.
+template <int D, class T>
+double GridStep<D, T>::gradient_at(const FaceNodes& face, int field, const Vector3& x, double time, bool divided) {
+  if (!passes_heat(*face.condition)) return 0;
+  const std::uint32_t node = node_at_place(x, face.axis, 0);
+  if (node == ~0u) return 0;
+  const Q volume = grid_.quad(heated_volume, field, node);
+  if (!(volume[0] > T(0))) return 0;
+  return -flux_through(face, field, x, time, divided) * volume[0] / volume[3];
+}
+
+template <int D, class T>
+double GridStep<D, T>::capacity_inward(const FaceNodes& face, int field, std::uint32_t node) {
+  if (!grid_.has(capacity_position)) return 0;
+  const double along = grid_.quad(capacity_position, field, node)[face.axis];
+  return face.side == 0 ? along : -along;
+}
+
+/// With the capacity beside it: relative to what the wall's temperature makes of that, where it has one.
+template <int D, class T>
+void GridStep<D, T>::fold_heat(FaceNodes& face, std::size_t index, int field, double time) {
+  const MirrorPair& pair = face.pairs[index];
+  Q &ghost = grid_.quad(heat, field, pair.ghost), &mirror = grid_.quad(heat, field, pair.mirror);
+  const T of_wall = holds_temperature(*face.condition)
+                        ? static_cast<T>(face.condition->thermal.value(pair.foot, pair.foot, time))
+                        : T(0);
+  T folded = mirrored(ghost[0], mirror_signs(face, AtWall::heat)[0], ghost[3] * of_wall);
+  if (passes_heat(*face.condition))
+    folded += static_cast<T>(heat_beyond_wall(gradient_at(face, field, pair.foot, time, false), pair.distance,
+                                              static_cast<double>(ghost[3]), capacity_inward(face, field, pair.ghost)));
+  const double change = static_cast<double>(folded) - ghost[0];
+  heat_of_folds_ += change;
+  mirror[0] += folded, mirror[3] += ghost[3];
+  face.folded_capacity[field * face.pairs.size() + index] = ghost[3];
+  ghost = Q{};
+}
+
+/// On the wall itself, which is its own mirror: half of the mirror image's share.
+template <int D, class T>
+void GridStep<D, T>::fold_heat_onto_itself(const FaceNodes& face, int field, double time) {
+  for (std::size_t i = 0; i < face.wall.size(); ++i) {
+    Q& of_node = grid_.quad(heat, field, face.wall[i]);
+    if (!(of_node[3] > T(0))) continue;
+    const double change = 0.5 * heat_beyond_wall(gradient_at(face, field, face.wall_position[i], time, false), 0.0, 0.0,
+                                                 capacity_inward(face, field, face.wall[i]));
+    of_node[0] += static_cast<T>(change);
+    heat_of_folds_ += change;
+  }
 }
 
 /// Sum of the nodes' heat in doubles; each T becomes change(T, heat capacity, number of the node among all fields').
@@ -37,9 +108,12 @@ void GridStep<D, T>::heat_to_temperature(const StepInfo& step) {
   const double sum =
       for_each_temperature([](T of_node, T capacity, int, std::uint32_t) { return temperature_of(of_node, capacity); });
   heat_ledger_.scatter += sum - heat_of_folds_ - particle_heat_;
-  heat_ledger_.walls += heat_of_folds_;
-  impose_temperatures(step.time);
-  fill_temperature_ghosts(step.time);
+  heat_ledger_.images += heat_of_folds_;
+  double held = 0;
+  impose_temperatures(step.time, held, held);
+  heat_ledger_.images += held;
+  beyond_ = fill_temperature_ghosts(step.time);
+  heat_ledger_.images += beyond_.held + beyond_.others;
   if (grid_.has(temperature_before)) copy_velocity(heat, temperature_before);
 }
 
@@ -58,9 +132,12 @@ void GridStep<D, T>::apply_heat(const StepInfo& step) {
   for_each_temperature([&](T temperature, T capacity, int field, std::uint32_t node) {
     return warmed(temperature, grid_.quad(heat_rate, field, node)[0], capacity, dt);
   });
-  impose_temperatures(end);
+  impose_temperatures(end, heat_ledger_.walls, heat_ledger_.boxes);
   heat_after_ = for_each_temperature([](T temperature, T, int, std::uint32_t) { return temperature; });
-  fill_temperature_ghosts(end);
+  const Beyond after = fill_temperature_ghosts(end);
+  heat_ledger_.walls += after.held - beyond_.held;
+  heat_ledger_.images += after.others - beyond_.others;
+  heat_after_ += after.held + after.others;
   if (!grid_.has(temperature_before)) return;
   for_each_block([&](int field, std::uint32_t first, double*) {
     const Q* const after = &grid_.quad(heat, field, first);
@@ -69,43 +146,25 @@ void GridStep<D, T>::apply_heat(const StepInfo& step) {
   });
 }
 
-/// A flux, or what convection makes of the temperature at the wall, through the area that each node on it stands for.
+/// Through the area that each node on the wall stands for.
 template <int D, class T>
 void GridStep<D, T>::heat_through(const FaceNodes& face, double time, double dt) {
-  const ThermalCondition& condition = face.condition->thermal;
-  const bool convects = condition.exchange == HeatExchange::convection;
-  double& entry = convects ? heat_ledger_.convection : heat_ledger_.flux;
-  std::vector<std::uint32_t> inward(wall_shares_.size());
+  double& entry = face.condition->thermal.exchange == HeatExchange::flux ? heat_ledger_.flux : heat_ledger_.convection;
   for (std::size_t i = 0; i < face.wall.size(); ++i) {
     const Vector3& x = face.wall_position[i];
     const double circumference = scene_.axisymmetric ? 2 * std::numbers::pi * x[0] : 1.0;
-    std::array<int, 3> node{};
-    for (int a = 0; a < D; ++a)
-      node[a] = static_cast<int>(std::lround((x[a] - scene_.domain.lower[a]) / scene_.domain.cell_size));
-    for (std::uint32_t& number : inward) {
-      number = static_cast<std::uint32_t>(grid_.find(node));
-      node[face.axis] += face.side == 0 ? 1 : -1;
-    }
-    const double given = condition.value(x, x, time);
     for (int field = 0; field < grid_.fields(); ++field) {
       const double volume = grid_.quad(heated_volume, field, face.wall[i])[0];
-      const double area = area_of_wall_node(volume, scene_.domain.cell_size, circumference);
-      const auto share = [&](std::size_t k) {
-        return static_cast<std::int32_t>(inward[k]) >= 0 && grid_.quad(heat, field, inward[k])[3] > T(0)
-                   ? wall_shares_[k]
-                   : 0.0;
-      };
-      double flux = given;
-      if (convects) {
-        double at_wall = 0;
-        for (std::size_t k = 0; k < inward.size(); ++k)
-          if (share(k) > 0) at_wall += share(k) * grid_.quad(heat, field, inward[k])[0];
-        flux = condition.coefficient * (given - at_wall);
-      }
-      for (std::size_t k = 0; k < inward.size(); ++k) {
-        if (!(share(k) > 0)) continue;
-        grid_.quad(heat_rate, field, inward[k])[0] += static_cast<T>(flux * area * share(k));
-        entry += dt * flux * area * share(k);
+      if (!(volume > 0)) continue;
+      const double heat_of_node =
+          flux_through(face, field, x, time, true) * area_of_wall_node(volume, scene_.domain.cell_size, circumference);
+      for (std::size_t k = 0; k < wall_weights_.shares.size(); ++k) {
+        const int inward = face.side == 0 ? static_cast<int>(k) : -static_cast<int>(k);
+        const std::uint32_t node = node_at_place(x, face.axis, inward);
+        if (node == ~0u || !(grid_.quad(heat, field, node)[3] > T(0))) continue;
+        const T rate = static_cast<T>(heat_of_node * wall_weights_.shares[k]);
+        grid_.quad(heat_rate, field, node)[0] += rate;
+        entry += dt * rate;
       }
     }
   }
@@ -129,7 +188,7 @@ void GridStep<D, T>::heat_box(const BoxNodes& box, double time, double dt) {
 }
 
 template <int D, class T>
-void GridStep<D, T>::impose_temperatures(double time) {
+void GridStep<D, T>::impose_temperatures(double time, double& from_walls, double& from_boxes) {
   const auto hold_at = [&](std::uint32_t node, const Vector3& x, const ThermalCondition& condition, double& entry) {
     const T held = static_cast<T>(condition.value(x, x, time));
     for (int field = 0; field < grid_.fields(); ++field) {
@@ -141,23 +200,40 @@ void GridStep<D, T>::impose_temperatures(double time) {
   };
   for (const FaceNodes& face : grid_.faces())
     for (std::size_t i = 0; holds_temperature(*face.condition) && i < face.wall.size(); ++i)
-      hold_at(face.wall[i], face.wall_position[i], face.condition->thermal, heat_ledger_.walls);
+      hold_at(face.wall[i], face.wall_position[i], face.condition->thermal, from_walls);
   for (const BoxNodes& box : grid_.boxes())
     for (std::size_t i = 0; box.condition->thermal.exchange == HeatExchange::fixed_temperature && i < box.nodes.size();
          ++i)
-      hold_at(box.nodes[i], box.position[i], box.condition->thermal, heat_ledger_.boxes);
+      hold_at(box.nodes[i], box.position[i], box.condition->thermal, from_boxes);
 }
 
+/// Ghosts take mirrored temperatures. What was folded belongs to the particles as it was, beyond the wall: how much more
+/// heat that is there than at the mirrors, at walls that are held at a temperature and at others.
 template <int D, class T>
-void GridStep<D, T>::fill_temperature_ghosts(double time) {
+auto GridStep<D, T>::fill_temperature_ghosts(double time) -> Beyond {
+  Beyond beyond;
   auto& faces = grid_.faces();
   for (auto face = faces.rbegin(); face != faces.rend(); ++face) {
     const T sign = mirror_signs(*face, AtWall::heat)[0];
-    for_each_folded(*face, [&](int field, const MirrorPair& pair) {
-      const T of_wall = wall_temperature(*face->condition, pair.foot, time)[0];
-      grid_.quad(heat, field, pair.ghost)[0] = mirrored(grid_.quad(heat, field, pair.mirror)[0], sign, of_wall);
-    });
+    for (int field = 0; field < grid_.fields(); ++field)
+      for (std::size_t i = 0; i < face->pairs.size(); ++i) {
+        const std::size_t place = field * face->pairs.size() + i;
+        if (!face->pair_folds[place]) continue;
+        const MirrorPair& pair = face->pairs[i];
+        const T of_mirror = grid_.quad(heat, field, pair.mirror)[0];
+        T& ghost = grid_.quad(heat, field, pair.ghost)[0];
+        ghost = mirrored(of_mirror, sign,
+                         holds_temperature(*face->condition)
+                             ? static_cast<T>(face->condition->thermal.value(pair.foot, pair.foot, time))
+                             : T(0));
+        if (passes_heat(*face->condition))
+          ghost = temperature_beyond_wall(ghost, static_cast<T>(gradient_at(*face, field, pair.foot, time, true)),
+                                          static_cast<T>(pair.distance));
+        const double more = face->folded_capacity[place] * (static_cast<double>(ghost) - of_mirror);
+        (holds_temperature(*face->condition) ? beyond.held : beyond.others) += more;
+      }
   }
+  return beyond;
 }
 
 }  // namespace mpm::cpu

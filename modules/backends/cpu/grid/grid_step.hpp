@@ -6,6 +6,7 @@
 
 #include "backends/cpu/grid/grid.hpp"
 #include "simulation/contact_pair.hpp"
+#include "simulation/wall_heat.hpp"
 
 namespace mpm::cpu {
 
@@ -74,7 +75,7 @@ class GridStep : NamedChannels {
   void fold_faces(bool periodic, bool remap, const StepInfo& step);
   template <class Visit>
   void for_each_folded(const FaceNodes& face, Visit&& visit);
-  void fold_relative(Channel channel, int field, const MirrorPair& pair, Q signs, Q of_wall);
+  void fold_momentum(Channel channel, int field, const MirrorPair& pair, Q signs, Q wall_velocity);
   void fold_as_is(Channel channel, int field, const MirrorPair& pair, Q signs);
   void fold_pair(FaceNodes& face, std::size_t pair, int field, bool remap, double time);
   void fold_wall_onto_itself(const FaceNodes& face, int field, double dt);
@@ -96,13 +97,21 @@ class GridStep : NamedChannels {
   void account_for_block(int field, std::uint32_t first, double dt, const std::uint8_t* held, double* partial);
   void subtract_velocity_before();
 
-  Q wall_temperature(const FaceCondition& face, const Vector3& x, double time) const;
+  void fold_heat(FaceNodes& face, std::size_t pair, int field, double time);
+  void fold_heat_onto_itself(const FaceNodes& face, int field, double time);
+  std::uint32_t node_at_place(const Vector3& x, int axis, int cells) const;
+  double flux_through(const FaceNodes& face, int field, const Vector3& x, double time, bool divided);
+  double gradient_at(const FaceNodes& face, int field, const Vector3& x, double time, bool divided);
+  double capacity_inward(const FaceNodes& face, int field, std::uint32_t node);
   template <class Change>
   double for_each_temperature(Change&& change);
   void heat_through(const FaceNodes& face, double time, double dt);
   void heat_box(const BoxNodes& box, double time, double dt);
-  void impose_temperatures(double time);
-  void fill_temperature_ghosts(double time);
+  void impose_temperatures(double time, double& from_walls, double& from_boxes);
+  struct Beyond {
+    double held = 0, others = 0;  ///< J
+  };
+  Beyond fill_temperature_ghosts(double time);
 
   static double time_of(const Pass& pass, const StepInfo& step) {
     return pass.stage == Stage::after_forces ? step.time + step.dt : step.time;
@@ -144,9 +153,10 @@ class GridStep : NamedChannels {
                                     ///< slots; the ledger's
   std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
   double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0, kinetic_energy_unfiltered_ = 0;
-  const std::vector<double> wall_shares_;  ///< see simulation/wall_heat.hpp; empty where no wall needs them
+  const WallWeights wall_weights_;  ///< empty where no heat comes through a wall
   double particle_heat_ = 0, heat_after_ = 0;
-  double heat_of_folds_ = 0, rate_of_folds_ = 0;  ///< J and W that walls gave while their ghosts were folded
+  Beyond beyond_;                                 ///< of the temperatures before the forces
+  double heat_of_folds_ = 0, rate_of_folds_ = 0;  ///< J and W that nodes have since their ghosts were folded
   bool has_gravity_ = false;
   bool may_merge_ = false;  ///< see merges: momentum_to_velocity leaves the division to apply_forces
   bool accounted_ = false;  ///< the ledger takes its entries from the step under way

@@ -76,16 +76,29 @@ void ParticleStep<D, T, Components>::scatter_heat(const Chunk& chunk, Work& work
                                 affine ? work.A : nullptr};
   Components::scatter(scene_, batch);
   add_to_tile(chunk, work, heat, work.mass, true, affine, false);
-  if (!grid_.has(heated_volume)) return;
+  if (grid_.has(heated_volume)) scatter_heated_volume(chunk, work);
+}
+
+/// What walls look at that heat comes through: volumes (of the section of a ring) with the conductivity beside them, and
+/// the places of the capacities from the nodes.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::scatter_heated_volume(const Chunk& chunk, Work& work) {
+  if (grid_.has(capacity_position)) {
+    std::fill(work.A, work.A + D * D * chunk_size<T>, T(0));
+    for (int c = 0; c < D; ++c)
+      for (int p = 0; p < chunk.end; ++p) work.A[(c * D + c) * chunk_size<T> + p] = -work.mass[p];
+    add_to_tile(chunk, work, capacity_position, nullptr, false, true, false);
+  }
   std::fill(work.b, work.b + D * chunk_size<T>, T(0));
   const T volume = static_cast<T>(chunk.body.volume);
   for (int p = 0; p < chunk.end; ++p) work.b[p] = volume * work.volume_ratio[p];
-  if (const T* const around = circumferences(chunk))  // the section of a ring
+  if (const T* const around = circumferences(chunk))
     for (int p = 0; p < chunk.end; p += Lanes<T>::width)
       (Lanes<T>::load(work.b + p) * Lanes<T>::load(around + p) /
        (static_cast<T>(2 * std::numbers::pi) * radius(chunk, p)))
           .store(work.b + p);
-  add_to_tile(chunk, work, heated_volume, nullptr, true, false, false);
+  for (int p = 0; p < chunk.end; ++p) work.scalar[p] = work.b[p] * of_phase(chunk, p, &ThermalProperties::conductivity);
+  add_to_tile(chunk, work, heated_volume, work.scalar, true, false, false);
 }
 
 /// One visit gathers the gradient of the temperature and scatters the flux that it drives.

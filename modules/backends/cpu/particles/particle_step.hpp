@@ -323,6 +323,7 @@ class ParticleStep : NamedChannels {
   double heat_of(const Chunk& chunk, const Work& work) const;
   States temperature_as_motion(const Chunk& chunk, Work& work) const;
   void scatter_heat(const Chunk& chunk, Work& work);
+  void scatter_heated_volume(const Chunk& chunk, Work& work);
   void conduct_chunk(const Chunk& chunk, Work& work);
   void gather_heat(int body, Block<D>& block, Work& work, const StepInfo& step);
   void gather_heat(const Chunk& chunk, Work& work, const StepInfo& step);
