@@ -79,12 +79,26 @@ Vector Grid::force(std::size_t i) const {
   return sum + weight_[i];
 }
 
+Vector Grid::foot(const Fold& fold) const {
+  Eigen::Vector3i foot = coordinates(fold.ghost);
+  foot[fold.axis] = fold.side == 0 ? 0 : experiment_.grid.cells[fold.axis];
+  return position(foot);
+}
+
 Vector Grid::wall_velocity(const Fold& fold, double time) const {
   if (fold.side < 0 || !experiment_.faces[fold.axis][fold.side].velocity) return Vector::Zero();
-  Eigen::Vector3i foot = coordinates_[fold.ghost % node_count()];
-  foot[fold.axis] = fold.side == 0 ? 0 : experiment_.grid.cells[fold.axis];
-  const Vector x = position(foot);
+  const Vector x = foot(fold);
   return to_eigen((*experiment_.faces[fold.axis][fold.side].velocity)({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time));
+}
+
+double Grid::wall_temperature(const Fold& fold, double time) const {
+  if (fold.side < 0 || !holds_temperature(experiment_.faces[fold.axis][fold.side])) return 0;
+  const Vector x = foot(fold);
+  return experiment_.faces[fold.axis][fold.side].thermal.value({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time);
+}
+
+double Grid::mirrored(double v, const Fold& fold, AtWall rule) const {
+  return fold.side < 0 ? v : v * mirror_sign(rule, experiment_.faces[fold.axis][fold.side], fold.axis, 0);
 }
 
 Vector Grid::mirrored(Vector v, const Fold& fold, AtWall rule) const {
@@ -94,13 +108,16 @@ Vector Grid::mirrored(Vector v, const Fold& fold, AtWall rule) const {
   return v;
 }
 
-void Grid::add_to_mirror(ScalarField& field, const Fold& fold, AtWall, const Vector&) const {
-  field[fold.mirror] += field[fold.ghost];
+void Grid::add_to_mirror(ScalarField& field, const Fold& fold, AtWall rule, const OfWall& wall) const {
+  if (rule == AtWall::heat)
+    field[fold.mirror] += wall.heat + mirrored(field[fold.ghost] - wall.heat, fold, rule);
+  else
+    field[fold.mirror] += mirrored(field[fold.ghost], fold, rule);
 }
 
-void Grid::add_to_mirror(VectorField& field, const Fold& fold, AtWall rule, const Vector& wall) const {
+void Grid::add_to_mirror(VectorField& field, const Fold& fold, AtWall rule, const OfWall& wall) const {
   if (rule == AtWall::momentum)
-    field[fold.mirror] += wall + mirrored(field[fold.ghost] - wall, fold, rule);
+    field[fold.mirror] += wall.momentum + mirrored(field[fold.ghost] - wall.momentum, fold, rule);
   else
     field[fold.mirror] += mirrored(field[fold.ghost], fold, rule);
 }
@@ -147,12 +164,13 @@ void Grid::fold_axis(int axis, double time, double dt) {
 
 void Grid::fold_node(Fold fold, double time) {
   fold.mass = mass_[fold.ghost];
-  const Vector wall = fold.mass * wall_velocity(fold, time);
+  OfWall wall{fold.mass * wall_velocity(fold, time)};
+  if (heat_capacity_.declared_) wall.heat = heat_capacity_[fold.ghost] * wall_temperature(fold, time);
   for_each_field([&](auto& field) {
-    if (field.waits_) add_to_mirror(field, fold, field.declared_->at_wall, wall);
+    if (!field.waits_) return;
+    add_to_mirror(field, fold, field.declared_->at_wall, wall);
+    set_zero(field[fold.ghost]);
   });
-  mass_[fold.ghost] = 0;  // what else a node without mass holds is not read
-  momentum_[fold.ghost] = Vector::Zero();
   folds_.push_back(fold);
 }
 
@@ -171,7 +189,8 @@ void Grid::fold_forces() {
 template <class Value>
 void Grid::fold_as(NodeField<Value>& field, AtWall rule, std::optional<double> time) {
   for (const Fold& fold : folds_) {
-    const Vector wall = time ? Vector(fold.mass * wall_velocity(fold, *time)) : Vector(Vector::Zero());
+    OfWall wall;
+    if (time) wall.momentum = fold.mass * wall_velocity(fold, *time);
     add_to_mirror(field, fold, rule, wall);
     set_zero(field[fold.ghost]);
   }
@@ -188,6 +207,13 @@ void Grid::fill_velocity_ghosts(double time) {
   }
 }
 
+void Grid::fill_temperature_ghosts(ScalarField& temperature, double time) {
+  for (auto fold = folds_.rbegin(); fold != folds_.rend(); ++fold) {
+    const double wall = wall_temperature(*fold, time);
+    temperature[fold->ghost] = wall + mirrored(temperature[fold->mirror] - wall, *fold, AtWall::heat);
+  }
+}
+
 template <class Value>
 void Grid::fill_ghosts(NodeField<Value>& field, AtWall rule) {
   for (auto fold = folds_.rbegin(); fold != folds_.rend(); ++fold)
@@ -198,7 +224,7 @@ template void Grid::fill_ghosts(VectorField&, AtWall);
 
 Held Grid::held(std::size_t i, const Vector& predicted, double time) const {
   Held held;
-  const Eigen::Vector3i& node = coordinates_[i % node_count()];
+  const Eigen::Vector3i& node = coordinates(i);
   const Vector x = position(node);
   const auto evaluate = [&](const std::optional<VectorExpression>& velocity) {
     return velocity ? to_eigen((*velocity)({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time)) : Vector(Vector::Zero());
@@ -218,12 +244,8 @@ Held Grid::held(std::size_t i, const Vector& predicted, double time) const {
         if (holds(face.type, axis, c)) hold(c, velocity);
     }
   }
-  const double tolerance = 1e-9 * experiment_.grid.cell_size;
   for (const BoxCondition& box : experiment_.boxes) {
-    bool inside = true;
-    for (int c = 0; c < experiment_.dimension; ++c)
-      inside = inside && x[c] >= box.lower[c] - tolerance && x[c] <= box.upper[c] + tolerance;
-    if (!inside) continue;
+    if (!inside(box, i)) continue;
     const Vector velocity = evaluate(box.velocity);
     for (int c = 0; c < experiment_.dimension; ++c) {
       const bool holds = box.type == ConditionType::stick || (box.type == ConditionType::slip && c == box.axis) ||
@@ -233,6 +255,14 @@ Held Grid::held(std::size_t i, const Vector& predicted, double time) const {
     }
   }
   return held;
+}
+
+bool Grid::inside(const BoxCondition& box, std::size_t i) const {
+  const Vector x = position(coordinates(i));
+  const double tolerance = 1e-9 * experiment_.grid.cell_size;
+  for (int c = 0; c < experiment_.dimension; ++c)
+    if (x[c] < box.lower[c] - tolerance || x[c] > box.upper[c] + tolerance) return false;
+  return true;
 }
 
 }  // namespace mpm::reference

@@ -85,6 +85,7 @@ class Grid {
   bool contains(const Eigen::Vector3i& coordinates) const;
   int padding() const { return padding_[0]; }  ///< nodes beyond a wall
   Vector position(const Eigen::Vector3i& coordinates) const;
+  const Eigen::Vector3i& coordinates(std::size_t i) const { return coordinates_[i % node_count()]; }
   int velocity_fields() const { return experiment_.field_count; }
   std::size_t node_count() const { return coordinates_.size(); }
   /// Where a field of the nodes keeps the value that a node has for a velocity field, and how many values it keeps.
@@ -111,17 +112,26 @@ class Grid {
   void fold_as(NodeField<Value>& field, AtWall rule, std::optional<double> time);
   /// Gives ghosts the mirrored velocities. `time` is that of the wall's velocity.
   void fill_velocity_ghosts(double time);
+  /// Gives ghosts the temperature mirrored about that of walls that have one, at `time`.
+  void fill_temperature_ghosts(ScalarField& temperature, double time);
   /// Gives ghosts the mirrored values by a rule, walls at rest.
   template <class Value>
   void fill_ghosts(NodeField<Value>& field, AtWall rule);
   /// What conditions hold at a node whose velocity would be `predicted` without them.
   Held held(std::size_t i, const Vector& predicted, double time) const;
+  /// Whether a node lies in the box of a condition, its faces included.
+  bool inside(const BoxCondition& box, std::size_t i) const;
 
  private:
   struct Fold {
     std::size_t ghost, mirror;
     int axis, side;   ///< side < 0: a periodic image
     double mass = 0;  ///< of the ghost when it was folded, kg
+  };
+  /// What a ghost would hold if it moved with the wall and had the wall's temperature.
+  struct OfWall {
+    Vector momentum = Vector::Zero();
+    double heat = 0;
   };
   template <class Visit>
   void for_each_field(Visit visit) {
@@ -132,11 +142,13 @@ class Grid {
   void fold_node(Fold fold, double time);
   void fold_onto_itself(std::size_t i, int axis);
   bool approaches_wall(const Fold& fold, double dt) const;
+  /// Point of the wall where a ghost's line to its mirror crosses it.
+  Vector foot(const Fold& fold) const;
   Vector wall_velocity(const Fold& fold, double time) const;
-  /// `wall`: momentum of the ghost's mass at the wall's velocity.
-  void add_to_mirror(ScalarField& field, const Fold& fold, AtWall rule, const Vector& wall) const;
-  void add_to_mirror(VectorField& field, const Fold& fold, AtWall rule, const Vector& wall) const;
-  double mirrored(double v, const Fold&, AtWall) const { return v; }  // all scalars are even
+  double wall_temperature(const Fold& fold, double time) const;
+  void add_to_mirror(ScalarField& field, const Fold& fold, AtWall rule, const OfWall& wall) const;
+  void add_to_mirror(VectorField& field, const Fold& fold, AtWall rule, const OfWall& wall) const;
+  double mirrored(double v, const Fold& fold, AtWall rule) const;
   Vector mirrored(Vector v, const Fold& fold, AtWall rule) const;
 
   const Experiment& experiment_;
@@ -145,7 +157,7 @@ class Grid {
   std::array<std::vector<std::size_t>, 3> outermost_first_;  ///< nodes by distance beyond the walls of an axis
   std::map<std::string, ScalarField> scalars_;
   std::map<std::string, VectorField> vectors_;
-  ScalarField& mass_ = scalar("mass");
+  ScalarField &mass_ = scalar("mass"), &heat_capacity_ = scalar("heat_capacity");
   VectorField &momentum_ = vector("momentum"), &velocity_ = vector("velocity"),
               &velocity_before_ = vector("velocity_before"), &internal_force_ = vector("force"),
               &body_force_ = vector("body_force"), &weight_ = vector("weight");

@@ -10,6 +10,7 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
       plan_(plan),
       transfer_(experiment.transfer),
       material_(experiment.materials[experiment.bodies[body].material].component),
+      thermal_(experiment.materials[experiment.bodies[body].material].thermal),
       body_(body),
       field_(experiment.bodies[body].field),
       dimension_(experiment.dimension),
@@ -138,25 +139,29 @@ void Particles::find_stencils(const Grid& grid) {
 }
 
 void Particles::scatter_coefficients() {
-  const mpm_transfer& transfer = transfer_.plugin->transfer();
   Array mass = make(1);
   mass.setConstant(mass_);
   if (axisymmetric()) mass = mass_ * *circumference_;
-  const auto state = state_of(Origin::transfer);
+  scatter_by_transfer(mass, velocity, state_of(Origin::transfer));
+  if (plan_.basis_functions == 0) return;
+  higher = values(polynomial_coefficients, Origin::transfer);
+  for (std::size_t p = 0; p < count_; ++p) higher.col(static_cast<Eigen::Index>(p)) *= mass(p);
+}
+
+/// b and A of particles that have this mass, velocity and state.
+void Particles::scatter_by_transfer(const Array& mass, const Array& of_velocity, const std::vector<void*>& state) {
+  const mpm_transfer& transfer = transfer_.plugin->transfer();
   const auto n = static_cast<std::uint32_t>(padded_);
   const mpm_scatter_batch batch{n,
                                 n,
                                 static_cast<std::uint32_t>(dimension_),
                                 0,
                                 mass.data(),
-                                velocity.data(),
+                                of_velocity.data(),
                                 state.data(),
                                 b.data(),
                                 transfer.traits & MPM_SCATTERS_AFFINE ? A.data() : nullptr};
   transfer.scatter[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
-  if (plan_.basis_functions == 0) return;
-  higher = values(polynomial_coefficients, Origin::transfer);
-  for (std::size_t p = 0; p < count_; ++p) higher.col(static_cast<Eigen::Index>(p)) *= mass(p);
 }
 
 void Particles::project_coefficients(double dt) {
@@ -171,13 +176,55 @@ void Particles::project_coefficients(double dt) {
 }
 
 std::int32_t Particles::update_material(const mpm_material_batch& request) {
+  std::vector<Eigen::Index> solid, liquid;
+  for (std::size_t p = 0; p < padded_; ++p) (melted(p) ? liquid : solid).push_back(static_cast<Eigen::Index>(p));
+  std::int32_t failed = solid.empty() ? -1 : update_material(request, material_.parameters, solid);
+  if (liquid.empty()) return failed;
+  const std::int32_t other = update_material(request, thermal_->phase_change->melted_parameters, liquid);
+  return failed < 0 || (other >= 0 && other < failed) ? other : failed;
+}
+
+/// The same of some particles, with these parameters: their values are taken out and put back.
+std::int32_t Particles::update_material(const mpm_material_batch& request, const std::vector<double>& parameters,
+                                        const std::vector<Eigen::Index>& particles) {
+  std::vector<Eigen::Index> which = particles;
+  which.resize((which.size() + MPM_LANES - 1) / MPM_LANES * MPM_LANES, which.back());
+  struct Part {
+    Eigen::Map<Array> all;
+    Array values;
+  };
+  std::deque<Part> outputs;
+  std::deque<Array> inputs;
+  const auto all = [&](const void* values, int components) {
+    return Eigen::Map<Array>(static_cast<double*>(const_cast<void*>(values)), components,
+                             static_cast<Eigen::Index>(padded_));
+  };
+  const auto input = [&](const void* values, int components) -> const void* {
+    return values ? inputs.emplace_back(all(values, components)(Eigen::all, which)).data() : nullptr;
+  };
+  const auto output = [&](void* values, int components) -> void* {
+    if (!values) return nullptr;
+    const Eigen::Map<Array> whole = all(values, components);
+    return outputs.emplace_back(Part{whole, whole(Eigen::all, which)}).values.data();
+  };
+
   mpm_material_batch batch = request;
-  const auto state = state_of(Origin::material);
-  batch.count = batch.stride = static_cast<std::uint32_t>(padded_);
+  batch.count = batch.stride = static_cast<std::uint32_t>(which.size());
   batch.dimension = static_cast<std::uint32_t>(dimension_);
+  std::vector<void*> state;
+  for (Stored& stored : fields_)
+    if (stored.declared->origin == Origin::material)
+      state.push_back(output(stored.values.data(), static_cast<int>(stored.values.rows())));
   batch.state = state.data();
-  if (axisymmetric()) batch.velocity_gradient_zz = hoop_rate.data();
-  return material_.plugin->material().update[MPM_SCALAR_DOUBLE][dimension_ - 2](material_.parameters.data(), &batch);
+  batch.velocity_gradient = input(request.velocity_gradient, dimension_ * dimension_);
+  if (axisymmetric()) batch.velocity_gradient_zz = input(hoop_rate.data(), 1);
+  batch.kirchhoff_stress = output(request.kirchhoff_stress, dimension_ == 2 ? 4 : 6);
+  for (void** scalar : {&batch.stored_energy, &batch.dissipated_energy, &batch.wave_speed, &batch.volume_ratio})
+    *scalar = output(*scalar, 1);
+  const std::int32_t failed =
+      material_.plugin->material().update[MPM_SCALAR_DOUBLE][dimension_ - 2](parameters.data(), &batch);
+  for (Part& part : outputs) part.all(Eigen::all, which) = part.values;
+  return failed < 0 ? failed : static_cast<std::int32_t>(which[static_cast<std::size_t>(failed)]);
 }
 
 void Particles::refuse_inverted(std::int32_t particle) const {
@@ -210,6 +257,10 @@ double Particles::strain(double dt) {
     for (std::size_t p = 0; p < padded_; ++p)
       set(domain, p, Matrix((Matrix::Identity() + dt * matrix(velocity_gradient, p)) * matrix(domain, p)));
   }
+  if (thermal_ && thermal_->dissipation_to_heat > 0)
+    for (std::size_t p = 0; p < count_; ++p)
+      values("temperature")(0, p) += thermal_->dissipation_to_heat * dissipated(0, p) /
+                                     (material_.parameter("density") * thermal(p).heat_capacity);
   if (axisymmetric()) dissipated.array() *= circumference_->array();
   return volume_ * dissipated.leftCols(count_).sum();
 }
@@ -227,26 +278,32 @@ Array Particles::moments_for_transfer() const {
 }
 
 void Particles::gather(double dt) {
+  const Moments moments{gathered_velocity, gathered_increment, gathered_affine, gathered_gradient};
+  gather_by_transfer(dt, moments, velocity, state_of(Origin::transfer), advection);
+  if (plan_.basis_functions > 0) values(polynomial_coefficients, Origin::transfer) = gathered_higher;
+}
+
+/// What the transfer makes of the moments for particles of this velocity and state.
+void Particles::gather_by_transfer(double dt, const Moments& moments, Array& of_velocity,
+                                   const std::vector<void*>& state, Array& advected) {
   const mpm_transfer& transfer = transfer_.plugin->transfer();
-  for (Array* array : {&gathered_velocity, &gathered_increment, &gathered_affine, &gathered_gradient}) pad(*array);
-  const Array moments = moments_for_transfer();
-  const auto state = state_of(Origin::transfer);
+  for (Array* array : {&moments.velocity, &moments.increment, &moments.affine, &moments.gradient}) pad(*array);
+  const Array second_moments = moments_for_transfer();
   const auto n = static_cast<std::uint32_t>(padded_);
   const mpm_gather_batch batch{n,
                                n,
                                static_cast<std::uint32_t>(dimension_),
                                0,
                                dt,
-                               gathered_velocity.data(),
-                               gathered_increment.data(),
-                               gathered_affine.data(),
-                               gathered_gradient.data(),
-                               velocity.data(),
+                               moments.velocity.data(),
+                               moments.increment.data(),
+                               moments.affine.data(),
+                               moments.gradient.data(),
+                               of_velocity.data(),
                                state.data(),
-                               advection.data(),
-                               moments.size() ? moments.data() : nullptr};
+                               advected.data(),
+                               second_moments.size() ? second_moments.data() : nullptr};
   transfer.gather[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
-  if (plan_.basis_functions > 0) values(polynomial_coefficients, Origin::transfer) = gathered_higher;
 }
 
 void Particles::take_gathered_velocity() {

@@ -9,6 +9,11 @@
 
 namespace mpm::reference {
 
+/// What a transfer takes of the nodes: sum w v, sum w (v - v-), C = sum v (x) w D^-1 d, L = sum v (x) grad w.
+struct Moments {
+  Array &velocity, &increment, &affine, &gradient;
+};
+
 class Particles {
  public:
   Particles(const Experiment& experiment, const Plan& plan, int body, const SeededBody& seeded);
@@ -43,6 +48,21 @@ class Particles {
   /// Polynomials beyond affine at the same nodes; there when Plan::basis_functions is not 0.
   const HigherBasis& higher_basis(std::size_t p) const { return higher_bases_[p]; }
 
+  // ---- temperature.cpp
+  /// J/K, of the phase that particle p has.
+  double heat_capacity(std::size_t p) const { return mass(p) * thermal(p).heat_capacity; }
+  double share_of_heat() const { return thermal_ ? thermal_->dissipation_to_heat : 0; }  ///< of what it dissipates
+  double conductivity(std::size_t p) const { return thermal(p).conductivity; }
+  double heat() const;  ///< sum of heat capacity times temperature, J
+  /// b and A of all particles by the scene's transfer, of mass times specific heat and the velocity (T, 0, 0): row 0 is
+  /// the heat that a particle gives.
+  void heat_coefficients();
+  /// Updates temperature and its transfer state from moments whose row 0 is that of the temperature.
+  void gather_heat(double dt, const Moments& moments);
+  /// Heat beyond the melting temperature melts, lacking heat freezes. Returns the stored energy that goes with stiffer
+  /// parameters, J, where `accounted`; else 0.
+  double change_phase(bool accounted);
+
   /// Momentum coefficients b and A of all particles.
   void scatter_coefficients();
   /// The same of the velocity that the transfer makes of the gathered moments alone, particles at rest before: S+ S of
@@ -50,7 +70,8 @@ class Particles {
   void project_coefficients(double dt);
   /// Kirchhoff stress and volume ratio at the current state. Throws RunFailure when a particle is inverted.
   void evaluate_stress();
-  /// Advances material and domain by dt with `velocity_gradient`; returns the energy dissipated, J. Throws RunFailure.
+  /// Advances material and domain by dt with `velocity_gradient`, and is warmed by its share of what that dissipates;
+  /// returns the energy dissipated, J. Throws RunFailure.
   double strain(double dt);
   /// Updates velocity and transfer state from the gathered moments.
   void gather(double dt);
@@ -81,7 +102,18 @@ class Particles {
   ShapeArguments shape_arguments() const;
   /// D as the transfer reads it, cells^2; empty where it does not or where D is a multiple of the identity.
   Array moments_for_transfer() const;
+  /// By the parameters of each particle's phase. Returns the first particle that failed, or -1.
   std::int32_t update_material(const mpm_material_batch& outputs);
+  std::int32_t update_material(const mpm_material_batch& outputs, const std::vector<double>& parameters,
+                               const std::vector<Eigen::Index>& particles);
+  void scatter_by_transfer(const Array& mass, const Array& of_velocity, const std::vector<void*>& state);
+  void gather_by_transfer(double dt, const Moments& moments, Array& of_velocity, const std::vector<void*>& state,
+                          Array& advected);
+  bool melted(std::size_t p) const;
+  const ThermalProperties& thermal(std::size_t p) const;
+  /// The transfer's state as it would be of the velocity (T, 0, 0), in declared order.
+  std::vector<Array> state_of_temperature() const;
+  double stored_energy();  ///< J, of all particles
   double ring(std::size_t p) const { return circumference_ ? (*circumference_)(0, p) : 1.0; }
   void refuse_inverted(std::int32_t particle) const;
 
@@ -89,6 +121,7 @@ class Particles {
   const Plan& plan_;
   const Component& transfer_;
   const Component& material_;
+  const std::optional<Thermal>& thermal_;
   int body_, field_, dimension_;
   std::size_t count_, padded_;
   double mass_, volume_;  ///< in axisymmetric scenes per metre of circumference

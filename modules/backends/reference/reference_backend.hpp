@@ -2,7 +2,7 @@
 // The textbook: the material point method in plain double precision, one pass after another, every particle and node
 // spelled out. Slow on purpose; every faster backend is tested against it.
 //  transfers.cpp: particles to grid and back; grid_step.cpp: momenta, conditions and forces; contact.cpp: pairs of
-//  fields; filter.cpp: velocity filters; reference_backend.cpp: the rest.
+//  fields; filter.cpp: velocity filters; temperature.cpp: heat; reference_backend.cpp: the rest.
 
 #include <array>
 #include <deque>
@@ -24,6 +24,7 @@ class ReferenceBackend final : public Backend {
   TimeStepLimit time_step_limit() const override { return limit_; }
   BodyState body_state(int body) const override { return bodies_[body].state(); }
   const Ledger& ledger() const override { return ledger_; }
+  HeatLedger heat_ledger() const override { return heat_ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
   const FilterRecord& filter_record() const override { return filter_; }
   bool scattered() const override { return false; }
@@ -96,6 +97,26 @@ class ReferenceBackend final : public Backend {
   void impose_on_velocity(double time);
   void resolve_contact_of_velocity(double dt);
 
+  // ---- temperature.cpp
+  void scatter_heat(Particles& body);
+  void divide_heat(const StepInfo& step);
+  void conduct();
+  void heat(const StepInfo& step);
+  void heat_through_walls(const StepInfo& step);
+  void heat_through_wall(const FaceCondition& face, int axis, int side, const StepInfo& step);
+  void heat_boxes(const StepInfo& step);
+  void impose_temperatures(double time);
+  void hold_temperature(std::size_t i, double value, double& ledger);
+  void gather_heat(Particles& body, const StepInfo& step);
+  void change_phase();
+  /// An entry of the heat ledger, where there is one.
+  void account(double& row, double heat) const {
+    if (plan_.heat_ledger) row += heat;
+  }
+  double heat_of_particles() const;
+  double sum(const ScalarField& field);
+  double heat_of_temperature();
+
   /// Calls `visit(i)` for every node of every velocity field.
   template <class Visit>
   void for_each_node(Visit visit) {
@@ -128,16 +149,22 @@ class ReferenceBackend final : public Backend {
   /// What conditions and contact have added to the velocity in this step.
   VectorField& constrained_ = grid_.vector("velocity_of_constraints");
   VectorField& unfiltered_constrained_ = grid_.vector("unfiltered_velocity_of_constraints");
+  ScalarField &heat_ = grid_.scalar("heat"), &heat_capacity_ = grid_.scalar("heat_capacity");
+  ScalarField& temperature_before_ = grid_.scalar("temperature_before");  ///< T-
+  ScalarField& temperature_ = grid_.scalar("temperature");                ///< T+ (or T- until it is heated)
+  ScalarField &heat_rate_ = grid_.scalar("heat_rate"), &heated_volume_ = grid_.scalar("heated_volume");
   std::vector<std::array<bool, 3>> held_;  ///< components that a condition gives now
   std::deque<Particles> bodies_;
   std::vector<EdgeModel> edges_;
   TimeStepLimit limit_;
   Ledger ledger_;
+  HeatLedger heat_ledger_;
   bool accounted_ = false;  ///< the ledger takes its entries from the step under way
   ContactRecord contact_;
   FilterRecord filter_;
   double kinetic_energy_after_ = 0;       ///< of the grid when particles gather from it, J
   double kinetic_energy_unfiltered_ = 0;  ///< of the grid when the filter began, J
+  double heat_after_ = 0;                 ///< of the grid when particles gather from it, J
 };
 
 }  // namespace mpm::reference

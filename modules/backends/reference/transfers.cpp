@@ -15,9 +15,11 @@ void ReferenceBackend::scatter(const Pass& pass, const StepInfo& step) {
     if (pass.has(Act::scatter_force) || pass.has(Act::scatter_contact)) body.evaluate_stress();
     if (pass.has(Act::scatter_force)) scatter_force(body, step.time);
     if (pass.has(Act::scatter_contact)) scatter_contact_fields(body);
+    if (pass.has(Act::scatter_heat)) scatter_heat(body);
   }
   if (!pass.has(Act::scatter_momentum)) return;
   grid_.sum_images();
+  if (pass.has(Act::scatter_heat)) account(heat_ledger_.scatter, sum(heat_) - heat_of_particles());
   if (accounted_ && !pass.remap()) ledger_.scatter += grid_.kinetic_energy() - particle_kinetic_energy();
 }
 
@@ -128,15 +130,19 @@ void ReferenceBackend::scatter_contact_fields(Particles& body) {
 }
 
 void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
+  double heat = 0;
   for (Particles& body : bodies_) {
     gather_moments(body, velocity_);
     body.gather(step.dt);
     if (step.filtered) body.take_gathered_velocity();
     if (plan_.sample_points > 0) gather_corners(body, step);
+    if (pass.has(Act::gather_heat)) gather_heat(body, step), heat += body.heat();
     if (pass.has(Act::strain)) strain(body, pass.share * step.dt);
   }
   if (accounted_) ledger_.gather += particle_kinetic_energy() - kinetic_energy_after_;
+  if (pass.has(Act::gather_heat)) account(heat_ledger_.gather, heat - heat_after_);
   if (pass.has(Act::move)) move(step);
+  if (pass.has(Act::change_phase)) change_phase();
 }
 
 /// sum w v, sum w (v - v-), C = sum v (x) w D^-1 d and L = sum v (x) grad w of the given velocity, v+ as a rule.
@@ -172,6 +178,7 @@ void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {
 void ReferenceBackend::strain(Particles& body, double dt) {
   const double dissipated = body.strain(dt);
   if (accounted_) ledger_.material += dissipated;
+  account(heat_ledger_.dissipation, body.share_of_heat() * dissipated);
 }
 
 }  // namespace mpm::reference
