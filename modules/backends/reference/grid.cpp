@@ -79,10 +79,14 @@ Vector Grid::force(std::size_t i) const {
   return sum + weight_[i];
 }
 
-Vector Grid::foot(const Fold& fold) const {
+Eigen::Vector3i Grid::foot_node(const Fold& fold) const {
   Eigen::Vector3i foot = coordinates(fold.ghost);
   foot[fold.axis] = fold.side == 0 ? 0 : experiment_.grid.cells[fold.axis];
-  return position(foot);
+  return foot;
+}
+
+Vector Grid::foot(const Fold& fold) const {
+  return position(foot_node(fold));
 }
 
 Vector Grid::wall_velocity(const Fold& fold, double time) const {
@@ -95,6 +99,40 @@ double Grid::wall_temperature(const Fold& fold, double time) const {
   if (fold.side < 0 || !holds_temperature(experiment_.faces[fold.axis][fold.side])) return 0;
   const Vector x = foot(fold);
   return experiment_.faces[fold.axis][fold.side].thermal.value({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time);
+}
+
+/// By Fourier's law of the flux through the wall, of the bodies that reach the node there.
+double Grid::gradient_at_wall(const Fold& fold, double time, const WallWeights* divided) const {
+  if (fold.side < 0 || !passes_heat(experiment_.faces[fold.axis][fold.side])) return 0;
+  const std::size_t i = at(velocity_field_of(fold.ghost), index(foot_node(fold)));
+  if (heated_volume_[i] <= 0) return 0;
+  return -flux_through_wall(i, fold.axis, fold.side, time, divided) * heated_volume_[i] / volume_conductivity_[i];
+}
+
+double Grid::flux_through_wall(std::size_t i, int axis, int side, double time, const WallWeights* divided) const {
+  const ThermalCondition& wall = experiment_.faces[axis][side].thermal;
+  const Vector x = position(coordinates(i));
+  const double given = wall.value({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time);
+  if (wall.exchange == HeatExchange::flux) return given;
+  if (!divided) return wall.coefficient * (given - heat_[i] / heat_capacity_[i]);
+  Eigen::Vector3i node = coordinates(i);
+  double at_wall = 0;
+  for (const double share : divided->shares) {
+    at_wall += share * temperature_[at(velocity_field_of(i), index(node))];
+    node[axis] += side == 0 ? 1 : -1;
+  }
+  // The flux q bends the temperature beyond the wall, which the shares have mirrored: at_wall + q beyond / k is there.
+  const double resistance = divided->beyond * experiment_.grid.cell_size * heated_volume_[i] / volume_conductivity_[i];
+  return (given - at_wall) / (1 / wall.coefficient + resistance);
+}
+
+double Grid::distance(const Fold& fold) const {
+  return experiment_.grid.cell_size * std::abs((coordinates(fold.ghost) - foot_node(fold))[fold.axis]);
+}
+
+double Grid::capacity_inward(std::size_t i, const Fold& fold) const {
+  if (!capacity_position_.declared_) return 0;
+  return capacity_position_[i][fold.axis] * (fold.side == 0 ? 1 : -1);
 }
 
 double Grid::mirrored(double v, const Fold& fold, AtWall rule) const {
@@ -110,7 +148,7 @@ Vector Grid::mirrored(Vector v, const Fold& fold, AtWall rule) const {
 
 void Grid::add_to_mirror(ScalarField& field, const Fold& fold, AtWall rule, const OfWall& wall) const {
   if (rule == AtWall::heat)
-    field[fold.mirror] += wall.heat + mirrored(field[fold.ghost] - wall.heat, fold, rule);
+    field[fold.mirror] += wall.heat + mirrored(field[fold.ghost] - wall.heat, fold, rule) + wall.heat_beyond;
   else
     field[fold.mirror] += mirrored(field[fold.ghost], fold, rule);
 }
@@ -158,24 +196,35 @@ void Grid::fold_axis(int axis, double time, double dt) {
       if (fold.mirror != fold.ghost)
         fold_node(fold, time);
       else
-        fold_onto_itself(fold.ghost, axis);
+        fold_onto_itself(fold, time);
     }
 }
 
 void Grid::fold_node(Fold fold, double time) {
   fold.mass = mass_[fold.ghost];
   OfWall wall{fold.mass * wall_velocity(fold, time)};
-  if (heat_capacity_.declared_) wall.heat = heat_capacity_[fold.ghost] * wall_temperature(fold, time);
+  if (heat_capacity_.declared_ && heat_capacity_.waits_) {
+    fold.heat_capacity = heat_capacity_[fold.ghost];
+    wall.heat = fold.heat_capacity * wall_temperature(fold, time);
+    // Particles at x_p from the wall have images at -x_p that are colder by 2 x_p times the gradient.
+    wall.heat_beyond = 2 * gradient_at_wall(fold, time, nullptr) *
+                       (distance(fold) * fold.heat_capacity - capacity_inward(fold.ghost, fold));
+  }
   for_each_field([&](auto& field) {
-    if (!field.waits_) return;
-    add_to_mirror(field, fold, field.declared_->at_wall, wall);
-    set_zero(field[fold.ghost]);
+    if (field.waits_) add_to_mirror(field, fold, field.declared_->at_wall, wall);
   });
+  mass_[fold.ghost] = 0;  // what else a node without mass holds is not read, but for contact after MUSL's remap
+  momentum_[fold.ghost] = Vector::Zero();
+  if (heat_capacity_.declared_) heat_[fold.ghost] = heat_capacity_[fold.ghost] = 0;
   folds_.push_back(fold);
 }
 
 /// On the wall itself: the mirror image takes away what points across it.
-void Grid::fold_onto_itself(std::size_t i, int axis) {
+void Grid::fold_onto_itself(const Fold& fold, double time) {
+  const std::size_t i = fold.ghost;
+  const int axis = fold.axis;
+  if (heat_capacity_.declared_ && heat_capacity_.waits_)
+    heat_[i] -= gradient_at_wall(fold, time, nullptr) * capacity_inward(i, fold);
   for (auto& [id, field] : vectors_)
     if (field.waits_ && field.declared_->at_wall == AtWall::slip) field[i][axis] = 0;
 }
@@ -207,11 +256,20 @@ void Grid::fill_velocity_ghosts(double time) {
   }
 }
 
-void Grid::fill_temperature_ghosts(ScalarField& temperature, double time) {
+void Grid::fill_temperature_ghosts(double time, const WallWeights& weights) {
   for (auto fold = folds_.rbegin(); fold != folds_.rend(); ++fold) {
     const double wall = wall_temperature(*fold, time);
-    temperature[fold->ghost] = wall + mirrored(temperature[fold->mirror] - wall, *fold, AtWall::heat);
+    temperature_[fold->ghost] = wall + mirrored(temperature_[fold->mirror] - wall, *fold, AtWall::heat);
+    temperature_[fold->ghost] -= 2 * distance(*fold) * gradient_at_wall(*fold, time, &weights);
   }
+}
+
+double Grid::heat_beyond_walls(bool held) const {
+  double sum = 0;
+  for (const Fold& fold : folds_)
+    if (held == (fold.side >= 0 && holds_temperature(experiment_.faces[fold.axis][fold.side])))
+      sum += fold.heat_capacity * (temperature_[fold.ghost] - temperature_[fold.mirror]);
+  return sum;
 }
 
 template <class Value>

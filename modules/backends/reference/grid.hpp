@@ -10,6 +10,7 @@
 
 #include "simulation/backend.hpp"
 #include "simulation/boundary.hpp"
+#include "simulation/wall_heat.hpp"
 
 namespace mpm::reference {
 
@@ -112,8 +113,15 @@ class Grid {
   void fold_as(NodeField<Value>& field, AtWall rule, std::optional<double> time);
   /// Gives ghosts the mirrored velocities. `time` is that of the wall's velocity.
   void fill_velocity_ghosts(double time);
-  /// Gives ghosts the temperature mirrored about that of walls that have one, at `time`.
-  void fill_temperature_ghosts(ScalarField& temperature, double time);
+  /// Gives ghosts the temperature mirrored about that of walls that have one, at `time`, and bent by the flux through
+  /// others.
+  void fill_temperature_ghosts(double time, const WallWeights& weights);
+  /// How much more heat the ghosts' own capacities hold at their temperature than at their mirrors', at walls that are
+  /// held at a temperature or at all others. J.
+  double heat_beyond_walls(bool held) const;
+  /// Flux into the body at a node of a wall that heat comes through, W/m^2. Convection goes by the temperature there: of
+  /// the node's own heat until that is `divided`, then by the weights.
+  double flux_through_wall(std::size_t i, int axis, int side, double time, const WallWeights* divided) const;
   /// Gives ghosts the mirrored values by a rule, walls at rest.
   template <class Value>
   void fill_ghosts(NodeField<Value>& field, AtWall rule);
@@ -125,13 +133,15 @@ class Grid {
  private:
   struct Fold {
     std::size_t ghost, mirror;
-    int axis, side;   ///< side < 0: a periodic image
-    double mass = 0;  ///< of the ghost when it was folded, kg
+    int axis, side;            ///< side < 0: a periodic image
+    double mass = 0;           ///< of the ghost when it was folded, kg
+    double heat_capacity = 0;  ///< the same, J/K
   };
   /// What a ghost would hold if it moved with the wall and had the wall's temperature.
   struct OfWall {
     Vector momentum = Vector::Zero();
     double heat = 0;
+    double heat_beyond = 0;  ///< what the image has more, as the temperature goes on beyond a wall with a flux
   };
   template <class Visit>
   void for_each_field(Visit visit) {
@@ -140,10 +150,16 @@ class Grid {
   }
   void fold_axis(int axis, double time, double dt);
   void fold_node(Fold fold, double time);
-  void fold_onto_itself(std::size_t i, int axis);
+  void fold_onto_itself(const Fold& fold, double time);
   bool approaches_wall(const Fold& fold, double dt) const;
   /// Point of the wall where a ghost's line to its mirror crosses it.
   Vector foot(const Fold& fold) const;
+  Eigen::Vector3i foot_node(const Fold& fold) const;
+  double distance(const Fold& fold) const;  ///< of the ghost from the wall, m
+  /// Rise of the temperature inward at the wall, K/m, where heat comes through it.
+  double gradient_at_wall(const Fold& fold, double time, const WallWeights* divided) const;
+  /// sum w C (x_p - x_i) along the inward normal, J m/K, where the transfer scatters no gradients of the particles.
+  double capacity_inward(std::size_t i, const Fold& fold) const;
   Vector wall_velocity(const Fold& fold, double time) const;
   double wall_temperature(const Fold& fold, double time) const;
   void add_to_mirror(ScalarField& field, const Fold& fold, AtWall rule, const OfWall& wall) const;
@@ -157,10 +173,13 @@ class Grid {
   std::array<std::vector<std::size_t>, 3> outermost_first_;  ///< nodes by distance beyond the walls of an axis
   std::map<std::string, ScalarField> scalars_;
   std::map<std::string, VectorField> vectors_;
-  ScalarField &mass_ = scalar("mass"), &heat_capacity_ = scalar("heat_capacity");
+  ScalarField &mass_ = scalar("mass"), &heat_ = scalar("heat"), &heat_capacity_ = scalar("heat_capacity"),
+              &temperature_ = scalar("temperature"), &heated_volume_ = scalar("heated_volume"),
+              &volume_conductivity_ = scalar("volume_conductivity");
   VectorField &momentum_ = vector("momentum"), &velocity_ = vector("velocity"),
               &velocity_before_ = vector("velocity_before"), &internal_force_ = vector("force"),
-              &body_force_ = vector("body_force"), &weight_ = vector("weight");
+              &body_force_ = vector("body_force"), &weight_ = vector("weight"),
+              &capacity_position_ = vector("capacity_position");
   std::vector<Fold> folds_;
   std::uint64_t bytes_ = 0;
 };

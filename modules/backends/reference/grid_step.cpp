@@ -9,7 +9,7 @@ void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& st
   const bool accounts_heat = plan_.heat_ledger && !pass.remap();
   const double heat = accounts_heat ? sum(heat_) : 0.0;
   grid_.fold_walls(step.time, pass.remap() ? 0.0 : step.dt);
-  if (accounts_heat) heat_ledger_.walls += sum(heat_) - heat;
+  if (accounts_heat) heat_ledger_.images += sum(heat_) - heat;
   if (!pass.remap()) grid_.fold_forces();
   keep_free_velocity(false);
   impose_conditions(step.time);

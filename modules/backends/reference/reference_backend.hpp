@@ -105,7 +105,7 @@ class ReferenceBackend final : public Backend {
   void heat_through_walls(const StepInfo& step);
   void heat_through_wall(const FaceCondition& face, int axis, int side, const StepInfo& step);
   void heat_boxes(const StepInfo& step);
-  void impose_temperatures(double time);
+  void impose_temperatures(double time, double& from_walls, double& from_boxes);
   void hold_temperature(std::size_t i, double value, double& ledger);
   void gather_heat(Particles& body, const StepInfo& step);
   void change_phase();
@@ -153,6 +153,9 @@ class ReferenceBackend final : public Backend {
   ScalarField& temperature_before_ = grid_.scalar("temperature_before");  ///< T-
   ScalarField& temperature_ = grid_.scalar("temperature");                ///< T+ (or T- until it is heated)
   ScalarField &heat_rate_ = grid_.scalar("heat_rate"), &heated_volume_ = grid_.scalar("heated_volume");
+  ScalarField& volume_conductivity_ = grid_.scalar("volume_conductivity");
+  VectorField& capacity_position_ = grid_.vector("capacity_position");
+  const WallWeights wall_weights_ = plan_.node_field("heated_volume") ? wall_weights(experiment_) : WallWeights();
   std::vector<std::array<bool, 3>> held_;  ///< components that a condition gives now
   std::deque<Particles> bodies_;
   std::vector<EdgeModel> edges_;
@@ -162,9 +165,10 @@ class ReferenceBackend final : public Backend {
   bool accounted_ = false;  ///< the ledger takes its entries from the step under way
   ContactRecord contact_;
   FilterRecord filter_;
-  double kinetic_energy_after_ = 0;       ///< of the grid when particles gather from it, J
-  double kinetic_energy_unfiltered_ = 0;  ///< of the grid when the filter began, J
-  double heat_after_ = 0;                 ///< of the grid when particles gather from it, J
+  double kinetic_energy_after_ = 0;             ///< of the grid when particles gather from it, J
+  double kinetic_energy_unfiltered_ = 0;        ///< of the grid when the filter began, J
+  double held_beyond_ = 0, others_beyond_ = 0;  ///< see Grid::heat_beyond_walls, before the forces
+  double heat_after_ = 0;                       ///< of the grid when particles gather from it, J
 };
 
 }  // namespace mpm::reference

@@ -138,15 +138,20 @@ void ReferenceBackend::scatter_heat(Particles& body) {
       const std::size_t i = grid_.at(body.field(), s.index);
       heat_capacity_[i] += s.weight * body.heat_capacity(p);
       heat_[i] += s.weight * (b + A.dot(s.distance));
-      if (measures_walls) heated_volume_[i] += s.weight * section;
+      if (!measures_walls) continue;
+      heated_volume_[i] += s.weight * section;
+      volume_conductivity_[i] += s.weight * section * body.conductivity(p);
+      if (!affine) capacity_position_[i] -= s.weight * body.heat_capacity(p) * s.distance;
     }
   }
 }
 
 void ReferenceBackend::divide_heat(const StepInfo& step) {
   for_each_node([&](std::size_t i) { temperature_[i] = heat_capacity_[i] > 0 ? heat_[i] / heat_capacity_[i] : 0; });
-  impose_temperatures(step.time);
-  grid_.fill_temperature_ghosts(temperature_, step.time);
+  impose_temperatures(step.time, heat_ledger_.images, heat_ledger_.images);
+  grid_.fill_temperature_ghosts(step.time, wall_weights_);
+  held_beyond_ = grid_.heat_beyond_walls(true), others_beyond_ = grid_.heat_beyond_walls(false);
+  account(heat_ledger_.images, held_beyond_ + others_beyond_);
   for_each_node([&](std::size_t i) { temperature_before_[i] = temperature_[i]; });
 }
 
@@ -177,9 +182,12 @@ void ReferenceBackend::heat(const StepInfo& step) {
   for_each_node([&](std::size_t i) {
     if (heat_capacity_[i] > 0) temperature_[i] += step.dt * heat_rate_[i] / heat_capacity_[i];
   });
-  impose_temperatures(step.time + step.dt);
-  grid_.fill_temperature_ghosts(temperature_, step.time + step.dt);
-  heat_after_ = heat_of_temperature();
+  impose_temperatures(step.time + step.dt, heat_ledger_.walls, heat_ledger_.boxes);
+  grid_.fill_temperature_ghosts(step.time + step.dt, wall_weights_);
+  const double held = grid_.heat_beyond_walls(true), others = grid_.heat_beyond_walls(false);
+  account(heat_ledger_.walls, held - held_beyond_);
+  account(heat_ledger_.images, others - others_beyond_);
+  heat_after_ = heat_of_temperature() + held + others;
 }
 
 void ReferenceBackend::heat_through_walls(const StepInfo& step) {
@@ -189,32 +197,21 @@ void ReferenceBackend::heat_through_walls(const StepInfo& step) {
         heat_through_wall(face, axis, side, step);
 }
 
-/// q A is shared among a wall node and the next ones inward by the shape's weights at the wall, which also make the
-/// temperature there.
+/// q A is shared among a wall node and the next ones inward by the shape's weights at the wall.
 void ReferenceBackend::heat_through_wall(const FaceCondition& face, int axis, int side, const StepInfo& step) {
-  const std::vector<double> shares = wall_shares(experiment_);
-  const double h = experiment_.grid.cell_size;
-  const bool convects = face.thermal.exchange == HeatExchange::convection;
-  double& row = convects ? heat_ledger_.convection : heat_ledger_.flux;
+  double& row = face.thermal.exchange == HeatExchange::convection ? heat_ledger_.convection : heat_ledger_.flux;
   for_each_node([&](std::size_t i) {
     Eigen::Vector3i node = grid_.coordinates(i);
-    if (node[axis] != (side == 0 ? 0 : experiment_.grid.cells[axis]) || heat_capacity_[i] <= 0) return;
-    const Vector x = grid_.position(node);
-    std::vector<std::size_t> inward;
-    double of_wall = 0;  // temperature, K
-    for (const double share : shares) {
-      inward.push_back(grid_.at(grid_.velocity_field_of(i), grid_.index(node)));
-      of_wall += share * temperature_before_[inward.back()];
+    if (node[axis] != (side == 0 ? 0 : experiment_.grid.cells[axis]) || heated_volume_[i] <= 0) return;
+    const double flux = grid_.flux_through_wall(i, axis, side, step.time, &wall_weights_);
+    const double around = experiment_.axisymmetric() ? 2 * std::numbers::pi * grid_.position(node)[0] : 1;
+    const double area = heated_volume_[i] / (0.5 * experiment_.grid.cell_size) * around;
+    for (const double share : wall_weights_.shares) {
+      const std::size_t k = grid_.at(grid_.velocity_field_of(i), grid_.index(node));
       node[axis] += side == 0 ? 1 : -1;
-    }
-    double flux = at(face.thermal.value, x, step.time);
-    if (convects) flux = face.thermal.coefficient * (flux - of_wall);
-    const double around = experiment_.axisymmetric() ? 2 * std::numbers::pi * x[0] : 1;
-    const double area = heated_volume_[i] / (0.5 * h) * around;
-    for (std::size_t k = 0; k < shares.size(); ++k) {
-      if (heat_capacity_[inward[k]] <= 0) continue;
-      heat_rate_[inward[k]] += shares[k] * area * flux;
-      account(row, step.dt * shares[k] * area * flux);
+      if (heat_capacity_[k] <= 0) continue;
+      heat_rate_[k] += share * area * flux;
+      account(row, step.dt * share * area * flux);
     }
   });
 }
@@ -235,7 +232,7 @@ void ReferenceBackend::heat_boxes(const StepInfo& step) {
 }
 
 /// Walls first, then boxes, which win.
-void ReferenceBackend::impose_temperatures(double time) {
+void ReferenceBackend::impose_temperatures(double time, double& from_walls, double& from_boxes) {
   for_each_node([&](std::size_t i) {
     if (heat_capacity_[i] <= 0) return;
     const Eigen::Vector3i& node = grid_.coordinates(i);
@@ -245,11 +242,11 @@ void ReferenceBackend::impose_temperatures(double time) {
         const FaceCondition& face = experiment_.faces[axis][side];
         const bool on_wall = node[axis] == (side == 0 ? 0 : experiment_.grid.cells[axis]);
         if (on_wall && folds(face.type) && holds_temperature(face))
-          hold_temperature(i, at(face.thermal.value, x, time), heat_ledger_.walls);
+          hold_temperature(i, at(face.thermal.value, x, time), from_walls);
       }
     for (const BoxCondition& box : experiment_.boxes)
       if (box.thermal.exchange == HeatExchange::fixed_temperature && grid_.inside(box, i))
-        hold_temperature(i, at(box.thermal.value, x, time), heat_ledger_.boxes);
+        hold_temperature(i, at(box.thermal.value, x, time), from_boxes);
   });
 }
 

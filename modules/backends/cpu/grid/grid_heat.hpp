@@ -125,9 +125,9 @@ void GridStep<D, T>::apply_heat(const StepInfo& step) {
   for (const bool periodic : {true, false}) fold_forces(periodic);
   heat_ledger_.walls += step.dt * rate_of_folds_;
   for (const FaceNodes& face : grid_.faces())
-    if (passes_heat(*face.condition)) heat_through(face, end, step.dt);
+    if (passes_heat(*face.condition)) heat_through(face, step.time, step.dt);
   for (const BoxNodes& box : grid_.boxes())
-    if (box.condition->thermal.exchange == HeatExchange::heating) heat_box(box, end, step.dt);
+    if (box.condition->thermal.exchange == HeatExchange::heating) heat_box(box, step.time, step.dt);
   const T dt = static_cast<T>(step.dt);
   for_each_temperature([&](T temperature, T capacity, int field, std::uint32_t node) {
     return warmed(temperature, grid_.quad(heat_rate, field, node)[0], capacity, dt);
