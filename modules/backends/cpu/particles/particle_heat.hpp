@@ -251,7 +251,8 @@ std::int32_t ParticleStep<D, T, Components>::update_by_phase(const Chunk& chunk,
 
   constexpr int most = 6 + 4;
   alignas(64) T outputs[most * chunk_size<T>];
-  std::vector<T> states(std::size_t(std::max(chunk.particles.components, 1)) * chunk_size<T>);
+  AlignedArray<T> states;
+  states.require(std::size_t(chunk.particles.components) * chunk_size<T>);
   mpm_material_batch other = request;
   States copies{};
   T* next = states.data();
