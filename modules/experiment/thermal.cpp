@@ -195,9 +195,26 @@ std::vector<std::string> places_of_heat(const Experiment& experiment) {
       if (face.thermal.exchange != HeatExchange::none) add(face.thermal.pointer);
   for (const BoxCondition& box : experiment.boxes)
     if (box.thermal.exchange != HeatExchange::none) add(box.thermal.pointer);
+  for (const char* name : {"temperature", "melted_fraction"})
+    if (experiment.output.colour_by == name) add("/output/colour_by");
   for (const BodySpecification& body : experiment.bodies)
     if (body.temperature) add(child_pointer(body.pointer, "temperature"));
   return places;
+}
+
+/// A gather may replace the temperature that particles have before it.
+void check_order_of_strain(const Node& root, const Experiment& experiment, ReadContext& context) {
+  const StressUpdate update = experiment.solver.stress_update;
+  if (update != StressUpdate::first && update != StressUpdate::averaged) return;
+  for (const MaterialSpecification& material : experiment.materials) {
+    if (!material.thermal || material.thermal->dissipation_to_heat == 0) continue;
+    const Node& place = nearest_node(root, "/solver/stress_update");
+    return context.problem(
+        place,
+        "order " + in_quotes(place.text) +
+            " strains before the gather, which may replace the temperature that \"dissipation_to_heat\" of material " +
+            in_quotes(material.name) + " has raised; choose \"last\" or \"modified_last\"");
+  }
 }
 
 void check_body(const Node& root, const Experiment& experiment, const BodySpecification& body, ReadContext& context) {
@@ -230,10 +247,12 @@ void check_temperature(const Node& root, const Experiment& experiment, ReadConte
   }
   for (const BodySpecification& body : experiment.bodies) check_body(root, experiment, body, context);
   if (experiment.filter)
-    context.problem(nearest_node(root, experiment.filter->pointer),
-                    "filter " + in_quotes(experiment.filter->plugin->id()) +
-                        " acts on velocities alone, and a scene with temperature needs one that acts on both; remove the "
-                        "filter, or \"thermal\"");
+    context.problem(
+        nearest_node(root, experiment.filter->pointer),
+        "filter " + in_quotes(experiment.filter->plugin->id()) +
+            " acts on velocities alone, and a scene with temperature needs one that acts on both; remove the "
+            "filter, or \"thermal\"");
+  check_order_of_strain(root, experiment, context);
   const ThermalCondition& axis = experiment.faces[0][0].thermal;
   if (experiment.axisymmetric() && experiment.grid.lower[0] == 0 && axis.exchange != HeatExchange::none)
     context.problem(nearest_node(root, axis.pointer),

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "experiment/diagnostics.hpp"
+#include "experiment/thermal.hpp"
 #include "kernel/polynomial_basis.hpp"
 #include "plan/compatibility.hpp"
 #include "plan/step_builder.hpp"
@@ -27,6 +28,7 @@ class Planner {
 
   Plan make(const std::function<void(StepBuilder&)>& solver_step) {
     refuse_impossible_combinations();
+    refuse_temperature();
     StepBuilder builder(experiment_);
     solver_step(builder);
     plan_.step = builder.take();
@@ -71,6 +73,13 @@ class Planner {
                           : refusal->at == MPM_FILTER   ? *experiment_.filter
                                                         : *experiment_.contact;
     refuse(at.pointer, refusal->reason);
+  }
+
+  void refuse_temperature() const {
+    if (!experiment_.has_temperature()) return;
+    const Component& transfer = experiment_.transfer;
+    if (const auto refusal = refusal_of_temperature(*transfer.plugin, basis_order_of(transfer)))
+      refuse(transfer.pointer, *refusal);
   }
 
   /// A filter and a ledger that skip steps meet always, or never, where their numbers have a common divisor.

@@ -203,6 +203,17 @@ TEST_CASE("walls and boxes do one thing with heat", "[config]") {
         "FILE:9:31: /grid/boundaries/y_max/temperature: unknown key \"temperature\"; valid keys: \"type\"");
 }
 
+TEST_CASE("what does not carry or keep a temperature is refused by name", "[config][temperature]") {
+  CHECK(pond_errors("\"solver\": {", "\"solver\": {\"stress_update\": \"averaged\", ") ==
+        "FILE:29:31: /solver/stress_update: order \"averaged\" strains before the gather, which may replace the "
+        "temperature that \"dissipation_to_heat\" of material \"ice\" has raised; choose \"last\" or "
+        "\"modified_last\"");
+  CHECK(pond_errors("\"solver\": {", "\"solver\": {\"stress_update\": \"first\", ") != "accepted");
+  CHECK(pond_errors("\"solver\": {", "\"solver\": {\"stress_update\": \"modified_last\", ") == "accepted");
+  const std::string lossless = replaced(pond, "\"dissipation_to_heat\": 0.9", "\"dissipation_to_heat\": 0");
+  CHECK(errors(replaced(lossless, "\"solver\": {", "\"solver\": {\"stress_update\": \"first\", ")) == "accepted");
+}
+
 TEST_CASE("the schema has the keys of heat", "[schema]") {
   const auto schema = json_schema(components(), options());
   const auto& definitions = schema["$defs"];

@@ -3,6 +3,7 @@
 
 #include "experiment/read.hpp"
 #include "experiment/thermal.hpp"
+#include "solvers/solver.hpp"
 #include "support/catch.hpp"
 
 using namespace mpm;
@@ -61,4 +62,36 @@ TEST_CASE("no heat passes the axis of an axisymmetric scene", "[config]") {
   }
   const Experiment wall = experiment_from(scene, {"/grid/boundaries/x_min=slip"});
   CHECK(wall.faces[0][1].thermal.exchange == HeatExchange::fixed_temperature);
+}
+
+TEST_CASE("a scene whose transfer does not carry a temperature has no plan", "[config]") {
+  const auto refusal = [](const std::vector<std::string>& overrides) -> std::string {
+    const Experiment experiment = experiment_from(R"J({ "dimension": 2,
+    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]},
+    "shape": {"type": "bspline_quadratic"},
+    "transfer": {"type": "apic"},
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000,
+                        "thermal": {"conductivity": 1, "heat_capacity": 1}}},
+    "bodies": [{"name": "b", "material": "m", "temperature": 300,
+                "geometry": {"type": "box", "lower": [0, 0.2], "upper": [0.4, 0.4]}}],
+    "solver": {"end_time": 1}})J",
+                                                  overrides);
+    try {
+      make_plan(experiment);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK(refusal({"/transfer/type=\"rpic\""}) ==
+        "test.json:4:17: /transfer: transfer \"rpic\" keeps the spin of a velocity alone, and a temperature has none; "
+        "choose transfer \"apic\"");
+  CHECK(refusal({"/transfer/type=\"polypic\""}) ==
+        "test.json:4:17: /transfer: transfer \"polypic\" carries polynomials of a velocity beyond the affine ones, and "
+        "none of a temperature; choose transfer \"apic\"");
+  for (const Plugin* transfer : plugins().of_kind(MPM_TRANSFER)) {
+    const std::string id(transfer->id());
+    if (id != "rpic" && id != "polypic") CHECK(refusal({"/transfer/type=\"" + id + "\""}) == "accepted");
+  }
+  CHECK(refusal({"/solver/passes=\"fused\""}).find("temperature takes two passes") != std::string::npos);
 }
