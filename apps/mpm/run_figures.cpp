@@ -63,25 +63,64 @@ void draw_energy(const Table& table, const RunLabel& label, const std::filesyste
   render::write_figure(plot, stem);
 }
 
-void draw_ledger(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+/// Columns of a ledger and what they are called.
+using Causes = std::initializer_list<std::pair<const char*, const char*>>;
+
+render::StackedPlot ledger_of(const Table& table, const RunLabel& label, const std::string& title,
+                              const std::string& quantity, const Causes& causes) {
   render::StackedPlot plot;
-  plot.title = "Where the energy went: " + label.title;
+  plot.title = title + ": " + label.title;
   plot.x_label = "time t (s)";
-  plot.y_label = "energy given since the start" + unit_of(table, "total energy");
+  plot.y_label = quantity + " given since the start" + unit_of(table, "total energy");
   plot.footnote = label.footnote;
   plot.x = column(table, "time");
-  const std::pair<const char*, const char*> causes[] = {{"ledger scatter", "particles to grid"},
-                                                        {"ledger gather", "grid to particles"},
-                                                        {"ledger filter", "filter"},
-                                                        {"ledger boundary", "boundary"},
-                                                        {"ledger contact", "contact"},
-                                                        {"ledger body force", "body force"}};
   for (const auto& [name, text] : causes) {
     if (!table.find(name)) continue;  // the filter's, in a run without one
     auto values = column(table, name);
     if (std::any_of(values.begin(), values.end(), [](double e) { return e != 0; }))
       plot.areas.push_back({text, plot.x, values});
   }
+  return plot;
+}
+
+/// What transfers take beyond the nodes' heat comes from mirror images at walls of a fixed temperature.
+void draw_heat(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+  render::StackedPlot plot = ledger_of(table, label, "Where the heat came from", "heat Q",
+                                       {{"heat ledger flux", "flux through walls"},
+                                        {"heat ledger convection", "convection at walls"},
+                                        {"heat ledger boxes", "boxes of nodes"},
+                                        {"heat ledger dissipation", "dissipation"}});
+  auto walls = column(table, "heat ledger walls");
+  if (std::any_of(walls.begin(), walls.end(), [](double q) { return q != 0; })) {
+    for (const char* name : {"heat ledger scatter", "heat ledger gather"}) {
+      const auto part = column(table, name);
+      for (std::size_t k = 0; k < walls.size(); ++k) walls[k] += part[k];
+    }
+    plot.areas.push_back({"walls of fixed temperature", plot.x, walls});
+  }
+  plot.lines.push_back({"residual", plot.x, column(table, "heat ledger residual")});
+  render::write_figure(plot, stem);
+
+  Plot held = plot_of(table, label, "Heat held by the particles: " + label.title, "heat Q gained since the start",
+                      "heat content");
+  for (const auto& [name, text] : {std::pair{"heat content", "sensible"}, std::pair{"latent heat", "latent"}}) {
+    auto values = column(table, name);
+    const double start = values.front();
+    for (double& value : values) value -= start;
+    if (std::any_of(values.begin(), values.end(), [](double q) { return q != 0; }))
+      held.series.push_back({text, plot.x, values});
+  }
+  render::write_figure(held, stem.parent_path() / "heat_held");
+}
+
+void draw_ledger(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+  render::StackedPlot plot = ledger_of(table, label, "Where the energy went", "energy",
+                                       {{"ledger scatter", "particles to grid"},
+                                        {"ledger gather", "grid to particles"},
+                                        {"ledger filter", "filter"},
+                                        {"ledger boundary", "boundary"},
+                                        {"ledger contact", "contact"},
+                                        {"ledger body force", "body force"}});
   auto dissipated = column(table, "ledger material dissipation", -1);
   if (std::any_of(dissipated.begin(), dissipated.end(), [](double e) { return e != 0; }))
     plot.areas.push_back({"material", plot.x, dissipated});
@@ -161,6 +200,7 @@ struct FigureKind {
 constexpr FigureKind kinds[] = {
     {"energy", "total energy", "", draw_energy},
     {"ledger", "ledger residual", "set /output/ledger to true", draw_ledger},
+    {"heat", "heat ledger residual", "give the materials \"thermal\" and set /output/ledger to true", draw_heat},
     {"dissipation", "ledger residual", "set /output/ledger to true", draw_dissipation},
     {"momentum", "momentum y", "", draw_momentum},
     {"contact", "contact nodes", "give the experiment a \"contact\"", draw_contact},

@@ -48,6 +48,16 @@ void add_affine(const Experiment& experiment, const BodyState& state, const doub
 
 }  // namespace
 
+std::vector<std::pair<std::string, double>> rows_of(const HeatLedger& l) {
+  return {{"scatter", l.scatter},
+          {"gather", l.gather},
+          {"walls", l.walls},
+          {"flux", l.flux},
+          {"convection", l.convection},
+          {"boxes", l.boxes},
+          {"dissipation", l.dissipation}};
+}
+
 RecordedAxes recorded_axes(const Experiment& experiment) {
   if (experiment.axisymmetric()) return {1, 3};
   return {0, experiment.dimension == 2 ? 2 : 0};
@@ -68,6 +78,10 @@ Totals Metrics::measure() const {
   totals.step = simulation_.steps();
   totals.smallest_volume_ratio = std::numeric_limits<double>::infinity();
   totals.largest_volume_ratio = -std::numeric_limits<double>::infinity();
+  if (simulation_.experiment().has_temperature()) {
+    totals.lowest_temperature = std::numeric_limits<double>::infinity();
+    totals.highest_temperature = -std::numeric_limits<double>::infinity();
+  }
   for (int body = 0; body < static_cast<int>(simulation_.experiment().bodies.size()); ++body) add_body(body, totals);
   for (double& x : totals.centre_of_mass) x /= totals.mass;
   const auto orbital = cross(totals.centre_of_mass.data(), totals.momentum.data());
@@ -110,7 +124,24 @@ void Metrics::add_body(int body, Totals& totals) const {
     if (C) add_affine(experiment, state, &C[p * D * D], p, totals);
     if (!polynomials.empty()) totals.kinetic += m * polynomials[p];
   }
+  if (experiment.has_temperature()) add_heat(body, state, totals);
   if (!start_.empty()) add_errors(body, state, totals);
+}
+
+void Metrics::add_heat(int body, const BodyState& state, Totals& totals) const {
+  const Experiment& experiment = simulation_.experiment();
+  const Thermal& thermal = *experiment.materials[experiment.bodies[body].material].thermal;
+  const std::vector<double>& temperature = state.host_state.at("temperature");
+  for (std::size_t p = 0; p < temperature.size(); ++p) {
+    const double m = state.mass * state.ring(p), T = temperature[p];
+    const bool melted = has_melted(experiment, body, state, p);
+    const double c = melted ? thermal.phase_change->melted.heat_capacity : thermal.solid.heat_capacity;
+    totals.heat_content += m * c * (T - (thermal.phase_change ? thermal.phase_change->temperature : 0));
+    if (thermal.phase_change)
+      totals.latent_heat += m * thermal.phase_change->latent_heat * state.host_state.at("melted_fraction")[p];
+    totals.lowest_temperature = std::min(totals.lowest_temperature, T);
+    totals.highest_temperature = std::max(totals.highest_temperature, T);
+  }
 }
 
 void Metrics::add_errors(int body, const BodyState& state, Totals& totals) const {
@@ -141,6 +172,12 @@ double Metrics::ledger_residual(const Totals& now) const {
   const double explained = ledger.scatter + ledger.gather + ledger.filter + ledger.boundary + ledger.contact +
                            ledger.body_force - ledger.material;
   return now.total_energy() - initial_.total_energy() - explained;
+}
+
+double Metrics::heat_residual(const Totals& now) const {
+  if (!simulation_.plan().heat_ledger) return 0;
+  const double gained = now.heat_content - initial_.heat_content + (now.latent_heat - initial_.latent_heat);
+  return gained - simulation_.backend().heat_ledger().sum();
 }
 
 std::vector<std::string> Metrics::columns() const {
@@ -175,6 +212,14 @@ std::vector<std::string> Metrics::columns() const {
     names.push_back(std::string("filter increment norm (kg^0.5 m/s") + (flat ? " per m^0.5)" : ")"));
     names.emplace_back("filter iterations");
   }
+  if (experiment.has_temperature()) {
+    names.insert(names.end(), {"heat content" + energy, "latent heat" + energy});
+    names.insert(names.end(), {"lowest temperature (K)", "highest temperature (K)"});
+  }
+  if (simulation_.plan().heat_ledger) {
+    for (const auto& [name, heat] : rows_of({})) names.push_back("heat ledger " + name + energy);
+    names.push_back("heat ledger residual" + energy);
+  }
   if (experiment.exact)
     for (const char* name :
          {"position error rms (m)", "position error max (m)", "velocity error rms (m/s)", "velocity error max (m/s)"})
@@ -207,6 +252,12 @@ std::vector<double> Metrics::row(const Totals& t) const {
   if (simulation_.plan().filter) {
     const FilterRecord& f = simulation_.backend().filter_record();
     values.insert(values.end(), {f.last_norm, static_cast<double>(f.iterations)});
+  }
+  if (experiment.has_temperature())
+    values.insert(values.end(), {t.heat_content, t.latent_heat, t.lowest_temperature, t.highest_temperature});
+  if (simulation_.plan().heat_ledger) {
+    for (const auto& [name, heat] : rows_of(simulation_.backend().heat_ledger())) values.push_back(heat);
+    values.push_back(heat_residual(t));
   }
   if (experiment.exact)
     values.insert(values.end(),

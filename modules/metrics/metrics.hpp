@@ -27,6 +27,10 @@ struct Totals {
   double largest_speed = 0;                               ///< m/s
   double position_error_rms = 0, position_error_max = 0;  ///< m, against the exact solution
   double velocity_error_rms = 0, velocity_error_max = 0;  ///< m/s
+  /// J, where particles have a temperature: sum m c T, with T from the melting temperature where a material has one; and
+  /// sum m L phi.
+  double heat_content = 0, latent_heat = 0;
+  double lowest_temperature = 0, highest_temperature = 0;  ///< K
 
   double total_energy() const { return kinetic + strain + gravitational; }
 };
@@ -36,6 +40,9 @@ struct Totals {
 struct RecordedAxes {
   int linear, angular;
 };
+/// Rows of the heat ledger by name, J.
+std::vector<std::pair<std::string, double>> rows_of(const HeatLedger& ledger);
+
 RecordedAxes recorded_axes(const Experiment& experiment);
 
 /// Keeps what measuring needs of the start: the exact solution and each particle's initial velocity.
@@ -47,6 +54,8 @@ class Metrics {
 
   /// Change of total energy since the start that no cause explains: time integration. Zero without a ledger. J.
   double ledger_residual(const Totals& now) const;
+  /// Heat gained since the start that no row of the heat ledger explains: rounding. Zero without one. J.
+  double heat_residual(const Totals& now) const;
 
   /// Names with units, and values, of one row of metrics.csv.
   std::vector<std::string> columns() const;
@@ -56,6 +65,7 @@ class Metrics {
 
  private:
   void add_body(int body, Totals& totals) const;
+  void add_heat(int body, const BodyState& state, Totals& totals) const;
   void add_errors(int body, const BodyState& state, Totals& totals) const;
 
   const Simulation& simulation_;

@@ -3,16 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+
+#include "operators/heat.hpp"
 
 namespace mpm {
 namespace {
 
-const std::array<QuantityDescription, 7> common{{{"speed", "speed |v|", "m/s"},
+const std::array<QuantityDescription, 9> common{{{"speed", "speed |v|", "m/s"},
                                                  {"pressure", "pressure p", "Pa"},
                                                  {"von_mises_stress", "von Mises stress", "Pa"},
                                                  {"volume_ratio", "volume ratio J", ""},
                                                  {"stored_energy", "stored energy density ψ", "J/m³"},
                                                  {"displacement", "displacement |u|", "m"},
+                                                 {"temperature", "temperature T", "K"},
+                                                 {"melted_fraction", "melted fraction φ", ""},
                                                  {"body", "body", ""}}};
 
 /// Suffixes of the components of a field, in the order they are stored.
@@ -69,41 +74,69 @@ double von_mises(const double* tau, int dimension) {
 
 }  // namespace
 
-MaterialQuantities material_quantities(const Experiment& experiment, int body, const BodyState& state) {
-  const Component& material = material_of(experiment, body);
+namespace {
+
+/// What a material with these parameters says of some of a body's particles.
+void evaluate(const Experiment& experiment, const Plugin& material, const std::vector<double>& parameters,
+              const BodyState& state, const std::vector<std::size_t>& particles, MaterialQuantities& result) {
+  if (particles.empty()) return;
   const int D = experiment.dimension, symmetric = D == 2 ? 4 : 6;
-  const std::size_t n = state.position.size() / D, stride = padded(n);
+  const std::size_t n = particles.size(), stride = padded(n);
 
   std::vector<std::vector<double>> fields;
   std::vector<void*> pointers;
-  for (const mpm_state& declared : material.plugin->state()) {
+  for (const mpm_state& declared : material.state()) {
     const int components = state_components(kept_shape(declared, experiment.axisymmetric()), D);
     const std::vector<double>& values = state.material_state.at(declared.name);
     std::vector<double>& field = fields.emplace_back(components * stride);
     for (std::size_t p = 0; p < stride; ++p)
-      for (int c = 0; c < components; ++c) field[c * stride + p] = values[std::min(p, n - 1) * components + c];
+      for (int c = 0; c < components; ++c)
+        field[c * stride + p] = values[particles[std::min(p, n - 1)] * components + c];
   }
   for (auto& field : fields) pointers.push_back(field.data());
 
-  MaterialQuantities result;
-  std::vector<double> stress(symmetric * stride);
-  for (auto* array : {&result.stored_energy, &result.wave_speed, &result.volume_ratio}) array->resize(stride);
+  std::vector<double> stress(symmetric * stride), stored_energy(stride), wave_speed(stride), volume_ratio(stride);
   mpm_material_batch batch{};
   batch.count = batch.stride = static_cast<std::uint32_t>(stride);
   batch.dimension = static_cast<std::uint32_t>(D);
   batch.state = pointers.data();
   batch.kirchhoff_stress = stress.data();
-  batch.stored_energy = result.stored_energy.data();
-  batch.wave_speed = result.wave_speed.data();
-  batch.volume_ratio = result.volume_ratio.data();
+  batch.stored_energy = stored_energy.data();
+  batch.wave_speed = wave_speed.data();
+  batch.volume_ratio = volume_ratio.data();
   if (experiment.axisymmetric()) batch.velocity_gradient_zz = stress.data();  // given, not read
-  material.plugin->material().update[MPM_SCALAR_DOUBLE][D - 2](material.parameters.data(), &batch);
+  material.material().update[MPM_SCALAR_DOUBLE][D - 2](parameters.data(), &batch);
 
-  result.stress.resize(n * symmetric);
-  for (std::size_t p = 0; p < n; ++p)
-    for (int c = 0; c < symmetric; ++c) result.stress[p * symmetric + c] = stress[c * stride + p];
+  for (std::size_t p = 0; p < n; ++p) {
+    for (int c = 0; c < symmetric; ++c) result.stress[particles[p] * symmetric + c] = stress[c * stride + p];
+    result.stored_energy[particles[p]] = stored_energy[p];
+    result.wave_speed[particles[p]] = wave_speed[p];
+    result.volume_ratio[particles[p]] = volume_ratio[p];
+  }
+}
+
+}  // namespace
+
+MaterialQuantities material_quantities(const Experiment& experiment, int body, const BodyState& state) {
+  const MaterialSpecification& material = experiment.materials[experiment.bodies[body].material];
+  const std::size_t n = state.position.size() / experiment.dimension;
+  MaterialQuantities result;
+  result.stress.resize(n * (experiment.dimension == 2 ? 4 : 6));
   for (auto* array : {&result.stored_energy, &result.wave_speed, &result.volume_ratio}) array->resize(n);
+  std::vector<std::size_t> all(n), solid, melted;
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::partition_copy(all.begin(), all.end(), std::back_inserter(melted), std::back_inserter(solid),
+                      [&](std::size_t p) { return has_melted(experiment, body, state, p); });
+  const Plugin& plugin = *material.component.plugin;
+  evaluate(experiment, plugin, material.component.parameters, state, solid, result);
+  if (!melted.empty())
+    evaluate(experiment, plugin, material.thermal->phase_change->melted_parameters, state, melted, result);
   return result;
+}
+
+bool has_melted(const Experiment& experiment, int body, const BodyState& state, std::size_t p) {
+  const auto& thermal = experiment.materials[experiment.bodies[body].material].thermal;
+  return thermal && thermal->phase_change && is_melted(state.host_state.at("melted_fraction")[p]);
 }
 
 std::span<const QuantityDescription> common_quantities() {
@@ -145,7 +178,9 @@ std::vector<double> quantity(const Experiment& experiment, int body, const BodyS
     for (int c = 0; c < D; ++c) sum += vectors[p * D + c] * vectors[p * D + c];
     return std::sqrt(sum);
   };
-  if (name == "body") {
+  if (const auto kept = state.host_state.find(name); kept != state.host_state.end() && kept->second.size() == n) {
+    values = kept->second;
+  } else if (name == "body") {
     values.assign(n, body);
   } else if (name == "speed") {
     for (std::size_t p = 0; p < n; ++p) values[p] = length_of(state.velocity, p);

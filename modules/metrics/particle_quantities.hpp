@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// What a material says of each particle of a body, from its state alone.
+/// What a material says of each particle of a body, from its state and its phase alone.
 struct MaterialQuantities {
   std::vector<double> stress;         ///< Kirchhoff, particle-major, xx yy zz xy | xx yy zz yz xz xy, Pa
   std::vector<double> stored_energy;  ///< J/m^3 of initial volume
@@ -17,6 +17,9 @@ struct MaterialQuantities {
   std::vector<double> volume_ratio;   ///< J
 };
 MaterialQuantities material_quantities(const Experiment& experiment, int body, const BodyState& state);
+
+/// Whether a particle has the melted phase's parameters.
+bool has_melted(const Experiment& experiment, int body, const BodyState& state, std::size_t p);
 
 /// A quantity that colours particles: name, what it is called on the bar, unit.
 struct QuantityDescription {

@@ -239,6 +239,7 @@ void Recorder::write_vtk(std::size_t index) {
   output::PointField velocity{"velocity (m/s)", experiment.dimension, {}};
   std::vector<output::PointField> scalars;
   std::vector<std::string> names{"body", "pressure", "von_mises_stress", "volume_ratio"};
+  if (experiment.has_temperature()) names.insert(names.end(), {"temperature", "melted_fraction"});
   for (const MaterialSpecification& material : experiment.materials)
     for (const mpm_state& field : material.component.plugin->state())
       if (field.shape == MPM_STATE_SCALAR && std::find(names.begin(), names.end(), field.name) == names.end())

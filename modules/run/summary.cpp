@@ -70,6 +70,18 @@ Json energy(const Simulation& simulation, const Metrics& metrics, const Recorder
   return json;
 }
 
+Json heat(const Simulation& simulation, const Metrics& metrics, const Totals& end) {
+  const Totals& start = metrics.initial();
+  Json json{{"content", change(start.heat_content, end.heat_content)},
+            {"latent", change(start.latent_heat, end.latent_heat)},
+            {"lowest_temperature", end.lowest_temperature},
+            {"highest_temperature", end.highest_temperature}};
+  if (!simulation.plan().heat_ledger) return json;
+  for (const auto& [name, heat] : rows_of(simulation.backend().heat_ledger())) json["ledger"][name] = heat;
+  json["ledger"]["residual"] = metrics.heat_residual(end);
+  return json;
+}
+
 void collect_names(const Json& value, const std::string& prefix, std::vector<std::string>& names) {
   if (value.is_number()) names.push_back(prefix);
   if (!value.is_object()) return;
@@ -114,6 +126,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
   if (const std::string limiting = simulation.limiting_particle(); !limiting.empty())
     json["limiting_particle"] = limiting;
   json["energy"] = energy(simulation, metrics, recorder);
+  if (experiment.has_temperature()) json["heat"] = heat(simulation, metrics, end);
   // A ratio of roundings says nothing: spin counts against mass, speed and size of the domain.
   const double size = experiment.grid.upper[0] - experiment.grid.lower[0];
   const double scale_of_spin = start.mass * start.largest_speed * size;
