@@ -92,7 +92,7 @@ void draw_heat(const Table& table, const RunLabel& label, const std::filesystem:
                                         {"heat ledger dissipation", "dissipation"}});
   auto walls = column(table, "heat ledger walls");
   if (std::any_of(walls.begin(), walls.end(), [](double q) { return q != 0; })) {
-    for (const char* name : {"heat ledger scatter", "heat ledger gather"}) {
+    for (const char* name : {"heat ledger images", "heat ledger scatter", "heat ledger gather"}) {
       const auto part = column(table, name);
       for (std::size_t k = 0; k < walls.size(); ++k) walls[k] += part[k];
     }

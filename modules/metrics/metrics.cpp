@@ -50,6 +50,7 @@ void add_affine(const Experiment& experiment, const BodyState& state, const doub
 
 std::vector<std::pair<std::string, double>> rows_of(const HeatLedger& l) {
   return {{"scatter", l.scatter},
+          {"images", l.images},
           {"gather", l.gather},
           {"walls", l.walls},
           {"flux", l.flux},
