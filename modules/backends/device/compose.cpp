@@ -103,9 +103,34 @@ std::string yes(bool value) {
   return value ? "true" : "false";
 }
 
-/// What particles are summed into by the scatter itself: the weight follows from the masses.
+/// What particles are summed into by the scatter itself: the weight follows from the masses, and heat has kernels of
+/// its own, as shared memory has no room for everything at once.
 bool is_scattered(const Field& field) {
-  return field.cleared && field.folded != Folded::never && field.id != "weight";
+  for (const char* other :
+       {"weight", "heat", "heat_capacity", "heat_rate", "heated_volume", "volume_conductivity", "capacity_position"})
+    if (field.id == other) return false;
+  return field.cleared && field.folded != Folded::never;
+}
+
+bool has_temperature(const Choice& choice) {
+  return number_of(choice.particle_fields, "temperature") >= 0;
+}
+bool melts(const Choice& choice) {
+  return number_of(choice.particle_fields, "melted_fraction") >= 0;
+}
+
+/// Where the transfer's state for the temperature stands in its State: of a matrix the first row, else one scalar.
+void write_temperature_state(std::ostream& out, const Choice& choice) {
+  out << "  template <class Visit>\n  MPM_HD static void for_each_temperature_state([[maybe_unused]] Visit visit) {\n";
+  int scalar = 0;
+  for (const mpm_state& declared : choice.transfer->state()) {
+    const int number = number_of(choice.particle_fields, temperature_state + std::string(declared.name));
+    const Field& field = choice.particle_fields.at(static_cast<std::size_t>(number));
+    out << "    visit(TemperatureState<" << number << ", " << field.components << ", " << scalar << ">{});  // "
+        << declared.name << "\n";
+    scalar += state_components(kept_shape(declared, choice.axisymmetric), choice.dimension);
+  }
+  out << "  }\n";
 }
 
 /// The scene's fields by number and by place in a scatter, and the list of those of nodes.
@@ -189,6 +214,7 @@ std::string scene_text(const Choice& choice) {
       << ", basis_functions = " << basis_functions(choice.dimension, choice.basis_order)
       << ";  // polynomials beyond affine\n";
   write_fields(out, choice);
+  if (has_temperature(choice)) write_temperature_state(out, choice);
   out << "};\n";
   for (std::size_t k = 0; k < choice.materials.size(); ++k)
     out << "struct Scene" << k << " : Scene {\n  using Material = " << type(choice.materials[k]) << ";\n};\n";
@@ -197,7 +223,12 @@ std::string scene_text(const Choice& choice) {
   if (choice.contact) out << "MPM_DEVICE_CONTACT_ENTRIES\n";
   if (choice.filter) out << "MPM_DEVICE_FILTER_ENTRIES\n";
   if (has_filter_loop(choice)) out << "MPM_DEVICE_FILTER_LOOP_ENTRIES\n";
-  for (std::size_t k = 0; k < choice.materials.size(); ++k) out << "MPM_DEVICE_MATERIAL_ENTRIES(" << k << ")\n";
+  if (has_temperature(choice)) out << "MPM_DEVICE_HEAT_ENTRIES\n";
+  if (has_temperature(choice) && keeps_ledger(choice)) out << "MPM_DEVICE_HEAT_LEDGER_ENTRIES\n";
+  for (std::size_t k = 0; k < choice.materials.size(); ++k) {
+    out << "MPM_DEVICE_MATERIAL_ENTRIES(" << k << ")\n";
+    if (melts(choice)) out << "MPM_DEVICE_MELTING_ENTRIES(" << k << ")\n";
+  }
   out << "}  // namespace mpm::device\n";
   return out.str();
 }
@@ -218,7 +249,10 @@ std::vector<std::string> entry_names(const Choice& choice) {
     if (macro == "MPM_DEVICE_CONTACT_ENTRIES" && !choice.contact) continue;
     if (macro == "MPM_DEVICE_FILTER_ENTRIES" && !choice.filter) continue;
     if (macro == "MPM_DEVICE_FILTER_LOOP_ENTRIES" && !has_filter_loop(choice)) continue;
-    if (macro != "MPM_DEVICE_MATERIAL_ENTRIES")
+    if (macro == "MPM_DEVICE_HEAT_ENTRIES" && !has_temperature(choice)) continue;
+    if (macro == "MPM_DEVICE_HEAT_LEDGER_ENTRIES" && !(has_temperature(choice) && keeps_ledger(choice))) continue;
+    if (macro == "MPM_DEVICE_MELTING_ENTRIES" && !melts(choice)) continue;
+    if (macro != "MPM_DEVICE_MATERIAL_ENTRIES" && macro != "MPM_DEVICE_MELTING_ENTRIES")
       names.push_back(name);
     else
       for (std::size_t k = 0; k < choice.materials.size(); ++k)

@@ -10,6 +10,57 @@
 
 namespace mpm::device {
 
+/// Nodes between two corners, both included.
+struct NodeRange {
+  int lower[3], upper[3];
+
+  std::size_t count() const {
+    std::size_t n = 1;
+    for (int c = 0; c < 3; ++c) n *= static_cast<std::size_t>(upper[c] - lower[c] + 1);
+    return n;
+  }
+  /// x first.
+  std::vector<Vector3> positions(const Experiment& experiment) const {
+    std::vector<Vector3> all;
+    for (int k = lower[2]; k <= upper[2]; ++k)
+      for (int j = lower[1]; j <= upper[1]; ++j)
+        for (int i = lower[0]; i <= upper[0]; ++i) {
+          const int node[3] = {i, j, k};
+          Vector3 x{};
+          for (int c = 0; c < experiment.dimension; ++c) x[c] = coordinate(experiment, c, node[c]);
+          all.push_back(x);
+        }
+    return all;
+  }
+  static double coordinate(const Experiment& experiment, int axis, int node) {
+    return experiment.grid.lower[axis] + experiment.grid.cell_size * node;
+  }
+};
+
+/// All nodes in the plane of a wall, ghosts too: as the lines of the axis are numbered.
+template <class T>
+NodeRange nodes_of_wall(const Arguments<T>& scene, int axis, int side) {
+  NodeRange range{};
+  for (int c = 0; c < 3; ++c) range.lower[c] = -scene.padding[c], range.upper[c] = scene.cells[c] + scene.padding[c];
+  range.lower[axis] = range.upper[axis] = side == 0 ? 0 : scene.cells[axis];
+  return range;
+}
+
+/// The nodes under a condition, if there are any.
+template <class T>
+std::optional<NodeRange> nodes_of_box(const Experiment& experiment, const Arguments<T>& scene,
+                                      const BoxCondition& condition) {
+  NodeRange range{};
+  const double tolerance = 1e-9 * experiment.grid.cell_size;
+  for (int c = 0; c < experiment.dimension; ++c) {
+    int &first = range.lower[c] = -scene.padding[c], &last = range.upper[c] = scene.cells[c] + scene.padding[c];
+    while (first <= last && NodeRange::coordinate(experiment, c, first) < condition.lower[c] - tolerance) ++first;
+    while (first <= last && NodeRange::coordinate(experiment, c, last) > condition.upper[c] + tolerance) --last;
+    if (first > last) return {};
+  }
+  return range;
+}
+
 template <class T>
 class Conditions {
  public:
@@ -19,19 +70,21 @@ class Conditions {
       for (int side = 0; side < 2; ++side) {
         const FaceCondition& face = experiment.faces[axis][side];
         if (!face.velocity) continue;
-        Box<T> wall{};
-        for (int c = 0; c < 3; ++c)
-          wall.lower[c] = -scene.padding[c], wall.upper[c] = scene.cells[c] + scene.padding[c];
-        wall.lower[axis] = wall.upper[axis] = side == 0 ? 0 : scene.cells[axis];
-        moving_.push_back({&*face.velocity, wall, {}});
+        moving_.push_back({&*face.velocity, nodes_of_wall(scene, axis, side), {}});
         walls_.push_back({axis, side, moving_.size() - 1});
       }
     for (const BoxCondition& condition : experiment.boxes) {
-      const std::optional<Box<T>> box = nodes_in(condition, scene);
-      if (!box) continue;
-      boxes_.push_back(*box);
+      const std::optional<NodeRange> nodes = nodes_of_box(experiment, scene, condition);
+      if (!nodes) continue;
+      Box<T> box{};
+      box.type = static_cast<int>(condition.type), box.axis = condition.axis, box.side = condition.side;
+      for (int c = 0; c < 3; ++c) {
+        box.lower[c] = nodes->lower[c], box.upper[c] = nodes->upper[c];
+        box.given |= condition.held[c] << c;
+      }
+      boxes_.push_back(box);
       moving_of_box_.push_back(condition.velocity ? moving_.size() : none);
-      if (condition.velocity) moving_.push_back({&*condition.velocity, *box, {}});
+      if (condition.velocity) moving_.push_back({&*condition.velocity, *nodes, {}});
     }
   }
 
@@ -49,7 +102,7 @@ class Conditions {
   /// Nodes, x first, with the velocities that a formula gives them.
   struct Moving {
     const VectorExpression* formula;
-    Box<T> nodes;
+    NodeRange nodes;
     std::vector<T> velocity;
   };
   struct MovingWall {
@@ -58,35 +111,11 @@ class Conditions {
   };
   static constexpr std::size_t none = ~std::size_t{0};
 
-  double coordinate(int axis, int node) const {
-    return experiment_.grid.lower[axis] + experiment_.grid.cell_size * node;
-  }
-
-  std::optional<Box<T>> nodes_in(const BoxCondition& condition, const Arguments<T>& scene) const {
-    Box<T> box{};
-    box.type = static_cast<int>(condition.type), box.axis = condition.axis, box.side = condition.side;
-    const double tolerance = 1e-9 * experiment_.grid.cell_size;
-    for (int c = 0; c < 3; ++c) box.given |= condition.held[c] << c;
-    for (int c = 0; c < experiment_.dimension; ++c) {
-      int &first = box.lower[c] = -scene.padding[c], &last = box.upper[c] = scene.cells[c] + scene.padding[c];
-      while (first <= last && coordinate(c, first) < condition.lower[c] - tolerance) ++first;
-      while (first <= last && coordinate(c, last) > condition.upper[c] + tolerance) --last;
-      if (first > last) return {};
-    }
-    return box;
-  }
-
   void evaluate(Moving& moving, double time) {
     if (!moving.velocity.empty() && (!moving.formula->uses_time() || time == time_)) return;
     const int D = experiment_.dimension;
-    const Box<T>& box = moving.nodes;
     std::vector<Vector3> values;
-    for (int k = box.lower[2]; k <= box.upper[2]; ++k)
-      for (int j = box.lower[1]; j <= box.upper[1]; ++j)
-        for (int i = box.lower[0]; i <= box.upper[0]; ++i) {
-          const Vector3 x{coordinate(0, i), coordinate(1, j), D == 3 ? coordinate(2, k) : 0.0};
-          values.push_back((*moving.formula)(x, x, time));
-        }
+    for (const Vector3& x : moving.nodes.positions(experiment_)) values.push_back((*moving.formula)(x, x, time));
     moving.velocity.resize(values.size() * static_cast<std::size_t>(D));
     for (int c = 0; c < D; ++c)
       for (std::size_t n = 0; n < values.size(); ++n)

@@ -24,6 +24,7 @@ std::vector<Field> node_fields(const Experiment&, const Plan& plan) {
   // A projection is folded as the masses were, which are no longer there.
   if (plan.node_field("projection"))
     fields.push_back(working_field("folded_mass", "kg", 1)), fields.back().owner = Owner::node;
+  if (plan.heat_ledger) fields.push_back(working_field("folded_capacity", "J/K", 1)), fields.back().owner = Owner::node;
   return fields;
 }
 
@@ -32,7 +33,8 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   std::vector<Field> fields, material;
   for (const Field& field : plan.fields) {
     if (!field.of_particles_of(body) || field.lifetime == Lifetime::seeded) continue;
-    if (field.origin == Origin::host && field.id == "identity") continue;  // particles keep the order of seeding
+    if (field.origin == Origin::host && field.id == "identity") continue;         // particles keep the order of seeding
+    if (field.origin == Origin::host && field.id == "melted_fraction") continue;  // below
     (field.origin == Origin::material ? material : fields).push_back(field);
   }
   const auto work = [&](const char* id, const char* unit, int components) {
@@ -47,6 +49,12 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   if (plan.ledger) work("dissipated", "J/m^3", 1);
   if (experiment.body_force) work("body_acceleration", "m/s^2", D);
   if (plan.second_moment) work("second_moment", "cells^2", D * D);
+  // Bodies that cannot melt are solid all along, so that all bodies have the same numbers.
+  if (const Field* const melted = plan.particle_field(body, "melted_fraction"))
+    fields.push_back(*melted);
+  else if (std::any_of(plan.fields.begin(), plan.fields.end(),
+                       [](const Field& f) { return f.id == "melted_fraction"; }))
+    work("melted_fraction", "", 1);
   fields.insert(fields.end(), material.begin(), material.end());
   return fields;
 }

@@ -11,6 +11,7 @@
 
 #include "backends/device/conditions.hpp"
 #include "backends/device/field_arrays.hpp"
+#include "backends/device/heat_conditions.hpp"
 #include "backends/device/kernels/sums.hpp"  // largest_team
 #include "simulation/boundary.hpp"
 #include "simulation/contact_pair.hpp"
@@ -22,6 +23,8 @@ namespace {
 template <class T>
 struct Body {
   const Component* material;
+  const Thermal* thermal = nullptr;  ///< of scenes with temperature
+  HeatOfBody<T> heat{};
   int field = 0, material_number = 0, count = 0, dimension = 2;
   bool frozen = false;
   T mass = 0, volume = 0, half_size = 0;
@@ -34,6 +37,10 @@ struct Body {
     const BodySpecification& body = experiment.bodies[index];
     frozen = body.frozen;
     material = &experiment.materials[body.material].component;
+    if (const auto& given = experiment.materials[body.material].thermal) {
+      thermal = &*given;
+      heat = heat_of(*thermal, material->parameter("density"));
+    }
     field = body.field, material_number = body.material, count = static_cast<int>(seeded.count());
     mass = static_cast<T>(seeded.mass), volume = static_cast<T>(seeded.volume);
     const double half = 0.5 / body.particles_per_cell_axis;
@@ -61,6 +68,21 @@ struct Body {
   }
   int number(std::string_view id) const { return number_of(arrays.fields(), id); }
 
+  static HeatOfBody<T> heat_of(const Thermal& thermal, double density) {
+    const PhaseChange unchanged{0, 0, thermal.solid, {}, {}};
+    const PhaseChange& change = thermal.phase_change ? *thermal.phase_change : unchanged;
+    return {{static_cast<T>(thermal.solid.conductivity), static_cast<T>(change.melted.conductivity)},
+            {static_cast<T>(thermal.solid.heat_capacity), static_cast<T>(change.melted.heat_capacity)},
+            static_cast<T>(change.temperature),
+            static_cast<T>(change.latent_heat),
+            static_cast<T>(thermal.dissipation_to_heat / density)};
+  }
+  bool melts() const { return thermal && thermal->phase_change; }
+  /// Of the material's melted particles, and of bodies that cannot melt those of all particles.
+  const double* melted_parameters() const {
+    return melts() ? thermal->phase_change->melted_parameters.data() : material->parameters.data();
+  }
+
   /// Of a vector's array.
   double component(const T* array, int p, int c) const { return array[static_cast<std::size_t>(c) * count + p]; }
   Vector3 vector(const T* array, int p) const {
@@ -70,7 +92,7 @@ struct Body {
   }
 
   ParticleArrays<T> table() {
-    ParticleArrays<T> table{count, count, mass, volume, half_size, frozen ? 1 : 0, {}};
+    ParticleArrays<T> table{count, count, mass, volume, half_size, frozen ? 1 : 0, {}, heat};
     arrays.point(table.field);
     return table;
   }
@@ -129,6 +151,7 @@ class HostRun final : public Backend {
     if (team.lanes < 1 || team.lanes > largest_team)
       throw std::invalid_argument("a team has 1 to " + std::to_string(largest_team) + " lanes");
     scene_.first_failed = &first_failed_;
+    if (experiment.has_temperature()) heat_conditions_.emplace(experiment, scene_);
     for (std::size_t body = 0; body < seeded.size(); ++body)
       bodies_.emplace_back(experiment, plan, static_cast<int>(body), seeded[body]);
     const std::size_t nodes = scene_.node_count, D = experiment.dimension;
@@ -174,6 +197,14 @@ class HostRun final : public Backend {
         return update_filter(pass, step);
       case Act::end_filter:
         return end_filter(pass, step);
+      case Act::divide_heat:
+        return heat_to_temperature();
+      case Act::conduct:
+        return conduct();
+      case Act::heat:
+        return warm(step);
+      case Act::change_phase:
+        return change_phase();
       case Act::restore_velocity:
         return for_each_field(pass.has(Act::keep_correction) ? "keep_correction" : "restore_velocity", vectors());
       case Act::add_correction:
@@ -185,6 +216,7 @@ class HostRun final : public Backend {
 
   TimeStepLimit time_step_limit() const override { return limit_; }
   const Ledger& ledger() const override { return ledger_; }
+  HeatLedger heat_ledger() const override { return heat_ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
   const FilterRecord& filter_record() const override { return filter_; }
   bool scattered() const override { return false; }
@@ -206,6 +238,7 @@ class HostRun final : public Backend {
         archive.put(field.id, body.arrays.of(number), body.arrays.size(number));
       });
     archive.put("ledger", ledger_);
+    if (plan_.heat_ledger) archive.put("heat ledger", heat_ledger_);
     archive.put("contact", contact_);
     archive.put("filter", filter_);
     archive.put("limit speeds", std::array{limit_.speed, limit_.wave_speed});
@@ -222,6 +255,7 @@ class HostRun final : public Backend {
         std::copy_n(body.arrays.of("domain"), body.arrays.size(body.number("domain")), strained);
     }
     archive.get("ledger", ledger_);
+    if (plan_.heat_ledger) archive.get("heat ledger", heat_ledger_);
     archive.get("contact", contact_);
     archive.get("filter", filter_);
     std::array<double, 2> speeds{};
@@ -337,6 +371,7 @@ class HostRun final : public Backend {
     a.particles = body.table();
     a.grid = fields_[body.field].table();
     a.material_parameters = body.material->parameters.data();
+    a.melted_parameters = body.melted_parameters();
     a.blocks = {body.block_cell.data(), body.block_begin.data(), body.order.data()};
     return a;
   }
@@ -377,6 +412,8 @@ class HostRun final : public Backend {
     a.dt *= static_cast<T>(pass.share);
     run_material("strain", a, body);
     if (accounted_) ledger_.material += sum_over_particles("energy_dissipated", body);
+    if (plan_.heat_ledger && body.heat.warming > 0)
+      heat_ledger_.dissipation += sum_over_particles("heat_of_dissipation", body);
   }
   static constexpr const char* outside_grid =
       "its stencil reaches beyond the grid or does not hold its domain, or its position is not a number";
@@ -401,15 +438,19 @@ class HostRun final : public Backend {
     const bool enters = pass.has(Act::scatter_momentum) && !pass.remap();  // the step begins
     const bool force = pass.has(Act::scatter_force);
     if (pass.remap()) for_each_field("clear", nodes(), {true});
+    const bool heat = pass.has(Act::scatter_heat);
     double energy = 0;
+    if (heat) scattered_heat_ = 0;
     for (Body<T>& body : bodies_) {
       if (enters) body.sort(scene_);
-      if (force || pass.has(Act::scatter_contact)) run_material("stress", body);
+      if (force || heat || pass.has(Act::scatter_contact)) run_material("stress", body);  // and the volume ratio
       if (force) evaluate_body_force(body, step.time);
       Arguments<T> a = arguments_of(body);
       a.momentum = pass.has(Act::scatter_momentum), a.force = force;
       a.contact_fields = pass.has(Act::scatter_contact), a.remap = pass.remap();
       run("scatter", a, body.blocks(), body, outside_grid);
+      if (heat) run("scatter_heat", a, body.blocks(), body, outside_grid);
+      if (heat && plan_.heat_ledger) scattered_heat_ += sum_over_particles("heat_of_particles", body);
       if (accounted_ && enters) energy += sum_over_particles("energy_of_particles", body);
     }
     if (!pass.has(Act::scatter_momentum)) return;
@@ -440,7 +481,11 @@ class HostRun final : public Backend {
   void momentum_to_velocity(const Pass& pass, const StepInfo& step) {
     const bool accounted = accounted_ && !pass.remap();
     conditions_.evaluate(step.time, scene_);
+    if (heat_conditions_) heat_conditions_->evaluate(step.time, scene_);
+    const bool records_heat = plan_.heat_ledger && !pass.remap() && heat_conditions_->walls_act();
+    const double heat = records_heat ? sum_over_nodes("heat_of_nodes") : 0.0;
     for_each_axis("fold_masses", walls_, {pass.remap()});
+    if (!pass.remap()) heat_of_images_ = records_heat ? sum_over_nodes("heat_of_nodes") - heat : 0.0;
     if (!pass.remap()) for_each_axis("fold_forces", folded_axes());
     for_each_field("divide", vectors());
     keep_free_velocity({});
@@ -483,16 +528,20 @@ class HostRun final : public Backend {
   }
 
   void gather(const Pass& pass, const StepInfo& step) {
-    double energy = 0;
+    double energy = 0, heat = 0;
     for (Body<T>& body : bodies_) {
       Arguments<T> a = arguments_of(body);
       a.update_particles = true, a.filtered = step.filtered;
       run("gather", a, teams(body.count), body, outside_grid);
+      if (pass.has(Act::gather_heat)) run("gather_heat", a, teams(body.count), body, outside_grid);
+      if (pass.has(Act::gather_heat) && plan_.heat_ledger) heat += sum_over_particles("heat_of_particles", body);
       if (accounted_) energy += sum_over_particles("energy_of_particles", body);  // while weights are those of the step
       if (pass.has(Act::strain)) run_strain(pass, body);
     }
     if (accounted_) ledger_.gather += energy - energy_after_;
+    if (pass.has(Act::gather_heat) && plan_.heat_ledger) heat_ledger_.gather += heat - heat_after_;
     if (pass.has(Act::move)) move();
+    if (pass.has(Act::change_phase)) change_phase();
   }
 
   void strain(const Pass& pass) {
@@ -508,6 +557,99 @@ class HostRun final : public Backend {
   }
   void move() {
     for (Body<T>& body : bodies_) run("move", arguments_of(body), teams(body.count), body, move_failure());
+  }
+
+  // ---- heat --------------------------------------------------------------------------------------------------------
+
+  /// Heat that a pair of rows of the ledger takes, J.
+  using HeatOfTwo = std::array<double, 2>;
+
+  /// Temperatures before the step's heat, ghosts too.
+  void heat_to_temperature() {
+    for_each_field("divide_heat", nodes());
+    if (plan_.heat_ledger)
+      heat_ledger_.scatter += sum_over_nodes("heat_of_temperatures") - heat_of_images_ - scattered_heat_;
+    const HeatOfTwo held = impose_temperature();
+    beyond_ = fill_temperature();
+    if (plan_.heat_ledger) heat_ledger_.images += heat_of_images_ + held[0] + held[1] + beyond_[0] + beyond_[1];
+    for_each_field("keep_temperature", nodes());
+  }
+
+  /// What walls and boxes hold, as evaluated last, and what heat each gives by it.
+  HeatOfTwo impose_temperature() {
+    HeatOfTwo given{};
+    for (VelocityField<T>& field : fields_) {
+      const HeatOfTwo of_field = sum<2>("impose_temperature", arguments_of(field, {}), nodes());
+      given[0] += of_field[0], given[1] += of_field[1];
+    }
+    return given;
+  }
+
+  /// Ghosts; how much more heat lies there than at their mirrors, at walls that are held at a temperature and at others.
+  HeatOfTwo fill_temperature() {
+    HeatOfTwo beyond{};
+    for (const int axis : filled_axes())
+      for (VelocityField<T>& field : fields_) {
+        const HeatOfTwo of_field = sum_over_lines("fill_temperature", field, axis);
+        beyond[0] += of_field[0], beyond[1] += of_field[1];
+      }
+    return beyond;
+  }
+  HeatOfTwo sum_over_lines(const char* phase, VelocityField<T>& field, int axis) {
+    Arguments<T> a = arguments_of(field, {});
+    a.axis = axis;
+    return sum<2>(phase, a, nodes() / scene_.extent[axis]);
+  }
+
+  void conduct() {
+    for (Body<T>& body : bodies_) run("conduct", arguments_of(body), body.blocks(), body, outside_grid);
+  }
+
+  /// Temperatures after the step's heat.
+  void warm(const StepInfo& step) {
+    const bool records_folds = plan_.heat_ledger && heat_conditions_->walls_act();
+    const double rate = records_folds ? sum_over_nodes("heat_rate_of_nodes") : 0.0;
+    for_each_axis("fold_forces", folded_axes());
+    if (records_folds) heat_ledger_.walls += step.dt * (sum_over_nodes("heat_rate_of_nodes") - rate);
+    for (const int axis : heat_conditions_->exchanging_axes())
+      for (VelocityField<T>& field : fields_) {
+        const HeatOfTwo rates = sum_over_lines("exchange_at_walls", field, axis);
+        if (plan_.heat_ledger) heat_ledger_.flux += step.dt * rates[0], heat_ledger_.convection += step.dt * rates[1];
+      }
+    for (const int box : heat_conditions_->warmed_boxes()) warm_box(box, step.dt);
+    for_each_field("warm", nodes());
+    heat_conditions_->evaluate(step.time + step.dt, scene_);
+    const HeatOfTwo held = impose_temperature(), beyond = fill_temperature();
+    if (!plan_.heat_ledger) return;
+    heat_ledger_.walls += held[0] + beyond[0] - beyond_[0];
+    heat_ledger_.boxes += held[1];
+    heat_ledger_.images += beyond[1] - beyond_[1];
+    heat_after_ = sum_over_nodes("heat_of_temperatures") + beyond[0] + beyond[1];
+  }
+
+  void warm_box(int box, double dt) {
+    double mass = 0;
+    const auto over_fields = [&](const char* phase) {
+      double total = 0;
+      for (VelocityField<T>& field : fields_) {
+        Arguments<T> a = arguments_of(field, {});
+        a.heat_box = box, a.mass_of_box = static_cast<T>(mass);
+        total += sum(phase, a, nodes())[0];
+      }
+      return total;
+    };
+    mass = over_fields("mass_of_box");
+    if (!(mass > 0)) return;
+    const double power = over_fields("warm_box");
+    if (plan_.heat_ledger) heat_ledger_.boxes += dt * power;
+  }
+
+  void change_phase() {
+    for (Body<T>& body : bodies_) {
+      if (!body.melts()) continue;
+      run_material("change_phase", body);
+      if (accounted_) ledger_.material += sum_over_particles("energy_dissipated", body);
+    }
   }
 
   // ---- contact -----------------------------------------------------------------------------------------------------
@@ -670,6 +812,7 @@ class HostRun final : public Backend {
   TeamShape team_;
   Arguments<T> scene_;
   Conditions<T> conditions_;
+  std::optional<HeatConditions<T>> heat_conditions_;  ///< of scenes with temperature
   std::vector<Body<T>> bodies_;
   std::vector<VelocityField<T>> fields_;
   std::vector<int> images_, walls_;  ///< axes
@@ -679,12 +822,17 @@ class HostRun final : public Backend {
   int first_failed_ = INT_MAX;
   TimeStepLimit limit_;
   Ledger ledger_;
+  HeatLedger heat_ledger_;
   bool accounted_ = false;  ///< the ledger takes its entries from the step under way
   ContactRecord contact_;
   FilterRecord filter_;
   double scattered_energy_ = 0;   ///< kinetic energy of the grid as scattered, images summed, J
   double energy_after_ = 0;       ///< of the grid when particles gather from it
   double energy_unfiltered_ = 0;  ///< of the grid when the filter began
+  double scattered_heat_ = 0;     ///< of the particles that the step's scatter began with, J
+  double heat_of_images_ = 0;     ///< that folding has given the grid at walls that do something with heat, J
+  HeatOfTwo beyond_{};            ///< see fill_temperature, before the step's heat
+  double heat_after_ = 0;         ///< of the grid when particles gather from it, J
 };
 
 }  // namespace

@@ -18,6 +18,15 @@ struct NodeArrays {
   int* held;              ///< bit c: a condition gives component c after the forces; null without a ledger
 };
 
+/// How a body's particles conduct and store heat: [0] as solids, [1] melted, the same where nothing melts.
+template <class T>
+struct HeatOfBody {
+  T conductivity[2];                   ///< W/(m K)
+  T heat_capacity[2];                  ///< J/(kg K)
+  T melting_temperature, latent_heat;  ///< K, J/kg
+  T warming;                           ///< share of the dissipated energy that warms, over the density, m^3/kg
+};
+
 /// The particles of one body and material.
 template <class T>
 struct ParticleArrays {
@@ -26,6 +35,7 @@ struct ParticleArrays {
   T half_size;            ///< cells, of its undeformed box
   int frozen;             ///< 1: particles and domains stay as they are
   T* field[most_fields];  ///< numbered as Scene::Particle; the fields of one plugin's state lie one behind another
+  HeatOfBody<T> heat;     ///< of scenes with temperature
 };
 
 /// Pairs of fields, one a node: geometry in, impulse out.
@@ -51,6 +61,21 @@ struct Box {
   const T* velocity;       ///< [D][node of the box, x first], m/s; null at rest
 };
 
+/// Heat that comes through a wall: a flux, W/m^2, or with a coefficient what lies beyond the wall gives, K.
+template <class T>
+struct WallHeat {
+  const T* value;  ///< [line of the axis]; null where none comes
+  T coefficient;   ///< of convection, W/(m^2 K), else 0
+};
+
+/// Nodes that are warmed or held at a temperature: all between two corners.
+template <class T>
+struct HeatBox {
+  int lower[3], upper[3];  ///< coordinates of nodes, both included
+  const T* temperature;    ///< [node of the box, x first], K; null where none is held
+  const T* power;          ///< [node of the box], W, that its nodes share by their mass; null where none comes
+};
+
 /// A scatter's work: the particles of block k are order[block_begin[k] .. block_begin[k + 1]).
 struct BlockArrays {
   const int* cell;   ///< [block][3], first cell
@@ -68,6 +93,14 @@ struct Arguments {
   const Box<T>* boxes;
   int box_count;
   const double *shape_parameters, *transfer_parameters, *filter_parameters, *contact_parameters, *material_parameters;
+  const double* melted_parameters;  ///< the material's for its melted particles
+  const T* wall_temperature[3][2];  ///< [line of the axis], K, as evaluated last; null where none is held
+  WallHeat<T> wall_heat[3][2];      ///< as evaluated last
+  const T* wall_shares;             ///< of heat through a wall: of its node, of the next one inward ...
+  int wall_share_count;
+  T wall_beyond;  ///< m, how far the nodes beyond the wall make the temperature there differ (WallWeights)
+  const HeatBox<T>* heat_boxes;
+  int heat_box_count;
   // What this phase works on.
   ParticleArrays<T> particles;
   NodeArrays<T> grid, other;
@@ -79,6 +112,8 @@ struct Arguments {
   T dt;
   int axis;                             ///< of folds and ghosts
   int iteration;                        ///< of the filter, from 1
+  int heat_box;                         ///< number of the box that is warmed
+  T mass_of_box;                        ///< kg, of its nodes in all velocity fields
   bool momentum, force, contact_fields; /**< scatter: as in Pass */
   bool remap;                           ///< clear, fold: of MUSL
   bool after_forces;                    ///< v+ is made, not v-; conditions mark what they hold

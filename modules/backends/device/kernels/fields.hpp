@@ -18,6 +18,9 @@ struct NoNodeFields {
   static constexpr int increment = -1, projection = -1, trial_velocity = -1, folded_mass = -1;
   static constexpr int unfiltered_velocity = -1;
   static constexpr int velocity_of_constraints = -1, unfiltered_velocity_of_constraints = -1;
+  static constexpr int heat = -1, heat_capacity = -1, heat_rate = -1, folded_capacity = -1;
+  static constexpr int heated_volume = -1, volume_conductivity = -1, capacity_position = -1;
+  static constexpr int temperature = -1, temperature_before = -1;
 };
 
 /// The same of particles. A plugin's state goes by the number of its first field.
@@ -31,6 +34,14 @@ struct NoParticleFields {
   static constexpr int dissipated = -1;         ///< by the last strain
   static constexpr int body_acceleration = -1;  ///< body force over mass, as the host evaluated it
   static constexpr int second_moment = -1;      ///< what `second_moments` makes
+  static constexpr int temperature = -1, melted_fraction = -1;
+};
+
+/// A field of particles that is a transfer's state for the temperature: its values stand in the State of a velocity
+/// from `scalar` on. The rest of that State is zero.
+template <int Number, int Components, int Scalar>
+struct TemperatureState {
+  static constexpr int number = Number, components = Components, scalar = Scalar;
 };
 
 /// One field of nodes, its properties as constants: at walls a Rule. `place` is that of its first component among the values that a

@@ -74,7 +74,7 @@ template <class Scene>
 MPM_HD void fold_projection(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
   using F = NodeField<N::projection, Scene::dimension, rule_momentum, never_folded, false, -1>;
-  for_each_fold<Scene::dimension>(team, a, true, false, [&](const Fold& fold) {
+  for_each_fold(team, a, true, false, [&](const Fold& fold) {
     if (a.grid.folded[fold.ghost] >> fold.axis & 1) fold_field<F>(a, fold, a.grid.field[N::folded_mass][fold.ghost]);
   });
 }
@@ -157,7 +157,7 @@ MPM_HD void measure_constraints(const Team& team, const Arguments<typename Scene
 template <class Scene>
 MPM_HD void fill_increments(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
-  for_each_fold<Scene::dimension>(team, a, false, false, [&](const Fold& fold) {
+  for_each_fold(team, a, false, false, [&](const Fold& fold) {
     if (!(a.grid.folded[fold.ghost] >> fold.axis & 1)) return;
     for (int c = 0; c < Scene::dimension; ++c) {
       T* const increment = a.grid.field[Scene::Node::increment] + c * a.node_count;

@@ -1,10 +1,8 @@
 #pragma once
 // The grid between scatter and gather: walls and periodic images by the mirror fold of simulation/boundary.hpp, momenta
-// to velocities, forces, conditions. A fold runs along the lines of one axis, a lane a line: nothing is written by two
-// lanes. The formulas are those of operators/.
+// to velocities, forces, conditions. The formulas are those of operators/.
 
-#include "backends/device/kernels/arrays.hpp"
-#include "operators/edges.hpp"
+#include "backends/device/kernels/folds.hpp"
 #include "operators/motion.hpp"
 
 namespace mpm::device {
@@ -47,50 +45,20 @@ MPM_HD T total_force(const Arguments<T>& a, int at) {
 
 // ---- folds -------------------------------------------------------------------------------------------------------
 
-/// A ghost beyond the wall (or image) at one end of a line, and the node that it is folded onto.
-struct Fold {
-  int ghost, mirror, axis, side;
-  int wall, line;
-};
-
-/// Velocity of the wall at the foot of a fold's ghost.
-template <class T>
-MPM_HD T velocity_of_wall(const Arguments<T>& a, const Fold& fold, int component) {
-  const T* const velocity = a.walls_at_rest ? nullptr : a.wall_velocity[fold.axis][fold.side];
-  return velocity ? velocity[component * (a.node_count / a.extent[fold.axis]) + fold.line] : T(0);
-}
-
-/// Calls body(fold) for every node of the lines along a.axis that lies beyond an end and has a mirror or image: the
-/// outermost first when folding, since in a domain of few cells its mirror is a ghost too; last when filling. With
-/// `on_walls` also for those on a wall, which are their own mirrors.
-template <int D, class T, class Body>
-MPM_HD void for_each_fold(const Team& team, const Arguments<T>& a, bool outermost_first, bool on_walls, Body body) {
-  const int axis = a.axis, extent = a.extent[axis], padding = a.padding[axis], cells = a.cells[axis];
-  int stride = 1;
-  for (int c = 0; c < axis; ++c) stride *= a.extent[c];
-  for_each_index(team, a.node_count / extent, [&](int line) {
-    const int origin = line / stride * stride * extent + line % stride + padding * stride;  // node 0 of the line
-    for (int k = 0; k < 2 * (padding + 1); ++k) {
-      const int at = outermost_first ? k : 2 * padding + 1 - k;
-      const int beyond = padding - at / 2, side = at % 2, wall = a.walls[axis][side];
-      const int i = side == 0 ? -beyond : cells + beyond;
-      const int mirror = has_images(wall) ? image_of(i, cells, wall == wall_periodic) : i;
-      if (mirror != i || (on_walls && beyond == 0 && folds(wall)))
-        body(Fold{origin + i * stride, origin + mirror * stride, axis, side, wall, line});
-    }
-  });
-}
-
-/// Adds a ghost's values of one field to its mirror's by the field's rule, and clears them. `mass` is the ghost's.
-template <class F, class T>
-MPM_HD void fold_field(const Arguments<T>& a, const Fold& fold, T mass) {
+/// Adds a ghost's values of one field to its mirror's by the field's rule, and clears them unless they stay. `mass` and
+/// `heat_capacity` are the ghost's.
+template <class F, bool stays = false, class T>
+MPM_HD void fold_field(const Arguments<T>& a, const Fold& fold, T mass, T heat_capacity = T(0)) {
+  constexpr bool of_heat = F::at_wall == rule_heat || F::at_wall == rule_heat_rate;
   for (int c = 0; c < F::components; ++c) {
     T* const values = a.grid.field[F::number] + c * a.node_count;
     T of_wall = T(0);
     if constexpr (F::at_wall == rule_momentum) of_wall = mass * velocity_of_wall(a, fold, c);
-    const T sign = T(mirror_sign(F::at_wall, fold.wall, false, fold.axis, c));
+    if constexpr (F::at_wall == rule_heat) of_wall = heat_capacity * temperature_of_wall(a, fold);
+    const bool held = of_heat && holds_temperature(a, fold);
+    const T sign = T(mirror_sign(F::at_wall, fold.wall, held, fold.axis, c));
     values[fold.mirror] += mirrored(values[fold.ghost], sign, of_wall);
-    values[fold.ghost] = T(0);
+    if (!stays) values[fold.ghost] = T(0);
   }
 }
 
@@ -100,8 +68,7 @@ template <class Scene>
 MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
-  constexpr int D = Scene::dimension;
-  for_each_fold<D>(team, a, true, !a.remap, [&](const Fold& fold) {
+  for_each_fold(team, a, true, !a.remap, [&](const Fold& fold) {
     T* const masses = a.grid.field[N::mass];
     const T mass = masses[fold.ghost];
     if (!(mass > T(0))) return;
@@ -116,16 +83,26 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
     }
     if (fold.ghost != fold.mirror) a.grid.folded[fold.ghost] |= 1 << fold.axis;
     if constexpr (N::folded_mass >= 0) a.grid.field[N::folded_mass][fold.ghost] = mass;
+    T heat_capacity = T(0), heat = T(0);
+    if constexpr (N::heat_capacity >= 0) {
+      heat_capacity = a.grid.field[N::heat_capacity][fold.ghost];
+      if (!a.remap) heat = heat_of_image<Scene>(a, fold, heat_capacity);
+      if constexpr (N::folded_capacity >= 0)
+        if (!a.remap) a.grid.field[N::folded_capacity][fold.ghost] = heat_capacity;
+    }
     Scene::for_each_node_field([&](auto field) {
       using F = decltype(field);
       if constexpr (F::folded == folded_with_mass) {
         if (a.remap && F::number != N::mass && F::number != N::momentum) return;
+        // Folds along other axes look at what lies on this wall beyond theirs.
+        constexpr bool stays = F::number == N::heated_volume || F::number == N::volume_conductivity;
         if (fold.ghost != fold.mirror)
-          fold_field<F>(a, fold, mass);
+          fold_field<F, stays>(a, fold, mass, heat_capacity);
         else if (F::at_wall == rule_slip)  // the image takes away what points across the wall
           a.grid.field[F::number][fold.axis * a.node_count + fold.ghost] = T(0);
       }
     });
+    if constexpr (N::heat >= 0) a.grid.field[N::heat][fold.mirror] += heat;
   });
 }
 
@@ -133,7 +110,7 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
 template <class Scene>
 MPM_HD void fold_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
-  for_each_fold<Scene::dimension>(team, a, true, false, [&](const Fold& fold) {
+  for_each_fold(team, a, true, false, [&](const Fold& fold) {
     if (!(a.grid.folded[fold.ghost] >> fold.axis & 1)) return;
     Scene::for_each_node_field([&](auto field) {
       using F = decltype(field);
@@ -147,7 +124,7 @@ template <class Scene>
 MPM_HD void fill_velocities(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
-  for_each_fold<Scene::dimension>(team, a, false, false, [&](const Fold& fold) {
+  for_each_fold(team, a, false, false, [&](const Fold& fold) {
     if (!(a.grid.folded[fold.ghost] >> fold.axis & 1)) return;
     for (int c = 0; c < Scene::dimension; ++c) {
       const T sign = T(mirror_sign(fold.wall, fold.axis, c));
@@ -198,9 +175,20 @@ MPM_HD void accelerate(const Team& team, const Arguments<typename Scene::Scalar>
   });
 }
 
-/// Index of a node among those of a box.
+/// Coordinates of a node by its index.
 template <int D, class T>
-MPM_HD int index_in_box(const Box<T>& box, const int* node) {
+MPM_HD void coordinates_of_node(const Arguments<T>& a, int index, int* node) {
+  for (int axis = 0; axis < D; index /= a.extent[axis], ++axis) node[axis] = index % a.extent[axis] - a.padding[axis];
+}
+template <int D, class AnyBox>
+MPM_HD bool is_inside(const AnyBox& box, const int* node) {
+  bool inside = true;
+  for (int c = 0; c < D; ++c) inside = inside && node[c] >= box.lower[c] && node[c] <= box.upper[c];
+  return inside;
+}
+/// Index of a node among those of a box.
+template <int D, class AnyBox>
+MPM_HD int index_in_box(const AnyBox& box, const int* node) {
   int index = 0;
   for (int c = D - 1; c >= 0; --c) index = index * (box.upper[c] - box.lower[c] + 1) + node[c] - box.lower[c];
   return index;
@@ -224,22 +212,15 @@ MPM_HD void impose_conditions(const Team& team, const Arguments<typename Scene::
     const Vec<D, T> now = load<D>(a.grid.field[N::velocity], a.node_count, node);
     Vec<D, T> velocity = now;
     int held = 0, at[D];
-    for (int axis = 0, rest = node; axis < D; rest /= a.extent[axis], ++axis)
-      at[axis] = rest % a.extent[axis] - a.padding[axis];
-    for (int axis = 0, stride = 1; axis < D; stride *= a.extent[axis], ++axis)
-      for (int side = 0; side < 2; ++side) {
-        if (at[axis] != (side == 0 ? 0 : a.cells[axis])) continue;
-        const Fold foot{
-            node, node, axis, side, a.walls[axis][side], node / (stride * a.extent[axis]) * stride + node % stride};
-        for (int c = 0; c < D; ++c)
-          if (wall_holds(foot.wall, axis, side, c, now[axis]))
-            velocity[c] = velocity_of_wall(a, foot, c), held |= 1 << c;
-      }
+    coordinates_of_node<D>(a, node, at);
+    for_each_wall_of_node<D>(a, node, at, [&](const Fold& foot) {
+      for (int c = 0; c < D; ++c)
+        if (wall_holds(foot.wall, foot.axis, foot.side, c, now[foot.axis]))
+          velocity[c] = velocity_of_wall(a, foot, c), held |= 1 << c;
+    });
     for (int k = 0; k < a.box_count; ++k) {
       const Box<T>& box = a.boxes[k];
-      bool inside = true;
-      for (int c = 0; c < D; ++c) inside = inside && at[c] >= box.lower[c] && at[c] <= box.upper[c];
-      if (!inside) continue;
+      if (!is_inside<D>(box, at)) continue;
       for (int c = 0; c < D; ++c)
         if (box_holds(box.type, box.axis, box.side, box.given, c, now[c])) {
           velocity[c] = box.velocity ? box.velocity[c * nodes_of_box<D>(box) + index_in_box<D>(box, at)] : T(0);

@@ -1,12 +1,15 @@
 #pragma once
 // All kernels, and their entries by name. The composer defines Scene, and Scene0, Scene1 ... with a material each,
 // in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_LEDGER_ENTRIES, MPM_DEVICE_CONTACT_ENTRIES,
-// MPM_DEVICE_FILTER_ENTRIES and MPM_DEVICE_FILTER_LOOP_ENTRIES where the scene has these, and MPM_DEVICE_MATERIAL_ENTRIES(n) for each material.
+// MPM_DEVICE_FILTER_ENTRIES, MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES and MPM_DEVICE_HEAT_LEDGER_ENTRIES
+// where the scene has these, and for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and, where any melts,
+// MPM_DEVICE_MELTING_ENTRIES(n).
 
 #include "backends/device/kernels/contact.hpp"
 #include "backends/device/kernels/filter.hpp"
 #include "backends/device/kernels/gather.hpp"
 #include "backends/device/kernels/grid.hpp"
+#include "backends/device/kernels/heat.hpp"
 #include "backends/device/kernels/ledger.hpp"
 #include "backends/device/kernels/material.hpp"
 #include "backends/device/kernels/scatter.hpp"
@@ -53,6 +56,28 @@
   MPM_DEVICE_ENTRY(mpm_update_filter, update_filter<Scene>, 1)                       \
   MPM_DEVICE_ENTRY(mpm_correct_increment, correct_increment<Scene>, 1)               \
   MPM_DEVICE_ENTRY(mpm_fill_increments, fill_increments<Scene>, 1)
+
+#define MPM_DEVICE_HEAT_ENTRIES                                                                             \
+  MPM_DEVICE_ENTRY(mpm_scatter_heat, scatter_heat<Scene>, mpm::device::scatter_heat_scalars<Scene>)         \
+  MPM_DEVICE_ENTRY(mpm_divide_heat, divide_heat<Scene>, 1)                                                  \
+  MPM_DEVICE_ENTRY(mpm_impose_temperature, impose_temperature<Scene>, (mpm::device::sum_scalars<Scene, 2>)) \
+  MPM_DEVICE_ENTRY(mpm_fill_temperature, fill_temperature<Scene>, (mpm::device::sum_scalars<Scene, 2>))     \
+  MPM_DEVICE_ENTRY(mpm_keep_temperature, keep_temperature<Scene>, 1)                                        \
+  MPM_DEVICE_ENTRY(mpm_conduct, conduct<Scene>, mpm::device::conduct_scalars<Scene>)                        \
+  MPM_DEVICE_ENTRY(mpm_exchange_at_walls, exchange_at_walls<Scene>, (mpm::device::sum_scalars<Scene, 2>))   \
+  MPM_DEVICE_ENTRY(mpm_mass_of_box, mass_of_box<Scene>, (mpm::device::sum_scalars<Scene, 1>))               \
+  MPM_DEVICE_ENTRY(mpm_warm_box, warm_box<Scene>, (mpm::device::sum_scalars<Scene, 1>))                     \
+  MPM_DEVICE_ENTRY(mpm_warm, warm<Scene>, 1)                                                                \
+  MPM_DEVICE_ENTRY(mpm_gather_heat, gather_heat<Scene>, 1)
+
+#define MPM_DEVICE_HEAT_LEDGER_ENTRIES                                                                          \
+  MPM_DEVICE_ENTRY(mpm_heat_of_nodes, heat_of_nodes<Scene>, (mpm::device::sum_scalars<Scene, 1>))               \
+  MPM_DEVICE_ENTRY(mpm_heat_rate_of_nodes, heat_rate_of_nodes<Scene>, (mpm::device::sum_scalars<Scene, 1>))     \
+  MPM_DEVICE_ENTRY(mpm_heat_of_temperatures, heat_of_temperatures<Scene>, (mpm::device::sum_scalars<Scene, 1>)) \
+  MPM_DEVICE_ENTRY(mpm_heat_of_particles, heat_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 1>))       \
+  MPM_DEVICE_ENTRY(mpm_heat_of_dissipation, heat_of_dissipation<Scene>, (mpm::device::sum_scalars<Scene, 1>))
+
+#define MPM_DEVICE_MELTING_ENTRIES(n) MPM_DEVICE_ENTRY(mpm_change_phase_##n, change_phase<Scene##n>, 1)
 
 #define MPM_DEVICE_MATERIAL_ENTRIES(n)                  \
   MPM_DEVICE_ENTRY(mpm_stress_##n, stress<Scene##n>, 1) \

@@ -3,6 +3,7 @@
 // is not a positive number is reported as failed.
 
 #include "backends/device/kernels/arrays.hpp"
+#include "operators/heat.hpp"
 
 namespace mpm::device {
 
@@ -28,20 +29,43 @@ MPM_HD auto velocity_gradient_of(const ParticleArrays<T>& particles, int p) {
     return L;
 }
 
+/// Whether a particle has the parameters of its material's melted phase.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD bool has_melted(const ParticleArrays<T>& particles, int p) {
+  if constexpr (Scene::Particle::melted_fraction >= 0)
+    return is_melted(particles.field[Scene::Particle::melted_fraction][p]);
+  else
+    return false;
+}
+
+/// c of a particle, J/(kg K).
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD T heat_capacity_of(const ParticleArrays<T>& particles, int p) {
+  return particles.heat.heat_capacity[has_melted<Scene>(particles, p) ? 1 : 0];
+}
+
 /// Calls body(constants, p, state) for every particle, then checks J.
 template <class Scene, class Body>
 MPM_HD void for_each_state(const Team& team, const Arguments<typename Scene::Scalar>& a, Body body) {
   using T = typename Scene::Scalar;
   using Material = typename Scene::Material;
   using State = typename MaterialState<Scene, Scene::axisymmetric>::type;
-  const typename Material::template Constants<T> constants(parameters_of<Material>(a.material_parameters));
-  for_each_index(team, a.particles.count, [&](int p) {
+  using Constants = typename Material::template Constants<T>;
+  const auto visit = [&](const Constants& constants, int p) {
     State state = load_state<State>(a.particles.field[Scene::Particle::material_state], a.particles.stride, p);
     body(constants, p, state);
     const T J = Material::volume_ratio(state);
     a.particles.field[Scene::Particle::volume_ratio][p] = J;
     if (!(J > T(0))) Team::lower(a.first_failed, p);
-  });
+  };
+  const Constants constants(parameters_of<Material>(a.material_parameters));
+  if constexpr (Scene::Particle::melted_fraction >= 0) {
+    const Constants melted(parameters_of<Material>(a.melted_parameters));
+    for_each_index(team, a.particles.count,
+                   [&](int p) { visit(has_melted<Scene>(a.particles, p) ? melted : constants, p); });
+  } else {
+    for_each_index(team, a.particles.count, [&](int p) { visit(constants, p); });
+  }
 }
 
 /// Kirchhoff stress and volume ratio at the current state.
@@ -57,7 +81,7 @@ MPM_HD void stress(const Team& team, const Arguments<typename Scene::Scalar>& a)
   });
 }
 
-/// Advances state and domain by dt with the gathered velocity gradient.
+/// Advances state and domain by dt with the gathered velocity gradient; what is dissipated warms the particle.
 template <class Scene>
 MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using Material = typename Scene::Material;
@@ -68,6 +92,9 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
     const auto L = velocity_gradient_of<Scene>(a.particles, p);
     [[maybe_unused]] const auto dissipated = Material::advance(constants, L, a.dt, state);
     if constexpr (P::dissipated >= 0) a.particles.field[P::dissipated][p] = dissipated;
+    if constexpr (P::temperature >= 0)
+      a.particles.field[P::temperature][p] +=
+          a.particles.heat.warming * dissipated / heat_capacity_of<Scene>(a.particles, p);
     store_state(a.particles.field[P::material_state], stride, p, state);
     if constexpr (P::domain >= 0) {
       auto* const domain = a.particles.field[P::strained_domain >= 0 ? P::strained_domain : P::domain];

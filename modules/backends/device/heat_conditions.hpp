@@ -1,0 +1,103 @@
+#pragma once
+// What walls and boxes do with heat, as tables of the kernels. Formulas are the host's: it evaluates them at their nodes.
+
+#include "backends/device/conditions.hpp"
+#include "simulation/boundary.hpp"
+#include "simulation/wall_heat.hpp"
+
+namespace mpm::device {
+
+template <class T>
+class HeatConditions {
+ public:
+  /// `scene` holds cells, extent, padding and the number of nodes.
+  HeatConditions(const Experiment& experiment, const Arguments<T>& scene) : experiment_(experiment) {
+    for (int axis = 0; axis < experiment.dimension; ++axis)
+      for (int side = 0; side < 2; ++side) {
+        const FaceCondition& face = experiment.faces[axis][side];
+        if (holds_temperature(face) || passes_heat(face))
+          walls_.push_back({axis, side, {&face.thermal, nodes_of_wall(scene, axis, side), {}}});
+      }
+    if (!exchanging_axes().empty()) {
+      const WallWeights weights = wall_weights(experiment);
+      shares_.assign(weights.shares.begin(), weights.shares.end());
+      beyond_ = static_cast<T>(experiment.grid.cell_size * weights.beyond);
+    }
+    for (const BoxCondition& condition : experiment.boxes) {
+      const std::optional<NodeRange> nodes = nodes_of_box(experiment, scene, condition);
+      if (!nodes || condition.thermal.exchange == HeatExchange::none) continue;
+      HeatBox<T> box{};
+      for (int c = 0; c < 3; ++c) box.lower[c] = nodes->lower[c], box.upper[c] = nodes->upper[c];
+      boxes_.push_back(box);
+      values_of_box_.push_back({&condition.thermal, *nodes, {}});
+    }
+  }
+
+  /// Temperatures, fluxes and powers at a time, s.
+  void evaluate(double time, Arguments<T>& scene) {
+    scene.wall_shares = shares_.data(), scene.wall_share_count = static_cast<int>(shares_.size());
+    scene.wall_beyond = beyond_;
+    for (Wall& wall : walls_) {
+      const T* const values = wall.at.evaluate(experiment_, time);
+      if (wall.at.holds())
+        scene.wall_temperature[wall.axis][wall.side] = values;
+      else
+        scene.wall_heat[wall.axis][wall.side] = {values, static_cast<T>(wall.at.condition->coefficient)};
+    }
+    for (std::size_t k = 0; k < boxes_.size(); ++k)
+      (values_of_box_[k].holds() ? boxes_[k].temperature : boxes_[k].power) =
+          values_of_box_[k].evaluate(experiment_, time);
+    scene.heat_boxes = boxes_.data(), scene.heat_box_count = static_cast<int>(boxes_.size());
+  }
+
+  /// Whether a wall's mirror images change the heat of the nodes.
+  bool walls_act() const { return !walls_.empty(); }
+
+  /// Numbers of the boxes that are warmed.
+  std::vector<int> warmed_boxes() const {
+    std::vector<int> numbers;
+    for (std::size_t k = 0; k < boxes_.size(); ++k)
+      if (!values_of_box_[k].holds()) numbers.push_back(static_cast<int>(k));
+    return numbers;
+  }
+  /// Axes with a wall through which heat comes.
+  std::vector<int> exchanging_axes() const {
+    std::vector<int> axes;
+    for (const Wall& wall : walls_)
+      if (!wall.at.holds() && (axes.empty() || axes.back() != wall.axis)) axes.push_back(wall.axis);
+    return axes;
+  }
+
+ private:
+  /// Nodes with the values that a formula gives them.
+  struct Values {
+    const ThermalCondition* condition;
+    NodeRange nodes;
+    std::vector<T> values;
+    double time = 0;
+
+    bool holds() const { return condition->exchange == HeatExchange::fixed_temperature; }
+    const T* evaluate(const Experiment& experiment, double now) {
+      if (!values.empty() && (now == time || !condition->value.uses_time())) return values.data();
+      time = now;
+      const std::vector<Vector3> positions = nodes.positions(experiment);
+      std::vector<double> found(positions.size());
+      condition->value.evaluate(positions, now, found.data());
+      values.assign(found.begin(), found.end());
+      return values.data();
+    }
+  };
+  struct Wall {
+    int axis, side;
+    Values at;
+  };
+
+  const Experiment& experiment_;
+  std::vector<T> shares_;
+  T beyond_ = 0;
+  std::vector<Wall> walls_;
+  std::vector<HeatBox<T>> boxes_;
+  std::vector<Values> values_of_box_;
+};
+
+}  // namespace mpm::device

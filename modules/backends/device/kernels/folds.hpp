@@ -1,0 +1,128 @@
+#pragma once
+// Ghosts and their mirrors along the lines of one axis, a lane a line: nothing is written by two lanes. What walls give
+// there: velocity, temperature, heat.
+
+#include "backends/device/kernels/arrays.hpp"
+#include "operators/edges.hpp"
+#include "operators/heat.hpp"
+
+namespace mpm::device {
+
+/// A ghost beyond the wall (or image) at one end of a line, and the node that it is folded onto.
+struct Fold {
+  int ghost, mirror, axis, side;
+  int wall, line;
+  int foot, inward;  ///< the line's node on the wall, and how much farther the index of the next one inward is
+  int beyond;        ///< cells from there to the ghost
+};
+
+/// Velocity of the wall at the foot of a fold's ghost.
+template <class T>
+MPM_HD T velocity_of_wall(const Arguments<T>& a, const Fold& fold, int component) {
+  const T* const velocity = a.walls_at_rest ? nullptr : a.wall_velocity[fold.axis][fold.side];
+  return velocity ? velocity[component * (a.node_count / a.extent[fold.axis]) + fold.line] : T(0);
+}
+
+/// Calls body(fold) for every node of a line along a.axis that lies beyond an end and has a mirror or image: the
+/// outermost first when folding, since in a domain of few cells its mirror is a ghost too; last when filling. With
+/// `on_walls` also for those on a wall, which are their own mirrors.
+template <class T, class Body>
+MPM_HD void for_each_fold_of_line(const Arguments<T>& a, int line, bool outermost_first, bool on_walls, Body body) {
+  const int axis = a.axis, extent = a.extent[axis], padding = a.padding[axis], cells = a.cells[axis];
+  int stride = 1;
+  for (int c = 0; c < axis; ++c) stride *= a.extent[c];
+  const int origin = line / stride * stride * extent + line % stride + padding * stride;  // node 0 of the line
+  for (int k = 0; k < 2 * (padding + 1); ++k) {
+    const int at = outermost_first ? k : 2 * padding + 1 - k;
+    const int beyond = padding - at / 2, side = at % 2, wall = a.walls[axis][side];
+    const int i = side == 0 ? -beyond : cells + beyond;
+    const int mirror = has_images(wall) ? image_of(i, cells, wall == wall_periodic) : i;
+    if (mirror != i || (on_walls && beyond == 0 && folds(wall)))
+      body(Fold{origin + i * stride, origin + mirror * stride, axis, side, wall, line,
+                origin + (side == 0 ? 0 : cells) * stride, side == 0 ? stride : -stride, beyond});
+  }
+}
+
+/// The same for all lines, a lane a line.
+template <class T, class Body>
+MPM_HD void for_each_fold(const Team& team, const Arguments<T>& a, bool outermost_first, bool on_walls, Body body) {
+  for_each_index(team, a.node_count / a.extent[a.axis],
+                 [&](int line) { for_each_fold_of_line(a, line, outermost_first, on_walls, body); });
+}
+
+/// Calls body(foot) for every wall that a node stands on: for what the wall gives there.
+template <int D, class T, class Body>
+MPM_HD void for_each_wall_of_node(const Arguments<T>& a, int index, const int* node, Body body) {
+  for (int axis = 0, stride = 1; axis < D; stride *= a.extent[axis], ++axis)
+    for (int side = 0; side < 2; ++side)
+      if (node[axis] == (side == 0 ? 0 : a.cells[axis]))
+        body(Fold{index, index, axis, side, a.walls[axis][side],
+                  index / (stride * a.extent[axis]) * stride + index % stride, index, side == 0 ? stride : -stride, 0});
+}
+
+// ---- heat at walls -----------------------------------------------------------------------------------------------
+
+template <class T>
+MPM_HD bool holds_temperature(const Arguments<T>& a, const Fold& fold) {
+  return fold.wall != wall_periodic && a.wall_temperature[fold.axis][fold.side];
+}
+/// Temperature that the wall is held at, at the foot of a fold's ghost.
+template <class T>
+MPM_HD T temperature_of_wall(const Arguments<T>& a, const Fold& fold) {
+  return holds_temperature(a, fold) ? a.wall_temperature[fold.axis][fold.side][fold.line] : T(0);
+}
+
+/// Flux into the body at the foot of a fold where heat comes through the wall, W/m^2. Convection goes by the temperature
+/// there: of the foot's own heat until that is `divided`, then by the shape's weights.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD T flux_through_wall(const Arguments<T>& a, const Fold& fold, bool divided) {
+  using N = typename Scene::Node;
+  const WallHeat<T>& wall = a.wall_heat[fold.axis][fold.side];
+  const T given = wall.value[fold.line];
+  if (!(wall.coefficient > T(0))) return given;
+  if (!divided)
+    return wall.coefficient *
+           (given - temperature_of(a.grid.field[N::heat][fold.foot], a.grid.field[N::heat_capacity][fold.foot]));
+  T at_wall = T(0);
+  for (int k = 0; k < a.wall_share_count; ++k)
+    at_wall += a.wall_shares[k] * a.grid.field[N::temperature][fold.foot + k * fold.inward];
+  const T conductivity = a.grid.field[N::volume_conductivity][fold.foot] / a.grid.field[N::heated_volume][fold.foot];
+  return convected_flux(wall.coefficient, given, at_wall, a.wall_beyond, conductivity);
+}
+
+/// Rise of the temperature inward at a wall that heat comes through, by Fourier's law, K/m; else zero.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD T gradient_at_wall([[maybe_unused]] const Arguments<T>& a, [[maybe_unused]] const Fold& fold,
+                          [[maybe_unused]] bool divided) {
+  using N = typename Scene::Node;
+  if constexpr (N::heated_volume >= 0) {
+    const T volume = a.grid.field[N::heated_volume][fold.foot];
+    if (fold.wall == wall_periodic || !a.wall_heat[fold.axis][fold.side].value || !(volume > T(0))) return T(0);
+    return -flux_through_wall<Scene>(a, fold, divided) * volume / a.grid.field[N::volume_conductivity][fold.foot];
+  } else {
+    return T(0);
+  }
+}
+
+/// sum w C (x_p - x_i) along the inward normal, J m/K, where the transfer scatters no gradients of the particles.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD T capacity_inward([[maybe_unused]] const Arguments<T>& a, [[maybe_unused]] const Fold& fold) {
+  using N = typename Scene::Node;
+  if constexpr (N::capacity_position >= 0) {
+    const T along = a.grid.field[N::capacity_position][fold.axis * a.node_count + fold.ghost];
+    return fold.side == 0 ? along : -along;
+  } else {
+    return T(0);
+  }
+}
+
+/// Heat that the mirror gets beyond what the ghost's own and a held temperature make of the image; a node on the wall is
+/// its own mirror and gets half of it.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD T heat_of_image(const Arguments<T>& a, const Fold& fold, T heat_capacity) {
+  const T more = heat_beyond_wall(gradient_at_wall<Scene>(a, fold, false), a.cell_size * T(fold.beyond), heat_capacity,
+                                  capacity_inward<Scene>(a, fold));
+  return fold.ghost == fold.mirror ? T(0.5) * more : more;
+}
+
+}  // namespace mpm::device
