@@ -253,6 +253,12 @@ void check_temperature(const Node& root, const Experiment& experiment, ReadConte
             " acts on velocities alone, and a scene with temperature needs one that acts on both; remove the "
             "filter, or \"thermal\"");
   check_order_of_strain(root, experiment, context);
+  for (const auto& faces : experiment.faces)
+    for (const FaceCondition& face : faces)
+      if (face.type == ConditionType::separate && face.thermal.exchange != HeatExchange::none)
+        context.problem(nearest_node(root, face.thermal.pointer),
+                        "a wall of type \"separate\" mirrors a body only while that presses on it, and heat that comes "
+                        "through a wall needs the mirror image all the time; choose \"slip\" or \"stick\"");
   const ThermalCondition& axis = experiment.faces[0][0].thermal;
   if (experiment.axisymmetric() && experiment.grid.lower[0] == 0 && axis.exchange != HeatExchange::none)
     context.problem(nearest_node(root, axis.pointer),

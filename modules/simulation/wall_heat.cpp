@@ -7,17 +7,17 @@ namespace mpm {
 
 WallWeights wall_weights(const Experiment& experiment) {
   const mpm_shape& shape = experiment.shape.plugin->shape();
-  const std::uint32_t needs = experiment.shape.plugin->descriptor->needs;
-  if (shape.form == MPM_NODE_LIST || (needs & (MPM_NEEDS_HALF_SIZE | MPM_NEEDS_DOMAIN)) != 0) return {{1.0}, 0};
+  if (shape.form == MPM_NODE_LIST) return {{1.0}, 0};
   constexpr std::size_t n = MPM_LANES;
   const std::size_t width = shape.width;
   constexpr int wall = 4;  // any node
-  const std::vector<double> position(n, wall);
+  constexpr double point = 1e-6;  // half the size of its domain
+  const std::vector<double> position(n, wall), half_size(n, point), domain(n, point);
   std::vector<std::int32_t> base(n);
   std::vector<double> offset(n), weight(width * n);
   mpm_shape_batch batch{};
   batch.count = batch.stride = n, batch.dimension = 1;
-  batch.position = position.data();
+  batch.position = position.data(), batch.half_size = half_size.data(), batch.domain = domain.data();
   batch.base = base.data(), batch.offset = offset.data(), batch.weight = weight.data();
   shape.evaluate[MPM_SCALAR_DOUBLE](experiment.shape.parameters.data(), &batch);
   WallWeights result;

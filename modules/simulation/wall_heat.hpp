@@ -7,8 +7,8 @@
 
 namespace mpm {
 
-/// A shape's weights at a wall, folded there. Shapes that average over a particle's
-/// domain, which no point of a wall has, count as the linear one that they average.
+/// A shape's weights at a wall, folded there. A shape that averages over a particle's domain is taken at a point, as no
+/// point of a wall has a domain; those that list their nodes count as linear.
 struct WallWeights {
   /// Of the node on the wall and the next ones inward: they share the heat that comes through the wall, and the
   /// temperature at the wall is their sum but for what the gradient there makes of the nodes beyond. They sum to 1.

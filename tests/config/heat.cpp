@@ -15,7 +15,7 @@ const char* const pond = R"json({
   "grid": {"cell_size": 0.25, "domain": [[0, 0], [1, 1]], "boundaries": {
     "all": {"type": "slip", "temperature": "warm"},
     "x_min": {"type": "prescribed", "velocity": [0, 0], "temperature": "warm - 10*min(t, 2)"},
-    "x_max": {"type": "separate", "heat_flux": "-2 kW/m^2"},
+    "x_max": {"type": "stick", "heat_flux": "-2 kW/m^2"},
     "y_min": {"type": "stick", "convection": {"coefficient": "25 W/(m^2 K)", "temperature": "263.15 + x"}},
     "y_max": "slip"}},
   "node_conditions": [
@@ -114,7 +114,7 @@ TEST_CASE("the resolved file reads back as the same one, with the melted values 
   CHECK(resolved["materials"]["rock"]["thermal"].dump() ==
         R"({"conductivity":3.0,"heat_capacity":800.0,"dissipation_to_heat":0.0})");
   CHECK(resolved["grid"]["boundaries"]["y_max"] == "slip");
-  CHECK(resolved["grid"]["boundaries"]["x_max"].dump() == R"({"type":"separate","heat_flux":-2000.0})");
+  CHECK(resolved["grid"]["boundaries"]["x_max"].dump() == R"({"type":"stick","heat_flux":-2000.0})");
   CHECK(resolved["node_conditions"][1]["type"] == "thermal");
   CHECK(resolved["bodies"][1]["temperature"] == 280);
   const Experiment again = read_text(resolved.dump());
@@ -173,7 +173,7 @@ TEST_CASE("heat in a scene whose materials do not conduct is refused in every pl
       "{\"conductivity\": …, \"heat_capacity\": …}, or remove this";
   std::string expected;
   for (const char* place :
-       {"6:72: /grid/boundaries/x_min/temperature", "7:48: /grid/boundaries/x_max/heat_flux",
+       {"6:72: /grid/boundaries/x_min/temperature", "7:45: /grid/boundaries/x_max/heat_flux",
         "8:46: /grid/boundaries/y_min/convection", "11:72: /node_conditions/0/temperature",
         "12:70: /node_conditions/1/heating", "24:57: /bodies/0/temperature", "26:56: /bodies/1/temperature"})
     expected += (expected.empty() ? "FILE:" : "\nFILE:") + std::string(place) + ": " + reason;
@@ -184,7 +184,7 @@ TEST_CASE("heat in a scene whose materials do not conduct is refused in every pl
 
 TEST_CASE("walls and boxes do one thing with heat", "[config]") {
   CHECK(pond_errors("\"heat_flux\": \"-2 kW/m^2\"", "\"heat_flux\": \"-2 kW/m^2\", \"temperature\": 300") ==
-        "FILE:7:48: /grid/boundaries/x_max/heat_flux: \"heat_flux\" and \"temperature\" are not both possible in one "
+        "FILE:7:45: /grid/boundaries/x_max/heat_flux: \"heat_flux\" and \"temperature\" are not both possible in one "
         "place; remove one of them");
   CHECK(pond_errors("\"heating\": \"5*t\"", "\"heating\": \"5*t\", \"temperature\": 300") ==
         "FILE:12:70: /node_conditions/1/heating: \"heating\" and \"temperature\" are not both possible in one place; "
@@ -198,7 +198,11 @@ TEST_CASE("walls and boxes do one thing with heat", "[config]") {
         "FILE:8:62: /grid/boundaries/y_min/convection/coefficient: expected a heat transfer coefficient (W/(m^2 K)), "
         "got a heat flux (W/m^2)");
   CHECK(pond_errors("\"-2 kW/m^2\"", "\"-2 kW\"") ==
-        "FILE:7:48: /grid/boundaries/x_max/heat_flux: expected a heat flux (W/m^2), got a power (kW)");
+        "FILE:7:45: /grid/boundaries/x_max/heat_flux: expected a heat flux (W/m^2), got a power (kW)");
+  CHECK(pond_errors("\"y_max\": \"slip\"", R"("y_max": {"type": "separate", "temperature": 300})") ==
+        "FILE:9:50: /grid/boundaries/y_max/temperature: a wall of type \"separate\" mirrors a body only while that "
+        "presses on it, and heat that comes through a wall needs the mirror image all the time; choose \"slip\" or "
+        "\"stick\"");
   CHECK(pond_errors("\"y_max\": \"slip\"", R"("y_max": {"type": "free", "temperature": 300})") ==
         "FILE:9:31: /grid/boundaries/y_max/temperature: unknown key \"temperature\"; valid keys: \"type\"");
 }

@@ -9,7 +9,7 @@ namespace mpm::test {
 
 /// Backends that execute temperature.
 inline std::vector<std::string> heat_backends() {
-  return {"reference"};
+  return {"reference", "cpu"};
 }
 
 struct Slab {

@@ -88,6 +88,8 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
       fold_momentum(c, field, pair, mirror_signs(face, rule), wall_velocity(face.condition->velocity, pair.foot, time));
     else if (rule == AtWall::heat)
       fold_heat(face, index, field, time);
+    else if (c == heated_volume)  // the ghost keeps its own: the corners' temperatures are made of it
+      grid_.quad(c, field, pair.mirror) += grid_.quad(c, field, pair.ghost);
     else if (rule == AtWall::slip)  // the ghost keeps its own: where MUSL's remap does not fold it again, contact looks
       grid_.quad(c, field, pair.mirror) += slip_signs * grid_.quad(c, field, pair.ghost);
     else
