@@ -38,6 +38,21 @@ std::vector<Mix> every_plugin_once(int dimension) {
   return mixes;
 }
 
+/// Everything that has to do with temperature at once, where shared memory is fullest: in three dimensions with contact.
+Mix warm_mix(int dimension, const std::string& transfer) {
+  Mix mix;
+  mix.dimension = dimension, mix.transfer = transfer, mix.contact = R"({"type": "coulomb", "friction": 0.2})";
+  mix.material = R"({"type": "von_mises", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000,
+    "yield_stress": 60, "thermal": {"conductivity": 500, "heat_capacity": 10, "dissipation_to_heat": 0.9,
+    "phase_change": {"temperature": 22, "latent_heat": 10, "melted": {"youngs_modulus": 600}}}})";
+  mix.boundaries = R"({"all": "slip", "x_min": {"type": "slip", "temperature": 30},
+    "x_max": {"type": "slip", "heat_flux": 9000},
+    "y_min": {"type": "slip", "convection": {"coefficient": 900, "temperature": 60}}})";
+  mix.more = std::string(R"(, "body_force": [1, 2)") + (dimension == 3 ? ", 3]" : "]");
+  mix.overrides = {set("/bodies/0/temperature", "20"), set("/bodies/1/temperature", "25")};
+  return mix;
+}
+
 }  // namespace
 
 TEST_CASE("every plugin compiles to machine code with NVRTC where it is installed", "[device]") {
@@ -57,6 +72,15 @@ TEST_CASE("every plugin compiles to machine code with NVRTC where it is installe
         if (dimension == 2)
           compositions.push_back(device::compose(device_choice_of(device_experiment(
               text, precision, {set("/grid/symmetry", "axisymmetric"), set("/gravity", "[0, -1.3]")}))));
+      }
+  for (const int dimension : {2, 3})
+    for (const std::string transfer : {R"({"type": "flip"})", R"({"type": "asflip"})"})
+      for (const std::string precision : {"double", "float"}) {
+        const Mix mix = warm_mix(dimension, transfer);
+        const device::Composition composition =
+            device::compose(device_choice_of(device_experiment(mix.text(), precision, mix.overrides)));
+        REQUIRE(std::count(composition.entries.begin(), composition.entries.end(), "mpm_change_phase_0") == 1);
+        compositions.push_back(composition);
       }
   REQUIRE(compositions.size() >= 4 * plugins().of_kind(MPM_SHAPE).size());
   std::vector<device::Cubin> cubins(compositions.size());
