@@ -86,9 +86,10 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
     for (int c = 0; c < D; ++c) {
       const T impulse = batch.impulse[c * block_nodes + i];
       const double a0 = va[c], b0 = vb[c];
-      va[c] += impulse / va[3];
-      vb[c] -= impulse / vb[3];
-      sums.work += 0.5 * impulse * (a0 + va[c]) - 0.5 * impulse * (b0 + vb[c]);
+      va[c] = struck(T(va[c]), impulse, T(va[3]));
+      vb[c] = struck(T(vb[c]), -impulse, T(vb[3]));
+      sums.work +=
+          work_of_impulse(double(impulse), a0, double(va[c])) - work_of_impulse(double(impulse), b0, double(vb[c]));
       sums.change[c] += va[3] * (va[c] - a0) + vb[3] * (vb[c] - b0);
       if (batch.status[i] != MPM_APART) sums.impulse[c] += impulse;
     }

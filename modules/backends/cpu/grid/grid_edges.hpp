@@ -37,9 +37,9 @@ bool GridStep<D, T>::approaches(const FaceNodes& face, int field, const MirrorPa
       forces += static_cast<T>(gravity_correction_[(field * edges + edge) * 4 + face.axis]);
     for (const Channel c : {force, body_force})
       if (grid_.has(c)) forces += grid_.quad(c, field, node)[face.axis];
-    speed += (motion_node[face.axis] + static_cast<T>(dt) * forces) / motion_node[3];
+    speed += predicted_velocity(motion_node[face.axis], forces, motion_node[3], static_cast<T>(dt));
   }
-  return face.side == 0 ? speed < 0 : speed > 0;
+  return mpm::approaches(face.side, speed);
 }
 
 /// Calls visit(field, pair) for the pairs of a face that this step folds, in order.
@@ -57,7 +57,7 @@ template <int D, class T>
 void GridStep<D, T>::fold_momentum(Channel channel, int field, const MirrorPair& pair, Q signs, Q wall_velocity) {
   Q& ghost = grid_.quad(channel, field, pair.ghost);
   const Q wall = ghost[3] * wall_velocity;
-  grid_.quad(channel, field, pair.mirror) += wall + signs * (ghost - wall);
+  grid_.quad(channel, field, pair.mirror) += mirrored(ghost, signs, wall);
   ghost = Q{};
 }
 
@@ -80,20 +80,21 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
       correction[pair.mirror_edge * 4 + c] -= weight;
     }
   }
-  const Q slip_signs = remap || slipping_.empty() ? Q{} : mirror_signs(face, AtWall::slip);
-  for (const Channel c : folded_[static_cast<int>(Folded::with_mass)]) {
+  const std::vector<Channel>& channels = folded_[static_cast<int>(Folded::with_mass)];
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    const Channel c = channels[k];
     if (!grid_.has(c) || (remap && c != motion)) continue;
     const AtWall rule = grid_.field(c).at_wall;
     if (rule == AtWall::momentum)
-      fold_momentum(c, field, pair, mirror_signs(face, rule), wall_velocity(face.condition->velocity, pair.foot, time));
+      fold_momentum(c, field, pair, signs_[k].of, wall_velocity(face.condition->velocity, pair.foot, time));
     else if (rule == AtWall::heat)
       fold_heat(face, index, field, time);
     else if (c == heated_volume)  // the ghost keeps its own: the corners' temperatures are made of it
       grid_.quad(c, field, pair.mirror) += grid_.quad(c, field, pair.ghost);
     else if (rule == AtWall::slip)  // the ghost keeps its own: where MUSL's remap does not fold it again, contact looks
-      grid_.quad(c, field, pair.mirror) += slip_signs * grid_.quad(c, field, pair.ghost);
+      grid_.quad(c, field, pair.mirror) += signs_[k].of * grid_.quad(c, field, pair.ghost);
     else
-      fold_as_is(c, field, pair, mirror_signs(face, rule));
+      fold_as_is(c, field, pair, signs_[k].of);
   }
 }
 
@@ -131,6 +132,9 @@ void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step)
   for (FaceNodes& face : grid_.faces()) {
     if (face.periodic() != periodic) continue;
     const bool separate = face.condition->type == ConditionType::separate;
+    signs_.clear();
+    for (const Channel c : folded_[static_cast<int>(Folded::with_mass)])
+      signs_.push_back({mirror_signs(face, grid_.field(c).at_wall)});
     for (int field = 0; field < grid_.fields(); ++field) {
       for (std::size_t i = 0; i < face.pairs.size(); ++i) {
         const MirrorPair& pair = face.pairs[i];
@@ -180,7 +184,7 @@ void GridStep<D, T>::fill_ghosts(double time, bool increments) {
       const Q wall = wall_velocity(face->condition->velocity, pair.foot, time);
       Q& ghost = motion_at(field, pair.ghost);
       const T mass = ghost[3];
-      ghost = wall + signs * (motion_at(field, pair.mirror) - wall);
+      ghost = mirrored(motion_at(field, pair.mirror), signs, wall);
       ghost[3] = mass;
       if (increments)
         grid_.quad(velocity_before, field, pair.ghost) = signs * grid_.quad(velocity_before, field, pair.mirror);
@@ -194,32 +198,27 @@ void GridStep<D, T>::fill_ghosts(double time, bool increments) {
 template <int D, class T>
 void GridStep<D, T>::impose(double time, Account account) {
   for (const FaceNodes& face : grid_.faces()) {
-    const ConditionType type = face.condition->type;
-    const bool separate = type == ConditionType::separate;
+    const int type = static_cast<int>(face.condition->type);
     for (std::size_t i = 0; i < face.wall.size(); ++i) {
       const Q velocity = wall_velocity(face.condition->velocity, face.wall_position[i], time);
       for (int field = 0; field < grid_.fields(); ++field) {
-        const T inward = face.side == 0 ? T(1) : T(-1);
-        if (separate && !(inward * motion_at(field, face.wall[i])[face.axis] < 0)) continue;
+        const T across = motion_at(field, face.wall[i])[face.axis];
         for (int c = 0; c < D; ++c)
-          if (holds(type, face.axis, c)) hold(field, face.wall[i], c, separate ? T(0) : velocity[c], account);
+          if (wall_holds(type, face.axis, face.side, c, across)) hold(field, face.wall[i], c, velocity[c], account);
       }
     }
   }
   for (const BoxNodes& box : grid_.boxes()) {
     const BoxCondition& condition = *box.condition;
+    int given = 0;
+    for (int c = 0; c < D; ++c) given |= int(condition.held[c]) << c;
     for (std::size_t i = 0; i < box.nodes.size(); ++i) {
       const Q velocity = wall_velocity(condition.velocity, box.position[i], time);
       for (int field = 0; field < grid_.fields(); ++field)
-        for (int c = 0; c < D; ++c) {
-          const bool on_axis = c == condition.axis;
-          const T now = motion_at(field, box.nodes[i])[c];
-          const bool held = condition.type == ConditionType::stick ||
-                            (condition.type == ConditionType::slip && on_axis) ||
-                            (condition.type == ConditionType::separate && on_axis && condition.side * now < 0) ||
-                            (condition.type == ConditionType::prescribed && condition.held[c]);
-          if (held) hold(field, box.nodes[i], c, velocity[c], account);
-        }
+        for (int c = 0; c < D; ++c)
+          if (box_holds(static_cast<int>(condition.type), condition.axis, condition.side, given, c,
+                        motion_at(field, box.nodes[i])[c]))
+            hold(field, box.nodes[i], c, velocity[c], account);
     }
   }
 }

@@ -23,7 +23,7 @@ double GridStep<D, T>::mass_norm_of_increment() {
       const double mass = motion_at(field, node)[3];
       if (!(mass > 0)) continue;
       const Q v = grid_.quad(filter_increment, field, node);
-      for (int c = 0; c < D; ++c) partial[0] += mass * static_cast<double>(v[c]) * v[c];
+      for (int c = 0; c < D; ++c) partial[0] += mass_norm_term(mass, static_cast<double>(v[c]));
     }
   });
   return std::sqrt(sum_partials(0));
@@ -57,7 +57,7 @@ void GridStep<D, T>::project_increment(const Pass& pass, const StepInfo& step) {
     Q* const projected = &grid_.quad(filter_projection, field, first);
     for (int k = 0; k < block_nodes; ++k) {
       const Q mass = nodes[k][3] - Q{};
-      projected[k] = nodes[k][3] > 0 ? projected[k] / mass : Q{};
+      projected[k] = nodes[k][3] > 0 ? velocity_of(projected[k], mass) : Q{};
     }
   });
 }
@@ -104,7 +104,7 @@ void GridStep<D, T>::keep_free_velocity(bool after_forces) {
   visit_blocks([&](int field, std::uint32_t first, double*) {  // leaves the ledger's partial sums alone
     const Q* const nodes = &motion_at(field, first);
     Q* const added = &grid_.quad(constrained, field, first);
-    for (int k = 0; k < block_nodes; ++k) added[k] = after_forces ? nodes[k] - added[k] : nodes[k];
+    for (int k = 0; k < block_nodes; ++k) added[k] = after_forces ? without(nodes[k], added[k]) : nodes[k];
   });
 }
 
@@ -114,7 +114,7 @@ void GridStep<D, T>::measure_constraints() {
   visit_blocks([&](int field, std::uint32_t first, double*) {
     const Q* const nodes = &motion_at(field, first);
     Q* const added = &grid_.quad(constrained, field, first);
-    for (int k = 0; k < block_nodes; ++k) added[k] = nodes[k] - added[k];  // no mass left in it
+    for (int k = 0; k < block_nodes; ++k) added[k] = without(nodes[k], added[k]);  // no mass left in it
   });
 }
 
@@ -125,7 +125,7 @@ void GridStep<D, T>::constrain_free(double time, const StepInfo& step) {
   if (!grid_.has(constrained)) return constrain(time, step);
   for_each_block([&](int field, std::uint32_t first, double*) {
     Q *const nodes = &motion_at(field, first), *const added = &grid_.quad(constrained, field, first);
-    for (int k = 0; k < block_nodes; ++k) added[k] = nodes[k] -= added[k];
+    for (int k = 0; k < block_nodes; ++k) added[k] = nodes[k] = without(nodes[k], added[k]);
   });
   constrain(time, step);
   measure_constraints();
@@ -150,8 +150,9 @@ void GridStep<D, T>::update_filter(const Pass& pass, const StepInfo& step) {
     for_each_block([&](int field, std::uint32_t first, double*) {
       for (std::uint32_t node = first; node < first + block_nodes; ++node)
         if (motion_at(field, node)[3] > 0)
-          grid_.quad(filter_increment, field, node) +=
-              motion_at(field, node) - grid_.quad(filter_projection, field, node);
+          grid_.quad(filter_increment, field, node) =
+              corrected_increment(grid_.quad(filter_increment, field, node), motion_at(field, node),
+                                  grid_.quad(filter_projection, field, node));
     });
   }
   filter_.take_norm(mass_norm_of_increment(), 4500.0 * static_cast<double>(std::numeric_limits<T>::epsilon()));
@@ -193,7 +194,7 @@ void GridStep<D, T>::restore(Channel channel, Channel kept_channel, bool keeps_c
     for (int k = 0; k < block_nodes; ++k) {
       const Q filtered = nodes[k];
       nodes[k] = kept[k];
-      kept[k] = filtered - kept[k];  // no mass left in it
+      kept[k] = without(filtered, kept[k]);  // no mass left in it
     }
   });
 }

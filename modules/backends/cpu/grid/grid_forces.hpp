@@ -64,7 +64,7 @@ double GridStep<D, T>::kinetic_energy() {
     Wide squares{};
     for (int k = 0; k < block_nodes; ++k) {
       const Wide v = widen(nodes[k]);
-      squares += (v[3] > 0 ? v[3] : 0.0) * (v * v);
+      squares += twice_kinetic_energy(v, v[3] > 0 ? v[3] : 0.0);
     }
     partial[0] = 0.5 * sum_of_components(squares);
   });
@@ -107,13 +107,13 @@ template <int D, class T>
 double GridStep<D, T>::divide_by_mass(bool keeps_before, bool accounted) {
   for_each_block([&](int field, std::uint32_t first, double* partial) {
     Q* const nodes = &motion_at(field, first);
-    const bool heavy = for_each_pack(nodes, [](int, L momentum, L mass) { return momentum / mass; });
+    const bool heavy = for_each_pack(nodes, [](int, L momentum, L mass) { return velocity_of(momentum, mass); });
     if (keeps_before) std::memcpy(&grid_.quad(velocity_before, field, first), nodes, block_nodes * sizeof(Q));
     if (!accounted || !heavy) return;
     Wide squares{};
     for (int k = 0; k < block_nodes; ++k) {  // no velocity where there is no mass
       const Wide v = widen(nodes[k]);
-      squares += v[3] * (v * v);
+      squares += twice_kinetic_energy(v, v[3]);
     }
     partial[0] = 0.5 * sum_of_components(squares);
   });
@@ -217,15 +217,15 @@ void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt
   const Wide gravity = widen(gravity_);
   Wide internal{}, external{}, momentum{}, squares{}, contact{};
   for (int k = 0; k < block_nodes; ++k) {
-    const Wide v = widen(after[k]), old = widen(before[k]), f = widen(forces[k]), mean = 0.5 * (old + v);
+    const Wide v = widen(after[k]), old = widen(before[k]), f = widen(forces[k]), mean = mean_velocity(old, v);
     const Wide body = bodies ? widen(bodies[k]) : Wide{};
     const double mass = v[3];
     internal += f * mean;
     external += body * mean;
     momentum += mass * mean;
-    squares += mass * (v * v);
+    squares += twice_kinetic_energy(v, mass);
     if (!held || (held[k] == 0 && !scene_.plan.contact)) continue;
-    const Wide work = (mass * (v - old) - dt * (f + body + mass * gravity)) * mean;
+    const Wide work = work_of_reaction(old, v, mass, f + body + mass * gravity, mean, dt);
     if (held[k] == 0)
       contact += work;
     else
@@ -273,7 +273,7 @@ void GridStep<D, T>::accelerate(double dt) {
       L total(T(0));
       if (f) total = total + pack_of(f + node);
       if (body) total = total + pack_of(body + node);
-      return velocity + step * (total / mass + gravity);
+      return accelerated(velocity, total, mass, gravity, step);
     });
     if (!ledger_on()) return;
     if (constrained_[first / block_nodes])
@@ -291,7 +291,7 @@ void GridStep<D, T>::divide_and_accelerate(double dt) {
   largest_ = scene_.team->template largest<T>(std::size_t(grid_.slots()) * grid_.fields(), [&](std::size_t i) {
     L largest(T(0));
     for_each_pack(&motion_at(0, 0) + i * block_nodes, [&](int, L momentum, L mass) {
-      const L velocity = momentum / mass + change;
+      const L velocity = velocity_of(momentum, mass) + change;
       largest = max(largest, select(mass > T(0), abs(velocity), L(T(0))));
       return velocity;
     });

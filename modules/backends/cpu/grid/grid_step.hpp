@@ -5,6 +5,9 @@
 #include <vector>
 
 #include "backends/cpu/grid/grid.hpp"
+#include "operators/edges.hpp"
+#include "operators/filter.hpp"
+#include "operators/motion.hpp"
 #include "simulation/contact_pair.hpp"
 #include "simulation/wall_heat.hpp"
 
@@ -144,7 +147,11 @@ class GridStep : NamedChannels {
   FilterRecord& filter_;
   const std::vector<EdgeModel> edges_;
   std::array<std::vector<Channel>, 3> folded_;  ///< [when]
-  std::vector<Channel> slipping_;               ///< vanish across a wall on its nodes
+  struct Signs {
+    Q of;
+  };
+  std::vector<Signs> signs_;       ///< of folded_[with_mass] at the face that is folded now
+  std::vector<Channel> slipping_;  ///< vanish across a wall on its nodes
   /// Partial sums of account_for_block.
   enum Partial { of_internal_force, of_body_force, of_gravity, at_conditions, at_contact, of_motion, partial_count };
   std::vector<double> partials_;           ///< partial_count a block of a field, summed in order
