@@ -9,14 +9,14 @@
 #define MPM_HD inline __attribute__((always_inline))
 #endif
 
-// 1 where host tables and system headers may be seen.
+// MPM_HOST is 1 where host tables and system headers may be seen.
 #if defined(MPM_DEVICE_PASS) || defined(__CUDACC_RTC__)
 #define MPM_HOST 0
 #else
 #define MPM_HOST 1
 #endif
 
-// Before a loop with few steps, whose number is a constant: writes them all out.
+// MPM_UNROLL stands before a loop of few steps, whose number is constant, and writes them all out.
 #if defined(__CUDACC__)
 #define MPM_UNROLL _Pragma("unroll")
 #elif defined(MPM_DEVICE_PASS) || defined(__clang__)

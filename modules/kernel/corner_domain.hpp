@@ -1,7 +1,7 @@
 #pragma once
 // A quadrilateral (2-D) or hexahedron (3-D) as the image of the square or cube under the multilinear map through its
-// corners; corner c is at the upper end along axis k where bit k of c is set. Integrals by 2^D Gauss points, which are
-// exact: Q_c det J and the cofactors of J times grad Q_c are at most cubic along each axis.
+// corners; corner c is at the upper end along axis k where bit k of c is set. Integrals are taken with 2^D Gauss
+// points, which is exact: Q_c det J and the cofactors of J times grad Q_c are at most cubic along each axis.
 
 #include "kernel/tensor.hpp"
 
@@ -11,13 +11,13 @@ namespace mpm {
 template <int D, class T>
 struct CornerDomain {
   static constexpr int corners = 1 << D;
-  bool upright;  ///< the map keeps its orientation at every corner; false for what is not a number
+  bool upright;  ///< the map keeps its orientation at every corner; false where a corner is not a number
   T volume;
   T weight[corners];            ///< mean of Q_c: their sum is 1, and sum_c weight x_c is the centroid
   Vec<D, T> gradient[corners];  ///< mean of grad Q_c, per length
 };
 
-/// J of the map at a point of [-1, 1]^D, and the derivatives of Q_c there by the place in the square or cube.
+/// J of the map at a point of [-1, 1]^D, and the derivatives of Q_c there with respect to that point.
 template <int D, class T>
 MPM_HD Mat<D, T> corner_map(const Vec<D, T>* corner, const T* at, T (&value)[1 << D], Vec<D, T> (&slope)[1 << D]) {
   Mat<D, T> J{};
@@ -38,7 +38,7 @@ MPM_HD Mat<D, T> corner_map(const Vec<D, T>* corner, const T* at, T (&value)[1 <
   return J;
 }
 
-/// d det J / d J.
+/// The derivative d det J / d J.
 template <class T>
 MPM_HD Mat<2, T> cofactors(const Mat<2, T>& J) {
   return {{J(1, 1), -J(1, 0), -J(0, 1), J(0, 0)}};
@@ -92,7 +92,8 @@ MPM_HD Vec<D, T> centroid(const CornerDomain<D, T>& domain, const Vec<D, T>* cor
 }
 
 /// The cell of a point and the tents of its 2^D nodes: node `which` is at the upper end along axis a where bit a is
-/// set. `x` and `from` in cells; the point is x + from, with the digits of `from` kept far from the grid's first node.
+/// set. `x` and `from` are in cells; the point is x + from, with the digits of `from` kept far from the grid's first
+/// node.
 template <int D, class T>
 struct TentCell {
   int base[D];

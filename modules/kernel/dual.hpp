@@ -2,8 +2,8 @@
 // Dual numbers a + b e with e^2 = 0 over a scalar S (double, lanes): a functor that runs over them gives, beside its
 // values, their exact derivative in one direction. Griewank & Walther (2008), Evaluating Derivatives, ch. 3.
 //
-// Decisions are those of the values: of select(), min(), max() and abs() the derivative is that of the chosen side. At
-// zero, where sqrt() has none, it is taken for zero, so that the norm of a vector that vanishes has one.
+// Decisions follow the values: select(), min(), max() and abs() take the derivative of the chosen side. At zero sqrt()
+// has no derivative; zero is taken there, so that the norm of a vector that vanishes has one.
 
 #include "kernel/polar.hpp"
 #include "kernel/svd.hpp"
@@ -123,7 +123,8 @@ MPM_HD Mat<D, S> transposed_product(const Mat<D, S>& a, const Mat<D, S>& b) {
 // Their iterations end by the values alone, so that a derivative carried through them may be cut off early, and at
 // equal singular values it would be lost. It is therefore put together from the result.
 
-/// R of F = R P: dR = R W with W P + P W = R^T dF - dF^T R (W skew). Not unique where R is not.
+/// The rotation R of F = R P. Its derivative is dR = R W with W P + P W = R^T dF - dF^T R (W skew), and is not unique
+/// where R is not.
 template <class S>
 MPM_HD Mat<2, Dual<S>> nearest_rotation(const Mat<2, Dual<S>>& F) {
   const Mat<2, S> value = values_of(F), R = nearest_rotation(value);
@@ -135,12 +136,12 @@ template <class S>
 MPM_HD Mat<3, Dual<S>> nearest_rotation(const Mat<3, Dual<S>>& F) {
   const Mat<3, S> value = values_of(F), R = nearest_rotation(value);
   const Mat<3, S> P = transposed_product(R, value), M = transposed_product(R, derivatives_of(F));
-  // The axial vectors of both sides: (tr(P) I - P) spin = axial(M - M^T).
+  // Both sides as axial vectors: (tr(P) I - P) spin = axial(M - M^T).
   const S trace = P(0, 0) + P(1, 1) + P(2, 2);
   Mat<3, S> A;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) A(i, j) = (i == j ? trace - P(i, j) : -(real<S>(0.5) * (P(i, j) + P(j, i))));
-  const Mat<3, S> cofactors = polar::cofactor(A);  // of a symmetric matrix: symmetric
+  const Mat<3, S> cofactors = polar::cofactor(A);  // symmetric, as its argument is
   const S inverse = real<S>(1) / (A(0, 0) * cofactors(0, 0) + A(0, 1) * cofactors(0, 1) + A(0, 2) * cofactors(0, 2));
   const Vec<3, S> axial{{M(2, 1) - M(1, 2), M(0, 2) - M(2, 0), M(1, 0) - M(0, 1)}};
   Vec<3, S> spin;
@@ -165,7 +166,8 @@ MPM_HD void put_apart(Vec<D, S>& values) {
 
 }  // namespace svd
 
-/// With M = U^T dA V: the values change by M's diagonal, and U and V turn by what solves its off-diagonal.
+/// The decomposition of A + e dA. With M = U^T dA V the values change by M's diagonal, and U and V turn by what solves
+/// its off-diagonal.
 template <int D, class S>
 MPM_HD SingularValues<D, Dual<S>> singular_value_decomposition(const Mat<D, Dual<S>>& A) {
   SingularValues<D, S> plain = singular_value_decomposition(values_of(A));

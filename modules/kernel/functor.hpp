@@ -49,14 +49,14 @@ template <class Gradient>
 struct ElasticState {
   Gradient deformation_gradient;
 };
-/// What functors of such solids derive from, if no strain turns to heat.
+/// Base of the functors of solids that keep F alone and in which no strain turns to heat.
 struct ElasticSolid {
   template <int D, class S>
   using State = ElasticState<Mat<D, S>>;
   template <class S>
   using AxisymmetricState = ElasticState<Deformation<2, S>>;
 
-  /// F <- (I + dt L) F. Returns the energy dissipated, J/m^3: none.
+  /// Advances F <- (I + dt L) F. Returns the energy dissipated, J/m^3, which is none.
   template <class Constants, class G, class S = typename G::Scalar>
   MPM_HD static S advance(const Constants&, const G& L, scalar_of<S> dt, ElasticState<G>& state) {
     state.deformation_gradient = advanced(state.deformation_gradient, L, dt);

@@ -1,7 +1,7 @@
 #pragma once
 // The rotation nearest to a 2 x 2 or 3 x 3 matrix, for stress laws that need it every step: several times faster than
-// through the singular values (kernel/svd.hpp), which take over where the closed form loses its digits. Over float,
-// double, lanes and in the device pass alike.
+// through the singular values (kernel/svd.hpp), which take over where the closed form loses its digits. It serves
+// float, double, lanes and the device pass alike.
 //
 // 3-D: x = tr(R^T F), the sum of the signed singular values, is the largest root of the quartic
 //   (x^2 - I)^2 - 8 J x - 4 II = 0,   I = tr b,  II = (I^2 - tr b^2)/2,  b = F F^T,
@@ -16,7 +16,7 @@ namespace mpm {
 
 namespace polar {
 
-/// Rounding of S.
+/// The relative rounding error of the scalar type behind S.
 template <class S>
 MPM_HD constexpr scalar_of<S> epsilon() {
   return sizeof(scalar_of<S>) == 4 ? scalar_of<S>(0x1p-23) : scalar_of<S>(0x1p-52);
@@ -36,13 +36,13 @@ MPM_HD Mat<3, S> cofactor(const Mat<3, S>& a) {
 
 /// The largest root by Halley's method. sqrt(3 I) is at or above it and all four roots are real, so that steps go down
 /// only. A lane keeps its root once its step says that the next would not change it, whatever the lanes beside it need.
-/// Zero where the root is nearly a double one and steps stay slow.
+/// The result is zero where the root is nearly a double one and steps stay slow.
 template <class S>
 MPM_HD S largest_root(S first, S second, S J) {
   const S zero = S(real<S>(0)), twice = J + J, four_second = real<S>(4) * second;
   S x = sqrt(real<S>(3) * first), active = S(real<S>(1));
   for (int step = 0; step < 12; ++step) {
-    // Value, slope / 4 and curvature / 8.
+    // The quartic's value, slope / 4 and curvature / 8.
     const S square = x * x, gap = square - first;
     const S value = gap * gap - (real<S>(4) * (twice * x) + four_second), slope = x * gap - twice;
     const S curvature = real<S>(0.5) * gap + square;
@@ -57,7 +57,7 @@ MPM_HD S largest_root(S first, S second, S J) {
   return select(active > real<S>(0.5), zero, x);
 }
 
-/// (A + A^-T)/2, one step of Newton towards the rotation (Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160).
+/// One step of Newton towards the rotation: (A + A^-T)/2 (Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160).
 template <class S>
 MPM_HD Mat<3, S> orthogonalised(const Mat<3, S>& A) {
   Mat<3, S> r = cofactor(A);
@@ -66,7 +66,7 @@ MPM_HD Mat<3, S> orthogonalised(const Mat<3, S>& A) {
   return r;
 }
 
-/// Newton until rounding, where `active` is 1; elsewhere R stays as it is to the last bit.
+/// Newton's steps until rounding, where `active` is 1; elsewhere R stays as it is to the last bit.
 template <class S>
 MPM_HD void orthogonalise(Mat<3, S>& R, S active) {
   for (int step = 0; step < 4 && any(active > real<S>(0.5)); ++step) {
@@ -107,9 +107,10 @@ MPM_HD Mat<3, S> nearest_rotation(const Mat<3, S>& F) {
   const S x = polar::largest_root(first, second, J);
   const S divisor = x * (x * x - first) - (J + J);
 
-  // divisor / x^3 says how far R is from not being unique: 16/27 at equal stretches, 0 there. Where it is q, rounding
-  // of the root shows in R as epsilon / (2 q^2), in the directions that Newton's steps correct, and that of R's own sum
-  // as epsilon / q. At 0.02 one stretch is 200 times the others, or the particle nearly a reflection.
+  // divisor / x^3 says how far R is from not being unique: the ratio is 16/27 at equal stretches and 0 where R is not
+  // unique. At a ratio q, rounding of the root shows in R as epsilon / (2 q^2), in the directions that Newton's steps
+  // correct, and rounding of R's own sum as epsilon / q. At 0.02 one stretch is 200 times the others, or the particle
+  // is nearly a reflection.
   constexpr T uncertain = T(0.02), rounded = T(0.3);
   constexpr T largest = sizeof(T) == 4 ? T(1e4) : T(1e40);  // x^7, which is the most that is formed, stays in range
   const S in_range = select(x < largest, select(x > real<S>(1) / largest, one, zero), zero);

@@ -1,7 +1,7 @@
 #pragma once
 // Polynomials that a particle carries beyond the affine ones: products of one polynomial an axis, orthogonal under the
 // weights of that axis, of powers up to `order`, whose powers sum to 2 or more. Fu et al., ACM Trans. Graph. 36 (2017)
-// 222. Lengths in cells.
+// 222. Lengths are in cells.
 
 #include "kernel/config.hpp"
 
@@ -35,7 +35,8 @@ struct AxisBasis {
   T norm[K];      ///< sum w P_r^2
 };
 
-/// For powers up to order < K. Node k has the weight w[k * stride] and lies k - offset from the particle.
+/// Makes the polynomials of powers up to `order`, which is below K. Node k has the weight w[k * stride] and lies k -
+/// offset from the particle.
 template <int K, class T>
 MPM_HD void make_axis_basis(const T* w, int stride, T offset, int order, AxisBasis<K, T>& out) {
   T before[K], now[K];  // P_(r-1), P_r
@@ -60,7 +61,8 @@ MPM_HD void make_axis_basis(const T* w, int stride, T offset, int order, AxisBas
       for (int k = 0; k < K; ++k) out.taken[r][k] = out.given[r][k] / norm;
   }
   if (order < K - 1) return;
-  // The highest: the finite difference, the one functional that all lower powers pass unseen. No weight divides it.
+  // The coefficient of the highest power is taken by the finite difference, the one functional in which no lower power
+  // shows. No weight divides it.
   T choose = T(1);
   for (int k = 0; k < K; ++k) {
     out.taken[K - 1][k] = ((K - 1 - k) % 2 ? -choose : choose) / T(K < 4 ? K - 1 : 6);

@@ -1,7 +1,7 @@
 #pragma once
-// Singular value and polar decompositions of 2 x 2 and 3 x 3 matrices without branches: over float, double, lanes and
-// in the device pass alike. One-sided Jacobi (Hestenes 1958; Demmel & Veselic, SIAM J. Matrix Anal. Appl. 13 (1992)
-// 1204) turns the columns orthogonal; a triangularisation by Givens rotations then gives U, which stays a rotation when
+// Singular value and polar decompositions of 2 x 2 and 3 x 3 matrices without branches, for float, double, lanes and
+// the device pass alike. One-sided Jacobi (Hestenes 1958; Demmel & Veselic, SIAM J. Matrix Anal. Appl. 13 (1992) 1204)
+// turns the columns orthogonal; a triangularisation by Givens rotations then gives U, which stays a rotation when
 // columns vanish (McAdams et al., Univ. of Wisconsin TR1690 (2011)).
 
 #include "kernel/tensor.hpp"
@@ -17,7 +17,8 @@ struct SingularValues {
 
 namespace svd {
 
-/// Below this a number has lost digits or its square has: taken for zero, after scaling by the largest entry.
+/// The bound below which a number or its square has lost digits; after scaling by the largest entry such numbers are
+/// taken for zero.
 template <class S>
 MPM_HD constexpr scalar_of<S> tiny() {
   return sizeof(scalar_of<S>) == 4 ? scalar_of<S>(1.2e-38) : scalar_of<S>(2.3e-308);
@@ -143,7 +144,7 @@ struct LeftStretches {
   Vec<D, S> stretch;
 };
 
-/// Half the work of the whole decomposition.
+/// The left stretches of A, for half the work of the whole decomposition.
 template <int D, class S>
 MPM_HD LeftStretches<D, S> left_stretches(const Mat<D, S>& A) {
   const S scale = svd::largest_entry(A);
@@ -160,7 +161,7 @@ MPM_HD LeftStretches<D, S> left_stretches(const Mat<D, S>& A) {
   return r;
 }
 
-/// U diag(values) V^T.
+/// The product U diag(values) V^T.
 template <int D, class S>
 MPM_HD Mat<D, S> composed(const Mat<D, S>& U, const Vec<D, S>& values, const Mat<D, S>& V) {
   Mat<D, S> r;

@@ -56,7 +56,7 @@ struct Deformation<2, S> {
 };
 template <class S>
 struct Deformation<3, S> {
-  Mat<3, S> plane;  ///< all of space
+  Mat<3, S> plane;  ///< the whole matrix, which in 3-D couples all axes
 };
 
 /// Whether a matrix of two dimensions holds zz too; without, its zz is that of plane strain.

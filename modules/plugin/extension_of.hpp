@@ -1,5 +1,5 @@
 #pragma once
-// The extensions of extensions.h by the type of their table: extension_of<mpm_costs>(plugin).
+// The extensions of extensions.h, asked for by the type of their table: extension_of<mpm_costs>(plugin).
 
 #include <span>
 
@@ -30,7 +30,7 @@ MPM_KNOWN_EXTENSION(mpm_material_temperature, MPM_MATERIAL_TEMPERATURE, MPM_MATE
 MPM_KNOWN_EXTENSION(mpm_material_cell_size, MPM_MATERIAL_CELL_SIZE, MPM_MATERIAL)
 #undef MPM_KNOWN_EXTENSION
 
-/// All of them, in the order of extensions.h.
+/// All extensions that this program knows, in the order of extensions.h.
 std::span<const KnownExtension> known_extensions();
 
 /// The table that the plugin has of an extension, or null.

@@ -101,7 +101,8 @@ std::size_t table_size(std::uint32_t kind) {
   }
 }
 
-/// Everything that the program takes for granted of a descriptor later on, whose rows may not be there at all.
+/// Checks everything that the program takes for granted of a descriptor later on; rows of its tables may not be there
+/// at all.
 void check_descriptor(const mpm_descriptor& d, const std::filesystem::path& file) {
   if (!d.id || !*d.id || !d.version || !d.summary || !d.citation || !d.manual || !d.functor_name || !d.source)
     refuse(file, "has a descriptor without id, version, summary, citation, manual or functor source", wrong_tables);
@@ -145,7 +146,7 @@ void check_rows(const mpm_descriptor& d, const std::filesystem::path& file) {
     refuse(file, name + "is a material without a parameter `density`", wrong_tables);
 }
 
-/// The extensions that this program knows have its versions and belong to their kind.
+/// Checks that the extensions which this program knows have its versions and belong to their kind.
 void check_extensions(const Plugin& plugin, const std::filesystem::path& file) {
   for (const KnownExtension& known : known_extensions()) {
     const void* table = plugin.extension(known.id);

@@ -35,7 +35,7 @@ struct Plugin {
   const void* extension(const char* id) const { return descriptor->extension ? descriptor->extension(id) : nullptr; }
 };
 
-/// "shape", "transfer", "filter", "contact", "material".
+/// The kind as a word: "shape", "transfer", "filter", "contact", "material".
 std::string_view kind_name(mpm_kind kind);
 std::string_view kind_plural(mpm_kind kind);
 /// All kinds, in the order they are listed.
@@ -44,8 +44,8 @@ std::span<const mpm_kind> all_kinds();
 /// Components of one state field in `dimension` (2 or 3); a plane deformation has those of plane strain.
 int state_components(mpm_state_shape shape, int dimension);
 
-/// How a field is kept: a plane deformation is a matrix, or in axisymmetric scenes a deformation; others are what they
-/// are.
+/// How a field is kept: a plane deformation becomes a matrix, or in axisymmetric scenes a deformation; every other
+/// shape stays as it is declared.
 mpm_state_shape kept_shape(const mpm_state& field, bool axisymmetric);
 
 class Registry {
@@ -61,7 +61,7 @@ class Registry {
   void load(const std::filesystem::path& file);
 
   const std::vector<Plugin>& plugins() const { return plugins_; }
-  /// Null when there is none.
+  /// The plugin of this kind and id, or null when there is none.
   const Plugin* find(mpm_kind kind, std::string_view id) const;
   std::vector<const Plugin*> of_kind(mpm_kind kind) const;
   /// One message a file that was found but not usable.

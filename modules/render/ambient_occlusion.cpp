@@ -19,7 +19,7 @@ float occlusion(const GeometryBuffer& g, int x, int y, double radius, double sca
   const double turn = 2 * std::numbers::pi * ((x % kPattern) * kPattern + y % kPattern) / (kPattern * kPattern);
   float sum = 0;
   for (int k = 0; k < kRays; ++k) {
-    const double r = reach * std::sqrt((k + 0.5) / kRays), angle = turn + 2.39996323 * k;  // golden angle
+    const double r = reach * std::sqrt((k + 0.5) / kRays), angle = turn + 2.39996323 * k;  // turned by the golden angle
     const int sx = x + static_cast<int>(std::lround(r * std::cos(angle)));
     const int sy = y + static_cast<int>(std::lround(r * std::sin(angle)));
     if (sx < 0 || sy < 0 || sx >= g.width || sy >= g.height) continue;
@@ -34,7 +34,7 @@ float occlusion(const GeometryBuffer& g, int x, int y, double radius, double sca
   return sum / kRays;
 }
 
-// Mean over the pattern, within the same surface only, so that outlines stay sharp.
+// The mean over the pattern, within the same surface only, so that outlines stay sharp.
 std::vector<float> smoothed(const GeometryBuffer& g, const std::vector<float>& values, double tolerance) {
   std::vector<float> result(values.size(), 1);
   for (int y = 0; y < g.height; ++y) {

@@ -6,15 +6,15 @@
 
 namespace mpm::render {
 
-/// One sample a pixel: where it lies seen from the eye (z < 0 in front), which way it faces; z = 0 marks the
+/// A sample for each pixel: where it lies seen from the eye (z < 0 in front), and which way it faces; z = 0 marks the
 /// background.
 struct GeometryBuffer {
   int width = 0, height = 0;
   std::vector<std::array<float, 3>> position, normal;
 };
 
-/// Open fraction of the hemisphere in [0, 1] per pixel, 1 for the background.
-/// @param radii lengths in the scene's unit within which neighbours darken. @param scale pixels per unit of tangent.
+/// Open fraction of the hemisphere in [0, 1] per pixel, 1 for the background. `radii` are the lengths in the scene's
+/// unit within which neighbours darken; `scale` is pixels per unit of tangent.
 std::vector<float> open_sky(const GeometryBuffer& geometry, const std::array<double, 2>& radii, double scale);
 
 }  // namespace mpm::render

@@ -20,7 +20,7 @@ std::vector<Point> marker_outline(Marker shape, Point c, double r) {
       return points;
     }
     case Marker::square: {
-      const double s = 0.89 * r;  // the circle's area
+      const double s = 0.89 * r;  // half the side of the square with the circle's area
       return {{c.x - s, c.y - s}, {c.x + s, c.y - s}, {c.x + s, c.y + s}, {c.x - s, c.y + s}};
     }
     case Marker::triangle:

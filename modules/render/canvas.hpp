@@ -9,7 +9,7 @@
 
 namespace mpm::render {
 
-/// Pixels; x to the right, y downwards, origin at the top left.
+/// A place in pixels; x to the right, y downwards, origin at the top left.
 struct Point {
   double x = 0, y = 0;
 };
@@ -40,7 +40,7 @@ enum class Marker { circle, square, triangle, diamond, down_triangle, plus, cros
 enum class Anchor { start, middle, end };
 enum class Baseline { alphabetic, middle, top };
 
-/// `size` is the em in pixels; `rotation` turns counter-clockwise about the anchor, degrees.
+/// How text is set: `size` is the em in pixels; `rotation` turns counter-clockwise about the anchor, degrees.
 struct TextStyle {
   double size = 20;
   Colour colour = kInk;
@@ -64,9 +64,9 @@ class Canvas {
   virtual void band(std::span<const Point> upper, std::span<const Point> lower, const Colour& fill) = 0;
   /// Fills triangles, three vertices each, colours interpolated where the canvas can.
   virtual void triangles(std::span<const Vertex> vertices) = 0;
-  /// `at` is the anchor; text is UTF-8, superscript and subscript digits included.
+  /// Writes text; `at` is the anchor, and the text is UTF-8, superscript and subscript digits included.
   virtual void text(Point at, std::string_view utf8, const TextStyle& style) = 0;
-  /// Nothing is drawn outside `box` until unclip().
+  /// Clips: nothing is drawn outside `box` until unclip().
   virtual void clip(const Box& box) = 0;
   virtual void unclip() = 0;
 
@@ -76,7 +76,7 @@ class Canvas {
   void line(Point a, Point b, const Stroke& stroke);
   void rectangle(const Box& box, const Colour& fill);
   void outline(const Box& box, const Stroke& stroke);
-  /// A closed mark; `fill` with opacity 0 leaves it hollow.
+  /// Draws a closed mark; `fill` with opacity 0 leaves it hollow.
   void marker(Point centre, Marker shape, double radius, const Colour& fill, const Stroke& edge);
 };
 

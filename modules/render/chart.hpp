@@ -29,7 +29,7 @@ struct Theme {
 
 Theme theme_for(int width, int height);
 
-/// Breaks at spaces so that each line is at most `width` pixels; a longer word keeps a line of its own.
+/// Breaks the text at spaces so that each line is at most `width` pixels; a longer word keeps a line of its own.
 std::vector<std::string> wrapped(const Canvas& canvas, std::string_view text, double size, double width,
                                  bool bold = false);
 
@@ -41,7 +41,7 @@ struct Axis {
   double lo = 0, hi = 1;
   bool is_log = false;
   Ticks ticks;
-  /// 0 at lo, 1 at hi.
+  /// The value's place along the axis: 0 at lo, 1 at hi.
   double fraction(double value) const;
 };
 
@@ -51,9 +51,8 @@ struct Range {
   void add(double value);
 };
 
-/// A range with air at both ends. `pad` is a fraction of the span; a constant gets a span of its own.
-/// With `zero` the range reaches to zero when that is near.
-/// @param count how many numbers fit along the axis.
+/// A range with air at both ends. `pad` is a fraction of the span; a constant gets a span of its own. With `zero` the
+/// range reaches to zero when that is near. `count` is how many numbers fit along the axis.
 Axis make_axis(const Range& range, bool is_log, double pad, bool zero, int count);
 
 /// Places values in a box of pixels.
@@ -68,18 +67,18 @@ struct Scales {
 /// The widest number of a vertical axis, pixels.
 double widest_label(const Canvas& canvas, const Theme& theme, const Ticks& ticks);
 
-/// Value grid, numbers, axis names and the zero line where the sign matters.
+/// Draws the value grid, numbers, axis names and the zero line where the sign matters.
 void draw_axes(Canvas& canvas, const Theme& theme, const Scales& scales, const std::string& x_label,
                const std::string& y_label, double label_left, bool show_x_numbers = true);
 
-/// The same without names; numbers where asked for.
+/// Draws value grid and zero line without the axes' names; numbers where asked for.
 void draw_scales(Canvas& canvas, const Theme& theme, const Scales& scales, bool show_x_numbers, bool show_y_numbers);
 
 /// The text, or as much of its beginning as fits `width` with "…" after it.
 std::string shortened(const Canvas& canvas, std::string_view text, double size, double width, bool bold = false);
 
-/// Moves intervals along a line as little as possible so that none overlap, within [lo, hi].
-/// @param centres wanted centres. @param sizes lengths. @returns new centres, or nothing when they cannot all fit.
+/// Moves intervals along a line as little as possible so that none overlap, within [lo, hi]. `centres` are the wanted
+/// centres, `sizes` the lengths. Returns the new centres, or nothing when they cannot all fit.
 std::optional<std::vector<double>> spread(std::span<const double> centres, std::span<const double> sizes, double lo,
                                           double hi);
 
@@ -112,19 +111,19 @@ struct LegendEntry {
 double lay_legend(const Canvas& canvas, const Theme& theme, std::span<const LegendEntry> entries, const Box& space,
                   Canvas* canvas_to_draw);
 
-/// Writes stem + extension, whole or not at all; not synced to the disk, because a figure can be drawn again.
-/// @throws support::MachineError.
+/// Writes stem + extension, whole or not at all; not synced to the disk, because a figure can be drawn again. Throws
+/// support::MachineError.
 void write_part(const std::filesystem::path& stem, std::string_view extension, std::string_view bytes);
 
-/// Draws the same layout as STEM.png and, when `with_svg`, STEM.svg; writes `csv` as STEM.csv.
-/// @throws support::MachineError when a file cannot be written.
+/// Draws the same layout as STEM.png and, when `with_svg`, STEM.svg; writes `csv` as STEM.csv. Throws
+/// support::MachineError when a file cannot be written.
 void write_all(const std::filesystem::path& stem, int width, int height, const std::string& title,
                const std::string& csv, const std::function<void(Canvas&)>& draw, bool with_svg = true);
 
-/// @throws std::invalid_argument unless both are between 64 and 32768 pixels.
+/// Throws std::invalid_argument unless both are between 64 and 32768 pixels.
 void check_size(int width, int height);
 
-/// "3 points not finite, left out"; empty when n is 0.
+/// The count with its noun and a remark: "3 points not finite, left out"; empty when n is 0.
 std::string counted(std::size_t n, const std::string& noun, const std::string& what);
 
 /// Dash pattern of the k-th black line: solid, dashed, then dotted.

@@ -27,16 +27,16 @@ Colour viridis(double t);
 /// Blue-white-red at t in [-1, 1], exactly white at 0; t is clamped.
 Colour diverging(double t);
 
-/// a + (b - a) t, opacity included.
+/// The mixture a + (b - a) t, opacity included.
 Colour mix(const Colour& a, const Colour& b, double t);
 
-/// The same hue, dark enough to be read as text on white.
+/// A colour of the same hue, dark enough to be read as text on white.
 Colour readable_text(const Colour& colour);
 
 /// Black or white, whichever is easier to read upon `ground`.
 Colour text_upon(const Colour& ground);
 
-/// "#rrggbb", opacity left out.
+/// The colour as "#rrggbb", opacity left out.
 std::string hex(const Colour& colour);
 
 }  // namespace mpm::render

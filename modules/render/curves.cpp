@@ -31,7 +31,7 @@ std::vector<double> dash_of(std::size_t index, double u) {
 
 Look look_of(SeriesKind kind, std::size_t coloured, std::size_t black, double u) {
   const Colour colour = palette(coloured);
-  // Shifted at each return of the colours, so that no pair of colour and mark comes twice in 49 series.
+  // Marks are shifted at each return of the colours, so that no pair of colour and mark comes twice in 49 series.
   const Marker marker = kMarkers[(coloured + coloured / 7 * 3) % std::size(kMarkers)];
   switch (kind) {
     case SeriesKind::exact:
@@ -46,7 +46,8 @@ Look look_of(SeriesKind kind, std::size_t coloured, std::size_t black, double u)
   return {colour, {colour, 3.6 * u, dash_of(coloured, u)}, marker, true};
 }
 
-// Least x and least y are best; a point is dominated when another is no worse in both and better in one.
+// Marks the Pareto front. Least x and least y are best; a point is dominated when another is no worse in both and
+// better in one.
 std::vector<Point> mark_front(Content& content) {
   struct Candidate {
     double x, y;
@@ -78,7 +79,8 @@ std::vector<Point> staircase(const std::vector<Point>& front, const Scales& s) {
   return line;
 }
 
-// Every point of a short series; on a long one a few, staggered so that the marks of coinciding lines lie side by side.
+// The points that get a mark: every point of a short series; on a long one a few, staggered so that the marks of
+// coinciding lines lie side by side.
 std::vector<std::size_t> marked_points(const std::vector<Point>& line, std::size_t rank, std::size_t ranks,
                                        bool only_marks) {
   std::vector<std::size_t> chosen;
@@ -127,7 +129,7 @@ void draw_marks(Canvas& canvas, const Theme& theme, const Scales& s, const Conte
 }
 
 void draw_series(Canvas& canvas, const Theme& theme, const Scales& s, const Content& content) {
-  // Coloured lines first, then the thin exact ones over them, then marks, published ones on top.
+  // The order of drawing: coloured lines first, then the thin exact ones over them, then marks, published ones on top.
   const auto is_line = [](const Shown& shown, SeriesKind kind) { return shown.data.kind == kind; };
   for (const SeriesKind kind : {SeriesKind::computed, SeriesKind::exact}) {
     for (const Shown& shown : content.series) {
@@ -135,7 +137,7 @@ void draw_series(Canvas& canvas, const Theme& theme, const Scales& s, const Cont
     }
   }
   for (const SeriesKind kind : {SeriesKind::computed, SeriesKind::point, SeriesKind::published}) {
-    // Crosses over filled marks: both stay to be seen where points coincide.
+    // Crosses are drawn over filled marks: both stay to be seen where points coincide.
     for (const bool strokes : {false, true}) {
       for (std::size_t rank = 0; rank < content.series.size(); ++rank) {
         const Shown& shown = content.series[rank];
@@ -144,7 +146,7 @@ void draw_series(Canvas& canvas, const Theme& theme, const Scales& s, const Cont
       }
     }
   }
-  for (const Shown& shown : content.series) {  // the front once more, over pale marks of later series
+  for (const Shown& shown : content.series) {  // the front is drawn once more, over pale marks of later series
     if (std::find(shown.is_faded.begin(), shown.is_faded.end(), true) == shown.is_faded.end()) continue;
     const auto points = pixels_of(shown.data, s);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -184,7 +186,7 @@ std::pair<Box, double> place_label(const Theme& theme, const Scales& s, Point at
                                    const Occupied& occupied) {
   const double gap = 14 * theme.unit, height = theme.text;
   const double directions[][2] = {{1, 0},   {-1, 0}, {0, -1}, {0, 1},  {1, -1},  {1, 1},
-                                  {-1, -1}, {-1, 1}, {0, -2}, {1, -2}, {-1, -2}, {0, 2}};  // the last only in a crowd
+                                  {-1, -1}, {-1, 1}, {0, -2}, {1, -2}, {-1, -2}, {0, 2}};  // the last ones in crowds
   double best_cost = std::numeric_limits<double>::max();
   Box best;
   for (const auto& d : directions) {
@@ -213,9 +215,9 @@ void draw_point_labels(Canvas& canvas, const Theme& theme, const Scales& s, cons
   for (const Label& label : labels) {
     const double width = canvas.measure_text(label.text, theme.text), air = 14 * theme.unit;
     const auto [box, cost] = place_label(theme, s, label.at, width, labels_to, occupied);
-    occupied.boxes.push_back({box.x0 - air, box.y0, box.x1 + air, box.y1});  // two side by side would read as one
+    occupied.boxes.push_back({box.x0 - air, box.y0, box.x1 + air, box.y1});  // two labels without air would read as one
     const Point corners[] = {{box.x0, box.y0}, {box.x1, box.y0}, {box.x1, box.y1}, {box.x0, box.y1}};
-    if (cost < 10) canvas.polygon(corners, kWhite);  // over a line that no place keeps clear of; never over a mark
+    if (cost < 10) canvas.polygon(corners, kWhite);  // covers lines that no place keeps clear of, never a mark
     const Colour colour = mix(kWhite, kInk, label.is_faded ? 0.6 : 1);
     canvas.text(box.centre(), label.text, theme.style(colour, Anchor::middle, Baseline::middle));
   }

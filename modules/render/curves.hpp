@@ -31,16 +31,16 @@ struct Content {
   bool has_long_lines = false;
 };
 
-/// "computed", "exact", "published" or "point".
+/// The kind as a word: "computed", "exact", "published" or "point".
 const char* name_of(SeriesKind kind);
 
-/// Colour, dash and mark of each series by its turn among those of its kind. @param u one pixel of the theme.
+/// Colour, dash and mark of each series by its turn among those of its kind. `u` is one pixel of the theme.
 std::vector<Look> looks_of(std::span<const Series> series, double u);
 
-/// @throws std::invalid_argument naming the series whose arrays differ in length.
+/// Throws std::invalid_argument naming the series whose arrays differ in length.
 void check_series(std::span<const Series> series);
 
-/// The points that can be shown, in the order given. @param looks one a series.
+/// The points that can be shown, in the order given. `looks` has one look a series.
 Content select(std::span<const Series> series, std::span<const Look> looks, bool log_x, bool log_y);
 
 /// Every point shown, a row each; with `panels` the panel's title is the first column. Names of points and what
@@ -48,17 +48,17 @@ Content select(std::span<const Series> series, std::span<const Look> looks, bool
 std::string table_of(std::span<const Content> contents, const std::vector<std::string>& panels,
                      const std::string& x_label, const std::string& y_label);
 
-/// What was left out, for the footnote.
+/// What the footnote says of points that were left out.
 std::string remark_of(const Content& content);
 
-/// Axes that hold all of the contents. @param count_x,count_y how many numbers fit along them.
+/// Axes that hold all of the contents. `count_x` and `count_y` are how many numbers fit along them.
 Scales axes_of(std::span<const Content> contents, bool log_x, bool log_y, int count_x, int count_y);
 
-/// Least squares of log y over log x; nothing for an exact series, or where x does not vary.
-/// @pre all values are positive.
+/// The observed order: least squares of log y over log x. Nothing for an exact series, or where x does not vary. All
+/// values must be positive.
 std::optional<double> order_of(const Shown& shown);
 
-/// Everything inside the axes. @param labels_to how far to the right a point's label may reach.
+/// What is drawn inside the axes. `labels_to` is how far to the right a point's label may reach.
 struct CurveOptions {
   bool slopes = false, front = false;
   double labels_to = 0;
@@ -68,7 +68,7 @@ void draw_curves(Canvas& canvas, const Theme& theme, const Scales& scales, Conte
 
 void draw_mark(Canvas& canvas, const Look& look, Point at, double radius, double u, double strength = 1);
 
-/// A piece of the line with the mark on it. @pre `shown` outlives the entry.
+/// The legend's entry: a piece of the line with the mark on it. `shown` must outlive the entry.
 LegendEntry legend_entry(const Shown& shown, double u);
 
 }  // namespace mpm::render

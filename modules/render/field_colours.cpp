@@ -39,7 +39,7 @@ FieldColours::FieldColours(const ParticleFrame& frame, const std::vector<std::si
   }
   const double size = std::max(std::fabs(lo_), std::fabs(hi_));
   if (!(hi_ - lo_ > 1e-9 * size)) {
-    // One value alone sits in the middle of a scale wide enough to be numbered.
+    // A single value sits in the middle of a scale wide enough to be numbered.
     const double half = size > 0 ? 0.1 * size : 1;
     const double centre = (lo_ + hi_) / 2;
     lo_ = centre - half, hi_ = centre + half;
@@ -61,7 +61,7 @@ Colour FieldColours::operator()(double value) const {
 Ticks FieldColours::ticks(const Theme& theme, double height) const {
   int count = std::clamp(static_cast<int>(height / theme.text / 4), 2, 8);
   Ticks marks = linear_ticks(lo_, hi_, count);
-  // One number alone gives no scale: a short bar gets closer marks.
+  // A single number gives no scale: a short bar gets closer marks.
   while (marks.labels.size() < 3 && count < 8) marks = linear_ticks(lo_, hi_, ++count);
   return marks;
 }

@@ -1,4 +1,4 @@
-// From a particle's value to its colour, and the key that says which is which.
+// The colour of a particle's value, and the key that says which is which.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace mpm::render {
 /// Resolves a frame's colour scale once for all of its particles.
 class FieldColours {
  public:
-  /// @param shown indices of the particles that are drawn.
+  /// Resolves the scale; `shown` holds the indices of the particles that are drawn.
   FieldColours(const ParticleFrame& frame, const std::vector<std::size_t>& shown);
 
   Colour operator()(double value) const;

@@ -8,13 +8,13 @@
 
 namespace mpm::render {
 
-/// A glyph ready to be laid: which outline, at which scale of the em, raised by how much of the em.
+/// A glyph ready to be laid out: which outline, at which scale of the em, raised by how much of the em.
 struct GlyphPlace {
   int face = 0;        // index into the font set
   unsigned glyph = 0;  // FreeType's glyph index
   double scale = 1;    // superscripts and subscripts are smaller
   double rise = 0;     // em, upwards
-  double advance = 0;  // em, of the whole string's size
+  double advance = 0;  // em of the whole string's size
 };
 
 /// Coverage 0..255 in rows of `width`; (left, top) is the bitmap's corner from the pen, y upwards, pixels.
@@ -23,16 +23,17 @@ struct GlyphBitmap {
   std::vector<std::uint8_t> coverage;
 };
 
-/// Open Sans, with DejaVu Sans for the glyphs it lacks; either alone will do. One instance a thread.
+/// The fonts of figures: Open Sans, with DejaVu Sans for the glyphs it lacks; either alone will do. Each thread has one
+/// instance.
 class FontSet {
  public:
-  /// @throws std::runtime_error naming the Debian package when no usable font is installed.
+  /// The calling thread's fonts. Throws std::runtime_error naming the Debian package when no usable font is installed.
   static FontSet& of_this_thread();
 
   std::vector<GlyphPlace> place(std::string_view utf8, bool bold) const;
-  /// @param pixels size of the em in pixels.
+  /// The bitmap of a glyph; `pixels` is the size of the em in pixels.
   GlyphBitmap rasterise(int face, unsigned glyph, double pixels) const;
-  /// Width in em.
+  /// Width of the text in em.
   double width(std::string_view utf8, bool bold) const;
 
   ~FontSet();

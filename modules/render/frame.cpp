@@ -81,7 +81,7 @@ std::string remark(const ParticleFrame& f, const std::vector<std::size_t>& shown
                 counted(outside, "particle", "outside the domain"));
 }
 
-// Metres of a 2-D domain to pixels, one scale for both axes.
+// The map from metres of a 2-D domain to pixels, with one scale for both axes.
 struct PlaneView {
   Box box;
   double x0, y0, scale;
@@ -183,7 +183,7 @@ void draw_edge_lengths(Canvas& canvas, const Theme& theme, const ParticleFrame& 
                        const Vec3& hi) {
   const auto axes = view_axes(f);
   const auto name = [&](int k) { return std::string(kAxisNames[axes[k]]) + ": " + metres(hi[k] - lo[k]); };
-  const double away = 0.11 * std::max(hi[0] - lo[0], hi[1] - lo[1]);  // beyond the rim of the ground
+  const double away = 0.11 * std::max(hi[0] - lo[0], hi[1] - lo[1]);  // places the names beyond the rim of the ground
   const Point front = camera.project({(lo[0] + hi[0]) / 2, lo[1] - away, lo[2]});
   const Point side = camera.project({hi[0] + away, (lo[1] + hi[1]) / 2, lo[2]});
   const Point post = camera.project({lo[0], lo[1], (lo[2] + hi[2]) / 2});
@@ -192,7 +192,7 @@ void draw_edge_lengths(Canvas& canvas, const Theme& theme, const ParticleFrame& 
   canvas.text({post.x - 0.6 * theme.text, post.y}, name(2), theme.style(kInk, Anchor::end, Baseline::middle));
 }
 
-// A 3-D picture: the scene is rendered once, then laid under the writing.
+// Draws a 3-D picture: the scene is rendered once, then laid under the writing.
 Image draw_space(const ParticleFrame& f, const Theme& theme, const std::vector<std::size_t>& shown,
                  const FieldColours& colours) {
   const auto axes = view_axes(f);

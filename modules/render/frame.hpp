@@ -10,7 +10,8 @@
 
 namespace mpm::render {
 
-/// viridis: sequential; diverging: blue-white-red with zero at white; categorical: values are 0, 1, 2, ...
+/// Maps of values to colours. viridis is sequential; diverging is blue-white-red with zero at white; categorical takes
+/// the values 0, 1, 2, ...
 enum class ColourMap { viridis, diverging, categorical };
 
 /// Lengths in metres, times in seconds; n is the number of particles.
@@ -33,10 +34,10 @@ struct ParticleFrame {
   int width = 1600, height = 1000;  // pixels
 };
 
-/// Writes STEM.png, STEM.csv (positions and values) and, in 2-D up to 20 000 particles, STEM.svg.
-/// Particles with a number that is not finite are left out; the footnote says so.
-/// @throws std::invalid_argument when array lengths, the domain or the size do not fit.
-/// @throws std::runtime_error naming path and cause when a file cannot be written, or no font or GL context is there.
+/// Writes STEM.png, STEM.csv (positions and values) and, in 2-D up to 20 000 particles, STEM.svg. Particles with a
+/// number that is not finite are left out; the footnote says so. Throws std::invalid_argument when array lengths, the
+/// domain or the size do not fit, and std::runtime_error naming path and cause when a file cannot be written, or no
+/// font or GL context is there.
 void write_frame(const ParticleFrame& frame, const std::filesystem::path& stem);
 
 }  // namespace mpm::render

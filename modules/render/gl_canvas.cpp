@@ -73,7 +73,7 @@ void GlCanvas::solid(std::span<const Point> points, const Stroke& stroke) {
   const int sides = std::clamp(static_cast<int>(half * samples_ * 2), 6, 32);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     thick_segment(points[i], points[i + 1], half);
-    // Round joins; a translucent line would show them, so it goes without.
+    // Joins are round; a translucent line would show them, so it goes without.
     if (i > 0 && stroke.colour.a == 1 && stroke.width > 1) disc(points[i], half, sides);
   }
 }
@@ -109,7 +109,7 @@ const GlCanvas::Glyph& GlCanvas::glyph(int face, unsigned index, double pixels) 
   Glyph& result = slot->second;
   if (!is_new) return result;
   const GlyphBitmap bitmap = FontSet::of_this_thread().rasterise(face, index, pixels);
-  // One clear texel all round, so that filtering at the edge of a turned glyph finds nothing to smear.
+  // The bitmap has one clear texel all round, so that filtering at the edge of a turned glyph finds nothing to smear.
   result = {0, bitmap.width + 2, bitmap.height + 2, bitmap.left - 1, bitmap.top + 1};
   std::vector<std::uint8_t> padded(static_cast<std::size_t>(result.width) * result.height, 0);
   for (int row = 0; row < bitmap.height; ++row) {

@@ -14,8 +14,8 @@ namespace mpm::render {
 /// Draws one rectangular tile of a picture; coordinates stay those of the whole picture.
 class GlCanvas : public Canvas {
  public:
-  /// @param tile which part of the picture, whole pixels. @param samples samples a pixel in each direction.
-  /// @throws std::runtime_error when no OpenGL context can be made.
+  /// `tile` is the part of the picture in whole pixels, `samples` the samples a pixel in each direction. Throws
+  /// std::runtime_error when no OpenGL context can be made.
   GlCanvas(const Box& tile, int samples);
 
   void polyline(std::span<const Point> points, const Stroke& stroke) override;

@@ -14,7 +14,7 @@ constexpr int kBlur[kLayers] = {2, 3, 5, 7, 10, 14};  // cells; a shadow softens
 
 using Grid = std::vector<float>;
 
-// Running mean along one direction; three of them come close to a Gaussian.
+// Takes the running mean along one direction; three of them come close to a Gaussian.
 void blur_rows(Grid& grid, int radius, std::size_t along, std::size_t across) {
   std::vector<float> line(kSize);
   for (std::size_t row = 0; row < kSize; ++row) {
@@ -54,7 +54,7 @@ GroundShadow cast_shadow(const std::vector<Ball>& balls, const Vec3& to_light, d
     while (height > kReach[layer] * length) ++layer;
     const double x = ball.centre[0] - to_light[0] / to_light[2] * height;
     const double y = ball.centre[1] - to_light[1] / to_light[2] * height;
-    const double least = 1.0;  // cells: a ball smaller than a cell still casts something
+    const double least = 1.0;  // radius in cells: a ball smaller than a cell still casts something
     const double cx = (x - x0) * sx, cy = (y - y0) * sy;
     if (!(cx > -kSize && cx < 2 * kSize && cy > -kSize && cy < 2 * kSize)) continue;
     splat(layers[static_cast<std::size_t>(layer)], cx, cy, std::max(ball.radius * sx, least),

@@ -14,7 +14,7 @@ struct GroundShadow {
   std::vector<float> light;  // size * size, x fastest
 };
 
-/// @param to_light unit vector towards the light. @param ground height of the plane, m.
+/// Casts the balls' shadow. `to_light` is the unit vector towards the light, `ground` the height of the plane, m.
 GroundShadow cast_shadow(const std::vector<Ball>& balls, const Vec3& to_light, double ground, double x0, double y0,
                          double x1, double y1);
 

@@ -12,7 +12,7 @@ namespace mpm::render {
 namespace {
 
 constexpr Colour kNoColour{0.92, 0.92, 0.92};
-constexpr double kLine = 1.2;  // of lines in a cell, in em
+constexpr double kLine = 1.2;  // spacing of lines in a cell, in em
 
 // The least size of text that a picture may have: cells are narrow.
 double cell_text(const Theme& theme) {
@@ -57,10 +57,10 @@ Axis colours_of(const HeatMap& map, double factor, int count) {
   return make_axis(range, map.log_scale, 0, false, count);
 }
 
-/// Where everything stands.
+/// Places and sizes of everything on the page.
 struct Layout {
   Box cells;
-  Axis colours;                                         // of the values over `factor`
+  Axis colours;                                         // axis of the values over `factor`
   double factor = 1;                                    // taken out of all numbers
   std::vector<std::vector<std::string>> rows, columns;  // wrapped names
   double column_width = 0, row_height = 0;
@@ -87,7 +87,7 @@ std::vector<std::string> fitted(const Canvas& canvas, const Theme& theme, const 
   return lines;
 }
 
-// Level where every word of every name fits its column in at most three lines; else upright.
+// Lays column names level where every word of every name fits its column in at most three lines; else upright.
 double lay_column_names(const Canvas& canvas, const Theme& theme, const HeatMap& map, double page_height, Layout& at) {
   const double width = at.column_width - 0.5 * theme.text;
   std::size_t lines = 1;

@@ -19,10 +19,10 @@ struct Image {
   const std::uint8_t* at(int x, int y) const { return rgb.data() + 3 * (static_cast<std::size_t>(y) * width + x); }
 };
 
-/// The bytes of a PNG file. @throws std::runtime_error when libpng refuses.
+/// The bytes of a PNG file. Throws std::runtime_error when libpng refuses.
 std::string encode_png(const Image& image);
 
-/// @throws std::runtime_error naming the path and libpng's reason.
+/// Reads a PNG file. Throws std::runtime_error naming the path and libpng's reason.
 Image read_png(const std::filesystem::path& path);
 
 }  // namespace mpm::render

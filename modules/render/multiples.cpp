@@ -24,14 +24,14 @@ void check(const Multiples& m) {
   }
 }
 
-/// What the panels show, and each look once.
+/// What the panels show, and every look once.
 struct Sheet {
   std::vector<Content> contents;  // one a panel
   std::vector<Shown> legend;
   std::string remark;
 };
 
-// Series of all panels, each label and kind once.
+// The series of all panels, each label and kind once.
 std::vector<Series> distinct(const Multiples& m) {
   std::vector<Series> all;
   for (const Panel& panel : m.panels) {
@@ -73,7 +73,7 @@ struct Grid {
   std::size_t columns = 1, rows = 1;
 };
 
-// Panels a little wider than high, and few places left empty.
+// The grid whose panels are a little wider than high and which leaves few places empty.
 Grid grid_of(std::size_t panels, int columns, const Box& space) {
   const auto rows_for = [&](std::size_t c) { return (panels + c - 1) / c; };
   if (panels == 0) return {};
@@ -96,10 +96,10 @@ bool has_slopes(const Multiples& m) {
 /// Sizes of the grid; all panels are equal.
 struct Layout {
   Grid grid;
-  bool orders_as_text = false;   // above the axes: triangles have no room in small panels
-  double left = 0, top = 0;      // of the axes of the first panel
-  double width = 0, height = 0;  // of a panel's axes
-  double gap_x = 0, gap_y = 0;   // between axes, titles and numbers included
+  bool orders_as_text = false;   // orders stand above the axes: triangles have no room in small panels
+  double left = 0, top = 0;      // corner of the first panel's axes
+  double width = 0, height = 0;  // size of a panel's axes
+  double gap_x = 0, gap_y = 0;   // gaps between axes, titles and numbers included
 };
 
 // A panel has numbers beneath it where no panel follows below.
@@ -114,7 +114,7 @@ Layout lay_out(const Canvas& canvas, const Theme& theme, const Multiples& m, con
   const auto columns = static_cast<double>(at.grid.columns), rows = static_cast<double>(at.grid.rows);
   const double numbers = 16 * theme.unit + 1.2 * theme.text;
   const double title_alone = 1.7 * theme.text;
-  const double least = 16 * theme.text;  // of a panel that triangles fit
+  const double least = 16 * theme.text;  // least size of a panel that triangles fit
   at.orders_as_text =
       has_slopes(m) && std::min(space.width() / columns, space.height() / rows - title_alone - numbers) < least;
   const double title = title_alone + (at.orders_as_text ? 1.3 * theme.text : 0);
@@ -137,9 +137,9 @@ Layout lay_out(const Canvas& canvas, const Theme& theme, const Multiples& m, con
   return at;
 }
 
-constexpr double order_mark = 0.9, order_gap = 0.6;  // in sizes of text
+constexpr double order_mark = 0.9, order_gap = 0.6;  // sizes of text
 
-// Digits behind the point with which the orders of every panel have room; one at the least.
+// The digits behind the point with which the orders of every panel have room; at least one.
 int digits_of_orders(const Canvas& canvas, const Theme& theme, const std::vector<Content>& contents, double width) {
   for (const Content& content : contents) {
     double end = -order_gap * theme.text;
@@ -151,7 +151,8 @@ int digits_of_orders(const Canvas& canvas, const Theme& theme, const std::vector
   return 2;
 }
 
-// The observed orders of a panel in the colours of their series, each beside its mark; what has no room is dotted.
+// Draws the observed orders of a panel in the colours of their series, each beside its mark; an order that has no room
+// is dotted.
 void draw_orders(Canvas& canvas, const Theme& theme, const Content& content, Point at, double width, int digits) {
   double x = at.x;
   for (const Shown& shown : content.series) {

@@ -96,7 +96,7 @@ Ticks linear_ticks(double lo, double hi, int count) {
 
 Ticks log_ticks(double lo, double hi, int count) {
   const double span = std::log10(hi / lo);
-  if (span < 0.7) return linear_ticks(lo, hi, count);  // no two decades to speak of: plain steps read better
+  if (span < 0.7) return linear_ticks(lo, hi, count);  // with less than a decade plain steps read better
   Ticks ticks;
   const int first = static_cast<int>(std::floor(std::log10(lo) - 1e-9));
   const int last = static_cast<int>(std::ceil(std::log10(hi) + 1e-9));

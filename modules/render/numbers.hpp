@@ -14,13 +14,12 @@ struct Ticks {
   int exponent = 0;
 };
 
-/// Multiples of 1, 2 or 5 times a power of ten in [lo, hi], about `count` of them; a common factor of 10³ᵏ is taken out
-/// when the largest value is 10⁴ or more, or below 10⁻².
-/// @pre lo < hi, both finite.
+/// Marks at multiples of 1, 2 or 5 times a power of ten in [lo, hi], about `count` of them; a common factor of 10³ᵏ is
+/// taken out when the largest value is 10⁴ or more, or below 10⁻². Requires lo < hi, both finite.
 Ticks linear_ticks(double lo, double hi, int count);
 
 /// Decades in [lo, hi] as major marks, 2 to 9 between them as minor; where `count` allows, 2 and 5 are labelled too.
-/// @pre 0 < lo < hi.
+/// Requires 0 < lo < hi.
 Ticks log_ticks(double lo, double hi, int count);
 
 /// The largest of 1, 2, 5 times a power of ten that is not above `value` (> 0).

@@ -7,11 +7,12 @@
 
 namespace mpm::render {
 
-/// A compatibility context with depth buffer; current on the creating thread while it lives, unless another is made.
+/// A compatibility context with depth buffer; it is current on the creating thread while it lives, unless another is
+/// made.
 class OsMesaContext {
  public:
-  /// @param width,height pixels.
-  /// @throws std::runtime_error with a remedy when the context cannot be made.
+  /// Makes a context of `width` by `height` pixels. Throws std::runtime_error with a remedy when the context cannot be
+  /// made.
   OsMesaContext(int width, int height);
   ~OsMesaContext();
   OsMesaContext(const OsMesaContext&) = delete;
@@ -19,11 +20,11 @@ class OsMesaContext {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// RGBA, rows from the top; complete after finish().
+  /// The picture as RGBA, rows from the top; complete after finish().
   const std::vector<std::uint8_t>& pixels() const { return pixels_; }
   /// Waits for all drawing.
   void finish();
-  /// Depth in [0, 1], rows from the top; waits for all drawing.
+  /// Depth of every pixel in [0, 1], rows from the top; waits for all drawing.
   std::vector<float> depth();
 
  private:

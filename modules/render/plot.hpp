@@ -8,8 +8,8 @@
 
 namespace mpm::render {
 
-/// computed: coloured line with markers; exact: thin black line; published: black open markers with error bars;
-/// point: coloured markers only.
+/// How a series is drawn. computed: coloured line with markers; exact: thin black line; published: black open markers
+/// with error bars; point: coloured markers only.
 enum class SeriesKind { computed, exact, published, point };
 
 /// x and y have equally many values; `error` is empty or holds the half length of each point's error bar, in y's unit.
@@ -62,12 +62,12 @@ struct HeatMap {
   std::vector<std::string> x_names = {}, y_names = {};  // columns from the left, rows from the top
   std::vector<double> values = {};                      // y_names.size() rows of x_names.size(); NaN: not run
   std::vector<std::string> notes = {};  // empty, or one a cell: beside its number, or in place of "not run"
-  bool log_scale = false;               // of the colours
-  int digits = 3;                       // significant ones of the numbers in the cells
+  bool log_scale = false;               // whether the colours follow the logarithm
+  int digits = 3;                       // significant digits of the numbers in the cells
   int width = 1600, height = 1000;
 };
 
-/// One of small multiples.
+/// One panel of small multiples.
 struct Panel {
   std::string title = {};
   std::vector<Series> series = {};
@@ -80,19 +80,18 @@ struct Multiples {
   bool log_x = false, log_y = false;
   std::vector<Panel> panels = {};                      // row by row
   int columns = 0;                                     // 0: chosen so that panels are a little wider than high
-  bool slope_triangles = false, pareto_front = false;  // as in Plot, a panel each
+  bool slope_triangles = false, pareto_front = false;  // as in Plot, for each panel
   int width = 1600, height = 1000;
 };
 
-/// Points that are not finite, and on a logarithmic axis those that are not positive, are left out; the footnote says
-/// so.
-/// @param stem path without extension; its folder exists.
-/// @throws std::invalid_argument when array lengths or the size do not fit.
-/// @throws std::runtime_error naming path and cause when a file cannot be written, or no font or GL context is there.
+/// Writes STEM.png, STEM.svg and STEM.csv; `stem` is a path without extension whose folder exists. Points that are not
+/// finite, and on a logarithmic axis those that are not positive, are left out; the footnote says so. Throws
+/// std::invalid_argument when array lengths or the size do not fit, and std::runtime_error naming path and cause when a
+/// file cannot be written, or no font or GL context is there.
 void write_figure(const Plot& plot, const std::filesystem::path& stem);
 void write_figure(const StackedPlot& plot, const std::filesystem::path& stem);
 void write_figure(const OutcomeMap& map, const std::filesystem::path& stem);
-/// A value that is not finite, or on a logarithmic scale not positive, is written without a colour.
+/// In a heat map a value that is not finite, or on a logarithmic scale not positive, is written without a colour.
 void write_figure(const HeatMap& map, const std::filesystem::path& stem);
 void write_figure(const Multiples& multiples, const std::filesystem::path& stem);
 

@@ -22,7 +22,7 @@ constexpr int kSamples = 2;                        // samples a pixel in each di
 constexpr Vec3 kViewDirection{0.42, -0.83, 0.36};  // from the domain towards the eye
 constexpr Vec3 kToLight{-0.35, -0.40, 0.85};       // normalised where it is used
 constexpr Colour kGround{0.93, 0.93, 0.93};
-constexpr double kGroundOverhang = 0.05;  // of the longer side of the domain's floor
+constexpr double kGroundOverhang = 0.05;  // fraction of the longer side of the domain's floor
 
 double dot(const Vec3& a, const Vec3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -190,7 +190,7 @@ void draw_edges(const Vec3& lo, const Vec3& hi, double width) {
 struct Stage {
   std::vector<BallVertex> balls;
   GroundShadow shadow;
-  Vec3 lo, hi, up, light;  // the last two seen from the eye
+  Vec3 lo, hi, up, light;  // up and light are seen from the eye
   unsigned texture = 0;
   GLuint program = 0;
   double line_width = 1;  // samples
@@ -204,7 +204,7 @@ struct Stage {
       glEnable(GL_TEXTURE_2D);
       glColor3d(kGround.r, kGround.g, kGround.b);
     }
-    // Set back a little, or the domain's lower edges would sink into it here and there.
+    // The ground is set back a little, or the domain's lower edges would sink into it here and there.
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(2, 8);
     draw_ground(shadow, lo[2]);
@@ -218,7 +218,7 @@ struct Stage {
   }
 };
 
-// The first sample of each pixel, so that a pixel never mixes two surfaces.
+// Takes the first sample of each pixel, so that a pixel never mixes two surfaces.
 GeometryBuffer geometry_of(const Camera& camera, const std::vector<float>& depth,
                            const std::vector<std::uint8_t>& normals) {
   const Box& view = camera.view();

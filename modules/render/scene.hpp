@@ -20,15 +20,15 @@ struct Ball {
 /// Looks at the domain's box from a fixed direction, so that every frame of a film has the same view.
 class Camera {
  public:
-  /// @param lower,upper the box, third axis upwards. @param inner pixels that the box fills but does not leave.
-  /// @param view the whole rectangle of the picture that is rendered, whole pixels.
+  /// `lower` and `upper` bound the domain, third axis upwards; `inner` is the rectangle of pixels that the box fills
+  /// but does not leave; `view` is the whole rectangle of the picture that is rendered, in whole pixels.
   Camera(const Vec3& lower, const Vec3& upper, const Box& inner, const Box& view);
 
   /// Where a point of space falls on the picture.
   Point project(const Vec3& point) const;
   /// Coordinates seen from the eye: x right, y up, -z forward.
   Vec3 to_eye(const Vec3& point) const;
-  /// The same as a column-major matrix for OpenGL.
+  /// The map to_eye as a column-major matrix for OpenGL.
   std::array<double, 16> matrix() const;
 
   const Box& view() const { return view_; }
@@ -44,8 +44,7 @@ class Camera {
 };
 
 /// Renders balls, ground, soft shadow and the domain's edges with ambient occlusion; as large as the camera's view.
-/// @param line_width of the edges, pixels.
-/// @throws std::runtime_error when OpenGL cannot be used.
+/// `line_width` is that of the edges, pixels. Throws std::runtime_error when OpenGL cannot be used.
 Image render_scene(const std::vector<Ball>& balls, const Vec3& lower, const Vec3& upper, const Camera& camera,
                    double line_width);
 

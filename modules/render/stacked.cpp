@@ -37,7 +37,7 @@ std::vector<std::size_t> finite_rows(const StackedPlot& plot) {
   return rows;
 }
 
-// One cause between two curves, in the data's units.
+// An area of one cause between two curves, in the data's units.
 struct Layer {
   std::vector<double> from, to;
   Colour colour;
@@ -69,7 +69,7 @@ double interpolated(std::span<const Point> line, double x) {
   return b.x > a.x ? a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x) : b.y;
 }
 
-// The second cue of an area: white strokes of a direction of its own, cut where they leave the band.
+// Hatches an area as its second cue: white strokes of a direction of its own, cut where they leave the band.
 void hatch(Canvas& canvas, std::span<const Point> upper, std::span<const Point> lower, int pattern, double u) {
   constexpr double slopes[] = {0, 1, -1, 0, 2.5};
   if (pattern == 0) return;
@@ -161,7 +161,7 @@ Scales scales_of(const std::vector<double>& x, const std::vector<Layer>& layers,
   return s;
 }
 
-// The name of each cause, tied to the middle of its area's right end.
+// Writes the name of each cause, tied to the middle of its area's right end.
 void name_layers(Canvas& canvas, const Theme& theme, const StackedPlot& plot, const std::vector<Layer>& layers,
                  double last_x, const Scales& s) {
   std::vector<EndLabel> labels;

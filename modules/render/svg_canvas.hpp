@@ -9,13 +9,14 @@ namespace mpm::render {
 
 class SvgCanvas : public Canvas {
  public:
-  /// @param width,height pixels of the view box. @param title the document's title, read out by screen readers.
+  /// `width` and `height` are the pixels of the view box; `title` is the document's title, which screen readers read
+  /// out.
   SvgCanvas(int width, int height, std::string_view title);
 
   void polyline(std::span<const Point> points, const Stroke& stroke) override;
   void polygon(std::span<const Point> points, const Colour& fill) override;
   void band(std::span<const Point> upper, std::span<const Point> lower, const Colour& fill) override;
-  /// Each triangle takes the mean of its colours.
+  /// Fills each triangle with the mean of its colours.
   void triangles(std::span<const Vertex> vertices) override;
   void text(Point at, std::string_view utf8, const TextStyle& style) override;
   void clip(const Box& box) override;

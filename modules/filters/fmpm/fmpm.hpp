@@ -17,8 +17,8 @@ struct Fmpm {
 
   MPM_HD static int iterations(const Parameters& p) { return static_cast<int>(p.order) - 1; }
 
-  /// Stable to 1 / sqrt(k) of the unfiltered step (Nairn 2026, arXiv 2604.07307): what the grid hardly sees is
-  /// multiplied by up to k, and its stiffness with it.
+  /// The filtered step is stable up to 1 / sqrt(k) of the unfiltered one (Nairn 2026, arXiv 2604.07307): modes that the
+  /// grid hardly sees are multiplied by up to k, and their stiffness with them.
   MPM_HD static double step_limit(const Parameters& p, double unfiltered) {
     return unfiltered / sqrt(1.0 + iterations(p));
   }

@@ -2,11 +2,11 @@
 // Sand: Hencky elasticity and a Drucker-Prager cone with cohesion, flow at constant elastic volume, and a correction of
 // the volume that sand gains when it parts. Klar, Gast, Pradhana, Fu, Schroeder, Jiang & Teran, ACM Trans. Graph. 35
 // (2016) 103, sec. 4 and 7.3; volume correction: Tampubolon et al., ACM Trans. Graph. 36 (2017) 105, sec. 4.3.4, here
-// from the total J instead of an accumulated increment. Always the cone of three-dimensional space.
+// from the total J instead of an accumulated increment. The cone is always that of three-dimensional space.
 //
 // tau = 2 mu eps + lambda tr(eps) I with the elastic Hencky strain eps = ln(singular values of F_e);
 //   |dev eps| <= k (t - tr eps),   k = alpha (3 lambda + 2 mu)/(2 mu),   alpha = sqrt(2/3) 2 sin phi/(3 - sin phi),
-// t = c cot(phi)/K the volumetric strain of the tip.
+// where t = c cot(phi)/K is the volumetric strain of the tip.
 
 #include "kernel/elasticity.hpp"
 #include "kernel/functor.hpp"
@@ -25,7 +25,7 @@ struct DruckerPrager {
   struct Constants {
     T mu, lambda, inverse_density;
     T slope, tip;    ///< k and t
-    T longitudinal;  ///< lambda + 2 mu and what yielding adds at most, see wave_speed
+    T longitudinal;  ///< lambda + 2 mu with the most that yielding adds, see wave_speed
     bool corrects_volume;
     MPM_HD explicit Constants(const Parameters& p)
         : mu(T(shear_modulus(p.youngs_modulus, p.poisson_ratio))),
@@ -189,10 +189,11 @@ struct DruckerPrager {
     return c.mu * (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]) + real<S>(0.5) * c.lambda * trace * trace;
   }
 
-  /// Longitudinal: rho0 c^2 = lambda + 2 mu - (least principal stress, where it presses). On the cone a wave that takes
-  /// pressure off takes strength off too, as the flow is not associated: 2 mu u (k - u) more, -u = n.N.n the component
-  /// of the unit deviator N, which is largest at u = k/2 or at its limit sqrt(2/3). Shear between principal stretches
-  /// e^a, e^b: 2 mu x/(1 - e^-2x) <= mu (1 + 2 x) with x = |a - b|.
+  /// The fastest wave. Longitudinal waves have rho0 c^2 = lambda + 2 mu - (least principal stress, where it presses).
+  /// On the cone a wave that takes pressure off takes strength off too, as the flow is not associated: rho0 c^2 then is
+  /// larger by 2 mu u (k - u), where -u = n.N.n is the component of the unit deviator N; this is largest at u = k/2 or
+  /// at the limit sqrt(2/3) of u. Shear waves between principal stretches e^a and e^b have 2 mu x/(1 - e^-2x) <= mu (1
+  /// + 2 x) with x = |a - b|.
   template <int D, class S>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const Principal<D, S>& p) {
     const Vec<3, S>& e = p.strain;
@@ -201,7 +202,7 @@ struct DruckerPrager {
     return sqrt(c.inverse_density * max(c.longitudinal - pressing, c.mu * (real<S>(1) + spread + spread)));
   }
 
-  /// The same of a state.
+  /// Stress, energy and wave speed of a state whose principal strains are not known yet.
   template <int D, class S>
   MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
     return kirchhoff_stress(c, prepared(state));

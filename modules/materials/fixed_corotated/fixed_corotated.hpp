@@ -27,7 +27,7 @@ struct FixedCorotated : ElasticSolid {
           inverse_density(T(1 / p.density)) {}
   };
 
-  /// F - R: of the size of the strain, so that little is lost where strains are small.
+  /// The difference F - R, which is of the size of the strain, so that little is lost where strains are small.
   template <int D, class S>
   MPM_HD static Mat<D, S> distortion(const Mat<D, S>& F) {
     Mat<D, S> r = nearest_rotation(F);
@@ -82,7 +82,7 @@ struct FixedCorotated : ElasticSolid {
     return sqrt(c.inverse_density * (real<S>(2) * c.mu * largest + c.lambda * (J * J)));
   }
 
-  /// The largest n.b.n with n in the space of D dimensions; in 3-D its bound.
+  /// The largest n.b.n with n in the space of D dimensions; in 3-D an upper bound of it.
   template <class S>
   MPM_HD static S largest_in_space(const Sym<2, S>& b) {
     const S mean = real<S>(0.5) * (b.s[0] + b.s[1]), half = real<S>(0.5) * (b.s[0] - b.s[1]);

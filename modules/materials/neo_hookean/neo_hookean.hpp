@@ -1,8 +1,8 @@
 #pragma once
 // Compressible Neo-Hookean solids in two named forms and three volumetric energies u(J) (kernel/elasticity.hpp):
-//   coupled  psi = mu/2 (tr b - 3 - 2 ln J) + lambda u(J),   tau = mu (b - I) + lambda J u' I       Ogden (1984),
-//   sec. 7.2.3 split    psi = mu/2 (J^-2/3 tr b - 3) + K u(J),          tau = mu dev(J^-2/3 b) + K J u' I      Simo &
-//   Hughes (1998), eq. 9.2.3
+//   coupled  psi = mu/2 (tr b - 3 - 2 ln J) + lambda u(J),   tau = mu (b - I) + lambda J u' I
+//   split    psi = mu/2 (J^-2/3 tr b - 3) + K u(J),          tau = mu dev(J^-2/3 b) + K J u' I
+// The coupled form is that of Ogden (1984), sec. 7.2.3; the split one that of Simo & Hughes (1998), eq. 9.2.3.
 
 #include "kernel/elasticity.hpp"
 #include "kernel/functor.hpp"
@@ -18,7 +18,7 @@ struct NeoHookean : ElasticSolid {
   };
   template <class T>
   struct Constants {
-    T mu, modulus, inverse_density;  ///< modulus: lambda of `coupled`, K of `split`
+    T mu, modulus, inverse_density;  ///< `modulus` is lambda of `coupled` or K of `split`
     bool split;
     VolumetricEnergy volumetric;
     MPM_HD explicit Constants(const Parameters& p)
@@ -30,7 +30,7 @@ struct NeoHookean : ElasticSolid {
           volumetric(static_cast<VolumetricEnergy>(static_cast<int>(p.volumetric_energy))) {}
   };
 
-  /// J^-2/3 b.
+  /// The isochoric tensor J^-2/3 b.
   template <int D, class S>
   MPM_HD static Sym<D, S> isochoric(Sym<D, S> b, S J) {
     const S scale = exp(real<S>(-2.0 / 3.0) * log(J));
@@ -62,7 +62,8 @@ struct NeoHookean : ElasticSolid {
     return volumetric + half_mu * (trace(b) - real<S>(3) - real<S>(2) * log(J));
   }
 
-  /// Longitudinal: rho0 c^2 = mu (1 + n.b.n) + lambda J^2 u'' (coupled); never below the shear wave's mu n.b.n.
+  /// The fastest wave. Longitudinal waves have rho0 c^2 = mu (1 + n.b.n) + lambda J^2 u'' (coupled); the result is
+  /// never below the shear wave's mu n.b.n.
   template <class G, class S = typename G::Scalar>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
     const S J = determinant(state.deformation_gradient);

@@ -82,7 +82,8 @@ struct VonMises {
     return select(yields, shrink * stress_norm * multiplier * conjugate, S(real<S>(0)));
   }
 
-  /// -(3 mu / 2) dt / d(shrink of d) over mu |d|^2 / 2, with t(d) from det(d + t I) = 1: 1 + O(elastic strain).
+  /// The factor -(3 mu / 2) dt / d(shrink of d), over mu |d|^2 / 2, by which the stress that does plastic work differs
+  /// from |s|. t(d) follows from det(d + t I) = 1, and the factor is 1 + O(elastic strain).
   template <int D, class S>
   MPM_HD static S conjugate_factor(const Sym<D, S>& d, S t) {
     const S norm = max(squared_norm(d), S(real<S>(1e-30)));
@@ -109,8 +110,8 @@ struct VonMises {
     return r;
   }
 
-  /// det(b)^-1/3 b. By its own determinant, not that of the increments, so that rounding does not pile up over many
-  /// steps.
+  /// The tensor det(b)^-1/3 b. It is divided by b's own determinant, not by that of the increments, so that rounding
+  /// does not pile up over many steps.
   template <int D, class S>
   MPM_HD static Sym<D, S> unimodular(Sym<D, S> b) {
     const S scale = exp(real<S>(-1.0 / 3.0) * log(determinant(b)));

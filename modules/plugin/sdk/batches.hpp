@@ -26,14 +26,14 @@ constexpr std::uint32_t needs_of() {
     return 0;
 }
 
-/// Width and second moment, and the weights of one axis. `base` is the first node, x and base in cells.
+/// A shape with width, second moment and the weights of one axis. `base` is the first node; x and base are in cells.
 template <class F>
 concept PlainShapeFunctor = requires(const typename F::Parameters& p, double x, double& base, double* w, double* g) {
   { F::width } -> std::convertible_to<int>;
   F::second_moment_kind;
   F::evaluate(p, x, base, w, g);
 };
-/// The same of a particle with a size: `half_size` of its undeformed box along the axis, in cells.
+/// A shape whose particles have a size: `half_size` of the undeformed box along the axis, in cells.
 template <class F>
 concept SizedShapeFunctor = (needs_of<F>() == MPM_NEEDS_HALF_SIZE) &&
                             requires(const typename F::Parameters& p, double x, double half_size, double& base,
@@ -42,7 +42,7 @@ concept SizedShapeFunctor = (needs_of<F>() == MPM_NEEDS_HALF_SIZE) &&
   F::second_moment_kind;
   F::evaluate(p, x, half_size, base, w, g);
 };
-/// The same of a particle whose box follows its deformation: `half_lengths` of the box along the axes, in cells, from
+/// A shape whose particles' boxes follow their deformation: `half_lengths` of the box along the axes, in cells, from
 /// the semi-side vectors of its domain (the columns, see mpm_list_batch). The first node depends on x alone. Where the
 /// stencil does not hold the box, weights are zero and the run stops.
 template <class F, int D>
@@ -69,7 +69,7 @@ concept ListShapeFunctorIn = requires(const typename F::Parameters& p, const Vec
   { F::reach } -> std::convertible_to<double>;
   F::evaluate(p, x, domain, out);
 };
-/// The same of a particle whose domain is a quadrilateral or hexahedron with these corners, from the particle.
+/// The nodes of one particle whose domain is a quadrilateral or hexahedron with these corners, given from the particle.
 template <class F, int D>
 concept SampledShapeFunctorIn = requires(const typename F::Parameters& p, const Vec<D, double>& x,
                                          const Vec<D, double>* corners,
@@ -82,9 +82,10 @@ template <class F>
 concept SampledShapeFunctor = SampledShapeFunctorIn<F, 2> && SampledShapeFunctorIn<F, 3>;
 template <class F>
 concept ListShapeFunctor = (ListShapeFunctorIn<F, 2> && ListShapeFunctorIn<F, 3>) || SampledShapeFunctor<F>;
-/// The same nodes as a box of `extent` nodes an axis from `base` (mpm_box_batch), over lanes: `box` returns the extent,
-/// 0 where the list must be taken. Rows of W nodes, the last axis along the row, come from what `prepare_rows` computes
-/// once; they are undefined in lanes of other extents than 1 to W. The second moment is the matrix sum w d d^T.
+/// The nodes of a list as a box of `extent` nodes an axis from `base` (mpm_box_batch), over lanes: `box` returns the
+/// extent, 0 where the list must be taken. Rows of W nodes, the last axis along the row, come from what `prepare_rows`
+/// computes once; they are undefined in lanes of other extents than 1 to W. The second moment is the matrix sum w d
+/// d^T.
 template <class F, int D>
 concept BoxShapeFunctorIn = requires(const typename F::Parameters& p, const Vec<D, double>& x,
                                      const Mat<D, double>& domain, Vec<D, double>& base,
@@ -140,7 +141,7 @@ concept MaterialFunctorIn = requires(const typename F::template Constants<double
 };
 template <class F>
 concept MaterialFunctor = MaterialFunctorIn<F, 2> && MaterialFunctorIn<F, 3>;
-/// The same in axisymmetric scenes: `advance` takes L with its zz, and the state keeps zz where it is not 1.
+/// A material of axisymmetric scenes: `advance` takes L with its zz, and the state keeps zz where it is not 1.
 template <class F>
 concept AxisymmetricMaterialFunctor = MaterialFunctor<F> &&
     requires(const typename F::template Constants<double>& c, const Deformation<2, double>& L,
@@ -210,8 +211,8 @@ template <class F>
 concept HasState = requires {
   F::state[0].shape;
 };
-/// A State that ends in a member `temperature` beyond the declared fields, K: it is the host's, who hands it over in the
-/// batch; `reference_temperature` stands where a batch has none.
+/// A functor whose State ends in a member `temperature`, K, beyond the declared fields. The temperature is the host's,
+/// who hands it over in the batch; `reference_temperature` stands where a batch has none.
 template <class F>
 concept TemperatureFunctor = requires(typename F::template State<2, double> s) {
   s.temperature;
@@ -258,7 +259,8 @@ struct StateAccess {
                                 layout.component[k] * stride + lane);
     return state;
   }
-  /// The same with the temperatures of a batch (null: the reference) in states that take one.
+  /// Loads the temperatures of a batch too, in states that take one; a null pointer stands for the reference
+  /// temperature.
   MPM_HD static State load(const void* const* fields, const void* temperature, std::uint32_t stride,
                            std::uint32_t lane) {
     State state = load(fields, stride, lane);
@@ -290,7 +292,8 @@ const typename F::Parameters& parameters_of(const void* block) {
   }
 }
 
-/// One axis of one pack of particles; `half_length`, of shapes that take one, is that of their boxes along the axis.
+/// Evaluates one axis of one pack of particles; `half_length`, for shapes that take one, is that of their boxes along
+/// the axis.
 template <class F, class S>
 inline __attribute__((always_inline)) void shape_axis(const typename F::Parameters& p, const mpm_shape_batch& q,
                                                       std::uint32_t axis, std::uint32_t lane, S half_length) {
@@ -331,7 +334,7 @@ void deformed_shape_batch(const typename F::Parameters& p, const mpm_shape_batch
 
 template <class F, class S>
 void shape_batch(const void* parameters, const mpm_shape_batch* request) {
-  const mpm_shape_batch q = *request;  // its own copy: nothing that is stored changes it
+  const mpm_shape_batch q = *request;  // a copy of its own: nothing that is stored changes it
   const auto& p = parameters_of<F>(parameters);
   if constexpr (DeformedShapeFunctor<F>) {
     if (q.dimension == 1) return deformed_shape_batch<F, S, 1>(p, q);
@@ -348,10 +351,10 @@ void shape_batch(const void* parameters, const mpm_shape_batch* request) {
   }
 }
 
-/// Particle by particle: the number of nodes differs from one to the next.
+/// Evaluates lists particle by particle: the number of nodes differs from one to the next.
 template <class F, int D, class T>
 void list_batch(const void* parameters, const mpm_list_batch* request) {
-  const mpm_list_batch q = *request;  // its own copy: nothing that is stored changes it
+  const mpm_list_batch q = *request;  // a copy of its own: nothing that is stored changes it
   using List = NodeList<D, T, F::template capacity<D>>;
   const auto& p = parameters_of<F>(parameters);
   for (std::uint32_t i = 0; i < q.count; ++i) {
@@ -385,7 +388,7 @@ void list_batch(const void* parameters, const mpm_list_batch* request) {
   }
 }
 
-/// Rows of W nodes into the places of the widest box.
+/// Puts rows of W nodes into their places in the widest box.
 template <class F, int W, int D, bool Gradients, class S>
 void box_rows(const mpm_box_batch* q, std::uint32_t lane, const typename F::template Rows<W, D, S>& rows) {
   using T = scalar_of<S>;
@@ -430,7 +433,7 @@ void box_batch(const void* parameters, const mpm_box_batch* q) {
     }
     store_components<D, S>(q->offset, q->stride, lane, offset.v);
     Access<S>::store_index(q->extent + lane, extent);
-    // Most are narrow; those that are not at the same time wide.
+    // Most boxes are narrow; a pack that holds a wider one takes rows of the widest.
     if (any(extent > real<S>(3)))
       box_lanes<F, 4, D, S>(parameters, q, lane, x, domain, base);
     else
@@ -445,7 +448,7 @@ std::int32_t filter_iterations(const void* parameters) {
 
 template <class F, int D, class S>
 void filter_batch(const void* parameters, const mpm_filter_batch* request) {
-  const mpm_filter_batch q = *request;  // its own copy: nothing that is stored changes it
+  const mpm_filter_batch q = *request;  // a copy of its own: nothing that is stored changes it
   const auto& p = parameters_of<F>(parameters);
   for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
     Vec<D, S> projected, increment, velocity;
@@ -460,7 +463,7 @@ void filter_batch(const void* parameters, const mpm_filter_batch* request) {
 
 template <class F, int D, class S>
 void scatter_batch(const void* parameters, const mpm_scatter_batch* request) {
-  const mpm_scatter_batch q = *request;  // its own copy: nothing that is stored changes it
+  const mpm_scatter_batch q = *request;  // a copy of its own: nothing that is stored changes it
   const auto& p = parameters_of<F>(parameters);
   for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
     S mass;
@@ -476,7 +479,7 @@ void scatter_batch(const void* parameters, const mpm_scatter_batch* request) {
 
 template <class F, int D, class S>
 void gather_batch(const void* parameters, const mpm_gather_batch* request) {
-  const mpm_gather_batch q = *request;  // its own copy: nothing that is stored changes it
+  const mpm_gather_batch q = *request;  // a copy of its own: nothing that is stored changes it
   const auto& p = parameters_of<F>(parameters);
   for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
     GatheredMoments<D, S> moments{};
@@ -503,7 +506,7 @@ void gather_batch(const void* parameters, const mpm_gather_batch* request) {
 
 template <class F, int D, class S>
 void contact_batch(const void* parameters, const mpm_contact_batch* request) {
-  const mpm_contact_batch q = *request;  // its own copy: nothing that is stored changes it
+  const mpm_contact_batch q = *request;  // a copy of its own: nothing that is stored changes it
   const auto& p = parameters_of<F>(parameters);
   for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
     ContactPair<D, S> pair;
@@ -578,7 +581,7 @@ std::int32_t material_batch_in(const void* parameters, const mpm_material_batch&
           velocity_gradient_of<D, S, Axisymmetric>(q.velocity_gradient, q.velocity_gradient_zz, q.stride, lane);
       store(q.dissipated_energy, F::advance(constants, L, real<S>(q.dt), state));
       StateAccess::store(q.state, q.stride, lane, state);
-      if (outputs) {  // of the rounded state, to the same bits as a call of their own gives
+      if (outputs) {  // they are those of the rounded state, to the same bits as a call of their own gives
         __asm__ volatile("" ::: "memory");
         state = StateAccess::load(q.state, q.temperature, q.stride, lane);
       }
@@ -600,7 +603,7 @@ std::int32_t material_batch_in(const void* parameters, const mpm_material_batch&
 
 template <class F, int D, class S>
 std::int32_t material_batch(const void* parameters, const mpm_material_batch* request) {
-  const mpm_material_batch q = *request;  // its own copy: nothing that is stored changes it
+  const mpm_material_batch q = *request;  // a copy of its own: nothing that is stored changes it
   if constexpr (D == 2 && AxisymmetricMaterialFunctor<F>)
     if (q.velocity_gradient_zz) return material_batch_in<F, D, S, true>(parameters, q);
   return material_batch_in<F, D, S, false>(parameters, q);

@@ -41,8 +41,8 @@ concept StepLimitFunctor = requires(const typename F::Parameters& p) {
   { F::step_limit(p, 1.0) } -> std::convertible_to<double>;
 };
 
-/// An `advance` without strain that takes any state to the nearest admissible one: `static constexpr bool projects =
-/// true`.
+/// A functor whose `advance` without strain takes any state to the nearest admissible one says so: `static constexpr
+/// bool projects = true`.
 template <class F>
 constexpr bool projects_by_update() {
   if constexpr (requires { F::projects; })
@@ -68,7 +68,8 @@ constexpr bool is_counted() {
 
 // ---- costs -------------------------------------------------------------------------------------------------------
 
-/// The mean of a list's cost is over so many places in a cell, spread by an additive sequence (Roberts 2018, R_d).
+/// Number of places in a cell, spread by an additive sequence (Roberts 2018, R_d), over which a list's cost is
+/// averaged.
 inline constexpr int cost_samples = 64;
 inline double cost_sample(int k, int axis) {
   const double u = 0.5 + (k + 1) * (axis == 0   ? 0.8191725133961645
@@ -87,7 +88,7 @@ mpm_cost cost_of(const typename F::Parameters& p, const mpm_cost_case& of) {
     else
       F::evaluate(p, S(5.2), base, w, of.gradients ? g : static_cast<S*>(nullptr));
   });
-  long lengths = 0;  // of the box that follows the domain: found once for all axes
+  long lengths = 0;  // operations for the lengths of the box that follows the domain, which are found once for all axes
   if constexpr (DeformedShapeFunctor<F>) {
     Mat<D, S> domain{};
     for (int a = 0; a < D; ++a) domain(a, a) = S(of.half_size);
@@ -163,7 +164,8 @@ typename F::template State<D, S> initial_state() {
   return state;
 }
 
-/// Strain with the check of J, and stress; a second J of the same state is the compiler's to share.
+/// The cost of a strain with the check of J, and of the stress; the compiler is left to share a second J of the same
+/// state.
 template <MaterialFunctor F, int D, class T>
 mpm_cost cost_of(const typename F::Parameters& p, const mpm_cost_case& of) {
   using S = Counted<T>;
@@ -192,7 +194,7 @@ inline constexpr mpm_costs costs_table{MPM_COSTS_VERSION, 0, &count_cost<F>};
 
 // ---- trial -------------------------------------------------------------------------------------------------------
 
-/// `rows` rows of `count` entries, each from `first` on.
+/// Views of `rows` rows of `count` entries, each from entry `first` on.
 template <class T>
 void copy_rows(const void* from, std::uint32_t from_stride, std::uint32_t first, void* to, std::uint32_t to_stride,
                std::uint32_t to_first, int rows, std::uint32_t count) {
@@ -201,8 +203,8 @@ void copy_rows(const void* from, std::uint32_t from_stride, std::uint32_t first,
                 static_cast<const T*>(from) + static_cast<std::uint32_t>(k) * from_stride + first, count * sizeof(T));
 }
 
-/// The update of a copy, a batch at a time: the entry of the core does the work, so that the bits are its own. Where
-/// there is no velocity gradient, a zero one is taken if the return of the law is wanted (`returns`).
+/// Updates a copy, a batch at a time: the entry of the core does the work, so that the bits are its own. Where there is
+/// no velocity gradient, a zero one is taken if the return of the law is wanted (`returns`).
 template <class F, int D, class S>
 std::int32_t update_copy(const void* parameters, const mpm_trial_batch& q, bool axisymmetric, bool returns) {
   using T = scalar_of<S>;

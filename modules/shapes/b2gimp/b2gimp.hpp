@@ -24,11 +24,11 @@ struct B2Gimp {
     const S cell = floor(x);
     base = cell - one;
     const S f = x - cell;
-    const auto in_order = f < half;  // the nearer node lies below the particle; else all is mirrored
+    const auto in_order = f < half;  // the nearer node lies below the particle; otherwise all is mirrored
     const S a = min(f, one - f), b = half - a, c = half + a;
-    // A box inside one piece of the spline: the mean of a square is the square of the mean and l^2/3 more. Beyond the
-    // middle of the cell the pieces change by a multiple of the square of the overlap. No difference of integrals,
-    // which would lose digits for small boxes.
+    // Where a box lies inside one piece of the spline, the mean of a square is the square of the mean and l^2/3 more.
+    // Beyond the middle of the cell the pieces change by a multiple of the square of the overlap. No difference of
+    // integrals is formed, which would lose digits for small boxes.
     const S sixth = l * l * real<S>(1.0 / 6), overlap = max(l - b, zero), share = overlap / l;
     const S beyond = share * overlap * overlap * real<S>(1.0 / 12);
     const S near_side = half * b * b + sixth - beyond,

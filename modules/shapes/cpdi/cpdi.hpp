@@ -26,7 +26,7 @@ struct Cpdi {
   template <int D, class T>
   struct Corner {
     int base[D];
-    T offset[D];  ///< of the corner in its cell
+    T offset[D];  ///< place of the corner in its cell
     T side[D];    ///< R^-T s / n
   };
 
@@ -68,7 +68,7 @@ struct Cpdi {
   MPM_HD static Corner<D, T> corner_of(int number, const Vec<D, T>& x, const Mat<D, T>& R, const Mat<D, T>& sides) {
     Corner<D, T> corner;
     for (int a = 0; a < D; ++a) {
-      const T cell = floor(x[a]);  // from there on, so that no digits go to the distance from the grid's first node
+      const T cell = floor(x[a]);  // lengths count from it, so that no digits go to the distance from the first node
       T at = x[a] - cell, side = T(0);
       for (int k = 0; k < D; ++k) {
         const T sign = number >> k & 1 ? T(1) : T(-1);
@@ -83,7 +83,7 @@ struct Cpdi {
     return corner;
   }
 
-  /// Weights and gradients before they are put into the list.
+  /// The weights and gradients of nodes before they are put into the list.
   template <int D, class T>
   struct Sums {
     T weight[capacity<D>], gradient[D][capacity<D>];
@@ -130,7 +130,7 @@ struct Cpdi {
     out.count += used != T(0) ? 1 : 0;
   }
 
-  /// Corners that lie within 4 nodes an axis: each node has its place in a box of 4 nodes an axis from `low`.
+  /// Collects corners that lie within 4 nodes an axis: each node has its place in a box of 4 nodes an axis from `low`.
   template <int D, class T>
   MPM_HD static void merge_in_box(const Corner<D, T>* corners, const int* low, const int* extent, bool flat,
                                   List<D, T>& out) {
@@ -151,7 +151,7 @@ struct Cpdi {
         }
   }
 
-  /// Corners far apart: every node is looked up among those already there.
+  /// Collects corners far apart: every node is looked up among those already there.
   template <int D, class T>
   MPM_HD static void merge_by_search(const Corner<D, T>* corners, bool flat, List<D, T>& out) {
     Sums<D, T> sums;
@@ -204,9 +204,10 @@ struct Cpdi {
 
   // ---- boxes of W nodes an axis, over lanes ------------------------------------------------------------------------
 
-  /// First node of the box that holds the particle's nodes, and how many there are along its longest axis. The first
-  /// node is that of the quadratic B-spline unless the domain reaches below it: neighbours in a cell then share it.
-  /// 0 for more than 4 nodes, what is not a number, and, with gradients, a domain that has collapsed.
+  /// The first node of the box that holds the particle's nodes, and how many there are along its longest axis. The
+  /// first node is that of the quadratic B-spline unless the domain reaches below it: neighbours in a cell then share
+  /// it. The result is 0 for more than 4 nodes, for what is not a number, and, with gradients, for a domain that has
+  /// collapsed.
   template <int D, class S>
   MPM_HD static S box(const Parameters&, const Vec<D, S>& x, const Mat<D, S>& domain, bool gradients, Vec<D, S>& base) {
     S extent(real<S>(2)), fits(real<S>(1));
@@ -228,8 +229,8 @@ struct Cpdi {
     return select(fits > real<S>(0), extent, S(real<S>(0)));
   }
 
-  /// Tents of a corner along one axis that lies 1 - d from the box's first node, none of them below zero when the box
-  /// holds the corner. W makes no difference to those that both have.
+  /// Tents of a corner along one axis that lies 1 - d from the box's first node; none of them is below zero when the
+  /// box holds the corner. The tents that boxes of both widths have are the same for either W.
   template <int W, class S>
   MPM_HD static void tents(S d, S* w) {
     const S none(real<S>(0));
@@ -251,7 +252,7 @@ struct Cpdi {
     S tent[D][1 << D][W], side[D][1 << D];
   };
 
-  /// from + R s along axis a for all corners, added up as in corner_of.
+  /// The places from + R s along axis a for all corners, added up as in corner_of.
   template <int D, class S>
   MPM_HD static void corners_from(S from, const Mat<D, S>& R, int a, S* corner) {
     corner[0] = from;
@@ -263,7 +264,7 @@ struct Cpdi {
     }
   }
 
-  /// `base` as `box` gave it; the sides only with gradients.
+  /// Prepares the rows of a box. `base` is as `box` gave it; the sides are made only with gradients.
   template <int W, int D, class S>
   MPM_HD static void prepare_rows(const Parameters&, const Vec<D, S>& x, const Mat<D, S>& domain, const Vec<D, S>& base,
                                   bool gradients, Rows<W, D, S>& rows) {
@@ -280,7 +281,7 @@ struct Cpdi {
     for (int a = 0; a < D; ++a) corners_from<D, S>(S(real<S>(0)), sides, a, rows.side[a]);
   }
 
-  /// Nodes (i, j, k), k < W, of the box, in 2-D (i, k): weights, and gradients [D][W].
+  /// Weights, and gradients [D][W], of the nodes (i, j, k), k < W, of the box; in 2-D of the nodes (i, k).
   template <int W, int D, bool Gradients, class S>
   MPM_HD static void row_in_box(const Rows<W, D, S>& rows, int i, int j, S* w, S (*g)[W]) {
     S sum[W], slope[D][W];
@@ -310,7 +311,7 @@ struct Cpdi {
     for (int k = 0; k < W; ++k) g[a][k] = slope[a][k];
   }
 
-  /// sum w d d^T: of the corners, R R^T, and of each tent, the product of its two weights.
+  /// The second moment sum w d d^T: R R^T from the corners, and from each tent the product of its two weights.
   template <int W, int D, class S>
   MPM_HD static Mat<D, S> moment_of_box(const Rows<W, D, S>& rows, const Mat<D, S>& domain) {
     Mat<D, S> moment;

@@ -21,7 +21,8 @@ struct Cpdi2 {
 
   struct Parameters {};
 
-  /// x in cells, corners from x. Each node comes once; none where the domain is turned inside out.
+  /// Lists the nodes. x is in cells, corners count from x. Each node comes once; there is none where the domain is
+  /// turned inside out.
   template <int D, class T>
   MPM_HD static void evaluate(const Parameters&, const Vec<D, T>& x, const Vec<D, T>* corners,
                               NodeList<D, T, capacity<D>>& out) {
@@ -40,7 +41,7 @@ struct Cpdi2 {
     }
   }
 
-  /// Where the list has a node of a cell; new ones go to its end.
+  /// The place of a cell's node in the list; new nodes go to its end.
   template <int D, class T>
   MPM_HD static int entry_of(const TentCell<D, T>& cell, int which, NodeList<D, T, capacity<D>>& out) {
     for (int k = 0; k < out.count; ++k) {

@@ -15,8 +15,8 @@ struct Gimp {
 
   struct Parameters {};
 
-  /// The weight of a side node at distance a in [1/2, 3/2] and minus its slope by a. `raw` = 1 + l - a is the overlap
-  /// of the box with the tent; all three pieces at once.
+  /// The weight of a side node at distance a in [1/2, 3/2] and minus its slope by a, all three pieces at once. `raw` =
+  /// 1 + l - a is the overlap of the box with the tent.
   template <class S>
   MPM_HD static S side(S raw, S l, S& slope) {
     const S full = l + l, overlap = min(max(raw, S(real<S>(0))), full);

@@ -47,7 +47,7 @@ struct GimpContiguous {
     const S box = max(l, S(real<S>(0x1p-20))), cell = floor(x);
     base = cell - one;
     const S f = x - cell, rest = one - f;
-    const S below = max(box - f, zero), above = max(box - rest, zero);  // what of the box lies beyond the cell
+    const S below = max(box - f, zero), above = max(box - rest, zero);  // reach of the box beyond the cell
     const S share_below = real<S>(0.5) * (below / box), share_above = real<S>(0.5) * (above / box);
     const S e0 = real<S>(0.5) * share_below * below, e1 = real<S>(0.5) * share_above * above;
     w[0] = held * e0;

@@ -11,7 +11,7 @@ namespace mpm {
 
 struct Linear {
   static constexpr int width = 2;
-  /// f(1 - f) h^2, not constant; but w D^-1 d = grad w identically, which is finite everywhere.
+  /// The second moment f(1 - f) h^2 is not constant; but w D^-1 d = grad w identically, which is finite everywhere.
   static constexpr double second_moment = 0;
 
   struct Parameters {};

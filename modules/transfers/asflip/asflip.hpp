@@ -15,7 +15,7 @@ struct Asflip {
     double pic_fraction;  ///< 1 - alpha
     double beta_min;      ///< share in the movement where material is pressed together
     double beta_max;      ///< share in the movement where it is not
-    double threshold;     ///< of ln J, below which it is pressed together
+    double threshold;     ///< value of ln J below which material counts as pressed together
   };
   template <int D, class S>
   struct State {

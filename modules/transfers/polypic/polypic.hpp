@@ -1,7 +1,7 @@
 #pragma once
 // Polynomial particle-in-cell: APIC whose particles also carry polynomials beyond the affine ones, so that less of the
 // grid's velocity is lost in a round trip. Fu, Guo, Gast, Jiang & Teran, ACM Trans. Graph. 36 (2017) 222. Orders 0 and
-// 1 are here and are APIC's; the host carries the others (kernel/polynomial_basis.hpp).
+// 1 are here and equal APIC's; the host carries the others (kernel/polynomial_basis.hpp).
 
 #include "kernel/functor.hpp"
 #if MPM_HOST

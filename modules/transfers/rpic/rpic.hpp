@@ -1,5 +1,5 @@
 #pragma once
-// Rigid particle-in-cell: of the affine velocity field around it a particle keeps the spin alone, the part that holds
+// Rigid particle-in-cell: a particle keeps only the spin of the affine velocity field around it, the part that holds
 // its angular momentum. Jiang, Schroeder, Selle, Teran & Stomakhin, ACM Trans. Graph. 34 (2015) 51, section 5.2: L =
 // sum w d x m v, K = m sum w (d . d I - d d^T), omega = K^-1 L.
 
