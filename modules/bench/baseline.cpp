@@ -15,8 +15,8 @@
 namespace mpm::bench {
 namespace {
 
-/// Denormal numbers count as zero while it lives: in a body at rest, products of rounding noise are denormal in float
-/// and would slow the baseline by a third.
+/// Makes denormal numbers count as zero while it lives: in a body at rest, products of rounding noise are denormal in
+/// float and would slow the baseline by a third.
 class FlushToZero {
  public:
 #if defined(__SSE__)
@@ -37,7 +37,7 @@ class FlushToZero {
 template <int D, class T>
 struct Particle {
   T x[D], v[D];        ///< cells from the domain's lower corner; m/s
-  T C[D][D], F[D][D];  ///< 1/s; 1
+  T C[D][D], F[D][D];  ///< C in 1/s; F is a pure number
 };
 
 template <int D, class T>
@@ -95,7 +95,7 @@ class PlainMls final : public Baseline {
   template <class Visit>
   void for_each_of_layer(int axis, int index, Visit&& visit);
 
-  /// Nodes run from -1 to cells + 1 on every axis, x the fastest; -1 and cells + 1 are ghosts.
+  /// Number of a node. Nodes run from -1 to cells + 1 on every axis, x the fastest; -1 and cells + 1 are ghosts.
   std::size_t number(const int* at) const {
     std::size_t n = 0;
     for (int a = 0; a < D; ++a) n += static_cast<std::size_t>(at[a] + 1) * stride_[a];
@@ -159,7 +159,7 @@ PlainMls<D, T>::PlainMls(const Experiment& experiment, const SeededBody& body)
   }
 }
 
-/// w (m v + A d), A = m C - dt V0 tau D^-1, D = h^2 / 4; tau = mu (b - I) + lambda ln J I.
+/// Scatters w (m v + A d) with A = m C - dt V0 tau D^-1, D = h^2 / 4 and tau = mu (b - I) + lambda ln J I.
 template <int D, class T>
 void PlainMls<D, T>::scatter(const Particle<D, T>& p) {
   const T pressure = lambda_ * std::log(determinant_of<D, T>(p.F)) - mu_;
@@ -173,7 +173,7 @@ void PlainMls<D, T>::scatter(const Particle<D, T>& p) {
       A[a][b] = h_ * (mass_ * p.C[a][b] + scale * tau);
     }
   const Weights<D, T> weights(p.x);
-  T first[D];  // of the stencil's first node
+  T first[D];  // place of the stencil's first node
   for (int a = 0; a < D; ++a) {
     first[a] = mass_ * p.v[a];
     for (int b = 0; b < D; ++b) first[a] -= A[a][b] * weights.offset[b];
@@ -232,8 +232,8 @@ void PlainMls<D, T>::for_each_of_layer(int axis, int index, Visit&& visit) {
       }
 }
 
-/// Gravity, then slip walls on all faces: what lies beyond is folded back with the normal component turned, wall nodes
-/// have no normal velocity, ghosts take the mirrored velocity (docs/method.md, walls).
+/// Applies gravity, then slip walls on all faces: what lies beyond is folded back with the normal component turned,
+/// wall nodes have no normal velocity, ghosts take the mirrored velocity (docs/method.md, walls).
 template <int D, class T>
 void PlainMls<D, T>::update_grid() {
   for (Node<D, T>& node : nodes_)

@@ -15,18 +15,18 @@ class Baseline {
   virtual ~Baseline() = default;
   virtual void step() = 0;
   virtual std::size_t particle_count() const = 0;
-  /// m, particle-major, in the order of seeding.
+  /// Positions of the particles, m, particle-major, in the order of seeding.
   virtual std::vector<double> positions() const = 0;
-  /// m/s, the same.
+  /// Velocities of the particles, m/s, in the same layout.
   virtual std::vector<double> velocities() const = 0;
 };
 
-/// Why the baseline cannot run an experiment: it knows one body, quadratic B-splines, MLS, coupled logarithmic
-/// Neo-Hookean, slip walls and a fixed step. Empty when it can.
+/// Why the baseline cannot run an experiment; empty when it can. It knows one body, quadratic B-splines, MLS, coupled
+/// logarithmic Neo-Hookean, slip walls and a fixed step.
 std::string baseline_refusal(const Experiment& experiment);
 
-/// In the experiment's dimension and precision, with the very particles that the sandbox seeds. Throws
-/// std::invalid_argument with baseline_refusal.
+/// Makes the baseline in the experiment's dimension and precision, with the very particles that the sandbox seeds.
+/// Throws std::invalid_argument with baseline_refusal.
 std::unique_ptr<Baseline> make_baseline(const Experiment& experiment);
 
 }  // namespace mpm::bench

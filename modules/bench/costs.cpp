@@ -8,7 +8,7 @@
 namespace mpm::bench {
 namespace {
 
-/// What the step asks of the stencil, of one experiment.
+/// What the step of one experiment asks of the stencil.
 struct Wanted {
   int D = 3;
   unsigned traits = 0;
@@ -41,7 +41,7 @@ std::optional<mpm_cost> cost_of(const Component& component, mpm_cost_case of = {
 struct ShapeCost {
   double plain = 0, with_gradient = 0;
   int width = 0;     ///< 0: a list
-  double nodes = 0;  ///< of a list
+  double nodes = 0;  ///< mean number of nodes of a list
 };
 
 template <int D, class T>
@@ -100,11 +100,11 @@ double corner_cost(double half_size) {
     const TentCell<D, S> cell(x, corners[0]);
     for (int which = 0; which < 1 << D; ++which) cell.weight(which);
   });
-  const double velocity = (1 << D) * 2 * D + 4 * D;  // of the nodes, and dt (v + advection - own) onto the corner
+  const double velocity = (1 << D) * 2 * D + 4 * D;  // to nodes, and dt (v + advection - own) to corner
   return static_cast<double>(moved) + (1 << D) * (static_cast<double>(tents) + velocity + D);
 }
 
-/// Polynomials beyond affine: the bases of the axes, then sums of one axis at a time (higher_kernels.hpp).
+/// Costs of the polynomials beyond affine: the bases of the axes, then sums of one axis at a time (higher_kernels.hpp).
 struct PolynomialCost {
   double gather = 0, scatter = 0;
 };
@@ -118,7 +118,7 @@ PolynomialCost polynomial_cost(int order) {
   const double bases =
       static_cast<double>(D * count_operations([&] { make_axis_basis<K>(w, 1, S(0.5 * (K - 1)), order, basis); }));
   const double cost = bases + polynomial_sums(D, K, order);
-  return {cost, cost + D * basis_functions(D, order)};  // times the mass
+  return {cost, cost + D * basis_functions(D, order)};  // coefficients are scattered times the mass
 }
 
 template <int D, class T>
@@ -130,8 +130,8 @@ PolynomialCost polynomial_cost(int width, int order) {
 
 /// Passes over the particles besides the gather and the scatter that every step has.
 struct ExtraPasses {
-  int strains = 0;                ///< that gather a velocity gradient on their own
-  int advances = 0;               ///< of the material
+  int strains = 0;                ///< passes that gather a velocity gradient on their own
+  int advances = 0;               ///< updates of the material
   int remaps = 0;                 ///< scatters of mass and momentum again (MUSL)
   bool strain_in_gather = false;  ///< the gather strains as well
 };
@@ -145,7 +145,7 @@ void count_passes(const Plan& plan, ExtraPasses& count) {
   });
 }
 
-/// Mean over the bodies by their shares of the particles.
+/// The mean of a cost over the bodies, by their shares of the particles.
 template <int D, class T>
 std::optional<double> mean_material_cost(const Experiment& experiment, const RunFacts& run) {
   double mean = 0;
@@ -210,11 +210,11 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
   const double apart = scatter_cost(w, *shape, scatters_affine, false, false) +
                        scatter_cost(w, *shape, w.stress_by_affine(), !w.stress_by_affine(), true);
   const double merged = scatter_cost(w, *shape, scatters_affine || w.stress_by_affine(), !w.stress_by_affine(), true);
-  const double share = plan.force_for_ledger ? 1.0 / plan.ledger_every : plan.separate_force ? 1 : 0;  // of the steps
+  const double share = plan.force_for_ledger ? 1.0 / plan.ledger_every : plan.separate_force ? 1 : 0;  // share of steps
   flops.scatter += merged + share * (apart - merged);
   if (w.contact)
     flops.scatter += scatter_cost(w, *shape, false, true, false) + scatter_cost(w, *shape, true, false, false);
-  // p / m, + dt f / m, + dt g; a loop's p / m and update.
+  // Nodes compute p / m, + dt f / m, + dt g, and in a loop p / m and the update.
   flops.grid =
       ((4 + extra.remaps) * D + loops * (D + filter->operations)) * experiment.field_count * run.nodes_per_particle;
   return flops;
@@ -222,10 +222,11 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
 
 }  // namespace
 
-/// Each product and each sum of a useful lane: the D momenta and, in the scatter, the mass.
+/// Operations of the rows: each product and each sum of a useful lane, that is of the D momenta and, in the scatter,
+/// the mass.
 double scatter_rows(int dimension, int width, bool affine, bool gradient) {
   const int D = dimension, K = width, lanes = D + 1;
-  double row = 0;  // along the last axis: w_k c, + k w_k q, + g_k s
+  double row = 0;  // sums along the last axis: w_k c, + k w_k q, + g_k s
   for (int k = 0; k < K; ++k) row += 2 * lanes + (affine && k > 0 ? 2 * D : 0) + (gradient ? 2 * D : 0);
   double plane = row;
   if (D == 3) plane = K * (row + lanes + (affine ? 2 * D : 0) + (gradient ? 3 * D : 0));
@@ -249,7 +250,7 @@ double gather_rows(int dimension, int width, bool moment, bool gradient) {
 
 double polynomial_sums(int dimension, int width, int order) {
   const int D = dimension, K = width, R = order + 1;
-  const int line = K * R;  // the last axis
+  const int line = K * R;  // sums along the last axis
   const int plane = D == 3 ? K * (line + R * R) : line;
   return 2.0 * D * K * (plane + R * R * (D == 3 ? R : 1));
 }
@@ -296,7 +297,7 @@ double bytes_per_particle(const Experiment& experiment, const Plan& plan, double
   const double state = static_cast<double>(plan.bytes_per_particle(0)) - 4 - scalar * passed_scalars(experiment, plan);
   const double loops =
       plan.filter ? experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data()) : 0;
-  const double visits = 2 + (plan.fused ? 0 : 1);  // read and written; read again where the scatter is apart
+  const double visits = 2 + (plan.fused ? 0 : 1);  // read and written, and read again where the scatter is apart
   return visits * state + loops * experiment.dimension * scalar +
          2 * static_cast<double>(plan.bytes_per_node()) * nodes_per_particle;
 }

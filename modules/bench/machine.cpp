@@ -27,7 +27,7 @@ void keep(V& value) {
 
 constexpr int chains = 12;  // latency 4 times 2 ports is 8; with 2 operands they fit the 16 registers of AVX2
 
-/// x <- x a + b in `chains` independent registers.
+/// Repeats x <- x a + b in `chains` independent registers.
 template <class T>
 void multiply_add(long repetitions, T seed) {
   using V = typename LaneTypes<T>::Vector;
@@ -128,7 +128,7 @@ MemoryBandwidth memory_bandwidth(int threads, std::size_t bytes, int repeats) {
 }
 
 double nanoseconds_between_threads(double seconds) {
-  constexpr int rounds_a_look = 64;  // at the clock
+  constexpr int rounds_a_look = 64;  // rounds between looks at the clock
   alignas(128) std::atomic<std::uint64_t> line{0};
   alignas(128) std::atomic<bool> stop{false};
   std::thread other([&] {

@@ -17,13 +17,14 @@ double peak_gflops(bool single, int threads, int windows);
 struct MemoryBandwidth {
   double triad = 0, update = 0, read = 0;  ///< GB/s: a = b + s c (3 streams), a = s a (2 streams), sum of a
 };
-/// On arrays of `bytes` each, far beyond the caches where they are the machine's alone, passed through `repeats` times;
-/// the best piece of 16 MB. Bytes are those that the program names: a store's read of its line is not counted.
+/// Measures on arrays of `bytes` each, far beyond the caches where they are the machine's alone, passed through
+/// `repeats` times; the best piece of 16 MB counts. Bytes are those that the program names: a store's read of its line
+/// is not counted.
 MemoryBandwidth memory_bandwidth(int threads, std::size_t bytes, int repeats);
 
-/// ns that a line of the cache takes from one thread to another and is seen there: two threads hand it to and fro for
-/// about `seconds`. Some 50 where their processors share a cache, 200 where they do not; on virtual machines this
-/// changes.
+/// Nanoseconds that a line of the cache takes from one thread to another and is seen there: two threads hand it to and
+/// fro for about `seconds`. They are some 50 where the processors share a cache, 200 where they do not; on virtual
+/// machines this changes.
 double nanoseconds_between_threads(double seconds);
 
 }  // namespace mpm::bench

@@ -63,7 +63,7 @@ Rates run_in_turns(const std::vector<Contender*>& contenders, const Protocol& pr
     const double cycles = std::max(1.0, std::round(protocol.window_seconds / (seconds * cycle)));
     rates.steps.push_back(cycle * static_cast<int>(cycles));
   }
-  // Scenes with cycles change on their way: a ratio compares the same steps of them.
+  // Scenes with cycles change on their way, so a ratio compares the same steps of them.
   int most = 0;
   for (std::size_t c = 0; c < n; ++c)
     if (contenders[c]->steps_a_cycle() > 1) most = std::max(most, rates.steps[c]);

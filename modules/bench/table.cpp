@@ -16,7 +16,7 @@ std::string cell_text(const Cell& cell) {
   return "-";
 }
 
-/// Characters, not bytes: continuation bytes of UTF-8 take no room.
+/// Width of a text in characters, not bytes: continuation bytes of UTF-8 take no room.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xc0) != 0x80; }));

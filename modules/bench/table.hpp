@@ -12,8 +12,8 @@ namespace mpm::bench {
 using Json = nlohmann::ordered_json;
 
 struct Column {
-  std::string key;     ///< of JSON: "rate"
-  std::string header;  ///< with the unit: "rate (M/s)"
+  std::string key;     ///< key in JSON: "rate"
+  std::string header;  ///< header with the unit: "rate (M/s)"
 };
 
 /// A word, a number to three or four digits, or nothing.
@@ -28,7 +28,7 @@ struct Table {
   std::string text() const;      ///< aligned, one line a row
   std::string csv() const;       ///< RFC 4180, full precision
   std::string markdown() const;  ///< a pipe table
-  Json json() const;             ///< an object a row, without what it does not have
+  Json json() const;             ///< an object a row, which leaves out cells that are empty
 };
 
 struct Target {
@@ -50,7 +50,7 @@ struct SectionResult {
 /// Targets of several sections as one table.
 Table target_table(const std::vector<Target>& targets);
 
-/// Four significant digits, "12.3" or "1.2e+09"; "-" when not finite.
+/// The number in four significant digits, "12.3" or "1.2e+09"; "-" when not finite.
 std::string short_number(double value);
 
 }  // namespace mpm::bench

@@ -35,7 +35,7 @@ class FreeFall final : public ExactSolution {
   double dt_;
 };
 
-/// Rigid rotation in the x-y plane.
+/// Rigid rotation of a body in the x-y plane.
 class RigidRotation final : public ExactSolution {
  public:
   RigidRotation(const ExactChoice& choice)

@@ -19,10 +19,11 @@ class ExactSolution {
   virtual Vector3 velocity(const Vector3& X, const Vector3& V, double t) const = 0;
 };
 
-/// Descriptions of all, for the reader and the schema.
+/// Descriptions of all exact solutions, for the reader and the schema.
 std::vector<ExactDescription> exact_solutions();
 
-/// The one an experiment names; null when it names none. `dt` is the fixed step of discrete solutions (free_fall), s.
+/// The exact solution that an experiment names; null when it names none. `dt` is the fixed step of discrete solutions
+/// (free_fall), s.
 std::unique_ptr<ExactSolution> make_exact_solution(const Experiment& experiment, double dt);
 
 }  // namespace mpm

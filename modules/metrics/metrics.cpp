@@ -14,8 +14,8 @@ std::array<double, 3> cross(const double* a, const double* b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Entry (a, b) of the shape's second moment at particle p, m^2: the particle's own, or on the diagonal constant, or
-/// f(1 - f) h^2 for the linear shape.
+/// Entry (a, b) of the shape's second moment at particle p, m^2: the particle's own, or on the diagonal the constant,
+/// or f(1 - f) h^2 for the linear shape.
 double second_moment(const Experiment& experiment, const BodyState& state, std::size_t p, int a, int b) {
   const mpm_shape& shape = experiment.shape.plugin->shape();
   const int D = experiment.dimension;
@@ -27,7 +27,7 @@ double second_moment(const Experiment& experiment, const BodyState& state, std::
   return f * (1 - f) * h * h;
 }
 
-/// The affine part C of a velocity over the nodes of a particle: m sum w |C d|^2 / 2 and m sum w d x (C d).
+/// Adds the affine part C of a velocity over the nodes of a particle: m sum w |C d|^2 / 2 and m sum w d x (C d).
 void add_affine(const Experiment& experiment, const BodyState& state, const double* C, std::size_t p, Totals& totals) {
   const int D = experiment.dimension;
   const double m = state.mass * state.ring(p);

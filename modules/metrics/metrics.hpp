@@ -17,26 +17,27 @@ struct Totals {
   double time = 0, time_step = 0;
   long step = 0;
   double mass = 0;
-  double kinetic = 0, strain = 0, gravitational = 0;  ///< J; kinetic with the affine part
+  double kinetic = 0, strain = 0, gravitational = 0;  ///< J; the kinetic energy includes the affine part
   std::array<double, 3> momentum{};                   ///< kg m/s
   std::array<double, 3> angular_momentum{};           ///< kg m^2/s about the centre of mass, affine part included
   std::array<double, 3> centre_of_mass{};             ///< m
-  /// sum m |v| and sum m |x| |v|: sizes of the terms that the momenta are sums of, against which those may be rounding.
+  /// The sums of m |v| and of m |x| |v|: sizes of the terms that the momenta are sums of, against which those may be
+  /// rounding.
   double momentum_scale = 0, angular_momentum_scale = 0;
   double smallest_volume_ratio = 0, largest_volume_ratio = 0;
   double largest_speed = 0;                               ///< m/s
   double position_error_rms = 0, position_error_max = 0;  ///< m, against the exact solution
   double velocity_error_rms = 0, velocity_error_max = 0;  ///< m/s
-  /// J, where particles have a temperature: sum m c T, with T from the melting temperature where a material has one; and
-  /// sum m L phi.
+  /// Heat in J, where particles have a temperature: `heat_content` is sum m c T, with T from the melting temperature
+  /// where a material has one; `latent_heat` is sum m L phi.
   double heat_content = 0, latent_heat = 0;
   double lowest_temperature = 0, highest_temperature = 0;  ///< K
 
   double total_energy() const { return kinetic + strain + gravitational; }
 };
 
-/// First axis of momenta, centre of mass and contact force that mean something, and of angular momenta: over whole
-/// rings radial sums and spin are zero by symmetry, whatever the half-plane's particles add up to.
+/// The first axis of momenta, centre of mass and contact force that mean something, and that of angular momenta: over
+/// whole rings radial sums and spin are zero by symmetry, whatever the half-plane's particles add up to.
 struct RecordedAxes {
   int linear, angular;
 };
@@ -52,9 +53,11 @@ class Metrics {
 
   Totals measure() const;
 
-  /// Change of total energy since the start that no cause explains: time integration. Zero without a ledger. J.
+  /// Change of total energy since the start that no cause explains, J: what time integration makes. Zero without a
+  /// ledger.
   double ledger_residual(const Totals& now) const;
-  /// Heat gained since the start that no row of the heat ledger explains: rounding. Zero without one. J.
+  /// Heat gained since the start that no row of the heat ledger explains, J: what rounding makes. Zero without a
+  /// ledger.
   double heat_residual(const Totals& now) const;
 
   /// Names with units, and values, of one row of metrics.csv.

@@ -76,7 +76,7 @@ double von_mises(const double* tau, int dimension) {
 
 namespace {
 
-/// What a material with these parameters says of some of a body's particles.
+/// Asks a material with these parameters for the quantities of some of a body's particles.
 void evaluate(const Experiment& experiment, const Plugin& material, const std::vector<double>& parameters,
               const BodyState& state, const std::vector<std::size_t>& particles, MaterialQuantities& result) {
   if (particles.empty()) return;
@@ -104,7 +104,7 @@ void evaluate(const Experiment& experiment, const Plugin& material, const std::v
   batch.stored_energy = stored_energy.data();
   batch.wave_speed = wave_speed.data();
   batch.volume_ratio = volume_ratio.data();
-  if (experiment.axisymmetric()) batch.velocity_gradient_zz = stress.data();  // given, not read
+  if (experiment.axisymmetric()) batch.velocity_gradient_zz = stress.data();  // it must be given, but is not read
   material.material().update[MPM_SCALAR_DOUBLE][D - 2](parameters.data(), &batch);
 
   for (std::size_t p = 0; p < n; ++p) {
@@ -194,7 +194,7 @@ std::vector<double> quantity(const Experiment& experiment, int body, const BodyS
     MaterialQuantities material = material_quantities(experiment, body, state);
     if (name == "volume_ratio") return material.volume_ratio;
     if (name == "stored_energy") return material.stored_energy;
-    for (std::size_t p = 0; p < n; ++p) {  // Cauchy stress: tau / J
+    for (std::size_t p = 0; p < n; ++p) {  // Cauchy stress is tau / J
       const double* tau = &material.stress[p * symmetric];
       values[p] = (name == "pressure" ? -(tau[0] + tau[1] + tau[2]) / 3 : von_mises(tau, D)) / material.volume_ratio[p];
     }

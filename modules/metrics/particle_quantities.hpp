@@ -25,14 +25,14 @@ bool has_melted(const Experiment& experiment, int body, const BodyState& state, 
 struct QuantityDescription {
   std::string name, label, unit;
 };
-/// Quantities every scene offers. Velocity components, and the state of its materials and transfer, add to them:
+/// Quantities that every scene offers. Velocity components, and the state of its materials and transfer, add to them:
 /// scalars by name (equivalent_plastic_strain), others by component (deformation_gradient_xy).
 std::span<const QuantityDescription> common_quantities();
 /// Names valid as output/colour_by for any of the plugins of `registry`.
 std::vector<std::string> quantity_names(const Registry& registry);
 QuantityDescription describe_quantity(const Experiment& experiment, const std::string& name);
 
-/// One value a particle; zero for bodies whose material has no such state field.
+/// The quantity of every particle of a body; zero for bodies whose material has no such state field.
 std::vector<double> quantity(const Experiment& experiment, int body, const BodyState& state, const std::string& name);
 
 }  // namespace mpm

@@ -78,7 +78,7 @@ std::vector<fs::path> checkpoints_in(const fs::path& folder) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("step_") && name.ends_with(".checkpoint")) paths.push_back(entry.path());
   }
-  // Longer names are of later steps, should twelve digits not do.
+  // Names that are longer are of later steps, should twelve digits not do.
   std::sort(paths.begin(), paths.end(), [](const fs::path& a, const fs::path& b) {
     const std::string first = a.filename().string(), second = b.filename().string();
     return first.size() != second.size() ? first.size() > second.size() : first > second;

@@ -22,16 +22,16 @@ struct CheckpointFile {
   std::string state;
 };
 
-/// Layout: magic, format version, byte order, both lengths, SHA-256 of all the rest in hexadecimal, identity, state.
-/// Whole or absent; on the disk when it returns. @throws MachineError.
+/// Writes the file whole or not at all; it is on the disk when this returns. Its layout is: magic, format version, byte
+/// order, both lengths, SHA-256 of all the rest in hexadecimal, identity, state. Throws MachineError.
 void write_checkpoint(const std::filesystem::path& path, const nlohmann::ordered_json& identity,
                       std::string_view state);
 
-/// @throws CheckpointDamaged when the file is of another kind, format or byte order, cut short or changed; MachineError
-/// when it cannot be read.
+/// Reads a checkpoint. Throws CheckpointDamaged when the file is of another kind, format or byte order, cut short or
+/// changed, and MachineError when it cannot be read.
 CheckpointFile read_checkpoint(const std::filesystem::path& path);
 
-/// "step_000000001200.checkpoint": the order of names is that of steps.
+/// The name of a step's file, "step_000000001200.checkpoint": the order of names is that of steps.
 std::string checkpoint_name(long step);
 
 /// Checkpoints in a folder, newest first; none when there is no folder.

@@ -9,24 +9,24 @@ namespace mpm::output {
 
 using Json = nlohmann::ordered_json;
 
-/// Text that is safe between tags and inside quoted attributes, in HTML and in XML: the five special characters are
+/// The text made safe between tags and inside quoted attributes, in HTML and in XML: the five special characters are
 /// escaped, control characters and invalid UTF-8 become U+FFFD.
 std::string escape_html(std::string_view text);
 
-/// Six significant digits, never 1e+05: "0.0123", "123457", "1.5×10<sup>−7</sup>".
+/// The number with six significant digits, never 1e+05: "0.0123", "123457", "1.5×10<sup>−7</sup>".
 std::string number_html(double value);
 
 /// Every digit of a whole number, in groups of three from 10 000 on.
 std::string integer_html(std::int64_t value);
 
-/// "96 B", "1.5 KiB", "3.2 GiB".
+/// The size with its unit: "96 B", "1.5 KiB", "3.2 GiB".
 std::string bytes_html(double bytes);
 
-/// "particle_steps_per_second" -> "particle steps per second", escaped.
+/// The key as words: "particle_steps_per_second" -> "particle steps per second", escaped.
 std::string label_html(std::string_view key);
 
-/// Any value: numbers formatted, objects and lists of objects as tables, long lists folded away but complete. `key`
-/// tells numbers of bytes from others.
+/// The HTML of any value: numbers formatted, objects and lists of objects as tables, long lists folded away but
+/// complete. `key` tells numbers of bytes from others.
 std::string value_html(std::string_view key, const Json& value);
 
 /// An object as a table of key and value, a list of objects as a table with a column a key.

@@ -5,8 +5,8 @@
 
 namespace mpm::output {
 
-/// {"cpu", "cores", "memory_bytes", "os", "compiler", "instructions", "build_type"}.
-/// Holds no user name, host name or path, so that it can be published. What the system does not tell is left out.
+/// The machine and the build as {"cpu", "cores", "memory_bytes", "os", "compiler", "instructions", "build_type"}. It
+/// holds no user name, host name or path, so that it can be published. What the system does not tell is left out.
 nlohmann::ordered_json machine_description();
 
 }  // namespace mpm::output

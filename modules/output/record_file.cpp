@@ -23,7 +23,7 @@ void RecordFile::append(std::string_view record) {
   if (error == 0) error = file_.write_all(record);
   if (error == 0 && ::fsync(file_.number()) != 0) error = errno;
   if (error != 0) {
-    // What was written in part is cut off now, or by the next append.
+    // A record that was written in part is cut off now, or by the next append.
     [[maybe_unused]] const int ignored = ::ftruncate(file_.number(), static_cast<off_t>(bytes_));
     throw support::MachineError::from_errno("append to", path_, error);
   }

@@ -14,20 +14,20 @@ namespace mpm::output {
 
 class RecordFile {
  public:
-  /// Touches nothing until the first append or resume.
+  /// Names the file, and touches nothing until the first append or resume.
   explicit RecordFile(std::filesystem::path path) : path_(std::move(path)) {}
 
-  /// Appends a record; on the disk when it returns. @throws MachineError; the file then ends with its last whole
-  /// record.
+  /// Appends a record, which is on the disk when this returns. Throws MachineError; the file then ends with its last
+  /// whole record.
   void append(std::string_view record);
 
   std::size_t count() const { return count_; }
 
-  /// A line "bytes sha256" a record: what `resume` needs to find the same records again.
+  /// The index, a line "bytes sha256" for each record: what `resume` needs to find the same records again.
   const std::string& index() const { return index_; }
 
-  /// The records that an index lists; later ones are cut off at the next append. @throws CheckpointDamaged when the
-  /// file does not hold them as they were written.
+  /// The records that an index lists; later ones are cut off at the next append. Throws CheckpointDamaged when the file
+  /// does not hold them as they were written.
   std::vector<std::string> resume(const std::string& index);
 
  private:

@@ -30,7 +30,7 @@ std::string caption_of(const fs::path& path) {
   return words;
 }
 
-// What a reader asks first comes first; figures of other names follow as people count.
+// The order of figures: what a reader asks first comes first; figures of other names follow as people count.
 constexpr std::array<std::string_view, 11> reading_order{
     "energy", "dissipation", "contact",      "contact_nodes", "error",           "ledger",
     "heat",   "heat_held",   "volume_ratio", "momentum",      "angular_momentum"};
@@ -40,7 +40,8 @@ std::size_t place_of(const fs::path& figure) {
                                   reading_order.begin());
 }
 
-// One picture a figure: the vector twin, which is sharp at every width, unless it is very large and there are pixels.
+// The picture of each figure: the vector twin, which is sharp at every width, unless it is very large and there are
+// pixels.
 std::vector<fs::path> chosen_figures(const fs::path& folder) {
   std::vector<fs::path> chosen;
   for (const fs::path& path : support::files_with_ending(folder, {".svg", ".png"})) {

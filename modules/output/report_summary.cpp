@@ -152,7 +152,7 @@ std::string requirement(const Json& expectation) {
   return html;
 }
 
-// What an expectation says beyond the known keys (a tolerance, a note) is kept beside its requirement.
+// What an expectation says beyond the known keys (a tolerance, a note), to be kept beside its requirement.
 std::string other_terms(const Json& expectation) {
   static const std::set<std::string> known = {"metric", "at_least", "at_most", "equals", "value", "held"};
   std::string html;
@@ -289,7 +289,7 @@ std::string performance_section(const Run& run) {
   return section("Performance", group(run, "performance", {"seconds_by_pass"}) + passes(*performance));
 }
 
-// Groups and values that no other section knows: nothing that was recorded is hidden.
+// Tables of groups and values that no other section knows: nothing that was recorded is hidden.
 std::string other_groups(const Run& run) {
   static const std::set<std::string> known = {"outcome",  "warnings", "expect", "limits",    "flags",      "energy",
                                               "momentum", "contact",  "error",  "stability", "performance"};

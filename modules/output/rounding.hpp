@@ -21,7 +21,7 @@ namespace mpm::output::report {
 /// is larger and its figures stay: what it costs is what such a run is looked at for.
 class RoundingRule {
  public:
-  /// Reads the sizes from summary.json and metrics.csv of the run; what is missing there judges no figure.
+  /// Reads the sizes from summary.json and metrics.csv of the run; a size that is missing there judges no figure.
   explicit RoundingRule(const Run& run);
 
   /// What is said of the figure whose CSV twin is figures/STEM.csv, as HTML, where it shows nothing but rounding.
@@ -30,11 +30,11 @@ class RoundingRule {
 
  private:
   struct Size {
-    double value;      ///< in the unit of the figure
-    const char* name;  ///< in HTML
+    double value;      ///< value in the unit of the figure
+    const char* name;  ///< name in HTML
   };
   std::filesystem::path figures_;
-  std::map<std::string, Size> sizes_;  ///< by the figure's stem
+  std::map<std::string, Size> sizes_;  ///< sizes by the figure's stem
 };
 
 }  // namespace mpm::output::report

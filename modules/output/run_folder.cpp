@@ -17,7 +17,7 @@ bool holds_a_run(const fs::path& folder) {
   return fs::is_regular_file(folder / "manifest.json");
 }
 
-/// What write_atomically leaves when the process is killed in it.
+/// Whether a file is one that write_atomically leaves when the process is killed in it.
 bool is_temporary(const fs::path& path) {
   const std::string name = path.filename().string();
   return name.starts_with('.') && name.ends_with(".tmp");
@@ -113,7 +113,7 @@ void RunFolder::remove_temporary_files() const {
   for (const auto& entry : fs::recursive_directory_iterator(root_, error)) {
     if (entry.is_regular_file() && is_temporary(entry.path())) left.push_back(entry.path());
   }
-  for (const fs::path& path : left) fs::remove(path, error);  // what stays costs room and nothing else
+  for (const fs::path& path : left) fs::remove(path, error);  // a file that stays costs room and nothing else
 }
 
 FolderLock::FolderLock(const fs::path& folder) : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
@@ -125,7 +125,7 @@ FolderLock::FolderLock(const fs::path& folder) : folder_(::open(folder.c_str(), 
 }
 
 void RunFolder::write_json(std::string_view name, const nlohmann::ordered_json& value) const {
-  // A stray byte in a title must not cost the results of a run: it is replaced, not refused.
+  // A stray byte in a title is replaced, not refused: it must not cost the results of a run.
   write_text(name, value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 

@@ -21,17 +21,17 @@ class RunFolder {
  public:
   /// Makes the folder and those above it. If it holds a previous run (a manifest.json), that run is first moved aside
   /// as NAME.1, NAME.2 …, the first that is free. Write manifest.json early, so that a killed run is known as a run.
-  /// @throws FolderRefused, with a remedy, when the path is a file, a folder with other contents, the folder the
-  /// program works in, or a run that still goes on; MachineError when the disk refuses.
+  /// Throws FolderRefused, with a remedy, when the path is a file, a folder with other contents, the folder the program
+  /// works in, or a run that still goes on; MachineError when the disk refuses.
   static RunFolder create(const std::filesystem::path& path);
 
-  /// Takes an existing run as it is, to resume it or to draw its figures again.
-  /// @throws FolderRefused when there is no run at this path.
+  /// Takes an existing run as it is, to resume it or to draw its figures again. Throws FolderRefused when there is no
+  /// run at this path.
   static RunFolder open(const std::filesystem::path& path);
 
   const std::filesystem::path& root() const { return root_; }
 
-  // Subfolders are made at first use. @throws MachineError.
+  // The folder of figures, as each subfolder below, is made at first use. Throws MachineError.
   std::filesystem::path figures() const { return subfolder("figures"); }
   std::filesystem::path frames() const { return subfolder("frames"); }
   std::filesystem::path vtk() const { return subfolder("vtk"); }
@@ -40,10 +40,10 @@ class RunFolder {
   /// Removes what killed processes left half-written (".*.tmp"), in all subfolders. Only for who holds the lock.
   void remove_temporary_files() const;
 
-  /// Writes root()/name, indented by two, whole or not at all. NaN and infinity become null. @throws MachineError.
+  /// Writes root()/name, indented by two, whole or not at all. NaN and infinity become null. Throws MachineError.
   void write_json(std::string_view name, const nlohmann::ordered_json& value) const;
 
-  /// Writes root()/name, whole or not at all. @throws MachineError.
+  /// Writes root()/name, whole or not at all. Throws MachineError.
   void write_text(std::string_view name, std::string_view text) const;
 
  private:
@@ -53,11 +53,11 @@ class RunFolder {
   std::filesystem::path root_;  // absolute, so that a later change of the working folder cannot move it
 };
 
-/// Held by the one program that writes to a run folder; the system lets go of it when that program ends, however it
-/// ends. Leaves no file.
+/// A lock held by the one program that writes to a run folder; the system lets go of it when that program ends, however
+/// it ends. It leaves no file.
 class FolderLock {
  public:
-  /// @throws FolderRefused when another program holds it. A file system without locks is used without.
+  /// Takes the lock. Throws FolderRefused when another program holds it. On a file system without locks there is none.
   explicit FolderLock(const std::filesystem::path& folder);
 
  private:

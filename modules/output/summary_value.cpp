@@ -9,7 +9,7 @@ const Json* value_at(const Json& summary, const std::string& path) {
   if (path.starts_with('/')) {
     try {
       return &summary.at(Json::json_pointer(path));
-    } catch (const Json::exception&) {  // no such place, or no pointer
+    } catch (const Json::exception&) {  // the path names no place, or is no pointer
       return nullptr;
     }
   }

@@ -32,7 +32,7 @@ constexpr const char* type_name<std::uint8_t>() {
   return "UInt8";
 }
 
-// One DataArray, inline: a byte count and the bytes themselves, together in base64.
+// Writes one DataArray, inline: a byte count and the bytes themselves, together in base64.
 template <typename T>
 void append_array(std::string& xml, const std::string& name, int components, const std::vector<T>& values,
                   const std::string& more_attributes = "") {

@@ -25,12 +25,12 @@ struct ParticleSnapshot {
 /// Writes an UnstructuredGrid (.vtu) with one vertex a particle and Float64 data, bit for bit.
 ///
 /// Positions are padded to three components with zeros, and so are vectors of two components when dimension is 2,
-/// because ParaView draws arrows of three. Names are escaped; an empty or repeated name gets a number.
-/// @throws std::invalid_argument when a size does not match; MachineError when the file cannot be written.
+/// because ParaView draws arrows of three. Names are escaped; an empty or repeated name gets a number. Throws
+/// std::invalid_argument when a size does not match; MachineError when the file cannot be written.
 void write_vtu(const std::filesystem::path& path, const ParticleSnapshot& snapshot);
 
-/// Writes a ParaView collection (.pvd) of times (s) and file names relative to the collection's folder. Rewritten whole
-/// at each call, so that it lists complete files at any moment. @throws MachineError.
+/// Writes a ParaView collection (.pvd) of times (s) and file names relative to the collection's folder. It is rewritten
+/// whole at each call, so that it lists complete files at any moment. Throws MachineError.
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& time_and_file);
 
 }  // namespace mpm::output

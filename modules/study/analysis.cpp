@@ -21,7 +21,8 @@ double slope(const std::vector<std::pair<double, double>>& points) {
   return points.size() > 1 && spread > 1e-12 ? (sxy - sx * sy / n) / spread : not_measured;
 }
 
-/// Compared by everything that is measured of them: the same on every call.
+/// Whether a point comes before another. Points are compared by everything that is measured of them, so that the order
+/// is the same on every call.
 bool cheaper(const ParetoPoint& a, const ParetoPoint& b) {
   if (a.cost != b.cost) return a.cost < b.cost;
   if (a.error != b.error) return a.error < b.error;
@@ -66,7 +67,7 @@ std::vector<Group> group(const Results& results, const FigureRequest& figure, co
       keys.push_back(key);
       std::vector<std::string> without = within;
       without.insert(without.end(), named.begin(), named.end());
-      for (std::size_t k = 0; k < study.axes.size(); ++k) {  // what all shown ones share tells nothing
+      for (std::size_t k = 0; k < study.axes.size(); ++k) {  // an axis on which all shown results agree tells nothing
         const auto same = std::find_if(figure.where.begin(), figure.where.end(),
                                        [&](const auto& where) { return where.first == study.axes[k].name; });
         if (study.axes[k].choices.size() == 1 || (same != figure.where.end() && same->second.size() == 1))

@@ -10,7 +10,7 @@ namespace mpm::study {
 
 /// Results that differ in the named axes alone, in the order of the study.
 struct Group {
-  std::string label;  ///< labels of the other axes
+  std::string label;  ///< labels of the results on the other axes
   std::vector<const Result*> results;
 };
 
@@ -23,16 +23,16 @@ std::vector<Group> group(const Results& results, const FigureRequest& figure, co
 
 /// Label of a result on one axis.
 const std::string& label_on(const Study& study, const Result& result, const std::string& axis);
-/// Its number there; NaN when it has none.
+/// The number of a result on one axis; NaN when it has none.
 double number_on(const Study& study, const Result& result, const std::string& axis);
 
-/// Slope of log y over log x.
+/// An observed order: the slope of log y over log x.
 struct Order {
   std::string label;
   std::size_t points = 0;        ///< finished runs with a positive value
-  double fitted = 0;             ///< least squares over all; NaN below two points
-  double finest = 0;             ///< between the two smallest x; NaN below two points
-  double smallest_x = 0, y = 0;  ///< the finest run's
+  double fitted = 0;             ///< least squares over all points; NaN below two
+  double finest = 0;             ///< slope between the two smallest x; NaN below two points
+  double smallest_x = 0, y = 0;  ///< numbers of the finest run
 };
 
 std::vector<Order> observed_orders(const Results& results, const FigureRequest& figure);
@@ -48,15 +48,15 @@ struct ParetoPoint {
 std::vector<ParetoPoint> pareto(const Results& results, const FigureRequest& figure, const std::string& cost,
                                 const std::string& error);
 
-/// What to take, best first.
+/// The combinations to take, best first.
 struct Advice {
   std::vector<ParetoPoint> good;  ///< reach the target: the cheapest first, or the most exact within the cost
-  std::vector<ParetoPoint> near;  ///< when none does: those that come nearest
+  std::vector<ParetoPoint> near;  ///< where none reaches it: those that come nearest
 };
 
-/// The cheapest that reach `error`.
+/// The cheapest combinations that reach `error`.
 Advice advise_for_error(const Results& results, const std::string& cost, double error);
-/// The most exact that `limited` (a measure) does not exceed `limit` for.
+/// The most exact combinations whose `limited` (a measure) does not exceed `limit`.
 Advice advise_within(const Results& results, const std::string& limited, double limit);
 
 }  // namespace mpm::study

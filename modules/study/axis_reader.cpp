@@ -39,7 +39,7 @@ Section choice_section() {
 std::string cut(std::string text) {
   if (text.size() <= longest_label) return text;
   std::size_t length = longest_label;
-  while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;  // whole characters
+  while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;  // keep characters whole
   return text.substr(0, length) + "…";
 }
 
@@ -135,7 +135,7 @@ void refuse_equal_labels(const Axis& axis, const Node& values, ReadContext& cont
                                              ": leave it out, or give \"labels\"");
 }
 
-/// An axis in full: an object with "values". `key` is its key in an object of axes, empty in a list.
+/// Reads an axis in full: an object with "values". `key` is its key in an object of axes, empty in a list.
 std::optional<Axis> read_full_axis(const std::string& key, const Node& node, ReadContext& context) {
   const bool in_list = key.empty();
   const Fields fields(&node, axis_section(key.starts_with('/'), in_list), context);

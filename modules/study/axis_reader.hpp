@@ -1,5 +1,5 @@
 #pragma once
-// Inside of read_study: axes and what they set.
+// The part of read_study that reads axes and what they set.
 
 #include <vector>
 
@@ -8,13 +8,13 @@
 
 namespace mpm::study {
 
-/// The value as JSON that reads back the same.
+/// The node's value as JSON that reads back the same.
 OrderedJson json_of(const Node& node);
 
-/// "axes": an object by pointer or name, or a list of objects with "pointer" or "name".
+/// Reads "axes": an object by pointer or name, or a list of objects with "pointer" or "name".
 std::vector<Axis> read_axes(const Node& node, ReadContext& context);
 
-/// An object of values by JSON pointer as overrides, in its order; `pointers` gets the pointers.
+/// Reads an object of values by JSON pointer as overrides, in its order; `pointers` gets the pointers.
 std::vector<std::string> read_set(const Node& node, ReadContext& context, std::vector<std::string>& pointers);
 
 /// Records a problem, and returns false, unless `pointer` is one.

@@ -19,8 +19,8 @@ void BisectionSearch::answer(bool is_stable) {
   if (!value) return;
   const bool first = !stable_, second = !first && !unstable_;
   (is_stable ? stable_ : unstable_) = value;
-  if (first && !is_stable) over_ = true;  // nothing to begin from
-  if (second && is_stable) over_ = true;  // nothing to end at
+  if (first && !is_stable) over_ = true;  // there is no stable value to begin from
+  if (second && is_stable) over_ = true;  // there is no unstable value to end at
   if (stable_ && unstable_) over_ = over_ || std::abs(*unstable_ - *stable_) <= tolerance_ * std::abs(*stable_);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "filter none, grid 32 cells": what tells one heat map of a figure from the next.
+/// The words that tell one heat map of a figure from the next: "filter none, grid 32 cells".
 std::string layer_words(const Study& study, const FigureRequest& figure, const Result& result) {
   std::string words;
   for (const Axis& axis : study.axes) {
@@ -45,7 +45,7 @@ Cell cell_of(const Study& study, const FigureRequest& figure, const Result& resu
 constexpr std::pair<const char*, const char*> signs[] = {
     {"gained energy", "+"}, {"volume ratio out of range", "J"}, {"stopped", "×"}, {"neither", "?"}};
 
-/// How many are bounded, and what became of the others: "7" and "+2 ×1".
+/// The number of bounded runs, and what became of the others: "7" and "+2 ×1".
 Cell bounded_of(const std::vector<const Result*>& runs) {
   std::array<int, std::size(signs)> others{};
   int bounded = 0;
@@ -81,7 +81,7 @@ Cell cell_of(const Study& study, const FigureRequest& figure, const std::vector<
     const bool better = figure.take == Take::smallest ? cell.value < taken.value : cell.value > taken.value;
     if (better || std::isnan(taken.value)) taken = cell;
   }
-  // A number of some of the runs says how many are not as they should be.
+  // A number taken from some of the runs says how many are not as they should be.
   if (!figure.over.empty() && !study.bisection && std::isfinite(taken.value)) taken.note = bounded_of(runs).note;
   return taken;
 }

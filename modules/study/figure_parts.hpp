@@ -9,19 +9,19 @@
 
 namespace mpm::study {
 
-/// "12 runs".
+/// The count with its noun: "12 runs".
 std::string count_of(std::size_t count, const std::string& what);
 
-/// Where the figure comes from, and what it leaves out.
+/// What a figure says at its foot: where it comes from, and what it leaves out.
 std::string footnote(const Results& results, const FigureRequest& figure, bool finished_only);
 
-/// The figure's own, else the study's: the axes say what is shown.
+/// The figure's own title, else the study's: the axes say what is shown.
 std::string title_of(const Results& results, const FigureRequest& figure);
 
-/// One heat map for each choice on the axes that no map shows.
+/// Draws one heat map for each choice on the axes that no map shows.
 void draw_heat_maps(const Results& results, const FigureRequest& figure, const std::filesystem::path& stem);
 
-/// What became of each run, a row for each choice on the other axes.
+/// Draws what became of each run, a row for each choice on the other axes.
 void draw_outcome_map(const Results& results, const FigureRequest& figure, const std::filesystem::path& stem);
 
 }  // namespace mpm::study

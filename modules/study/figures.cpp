@@ -24,7 +24,7 @@ bool spans_a_decade(const std::vector<double>& values) {
   return *least > 0 && *most >= 10 * *least;
 }
 
-/// One value against the numbers of an axis.
+/// The series of one value against the numbers of an axis.
 Series line_of(const Results& results, const FigureRequest& figure, const Group& one) {
   std::vector<std::pair<double, double>> points;
   for (const Result* result : one.results)
@@ -40,7 +40,7 @@ Series line_of(const Results& results, const FigureRequest& figure, const Group&
   return series;
 }
 
-/// The figure's formula over the numbers of its axis.
+/// The series of the figure's formula over the numbers of its axis.
 Series exact_line(const Results& results, const FigureRequest& figure) {
   constexpr int intervals = 120;
   const VectorExpression::Term term = figure.exact;
@@ -62,7 +62,7 @@ Series exact_line(const Results& results, const FigureRequest& figure) {
   return series;
 }
 
-/// The figure with the results of one panel alone.
+/// The request for one panel: the figure with the results of that panel alone.
 FigureRequest for_panel(const FigureRequest& figure, const std::string& label) {
   FigureRequest panel = figure;
   std::erase_if(panel.where, [&](const auto& condition) { return condition.first == figure.panels; });
@@ -170,7 +170,7 @@ FrontLabels labels_for(const FigureRequest& figure, std::size_t points) {
   return figure.panels.empty() ? FrontLabels::numbers : FrontLabels::none;
 }
 
-/// "1: linear, pic · 2: gimp, flip": the points of the front by their numbers.
+/// The key to a front's numbers: "1: linear, pic · 2: gimp, flip".
 std::string key_of(const Study& study, const std::vector<ParetoPoint>& points,
                    const std::vector<std::string>& without) {
   std::string key;
@@ -190,7 +190,7 @@ std::vector<std::string> axes_not_in_names(const Study& study, const FigureReque
   return without;
 }
 
-/// Those, and what the figure holds fixed: its title says so.
+/// The axes not in names and those that the figure holds fixed, which its title names.
 std::vector<std::string> axes_not_in_labels(const Study& study, const FigureRequest& figure) {
   std::vector<std::string> without = axes_not_in_names(study, figure);
   for (const auto& [axis, labels] : figure.where)
@@ -198,7 +198,7 @@ std::vector<std::string> axes_not_in_labels(const Study& study, const FigureRequ
   return without;
 }
 
-/// Points of one colour; what stands beside those of the front leaves out what the colour says.
+/// The series of points by colour; what stands beside those of the front leaves out what the colour says.
 std::vector<Series> points_by_series(const Results& results, const FigureRequest& figure, const std::string& cost,
                                      const Plot& plot, FrontLabels labels) {
   const Study& study = results.study;
@@ -213,7 +213,7 @@ std::vector<Series> points_by_series(const Results& results, const FigureRequest
     all.push_back({label, {}, {}, {}, SeriesKind::point, {}});
     return all.back();
   };
-  if (!by.empty())  // in the order of the axis, the same in every panel
+  if (!by.empty())  // series follow the order of the axis, the same in every panel
     for (const Choice& choice : study.axis(by)->choices) add_to(choice.label);
   const auto points = pareto(results, figure, cost, figure.value);
   const auto named = labels == FrontLabels::names ? with_room(points, plot) : std::vector<const Result*>();
@@ -307,7 +307,7 @@ void draw_curves(const Results& results, const FigureRequest& figure, const fs::
     }
     return all;
   };
-  series_of(figure);  // finds the unit
+  series_of(figure);  // this call finds the unit
   if (missing > 0) throw std::runtime_error(std::to_string(missing) + " runs have no column \"" + figure.column + "\"");
   plot.footnote = footnote(results, figure, false);
   draw(results, figure, plot, stem, series_of);
@@ -358,7 +358,8 @@ std::string outcome_words(const Result& result) {
     case Status::done:
       break;
     case Status::failed: {
-      // "step 3, t = 0.1 s: particle 4 of body "b" at (0, 0) m inverted: its volume ratio …" -> "inverted"
+      // The cause is cut out of a reason: "step 3, t = 0.1 s: particle 4 of body "b" at (0, 0) m inverted: its volume
+      // ratio …" -> "inverted"
       const auto place = result.outcome.reason.find(") m ");
       if (place == std::string::npos) return "stopped";
       const std::string cause = result.outcome.reason.substr(place + 4);

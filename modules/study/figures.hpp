@@ -13,7 +13,7 @@ namespace mpm::study {
 /// sentence for each that could not be drawn.
 std::vector<std::string> draw_figures(const Results& results, const std::filesystem::path& folder);
 
-/// What became of a run, in few words: "bounded", "gained energy", "stopped: left the grid".
+/// The outcome of a run in few words: "bounded", "gained energy", "stopped: left the grid".
 std::string outcome_words(const Result& result);
 
 }  // namespace mpm::study

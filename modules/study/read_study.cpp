@@ -159,7 +159,7 @@ class StudyReader {
     }
   }
 
-  /// What is set for all runs comes before the axes, which would undo it.
+  /// Refuses a place that an axis sets too: what is set for all runs comes before the axes, which would undo it.
   void refuse_overwritten(const std::string& pointer, const Node& at, const std::string& remedy) {
     for (const Axis& axis : study_.axes)
       for (const std::string& later : axis.pointers)

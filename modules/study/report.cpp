@@ -32,7 +32,7 @@ class HtmlTable {
     html_ += "</tr>\n";
     ++rows_;
   }
-  /// "" without rows.
+  /// The table, or "" without rows.
   std::string html() const { return rows_ == 0 ? "" : html_ + "</tbody></table></div>"; }
 
  private:
@@ -44,7 +44,7 @@ class HtmlTable {
   std::size_t rows_ = 0;
 };
 
-/// Folded away but complete; "" for an empty body.
+/// A body folded away but complete; "" for an empty body.
 std::string folded(const char* title, const std::string& body) {
   return body.empty() ? "" : std::string("<details><summary>") + title + "</summary>" + body + "</details>";
 }
@@ -76,7 +76,7 @@ std::string outcome(const Results& results, const std::vector<std::string>& trou
   return html;
 }
 
-/// Measures that at least one run has.
+/// The measures that at least one run has.
 std::vector<Measure> measured(const Results& results) {
   std::vector<Measure> some;
   for (const Measure& measure : results.study.measures)

@@ -10,7 +10,7 @@
 namespace mpm::study {
 
 /// Writes folder/report.html: outcome, tables and the figures of folder/figures in one file that loads nothing.
-/// @param troubles what could not be drawn. @throws support::MachineError.
+/// `troubles` says what could not be drawn. Throws support::MachineError.
 void write_report(const Results& results, const Json& machine, const std::string& version,
                   const std::vector<std::string>& troubles, const std::filesystem::path& folder);
 

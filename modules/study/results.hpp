@@ -15,27 +15,27 @@ namespace mpm::study {
 enum class Status {
   not_run,             ///< the study was stopped before
   done,                ///< finished, every expectation held
-  expectation_failed,  ///< finished
+  expectation_failed,  ///< finished, but an expectation did not hold
   failed,              ///< stopped with a reason (exit code 3): unstable or invalid
-  refused,             ///< at load
+  refused,             ///< refused when it was loaded
   crashed,             ///< ended by a signal, or with a code that no run has
   machine_failed,
   interrupted
 };
 
-/// "done", "expectation failed", …
+/// The status as words: "done", "expectation failed", …
 const char* name_of(Status status);
-/// Throws std::runtime_error when there is none of this name.
+/// The status of a name. Throws std::runtime_error when there is none of this name.
 Status status_named(const std::string& name);
 
-/// Ran to its end, so that its numbers can be compared.
+/// Whether the run came to its end, so that its numbers can be compared.
 bool is_finished(Status status);
 
 /// How one process ended.
 struct Outcome {
   Status status = Status::not_run;
   std::string reason;
-  bool reused = false;  ///< of an earlier call, the experiment and the programs being the same
+  bool reused = false;  ///< taken from an earlier call, the experiment and the programs being the same
 };
 
 /// One run of a bisection.
@@ -50,11 +50,11 @@ struct Result {
   Outcome outcome;
   std::vector<std::string> flags;          ///< limits that a finished run breaks
   std::map<std::string, double> measures;  ///< by name; only finite ones
-  std::string folder;                      ///< of the run, relative to the study's; empty when there is none
-  std::vector<Probe> probes;               ///< of a bisection
-  std::optional<double> stable, unstable;  ///< its last bracket
+  std::string folder;                      ///< folder of the run, relative to the study's; empty when there is none
+  std::vector<Probe> probes;               ///< runs of a bisection
+  std::optional<double> stable, unstable;  ///< last bracket of a bisection
 
-  /// NaN when it was not measured.
+  /// The value of a measure; NaN when it was not measured.
   double value(const std::string& measure) const;
 };
 
@@ -75,14 +75,15 @@ std::string counted(const std::vector<Result>& results);
 /// A sentence for each result that is flagged, failed an expectation or crashed; these make the exit code 4.
 std::vector<std::string> objections(const Results& results);
 
-/// study.json.
+/// The results as study.json holds them.
 Json json_of(const Results& results, const Json& machine, const std::string& version);
 /// The parts of study.json that advice needs: axes, measures, results. Throws std::runtime_error when it is none.
 Results results_from(const Json& json);
 /// Whether the text is a study.json, whole.
 bool is_study_json(const Json& json);
 
-/// table.csv: a row a combination; the axes' labels, status, reason, flags, then the measures with units.
+/// The results as table.csv: a row a combination; the axes' labels, status, reason, flags, then the measures with
+/// units.
 std::string table_csv(const Results& results);
 
 }  // namespace mpm::study

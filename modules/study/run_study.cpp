@@ -14,7 +14,7 @@
 namespace mpm::study {
 namespace {
 
-constexpr auto pause = std::chrono::milliseconds(5);  // between looks at the runs
+constexpr auto pause = std::chrono::milliseconds(5);  // pause between looks at the runs
 
 /// What one combination still has to run: a single experiment, or the next of a bisection.
 class Task {
@@ -47,7 +47,7 @@ class Task {
     }
     const Status status = outcome.status;
     if (status == Status::refused || status == Status::machine_failed || status == Status::interrupted) {
-      over_ = true;  // says nothing about stability
+      over_ = true;  // such an outcome says nothing about stability
       result_.outcome = outcome;
       result_.outcome.reason = "at " + number_text(*search_->next()) + ": " + outcome.reason;
       return;
@@ -95,7 +95,7 @@ class Task {
   bool over_ = false;
 };
 
-/// Without the file's name in front of each line: all come from the same one.
+/// The reason without the file's name in front of each line: all come from the same one.
 std::string reason_of(const InputError& error) {
   std::string text;
   for (const Problem& problem : error.problems())

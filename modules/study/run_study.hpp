@@ -11,19 +11,19 @@
 namespace mpm::study {
 
 struct ExecutionOptions {
-  std::filesystem::path program;  ///< that `run` is a verb of
-  std::filesystem::path folder;   ///< of the study, existing; absolute
+  std::filesystem::path program;  ///< program that has the verb `run`
+  std::filesystem::path folder;   ///< absolute path of the study's folder, which exists
   int jobs = 1;                   ///< runs at a time
-  int threads = 1;                ///< of each
-  std::string command;            ///< as typed
+  int threads = 1;                ///< threads of each run
+  std::string command;            ///< command as typed
   std::function<bool()> stop_requested;
-  std::function<void(const std::string&)> say;  ///< progress, a line a call
+  std::function<void(const std::string&)> say;  ///< takes progress, a line a call
 };
 
 /// How a study shares the processors among its runs.
 struct Shares {
   int jobs = 1;     ///< runs at a time
-  int threads = 1;  ///< of each
+  int threads = 1;  ///< threads of each run
 };
 /// Shares in which no more threads work than there are processors, each with one at least: `jobs` runs at a time where
 /// that is given (> 0), else as many as the processors have threads for; `threads` for each at most. Results do not
@@ -31,7 +31,7 @@ struct Shares {
 Shares share_processors(int processors, int jobs, int threads);
 
 /// Makes, runs or takes over every combination. `read` carries what experiments may name; its overrides are not used.
-/// @throws InputError when the base is no JSON, or when every combination is refused; support::MachineError.
+/// Throws InputError when the base is no JSON, or when every combination is refused, and support::MachineError.
 Results run_study(const Study& study, const Registry& registry, const ReadOptions& read,
                   const ExecutionOptions& options);
 

@@ -34,7 +34,7 @@ void make_folder(const fs::path& folder) {
   if (error) throw support::MachineError::from_errno("create the folder", folder, error.value());
 }
 
-/// In the child: becomes the program. Only calls that are safe after a fork.
+/// Becomes the program, in the child. Only calls that are safe after a fork are made.
 [[noreturn]] void become(std::vector<char*>& words, const char* log) {
   ::setpgid(0, 0);                     // Ctrl-C reaches the study alone, which asks its runs to stop
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a run does not outlive a study that was killed
@@ -120,7 +120,7 @@ void Runner::start(const PreparedRun& run) {
     if (error) throw support::MachineError::from_errno("remove the stale run", run_folder(run.name), error.value());
   }
   support::write_atomically(record(run.name, ".experiment.json"), run.experiment.dump(2) + "\n");
-  // What stands there if this process is killed as well.
+  // The record as it stands if this process is killed as well.
   write_record(run, {Status::interrupted, "the study ended before it", false});
   spawn(run, resumed);
 }
@@ -151,7 +151,7 @@ std::optional<Runner::Ended> Runner::poll() {
     const Child ended = child->second;
     children_.erase(child);
     Outcome outcome = outcome_of(ended.run.name, status);
-    // A checkpoint of no use costs the run what it had, not the study.
+    // A checkpoint of no use costs the run what it had done, not the study.
     if (ended.resumed && outcome.status == Status::refused && !stopped_) {
       write_record(ended.run, {Status::not_run, "", false});
       start(ended.run);
@@ -177,7 +177,7 @@ std::string Runner::last_lines(const std::string& name) const {
   const std::string place = record(name, ".experiment.json").string();
   std::string text;
   for (std::string line; std::getline(lines, line);) {
-    // "FILE:line:column: " of a file that the study wrote tells nobody anything.
+    // "FILE:line:column: " is cut off: of a file that the study wrote it tells nobody anything.
     if (line.starts_with(place)) line.erase(0, std::min(line.find(": ", place.size()), line.size() - 2) + 2);
     const bool is_count = line.ends_with("nothing was run");
     if (!line.empty() && !is_count) text += (text.empty() ? "" : "; ") + line;
@@ -199,7 +199,7 @@ Outcome Runner::outcome_of(const std::string& name, int wait_status) const {
   const bool known = ending.value("exit_code", -1) == code;
   if (code == 0 && known) return {Status::done, ""};
   if (code == 4 && known && ending.value("status", "") == output::limit_broken)
-    return {Status::done, ""};  // and flagged
+    return {Status::done, ""};  // the run is flagged as well
   if (code == 4 && known) return {Status::expectation_failed, reason};
   if (code == 3 && known) return {Status::failed, reason};
   if (code == 2) return {Status::refused, last_lines(name)};

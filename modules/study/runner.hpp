@@ -15,15 +15,15 @@ namespace mpm::study {
 
 /// One experiment that is to be run.
 struct PreparedRun {
-  std::string name;  ///< of its folder below runs/
-  Json experiment;   ///< resolved
+  std::string name;  ///< name of its folder below runs/
+  Json experiment;   ///< experiment as resolved
   std::string key;   ///< hash of the experiment and of the programs that compute it
 };
 
 /// Names runs by what decides their results.
 class KeyMaker {
  public:
-  /// @throws support::MachineError when the program cannot be read.
+  /// Reads the program. Throws support::MachineError when it cannot be read.
   explicit KeyMaker(const std::filesystem::path& program);
   std::string operator()(const Experiment& experiment);
 
@@ -45,8 +45,8 @@ class Runner {
 
   /// The outcome of an earlier call, when its run finished or failed with the same key and its numbers are there.
   std::optional<Outcome> earlier(const PreparedRun& run) const;
-  /// Starts the process; goes on from the checkpoint of a run with the same key that was stopped.
-  /// @throws support::MachineError.
+  /// Starts the process; it goes on from the checkpoint of a run with the same key that was stopped. Throws
+  /// support::MachineError.
   void start(const PreparedRun& run);
   std::size_t running() const { return children_.size(); }
 

@@ -10,7 +10,7 @@ namespace mpm::study {
 
 /// One value of an axis.
 struct Choice {
-  std::string label;                   ///< in tables, legends and names of folders
+  std::string label;                   ///< name in tables, legends and names of folders
   std::optional<double> number;        ///< its place on the axis of a figure, in the axis' unit
   std::vector<std::string> overrides;  ///< "/json/pointer=value", applied to the base experiment
 };
@@ -19,11 +19,11 @@ struct Axis {
   std::string name;  ///< what figures and study.json call it: the pointer, unless it has a name
   std::string label, unit;
   std::vector<Choice> choices;        ///< at least one, each label once
-  std::vector<std::string> pointers;  ///< all that its choices set
+  std::vector<std::string> pointers;  ///< pointers of all that its choices set
 
-  /// Every choice has a number.
+  /// Whether every choice has a number.
   bool is_numeric() const;
-  /// "cell size (m)".
+  /// The axis' name with its unit: "cell size (m)".
   std::string title() const;
 };
 
@@ -32,7 +32,7 @@ struct Measure {
   std::string name;
   std::string path;  ///< JSON pointer or dotted path into summary.json
   std::string label, unit;
-  std::string formula;  ///< of x; empty: x itself
+  std::string formula;  ///< formula of x; empty: x itself
 
   std::string title() const;
 };
@@ -47,7 +47,7 @@ struct Bound {
 struct Bisection {
   std::string pointer;
   std::string label, unit;
-  double from = 0, to = 0;  ///< the end that should be stable, the end that should not, both over `scale`
+  double from = 0, to = 0;  ///< end that should be stable and end that should not, both over `scale`
   double relative_tolerance = 0.02;
   double scale = 1;  ///< the experiment gets value * scale
   std::vector<Bound> stable_while;
@@ -57,31 +57,31 @@ struct Bisection {
 
 enum class FigureType { convergence, pareto, heat_map, small_multiples, curves, outcome_map };
 
-/// What a cell of a heat map takes of the runs that share it.
+/// How a cell of a heat map is made of the runs that share it.
 enum class Take { smallest, largest, bounded };
 
-/// Which figure and of what; names are those of axes and measures, checked when read.
+/// A figure to be drawn; names are those of axes and measures, checked when read.
 struct FigureRequest {
   FigureType type = FigureType::convergence;
-  std::string name;  ///< of its files
+  std::string name;  ///< name of its files
   std::string title;
-  std::string x, y, panels, series;  ///< axes; empty: not given
-  std::string value;                 ///< measure; empty: the study's error
+  std::string x, y, panels, series;  ///< names of axes; empty: not given
+  std::string value;                 ///< name of a measure; empty: the study's error
   std::string over;                  ///< axis whose runs share a cell of a heat map; empty: none
   Take take = Take::smallest;        ///< the smallest or largest value of theirs, or how many are bounded
-  std::vector<std::string> costs;    ///< of a Pareto figure
-  std::string column;                ///< of metrics.csv, for curves
+  std::vector<std::string> costs;    ///< measures of a Pareto figure
+  std::string column;                ///< column of metrics.csv, for curves
   std::string exact, exact_label;    ///< formula of x that is drawn beside the measured values; empty: none
   bool log_x = false, log_y = false;
-  bool over_initial = false;                                            ///< curves: over their first values
-  int every = 1;                                                        ///< curves: rows from one point to the next
-  std::vector<std::pair<std::string, std::vector<std::string>>> where;  ///< axis and the labels that are shown
+  bool over_initial = false;                                            ///< curves are divided by first values
+  int every = 1;                                                        ///< rows of a curve from one point to the next
+  std::vector<std::pair<std::string, std::vector<std::string>>> where;  ///< axes and the labels that are shown
 };
 
 struct Study {
   std::filesystem::path file, base;
   std::string title, description;
-  std::vector<std::string> overrides;  ///< of "limits", of "set", then of the command line
+  std::vector<std::string> overrides;  ///< from "limits", from "set", then from the command line
   std::vector<Axis> axes;
   std::optional<Bisection> bisection;
   std::vector<Measure> measures;  ///< the file's, then the built-in ones
@@ -93,7 +93,7 @@ struct Study {
   std::size_t axis_index(const std::string& name) const;  ///< axes.size() when there is none
 };
 
-/// "label (unit)", or the label alone.
+/// The label with its unit, "label (unit)", or the label alone.
 std::string with_unit(const std::string& label, const std::string& unit);
 
 /// Name of the measure that a bisection finds.
@@ -101,13 +101,13 @@ inline constexpr const char* critical_measure = "critical";
 
 /// Reads and checks a study; `more_overrides` are those of the command line. Throws InputError with every mistake.
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& more_overrides = {});
-/// The same from text; `file` names it in messages and is what `base` is relative to.
+/// Reads a study from text; `file` names it in messages and is what `base` is relative to.
 Study read_study_text(std::string_view text, const std::filesystem::path& file,
                       const std::vector<std::string>& more_overrides = {});
 
 /// One experiment of the study.
 struct Combination {
-  std::string name;                    ///< of its folder; unique in the study
+  std::string name;                    ///< name of its folder, unique in the study
   std::vector<std::size_t> choices;    ///< index into each axis' choices
   std::vector<std::string> overrides;  ///< the study's, then each axis', in order
 };

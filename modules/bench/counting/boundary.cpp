@@ -5,7 +5,7 @@
 namespace mpm::counting {
 namespace {
 
-/// A plugin's function has no place for a context: what is counted, and what is called, is global.
+/// What is counted, and what is called, is global, since a plugin's function has no place for a context.
 struct Attached {
   const mpm_shape* shape = nullptr;
   const mpm_transfer* transfer = nullptr;

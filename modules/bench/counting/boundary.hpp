@@ -9,8 +9,8 @@
 
 namespace mpm::counting {
 
-/// Plugins of a registry whose functions count their calls and then do what they always do. One set at a time, one
-/// thread, and scenes of one material.
+/// Plugins of a registry whose functions count their calls and then do what they always do. They serve one set at a
+/// time, one thread, and scenes of one material.
 class CountedPlugins {
  public:
   explicit CountedPlugins(const Registry& registry);

@@ -25,16 +25,16 @@ struct RequiredScene {
 
 struct RequiredRow {
   std::string name;
-  std::uint64_t bytes_per_particle = 0, bytes_per_node = 0;  ///< of the plan
-  std::uint64_t particle_bytes = 0, grid_bytes = 0;          ///< that the backend holds
-  std::vector<std::string> channels, passes;                 ///< of the plan, groups and repeats unfolded
-  Calls calls;                                               ///< of the counted steps
-  long steps = 0;                                            ///< that were counted
+  std::uint64_t bytes_per_particle = 0, bytes_per_node = 0;  ///< what the plan says
+  std::uint64_t particle_bytes = 0, grid_bytes = 0;          ///< what the backend holds
+  std::vector<std::string> channels, passes;                 ///< what the plan says, groups and repeats unfolded
+  Calls calls;                                               ///< calls of the counted steps
+  long steps = 0;                                            ///< number of counted steps
   std::size_t particles = 0;
-  /// Of the counted steps of the same scene in 2-D; none where the machine refuses to single-step.
+  /// Instructions of the counted steps of the same scene in 2-D; none where the machine refuses to single-step.
   std::optional<Instructions> instructions;
-  std::size_t stepped_particles = 0;  ///< of that scene
-  /// Of one particle in one step.
+  std::size_t stepped_particles = 0;  ///< particles of the scene that was single-stepped
+  /// Instructions of one particle in one step.
   std::optional<double> instructions_per_particle_step() const {
     if (!instructions) return std::nullopt;
     return static_cast<double>(instructions->all) /
@@ -47,7 +47,8 @@ using AfterStep = std::function<std::function<void()>(Simulation&)>;
 
 /// Two blocks side by side that are counted: float, mls, bspline_quadratic, neo_hookean, nothing recorded.
 std::string required_base_scene(int dimension);
-/// The base scene alone, with outputs that do not fall due, and with one choice more each.
+/// The base scene alone, the base scene with outputs that do not fall due, and the base scene with one choice more
+/// each.
 std::vector<RequiredScene> required_scenes();
 
 /// Counts each scene on the cpu backend with one thread. Throws InputError for a scene that cannot be read.

@@ -61,7 +61,7 @@ unsigned long place_of(pid_t child) {
 #endif
 }
 
-/// Steps to the second SIGSTOP.
+/// Single-steps the child to its second SIGSTOP.
 std::optional<Instructions> step_through(pid_t child, const Ranges& foreign) {
   int status = 0;
   if (waitpid(child, &status, 0) != child || !stopped_by(status, SIGSTOP)) return std::nullopt;
