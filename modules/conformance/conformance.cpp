@@ -27,7 +27,7 @@ bool default_in_range(const mpm_parameter& p) {
   return above && (p.flags & MPM_BELOW_MAXIMUM ? x < p.maximum : x <= p.maximum);
 }
 
-/// What `mpm describe` prints must be there, and every entry that the descriptor offers must exist.
+/// Checks that what `mpm describe` prints is there, and that every entry which the descriptor offers exists.
 void check_descriptor(const Plugin& plugin, Findings& findings) {
   const mpm_descriptor& d = *plugin.descriptor;
   findings.require("id_is_lower_case", lower_case_name(d.id), d.id);

@@ -20,14 +20,14 @@ struct ConformanceFinding {
   std::string detail;  ///< what was computed and where the worst case lies
 };
 
-/// Told what is about to be run, "energy balance [scalar double, 2-D]; density=1000", so that a plugin that never
-/// returns from it can be reported.
+/// A listener that is told what is about to be run, "energy balance [scalar double, 2-D]; density=1000", so that a
+/// plugin that never returns from it can be reported.
 using ConformanceProgress = std::function<void(std::string_view)>;
 
-/// Runs every check of the plugin's kind with seeded random inputs: the same findings at every call.
+/// Runs every check of the plugin's kind with seeded random inputs, which give the same findings at every call.
 std::vector<ConformanceFinding> check_plugin(const Plugin& plugin, const ConformanceProgress& progress = {});
 
-/// One line for a person: "FAILED gradient_sum [lanes float, 2-D]: measured 0.5, bound 1e-06 (...)".
+/// The finding as one line for a person: "FAILED gradient_sum [lanes float, 2-D]: measured 0.5, bound 1e-06 (...)".
 std::string to_string(const ConformanceFinding& finding);
 
 }  // namespace mpm

@@ -21,7 +21,7 @@ struct Pair {
 };
 using Pairs = std::array<Pair, full>;
 
-/// lane % 4: 0 presses, 1 parts while it touches, 2 approaches at a distance, 3 parts at a distance.
+/// Random pairs by lane % 4: 0 presses, 1 parts while it touches, 2 approaches at a distance, 3 parts at a distance.
 Pairs random_pairs(Random& random, int dimension) {
   Pairs pairs;
   for (int lane = 0; lane < full; ++lane) {
@@ -125,7 +125,8 @@ double magnitude(const Vector3& v) {
   return std::sqrt(dot(v, v));
 }
 
-/// Errors are counted in impulses of unit size: every jump of the random pairs is of order 1 m/s.
+/// The difference of two impulses. Errors are counted in impulses of unit size: every jump of the random pairs is of
+/// order 1 m/s.
 double impulse_difference(const ContactBatch& x, const ContactBatch& y, int lane, double sign) {
   const Vector3 a = x.vector(x.impulse, lane), b = y.vector(y.impulse, lane);
   Vector3 difference;
@@ -137,7 +138,7 @@ bool is_weld(const Plugin& plugin) {
   return plugin.contact().traits & MPM_BYPASSES_DETECTION;
 }
 
-/// What must hold of every single pair: no pull at a distance, no approach left, energy and status.
+/// Checks what must hold of every single pair: no pull at a distance, no approach left, energy and status.
 void check_pairs(const Plugin& plugin, const ContactBatch& b, const Pairs& pairs, const std::string& where,
                  Findings& findings) {
   const Variant& v = b.variant;
@@ -167,7 +168,7 @@ void check_pairs(const Plugin& plugin, const ContactBatch& b, const Pairs& pairs
   findings.require("status [" + v.name() + "]", status, "apart exactly where the impulse is zero; 0, 1 or 2" + where);
 }
 
-/// |J_t| <= mu J_n with mu the largest coefficient of friction among the parameters.
+/// Checks |J_t| <= mu J_n with mu the largest coefficient of friction among the parameters.
 void check_friction(const Plugin& plugin, const ContactBatch& b, const ParameterSample& parameters, const Pairs& pairs,
                     const std::string& where, Findings& findings) {
   double mu = -1;
@@ -186,7 +187,8 @@ void check_friction(const Plugin& plugin, const ContactBatch& b, const Parameter
                    "|J_t| - mu J_n over reduced mass" + where);
 }
 
-/// Swapping the bodies flips the impulse; turning the frame turns it; a moving frame changes nothing.
+/// Checks that swapping the bodies flips the impulse, that turning the frame turns it, and that a moving frame changes
+/// nothing.
 void check_symmetry(const Plugin& plugin, const ContactBatch& b, const ParameterSample& parameters, const Pairs& pairs,
                     const Matrix3& rotation, const std::string& where, Findings& findings) {
   Pairs swapped = pairs, turned = pairs, moving = pairs;
@@ -237,7 +239,7 @@ void check_agreement(const ContactBatch& b, const ContactBatch& oracle, const Pa
   findings.require("status_agrees_with_scalar [" + b.variant.name() + "]", status, "status of every pair" + where);
 }
 
-/// A pair's result must not depend on which pairs share its pack.
+/// Checks that a pair's result does not depend on which pairs share its pack.
 void check_neighbours(const Plugin& plugin, const ContactBatch& b, const ParameterSample& parameters,
                       const Pairs& pairs, const std::string& where, Findings& findings) {
   constexpr int shift = 5;

@@ -77,7 +77,8 @@ Worst difference(const FilterBatch& a, const FilterBatch& b, int shift = 0) {
   return worst;
 }
 
-/// Where everything moves alike the projection changes nothing: no increment may be left to add.
+/// Checks uniform motion: where everything moves alike the projection changes nothing, and no increment may be left to
+/// add.
 void check_translation(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, Random& random,
                        int iteration, const std::string& where, Findings& findings) {
   FilterInput uniform;
@@ -93,7 +94,7 @@ void check_translation(const Plugin& plugin, const Variant& v, const ParameterSa
                    "change of a uniform velocity whose projection is itself" + where);
 }
 
-/// u(a + b) against u(a) + u(b): reported, a filter may be nonlinear.
+/// How far u(a + b) differs from u(a) + u(b). It is only reported, since a filter may be nonlinear.
 double nonlinearity(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const FilterInput& a,
                     const FilterInput& b, int iteration) {
   FilterInput both = a;
@@ -110,7 +111,8 @@ double nonlinearity(const Plugin& plugin, const Variant& v, const ParameterSampl
   return difference(updated(plugin, v, parameters, both, iteration), sum).value;
 }
 
-/// Writes stay inside the arrays at every batch size, a node's result is its own, the projection stays as it was.
+/// Checks that writes stay inside the arrays at every batch size, that a node's result is its own, and that the
+/// projection stays as it was.
 void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const FilterInput& input,
                    int iteration, const std::string& where, Findings& findings) {
   constexpr int shift = 5;
@@ -134,8 +136,8 @@ void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample
                    "bit-equal results whichever nodes share the batch" + where);
 }
 
-/// The largest gain of one mode by the whole loop: what the grid keeps `kept` of in a round trip, an increment of 1
-/// that stands alone, ends as a velocity of so much.
+/// The largest gain of one mode by the whole loop. The grid keeps `kept` of the mode in a round trip; the gain is the
+/// velocity that an increment of 1, which stands alone, ends as.
 double largest_gain(const Plugin& plugin, const ParameterSample& parameters, std::int32_t passes) {
   const Variant v{MPM_SCALAR_DOUBLE, 2};
   FilterBatch batch(v, full);
@@ -152,7 +154,8 @@ double largest_gain(const Plugin& plugin, const ParameterSample& parameters, std
   return gain;
 }
 
-/// A filter after the forces multiplies the stiffness of a mode by its gain, and the stable step by one over the root.
+/// Checks the step limit: a filter after the forces multiplies the stiffness of a mode by its gain, and the stable step
+/// by one over the root of the gain.
 void check_step_limit(const Plugin& plugin, const ParameterSample& parameters, std::int32_t passes,
                       const std::string& where, Findings& findings) {
   const auto* table = extension_of<mpm_filter_step_limit>(plugin);

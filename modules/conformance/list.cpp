@@ -20,7 +20,7 @@ int capacity_of(const Plugin& plugin, int dimension) {
   return static_cast<int>(plugin.shape().capacity[dimension - 2]);
 }
 
-/// Corners of a domain that a particle carries, or 0.
+/// Number of corners of a domain that a particle carries, or 0.
 int points_of(const Plugin& plugin, int dimension) {
   return static_cast<int>(plugin.shape().sample_points[dimension - 2]);
 }
@@ -66,22 +66,22 @@ struct ListBatch {
     plugin.shape().evaluate_list[variant.precision][variant.dimension - 2](parameters.data(), &batch);
   }
 
-  /// Never beyond the arrays, whatever the plugin wrote.
+  /// Number of nodes of a lane, never beyond the arrays, whatever the plugin wrote.
   int nodes(int lane) const { return std::clamp(static_cast<int>(node_count(0, lane)), 0, capacity); }
   double coordinate(int k, int axis, int lane) const { return node(k * variant.dimension + axis, lane); }
   double slope(int k, int axis, int lane) const { return gradient(k * variant.dimension + axis, lane); }
 };
 
-/// What particles are given, the same for every precision: representable as float.
+/// The inputs of particles, the same for every precision: representable as float.
 struct ListInput {
   std::array<Vector3, full> position{}, half_size{};
   std::array<Matrix3, full> domain{};
   std::array<bool, full> flat{};
-  std::array<std::array<Vector3, 8>, full> corners{};  ///< of shapes with sample points, from the position
-  std::array<Vector3, full> centre{};                  ///< where their weights lie in the mean, from the position
+  std::array<std::array<Vector3, 8>, full> corners{};  ///< corners for shapes with sample points, from the position
+  std::array<Vector3, full> centre{};                  ///< mean place of their weights, from the position
 };
 
-/// The corners of a lane's parallelepiped, every other one bent as far as it stays upright, and their centroid.
+/// Makes the corners of a lane's parallelepiped, every other one bent as far as it stays upright, and their centroid.
 template <int D>
 void bend_corners(Random& random, int lane, ListInput& input) {
   Vec<D, double> straight[1 << D], bent[1 << D];
@@ -105,9 +105,9 @@ void bend_corners(Random& random, int lane, ListInput& input) {
   }
 }
 
-/// Domains from a fraction of a cell to several cells, turned and sheared; every sixteenth has collapsed.
+/// Makes domains from a fraction of a cell to several cells, turned and sheared; every sixteenth has collapsed.
 ListInput list_input(const Plugin& plugin, Random& random, int dimension) {
-  const bool sampled = points_of(plugin, dimension) > 0;  // collapsed ones have no list
+  const bool sampled = points_of(plugin, dimension) > 0;  // sampled domains do not collapse, as those have no list
   ListInput input;
   for (int lane = 0; lane < full; ++lane) {
     for (int a = 0; a < dimension; ++a) {
@@ -127,7 +127,7 @@ ListInput list_input(const Plugin& plugin, Random& random, int dimension) {
         const int column = input.flat[lane] && j == 1 ? 0 : j;
         input.domain[lane](i, j) = static_cast<float>(size * shape(i, column));
       }
-    if (lane == full - 1 && !sampled) input.domain[lane] = Matrix3{};  // a point
+    if (lane == full - 1 && !sampled) input.domain[lane] = Matrix3{};  // the domain is a point
     if (sampled && dimension == 2) bend_corners<2>(random, lane, input);
     if (sampled && dimension == 3) bend_corners<3>(random, lane, input);
   }
@@ -167,7 +167,7 @@ double reach_of(const Plugin& plugin, const ListInput& input, int axis, int lane
   return reach;
 }
 
-/// Largest entry of the inverse of the domain, which rounding in a gradient is multiplied by; 1 at least.
+/// The largest entry of the inverse of the domain, by which rounding in a gradient is multiplied; 1 at least.
 double steepness(const ListInput& input, int dimension, int lane) {
   if (input.flat[lane]) return 1;
   Matrix3 domain = input.domain[lane];
@@ -175,7 +175,7 @@ double steepness(const ListInput& input, int dimension, int lane) {
   return std::max(1.0, largest_difference(inverse(domain), {}));
 }
 
-/// Count, capacity, each node once, and none out of reach.
+/// Checks count and capacity, that each node comes once, and that none is out of reach.
 void check_nodes(const Plugin& plugin, const ListBatch& b, const ListInput& input, const std::string& where,
                  Findings& findings) {
   const Variant& v = b.variant;
@@ -198,7 +198,7 @@ void check_nodes(const Plugin& plugin, const ListBatch& b, const ListInput& inpu
   findings.at_most("reach", v, beyond, 64 * v.epsilon(), "cells beyond sum |domain| + reach" + where);
 }
 
-/// For any domain: sums over the nodes, and the value and slope of a random affine field.
+/// Checks, for any domain, sums over the nodes, and the value and slope of a random affine field.
 void check_sums(const Plugin& plugin, const ListBatch& b, const ListInput& input, Random& random,
                 const std::string& where, Findings& findings) {
   const Variant& v = b.variant;
@@ -242,7 +242,8 @@ void check_sums(const Plugin& plugin, const ListBatch& b, const ListInput& input
   findings.report("negative_weight [" + v.name() + "]", std::max(0.0, -least), "largest negative weight" + where);
 }
 
-/// The exported second moment is the sum over the nodes, and positive definite for a domain that has not collapsed.
+/// Checks that the exported second moment is the sum over the nodes, and positive definite for a domain that has not
+/// collapsed.
 void check_moment(const Plugin& plugin, const ListBatch& b, const ListInput& input, const std::string& where,
                   Findings& findings) {
   if (!b.second_moment.components()) return;
@@ -273,7 +274,7 @@ void check_moment(const Plugin& plugin, const ListBatch& b, const ListInput& inp
                    "positive definite for a domain with a volume" + where);
 }
 
-/// Place of a node in a particle's list, or -1.
+/// The place of a node in a particle's list, or -1.
 int find_node(const ListBatch& b, const ListBatch& other, int k, int lane) {
   for (int entry = 0; entry < b.nodes(lane); ++entry) {
     bool same = true;
@@ -283,7 +284,7 @@ int find_node(const ListBatch& b, const ListBatch& other, int k, int lane) {
   return -1;
 }
 
-/// Node by node; a node that only one of the two lists counts with zero weight.
+/// Compares two lists node by node; a node that only one of them has counts with zero weight in the other.
 void check_agreement(const ListBatch& b, const ListBatch& oracle, const ListInput& input, const std::string& where,
                      Findings& findings) {
   const int D = b.variant.dimension;
@@ -307,7 +308,7 @@ void check_agreement(const ListBatch& b, const ListBatch& oracle, const ListInpu
                    "|g - g of scalar double| over the inverse domain" + where);
 }
 
-/// A shift by whole cells moves the nodes and changes nothing else, bit for bit.
+/// Checks that a shift by whole cells moves the nodes and changes nothing else, bit for bit.
 void check_translation(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
                        const ListInput& input, const std::string& where, Findings& findings) {
   constexpr int cells = 23;
@@ -330,7 +331,8 @@ void check_translation(const Plugin& plugin, const Variant& v, const ParameterSa
   findings.require("translation [" + v.name() + "]", same, "a shift by whole cells changes only the nodes" + where);
 }
 
-/// Writes stay inside the arrays at every batch size, inputs stay as they were, optional outputs may be null.
+/// Checks that writes stay inside the arrays at every batch size, that inputs stay as they were, and that optional
+/// outputs may be null.
 void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const ListInput& input,
                    const std::string& where, Findings& findings) {
   const ListBatch reference = evaluated(plugin, v, parameters, input);
@@ -367,7 +369,7 @@ void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample
                    "counts of 16 to 64, with and without optional outputs" + where);
 }
 
-/// A domain that its corners turn inside out has no list.
+/// Checks that a domain which its corners turn inside out has no list.
 void check_inside_out(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, ListInput input,
                       const std::string& where, Findings& findings) {
   for (auto& corner : input.corners)
@@ -386,7 +388,7 @@ int places_of(int dimension) {
   return dimension == 2 ? width * width : width * width * width;
 }
 
-/// The entries of boxes, for the same particles.
+/// The arrays of boxes, for the same particles.
 struct BoxBatch {
   Variant variant;
   int count;
@@ -425,7 +427,7 @@ struct BoxBatch {
   int nodes(int lane) const {
     return std::clamp(static_cast<int>(extent(0, lane)), 0, static_cast<int>(MPM_BOX_WIDTH));
   }
-  /// Entry of the node at `node` nodes from the box's first, or -1 when it is outside of the box.
+  /// The entry of the node at `node` nodes from the box's first, or -1 when it is outside of the box.
   int place(const std::array<int, 3>& node, int lane) const {
     int entry = 0;
     for (int a = 0; a < variant.dimension; ++a) {
@@ -460,7 +462,8 @@ BoxBatch boxes(const Plugin& plugin, const Variant& v, const ParameterSample& pa
   return batch;
 }
 
-/// The nodes of the list are those of the box: nowhere else, and with the same weights, gradients and moment.
+/// Checks that the nodes of the list are those of the box: nowhere else, and with the same weights, gradients and
+/// moment.
 void check_box_agrees(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const ListInput& input,
                       int outputs, const std::string& where, Findings& findings) {
   const BoxBatch box = boxes(plugin, v, parameters, input, full, outputs);
@@ -515,7 +518,7 @@ void check_box_agrees(const Plugin& plugin, const Variant& v, const ParameterSam
   findings.report("without_box [" + v.name() + "]", lists, "particles of 64 that take their lists" + where);
 }
 
-/// Neither the number nor the size of the other particles matters, nor which outputs are wanted, nor whole cells.
+/// Checks that neither number nor size of the other particles matters, nor which outputs are wanted, nor whole cells.
 void check_box_batches(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
                        const ListInput& input, const std::string& where, Findings& findings) {
   const BoxBatch reference = boxes(plugin, v, parameters, input);
@@ -531,7 +534,7 @@ void check_box_batches(const Plugin& plugin, const Variant& v, const ParameterSa
   constexpr int cells = 23;
   ListInput narrow = input, still = input, moved = input;
   for (int lane = 0; lane < full; ++lane) {
-    if (reference.nodes(lane) != 3) {  // make all neighbours alike
+    if (reference.nodes(lane) != 3) {  // all neighbours are made alike
       narrow.position[lane] = {};
       narrow.domain[lane] = scaled(Matrix3::identity(), 0.25);
     }
@@ -555,7 +558,7 @@ void check_box_batches(const Plugin& plugin, const Variant& v, const ParameterSa
   findings.require("box_translation [" + v.name() + "]", translated, "a shift by whole cells moves the base" + where);
 }
 
-/// What no box can hold must take its list: a particle that is not a number or reaches far.
+/// Checks that what no box can hold takes its list: a particle that is not a number or reaches far.
 void check_box_refuses(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, ListInput input,
                        const std::string& where, Findings& findings) {
   const bool domain = plugin.descriptor->needs & MPM_NEEDS_DOMAIN;

@@ -13,7 +13,8 @@ unsigned traits_of(const Plugin& plugin) {
   return plugin.material().traits;
 }
 
-/// Neither trait: a law whose stress and energy agree to the order of the strain only.
+/// Whether a law has one of the traits of finite strain. With neither, its stress and energy agree to the order of the
+/// strain only.
 bool is_finite_strain(const Plugin& plugin) {
   return traits_of(plugin) & (MPM_OBJECTIVE | MPM_HYPERELASTIC);
 }
@@ -40,7 +41,7 @@ void check_rest(const Context& c) {
                      "a null gradient at rest" + c.where);
 }
 
-/// Along a path of large strains: signs, volume, and that looking at a state does not change it.
+/// Checks along a path of large strains: signs, volume, and that looking at a state does not change it.
 void check_path(const Context& c, const std::vector<Increments>& path) {
   MaterialBatch batch = c.batch();
   std::array<double, full> volume;
@@ -70,7 +71,7 @@ void check_path(const Context& c, const std::vector<Increments>& path) {
                      "a null gradient leaves the state bit for bit" + c.where);
 }
 
-/// Index of the state field that holds F, or -1.
+/// The index of the state field that holds F, or -1.
 int deformation_field(const Plugin& plugin) {
   for (std::size_t k = 0; k < plugin.state().size(); ++k)
     if (std::strcmp(plugin.state()[k].name, "deformation_gradient") == 0 &&
@@ -87,7 +88,7 @@ Matrix3 deformation(const MaterialBatch& batch, int field, int lane) {
   return F;
 }
 
-/// dpsi/dF by central differences, all lanes at once; `batch` is left as it was.
+/// The gradient dpsi/dF by central differences, all lanes at once; `batch` is left as it was.
 Increments energy_gradient(MaterialBatch& batch, int field) {
   constexpr double h = 1e-5;
   const int D = batch.variant.dimension;
@@ -105,7 +106,7 @@ Increments energy_gradient(MaterialBatch& batch, int field) {
   return gradient;
 }
 
-/// tau = (dpsi/dF) F^T, and that the right-hand side is symmetric, as an objective energy makes it.
+/// Checks that tau = (dpsi/dF) F^T, and that the right-hand side is symmetric, as an objective energy makes it.
 void check_hyperelastic(const Context& c, const std::vector<Increments>& path) {
   const int field = deformation_field(c.plugin), D = c.variant.dimension;
   c.findings.require("hyperelastic_state", field >= 0, "a hyperelastic material declares `deformation_gradient`");
@@ -125,7 +126,8 @@ void check_hyperelastic(const Context& c, const std::vector<Increments>& path) {
   c.findings.at_most("symmetric_stress", c.variant, symmetric, 1e-8, "skew part of dpsi/dF F^T over rho c^2" + c.where);
 }
 
-/// The same path seen from a turning frame: f' = Q_k f Q_{k-1}^T ends at Q tau Q^T, with equal energy and wave speed.
+/// Checks the same path seen from a turning frame: f' = Q_k f Q_{k-1}^T ends at Q tau Q^T, with equal energy and wave
+/// speed.
 void check_objective(const Context& c, const std::vector<Increments>& path, Random& random) {
   if (c.variant.single()) return;
   MaterialBatch still = c.batch(), turning = c.batch();
@@ -156,7 +158,7 @@ void check_objective(const Context& c, const std::vector<Increments>& path, Rand
 }
 
 /// Stress work minus stored energy minus heat, over the work, for a straight path to `target` in `steps`. Where hardly
-/// any work is done (sand in tension) only rounding is left to compare: `floor`, J/m^3, stands for the work there.
+/// any work is done (sand in tension) only rounding is left to compare, and `floor`, J/m^3, stands for the work.
 Worst energy_residual(const Context& c, const Increments& target, int steps, double floor) {
   MaterialBatch batch = c.batch();
   batch.evaluate();
@@ -184,7 +186,8 @@ Worst energy_residual(const Context& c, const Increments& target, int steps, dou
   return worst;
 }
 
-/// The balance closes to the order of the time step; a law of small strains closes to the order of the strain only.
+/// Checks that the balance closes to the order of the time step; that of a law of small strains closes to the order of
+/// the strain only.
 void check_energy_balance(const Context& c, Random& random) {
   if (c.variant.precision != MPM_SCALAR_DOUBLE) return;
   const bool finite = is_finite_strain(c.plugin);
@@ -205,9 +208,9 @@ void check_energy_balance(const Context& c, Random& random) {
                        "shortfall of the order below " + std::to_string(least) + ": " + text);
 }
 
-/// rho0 c^2 of waves along n polarised along a: the derivative of tau(f F) n - (a.n) tau n with f = I + s a (x) n,
-/// one-sided to second order in s, so that a plastic law answers for the direction asked. Zero where the law has a kink
-/// inside the difference (a particle that starts to yield), which no difference resolves.
+/// The squared speed rho0 c^2 of waves along n polarised along a: the derivative of tau(f F) n - (a.n) tau n with f = I
+/// + s a (x) n, one-sided to second order in s, so that a plastic law answers for the direction asked. It is zero where
+/// the law has a kink inside the difference (a particle that starts to yield), which no difference resolves.
 std::array<Vector3, full> acoustic(const MaterialBatch& from, const std::array<Vector3, full>& n,
                                    const std::array<Vector3, full>& a, double s) {
   MaterialBatch once = from, twice = from;
@@ -235,8 +238,8 @@ std::array<Vector3, full> acoustic(const MaterialBatch& from, const std::array<V
   return result;
 }
 
-/// The fastest wave found by power iteration over polarisations must not outrun the reported speed. A law of small
-/// strains answers for small strains.
+/// Checks that the fastest wave, found by power iteration over polarisations, does not outrun the reported speed. A law
+/// of small strains answers for small strains.
 void check_wave_speed(const Context& c, Random& random) {
   if (c.variant.precision != MPM_SCALAR_DOUBLE) return;
   const bool finite = is_finite_strain(c.plugin);
@@ -269,7 +272,7 @@ void check_wave_speed(const Context& c, Random& random) {
                     "fastest tangent wave found over reported speed" + c.where);
 }
 
-/// J <= 0 and NaN are reported by the index of the first such particle, and spoil no other.
+/// Checks that J <= 0 and NaN are reported by the index of the first such particle, and spoil no other.
 void check_inadmissible(const Context& c, const std::vector<Increments>& path) {
   const MaterialBatch good = after_path(c.plugin, c.variant, c.parameters, path);
   bool index = true, others = true;
@@ -319,7 +322,7 @@ void check_agreement(const Context& c, const std::vector<Increments>& path) {
   c.findings.at_most("wave_speed_agrees_with_scalar", c.variant, wave, bound, "relative" + c.where);
 }
 
-/// 2-D is plane strain: stress (zz included), energy, heat and J are those of 3-D.
+/// Checks that 2-D is plane strain: stress (zz included), energy, heat and J are those of 3-D.
 void check_plane_strain(const Context& c, const std::vector<Increments>& path) {
   if (c.variant.dimension != 2 || !(c.plugin.descriptor->dimensions & MPM_3D)) return;
   MaterialBatch plane = c.batch(), space(c.plugin, {c.variant.precision, 3}, c.parameters);
@@ -335,7 +338,7 @@ void check_plane_strain(const Context& c, const std::vector<Increments>& path) {
   c.findings.at_most("plane_strain_scalars", c.variant, scalars, bound, "energy, heat, J: 2-D against 3-D" + c.where);
 }
 
-/// An axisymmetric particle, strained around the axis too, is one of 3-D; where it only evaluates too.
+/// Checks that an axisymmetric particle, strained around the axis too, is one of 3-D, also where it only evaluates.
 void check_axisymmetric(const Context& c, std::vector<Increments> path) {
   const bool strains = traits_of(c.plugin) & MPM_STRAINS_AROUND_AXIS;
   if (!strains || c.variant.dimension != 2 || !(c.plugin.descriptor->dimensions & MPM_3D)) return;
@@ -357,8 +360,8 @@ void check_axisymmetric(const Context& c, std::vector<Increments> path) {
                      "energy, heat, J: 2-D with a velocity_gradient_zz against 3-D" + c.where);
 }
 
-/// A particle's result must not depend on which particles share its pack, or runs would differ with the order of
-/// particles.
+/// Checks that a particle's result does not depend on which particles share its pack: otherwise runs would differ with
+/// the order of particles.
 void check_neighbours(const Context& c, const std::vector<Increments>& path) {
   constexpr int shift = 5;
   std::vector<Increments> moved = path;
@@ -414,15 +417,15 @@ void check_batches(const Context& c, const Increments& increments) {
 
 }  // namespace
 
-/// rho c^2 at rest: the size by which stress and energy errors are judged.
+/// The stiffness rho c^2 at rest: the size by which stress and energy errors are judged.
 double stiffness(const Plugin& plugin, const Variant& v, const ParameterSample& parameters) {
   MaterialBatch rest(plugin, {MPM_SCALAR_DOUBLE, v.dimension}, parameters, MPM_LANES);
   rest.evaluate();
   return parameter_value(plugin, parameters, "density", 1) * rest.wave(0, 0) * rest.wave(0, 0);
 }
 
-/// `steps` increments that wander around one direction a lane and add up to `strain`; every fourth lane strains little,
-/// so that packs hold particles that yield beside some that do not.
+/// Makes `steps` increments that wander around one direction a lane and add up to `strain`; every fourth lane strains
+/// little, so that packs hold particles that yield beside some that do not.
 std::vector<Increments> random_path(Random& random, int dimension, int steps, double strain) {
   Increments direction;
   for (Matrix3& d : direction) d = random.matrix(dimension, 1);

@@ -11,7 +11,7 @@ namespace mpm::conformance {
 inline constexpr int full = MPM_BATCH;
 inline constexpr double step = 0x1p-6;  ///< s; a power of two, so that increments / step are exact
 
-/// One increment of I + dt L a lane.
+/// The increment of I + dt L of every lane.
 using Increments = std::array<Matrix3, full>;
 
 /// A batch of particles of one material, with all outputs; in axisymmetric scenes L has its zz.
@@ -22,7 +22,7 @@ struct MaterialBatch {
   int count;
   bool axisymmetric;
   Array gradient, hoop, stress, energy, dissipated, wave, ratio;
-  Array temperature{};  ///< K; empty until it is set: the reference temperature
+  Array temperature{};  ///< K; empty stands for the reference temperature
   std::vector<Array> state;
 
   MaterialBatch(const Plugin& p, const Variant& v, const ParameterSample& sample, int entries = full,
@@ -46,7 +46,7 @@ struct MaterialBatch {
       for (int lane = 0; lane < count; ++lane) array.set(c, lane, initial_value(field, c, variant.dimension));
   }
 
-  /// The velocity gradient that makes the increments over one step.
+  /// Sets the velocity gradient that makes the increments over one step.
   void strain_by(const Increments& increments, double dt = step) {
     const int D = variant.dimension;
     for (int lane = 0; lane < count; ++lane)
@@ -94,11 +94,11 @@ struct MaterialBatch {
   }
 };
 
-/// rho c^2 at rest: the size by which stress and energy errors are judged.
+/// The stiffness rho c^2 at rest: the size by which stress and energy errors are judged.
 double stiffness(const Plugin& plugin, const Variant& v, const ParameterSample& parameters);
 
-/// `steps` increments that wander around one direction a lane and add up to `strain`; every fourth lane strains little,
-/// so that packs hold particles that yield beside some that do not.
+/// Makes `steps` increments that wander around one direction a lane and add up to `strain`; every fourth lane strains
+/// little, so that packs hold particles that yield beside some that do not.
 std::vector<Increments> random_path(Random& random, int dimension, int steps, double strain);
 
 MaterialBatch after_path(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
@@ -116,7 +116,7 @@ struct Context {
   MaterialBatch batch() const { return {plugin, variant, parameters}; }
 };
 
-/// The checks of what the material offers beyond its table, at the end of a path and where else they need.
+/// Runs the checks of what the material offers beyond its table, at the end of a path and where else they need.
 void check_material_extensions(const Context& c, const std::vector<Increments>& path);
 
 }  // namespace mpm::conformance

@@ -9,7 +9,7 @@
 namespace mpm::conformance {
 namespace {
 
-/// Temperatures about the reference, the same ones for every batch; none where the material takes none.
+/// Gives a batch temperatures about the reference, the same for every batch; none where the material takes none.
 void heat(MaterialBatch& batch, double spread = 40) {
   const auto* table = extension_of<mpm_material_temperature>(batch.plugin);
   if (!table) return;
@@ -24,7 +24,7 @@ std::vector<void*> pointers(std::vector<Array>& fields) {
   return result;
 }
 
-/// The end of a path; in axisymmetric scenes it strains around the axis as well.
+/// A batch at the end of a path; in axisymmetric scenes it strains around the axis as well.
 MaterialBatch at_end(const Context& c, std::vector<Increments> path, bool axisymmetric) {
   MaterialBatch batch(c.plugin, c.variant, c.parameters, full, axisymmetric);
   heat(batch);
@@ -84,7 +84,7 @@ void check_trial(const Context& c, const std::vector<Increments>& path, bool axi
   bool kept = true, guards = true;
   for (const bool strained : {true, false}) {
     Increments increments = path.front();
-    increments[5] = {}, increments[5](0, 0) = -1.5;  // turned inside out: its index is the answer
+    increments[5] = {}, increments[5](0, 0) = -1.5;  // this one is turned inside out: its index is the answer
     MaterialBatch updated = from, tried = from;
     for (MaterialBatch* batch : {&updated, &tried}) batch->strain_by(increments);
     const std::int32_t index = updated.update(strained ? updated.gradient.data() : nullptr, step);
@@ -109,7 +109,7 @@ void check_trial(const Context& c, const std::vector<Increments>& path, bool axi
 
 // ---- tangent -----------------------------------------------------------------------------------------------------
 
-/// d tau / ds of tau(increments + s direction), by the plugin.
+/// The tangent d tau / ds of tau(increments + s direction), as the plugin gives it.
 Array tangent_of(MaterialBatch& batch, const Increments& increments, const Increments& direction) {
   const Element element = element_of(batch.variant);
   const std::uint32_t n = static_cast<std::uint32_t>(batch.count);
@@ -139,8 +139,8 @@ Increments plus(const Increments& a, const Increments& b, double factor) {
   return r;
 }
 
-/// Against central differences of the stress. Where both one-sided ones differ the law has a kink (a yield surface),
-/// and the particle is left out.
+/// The error of a tangent against central differences of the stress. Where both one-sided differences disagree the law
+/// has a kink (a yield surface), and the particle is left out.
 struct TangentError {
   Worst error;
   int compared = 0;
@@ -171,7 +171,8 @@ TangentError tangent_error(const Context& c, const MaterialBatch& from, const In
   return result;
 }
 
-/// From rest (where singular values are equal), under pure pressure (where they stay so), and at the end of a path.
+/// Checks tangents from rest (where singular values are equal), under pure pressure (where they stay so), and at the
+/// end of a path.
 void check_tangent_differences(const Context& c, const std::vector<Increments>& path, Random& random,
                                bool axisymmetric) {
   MaterialBatch rest(c.plugin, c.variant, c.parameters, full, axisymmetric);
@@ -194,8 +195,8 @@ void check_tangent_differences(const Context& c, const std::vector<Increments>& 
                      "particles short of half that lie on no kink at the end of a path" + c.where);
 }
 
-/// Packs against the plain scalar: double to the error of equal singular values put apart, float as often as both
-/// take the same side of a yield surface.
+/// Checks packs against the plain scalar: double to the error of equal singular values put apart, float as often as
+/// both take the same side of a yield surface.
 void check_tangent_agrees(const Context& c, const std::vector<Increments>& path, Random& random) {
   const Variant scalar{MPM_SCALAR_DOUBLE, c.variant.dimension};
   const Context oracle{c.plugin, scalar, c.parameters, c.modulus, c.where, c.findings};
@@ -250,8 +251,8 @@ std::int32_t project(MaterialBatch& batch) {
   return entry(batch.parameters.data(), &request);
 }
 
-/// Strains what the material keeps of F without asking the law: f F of a deformation, f b f^T of a symmetric tensor.
-/// False where no field starts as the identity.
+/// Strains what the material keeps of F without asking the law: a deformation becomes f F, a symmetric tensor f b f^T.
+/// Returns false where no field starts as the identity.
 bool strain_beyond_law(MaterialBatch& batch, const Increments& f) {
   const int D = batch.variant.dimension;
   bool found = false;
@@ -261,7 +262,7 @@ bool strain_beyond_law(MaterialBatch& batch, const Increments& f) {
     found = true;
     Array& array = batch.state[field];
     for (int lane = 0; lane < batch.count; ++lane) {
-      if (row.shape == MPM_STATE_SYMMETRIC) {  // at constant volume: such tensors may be isochoric by definition
+      if (row.shape == MPM_STATE_SYMMETRIC) {  // the strain keeps the volume: such tensors may be isochoric by law
         Matrix3 isochoric = f[lane];
         const double factor = std::pow(determinant(f[lane]), -1.0 / D);
         for (int i = 0; i < D; ++i)
@@ -335,7 +336,7 @@ void check_projection(const Context& c, const std::vector<Increments>& path, Ran
 
 // ---- temperature and cell size -----------------------------------------------------------------------------------
 
-/// Without temperatures the reference one counts, and others change something.
+/// Checks that without temperatures the reference one counts, and that others change something.
 void check_temperature(const Context& c, const std::vector<Increments>& path) {
   const auto* table = extension_of<mpm_material_temperature>(c.plugin);
   if (!table) return;
@@ -355,7 +356,7 @@ void check_temperature(const Context& c, const std::vector<Increments>& path) {
                      "stress 40 K above and below the reference" + c.where);
 }
 
-/// The block's place is nobody else's, and another size changes something.
+/// Checks that the place in the block is nobody else's, and that another size changes something.
 void check_cell_size(const Context& c, const std::vector<Increments>& path) {
   const auto* table = extension_of<mpm_material_cell_size>(c.plugin);
   if (!table) return;

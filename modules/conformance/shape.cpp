@@ -49,7 +49,7 @@ struct ShapeBatch {
 
   double w(int axis, int k, int lane) const { return weight(axis * width + k, lane); }
   double g(int axis, int k, int lane) const { return gradient(axis * width + k, lane); }
-  /// Whether the stencil holds the particle's domain: no weight says that it does not.
+  /// Whether the stencil holds the particle's domain; it does not where all weights along an axis are zero.
   bool holds(int lane) const {
     for (int a = 0; a < variant.dimension; ++a) {
       bool none = domain.components() > 0;
@@ -63,10 +63,11 @@ struct ShapeBatch {
 /// Positions and particle boxes of a batch, the same for every precision: representable as float.
 struct ShapeInput {
   std::array<Vector3, full> position{}, half_size{};
-  std::array<Matrix3, full> domain{};  ///< D*D in its upper left corner
+  std::array<Matrix3, full> domain{};  ///< D*D entries in its upper left corner
 };
 
-/// Semi-side vectors in cells, as float numbers: boxes as they were, stretched, sheared, turned, turned by 90 degrees.
+/// Semi-side vectors in cells, as float numbers: boxes that are undeformed, stretched, sheared, turned, and turned by
+/// 90 degrees.
 Matrix3 random_domain(Random& random, int lane, int dimension) {
   const double half = lane % 5 == 0 ? 0.5 : random.logarithmic(0.01, 0.5);
   Matrix3 domain{};
@@ -86,7 +87,7 @@ ShapeInput shape_input(Random& random, int dimension) {
   for (int lane = 0; lane < full; ++lane)
     for (int a = 0; a < dimension; ++a) {
       double x = random.uniform(-40, 60);
-      // The edges of the pieces a shape is made of, and the numbers next to them.
+      // Some positions are the edges of the pieces that a shape is made of, and the numbers next to them.
       if (lane % 8 == 1) x = std::floor(x);
       if (lane % 8 == 2) x = std::floor(x) + 0.5;
       if (lane % 8 == 3) x = std::nextafter(static_cast<float>(std::floor(x)), -1000.0f);
@@ -126,7 +127,7 @@ struct StencilSums {
   double gradient_identity = 0;  // largest |w d_a - D_aa (grad w)_a|
 };
 
-/// Second moment of one axis, in cells.
+/// The second moment of one axis, in cells.
 double axis_moment(const ShapeBatch& b, int axis, int lane) {
   double moment = 0;
   for (int k = 0; k < b.width; ++k) {
@@ -163,7 +164,7 @@ StencilSums stencil_sums(const ShapeBatch& b, int lane) {
   return s;
 }
 
-/// Partition of unity, linear consistency, second moment.
+/// Checks partition of unity, linear consistency and second moment.
 void check_sums(const Plugin& plugin, const ShapeBatch& b, const std::string& where, Findings& findings) {
   const Variant& v = b.variant;
   Worst unity, gradient, linear, affine, constant, identity;
@@ -195,7 +196,7 @@ void check_sums(const Plugin& plugin, const ShapeBatch& b, const std::string& wh
   findings.report("negative_weight [" + v.name() + "]", std::max(0.0, -least), "largest negative weight" + where);
 }
 
-/// A moment that the batch exports is that of its weights, and positive.
+/// Checks that a moment which the batch exports is that of its weights, and positive.
 void check_moment(const ShapeBatch& b, const std::string& where, Findings& findings) {
   if (!b.second_moment.components()) return;
   const Variant& v = b.variant;
@@ -211,7 +212,8 @@ void check_moment(const ShapeBatch& b, const std::string& where, Findings& findi
   findings.require("second_moment_positive [" + v.name() + "]", positive, "above 0 along every axis" + where);
 }
 
-/// The base covers the particle, offset is position - base, and every declared node is used by some particle.
+/// Checks that the base covers the particle, that offset is position - base, and that every declared node is used by
+/// some particle.
 void check_stencil(const ShapeBatch& b, const std::string& where, Findings& findings) {
   const Variant& v = b.variant;
   Worst outside, offset;
@@ -229,14 +231,14 @@ void check_stencil(const ShapeBatch& b, const std::string& where, Findings& find
                    "each of the declared nodes carries weight for some position" + where);
 }
 
-/// Weight (or gradient) of an absolute node, zero outside the stencil.
+/// The weight (or gradient) of an absolute node, zero outside the stencil.
 double at_node(const ShapeBatch& b, bool gradient, int axis, double node, int lane) {
   const int k = static_cast<int>(node - b.base(axis, lane));
   if (k < 0 || k >= b.width) return 0;
   return gradient ? b.g(axis, k, lane) : b.w(axis, k, lane);
 }
 
-/// Node by node, so that two instantiations may differ in the base where a position rounds across a piece.
+/// Compares node by node, so that two instantiations may differ in the base where a position rounds across a piece.
 void check_agreement(const ShapeBatch& b, const ShapeBatch& oracle, const std::string& where, Findings& findings) {
   Worst weight, gradient;
   for (int lane = 0; lane < full; ++lane)
@@ -253,7 +255,8 @@ void check_agreement(const ShapeBatch& b, const ShapeBatch& oracle, const std::s
   findings.at_most("gradient_agrees_with_scalar", b.variant, gradient, 2 * bound, "|g - g of scalar double|" + where);
 }
 
-/// Axis derivatives against central differences, away from kinks (where the stencil changes within the difference).
+/// Checks axis derivatives against central differences, away from kinks (where the stencil changes within the
+/// difference).
 void check_differences(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
                        const ShapeInput& input, const std::string& where, Findings& findings) {
   constexpr double step = 0x1p-20;
@@ -275,7 +278,7 @@ void check_differences(const Plugin& plugin, const Variant& v, const ParameterSa
   findings.at_most("gradient_is_derivative", v, error, 1e-5, "|g - dw/dx| by central differences" + where);
 }
 
-/// A shift by whole cells moves the base and changes nothing else, bit for bit.
+/// Checks that a shift by whole cells moves the base and changes nothing else, bit for bit.
 void check_translation(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
                        const ShapeInput& input, const std::string& where, Findings& findings) {
   constexpr int cells = 23;
@@ -295,7 +298,8 @@ void check_translation(const Plugin& plugin, const Variant& v, const ParameterSa
                    "a shift by whole cells changes only the base" + where);
 }
 
-/// Writes stay inside the arrays at every batch size, inputs stay as they were, gradients are optional.
+/// Checks that writes stay inside the arrays at every batch size, that inputs stay as they were, and that gradients are
+/// optional.
 void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const ShapeInput& input,
                    const std::string& where, Findings& findings) {
   const ShapeBatch reference = evaluated(plugin, v, parameters, input);
@@ -324,8 +328,8 @@ void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample
                    "counts of 16 to 64, with and without gradients" + where);
 }
 
-/// Of shapes that read the domain: undeformed boxes are held, endless ones are held or have no weight at all, and the
-/// first node is that of the position whatever the domain.
+/// Checks shapes that read the domain: undeformed boxes are held, endless ones are held or have no weight at all, and
+/// the first node is that of the position whatever the domain.
 void check_domains(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const ShapeInput& input,
                    const std::string& where, Findings& findings) {
   if (!(plugin.descriptor->needs & MPM_NEEDS_DOMAIN)) return;

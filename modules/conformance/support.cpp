@@ -149,7 +149,7 @@ Matrix3 Random::matrix(int dimension, double size) {
   return r;
 }
 
-Matrix3 Random::rotation(int dimension) {  // Rodrigues
+Matrix3 Random::rotation(int dimension) {  // by the formula of Rodrigues
   Vector3 axis{};
   axis[2] = 1;
   if (dimension == 3) axis = direction(3);

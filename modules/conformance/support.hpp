@@ -21,7 +21,7 @@ Matrix3 transposed(const Matrix3& a);
 Matrix3 scaled(const Matrix3& a, double factor);
 Matrix3 sum(const Matrix3& a, const Matrix3& b);
 Matrix3 inverse(const Matrix3& a);
-/// a : b.
+/// The contraction a : b.
 double contraction(const Matrix3& a, const Matrix3& b);
 Vector3 product(const Matrix3& a, const Vector3& b);
 double dot(const Vector3& a, const Vector3& b);
@@ -63,7 +63,7 @@ class Findings {
                const std::string& detail);
   void at_most(const std::string& check, double measured, double bound, const std::string& detail);
   void require(const std::string& check, bool holds, const std::string& detail);
-  /// A number worth knowing that no bound applies to.
+  /// Reports a number worth knowing that no bound applies to.
   void report(const std::string& check, double measured, const std::string& detail);
   std::vector<ConformanceFinding> take() { return std::move(findings_); }
 
@@ -78,11 +78,12 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
   double uniform(double low, double high);
-  /// Evenly spread over orders of magnitude.
+  /// A number evenly spread over orders of magnitude.
   double logarithmic(double low, double high);
   Vector3 direction(int dimension);
   Matrix3 matrix(int dimension, double size);
-  /// About a random axis; in 2-D about z. Orthogonal to double rounding, so not representable as float.
+  /// A rotation about a random axis; in 2-D about z. It is orthogonal to double rounding, so not representable as
+  /// float.
   Matrix3 rotation(int dimension);
 
  private:
@@ -109,7 +110,7 @@ class Array {
   std::uint32_t stride() const { return stride_; }
 
   bool guards_intact() const;
-  /// No element still holds the bytes the array was created with.
+  /// Whether no element still holds the bytes that the array was created with.
   bool all_written() const;
   bool operator==(const Array& other) const;
 
@@ -135,7 +136,7 @@ struct ParameterSample {
 };
 /// Every combination of choices, with defaults where there are some and then with random values inside the ranges.
 std::vector<ParameterSample> sample_parameters(const Plugin& plugin, Random& random);
-/// Value of a parameter in a block, or `otherwise` when the plugin has none of that name.
+/// The value of a parameter in a block, or `otherwise` when the plugin has none of that name.
 double parameter_value(const Plugin& plugin, const ParameterSample& sample, std::string_view name, double otherwise);
 
 /// What a new particle holds in one component of a state field.
@@ -147,7 +148,7 @@ void check_transfer(const Plugin& plugin, Findings& findings);
 void check_filter(const Plugin& plugin, Findings& findings);
 void check_contact(const Plugin& plugin, Findings& findings);
 void check_material(const Plugin& plugin, Findings& findings);
-/// Of every kind that says its own operation counts.
+/// Checks the operation counts that a plugin of any kind says of itself.
 void check_costs(const Plugin& plugin, Findings& findings);
 
 }  // namespace mpm::conformance

@@ -77,7 +77,7 @@ struct TransferBatch {
                                  particle_velocity.data(),
                                  fields.data(),
                                  advection.data(),
-                                 nullptr};  // a multiple of the identity
+                                 nullptr};  // the second moment is a multiple of the identity
     plugin.transfer().gather[variant.precision][variant.dimension - 2](parameters.data(), &batch);
   }
 };
@@ -168,7 +168,7 @@ struct Grid {
     }
   }
 
-  /// Velocities from momenta, and a random change of each by forces of size `kick`.
+  /// Makes velocities of momenta, and changes each at random by forces of size `kick`.
   void advance(double kick, int dimension, Random& random) {
     for (std::size_t node = 0; node < mass.size(); ++node)
       for (int i = 0; i < dimension; ++i) {
@@ -211,11 +211,11 @@ struct Grid {
 bool first_state_is_matrix(const Plugin& plugin) {
   return !plugin.state().empty() && plugin.state()[0].shape == MPM_STATE_MATRIX;
 }
-/// State 0 is the affine velocity, and its energy and momentum count.
+/// Whether state 0 is the affine velocity, and its energy and momentum count.
 bool state_is_affine_velocity(const Plugin& plugin) {
   return (traits_of(plugin) & MPM_AFFINE_CARRIES_ENERGY) && first_state_is_matrix(plugin);
 }
-/// State 0 is the affine velocity, whether it counts or not.
+/// Whether state 0 is the affine velocity, whether it counts or not.
 bool has_affine_velocity(const Plugin& plugin) {
   return (traits_of(plugin) & (MPM_AFFINE_CARRIES_ENERGY | MPM_STARTS_WITH_GRADIENT)) && first_state_is_matrix(plugin);
 }
@@ -246,7 +246,7 @@ struct Totals {
   Vector3 momentum{};
   Matrix3 angular{};  ///< antisymmetric: sum m (x (x) v - v (x) x) and the affine part
   double energy = 0;
-  double affine_energy = 0;  ///< of an affine velocity that does not count
+  double affine_energy = 0;  ///< energy of an affine velocity that does not count
 };
 
 Totals totals(const Plugin& plugin, const TransferBatch& batch, const Array& velocity, const Particles& particles) {
@@ -278,7 +278,8 @@ double bound_of(const Variant& v) {
   return v.single() ? 1e-5 : 1e-12;
 }
 
-/// What a particle gives its nodes sums to its momentum, and the grid's momentum comes back to the particles.
+/// Checks that what a particle gives its nodes sums to its momentum, and that the grid's momentum comes back to the
+/// particles.
 void check_momentum(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
                     const Particles& particles, Random& random, const std::string& where, Findings& findings) {
   const int D = v.dimension;
@@ -311,7 +312,7 @@ void check_momentum(const Plugin& plugin, const Variant& v, const ParameterSampl
                    "largest velocity that moves a particle, of order 1 m/s" + where);
 }
 
-/// Without forces: momentum and angular momentum stay, energy does not grow, FLIP changes nothing.
+/// Checks a step without forces: momentum and angular momentum stay, energy does not grow, FLIP changes nothing.
 void check_force_free(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
                       const Particles& particles, Random& random, const std::string& where, Findings& findings) {
   TransferBatch batch = loaded(plugin, v, particles);
@@ -326,7 +327,7 @@ void check_force_free(const Plugin& plugin, const Variant& v, const ParameterSam
   Worst momentum, angular, energy, kept;
   momentum.add(difference(after.momentum, before.momentum) / full);
   angular.add(largest_difference(after.angular, before.angular) / full);
-  energy.add(after.energy / (before.energy + before.affine_energy) - 1);  // the grid gets both
+  energy.add(after.energy / (before.energy + before.affine_energy) - 1);  // the grid gets both energies
   findings.at_most("momentum", v, momentum, bound_of(v), "change over a force-free round trip, a particle" + where);
   findings.at_most("energy_never_grows", v, energy, bound_of(v), "relative gain over a force-free round trip" + where);
   const std::string round_trip = "change over a force-free round trip, a particle" + where;
@@ -343,7 +344,7 @@ void check_force_free(const Plugin& plugin, const Variant& v, const ParameterSam
   }
 }
 
-/// v = v0 + B x with C = B comes back unchanged; a transfer that scatters only a rotation is given a spin.
+/// Checks that v = v0 + B x with C = B comes back unchanged; a transfer that scatters only a rotation is given a spin.
 void check_affine(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
                   const Particles& random_ones, Random& random, const std::string& where, Findings& findings) {
   const unsigned traits = traits_of(plugin);
@@ -452,7 +453,7 @@ void check_batches(const Plugin& plugin, const Variant& v, const ParameterSample
   findings.require("inputs_untouched [" + v.name() + "]", inputs, "mass, velocity, moments; state by scatter" + where);
 }
 
-/// The promise of MPM_REPLACES_MOTION.
+/// Checks the promise of MPM_REPLACES_MOTION.
 void check_replaced_motion(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
                            const Particles& particles, const std::string& where, Findings& findings) {
   if (!(traits_of(plugin) & MPM_REPLACES_MOTION)) return;
@@ -477,8 +478,7 @@ void check_replaced_motion(const Plugin& plugin, const Variant& v, const Paramet
                    "advection velocity is the gathered one" + where);
 }
 
-// ---- polynomials beyond affine, whose sums are the host's
-// ------------------------------------------------------------
+// ---- polynomials beyond affine, whose sums are the host's --------------------------------------------------------
 
 /// Values of the polynomials at the nodes of one particle's quadratic stencil, in the order of for_nodes.
 struct Polynomials {
@@ -507,8 +507,8 @@ struct Polynomials {
   }
 };
 
-/// One particle alone on the grid with random coefficients: b, A and the polynomials come back unchanged, and what the
-/// polynomials give has neither momentum nor angular momentum.
+/// Checks one particle alone on the grid with random coefficients: b, A and the polynomials come back unchanged, and
+/// what the polynomials give has neither momentum nor angular momentum.
 void check_polynomials(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
                        const Particles& particles, Random& random, const std::string& where, Findings& findings) {
   const auto* polynomials = extension_of<mpm_transfer_polynomials>(plugin);

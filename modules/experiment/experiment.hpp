@@ -28,7 +28,7 @@ struct Component {
   std::vector<double> parameters;  ///< the block of doubles handed over the boundary, parameter_bytes / 8 long
   std::string pointer;             ///< JSON pointer of the choice, for messages and the plan
 
-  /// Value of a parameter by name; throws std::out_of_range when the plugin has none of that name.
+  /// The value of a parameter by name. Throws std::out_of_range when the plugin has none of that name.
   double parameter(std::string_view name) const;
 };
 
@@ -39,7 +39,7 @@ struct GridSpecification {
   double cell_size = 0;  ///< m, cubic cells
   Vector3 lower{}, upper{};
   std::array<int, 3> cells{1, 1, 1};           ///< whole cells a side
-  Symmetry symmetry = Symmetry::plane_strain;  ///< of 2-D
+  Symmetry symmetry = Symmetry::plane_strain;  ///< symmetry of a 2-D experiment
 };
 
 enum class ConditionType { free, stick, slip, separate, prescribed, periodic };
@@ -49,22 +49,22 @@ enum class HeatExchange { none, fixed_temperature, flux, convection, heating };
 
 struct ThermalCondition {
   HeatExchange exchange = HeatExchange::none;
-  /// Of x y z t: the temperature that is held or lies beyond the wall, K; the flux into the body, W/m^2; or the power
-  /// that all nodes of a box share by their mass, W (in plane strain a metre of depth).
+  /// A number at (x, y, z, t): the temperature that is held or lies beyond the wall, K; the flux into the body, W/m^2;
+  /// or the power that all nodes of a box share by their mass, W (in plane strain a metre of depth).
   ScalarExpression value;
-  double coefficient = 0;  ///< of convection, W/(m^2 K)
+  double coefficient = 0;  ///< coefficient of convection, W/(m^2 K)
   std::string pointer;
 };
 
 /// What holds on a face of the domain. Stick, slip and separate mirror the material beyond the wall (docs/method.md).
 struct FaceCondition {
   ConditionType type = ConditionType::slip;
-  std::optional<VectorExpression> velocity;  ///< of the wall, m/s, for `prescribed` (function of t, x, y, z)
+  std::optional<VectorExpression> velocity;  ///< velocity of the wall, m/s, for `prescribed` (function of t, x, y, z)
   std::string pointer;
   ThermalCondition thermal;
 };
 
-/// Whether heat comes in through the wall by a flux, so that the area that a body covers of it counts.
+/// Whether heat comes in through the wall by a flux, so that the area of it that a body covers counts.
 inline bool passes_heat(const FaceCondition& face) {
   return face.thermal.exchange == HeatExchange::flux || face.thermal.exchange == HeatExchange::convection;
 }
@@ -118,9 +118,9 @@ struct BodySpecification {
   int particles_per_cell_axis = 2;
   double jitter = 0;          ///< largest random shift of a particle, in particle spacings
   bool frozen = false;        ///< particles keep their places and domains; velocity and material state evolve
-  VectorExpression velocity;  ///< initial, m/s, function of x, y, z
+  VectorExpression velocity;  ///< initial velocity, m/s, function of x, y, z
   std::optional<VectorExpression> initial_displacement_gradient;  ///< unused until a case needs it
-  std::optional<ScalarExpression> temperature;                    ///< initial, K, function of x, y, z
+  std::optional<ScalarExpression> temperature;                    ///< initial temperature, K, function of x, y, z
   std::string pointer;
 };
 
@@ -151,38 +151,39 @@ struct OutputSpecification {
   bool film = false;
   bool ledger = true;              ///< the energy ledger
   int ledger_every = 1;            ///< steps between its entries, each counted that many times
-  double checkpoint_seconds = 60;  ///< of the wall clock between checkpoints; 0: none by the clock
+  double checkpoint_seconds = 60;  ///< seconds of the wall clock between checkpoints; 0: none by the clock
   long checkpoint_steps = 0;       ///< steps between checkpoints; 0: none by steps
 };
 
 struct Expectation {
   std::string metric;  ///< dotted path into summary.json, e.g. "energy.total.final_over_initial"
   std::optional<double> at_least, at_most, equals;
-  double tolerance = 0;  ///< of `equals`, absolute
+  double tolerance = 0;  ///< absolute tolerance of `equals`
   std::string pointer;
 };
 
 /// What a finished run must respect at every recorded time, else it is flagged by name.
 struct Limits {
   std::optional<bool> isolated;       ///< nothing: as the scene says
-  std::optional<double> energy_gain;  ///< of the energy that an isolated scene began with; nothing: not judged
+  std::optional<double> energy_gain;  ///< limit over the energy that an isolated scene began with; nothing: not judged
   std::optional<std::array<double, 2>> volume_ratio;  ///< smallest and largest of any particle; nothing: not judged
 };
 
 struct ExactChoice {
   std::string type;                                    ///< name in the registry of exact solutions
-  std::vector<std::pair<std::string, double>> values;  ///< its parameters
+  std::vector<std::pair<std::string, double>> values;  ///< values of its parameters
   std::string pointer;
 };
 
-/// Throws nothing once constructed: reading has validated every value, name and combination.
+/// An experiment as it was read. It throws nothing once constructed: reading has validated every value, name and
+/// combination.
 struct Experiment {
   std::filesystem::path file;
   std::string title, description;
   int dimension = 2;
   Precision precision = Precision::double_;
   std::string backend = "cpu";
-  unsigned seed = 1;  ///< of particle jitter, when asked for
+  unsigned seed = 1;  ///< seed of particle jitter, when that is asked for
 
   GridSpecification grid;
   std::array<std::array<FaceCondition, 2>, 3> faces;  ///< [axis][0 lower, 1 upper]
@@ -215,7 +216,7 @@ struct Experiment {
   bool has_temperature() const;
   bool axisymmetric() const { return grid.symmetry == Symmetry::axisymmetric; }
 
-  /// "file:line:column" of a JSON pointer's value, for messages that arise after reading.
+  /// The place of a JSON pointer's value, "file:line:column", for messages that arise after reading.
   std::string where(std::string_view pointer) const;
   std::vector<std::pair<std::string, std::pair<int, int>>> positions;  ///< JSON pointer -> line, column
 };

@@ -32,7 +32,7 @@ struct Function {
       call;
 };
 
-// All are defined here rather than taken from muParser, whose `log` changed its base between versions.
+// All functions are defined here rather than taken from muParser, whose `log` changed its base between versions.
 const Function functions[] = {
     {"sin", +[](double a) { return std::sin(a); }},
     {"cos", +[](double a) { return std::cos(a); }},
@@ -120,7 +120,7 @@ std::string reason(const mu::Parser::exception_type& error, const ExpressionScop
   throw ExpressionError("in the expression " + in_quotes(text) + at + ": " + why);
 }
 
-/// muParser also has assignments, lists and strings, which no formula here means.
+/// Refuses what muParser also has and no formula here means: assignments, lists and strings.
 void refuse_extras(const std::string& text) {
   if (text.size() > longest) fail(text, -1, "longer than " + std::to_string(longest) + " characters");
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -136,7 +136,7 @@ void refuse_extras(const std::string& text) {
 
 struct Checked {
   std::string used;  ///< letters of the variables it uses
-  double value = 0;  ///< at the origin and time zero
+  double value = 0;  ///< value at the origin and time zero
 };
 
 Checked check(const std::string& text, const ExpressionScope& scope) {

@@ -32,20 +32,20 @@ void check_expression(const std::string& text, const ExpressionScope& scope);
 /// Functions a formula may call, and names a constant may not take.
 std::vector<std::string> expression_functions();
 
-/// Up to three numbers or formulas of x y z (position, m), X Y Z (initial position, m) and t (s), in SI.
-/// A value: copies share the text, and cost nothing when constant. Evaluation is thread-safe: each thread parses a
+/// Up to three numbers or formulas of x y z (position, m), X Y Z (initial position, m) and t (s), in SI. The class is a
+/// value: copies share the text, and cost nothing when constant. Evaluation is thread-safe: each thread parses a
 /// formula once and keeps its own parser.
 class VectorExpression {
  public:
   using Term = std::variant<double, std::string>;
 
-  VectorExpression() = default;  ///< zero
+  VectorExpression() = default;  ///< the zero vector
   explicit VectorExpression(const Vector3& constant) : constant_(constant) {}
-  /// Throws ExpressionError. Formulas without variables are evaluated here, once.
+  /// Parses the terms. Throws ExpressionError. Formulas without variables are evaluated here, once.
   VectorExpression(std::span<const Term> terms, const ExpressionScope& scope);
 
   Vector3 operator()(const Vector3& x, const Vector3& X, double t) const;
-  /// One component at many positions, which are the initial ones too.
+  /// Evaluates one component at many positions, which are the initial ones too.
   void evaluate(int component, std::span<const Vector3> x, double t, double* result) const;
 
   bool is_constant() const { return !program_; }
@@ -61,7 +61,7 @@ class VectorExpression {
   static Instance& instance_of_this_thread(const std::shared_ptr<const Program>& program);
 
   Vector3 constant_{};                      ///< the components that are constant
-  std::shared_ptr<const Program> program_;  ///< null when all are
+  std::shared_ptr<const Program> program_;  ///< null when all components are constant
   bool uses_position_ = false, uses_initial_position_ = false, uses_time_ = false;
   std::array<std::array<bool, 3>, 3> varies_{};
 };
@@ -69,17 +69,17 @@ class VectorExpression {
 /// One number or formula of the same variables: the first component of a VectorExpression.
 class ScalarExpression {
  public:
-  ScalarExpression() = default;  ///< zero
+  ScalarExpression() = default;  ///< the number zero
   explicit ScalarExpression(double constant) : first_(Vector3{constant, 0, 0}) {}
   explicit ScalarExpression(VectorExpression first) : first_(std::move(first)) {}
 
   double operator()(const Vector3& x, const Vector3& X, double t) const { return first_(x, X, t)[0]; }
-  /// At many positions, which are the initial ones too.
+  /// Evaluates the formula at many positions, which are the initial ones too.
   void evaluate(std::span<const Vector3> x, double t, double* result) const { first_.evaluate(0, x, t, result); }
 
   bool is_constant() const { return first_.is_constant(); }
   bool uses_time() const { return first_.uses_time(); }
-  /// Whether it changes along an axis when position and initial position do.
+  /// Whether the value changes along an axis when position and initial position do.
   bool varies(int axis) const { return first_.varies(0, axis); }
 
  private:

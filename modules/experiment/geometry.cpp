@@ -200,7 +200,7 @@ bool segments_meet(const Vector3& a, const Vector3& b, const Vector3& c, const V
          (cdb == 0 && within(c, d, b));
 }
 
-/// Neighbouring edges a-b, b-c share b; they are at fault only when the second folds back on the first.
+/// Whether b-c folds back on a-b. Neighbouring edges share b; they are at fault only then.
 bool folds_back(const Vector3& a, const Vector3& b, const Vector3& c) {
   const double along = (a[0] - b[0]) * (c[0] - b[0]) + (a[1] - b[1]) * (c[1] - b[1]);
   return turn(a, b, c) == 0 && along >= 0;

@@ -12,19 +12,20 @@ namespace mpm {
 class Geometry {
  public:
   virtual ~Geometry() = default;
-  /// Boundary points count as inside.
+  /// Whether a point lies in the region; boundary points count as inside.
   virtual bool contains(const Vector3& point) const = 0;
-  /// Lower and upper corner of a box around it; infinite where it has no bound (a half space: the caller clips).
+  /// Lower and upper corner of a box around the region; infinite where it has no bound (a half space: the caller
+  /// clips).
   virtual std::pair<Vector3, Vector3> bounds() const = 0;
 };
 
 using GeometryPointer = std::shared_ptr<const Geometry>;
 
-/// All take `dimension` (2 or 3) so that bounds and distances ignore z in 2-D. Arguments are assumed checked: see
-/// crossing_edges and polygon_area for polygons; radii positive, lower < upper.
+/// Makers of regions. All take `dimension` (2 or 3) so that bounds and distances ignore z in 2-D. Arguments are assumed
+/// checked: see crossing_edges and polygon_area for polygons; radii positive, lower < upper.
 GeometryPointer make_ball(int dimension, const Vector3& centre, double radius);
 GeometryPointer make_box(int dimension, const Vector3& lower, const Vector3& upper);
-/// 2-D annulus; in 3-D a tube of `length` about an axis (0 x, 1 y, 2 z) through its centre.
+/// An annulus in 2-D; in 3-D a tube of `length` about an axis (0 x, 1 y, 2 z) through its centre.
 GeometryPointer make_ring(int dimension, const Vector3& centre, double inner, double outer, int axis, double length);
 GeometryPointer make_polygon(std::vector<Vector3> points);
 /// The side of the plane through `point` that `normal` points away from.

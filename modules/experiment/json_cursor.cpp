@@ -13,7 +13,7 @@ bool ends_word(char c) {
   return is_blank(c) || c == ',' || c == ':' || c == '{' || c == '}' || c == '[' || c == ']' || c == '"' || c == '/';
 }
 
-/// Why a string, number or word that stands where a value may stand was refused.
+/// Says why a string, number or word that stands where a value may stand was refused.
 std::string malformed(const JsonCursor& cursor, bool out_of_range) {
   const char first = cursor.peek();
   if (out_of_range) return "the number " + cursor.token() + " is too large for double precision";

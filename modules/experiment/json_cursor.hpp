@@ -20,7 +20,8 @@ class JsonCursor {
   Position position() const { return {line_, column_, {}}; }
   void advance();
 
-  /// Passes white space and comments; false, standing on its start, at a comment that is never closed or no comment.
+  /// Passes white space and comments. Returns false, standing on its start, at a comment that is never closed or no
+  /// comment.
   bool skip_blank();
   /// Passes white space, comments, ',' and ':'.
   void skip_separators();
@@ -28,7 +29,7 @@ class JsonCursor {
   void skip_token();
   /// Passes what a person would take for one token: up to the next blank or bracket, or one string.
   void skip_word();
-  /// That word as text, shortened, for messages.
+  /// The word that skip_word would pass as text, shortened, for messages.
   std::string token() const;
 
  private:
@@ -46,7 +47,7 @@ struct JsonFault {
   std::string message;
 };
 
-/// Why a strict parser stopped after what `cursor` has passed. `nested`: inside an object or array.
+/// Why a strict parser stopped after what `cursor` has passed. `nested` says that it was inside an object or array.
 JsonFault describe_fault(JsonCursor cursor, JsonState state, bool in_object, bool nested, bool out_of_range);
 
 }  // namespace mpm

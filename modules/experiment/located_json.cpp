@@ -12,7 +12,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t deepest = 64;  // so that walking the tree needs little stack, whatever the input
+constexpr std::size_t deepest = 64;  // bound, so that walking the tree needs little stack, whatever the input
 
 using Json = nlohmann::json;
 
@@ -66,7 +66,7 @@ class Builder final : public nlohmann::json_sax<Json> {
  private:
   struct Frame {
     Node node;
-    std::string key;  ///< of the member being read
+    std::string key;  ///< key of the member being read
     Position key_at;
     std::set<std::string> keys;
   };
@@ -184,7 +184,7 @@ std::vector<std::string> pointer_keys(std::string_view pointer) {
   return keys;
 }
 
-/// The item `key` names in an array; size() when it is no index of one.
+/// The item that `key` names in an array; size() when it is no index of one.
 std::size_t array_index(const Node& array, const std::string& key) {
   if (key.empty() || key.size() > 9 || key.find_first_not_of("0123456789") != std::string::npos) {
     return array.items.size();

@@ -30,11 +30,11 @@ struct Node {
   std::string pointer;  ///< JSON pointer from the root, "" for the root itself
   bool boolean = false;
   double number = 0;
-  std::string text;             ///< of a string
-  std::vector<Node> items;      ///< of an array
-  std::vector<Member> members;  ///< of an object, in the order of the file
+  std::string text;             ///< text of a string
+  std::vector<Node> items;      ///< items of an array
+  std::vector<Member> members;  ///< members of an object, in the order of the file
 
-  /// Null when the object has no such key.
+  /// The value of a key, or null when the object has no such key.
   const Node* find(std::string_view key) const;
   Node* find(std::string_view key);
 };
@@ -61,7 +61,7 @@ void apply_overrides(Node& root, std::span<const std::string> overrides, std::ve
 /// Sets a key of the root to a string, as an option of the command line did.
 void set_from_option(Node& root, std::string_view key, std::string_view value, std::string_view option);
 
-/// "the string "x"", "the number 3", "an object", …
+/// The value in words: "the string "x"", "the number 3", "an object", …
 std::string describe_value(const Node& node);
 
 /// The pointer of a member, with ~ and / escaped.

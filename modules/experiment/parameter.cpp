@@ -142,7 +142,7 @@ Fields::Fields(const Node* object, Section section, ReadContext& context)
     const Node* node = object_->find(spec.name);
     const bool optional_section = spec.type == ParameterType::nested && !spec.required;
     if (node && node->type == Node::Type::null && optional_section)
-      node = nullptr;  // so that a study can switch it off
+      node = nullptr;  // null stands for nothing, so that a study can switch it off
     const bool missing = spec.required && !node && object_->type == Node::Type::object && !absent;
     if (missing) {
       context_.problem(object_->at, child_pointer(object_->pointer, spec.name),
@@ -188,7 +188,7 @@ void Fields::read(const ParameterSpec& spec, const Node* node) {
     value.valid = read_value(spec, *node, value);
   }
   if (value.is_null || (spec.type == ParameterType::nested && node)) {
-    resolved[spec.name] = nullptr;  // kept, or keeps its place in the order of the table
+    resolved[spec.name] = nullptr;  // null is kept, or keeps the place in the order of the table
   } else if (!value.resolved.is_null()) {
     resolved[spec.name] = value.resolved;
   }
@@ -385,7 +385,7 @@ ExpressionScope Fields::scope_of(const ParameterSpec& spec) const {
   return scope;
 }
 
-/// One number or formula; `expected` is what a message says there should be.
+/// Reads one number or formula; `expected` is what a message says there should be.
 bool Fields::read_term(const ParameterSpec& spec, const Node& node, const std::string& expected,
                        VectorExpression::Term& term, OrderedJson& out) {
   if (node.type == Node::Type::string && !looks_like_quantity(node.text)) {

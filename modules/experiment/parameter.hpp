@@ -53,11 +53,11 @@ struct ParameterSpec {
   std::string variables;                             ///< letters that an expression may use
   bool may_leave_free = false;                       ///< components of an expression vector may be null
   bool may_be_null = false;                          ///< null says "none", and is kept
-  int components = 0;                                ///< of a vector; 0: as the dimension of the experiment
-  std::size_t least_items = 0, most_items = 100000;  ///< of points
-  std::string definition;                            ///< of nested
-  std::shared_ptr<const Section> table;              ///< of nested: the keys, where one place alone has them
-  std::uint32_t offset = 0;                          ///< of a plugin's parameter, in its block
+  int components = 0;                                ///< components of a vector; 0: as the dimension of the experiment
+  std::size_t least_items = 0, most_items = 100000;  ///< number of points
+  std::string definition;                            ///< definition of a nested key
+  std::shared_ptr<const Section> table;              ///< keys of a nested key, where one place alone has them
+  std::uint32_t offset = 0;                          ///< offset of a plugin's parameter, in its block
 
   ParameterSpec& needed() { return required = true, *this; }
   ParameterSpec& standard(OrderedJson value) { return default_value = std::move(value), *this; }
@@ -80,7 +80,7 @@ struct ParameterSpec {
 ParameterSpec parameter(std::string name, ParameterType type, std::string unit, std::string doc);
 ParameterSpec from_plugin(const mpm_parameter& declared);
 
-/// "a length (m) above 0", "an integer from 1 to 8", "one of "first", "last"".
+/// What a message says there should be: "a length (m) above 0", "an integer from 1 to 8", "one of "first", "last"".
 std::string describe_expected(const ParameterSpec& spec);
 
 /// A section of the file, or one kind of a choice that "type" makes.
@@ -107,7 +107,8 @@ struct ReadContext {
 /// becomes a problem of the context; values that are missing or wrong read as zero, and `valid` says so.
 class Fields {
  public:
-  /// `object` null: the section is absent, all defaults (what is required there has been missed by the parent).
+  /// Reads `object`. When it is null the section is absent: all defaults (what is required there has been missed by the
+  /// parent).
   Fields(const Node* object, Section section, ReadContext& context);
 
   bool given(std::string_view name) const { return value(name).node != nullptr; }
@@ -115,9 +116,9 @@ class Fields {
   double number(std::string_view name) const { return value(name).number; }
   int integer(std::string_view name) const { return static_cast<int>(value(name).number); }
   bool boolean(std::string_view name) const { return value(name).number != 0; }
-  /// Of a string or choice; the word of a number that may be one, else "".
+  /// The text of a string or choice; the word of a number that may be one, else "".
   const std::string& text(std::string_view name) const { return value(name).text; }
-  /// Position of the chosen name in `choices`.
+  /// The position of the chosen name in `choices`.
   int choice(std::string_view name) const { return static_cast<int>(value(name).number); }
   const Vector3& vector(std::string_view name) const { return value(name).vector; }
   const std::vector<Vector3>& points(std::string_view name) const { return value(name).points; }
@@ -126,13 +127,13 @@ class Fields {
   ScalarExpression scalar_expression(std::string_view name) const { return ScalarExpression(value(name).expression); }
   /// Components of an expression vector that are not null.
   const std::array<bool, 3>& held(std::string_view name) const { return value(name).held; }
-  /// The file says null where the key may be null.
+  /// Whether the file says null, where the key may be null.
   bool is_null(std::string_view name) const { return value(name).is_null; }
   /// The fields of a nested key that has a table; all defaults when it is absent.
   Fields nested(std::string_view name) const;
   /// The value as it stands in the file; null when absent.
   const Node* node(std::string_view name) const { return value(name).node; }
-  /// The value, or the whole object when absent: where a problem about it belongs.
+  /// The value, or the whole object when it is absent: where a problem about it belongs.
   const Node& place(std::string_view name) const { return given(name) ? *node(name) : *object_; }
   const Section& section() const { return section_; }
 
@@ -179,7 +180,7 @@ class Fields {
 };
 
 /// The kind that an object's "type" names, or that a bare string names when `bare` allows it. Null, with a problem
-/// recorded, when there is none. `what` is used in messages: "geometry", "material".
+/// recorded, when there is none. `what` names it in messages: "geometry", "material".
 const Section* choose_kind(const Node& node, std::span<const Section> kinds, std::string_view what, bool bare,
                            ReadContext& context);
 

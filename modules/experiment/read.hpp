@@ -21,8 +21,8 @@ struct ExactDescription {
 
 /// What the rest of the program offers, so that reading can check names without depending on it.
 struct ReadOptions {
-  std::vector<std::string> overrides;  ///< "/json/pointer=value", applied in order
-  std::optional<std::string> backend;  ///< as --backend gave it; wins over the file
+  std::vector<std::string> overrides;  ///< applied in order, "/json/pointer=value"
+  std::optional<std::string> backend;  ///< as --backend gave it; it wins over the file
   std::vector<ExactDescription> exact;
   std::vector<std::string> backends{"reference", "cpu"};
   std::vector<std::string> figures;            ///< valid figure names; empty: any
@@ -46,7 +46,7 @@ class ComponentLookup {
 Experiment read_experiment(const std::filesystem::path& file, const Registry& registry, const ReadOptions& options);
 Experiment read_experiment(const std::filesystem::path& file, const ComponentLookup& components,
                            const ReadOptions& options);
-/// The same from text; `file` names it in messages.
+/// Reads an experiment from text; `file` names it in messages.
 Experiment read_experiment_text(std::string_view text, const std::filesystem::path& file,
                                 const ComponentLookup& components, const ReadOptions& options);
 

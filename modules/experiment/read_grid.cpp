@@ -26,7 +26,7 @@ std::string cells_text(double count, double cell) {
   return number_text(count * cell) + " m (" + number_text(count) + (count == 1 ? " cell)" : " cells)");
 }
 
-/// Why a side is no whole number of cells, and which sizes would be.
+/// Says why a side is no whole number of cells, and which sizes would be.
 std::string uneven_side(int axis, double length, double cell) {
   const double exact = length / cell, below = std::floor(exact), above = std::ceil(exact);
   char rounded[32];

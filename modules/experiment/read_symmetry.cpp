@@ -42,7 +42,7 @@ void ExperimentReader::check_axisymmetric() {
   }
 }
 
-/// Nothing lies at r < 0, and nothing passes the axis.
+/// Checks that nothing lies at r < 0, and that nothing passes the axis.
 void ExperimentReader::check_axis() {
   const GridSpecification& grid = experiment_.grid;
   const FaceCondition &inner = experiment_.faces[0][0], &outer = experiment_.faces[0][1];

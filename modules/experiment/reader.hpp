@@ -1,5 +1,5 @@
 #pragma once
-// Inside of read_experiment: one reader an experiment, its parts spread over read_*.cpp.
+// The reader behind read_experiment: one an experiment, its parts spread over read_*.cpp.
 
 #include <string>
 #include <vector>
@@ -16,7 +16,7 @@ class ExperimentReader {
   ExperimentReader(Node root, const std::filesystem::path& file, const ComponentLookup& components,
                    const ReadOptions& options);
 
-  /// Throws InputError.
+  /// Reads the experiment. Throws InputError.
   Experiment read();
 
  private:

@@ -15,7 +15,7 @@ ParameterSpec nested(std::string name, std::string doc, std::string definition) 
   return parameter(std::move(name), Type::nested, "", std::move(doc)).defined_as(std::move(definition));
 }
 
-/// When any filter acts, and what acts on it: the host's.
+/// Keys of the host's that say when any filter acts, and what acts on it.
 std::vector<ParameterSpec> filter_schedule() {
   return {
       parameter("every_steps", Type::integer, "", "Steps from one filtered step to the next.").from(1).to(1e9),

@@ -13,7 +13,7 @@ constexpr int most_cells_a_side = 1 << 20;  ///< beyond this no machine holds th
 
 Section experiment_section(const ReadOptions& options);
 Section grid_section();
-/// "all" and the faces "x_min", "x_max", …; z faces only when `dimension` is not 2.
+/// The section of walls: "all" and the faces "x_min", "x_max", …; z faces only when `dimension` is not 2.
 Section boundaries_section(int dimension);
 std::vector<Section> face_condition_kinds();
 std::vector<Section> node_condition_kinds();
@@ -26,7 +26,7 @@ Section limits_section();
 Section expectation_section();
 std::vector<Section> exact_kinds(const ReadOptions& options);
 
-/// What fields of `limits_section` say, checked against each other.
+/// The limits that the fields of `limits_section` set, checked against each other.
 Limits limits_of(const Fields& fields, ReadContext& context);
 
 /// The plugins of a kind as sections, with the keys the host itself reads beside them.

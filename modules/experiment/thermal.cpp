@@ -20,7 +20,7 @@ ParameterSpec heat_capacity() {
   return parameter("heat_capacity", Type::number, "J/(kg K)", "Heat that warms a unit of mass by one kelvin.").above(0);
 }
 
-/// What may differ in the melted material. Its mass and volume are the particle's, so its density may not.
+/// The keys that may differ in the melted material. Its mass and volume are the particle's, so its density may not.
 Section melted_section(const Plugin& plugin) {
   Section section{"melted",
                   "values of the melted material, where they are not those of the solid",
@@ -202,7 +202,8 @@ std::vector<std::string> places_of_heat(const Experiment& experiment) {
   return places;
 }
 
-/// A gather may replace the temperature that particles have before it.
+/// Refuses to turn dissipation to heat where a step strains before its gather, which may replace the temperature that
+/// was raised.
 void check_order_of_strain(const Node& root, const Experiment& experiment, ReadContext& context) {
   const StressUpdate update = experiment.solver.stress_update;
   if (update != StressUpdate::first && update != StressUpdate::averaged) return;

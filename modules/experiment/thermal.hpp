@@ -26,7 +26,7 @@ std::optional<Thermal> read_thermal(const Fields& material, const Component& com
 /// What the fields of a wall or box say of heat, at most one of their keys. `resolved` is the wall's or box's.
 ThermalCondition read_thermal_condition(const Fields& fields, ReadContext& context, OrderedJson& resolved);
 
-/// Every body has a temperature and a material that conducts, or nothing in the scene speaks of heat.
+/// Checks that every body has a temperature and a material that conducts, or that nothing in the scene speaks of heat.
 void check_temperature(const Node& root, const Experiment& experiment, ReadContext& context);
 
 /// Why a transfer does not carry temperature as it carries velocity, with what to choose instead; nothing when it does.

@@ -26,7 +26,7 @@ constexpr Dimension pure = dimension(0, 0, 0), mass = dimension(1, 0, 0), length
                     angle = dimension(0, 0, 0, 0, 1), frequency = dimension(0, 0, -1), force = dimension(1, 1, -2),
                     pressure = dimension(1, -1, -2), energy = dimension(1, 2, -2), power = dimension(1, 2, -3);
 
-// Every symbol in full, prefix included: no surprises such as a "cPa" nobody meant.
+// Every symbol is listed in full, prefix included: no surprises such as a "cPa" nobody meant.
 const Symbol symbols[] = {
     {"m", 1, 1, length},        {"km", 1e3, 1, length},
     {"dm", 1, 10, length},      {"cm", 1, 100, length},
@@ -102,7 +102,7 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   }
 }
 
-/// Typographic forms in plain letters.
+/// The unit with typographic forms in plain letters.
 std::string plain(std::string_view unit) {
   std::string text(unit);
   const std::pair<const char*, const char*> forms[] = {{"\u00b2", "^2"}, {"\u00b3", "^3"}, {"\u00b7", "*"},
@@ -216,7 +216,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// A number at the start of `text`, which loses it; nothing when there is none.
+/// Takes a number from the start of `text`, which loses it; nothing when there is none.
 std::optional<double> take_number(std::string_view& text) {
   std::string_view rest = text;
   const bool negative = !rest.empty() && rest[0] == '-';

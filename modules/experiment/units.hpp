@@ -22,14 +22,14 @@ struct Dimension {
 
 struct Unit {
   double multiplier = 1,
-         divisor = 1;  ///< one such unit is multiplier / divisor in SI: apart, so that decimals stay exact
+         divisor = 1;  ///< one such unit is multiplier / divisor in SI: kept apart, so that decimals stay exact
   Dimension dimension;
 };
 
 struct Quantity {
-  double value = 0;  ///< in SI
+  double value = 0;  ///< value in SI
   Dimension dimension;
-  std::string unit;  ///< as written
+  std::string unit;  ///< unit as written
 };
 
 /// Parses a unit: symbols joined by '*', '·' or a blank and by '/', integer powers ("m^2", "m²"), parentheses. Each '/'
@@ -42,14 +42,14 @@ Quantity parse_quantity(std::string_view text);
 /// True when the text starts with a number that a unit follows ("2 mm", "5kPa"), so it is not an expression.
 bool looks_like_quantity(std::string_view text);
 
-/// True when the whole text is one plain number.
+/// The number that the whole text is; nothing when it is none.
 std::optional<double> parse_number(std::string_view text);
 
 /// SI value of `text`, which must have the dimension of the SI unit `expected` ("Pa"; "" a pure number, "any"
 /// whatever). Throws UnitError: "expected a pressure (Pa), got a length (mm)".
 double to_si(std::string_view text, std::string_view expected);
 
-/// "a pressure (Pa)"; "a number" for a pure number.
+/// The unit in words: "a pressure (Pa)"; "a number" for a pure number.
 std::string describe_unit(std::string_view unit);
 
 }  // namespace mpm

@@ -29,7 +29,7 @@ constexpr const char* free_keys[] = {"/title",
 
 constexpr const char* start_anew = "or start anew without --resume (the unfinished run is then moved aside)";
 
-/// As it would be read back from a file.
+/// The value as it would be read back from a file.
 Json as_written(const Json& value) {
   return Json::parse(value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
@@ -42,7 +42,7 @@ std::string escaped(const std::string& key) {
 
 struct Difference {
   std::string pointer;
-  const Json *now, *then;  ///< null: not there
+  const Json *now, *then;  ///< null where there is no value
 };
 
 /// The first place at which two values differ, in the order of the file that is run now.
@@ -82,7 +82,7 @@ Json without_free_keys(const Json& experiment) {
     if (!kept.contains(pointer)) continue;
     Json& parent = kept.at(pointer.parent_pointer());
     parent.erase(pointer.back());
-    if (parent.empty()) kept.erase(pointer.parent_pointer().back());  // as if the section had not been written
+    if (parent.empty()) kept.erase(pointer.parent_pointer().back());  // kept as if the section had not been written
   }
   return kept;
 }
@@ -91,7 +91,7 @@ std::string plugin_text(const Json& plugin) {
   return plugin.value("version", "") + ", SHA-256 " + plugin.value("file_sha256", "").substr(0, 12);
 }
 
-/// Another program or other plugins would go on with other arithmetic.
+/// Refuses another program or other plugins, which would go on with other arithmetic.
 void refuse_other_program(const Json& now, const Json& then, const fs::path& path) {
   const std::string version = then.value("version", "unknown");
   if (then.value("program", "") != now["program"].get<std::string>() || version != now["version"].get<std::string>())
@@ -128,7 +128,8 @@ EarlierParts read_earlier_parts(ArchiveReader& archive) {
   return earlier;
 }
 
-/// @throws output::CheckpointDamaged when an older one may do; anything else when that is no use.
+/// Restores one checkpoint. Throws output::CheckpointDamaged when an older one may do; anything else when that is no
+/// use.
 EarlierParts restore_from(const fs::path& path, Simulation& simulation, Recorder& recorder,
                           const output::RunFolder& folder, const Json& identity) {
   const output::CheckpointFile file = output::read_checkpoint(path);
@@ -240,7 +241,7 @@ bool Checkpoints::due(long steps) const {
 }
 
 void Checkpoints::write_if_due() {
-  // By the clock it may fall due after a step that was not to be observed: the next one then is.
+  // By the clock a checkpoint may fall due after a step that was not to be observed: the next step then is observed.
   if (due(simulation_.steps()) && simulation_.observed() && !simulation_.finished()) write();
 }
 
@@ -251,7 +252,7 @@ bool Checkpoints::write() {
     last_step_ = simulation_.steps();
     if (failing_) std::cerr << "checkpoints are written again\n";
     failing_ = false;
-  } catch (const std::exception& error) {  // of the disk, or no memory for the copy
+  } catch (const std::exception& error) {  // an error of the disk, or no memory for the copy
     trouble_ = std::string("a checkpoint could not be written: ") + error.what();
     if (!failing_)
       std::cerr << "warning: " << trouble_ << "; the run goes on"
@@ -282,8 +283,8 @@ void Checkpoints::write_file() {
   remove_older();
 }
 
-/// Leaves the one just written and the one that this process wrote or resumed from before it. Others are older, or were
-/// found damaged.
+/// Leaves the checkpoint just written and the one that this process wrote or resumed from before it. Others are older,
+/// or were found damaged.
 void Checkpoints::remove_older() const {
   const std::string newest = output::checkpoint_name(simulation_.steps()), before = output::checkpoint_name(last_step_);
   std::error_code error;
@@ -298,10 +299,10 @@ bool Checkpoints::any() const {
 void Checkpoints::remove() {
   const fs::path folder = folder_.root() / "checkpoint";
   std::error_code error;
-  // The snapshots last: while there is a checkpoint, what it counts on is there.
+  // The snapshots are removed last: while there is a checkpoint, what it counts on is there.
   for (const fs::path& path : output::checkpoints_in(folder)) fs::remove(path, error);
   fs::remove(folder / "snapshots.records", error);
-  fs::remove(folder, error);  // stays when somebody has put something else there
+  fs::remove(folder, error);  // the folder stays when somebody has put something else there
 }
 
 }  // namespace mpm::app

@@ -12,7 +12,7 @@
 
 namespace mpm::app {
 
-/// Every plugin that the experiment names, each once.
+/// The plugins that the experiment names, each once.
 std::vector<const Plugin*> plugins_of(const Experiment& experiment);
 
 /// What a checkpoint belongs to: version of the program, resolved experiment, files of the plugins.
@@ -20,7 +20,7 @@ nlohmann::ordered_json identity_of(const Experiment& experiment);
 
 /// Refuses a run whose experiment is another one than `recorded` (a resolved experiment), naming the first difference
 /// as JSON pointer. Titles, figures, expectations, the film, max_steps and the cadence of checkpoints may differ.
-/// @throws InputError.
+/// Throws InputError.
 void refuse_other_experiment(const Experiment& experiment, const nlohmann::ordered_json& recorded,
                              const output::RunFolder& folder);
 
@@ -28,27 +28,27 @@ void refuse_other_experiment(const Experiment& experiment, const nlohmann::order
 std::optional<int> finished_with(const output::RunFolder& folder);
 
 /// Puts simulation and recorder where the newest usable checkpoint was; an older one is taken, with a warning, when the
-/// newest is damaged. @throws InputError and output::FolderRefused when there is none that fits.
+/// newest is damaged. Throws InputError and output::FolderRefused when there is none that fits.
 EarlierParts restore_newest(Simulation& simulation, Recorder& recorder, const output::RunFolder& folder,
                             const nlohmann::ordered_json& identity);
 
 /// Writes a run's checkpoints. The one before is kept beside the newest; a failure costs neither them nor the run.
 class Checkpoints {
  public:
-  /// Keeps references. `start`: when this process began its part of the run.
+  /// Begins; keeps references. `start` is when this process began its part of the run.
   Checkpoints(const Simulation& simulation, Recorder& recorder, const output::RunFolder& folder,
               nlohmann::ordered_json identity, EarlierParts earlier, std::chrono::steady_clock::time_point start);
 
-  /// After each step: writes when so many steps or seconds have passed as the experiment says.
+  /// Writes after a step when so many steps or seconds have passed as the experiment says.
   void write_if_due();
-  /// Whether that would write after so many steps.
+  /// Whether write_if_due() would write after so many steps.
   bool due(long steps) const;
-  /// Now, unless this step has one. False when it could not be written; a warning says why.
+  /// Writes now, unless this step has a checkpoint. Returns false when it could not be written; a warning says why.
   bool write();
-  /// The run has ended and needs none any more.
+  /// Removes the checkpoints: the run has ended and needs none any more.
   void remove();
 
-  /// Whether there is one that the run can be resumed from.
+  /// Whether there is a checkpoint that the run can be resumed from.
   bool any() const;
   /// What went wrong with the writing of checkpoints; empty when nothing did.
   const std::string& trouble() const { return trouble_; }

@@ -20,11 +20,11 @@ std::string three_digits(double value) {
 /// A bound on a number of the summary: "at_least" or "at_most".
 struct Limit {
   const char *metric, *kind;
-  std::optional<double> bound;  ///< nothing: the file asks for none
-  std::string not_judged;       ///< why, where it cannot be
+  std::optional<double> bound;  ///< bound; nothing: the file asks for none
+  std::string not_judged;       ///< why it is not judged, where it cannot be
 };
 
-/// Entry of `limits`; whether the number keeps its bound. One that is not finite keeps none.
+/// Fills the entry of `limits` and returns whether the number keeps its bound. One that is not finite keeps none.
 bool judge(const Limit& limit, const Json& summary, Json& entry) {
   const double value = output::number_at(summary, limit.metric);
   entry = {{"metric", limit.metric}};

@@ -9,8 +9,8 @@
 
 namespace mpm::app {
 
-/// Adds the groups `limits` and `flags`; returns the flags: the names of the limits that the run broke. Judged are the
-/// recorded rows. What cannot be judged says why in `limits`.
+/// Adds the groups `limits` and `flags`; returns the flags: the names of the limits that the run broke. The recorded
+/// rows are judged. A limit that cannot be judged says why in `limits`.
 std::vector<std::string> judge_limits(const Experiment& experiment, nlohmann::ordered_json& summary);
 
 /// What works on the scene from outside, so that a gain of energy means nothing; "" for an isolated scene.

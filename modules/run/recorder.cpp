@@ -141,7 +141,7 @@ void Recorder::record(bool last) {
 
 void Recorder::record_row() {
   const Totals totals = metrics_.measure();
-  csv_->row(metrics_.row(totals));  // what fails is done before anything is counted
+  csv_->row(metrics_.row(totals));  // what can fail is done before anything is counted
   latest_ = totals;
   last_row_ = simulation_.steps();
   largest_energy_ = std::max(largest_energy_, latest_.total_energy());
@@ -261,7 +261,7 @@ void Recorder::write_vtk(std::size_t index) {
   for (auto& scalar : scalars) snapshot.fields.push_back(std::move(scalar));
   const std::string name = numbered("particles", index) + ".vtu";
   output::write_vtu(folder_.vtk() / name, snapshot);
-  vtk_files_.resize(index);  // without what an attempt that failed has left
+  vtk_files_.resize(index);  // drops what an attempt that failed has left
   vtk_files_.emplace_back(simulation_.time(), name);
   output::write_pvd(folder_.vtk() / "particles.pvd", vtk_files_);
 }

@@ -20,20 +20,20 @@ class Recorder {
  public:
   Recorder(const Simulation& simulation, const Metrics& metrics, const output::RunFolder& folder);
 
-  /// Begins metrics.csv. Call it, or `restore`, before anything is recorded.
+  /// Begins metrics.csv. It is to be called, or `restore`, before anything is recorded.
   void start();
 
-  /// All that a recorder of the same run needs to go on as if it had recorded everything itself. Rows and snapshots are
-  /// on the disk when it returns. @throws support::MachineError.
+  /// Saves all that a recorder of the same run needs to go on as if it had recorded everything itself. Rows and
+  /// snapshots are on the disk when it returns. Throws support::MachineError.
   void save(ArchiveWriter& archive);
-  /// In place of `start`: cuts off the rows written after `save`. @throws output::CheckpointDamaged when the folder
-  /// does not hold what was recorded until then; nothing is changed in it by then. ArchiveError.
+  /// Takes the place of `start`: cuts off the rows written after `save`. Throws output::CheckpointDamaged when the
+  /// folder does not hold what was recorded until then, having changed nothing in it, and ArchiveError.
   void restore(ArchiveReader& archive);
 
-  /// Records what is due after a step (or before the first). `last`: the run ends here, whatever is due. Recording the
-  /// same step again does nothing, or what failed the first time (support::MachineError).
+  /// Records what is due after a step (or before the first). `last` says that the run ends here, whatever is due.
+  /// Recording the same step again does nothing, or what failed the first time (support::MachineError).
   void record(bool last = false);
-  /// Whether that is anything at `time` (s) after so many steps.
+  /// Whether anything is to be recorded at `time` (s) after so many steps.
   bool due(double time, long steps) const;
   /// Draws the frames, with one colour scale over all of them, and the film when asked for.
   void draw_frames();
@@ -53,7 +53,7 @@ class Recorder {
     double time;
     long step;
     std::vector<float> positions, values;
-    std::vector<float> domain_axes;  ///< of 2-D particles that carry their domain: four a particle
+    std::vector<float> domain_axes;  ///< domains of 2-D particles that carry one: four numbers a particle
   };
   bool frame_due(double time) const;
   void record_row();
@@ -66,18 +66,19 @@ class Recorder {
   const Metrics& metrics_;
   const output::RunFolder& folder_;
   std::optional<support::CsvAppender> csv_;
-  output::RecordFile kept_snapshots_;  ///< the first ones of snapshots_, for a resumed run
+  output::RecordFile kept_snapshots_;  ///< the first of snapshots_, for a resumed run
   long last_row_ = -1;
   std::size_t frames_taken_ = 0, frames_drawn_ = 0, bytes_held_ = 0;
   std::vector<Snapshot> snapshots_;
   std::vector<std::pair<double, std::string>> vtk_files_;
   Totals latest_;
   double largest_energy_ = 0, smallest_J_ = 1, largest_J_ = 1, largest_contact_force_ = 0, largest_penetration_ = 0;
-  double momentum_scale_ = 0, angular_momentum_scale_ = 0;  ///< largest of the rows
+  double momentum_scale_ = 0, angular_momentum_scale_ = 0;  ///< largest of the recorded rows
   long most_contact_nodes_ = 0;
 };
 
-/// What `mpm run` does after a step: makes, for a simulation, a recorder with a run folder of its own below `folder`.
+/// What `mpm run` does after a step: a function that makes, for a simulation, a recorder with a run folder of its own
+/// below `folder`.
 std::function<std::function<void()>(Simulation&)> recording_in(const std::filesystem::path& folder);
 
 }  // namespace mpm::app

@@ -32,7 +32,7 @@ double peak_memory() {
   return static_cast<double>(usage.ru_maxrss) * 1024;
 }
 
-/// J of the start that could become kinetic; of gravity, as far as the domain lets the mass fall.
+/// The energy of the start, J, that could become kinetic; of gravity's, as far as the domain lets the mass fall.
 double available_energy(const Experiment& experiment, const Totals& start) {
   double energy = start.kinetic + start.strain;
   for (int c = 0; c < experiment.dimension; ++c) {
@@ -170,7 +170,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
                          {"bytes_per_particle", static_cast<double>(simulation.backend().particle_bytes()) / particles},
                          {"grid_bytes", simulation.backend().grid_bytes()},
                          {"peak_memory", peak_memory()}};
-  // Of the algorithm, counted: null where a plugin is not known to the counter.
+  // Operations are those of the algorithm, counted: null where a plugin is not known to the counter.
   const auto flops = bench::flops_per_particle(experiment, simulation.plan(), bench::facts_of(simulation));
   json["performance"]["flops"] =
       flops ? Json(flops->total() * particles * static_cast<double>(simulation.steps())) : Json();

@@ -17,14 +17,15 @@ struct Outcome {
   std::string reason;
 };
 
-/// What a resumed run spent before: only what led to the result, not what was lost with a process that was killed.
+/// What a resumed run spent before: only the work that led to the result, not what was lost with a process that was
+/// killed.
 struct EarlierParts {
   double wall_seconds = 0;
   std::map<std::string, double> seconds_by_pass;
   std::vector<long> resumed_from_steps;  ///< step of each resumption, the last one included
 };
 
-/// All groups but `expect`, `limits`, `flags` and `outcome`. `wall_seconds` is that of this process.
+/// Makes all groups but `expect`, `limits`, `flags` and `outcome`. `wall_seconds` is that of this process.
 nlohmann::ordered_json summarise(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder,
                                  double wall_seconds, const EarlierParts& earlier);
 

@@ -6,7 +6,7 @@
 
 namespace mpm::support {
 
-/// `bytes` in base64 with padding and no line breaks.
+/// The `bytes` in base64 with padding and no line breaks.
 std::string base64(std::string_view bytes);
 
 /// Appends base64 of `bytes` to `text`, without a copy in between.

@@ -12,7 +12,7 @@
 
 namespace mpm::support {
 
-/// `text` as a cell of a table: in quotes where a comma, a quote or a line end asks for them (RFC 4180). A line end
+/// The `text` as a cell of a table: in quotes where a comma, a quote or a line end asks for them (RFC 4180). A line end
 /// becomes a space, because a row is always one line: a line that a crash cut short can then be recognised.
 std::string csv_cell(std::string_view text);
 
@@ -29,22 +29,22 @@ class CsvText {
 
 /// Appends rows to a CSV file so that a killed process leaves whole rows.
 ///
-/// A missing file is created with its header. An existing one is continued if its header is the same (a resumed run);
-/// a last line cut by a crash is removed first. One writer a file.
+/// A missing file is created with its header. An existing one is continued if its header is the same (a resumed run); a
+/// last line cut by a crash is removed first. A file has one writer.
 class CsvAppender {
  public:
-  /// `header` holds a quantity and its unit a column: "time (s)", "kinetic energy (J)".
-  /// @throws MachineError when the file cannot be opened; std::invalid_argument when it exists with another header.
+  /// Opens the file. `header` holds a quantity and its unit a column: "time (s)", "kinetic energy (J)". Throws
+  /// MachineError when the file cannot be opened; std::invalid_argument when it exists with another header.
   CsvAppender(std::filesystem::path path, const std::vector<std::string>& header);
 
-  /// Writes one row, each number in the shortest form that reads back to the same bits.
-  /// @throws std::invalid_argument when the count differs from the header's; MachineError when the disk is full (the
-  /// file then ends with its last whole row and can be appended to again).
+  /// Writes one row, each number in the shortest form that reads back to the same bits. Throws std::invalid_argument
+  /// when the count differs from the header's; MachineError when the disk is full (the file then ends with its last
+  /// whole row and can be appended to again).
   void row(std::span<const double> values);
 
-  /// Length of the file, header and whole rows.
+  /// Length of the file in bytes, header and whole rows.
   std::size_t bytes() const { return whole_bytes_; }
-  /// Returns when all rows are on the disk. @throws MachineError.
+  /// Returns when all rows are on the disk. Throws MachineError.
   void sync();
 
  private:
@@ -66,25 +66,26 @@ struct Table {
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
 
-/// Reads a table with one header line. An empty cell is NaN.
-/// @throws MachineError when the file cannot be read; std::runtime_error naming path and line when a row is malformed.
+/// Reads a table with one header line. An empty cell is NaN. Throws MachineError when the file cannot be read;
+/// std::runtime_error naming path and line when a row is malformed.
 Table read_csv(const std::filesystem::path& path);
 
-/// Reads a table that also holds words (the twin of a figure): its whole lines, the header first, as cells.
-/// @throws MachineError when the file cannot be read.
+/// Reads a table that also holds words (the twin of a figure): its whole lines, the header first, as cells. Throws
+/// MachineError when the file cannot be read.
 std::vector<std::vector<std::string>> read_csv_cells(const std::filesystem::path& path);
 
-/// Writes a whole table at once (the twin of a figure). @throws MachineError, std::invalid_argument on ragged columns.
+/// Writes a whole table at once (the twin of a figure). Throws MachineError, and std::invalid_argument on ragged
+/// columns.
 void write_csv(const std::filesystem::path& path, const Table& table);
 
 /// Keeps the rows whose first column is at most `last` (in that column's unit), byte for byte, before a run resumes
-/// from a checkpoint older than its last row. Does nothing when the file is missing. @throws MachineError.
+/// from a checkpoint older than its last row. Does nothing when the file is missing. Throws MachineError.
 void drop_rows_after(const std::filesystem::path& path, double last);
 
 /// Whether the file's first `bytes` bytes are there and end with a whole line.
 bool holds_whole_lines(const std::filesystem::path& path, std::size_t bytes);
 
-/// Cuts the file to its first `bytes` bytes, before a run resumes from a checkpoint that counted them. @throws
+/// Cuts the file to its first `bytes` bytes, before a run resumes from a checkpoint that counted them. Throws
 /// MachineError.
 void cut_to(const std::filesystem::path& path, std::size_t bytes);
 

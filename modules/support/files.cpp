@@ -63,7 +63,8 @@ TemporaryFile open_temporary(const fs::path& target) {
   }
 }
 
-// Makes the rename itself durable; a file system that cannot sync a folder has lost nothing that was promised.
+// Syncs the folder, which makes the rename itself durable; a file system that cannot has lost nothing that was
+// promised.
 void sync_folder_of(const fs::path& path) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const FileDescriptor handle(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

@@ -10,8 +10,8 @@
 
 namespace mpm::support {
 
-/// The machine failed (disk full, folder unwritable, helper program crashed). Maps to exit code 5.
-/// what() names the path, the cause and what to do about it.
+/// The machine failed (disk full, folder unwritable, helper program crashed). It maps to exit code 5. what() names the
+/// path, the cause and what to do about it.
 class MachineError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -25,21 +25,21 @@ class MachineError : public std::runtime_error {
 enum class Durability { on_disk, of_program };
 
 /// Replaces the file at `path` by `bytes`: written under a unique name in the same folder, synced where asked, renamed.
-/// Readers see the old file or the new one, never a part. The folder must exist.
-/// @throws MachineError; the old file is then untouched and the temporary one removed.
+/// Readers see the old file or the new one, never a part. The folder must exist. Throws MachineError; the old file is
+/// then untouched and the temporary one removed.
 void write_atomically(const std::filesystem::path& path, std::string_view bytes,
                       Durability durability = Durability::on_disk);
-/// The same for pieces that are written one after another, so that large ones need not be joined in memory.
+/// Replaces the file by pieces that are written one after another, so that large ones need not be joined in memory.
 void write_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces,
                       Durability durability = Durability::on_disk);
 
-/// The whole file as bytes. @throws MachineError when it cannot be opened or read.
+/// The whole file as bytes. Throws MachineError when it cannot be opened or read.
 std::string read_file(const std::filesystem::path& path);
 
-/// Hands the file to `consume` piece by piece, so that it is never held whole. @throws MachineError as read_file does.
+/// Hands the file to `consume` piece by piece, so that it is never held whole. Throws MachineError as read_file does.
 void read_in_pieces(const std::filesystem::path& path, const std::function<void(std::string_view)>& consume);
 
-/// stem + extension; unlike replace_extension it keeps a dot that belongs to the stem ("run_0.5").
+/// The path stem + extension; unlike replace_extension it keeps a dot that belongs to the stem ("run_0.5").
 std::filesystem::path with_suffix(const std::filesystem::path& stem, std::string_view extension);
 
 }  // namespace mpm::support

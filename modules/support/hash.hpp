@@ -8,12 +8,12 @@
 
 namespace mpm::support {
 
-/// SHA-256 of the file's bytes, 64 lower-case hexadecimal digits. @throws MachineError when it cannot be read.
+/// SHA-256 of the file's bytes, 64 lower-case hexadecimal digits. Throws MachineError when it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);
 
 /// SHA-256 of `bytes`, 64 lower-case hexadecimal digits.
 std::string sha256(std::string_view bytes);
-/// Of the pieces as if they were joined.
+/// SHA-256 of the pieces as if they were joined.
 std::string sha256(std::initializer_list<std::string_view> pieces);
 
 }  // namespace mpm::support

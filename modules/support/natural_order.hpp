@@ -11,8 +11,8 @@ namespace mpm::support {
 /// Compares texts with each run of digits taken as a number.
 bool naturally_less(std::string_view a, std::string_view b);
 
-/// Regular files of `folder` with one of the endings (".png"), hidden ones left out, in natural order. Empty when the
-/// folder is missing.
+/// The regular files of `folder` with one of the endings (".png"), hidden ones left out, in natural order. Empty when
+/// the folder is missing.
 std::vector<std::filesystem::path> files_with_ending(const std::filesystem::path& folder,
                                                      std::initializer_list<std::string_view> endings);
 

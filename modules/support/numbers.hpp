@@ -13,11 +13,12 @@ std::string shortest(double value);
 /// Appends shortest(value) to `text`.
 void append_shortest(std::string& text, double value);
 
-/// Seventeen significant digits, enough to read the same double back; columns of them are about equally wide.
+/// The number with seventeen significant digits, enough to read the same double back; columns of them are about equally
+/// wide.
 std::string full_precision(double value);
 
-/// Fixed notation: `decimals` digits after the point (0 to 17; others are taken as the nearest), and a point only with
-/// them.
+/// The number in fixed notation: `decimals` digits after the point (0 to 17; others are taken as the nearest), and a
+/// point only with them.
 std::string fixed_point(double value, int decimals);
 
 /// A fixed notation without zeros at the end of its fraction, nor a point at its end: "2.50" becomes "2.5", "3.0" "3".

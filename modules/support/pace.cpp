@@ -8,11 +8,11 @@
 namespace mpm::support {
 namespace {
 
-// A window holds several slices of time that the system gives to one process after another (some milliseconds each),
-// and steps of every kind: those that sort, and those that do not.
+// Lengths of a window. It holds several slices of time that the system gives to one process after another (some
+// milliseconds each), and steps of every kind: those that sort, and those that do not.
 constexpr double window_seconds = 0.02, disturbed_window_seconds = 0.06, longest_window_seconds = 0.5;
 constexpr int window_steps = 8;
-/// A processor is shared where it is taken away that often; on a quiet machine it is so a few times a second.
+/// The rate of preemptions from which a processor counts as shared; on a quiet machine there are a few a second.
 constexpr double preemptions_a_second = 100;
 /// Windows between two trials. Where all threads work and nobody disturbs them there is little to find; trials that have
 /// failed again and again, of half the speed or so, cost less than a percent.
@@ -87,7 +87,7 @@ void Pace::end_trial(double rate) {
     threads_ = trial_;
     rate_ = rate;
     pause_ = shortest_pause;
-    left_ = 1;  // and farther the same way
+    left_ = 1;  // the next trial goes farther in the same direction
   } else {
     way_ = (way_ + 1) % 4;
     pause_ = std::min(2 * pause_, disturbed_ ? longest_disturbed_pause : longest_pause);

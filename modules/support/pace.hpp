@@ -14,10 +14,11 @@ long preemptions();
 /// the process begins to lose its processors to others, or steps become slower, they become frequent again.
 class Pace {
  public:
-  /// From `least` to `most` threads, `first` to begin with. `count_preemptions` is called at the end of each window.
+  /// Begins with `first` threads and stays between `least` and `most`. `count_preemptions` is called at the end of each
+  /// window.
   Pace(int least, int most, int first, std::function<long()> count_preemptions = preemptions);
 
-  /// Of the next step.
+  /// The number of threads for the next step.
   int threads() const { return trial_ > 0 ? trial_ : threads_; }
   /// Whether other work takes processors from this process.
   bool disturbed() const { return disturbed_; }
@@ -34,10 +35,10 @@ class Pace {
   const std::function<long()> count_preemptions_;
   int threads_;
   int trial_ = 0;  ///< number of threads that is tried; 0: none
-  int way_ = 0;    ///< of the next trial: 0 lower, 1 higher, 2 half, 3 twice as many
-  int steps_ = 0;  ///< of the window
+  int way_ = 0;    ///< direction of the next trial: 0 lower, 1 higher, 2 half, 3 twice as many
+  int steps_ = 0;  ///< steps of the window so far
   double seconds_ = 0;
-  long preempted_;          ///< at the beginning of the window
+  long preempted_;          ///< preemptions at the beginning of the window
   bool disturbed_ = false;  ///< the process was preempted in the last window
   double rate_ = 0;         ///< steps/s with the present number; 0: not known yet
   int pause_;               ///< windows between trials

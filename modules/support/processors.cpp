@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// Processors that the process may run on; the machine's where the system does not say.
+/// Processors that the process may run on; all of the machine's where the system does not say.
 int allowed_processors() {
   for (int possible = 1024; possible <= 1 << 20; possible *= 2) {
     cpu_set_t* const set = CPU_ALLOC(static_cast<std::size_t>(possible));
@@ -36,7 +36,7 @@ std::string text_of(const fs::path& file) {
   return text.str();
 }
 
-/// The time that a group may use over the period in which it may; no number or -1 for the time: no limit.
+/// The time that a group may use over the period in which it may. No number, or -1 for the time, means no limit.
 double quotient(const std::string& time, const std::string& period) {
   char* end = nullptr;
   const double used = std::strtod(time.c_str(), &end), of = std::strtod(period.c_str(), nullptr);
@@ -50,8 +50,8 @@ double processors_of_group(const fs::path& group) {
                   quotient(text_of(group / "cpu.cfs_quota_us"), text_of(group / "cpu.cfs_period_us")));
 }
 
-/// Of a group below a mount and of all above it. Inside of a container the path may be one of the world outside, which
-/// is not there; the mount is then the container's own group.
+/// Processors that a group below a mount and all groups above it allow. Inside of a container the path may be one of
+/// the world outside, which is not there; the mount is then the container's own group.
 double processors_below(const fs::path& mount, const std::string& path) {
   double least = processors_of_group(mount);
   fs::path group = mount;

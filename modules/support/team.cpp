@@ -25,7 +25,7 @@ Team::Team(int threads) : longest_spin_(longest_spin()), spin_us_(longest_spin_.
   try {
     for (int thread = 1; thread < threads; ++thread) workers_.emplace_back([this, thread] { work(thread); });
   } catch (const std::system_error&) {
-    // The caller and those that were made do the work.
+    // The caller and the workers that were made do the work.
   }
   use(size());
 }
@@ -70,7 +70,7 @@ void Team::run(int thread) noexcept {
 }
 
 void Team::work(int thread) {
-  std::uint32_t last = 0;  // number of the call that it joined or missed last
+  std::uint32_t last = 0;  // number of the call that this worker joined or missed last
   const auto news = [&](std::uint32_t state) { return (state & ~(open | workers)) != last && (state & open) != 0; };
   while (true) {
     for (int used = used_.load(); !ends_ && thread >= used; used = used_.load()) used_.wait(used);
@@ -80,7 +80,7 @@ void Team::work(int thread) {
       state = state_.load();
       if (!ends_ && !news(state)) state_.wait(state);
       --asleep_;
-      continue;  // who comes too late for this call is awake for the next
+      continue;  // a worker that comes too late for this call is awake for the next
     }
     if (ends_) return;
     if (!state_.compare_exchange_strong(state, state + one_worker)) continue;
@@ -103,7 +103,7 @@ void Team::deal(std::size_t count) {
   }
 }
 
-/// The next piece of a thread's own part, and when that is done of the parts after it; false when all are.
+/// Takes the next piece of a thread's own part, and when that is done of the parts after it; false when all are done.
 bool Team::take(int thread, std::size_t grain, Piece& piece) {
   const int threads = used();
   int& from = parts_[thread].from;

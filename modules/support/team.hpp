@@ -32,10 +32,10 @@ inline void relax() {
 #endif
 }
 
-/// Looks for at most `bound` whether ready() holds; what it said last.
+/// Looks for at most `bound` whether ready() holds; returns what it said last.
 template <class Ready>
 bool spin_until(Ready&& ready, std::chrono::microseconds bound) {
-  constexpr int looks = 32;  // for each look at the clock
+  constexpr int looks = 32;  // looks for each look at the clock
   if (ready()) return true;
   if (bound.count() == 0) return false;
   const auto start = std::chrono::steady_clock::now();
@@ -48,30 +48,30 @@ bool spin_until(Ready&& ready, std::chrono::microseconds bound) {
   return false;
 }
 
-/// Returns once the value is another; it has to be changed with a notification.
+/// Returns once the value is another one; whoever changes it has to notify.
 template <class Value>
 void wait_while(const std::atomic<Value>& value, Value old, std::chrono::microseconds bound) {
   if (!spin_until([&] { return value.load(std::memory_order_acquire) != old; }, bound)) value.wait(old);
 }
 
-/// A caller and the workers that help it. One call at a time; not for use inside of a call.
+/// A caller and the workers that help it. It serves one call at a time and is not for use inside of a call.
 class Team {
  public:
-  /// `threads` >= 1, the caller among them. Where the system refuses a thread the team has fewer: results do not depend
-  /// on their number.
+  /// Makes a team of `threads` >= 1, the caller among them. Where the system refuses a thread the team has fewer:
+  /// results do not depend on their number.
   explicit Team(int threads);
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  /// Numbers of threads are below it.
+  /// The number of threads, which all their numbers are below.
   int size() const { return static_cast<int>(workers_.size()) + 1; }
-  /// Lets only the first `threads` take part in calls to come, until it is called again. Without `spin` who waits sleeps
-  /// at once, which is best where other programs want the processors.
+  /// Lets only the first `threads` take part in calls to come, until it is called again. Without `spin` a thread that
+  /// waits sleeps at once, which is best where other programs want the processors.
   void use(int threads, bool spin = true);
-  /// Threads that take part.
+  /// The number of threads that take part.
   int used() const { return used_.load(std::memory_order_relaxed); }
-  /// How long its threads look before they sleep.
+  /// How long the team's threads look before they sleep.
   std::chrono::microseconds spin() const { return std::chrono::microseconds(spin_us_.load(std::memory_order_relaxed)); }
 
   /// Calls part(thread) on the caller, which is thread 0, and on each worker that comes before the caller's call ends;
@@ -128,14 +128,15 @@ class Team {
   }
 
  private:
-  /// Large enough that taking a piece costs little, small enough that threads end at about the same time.
+  /// A size of pieces large enough that taking one costs little, and small enough that threads end at about the same
+  /// time.
   std::size_t even_grain(std::size_t count) const { return 1 + count / (8 * static_cast<std::size_t>(used())); }
 
   struct Call {
     void (*function)(void*, int) = nullptr;
     void* context = nullptr;
   };
-  /// What one thread begins with, on lines of the cache of its own.
+  /// The part that one thread begins with, on lines of the cache of its own.
   struct alignas(128) Part {
     std::atomic<std::size_t> next{0};
     std::size_t last = 0;
@@ -160,7 +161,7 @@ class Team {
   Call call_;
   std::unique_ptr<Part[]> parts_;
   std::exception_ptr exception_;
-  std::mutex mutex_;  ///< of the exception
+  std::mutex mutex_;  ///< guards the exception
   alignas(128) std::atomic<std::uint32_t> state_{0};
   alignas(128) std::atomic<std::uint32_t> asleep_{0};  ///< workers that wait for a call
   std::atomic<std::uint32_t> emptied_{0};              ///< grows when the last worker leaves a call
