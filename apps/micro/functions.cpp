@@ -9,7 +9,7 @@ namespace {
 
 using conformance::Random;
 
-/// 64 numbers around 1, and what the function makes of them.
+/// Data of a benchmark: 64 numbers around 1, and what the function makes of them.
 template <class T, class Function>
 struct ScalarCase {
   static constexpr int packs = batch / Lanes<T>::width;
@@ -33,7 +33,7 @@ struct ScalarCase {
   }
 };
 
-/// 64 turned matrices with strains of up to a tenth, and what the function makes of them.
+/// Data of a benchmark: 64 turned matrices with strains of up to a tenth, and what the function makes of them.
 template <int D, class T, class Function>
 struct MatrixCase {
   static constexpr int packs = batch / Lanes<T>::width;
@@ -93,7 +93,7 @@ struct PolarRotation {
     return polar_rotation(F);
   }
 };
-/// U diag(values) V^T, so that nothing of the decomposition is left out.
+/// Puts U diag(values) V^T together, so that nothing of the decomposition is left out.
 struct SingularValueDecomposition {
   template <class M>
   M operator()(const M& F) const {

@@ -16,7 +16,8 @@ int& failures() {
 
 namespace {
 
-/// --benchmark_min_time takes seconds with and without a unit, whichever way the library spells them.
+/// The argument as the library wants it: --benchmark_min_time takes seconds with and without a unit, whichever way the
+/// library spells them.
 std::string with_min_time_of_library(std::string argument) {
   constexpr std::string_view name = "--benchmark_min_time=";
   if (!argument.starts_with(name)) return argument;

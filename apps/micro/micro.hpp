@@ -16,11 +16,11 @@
 
 namespace mpm::micro {
 
-inline constexpr int batch = MPM_BATCH;  ///< particles, nodes or pairs a call
+inline constexpr int batch = MPM_BATCH;  ///< particles, nodes or pairs of one call
 
 enum class Element { single_precision, double_precision, index };
 
-/// [component][64] of float, double or int32, on lines of the cache. Empty: a null pointer.
+/// An array [component][64] of float, double or int32, on lines of the cache. An empty one gives a null pointer.
 class Buffer {
  public:
   Buffer() = default;
@@ -35,7 +35,7 @@ class Buffer {
       static_cast<double*>(data())[component * batch + lane] = value;
   }
   int components() const { return static_cast<int>(lines_.size() * sizeof(Line) / bytes()) / batch; }
-  /// Whether all entries are numbers; indices are.
+  /// Whether all entries are numbers; indices always are.
   bool finite() {
     bool all = true;
     for (int k = 0; k < components() * batch; ++k)
@@ -56,15 +56,15 @@ class Buffer {
   std::vector<Line> lines_;
 };
 
-/// A field that a call changes in place: put back before every call, so that no number of calls drifts away. The copy
-/// is of cached memory, a cycle or so a particle.
+/// A field that a call changes in place: it is put back before every call, so that no number of calls drifts away. The
+/// copy is of cached memory, a cycle or so a particle.
 struct Restored {
   Buffer field, start;
   void keep() { start = field; }
   void restore() { field.copy_from(start); }
 };
 
-/// Benchmarks that could not be measured, for the exit code.
+/// The number of benchmarks that could not be measured, for the exit code.
 int& failures();
 
 /// Registers a benchmark of `make()`: an object with `run()`, one call for 64 items, and `problem()`, empty when the
@@ -88,21 +88,21 @@ void add(const std::string& name, const std::string& item, Make make) {
     state.counters["per_" + item] = benchmark::Counter(
         batch, benchmark::Counter::Flags(benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert));
   };
-#ifndef __clang_analyzer__  // which takes the library's list of benchmarks for a leak
+#ifndef __clang_analyzer__  // the analyser takes the library's list of benchmarks for a leak
   benchmark::RegisterBenchmark(name.c_str(), measure);
 #endif
 }
 
-/// "2-D/float".
+/// The name of a variant: "2-D/float".
 inline std::string variant_name(int dimension, bool single) {
   return std::to_string(dimension) + "-D/" + (single ? "float" : "double");
 }
 
 /// Batch entries of every plugin, named kind/id/dimension/precision/entry. The registry must outlive the run.
 void add_plugins(const Registry& registry);
-/// Tile kernels and quads of the cpu backend.
+/// Adds the tile kernels and quads of the cpu backend.
 void add_tiles();
-/// Decompositions and elementary functions over lanes.
+/// Adds decompositions and elementary functions over lanes.
 void add_functions();
 
 }  // namespace mpm::micro

@@ -32,7 +32,7 @@ struct Variant {
       for (int lane = 0; lane < batch; ++lane) result.set(c, lane, random.uniform(low, high));
     return result;
   }
-  /// `size` times the unit matrix, with entries up to `spread` beside it.
+  /// Matrices of `size` times the unit matrix, with entries up to `spread` beside it.
   Buffer near_unit(Random& random, double size, double spread) const {
     Buffer result = buffer(dimension * dimension);
     for (int c = 0; c < dimension * dimension; ++c)
@@ -214,7 +214,7 @@ struct FilterCase {
   std::string problem() { return sound({&increment.field, &velocity.field}); }
 };
 
-/// Half of the pairs press, half are apart; some stick and some slip.
+/// Pairs of which half press and half are apart; some stick and some slip.
 struct ContactCase {
   Variant v;
   Buffer mass_a, mass_b, momentum_a, momentum_b, normal, separation, area, impulse, dissipated, status;

@@ -21,7 +21,7 @@ Buffer filled(Random& random, int components, double low, double high) {
   return result;
 }
 
-/// Particles anywhere in the block, as after a sort: their order within it is that of no axis.
+/// Particles anywhere in the block, as after a sort: their order within it follows no axis.
 template <int D, class T>
 struct TileCase {
   cpu::TileKernels<D, T> kernels;
@@ -32,7 +32,7 @@ struct TileCase {
       : kernels(cpu::tile_kernels<D, T>(width)), gathers(gather), affine(is_affine), with_gradient(has_gradient) {
     Random random(1);
     weight = filled<T>(random, D * width, 0, 1), gradient = filled<T>(random, D * width, -1, 1);
-    // Four scalars a quad: 64 of a component fill as many quads as sixteen components of a batch.
+    // A quad holds four scalars: 64 of a component fill as many quads as sixteen components of a batch.
     quads = filled<T>(random, 4 * (1 + 2 * D) + 1, -1e-3, 1e-3);
     tile = filled<T>(random, (kernels.scalars + batch - 1) / batch, -1, 1);
     for (int lane = 0; lane < batch; ++lane) {

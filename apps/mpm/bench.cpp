@@ -118,7 +118,7 @@ int bench(const BenchOptions& options) {
     document["sections"][result.name] = result.json();
     if (!options.json) std::cout << result.text() << "\n" << std::flush;
     results.push_back(std::move(result));
-    // After every section: what is measured is kept when a later one ends the program.
+    // The report is written after every section: what is measured is kept when a later section ends the program.
     if (!options.out.empty()) write_bench_report(options.out, document, results, context);
   }
   if (!context.given().empty()) {

@@ -12,7 +12,7 @@ struct Difference {
   double largest = 0, rms = 0;
 };
 
-/// Over all values, divided by `scale`.
+/// The difference over all values, divided by `scale`.
 Difference difference_of(const std::vector<double>& a, const std::vector<double>& b, double scale) {
   Difference difference;
   double sum = 0;

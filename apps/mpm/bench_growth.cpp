@@ -95,8 +95,8 @@ void measure_points(BenchContext& context, bench::SectionResult& result) {
       {"empty domain memory", "4096 cells a side over 256: peak memory", peak[3] / peak[1], 1.05, false});
 }
 
-/// Seconds from the start of the program to the end of the first step, of the deforming scene: its velocities are
-/// expressions.
+/// Measures the seconds from the start of the program to the end of the first step. The scene is the deforming one,
+/// whose velocities are expressions.
 void measure_start(BenchContext& context, bench::SectionResult& result) {
   std::vector<double> seconds;
   for (int round = 0; round < context.protocol.repeats; ++round) {

@@ -29,7 +29,7 @@ bench::Table options_table() {
           "the same rounds."};
 }
 
-/// What is measured of options that others have measured too, and what the width of a stencil costs.
+/// A table of what is measured of options that others have measured too, and of what the width of a stencil costs.
 bench::Table remarks(const bench::Table& options) {
   bench::Table table{"remarks",
                      "Beside what is published, and stencils by width",
@@ -56,7 +56,7 @@ bench::Table remarks(const bench::Table& options) {
   return table;
 }
 
-/// Options that share the standard's motion, at most three beside it: memory holds four large contenders.
+/// Measures options that share the standard's motion, at most three beside it: memory holds four large contenders.
 void run_group(BenchContext& context, const BenchScene& scene, const std::vector<const BenchOption*>& options,
                bench::Table& table, std::vector<bench::Target>& targets) {
   const std::string& motion = options.front()->motion;

@@ -21,8 +21,8 @@ namespace {
 
 using bench::Json;
 
-/// Largest resident set of this program so far. Not getrusage's: that is handed on by the program that started this
-/// one.
+/// The largest resident set of this program so far. It is not getrusage's, which is handed on by the program that
+/// started this one.
 double peak_bytes() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -31,7 +31,7 @@ double peak_bytes() {
   return 0;
 }
 
-/// Bytes of position, velocity, C and F a particle: what the state is without anything else.
+/// Bytes of position, velocity, C and F a particle: the size of the state without anything else.
 double state_bytes(const Experiment& experiment) {
   const double D = experiment.dimension, scalar = experiment.precision == Precision::single ? 4 : 8;
   return (2 * D + 2 * D * D) * scalar;
@@ -115,7 +115,7 @@ RemotePoint::~RemotePoint() {
 }
 
 void RemotePoint::end() {
-  ::close(questions_);  // the end of its input ends it
+  ::close(questions_);  // the process ends when its input ends
   std::fclose(answers_);
   while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }

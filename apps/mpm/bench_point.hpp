@@ -10,7 +10,7 @@
 
 namespace mpm::app {
 
-/// What a point is made of, and what it answers when it is ready: lines of JSON.
+/// A contender in another process. It is told what it is made of, and answers when it is ready, in lines of JSON.
 class RemotePoint final : public bench::Contender {
  public:
   /// Starts the process and waits until its first step is done. Throws MachineError when it ends before.
@@ -23,7 +23,8 @@ class RemotePoint final : public bench::Contender {
   bench::Seconds run(int steps) override;
   std::size_t particle_count() const override { return particles_; }
   int steps_a_cycle() const override { return cycle_; }
-  /// startup_seconds, peak_bytes (growth of the resident set), particle_bytes, grid_bytes, state_bytes.
+  /// The point's numbers: startup_seconds, peak_bytes (growth of the resident set), particle_bytes, grid_bytes,
+  /// state_bytes.
   bench::Json report() { return ask("report"); }
 
  private:

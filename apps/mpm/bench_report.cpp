@@ -44,7 +44,7 @@ void write_roofline(const std::filesystem::path& folder, BenchContext& context) 
   const double from = 0.7 * least, to = 1.4 * std::max(most, ridge);
   plot.series.push_back(roof(limits.one, from, to));
   if (context.threads > 1) plot.series.push_back(roof(limits.all, from, to));
-  // Names in the legend: beside the points, which crowd, they would lie on one another.
+  // Names stand in the legend: beside the points, which crowd, they would lie on one another.
   for (const RooflinePoint& point : context.roofline)
     plot.series.push_back({point.name, {point.flops_per_byte}, {point.gflops}, {}, render::SeriesKind::point, {}});
   render::write_figure(plot, folder / "roofline");

@@ -12,7 +12,7 @@ namespace mpm::app {
 
 namespace {
 
-/// A folder that goes away.
+/// A temporary folder that goes away with this object.
 struct Scratch {
   std::filesystem::path path = std::filesystem::temp_directory_path() / ("mpm_bench_" + std::to_string(getpid()));
   ~Scratch() {

@@ -40,17 +40,17 @@ class BenchContext {
 
   const BenchOptions& options;
   const BenchSuite suite;
-  const int threads;  ///< of the parallel contenders
+  const int threads;  ///< threads of the parallel contenders
   bench::Protocol protocol;
   std::vector<RooflinePoint> roofline;  ///< what sections add for the figure
 
-  /// Measured once, when first asked for.
+  /// The machine's limits, measured once, when first asked for.
   const MachineLimits& limits();
-  /// By the protocol; notes how busy the machine was.
+  /// Runs contenders by the protocol; notes how busy the machine was.
   bench::Rates run_in_turns(const std::vector<bench::Contender*>& contenders);
   /// Shares of the processor time wanted that the groups were given.
   const std::vector<double>& given() const { return given_; }
-  /// A line on standard error, so that the tables stay clean.
+  /// Says a line on standard error, so that the tables stay clean.
   void say(const std::string& what) const;
 
  private:
@@ -62,7 +62,7 @@ class BenchContext {
 struct Account {
   double rate = 0;  ///< particle-steps/s
   std::optional<double> flops;
-  double bytes = 0;  ///< a particle-step
+  double bytes = 0;  ///< bytes a particle-step
 
   double gflops() const { return flops ? rate * *flops / 1e9 : 0; }
   double gigabytes() const { return rate * bytes / 1e9; }
@@ -74,7 +74,7 @@ struct BenchSection {
   const char* summary;
   bench::SectionResult (*run)(BenchContext&);
 };
-/// In the order in which they run. A section of its own file is one line here.
+/// The sections in the order in which they run. A section of its own file is one line here.
 const std::vector<BenchSection>& bench_sections();
 
 bench::SectionResult bench_machine(BenchContext& context);

@@ -59,7 +59,7 @@ std::string words_of(const BenchScene& scene, const std::string& motion, Precisi
   return scene.name + " " + motion + (precision == Precision::single ? " float" : " double");
 }
 
-/// Where the time goes, in a window of its own: the clock would disturb the rates.
+/// Measures where the time goes, in a window of its own: the clock would disturb the rates.
 Phases phases_of(Product& product, const std::string& name, int steps) {
   Simulation& simulation = product.simulation();
   const auto passes_before = simulation.seconds_by_pass();
@@ -82,7 +82,7 @@ class Group {
   Group(BenchContext& context, const BenchScene& scene, const BenchMaterial& material, Precision precision)
       : context_(context), scene_(scene), material_(material), precision_(precision) {}
 
-  /// Product and baseline of both motions, one thread.
+  /// Measures product and baseline of both motions on one thread.
   void against_baseline(Findings& findings) {
     std::vector<std::unique_ptr<BaselineContender>> baselines;
     for (const char* motion : motions) {
@@ -119,7 +119,7 @@ class Group {
     products_.clear();
   }
 
-  /// Both motions on 1 and N threads.
+  /// Measures both motions on 1 and N threads.
   void by_threads(Findings& findings) {
     const std::size_t counts = context_.threads > 1 ? 2 : 1;
     std::vector<bench::Contender*> contenders;
@@ -203,10 +203,10 @@ class Group {
   Precision precision_;
   std::vector<std::unique_ptr<Product>> products_;
   double baseline_ratio_[2] = {0, 0};
-  double line_ = 0;  ///< ns from one thread to another
+  double line_ = 0;  ///< ns that a line takes from one thread to another
 };
 
-/// Passes first, then what their time goes to; one column a scene.
+/// The table of times: passes first, then what their time goes to; one column a scene.
 bench::Table phase_table(const std::vector<Phases>& all) {
   bench::Table table{"phases",
                      "Where the time goes (Neo-Hookean, 1 thread), ns a particle-step",

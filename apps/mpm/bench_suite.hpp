@@ -35,8 +35,8 @@ struct BenchMaterial {
 
 struct BenchOption {
   std::string name, group, motion;
-  bool figure = true;                                         ///< a point of the roofline
-  std::vector<std::pair<std::string, Edits>> edits_of_scene;  ///< by name of the scene
+  bool figure = true;                                         ///< whether it is a point of the roofline
+  std::vector<std::pair<std::string, Edits>> edits_of_scene;  ///< edits by name of the scene
 
   const Edits& edits(const std::string& scene) const;
 };
@@ -49,10 +49,10 @@ class BenchSuite {
   const std::vector<BenchScene>& scenes() const { return scenes_; }
   const std::vector<BenchMaterial>& materials() const { return materials_; }
   const std::vector<BenchOption>& options() const { return options_; }
-  /// Throws std::out_of_range.
+  /// The scene of a name. Throws std::out_of_range.
   const BenchScene& scene(const std::string& name) const;
 
-  /// Without an end that a measurement would reach. Throws InputError.
+  /// The experiment of a scene, without an end that a measurement would reach. Throws InputError.
   Experiment experiment(const BenchScene& scene, const std::string& motion, const Edits& edits) const;
 
  private:
@@ -71,7 +71,7 @@ class Product final : public bench::Contender {
   Product(Experiment experiment, int threads, const BackendFactory& factory);
   void step() override { simulation_.step(); }
   std::size_t particle_count() const override { return simulation_.particle_count(); }
-  int steps_a_cycle() const override { return 8; }  ///< of re-sorting: 4 to 8 steps where particles are fast
+  int steps_a_cycle() const override { return 8; }  ///< cycle of re-sorting: 4 to 8 steps where particles are fast
 
   const Experiment& experiment() const { return experiment_; }
   Simulation& simulation() { return simulation_; }

@@ -121,12 +121,12 @@ int guarded(Verb verb, const std::string& nothing = "nothing was run") {
         "out of memory: use larger cells, fewer particles a cell or --set /precision=float; what was written before is "
         "kept",
         machine_failed);
-  } catch (const std::exception& error) {  // MachineError and whatever the system refused
+  } catch (const std::exception& error) {  // MachineError, and whatever the system refused
     return complain(error.what(), machine_failed);
   }
 }
 
-/// A first word that is no verb, with the nearest one; an empty string when it is one (or an option, or missing).
+/// Says that a first word is no verb, with the nearest one; an empty string when it is one (or an option, or missing).
 std::string wrong_verb(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return "";
   std::vector<std::string> verbs;
@@ -136,7 +136,7 @@ std::string wrong_verb(const CLI::App& app, int argc, char** argv) {
   return "no verb is called " + in_quotes(argv[1]) + suggestion(argv[1], verbs, "verbs are " + quoted_list(verbs));
 }
 
-/// What a verb was given beyond what it takes, with the nearest option it has.
+/// Says what a verb was given beyond what it takes, with the nearest option it has.
 std::string unexpected_words(const CLI::App& app) {
   std::string message;
   for (const CLI::App* verb : app.get_subcommands()) {

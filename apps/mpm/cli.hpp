@@ -13,11 +13,11 @@
 namespace mpm::app {
 
 enum ExitCode {
-  done = 0,                ///< and every expectation held
+  done = 0,                ///< the verb did its work, and every expectation held
   bad_input = 2,           ///< nothing was run
   run_failed = 3,          ///< unstable or invalid: results up to there are kept; test-plugin: the plugin failed
-  expectation_failed = 4,  ///< or a limit was broken
-  machine_failed = 5,      ///< disk, memory
+  expectation_failed = 4,  ///< an expectation failed, or a limit was broken
+  machine_failed = 5,      ///< the disk or the memory failed
   interrupted = 130        ///< Ctrl-C: everything up to the last step is written
 };
 
@@ -37,15 +37,15 @@ struct BenchOptions {
   bool quick = false;           ///< tiny scenes: shows that everything runs
   bool strict = false;          ///< a target that is missed gives exit code 4
   int repeats = 0;              ///< rounds; 0: the protocol's 5 (2 under --quick)
-  int threads = 0;              ///< of the parallel contenders; 0: all processors
+  int threads = 0;              ///< threads of the parallel contenders; 0: all processors
   bool processor_time = false;  ///< contenders of one thread by the processor's time: for a busy machine
   std::filesystem::path out;
-  std::string command;  ///< as typed
+  std::string command;  ///< command as typed
 };
 
 struct StudyOptions {
   std::filesystem::path file;
-  std::vector<std::string> overrides;  ///< of the base experiment
+  std::vector<std::string> overrides;  ///< overrides of the base experiment
   std::filesystem::path out;           ///< empty: runs/<name of the file>
   int jobs = 0;                        ///< runs at a time; 0: all processors
   int threads = 1;                     ///< of each run
@@ -53,8 +53,8 @@ struct StudyOptions {
 };
 
 struct AdviseOptions {
-  std::filesystem::path study;  ///< its folder, or its file when it ran into the default folder
-  std::string error, time;      ///< one of them, as typed
+  std::filesystem::path study;  ///< the study's folder, or its file when it ran into the default folder
+  std::string error, time;      ///< one of the two, as typed
   std::string by;               ///< measure that ranks; empty: the study's cost
   bool json = false;
 };
@@ -70,7 +70,7 @@ int run(const RunOptions& options);
 int check(const RunOptions& options);
 int plan(const RunOptions& options, bool json, const std::string& graph);
 int list(bool json);
-/// Which components run together and which are refused, generated from the same function that refuses.
+/// Prints which components run together and which are refused, generated from the same function that refuses.
 int list_combinations(bool json);
 int describe(const std::string& id, bool json);
 int schema();
@@ -78,15 +78,15 @@ int schema();
 int new_plugin(const std::string& kind, const std::string& id, const std::filesystem::path& folder);
 /// Runs the conformance suite on a plugin's file in a process of its own, for at most `seconds`.
 int test_plugin(const std::filesystem::path& file, double seconds, bool verbose, bool json);
-/// Speed on the standard scenes. Throws InputError for a section that does not exist.
+/// Measures speed on the standard scenes. Throws InputError for a section that does not exist.
 int bench(const BenchOptions& options);
-/// One line a section, for the help.
+/// The sections, one line each, for the help.
 std::string bench_section_list();
-/// The child process of a point of the section `growth`: answers questions on standard input.
+/// Runs the child process of a point of the section `growth`: answers questions on standard input.
 int bench_point(const std::string& description);
 /// Runs every combination of a study. Throws InputError when nothing of it can be run.
 int study(const StudyOptions& options);
-/// The best measured combination for an error or a time; exit code 4 when there is none. Throws InputError.
+/// Prints the best measured combination for an error or a time; exit code 4 when there is none. Throws InputError.
 int advise(const AdviseOptions& options);
 int figure(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& specification,
            const std::filesystem::path& out);

@@ -180,7 +180,7 @@ std::string id_of(const Plugin* plugin) {
   return plugin ? std::string(plugin->id()) : "none";
 }
 
-/// A table of transfers against filters: what holds for every shape, contact law and stress update.
+/// Prints a table of transfers against filters: what holds for every shape, contact law and stress update.
 void print_filters(const Registry& registry) {
   const auto filters = registry.of_kind(MPM_FILTER);
   std::cout << "| transfer |";

@@ -15,15 +15,15 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Text {
-  const char* name;  ///< "material/my_plugin.hpp"; "common/" for every kind
+  const char* name;  ///< path such as "material/my_plugin.hpp"; "common/" for every kind
   const char* text;
 };
-/// apps/mpm/templates, where the plugin is called my_plugin, its class MyPlugin and its kind my_kind.
+/// The texts of apps/mpm/templates, where the plugin is called my_plugin, its class MyPlugin and its kind my_kind.
 constexpr Text texts[] = {
 #include "templates.inc"
 };
 
-/// Classes of kernel/, which every functor sees.
+/// The classes of kernel/, which every functor sees.
 constexpr std::string_view kernel_classes[] = {
 #include "kernel_classes.inc"
 };
@@ -41,7 +41,7 @@ mpm_kind kind_of(const std::string& name) {
   refuse("no kind of plugin is called " + in_quotes(name) + suggestion(name, names, "kinds are " + quoted_list(names)));
 }
 
-/// my_rubber becomes MyRubber.
+/// The class of an id: my_rubber becomes MyRubber.
 std::string class_name(const std::string& id) {
   std::string name;
   bool first = true;
@@ -93,7 +93,7 @@ fs::path package_folder(const fs::path& program) {
   return {};
 }
 
-/// As a shell takes it for one word.
+/// The word as a shell takes it for one.
 std::string quoted_for_shell(const std::string& word) {
   const auto plain = [](unsigned char c) {
     return std::isalnum(c) || std::string_view("/._-+=:,@%").find(c) != std::string_view::npos;
@@ -134,7 +134,7 @@ std::vector<File> project(const std::string& kind, const std::string& id, const 
   return files;
 }
 
-/// All files or none.
+/// Writes all files or none.
 void write(const std::vector<File>& files, const fs::path& folder) {
   std::error_code error;
   const bool made = fs::create_directories(folder, error);

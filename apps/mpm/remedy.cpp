@@ -5,7 +5,7 @@
 namespace mpm::app {
 namespace {
 
-/// The backends word their causes alike; each begins with one of these.
+/// Beginnings of causes with their remedies. The backends word their causes alike; each begins with one of these.
 constexpr std::pair<const char*, const char*> remedies[] = {
     {"not a number",
      "check the expressions of the file (velocities, /body_force, moving walls) at that place and time; where they are "

@@ -30,7 +30,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// One line that is rewritten on a terminal, a plain line every tenth of the run elsewhere.
+/// The progress: one line that is rewritten on a terminal, a plain line every tenth of the run elsewhere.
 class Progress {
  public:
   explicit Progress(const Simulation& simulation)
@@ -73,7 +73,7 @@ class Progress {
   const Simulation& simulation_;
   bool terminal_;
   Clock::time_point start_, shown_;
-  long first_step_;  ///< of this process
+  long first_step_;  ///< step at which this process began
   double first_share_, next_share_ = 0.1;
   long shown_step_ = -1;
 };
@@ -102,7 +102,7 @@ nlohmann::ordered_json manifest(const Experiment& experiment, const RunOptions& 
   return json;
 }
 
-/// That of the first part, with a line for each resumption, those included whose work was lost again.
+/// The manifest of the first part, with a line for each resumption, those included whose work was lost again.
 nlohmann::ordered_json resumed_manifest(const output::RunFolder& folder, const RunOptions& options, int threads,
                                         long step) {
   auto json = nlohmann::ordered_json::parse(support::read_file(folder.root() / "manifest.json"), nullptr, false);
@@ -117,7 +117,7 @@ std::string resume_command(const RunOptions& options) {
   return options.command + (options.resume ? "" : " --resume");
 }
 
-/// "(0.1, 0.2) m"
+/// The place of a particle: "(0.1, 0.2) m".
 std::string point_text(const BodyState& state, std::size_t particle, std::size_t dimension) {
   std::string text = "(";
   for (std::size_t c = 0; c < dimension; ++c) {
@@ -138,7 +138,7 @@ std::string failure_text(const RunFailure& failure, const Simulation& simulation
          failure.cause;
 }
 
-/// What stands between a run and its end; the run can be resumed from there.
+/// The outcome of a run that something keeps from its end; the run can be resumed from there.
 Outcome unfinished(const Simulation& simulation) {
   if (!simulation.finished())
     return {interrupted, "interrupted", "stopped by a signal after step " + std::to_string(simulation.steps())};
@@ -179,7 +179,7 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints&
   const Outcome outcome = unfinished(simulation);
   if (!outcome.reason.empty()) {
     progress.clear();
-    checkpoints.write();  // before the row below, which the whole run does not have
+    checkpoints.write();  // comes before the row below, which the whole run does not have
     say_how_to_resume(outcome, checkpoints, options);
   }
   recorder.record(true);
@@ -188,7 +188,8 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints&
   return outcome;
 }
 
-/// The same, when the disk or the memory fails on the way: what was recorded before still gets its summary.
+/// Steps to the end, also when the disk or the memory fails on the way: what was recorded before still gets its
+/// summary.
 Outcome step_or_say_why(Simulation& simulation, Recorder& recorder, Checkpoints& checkpoints,
                         const RunOptions& options) {
   try {
@@ -211,7 +212,7 @@ void draw(const Experiment& experiment, Recorder& recorder, const output::RunFol
   draw_figures(experiment.figures, support::read_csv(folder.root() / "metrics.csv"), label, folder.figures());
 }
 
-/// Draws frames and figures; what prevented that, or an empty string. The numbers are on disk by then.
+/// Draws frames and figures. Returns what prevented that, or an empty string. The numbers are on disk by then.
 std::string trouble_of_drawing(const Experiment& experiment, Recorder& recorder, const output::RunFolder& folder) {
   try {
     draw(experiment, recorder, folder);
@@ -270,7 +271,7 @@ void print_result(const nlohmann::ordered_json& summary, const output::RunFolder
             << std::endl;
 }
 
-/// The code of a run that has come to its end and needs no resuming.
+/// The exit code of a run that has come to its end and needs no resuming.
 std::optional<int> already_finished(const Experiment& experiment, const output::RunFolder& folder) {
   const std::optional<int> code = finished_with(folder);
   if (!code) return std::nullopt;
@@ -298,7 +299,7 @@ EarlierParts resume(Simulation& simulation, Recorder& recorder, const output::Ru
   return earlier;
 }
 
-/// Summary, pictures and report.
+/// Writes summary, pictures and report.
 Outcome finish(Outcome outcome, nlohmann::ordered_json summary, const Experiment& experiment, Recorder& recorder,
                const output::RunFolder& folder) {
   if (outcome.exit_code == done) {
@@ -331,10 +332,11 @@ Outcome finish(Outcome outcome, nlohmann::ordered_json summary, const Experiment
 
 struct Threads {
   int most = 1;
-  bool find_number = false;  ///< as many as are fastest, up to the most; else exactly so many
+  bool find_number = false;  ///< use as many as are fastest, up to the most; else exactly so many
 };
 
-/// Those asked for, but at most one for each processor that the process may use: more would only wait for one another's.
+/// The threads asked for, but at most one for each processor that the process may use: more would only wait for one
+/// another's.
 Threads threads_for(const Experiment& experiment, const RunOptions& options) {
   if (experiment.backend == "reference") return {};
   const int processors = support::available_processors();
@@ -357,7 +359,7 @@ int run(const RunOptions& options) {
     if (const auto code = already_finished(experiment, open_to_resume(place))) return *code;
   const auto [threads, find_number] = threads_for(experiment, options);
   Simulation simulation(experiment, backend_factory(threads, find_number));
-  const Metrics metrics(simulation);  // of step 0, also when the run goes on from a later one
+  const Metrics metrics(simulation);  // metrics are those of step 0, also when the run goes on from a later one
   refuse_figures_without_numbers(experiment, metrics);
   refuse_velocities_that_are_no_numbers(simulation);
 

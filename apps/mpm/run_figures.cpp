@@ -23,7 +23,7 @@ using render::Plot;
 using render::Series;
 using support::Table;
 
-/// Unit of a recorded column, with its brackets: " (J/m)".
+/// The unit of a recorded column, with its brackets: " (J/m)".
 std::string unit_of(const Table& table, const std::string& name) {
   for (const std::string& header : table.header)
     if (header.starts_with(name + " (")) return header.substr(name.size());
@@ -63,7 +63,7 @@ void draw_energy(const Table& table, const RunLabel& label, const std::filesyste
   render::write_figure(plot, stem);
 }
 
-/// Columns of a ledger and what they are called.
+/// The columns of a ledger and what they are called.
 using Causes = std::initializer_list<std::pair<const char*, const char*>>;
 
 render::StackedPlot ledger_of(const Table& table, const RunLabel& label, const std::string& title,
@@ -75,7 +75,7 @@ render::StackedPlot ledger_of(const Table& table, const RunLabel& label, const s
   plot.footnote = label.footnote;
   plot.x = column(table, "time");
   for (const auto& [name, text] : causes) {
-    if (!table.find(name)) continue;  // the filter's, in a run without one
+    if (!table.find(name)) continue;  // the filter's column is absent in a run without one
     auto values = column(table, name);
     if (std::any_of(values.begin(), values.end(), [](double e) { return e != 0; }))
       plot.areas.push_back({text, plot.x, values});
@@ -83,7 +83,8 @@ render::StackedPlot ledger_of(const Table& table, const RunLabel& label, const s
   return plot;
 }
 
-/// What transfers take beyond the nodes' heat comes from mirror images at walls of a fixed temperature.
+/// Draws the rows of the heat ledger. What transfers take beyond the nodes' heat comes from mirror images at walls of a
+/// fixed temperature.
 void draw_heat(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
   render::StackedPlot plot = ledger_of(table, label, "Where the heat came from", "heat Q",
                                        {{"heat ledger flux", "flux through walls"},
@@ -153,7 +154,7 @@ void draw_momentum(const Table& table, const RunLabel& label, const std::filesys
   Plot plot = plot_of(table, label, "Linear momentum: " + label.title, "momentum p", "momentum y");
   for (const char* axis : {"x", "y", "z"}) add(plot, table, std::string("momentum ") + axis, std::string("p ") + axis);
   render::write_figure(plot, stem);
-  if (!table.find("angular momentum z")) return;  // axisymmetric
+  if (!table.find("angular momentum z")) return;  // an axisymmetric scene has none
   Plot spin = plot_of(table, label, "Angular momentum about the centre of mass: " + label.title, "angular momentum L",
                       "angular momentum z");
   for (const char* axis : {"x", "y", "z"})
@@ -247,7 +248,7 @@ RecordedRun recorded(const std::filesystem::path& folder) {
   return run;
 }
 
-/// Runs of one name in different folders are told apart by those.
+/// Tells runs of one name in different folders apart by those.
 void tell_apart(std::vector<RecordedRun>& runs) {
   std::vector<std::string> names;
   for (const RecordedRun& run : runs) names.push_back(run.file);
@@ -256,7 +257,7 @@ void tell_apart(std::vector<RecordedRun>& runs) {
       run.file = (run.folder.parent_path().filename() / run.folder.filename()).string();
 }
 
-/// One curve a run, of the given columns.
+/// Draws one curve a run, of the given columns.
 void draw_overlay(const std::vector<RecordedRun>& runs, Plot plot, const std::string& x, const std::string& y,
                   const std::vector<std::string>& labels, const std::filesystem::path& stem) {
   for (std::size_t k = 0; k < runs.size(); ++k)

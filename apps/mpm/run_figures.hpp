@@ -10,7 +10,7 @@
 
 namespace mpm::app {
 
-/// Names valid under "figures" of an experiment.
+/// The names that are valid under "figures" of an experiment.
 std::vector<std::string> figure_names();
 
 /// What a figure says of the run at its foot and in its title.

@@ -9,8 +9,8 @@ namespace mpm::app {
 /// Whether a signal asked to stop since the last StopOnSignal was made.
 bool stop_requested();
 
-/// Ctrl-C and a polite kill end the work at its next boundary; a second one ends the program at once. A signal that the
-/// caller ignores stays ignored. A reader of the progress lines that goes away does not end the work.
+/// While it lives, Ctrl-C and a polite kill end the work at its next boundary; a second one ends the program at once. A
+/// signal that the caller ignores stays ignored. A reader of the progress lines that goes away does not end the work.
 class StopOnSignal {
  public:
   StopOnSignal();

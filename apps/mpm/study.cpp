@@ -51,7 +51,7 @@ fs::path folder_for(const StudyOptions& options) {
   return folder;
 }
 
-/// What a killed study left half-written; the runs look after their own.
+/// Removes what a killed study left half-written; the runs look after their own.
 void remove_temporary_files(const fs::path& folder) {
   std::error_code ignored;
   std::vector<fs::path> left;
@@ -70,7 +70,7 @@ void write_study_json(const Results& results, const Json& machine, const fs::pat
       study::json_of(results, machine, MPM_VERSION).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-/// Figures of an earlier call that this one does not draw would lie.
+/// Removes figures of an earlier call that this one does not draw: they would lie.
 void remove_old_figures(const fs::path& folder) {
   std::error_code error;
   fs::remove_all(folder / "figures", error);
@@ -94,7 +94,7 @@ void print_end(const Results& results, const fs::path& folder) {
   std::cout << "\nreport: " << (folder / "report.html").lexically_proximate(fs::current_path()).string() << std::endl;
 }
 
-/// Everything but study.json, which is written first: a figure that fails costs no numbers.
+/// Writes everything but study.json, which is written first: a figure that fails costs no numbers.
 std::vector<std::string> write_outputs(const Results& results, const Json& machine, const fs::path& folder) {
   support::write_atomically(folder / "table.csv", study::table_csv(results));
   remove_old_figures(folder);
@@ -113,7 +113,7 @@ Results empty_results(const study::Study& plan, const std::string& command) {
   return results;
 }
 
-/// A study of which nothing can be run leaves no folder that was not there.
+/// Runs the study. One of which nothing can be run leaves no folder that was not there.
 Results run_or_leave_nothing(const study::Study& plan, const Registry& registry,
                              const study::ExecutionOptions& execution, bool is_new) {
   try {
@@ -175,7 +175,7 @@ std::string amount(const study::Measure& measure, double value) {
 
 struct Question {
   const study::Measure *error, *cost;
-  std::string target;  ///< in words
+  std::string target;  ///< target in words
 };
 
 std::string sentence(const Results& results, const Question& question, const study::ParetoPoint& point) {

@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 
 // ---- the process that runs the plugin ----------------------------------------------------------------------------
 
-/// One line of JSON a message. Texts of a broken plugin need not be UTF-8.
+/// Sends one line of JSON a message. Texts of a broken plugin need not be UTF-8.
 void say(int pipe, const Json& message) {
   const std::string line = message.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   for (std::size_t at = 0; at < line.size();) {
@@ -93,7 +93,7 @@ struct Tested {
 
 struct Verdict {
   std::string outcome;  ///< passed, failed, crashed, hung, refused
-  std::string message;  ///< of the last three
+  std::string message;  ///< message of the last three outcomes
   std::string running;  ///< the check during which it crashed or hung
   int signal = 0;
   std::vector<Tested> plugins;
@@ -110,7 +110,7 @@ void hear(const std::string& line, Verdict& verdict) {
   if (message.contains("done")) verdict.outcome = "passed";
 }
 
-/// Everything the child says until it closes the pipe; false when the time is over before.
+/// Takes everything the child says until it closes the pipe; false when the time is over before.
 bool listen(int pipe, double seconds, Verdict& verdict) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
@@ -131,7 +131,7 @@ bool listen(int pipe, double seconds, Verdict& verdict) {
   }
 }
 
-/// Where in the suite it was: "material my_rubber: energy balance [scalar double, 2-D]; density=1000".
+/// Where in the suite the plugin was: "material my_rubber: energy balance [scalar double, 2-D]; density=1000".
 std::string place(const Verdict& verdict) {
   return verdict.plugins.empty() ? verdict.running : verdict.plugins.back().name() + ": " + verdict.running;
 }

@@ -34,7 +34,7 @@ struct MyPlugin {
     }
     const S speed = sqrt(squared);
     const S limit = min(real<S>(p.friction) * approach, real<S>(p.shear_strength) * pair.area * pair.dt / mass);
-    const auto sticks = speed <= limit;  // as velocities: what the tangential impulse can change
+    const auto sticks = speed <= limit;  // both are velocities: what the tangential impulse can change
     const S share = select(sticks, one, limit / max(speed, S(real<S>(1e-30))));
     const S active = select(approach > zero, select(pair.separation <= zero, one, zero), zero);
     for (int i = 0; i < D; ++i) result.impulse[i] = active * mass * (share * slide[i] - approach * pair.normal[i]);

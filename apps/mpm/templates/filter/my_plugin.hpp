@@ -23,7 +23,7 @@ struct MyPlugin {
   /// The longest stable step with the filter, s: what the grid hardly sees is multiplied by up to m.
   static double step_limit(const Parameters& p, double unfiltered) { return unfiltered / sqrt(p.order); }
 
-  /// One node in one pass (iteration counts from 1). projected = S+ S increment, m/s.
+  /// Changes one node in one pass (iteration counts from 1). projected = S+ S increment, m/s.
   template <int D, class S>
   MPM_HD static void update(const Parameters&, int, const Vec<D, S>& projected, Vec<D, S>& increment,
                             Vec<D, S>& velocity) {
@@ -34,7 +34,7 @@ struct MyPlugin {
   }
 
 #if MPM_HOST
-  static constexpr unsigned traits = 0;  // of the velocity after the forces
+  static constexpr unsigned traits = 0;  // no trait: it filters the velocity after the forces
   static constexpr mpm_parameter parameters[] = {
       MPM_INTEGER_PARAMETER(order, 4, 1, 100, "terms of the series; 1 is the unfiltered velocity"),
   };

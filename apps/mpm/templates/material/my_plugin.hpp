@@ -11,7 +11,7 @@ struct MyPlugin : ElasticSolid {  // the particle keeps F, (I + dt L) F after a 
     double shear_modulus, lame_lambda, density;
   };
   template <class T>
-  struct Constants {  // made from them once a batch
+  struct Constants {  // made of the parameters once a batch
     T mu, k, rho;     // k = lambda/2
     MPM_HD explicit Constants(const Parameters& p)
         : mu(T(p.shear_modulus)), k(T(p.lame_lambda / 2)), rho(T(p.density)) {}

@@ -15,13 +15,13 @@ struct MyPlugin {
   static constexpr double second_moment = 0.25;  ///< sum w d^2 in cells^2, the same everywhere
   struct Parameters {};
 
-  /// One axis. x: the particle's place in cells; base: the first of its nodes; w: weights; g: their derivatives by x,
-  /// null when nobody asked.
+  /// Weights of one axis. x: the particle's place in cells; base: the first of its nodes; w: weights; g: their
+  /// derivatives by x, null when nobody asked.
   template <class S>
   MPM_HD static void evaluate(const Parameters&, S x, S& base, S* w, S* g) {
     const scalar_of<S> half = real<S>(0.5);
     base = floor(x - half);
-    const S f = x - base;  // 1/2 to 3/2
+    const S f = x - base;  // lies in 1/2 to 3/2
     const S a = real<S>(1.5) - f, b = f - real<S>(1), c = f - half;
     w[0] = half * a * a;
     w[1] = real<S>(0.75) - b * b;

@@ -26,7 +26,8 @@ struct MyPlugin {
     for (int k = 0; k < D * D; ++k) A.m[k] = mass * state.spin.m[k];
   }
 
-  /// v: the particle's velocity before and after; advection: what moves it. dt in s.
+  /// Takes back from the nodes. v: the particle's velocity before and after; advection: the velocity that moves it. dt
+  /// in s.
   template <int D, class S>
   MPM_HD static void gather(const Parameters&, const GatheredMoments<D, S>& moments, scalar_of<S>, Vec<D, S>& v,
                             State<D, S>& state, Vec<D, S>& advection) {
