@@ -100,7 +100,7 @@ TEST_CASE("bench --quick measures every section", "[bench]") {
   CHECK(sections["accuracy"]["float_against_double"].size() == 4);
   for (const Json& row : sections["accuracy"]["float_against_double"]) {
     CHECK(is_rate(row, "position_rms"));
-    CHECK(row["position_largest"] < 1e-3);  // cells
+    CHECK(row["position_largest"] < 1e-3);  // a difference in cells
   }
   const Json& busy = sections["busy"]["busy"];
   for (const Json& loops : {Json(0), document["threads"]})
@@ -138,7 +138,7 @@ TEST_CASE("the standard scenes hold a million particles and run by themselves", 
     REQUIRE(result.code == 0);
     const Json stability = json_in(folder / "out/summary.json")["stability"];
     CHECK(stability["smallest_volume_ratio"] > 0.2);
-    CHECK(stability["smallest_volume_ratio"] < (has(name, "rest") ? 1.001 : 0.8));  // deforms where it should
+    CHECK(stability["smallest_volume_ratio"] < (has(name, "rest") ? 1.001 : 0.8));  // the scene deforms where it should
   }
 }
 

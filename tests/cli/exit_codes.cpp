@@ -6,7 +6,7 @@ using namespace mpm::test;
 
 namespace {
 
-/// Bad input: code 2, the message, nothing on standard output, and not a file more than before.
+/// Bad input gives code 2, the message, nothing on standard output, and not a file more than before.
 void refused(const Folder& folder, const Words& words, const std::string& message) {
   const auto before = folder.names();
   const Result result = call(folder, words);

@@ -19,12 +19,12 @@ std::vector<fs::path> shipped_files() {
   return files;
 }
 
-/// Scenes that studies change have no axes.
+/// Whether a file is a study: scenes that studies change have no axes.
 bool is_study(const fs::path& file) {
   return !file.stem().string().ends_with("_scene");
 }
 
-/// What docs/combinations.md names: the one mix of the studies of every shape and transfer that does not run.
+/// The one mix in the studies of every shape and transfer that does not run, as docs/combinations.md names it.
 const std::string polypic_without_axes = "carries products of polynomials along the axes";
 
 bool is_without_axes(const mpm::study::Combination& combination) {
@@ -59,7 +59,7 @@ Json squeezed() {
   return scene;
 }
 
-/// Linear shapes with FLIP in a collision gain energy long before they invert.
+/// A scene that gains: linear shapes with FLIP in a collision gain energy long before they invert.
 Json gaining() {
   Json scene = two_balls();
   scene.erase("contact");
@@ -72,7 +72,7 @@ Json gaining() {
   return scene;
 }
 
-/// A study of one run, in `folder`/out.
+/// Runs a study of one run, in `folder`/out.
 Result run_as_study(const Folder& folder, const Json& scene, const Json& limits) {
   spill(folder / "scene.json", scene.dump(1));
   const std::string transfer = scene["transfer"]["type"];
@@ -81,7 +81,7 @@ Result run_as_study(const Folder& folder, const Json& scene, const Json& limits)
   return call(folder, {"study", "s.json", "--out", "out", "--jobs", "1"});
 }
 
-/// The study names what the run did: on standard error, in study.json and in its report; code 4.
+/// Checks that the study names what the run did: on standard error, in study.json and in its report, with code 4.
 void is_flagged(const Json& scene, const Json& limits, const std::string& name) {
   const Folder folder;
   const Result result = run_as_study(folder, scene, limits);
@@ -96,7 +96,7 @@ void is_flagged(const Json& scene, const Json& limits, const std::string& name) 
   CHECK(has(slurp(folder / "out/report.html"), name));
 }
 
-/// The run itself: its summary's outcome names the metric; code 4.
+/// Checks that the run alone names the metric in its summary's outcome, with code 4.
 void fails_expectation(const Json& scene, const Json& expectation) {
   const Folder folder;
   const Result result = run_scene(folder, expecting(scene, expectation));
@@ -108,7 +108,7 @@ void fails_expectation(const Json& scene, const Json& expectation) {
   CHECK(has(slurp(folder / "run/report.html"), expectation["metric"].get<std::string>()));
 }
 
-/// The run alone: code 4, and the flag in its summary, in its report and on standard error.
+/// Checks that the run alone gives code 4, and the flag in its summary, in its report and on standard error.
 void flags_itself(const Json& scene, const std::string& name) {
   const Folder folder;
   const Result result = run_scene(folder, scene);
@@ -127,7 +127,7 @@ void flags_itself(const Json& scene, const std::string& name) {
   CHECK(fs::is_regular_file(folder / "run/metrics.csv"));
 }
 
-/// Code 3: the summary's outcome names the cause, and standard error the remedy that fits it.
+/// Checks for code 3 that the summary's outcome names the cause, and standard error the remedy that fits it.
 void stops(const Json& scene, const std::string& cause, const std::string& remedy) {
   const Folder folder;
   const auto [reason, err] = stopped_scene(folder, scene);
@@ -201,7 +201,7 @@ TEST_CASE("the gain of a body that falls counts against what the domain lets it 
   Json scene = ball();
   scene["bodies"][0]["velocity"] = {0, 0};
   scene["gravity"] = {0, -10};
-  scene["body_force"] = {0, 30};  // so that there is a gain
+  scene["body_force"] = {0, 30};  // makes a gain
   scene["grid"]["domain"] = {{0, 1000}, {1, 1001}};
   scene["bodies"][0]["geometry"]["centre"] = {0.5, 1000.5};
   const Folder folder;
@@ -209,7 +209,7 @@ TEST_CASE("the gain of a body that falls counts against what the domain lets it 
   const Json energy = json_in(folder / "run/summary.json")["energy"];
   const double initial = energy["total"]["initial"], rise = energy["total"]["largest"].get<double>() - initial;
   const double gain = energy["total"]["gain"];
-  // m g times half a metre, of a disc at 1000.5 m
+  // The gain is at least m g times half a metre, for a disc at 1000.5 m.
   CHECK(gain > 0.01);
   CHECK(gain == Approx(rise / (initial * 0.5 / 1000.5)).epsilon(1e-6));
 }
@@ -249,7 +249,7 @@ TEST_CASE("a run that stops says why, and what helps against that") {
   scene["bodies"][0]["velocity"] = {20, 0};
   stops(scene, "left the domain", "a larger /grid/domain");
 
-  // A box that is drawn to more than two cells, and a list that reaches beyond the padding.
+  // The two cases are a box that is drawn to more than two cells, and a list that reaches beyond the padding.
   scene = ball();
   scene["shape"]["type"] = "gimp_contiguous";
   scene["transfer"]["type"] = "tpic";

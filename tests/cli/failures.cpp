@@ -9,7 +9,8 @@ using namespace mpm::test;
 
 namespace {
 
-/// Every file is whole: JSON parses, rows of metrics.csv are complete, nothing temporary carries a result's name.
+/// Checks that every file is whole: JSON parses, rows of metrics.csv are complete, nothing temporary carries a result's
+/// name.
 void check_whole(const fs::path& run) {
   for (const auto& entry : fs::recursive_directory_iterator(run)) {
     const std::string name = entry.path().filename().string();
@@ -26,7 +27,7 @@ void check_whole(const fs::path& run) {
   CHECK(table.columns.size() > 10);
 }
 
-/// Code 3: the message holds all parts; the rows before are there.
+/// Checks that a scene gives code 3, that the message holds all parts, and that the rows before are there.
 void fails(const Json& scene, const Words& parts) {
   const Folder folder;
   const auto [reason, err] = stopped_scene(folder, scene);

@@ -31,7 +31,7 @@ Json without_ledger(Json scene) {
   return scene;
 }
 
-/// "name bytes" of each row, in order.
+/// The words "name bytes" of each row, in order.
 Words rows(const Json& plan, const char* table, const char* bytes) {
   Words list;
   for (const Json& row : plan[table])
@@ -57,7 +57,7 @@ int total(const Json& plan, const char* table, const char* bytes) {
   return sum;
 }
 
-/// Storage of the built scene, bytes a particle.
+/// Bytes a particle that the built scene stores.
 double held(const Json& scene) {
   const Scene built(scene.dump());
   return static_cast<double>(built.simulation.backend().particle_bytes()) /

@@ -24,7 +24,7 @@ Result run_micro(const Folder& folder, Words words) {
   return Process(folder, words).finish();
 }
 
-/// Everything measured, for a moment each.
+/// All measurements, made for a moment each.
 const Json& measured() {
   static const Json all = [] {
     const Folder folder;
@@ -90,7 +90,7 @@ TEST_CASE("no micro-benchmark fails, and each has a time an item") {
     double an_item = 0;
     for (const auto& [key, value] : benchmark.items())
       if (key.starts_with("per_") && value.is_number_float()) an_item = value.get<double>();
-    // 64 items a call: the two say the same.
+    // A call handles 64 items: the two numbers say the same.
     CHECK(an_item * benchmark.at("items_per_second").get<double>() == Approx(1).epsilon(1e-6));
   }
 }

@@ -7,7 +7,7 @@ using namespace mpm::test;
 
 namespace {
 
-/// tests/unit/fixtures/whole.c spoiled by a macro, as plugin.so of a folder.
+/// Compiles tests/unit/fixtures/whole.c, spoiled by a macro, to plugin.so in a folder.
 fs::path broken(const Folder& folder, const std::string& define) {
   const fs::path file = folder / "plugin.so";
   fixture::build_plugin(file, define.empty() ? "" : "'" + define + "'");
@@ -23,7 +23,7 @@ Result tested(const std::string& define, Words more = {}) {
   return call(folder, words);
 }
 
-/// In 3-D only, so that it is the fifth group of checks that does not return.
+/// Restricts a statement to 3-D, so that it is the fifth group of checks that does not return.
 std::string in_space(const std::string& statement) {
   return "-DFIXTURE_EVALUATES=if (q->dimension == 3) " + statement;
 }
@@ -72,7 +72,7 @@ TEST_CASE("new: a folder that cannot be made is the machine's fault") {
 }
 
 TEST_CASE("new: no class of the kernel headers can be an id") {
-  // Each `struct Name` or `enum class Name` of kernel/ as the id that would make it.
+  // Each `struct Name` or `enum class Name` of kernel/ is given as the id that would make it.
   const Folder folder;
   int found = 0;
   for (const auto& header : fs::directory_iterator(MPM_SOURCE_DIR "/modules/kernel")) {

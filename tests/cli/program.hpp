@@ -40,7 +40,7 @@ inline void spill(const fs::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-/// Fails the test when the file does not hold whole JSON.
+/// The JSON of a file. Fails the test when the file does not hold whole JSON.
 inline Json json_in(const fs::path& path) {
   INFO(path);
   REQUIRE(fs::is_regular_file(path));
@@ -76,7 +76,7 @@ struct Result {
   int code = -1;   ///< exit code; -1 when a signal ended it
   int signal = 0;  ///< that signal
   double seconds = 0;
-  double processor_seconds = 0;  ///< which other programs do not lengthen
+  double processor_seconds = 0;  ///< seconds that other programs do not lengthen
   std::string out, err;
 };
 
@@ -183,7 +183,7 @@ inline Json ball() {
   })");
 }
 
-/// The same with a second ball that it meets.
+/// The ball and a second one that it meets.
 inline Json two_balls() {
   Json scene = ball();
   scene["title"] = "Two balls";
@@ -201,7 +201,7 @@ inline Json two_balls() {
   return scene;
 }
 
-/// Runs on for minutes, with a row a step.
+/// The ball with so many steps that it runs on for minutes, with a row a step.
 inline Json endless_ball() {
   Json scene = ball();
   scene["solver"]["end_time"] = 1e5;
@@ -222,7 +222,8 @@ inline Result run_scene(const Folder& folder, const Json& scene, Words more = {}
   return call(folder, words);
 }
 
-/// Runs a scene that stops with code 3, of which summary and report tell; the summary's reason and standard error.
+/// Runs a scene that stops with code 3, of which summary and report tell. Returns the summary's reason and standard
+/// error.
 inline std::pair<std::string, std::string> stopped_scene(const Folder& folder, const Json& scene) {
   const Result result = run_scene(folder, scene);
   INFO(result.err);
@@ -234,7 +235,7 @@ inline std::pair<std::string, std::string> stopped_scene(const Folder& folder, c
   CHECK(has(result.err, reason));
   const std::string report = slurp(folder / "run/report.html");
   CHECK(has(report, "</html>"));
-  const auto cause = reason.rfind(") m ") + 4;  // up to a quote or apostrophe: the report writes entities
+  const auto cause = reason.rfind(") m ") + 4;  // up to a quote or apostrophe, as the report writes entities
   CHECK(has(report, reason.substr(cause, reason.find_first_of("\"'", cause) - cause)));
   return {reason, result.err};
 }

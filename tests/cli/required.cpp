@@ -15,7 +15,7 @@ using counting::RequiredScene;
 
 namespace {
 
-constexpr std::uint64_t quad = 4 * sizeof(float);  // what a channel holds of a node
+constexpr std::uint64_t quad = 4 * sizeof(float);  // bytes that a channel holds of a node
 
 RequiredRow counted(const std::string& name) {
   static const std::vector<RequiredRow> rows = [] {
@@ -27,7 +27,7 @@ RequiredRow counted(const std::string& name) {
   throw std::runtime_error("no such scene: " + name);
 }
 
-/// Entries that `row` has and the base has not, or has less of.
+/// The entries that `row` has and the base has not, or has less of.
 Calls more_than_base(const RequiredRow& row) {
   const RequiredRow base = counted("base");
   Calls more;
@@ -47,8 +47,8 @@ TEST_CASE("the base scene asks plugins for nothing but what MLS needs") {
   const RequiredRow base = counted("base");
   const long gathers = base.calls.at("transfer: gather");
   CHECK(gathers == 2 * base.steps);  // each body fills one chunk
-  // Shape twice (gather, and scatter of the next step at the new position), material once (strain, and the stress that
-  // follows from it).
+  // The shape is called twice (gather, and scatter of the next step at the new position), the material once (strain,
+  // and the stress that follows from it).
   CHECK(base.calls == Calls{{"shape", 2 * gathers},
                             {"transfer: scatter", gathers},
                             {"transfer: scatter, affine", gathers},
@@ -84,7 +84,7 @@ TEST_CASE("outputs that are not due cost a handful of instructions to look at th
   }
   CHECK(base.instructions->own > 1000 * base.steps);
   CHECK(base.instructions->all > base.instructions->own);
-  constexpr long handful = 40;  // whether a frame is due
+  constexpr long handful = 40;  // instructions that ask whether a frame is due
   for (const char* name : {"+ metrics", "+ frames", "+ vtk", "+ figures", "+ checkpoints"}) {
     const RequiredRow row = counted(name);
     REQUIRE(row.instructions);
@@ -94,7 +94,7 @@ TEST_CASE("outputs that are not due cost a handful of instructions to look at th
   const RequiredRow between = counted("+ ledger, not due");  // each pass asks whether the ledger takes the step
   INFO(between.name << ": " << between.instructions->own << " instructions, the base scene " << base.instructions->own);
   CHECK(std::abs(between.instructions->own - base.instructions->own) <= 4 * handful * base.steps);
-  // The counter sees what is asked for.
+  // The counter does see what is asked for.
   CHECK(counted("+ ledger").instructions->own > base.instructions->own + 1000 * base.steps);
 }
 
@@ -109,7 +109,8 @@ TEST_CASE("a choice adds what it declares and nothing else") {
   CHECK(ledger.bytes_per_node == base.bytes_per_node + 2 * quad);
   CHECK(ledger.passes == base.passes);
 
-  // No affine velocity to keep, scatter and gather; gradients of the weights for stress and strain, and an increment.
+  // FLIP has no affine velocity to keep, scatter and gather; it needs gradients of the weights for stress and strain,
+  // and an increment.
   const RequiredRow flip = counted("flip");
   CHECK(more_than_base(flip) == Calls{{"shape: gradients", 2 * gathers},
                                       {"transfer: gather, increment", gathers},
@@ -122,7 +123,7 @@ TEST_CASE("a choice adds what it declares and nothing else") {
   // Order 4 is three more rounds: weights, gather and scatter each.
   const RequiredRow filter = counted("+ fmpm 4");
   Calls rounds = more_than_base(filter);
-  CHECK(rounds.erase("filter") == 1);  // batches of nodes
+  CHECK(rounds.erase("filter") == 1);  // a call for each batch of nodes
   CHECK(rounds == Calls{{"shape", 3 * gathers},
                         {"transfer: scatter", 3 * gathers},
                         {"transfer: scatter, affine", 3 * gathers},
@@ -133,10 +134,11 @@ TEST_CASE("a choice adds what it declares and nothing else") {
   CHECK(filter.bytes_per_particle == base.bytes_per_particle);
   CHECK(filter.bytes_per_node == base.bytes_per_node + quad);  // two more, and no second motion: nothing is fused
 
-  // Volume and its gradient, and the surface's position, for the normal and the gap; every channel a field.
+  // Contact takes volume and its gradient, and the surface's position, for the normal and the gap; every channel a
+  // field.
   const RequiredRow contact = counted("+ contact");
   Calls pairs = more_than_base(contact);
-  CHECK(pairs.erase("contact") == 1);  // batches of nodes, before and after the forces
+  CHECK(pairs.erase("contact") == 1);  // calls for batches of nodes, before and after the forces
   CHECK(pairs == Calls{{"shape: gradients", gathers}, {"material", gathers}, {"material: volume ratio", gathers}});
   CHECK(contact.bytes_per_particle == base.bytes_per_particle);
   CHECK(contact.bytes_per_node == 2 * 4 * quad);

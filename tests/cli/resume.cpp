@@ -39,15 +39,15 @@ std::string all_bytes_below(const fs::path& folder) {
   return all;
 }
 
-/// Summary without what depends on the clock and on the memory.
+/// The summary without what depends on the clock and on the memory.
 Json numbers_of(const fs::path& run) {
   Json summary = json_in(run / "summary.json");
   summary.erase("performance");
   return summary;
 }
 
-/// Every file but those that tell times and commands has the same bytes; the folder holds nothing more and nothing
-/// less.
+/// Checks that every file but those that tell times and commands has the same bytes, and that the folder holds nothing
+/// more and nothing less.
 void check_same_results(const fs::path& run, const fs::path& whole) {
   INFO(run << " against " << whole);
   const Words names = files_below(whole);
@@ -62,7 +62,7 @@ void check_same_results(const fs::path& run, const fs::path& whole) {
   CHECK(numbers_of(run).dump() == numbers_of(whole).dump());
 }
 
-/// Runs scene.json into FOLDER/run; pictures name the run folder, so that compared ones share its name.
+/// The words that run scene.json into FOLDER/run; pictures name the run folder, so that compared ones share its name.
 Words words_for(const std::string& place, Words more = {}) {
   Words words{"run", "scene.json", "--out", place + "/run", "--threads", "1"};
   words.insert(words.end(), more.begin(), more.end());
@@ -79,13 +79,14 @@ void must_end_with(int code, const Result& result) {
   REQUIRE(result.code == code);
 }
 
-/// Stops after `steps`, as if there had been no time for more; the checkpoint of that step and one before are there.
+/// Runs until `steps` steps, as if there had been no time for more; the checkpoint of that step and one before are
+/// there.
 void run_until(const Folder& folder, const std::string& place, int steps, Words more = {}) {
   more.insert(more.end(), {"--set", "/solver/max_steps=" + std::to_string(steps)});
   must_end_with(3, run_in(folder, place, more));
 }
 
-/// Bad input to --resume: code 2, the parts are said, and no byte of the folder is changed.
+/// Checks that --resume refuses bad input: code 2, the parts are said, and no byte of the folder is changed.
 void resume_refused(const Folder& folder, const Words& words, const Words& parts) {
   const std::string before = all_bytes_below(folder.path());
   const Result result = call(folder, words);
@@ -242,7 +243,7 @@ TEST_CASE("a killed run goes on with the polynomials and corners that its partic
       spill(folder / "scene.json", variant.dump(1));
       must_end_with(0, run_in(folder, "whole"));
       std::vector<fs::path> last;
-      for (const bool goes_on : {false, true}) {  // killed as soon as it has come further
+      for (const bool goes_on : {false, true}) {  // the run is killed as soon as it has come further
         Process process(folder, program(words_for("killed", goes_on ? Words{"--resume"} : Words{})));
         REQUIRE(process.wait_until([&] {
           const std::vector<fs::path> present = checkpoints(folder, "killed");
@@ -424,7 +425,7 @@ TEST_CASE("another experiment is refused, with the first difference") {
   refused_with({},
                {"scene.json:", "/contact/friction: is 0.4, and 0.3 in the run in", "experiment.json holds them all"});
 
-  // What acts at the end only may be another.
+  // A key that acts at the end only may have another value.
   Json free = meeting();
   free["title"] = "The same";
   free["figures"] = {"energy"};
@@ -482,7 +483,7 @@ TEST_CASE("one program a run folder") {
   spill(folder / "scene.json", endless_ball().dump(1));
   Process process(folder, program({"run", "scene.json", "--out", "run", "--threads", "1"}));
   REQUIRE(process.wait_until([&] { return rows_written(folder / "run/metrics.csv", 3); }));
-  // Beside the first one's streams: Process has one pair of files a folder.
+  // The second process lies beside the first one's streams: Process has one pair of files a folder.
   const Folder other;
   for (const Words& more : {Words{}, Words{"--resume"}}) {
     Words words{"run", folder / "scene.json", "--out", folder / "run"};

@@ -29,7 +29,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-/// Final numbers of a summary: all that the cadence of outputs must not change.
+/// The final numbers of a summary: all that the cadence of outputs must not change.
 Json final_numbers(const fs::path& run) {
   const Json summary = json_in(run / "summary.json");
   Json numbers;
@@ -48,7 +48,7 @@ void run_as(const Folder& folder, const Json& scene, const std::string& name, co
   REQUIRE(result.code == 0);
 }
 
-/// Bad input to `mpm figure`.
+/// Checks that `mpm figure` refuses bad input.
 void figure_refused(const Folder& folder, const Words& words, const std::string& message) {
   const auto before = files_below(folder.path());
   const Result result = call(folder, words);
@@ -294,7 +294,7 @@ TEST_CASE("the program warns when friction stops a filter's loop from contractin
   Json scene = two_balls();
   scene["transfer"]["type"] = "pic";
   scene["filter"] = {{"type", "fmpm"}, {"order", 8}};
-  scene["bodies"][0]["velocity"] = {3.0, -1.0};  // they graze each other
+  scene["bodies"][0]["velocity"] = {3.0, -1.0};  // the bodies graze each other
   scene["bodies"][1]["velocity"] = {-3.0, 1.0};
   for (const char* backend : {"reference", "cpu"})
     for (const double friction : {0.0, 10.0}) {
@@ -405,7 +405,7 @@ TEST_CASE("a frame shows the domains of particles that carry them") {
   REQUIRE(result.code == 0);
   const std::string table = slurp(folder / "run/frames/frame_0000.csv");
   CHECK(has(table, "semi-side 1 x (m),semi-side 1 y (m),semi-side 2 x (m),semi-side 2 y (m)"));
-  // Undeformed: half a particle's side along x, nothing along y, then the other way round.
+  // Boxes are undeformed: half a particle's side along x, nothing along y, then the other way round.
   const std::string half = table.substr(table.find('\n') + 1);
   std::vector<double> numbers;
   std::istringstream row(half.substr(0, half.find('\n')));

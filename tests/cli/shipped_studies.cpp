@@ -28,7 +28,7 @@ std::vector<fs::path> shipped() {
   return studies;
 }
 
-/// Of what docs/combinations.md names.
+/// Whether a refusal is one that docs/combinations.md names.
 bool is_known_refusal(const std::string& reason) {
   static const std::string page = slurp(root / "docs/combinations.md");
   for (const char* words : {"leaves nothing of transfer", "carries products of polynomials along the axes",

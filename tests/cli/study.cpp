@@ -13,7 +13,7 @@ Json breathing() {
   scene["bodies"][0]["velocity"] = {"0.3*(x-0.5)", "0.3*(y-0.5)"};
   scene["solver"] = {{"time_step", 0.01}, {"end_time", 0.25}};
   scene["output"] = {{"metrics_every", 1}, {"ledger", false}};
-  scene["limits"] = {{"energy_gain", nullptr}};  // it swings by some per cent within the steps
+  scene["limits"] = {{"energy_gain", nullptr}};  // energy swings by some per cent within the steps
   return scene;
 }
 
@@ -37,7 +37,7 @@ Result run_study(const Folder& folder, Words more = {}) {
   return call(folder, words);
 }
 
-/// As a figure's CSV writes it.
+/// The number as a figure's CSV writes it.
 std::string digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.17g", value);
@@ -234,7 +234,7 @@ TEST_CASE("a run that is killed is recorded, and run again by the next call") {
   CHECK(more.wait_until([&] { return has(slurp(folder / "out/records/pic.log"), "resumed from step"); }));
   more.send(SIGKILL);
   CHECK(more.finish().signal == SIGKILL);
-  // Its runs end with it: soon nothing is written any more.
+  // The study's runs end with it: soon nothing is written any more.
   const auto size = [&] { return fs::file_size(folder / "out/runs/pic/metrics.csv"); };
   bool still = false;
   for (int look = 0; look < 100 && !still; ++look) {

@@ -26,7 +26,7 @@ void run_as(const Folder& folder, const std::string& place, Words more, const Wo
   REQUIRE(result.code == 0);
 }
 
-/// What is started within this scope may run on one processor alone.
+/// Limits what is started within this scope to one processor.
 class OneProcessor {
  public:
   OneProcessor() {

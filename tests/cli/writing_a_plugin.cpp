@@ -52,12 +52,13 @@ bool holds(const std::string& text, const std::string& pattern) {
   return false;
 }
 
-/// Strict, and compiling quickly: the environment, not the projects, asks for less optimisation.
+/// The environment of the script: strict, and compiling quickly; it, not the projects, asks for less optimisation.
 constexpr const char* preamble =
     "set -eu\n"
     "export CMAKE_BUILD_TYPE=Quick CXXFLAGS=-O1\n";
 
-/// One shell runs all steps, so that what a block exports holds for the next, and stops at the first that fails.
+/// The script of all steps. One shell runs them, so that what a block exports holds for the next, and stops at the
+/// first that fails.
 std::string script_of(const std::vector<Step>& steps) {
   std::string script = preamble + std::string("PATH='" MPM_BUILD_DIR "/bin':$PATH\n");
   for (std::size_t k = 0; k < steps.size(); ++k)
@@ -89,7 +90,7 @@ TEST_CASE("the page on writing a plugin, followed word for word in a folder with
   }
   CHECK(result.code == 0);
 
-  // What the page claims of the files, and what ran on the three ways to compute.
+  // The page makes claims of the files, and of what ran on the three ways to compute.
   const auto lines = [&](const std::string& name) {
     const std::string text = slurp(scratch / "my_rubber" / name);
     return std::count(text.begin(), text.end(), '\n');

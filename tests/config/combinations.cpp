@@ -28,7 +28,7 @@ TEST_CASE("few mixes are refused, and for stated reasons", "[combinations]") {
   std::set<std::string> reasons;
   std::set<std::pair<std::string, std::string>> pairs, expected;
   std::size_t refused = 0, without_effect = 0;
-  // Transfers of the FLIP family with a filter at every step: nothing of them would be left.
+  // Transfers of the FLIP family refuse a filter at every step: nothing of them would be left.
   for (const char* transfer : {"flip", "aflip", "asflip"})
     for (const char* filter : {"fmpm", "xpic"}) expected.insert({transfer, filter});
   for (const Mix& mix : mixes)

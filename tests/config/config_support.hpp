@@ -73,7 +73,7 @@ inline Experiment read_text(const std::string& text, std::vector<std::string> ov
   return read_experiment(experiment_file(folder, text), components(), options(std::move(overrides)));
 }
 
-/// what() of the InputError that reading throws; "accepted" when it throws none.
+/// The words of the InputError that reading throws; "accepted" when it throws none.
 inline std::string errors_with(const std::string& text, const ReadOptions& options) {
   const TemporaryFolder folder;
   const std::filesystem::path file = experiment_file(folder, text);
@@ -88,7 +88,7 @@ inline std::string errors(const std::string& text, std::vector<std::string> over
   return errors_with(text, options(std::move(overrides)));
 }
 
-/// Errors of the two discs with a part of the text replaced.
+/// The errors of the two discs with a part of the text replaced.
 inline std::string errors_after(std::string_view from, std::string_view to) {
   const std::string changed = replaced(two_discs, from, to);
   return changed == two_discs ? "nothing was replaced" : errors(changed);

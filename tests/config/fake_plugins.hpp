@@ -64,7 +64,7 @@ inline const ComponentLookup& components() {
   return lookup;
 }
 
-/// Options as the program would give them.
+/// Reading options as the program would give them.
 inline ReadOptions options(std::vector<std::string> overrides = {}) {
   ReadOptions result;
   result.overrides = std::move(overrides);

@@ -6,7 +6,7 @@ using namespace mpm;
 using namespace mpm::test;
 
 namespace {
-/// Errors of the two discs with another geometry in the place of the left disc.
+/// The errors of the two discs with another geometry in the place of the left disc.
 std::string errors_of_geometry(std::string_view geometry) {
   return errors_after(R"({"type": "ball", "centre": [0.2, 0.2], "radius": "20 cm"})", geometry);
 }

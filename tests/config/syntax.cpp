@@ -44,7 +44,7 @@ TEST_CASE("files that hold no experiment", "[config]") {
 }
 
 namespace {
-/// Anything but success or InputError fails the test (and a crash ends it).
+/// Whether a text is read or refused with InputError: anything else fails the test (and a crash ends it).
 bool is_handled(const std::string& text) {
   try {
     read_experiment_text(text, "FILE", components(), options());

@@ -38,7 +38,7 @@ double quadratic(double d) {
   return d <= 0.5 ? 0.75 - d * d : d <= 1.5 ? (1.5 - d) * (1.5 - d) / 2 : 0;
 }
 
-/// Mean of f over d - l to d + l: two Gauss points between half-integers, exact for the cubics that lie there.
+/// The mean of f over d - l to d + l: two Gauss points between half-integers, exact for the cubics that lie there.
 double box_mean(const std::function<double(double)>& f, double d, double l) {
   double sum = 0, from = d - l;
   while (from < d + l) {
@@ -49,7 +49,7 @@ double box_mean(const std::function<double(double)>& f, double d, double l) {
   return sum / (2 * l);
 }
 
-/// Weights, slopes and the sums of a box mean of `f`, for boxes of half length l.
+/// Checks weights, slopes and the sums of a box mean of `f`, for boxes of half length l.
 template <class Shape>
 void check_mean(const std::function<double(double)>& f, double l) {
   for (int k = -150; k <= 150; ++k) {
@@ -109,7 +109,7 @@ TEST_CASE("B2GIMP tends to the quadratic spline and is the cubic one at a box on
     for (int node = -5; node <= 5; ++node) {
       CHECK(std::abs(wide.weight(node) - widest.weight(node)) <= 1e-15);
       CHECK(std::abs(wide.slope(node) - widest.slope(node)) <= 1e-15);
-      for (const double l : {0.1, 0.01, 1e-4, 1e-8}) {  // N'' l^2/6 with |N''| <= 2, reached beside a node
+      for (const double l : {0.1, 0.01, 1e-4, 1e-8}) {  // bound N'' l^2/6 with |N''| <= 2, reached beside a node
         const Axis<B2Gimp> narrow(x, l);
         CHECK(std::abs(narrow.weight(node) - limit.weight(node)) <= l * l / 3 + 1e-15);
         CHECK(std::abs(narrow.slope(node) - limit.slope(node)) <= l + 1e-15);
@@ -125,7 +125,7 @@ TEST_CASE("the second moment of B2GIMP is 1/4 + l^2/3 everywhere") {
 
 TEST_CASE("the slope of B2GIMP's slope is continuous, of uGIMP it jumps") {
   constexpr double step = 0x1p-20;
-  const auto jump = [](auto&& slope, double x) {  // of the second derivative, over two steps
+  const auto jump = [](auto&& slope, double x) {  // jump of the second derivative, over two steps
     const double below = (slope(x - step) - slope(x - 2 * step)) / step,
                  above = (slope(x + 2 * step) - slope(x + step)) / step;
     return std::abs(above - below);
@@ -133,7 +133,7 @@ TEST_CASE("the slope of B2GIMP's slope is continuous, of uGIMP it jumps") {
   for (const double l : {0.5, 0.25, 0.1})
     for (int node = -2; node <= 2; ++node)
       for (double knot : {0.0, 0.5, 0.5 - l, 0.5 + l, l, 1 - l}) {
-        const double curvature = 1 / (2 * l);  // of the slope of the slope, at most 3 times this
+        const double curvature = 1 / (2 * l);  // curvature of the slope, at most 3 times this
         CHECK(jump([&](double x) { return Axis<B2Gimp>(x, l).slope(node); }, knot) <= 12 * curvature * 3 * step);
       }
   CHECK(jump([](double x) { return Axis<mpm::Gimp>(x, 0.25).slope(0); }, 0.25) > 1);
@@ -209,7 +209,8 @@ TEST_CASE("at a turn by 90 degrees diag F has collapsed, diag U has not moved") 
     CHECK(std::abs(second_moment<GimpContiguous>(x, collapsed) - f * (1 - f)) <= 1e-6);
     CHECK(second_moment<GimpContiguous>(x, collapsed) > 0);
   }
-  // U is that of the undeformed frame: a box drawn out along x keeps its long side there when it is turned onto y.
+  // The tensor U is that of the undeformed frame: a box drawn out along x keeps its long side there when it is turned
+  // onto y.
   const auto drawn = GimpContiguous::half_lengths<2>(by_U, turned<2>(quarter, box<2>(3 * l, l)));
   CHECK(std::abs(drawn[0] - 3 * l) <= 1e-15);
   CHECK(std::abs(drawn[1] - l) <= 1e-15);
@@ -220,6 +221,6 @@ TEST_CASE("cpGIMP gives no weight where four nodes do not hold the box") {
     for (const double x : {0.0, 0.3, 0.5}) {
       const Axis<GimpContiguous> axis(x, l);
       for (int k = 0; k < 4; ++k) CHECK(axis.w[k] == 0);
-      CHECK(axis.base == -1);  // of the position alone
+      CHECK(axis.base == -1);  // the base follows from the position alone
     }
 }

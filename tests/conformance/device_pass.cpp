@@ -34,7 +34,7 @@ constexpr double step = 0x1p-6;
 
 // ---- the text around a functor -------------------------------------------------------------------------------------
 
-/// Arrays are [component][64] of S; `state` and all that a functor fills are in `out`.
+/// The text before a functor. Arrays are [component][64] of S; `state` and all that a functor fills are in `out`.
 constexpr const char* prologue = R"(#include "functor.hpp"
 struct Task { const void* parameters; const void* in[8]; void* out[8]; int count; double dt; };
 namespace mpm {
@@ -93,7 +93,7 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
 }
 )";
 
-/// What a list shape takes beside the position, and gives to `evaluate`.
+/// The text of what a list shape takes beside the position, and gives to `evaluate`.
 constexpr const char* domain_of_list = R"(
 template <int D, class S> struct Domain {
   Mat<D, S> sides;
@@ -109,7 +109,8 @@ template <int D, class S> struct Domain {
 };
 )";
 
-/// Follows one of the two. Entries beyond a particle's count are stored as zero, so that whole arrays compare.
+/// The text that follows one of the two. Entries beyond a particle's count are stored as zero, so that whole arrays
+/// compare.
 constexpr const char* list_shape_body = R"(
 template <int D, class S> MPM_HD void run(const Task& t, int lane) {
   const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
@@ -266,7 +267,8 @@ std::string kernel_text(const Plugin& plugin) {
 
 using Column = std::vector<double>;  // [component][64]
 
-/// What both sides are given and what they fill; `scale` is the size by which an error in each output is judged.
+/// A call: what both sides are given and what they fill; `scale` is the size by which an error in each output is
+/// judged.
 struct Call {
   std::vector<Column> in, out;
   std::vector<double> scale;
@@ -282,7 +284,7 @@ Column zeros(int components) {
   return Column(static_cast<std::size_t>(components) * particles);
 }
 
-/// All state fields one after the other, as the functor's State holds them.
+/// The initial state: all state fields one after the other, as the functor's State holds them.
 Column initial_state(const Plugin& plugin, int D) {
   Column state;
   for (const mpm_state& field : plugin.state()) {
@@ -374,7 +376,7 @@ Column as_column(const std::vector<std::int32_t>& indices) {
   return {indices.begin(), indices.end()};
 }
 
-/// The nodes of every particle through the C boundary; entries beyond a particle's count are left zero.
+/// Lists the nodes of every particle through the C boundary; entries beyond a particle's count are left zero.
 void run_list(const Plugin& plugin, int D, const ParameterSample& parameters, Call& call) {
   const std::size_t capacity = plugin.shape().capacity[D - 2], n = particles, dimension = static_cast<std::size_t>(D);
   std::vector<std::int32_t> count(n), node(capacity * dimension * n);
@@ -549,7 +551,7 @@ std::string contents(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// Compiles without any system header and loads the result; empty when the compiler refuses, with its words in `log`.
+/// Compiles without any system header and loads the result; null when the compiler refuses, with its words in `log`.
 void* compiled(const Plugin& plugin, const std::filesystem::path& folder, std::string& log) {
   const std::string id = std::string(plugin.id()), source = (folder / (id + ".cpp")).string();
   std::ofstream(folder / "functor.hpp") << plugin.descriptor->source;
@@ -580,7 +582,7 @@ std::string title(const Plugin& plugin) {
 }  // namespace
 
 TEST_CASE("every functor compiles without system headers and gives the plugin's own results") {
-  // Nothing to include but the functor and the kernel headers.
+  // The folder holds nothing to include but the functor and the kernel headers.
   const mpm::test::TemporaryFolder folder;
   std::filesystem::create_directory_symlink(std::filesystem::path(MPM_SOURCE_DIR) / "modules" / "kernel",
                                             folder / "kernel");

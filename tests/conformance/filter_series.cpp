@@ -36,7 +36,8 @@ TEMPLATE_TEST_CASE("a filter of order k sums k terms of the Neumann series", "",
       const double c = std::cos(step * 3.14159265358979323846 / 42), symbol = c * c;
       const double residual = std::pow(1 - symbol, order);
       CHECK(std::abs(filtered<TestType>(order, symbol) - (1 - residual) / symbol) <= 1e-13 * order);
-      // Gathered by S and scattered by S+ the mode keeps all but the residual; the null space (symbol 0) is never seen.
+      // A mode that is gathered by S and scattered by S+ keeps all but the residual; the null space (symbol 0) is never
+      // seen.
       CHECK(std::abs(symbol * filtered<TestType>(order, symbol) - (1 - residual)) <= 1e-13 * order);
     }
 }

@@ -46,7 +46,7 @@ Approx near(double value) {
   return Approx(value).epsilon(1e-7).margin(1e-9);
 }
 
-/// P = tau F^-T = (tau cof F)/J.
+/// First Piola-Kirchhoff stress P = tau F^-T = (tau cof F)/J.
 Mat<3, double> first_piola(const Mat<3, double>& F) {
   const Sym<3, double> tau = kirchhoff(F);
   const Mat<3, double> cofactor = polar::cofactor(F);
@@ -57,7 +57,7 @@ Mat<3, double> first_piola(const Mat<3, double>& F) {
   return P;
 }
 
-/// d2 psi / ds2 along F + s a (x) F^T n by central differences.
+/// The second derivative d2 psi / ds2 along F + s a (x) F^T n by central differences.
 template <int D>
 double second_derivative(const Mat<D, double>& F, const Vec<D, double>& a, const Vec<D, double>& n) {
   constexpr double h = 1e-4;
@@ -89,7 +89,8 @@ TEST_CASE("fixed corotated: uniaxial strain") {
 }
 
 TEST_CASE("fixed corotated: uniaxial strain in closed form") {
-  // sigma_11 = 2 mu (l - 1) + lambda (l - 1), sigma_22 = lambda (l - 1), psi = (mu + lambda/2) (l - 1)^2.
+  // Uniaxial stretch: sigma_11 = 2 mu (l - 1) + lambda (l - 1), sigma_22 = lambda (l - 1), psi = (mu + lambda/2) (l -
+  // 1)^2.
   for (const double l : {0.05, 0.3, 0.9, 1.0, 1.0001, 1.7, 4.0}) {
     const Sym<3, double> sigma = cauchy(diagonal(1, l, 1));
     CHECK(sigma(1, 1) == Approx((2 * mu + lambda) * (l - 1)).epsilon(1e-12).margin(1e-10));
@@ -121,13 +122,13 @@ TEST_CASE("fixed corotated: simple shear, the table and the closed form") {
 }
 
 TEST_CASE("fixed corotated: an inverted particle has a finite stress") {
-  // Singular values 1, 1, -1/2 with R = I: tau = 2 mu (F - I) F + lambda (J - 1) J I.
+  // With singular values 1, 1, -1/2 and R = I the stress is tau = 2 mu (F - I) F + lambda (J - 1) J I.
   const Sym<3, double> tau = kirchhoff(diagonal(-0.5, 1, 1));
   CHECK(tau(0, 0) == Approx(2 * mu * 0.75 + lambda * 0.75).epsilon(1e-12));
   CHECK(tau(1, 1) == Approx(lambda * 0.75).epsilon(1e-12));
   const Sym<2, double> plane = kirchhoff(Mat<2, double>{{-0.5, 0, 0, 1}});
   CHECK(plane(0, 0) == Approx(2 * mu * 0.75 + lambda * 0.75).epsilon(1e-12));
-  // No number is lost where the rotation is not unique either.
+  // Every number is finite where the rotation is not unique either.
   for (const auto& F : {diagonal(0, 0, 0), diagonal(-1, 1, 1), diagonal(0, 0, 2), diagonal(-1, -1, -1)}) {
     for (const double component : kirchhoff(F).s) CHECK(std::isfinite(component));
     CHECK(std::isfinite(energy(F)));
@@ -151,7 +152,7 @@ TEST_CASE("fixed corotated: P(QF) = Q P(F)") {
 }
 
 TEST_CASE("fixed corotated: the wave along the largest stretch has the reported speed") {
-  // Exact in 2-D, and in 3-D where the two smaller stretches are equal.
+  // The bound is exact in 2-D, and in 3-D where the two smaller stretches are equal.
   for (const double l : {1.0, 1.3, 2.0}) {
     CHECK(second_derivative<3>(diagonal(1, l, 1), {{0, 1, 0}}, {{0, 1, 0}}) ==
           Approx(wave_modulus(diagonal(1, l, 1))).epsilon(1e-6));

@@ -12,7 +12,7 @@
 
 namespace {
 
-/// Weight that a particle at x gives the node at 0.
+/// The weight that a particle at x gives the node at 0.
 template <class Shape>
 double weight_of_origin(double x) {
   double base, w[Shape::width];
@@ -60,7 +60,7 @@ TEST_CASE("values at a node are exact") {
   CHECK(weight_of_origin<mpm::BsplineQuadratic>(0) == 3.0 / 4);
   CHECK(weight_of_origin<mpm::BsplineQuadratic>(1) == 1.0 / 8);
   CHECK(weight_of_origin<mpm::BsplineQuadratic>(0.5) == 0.5);
-  CHECK(std::abs(weight_of_origin<mpm::BsplineCubic>(-1) - 1.0 / 6) <= 0x1p-53);  // 2/3 - 1/2 rounds once
+  CHECK(std::abs(weight_of_origin<mpm::BsplineCubic>(-1) - 1.0 / 6) <= 0x1p-53);  // the value 2/3 - 1/2 rounds once
   CHECK(weight_of_origin<mpm::BsplineCubic>(0) == 2.0 / 3);
   CHECK(weight_of_origin<mpm::BsplineCubic>(1) == 1.0 / 6);
   CHECK(weight_of_origin<mpm::BsplineCubic>(2) == 0);
@@ -81,7 +81,7 @@ TEST_CASE("the cubic spline is C2, and its gradient is that of the formula") {
   const auto near = [&](double x, int node, double(&value)[3]) {
     double base, w[4], g[4], next_g[4];
     mpm::BsplineCubic::evaluate({}, x, base, w, g);
-    mpm::BsplineCubic::evaluate({}, x + step / 2, base, w, next_g);  // the same piece
+    mpm::BsplineCubic::evaluate({}, x + step / 2, base, w, next_g);  // the place is in the same piece
     const int k = node - static_cast<int>(base);
     const bool inside = k >= 0 && k < 4;
     value[0] = inside ? w[k] : 0, value[1] = inside ? g[k] : 0, value[2] = inside ? (next_g[k] - g[k]) * 2 / step : 0;
@@ -105,7 +105,7 @@ TEST_CASE("second moments are 1/4 for the quadratic spline, 1/3 for the cubic, f
 
 namespace {
 
-/// uGIMP by its piecewise formula, distance d and half width l in cells.
+/// The weight of uGIMP by its piecewise formula, distance d and half width l in cells.
 double gimp(double d, double l) {
   d = std::abs(d);
   if (d < l) return 1 - (d * d + l * l) / (2 * l);
@@ -220,7 +220,7 @@ TEST_CASE("CPDI differs from uGIMP where the box straddles a grid line in 2-D") 
 }
 
 TEST_CASE("CPDI takes the mean over the domain of the corners' multilinear field") {
-  // One node, one corner at it, the others in cells that do not touch it: weight 1/4 and gradient R^-T s / 4.
+  // One corner lies at a node, the others in cells that do not touch it: weight 1/4 and gradient R^-T s / 4.
   const mpm::Mat<2, double> R{{1.5, 0.25, -0.25, 1.25}};
   const auto list = cpdi<2>({{10 - 1.75, 20 - 1.0}}, R);
   const double det = 1.5 * 1.25 + 0.25 * 0.25;
@@ -251,7 +251,7 @@ TEST_CASE("a collapsed CPDI domain gives the mean of the tents' gradients") {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) CHECK(std::abs(affine(i, j) - (i == j)) <= 1e-14);
   }
-  const auto point = cpdi<2>({{0.25, 0.5}}, mpm::Mat<2, double>{});  // a point: the tent itself
+  const auto point = cpdi<2>({{0.25, 0.5}}, mpm::Mat<2, double>{});  // a point gives the tent itself
   CHECK(point.count == 4);
   CHECK(point.weight[0] == 0.375);
 }

@@ -81,7 +81,7 @@ std::int32_t forgets_time(const void* parameters, const mpm_trial_batch* batch) 
 }
 constexpr mpm_material_trial slow_trial{MPM_MATERIAL_TRIAL_VERSION, 0, ENTRIES(forgets_time)};
 
-/// Elastic where the law flows.
+/// A tangent that is elastic where the law flows.
 template <int D, class S>
 std::int32_t stays_elastic(const void* parameters, const mpm_tangent_batch* batch) {
   VonMises::Parameters strong = *static_cast<const VonMises::Parameters*>(parameters);
@@ -91,7 +91,7 @@ std::int32_t stays_elastic(const void* parameters, const mpm_tangent_batch* batc
 constexpr mpm_material_tangent elastic_tangent{MPM_MATERIAL_TANGENT_VERSION, 0, nullptr, ENTRIES(stays_elastic)};
 constexpr mpm_material_tangent silent_tangent{MPM_MATERIAL_TANGENT_VERSION, 0, "", {}};
 
-/// Packs of float lose the direction's sign.
+/// A tangent whose packs of float lose the direction's sign.
 template <int D, class S>
 std::int32_t turns_packs(const void* parameters, const mpm_tangent_batch* batch) {
   const std::int32_t index = sdk::tangent_batch<NeoHookean, D, S>(parameters, batch);
@@ -102,7 +102,7 @@ std::int32_t turns_packs(const void* parameters, const mpm_tangent_batch* batch)
 }
 constexpr mpm_material_tangent turning_tangent{MPM_MATERIAL_TANGENT_VERSION, 0, nullptr, ENTRIES(turns_packs)};
 
-/// Adds a stretch along x to what the law returns to.
+/// A projection that adds a stretch along x to what the law returns to.
 template <int D, class S>
 std::int32_t stretches(const void* parameters, const mpm_projection_batch* batch) {
   const std::int32_t index = sdk::projection_batch<DruckerPrager, D, S>(parameters, batch);
@@ -117,7 +117,7 @@ std::int32_t does_nothing(const void*, const mpm_projection_batch*) {
 }
 constexpr mpm_material_projection idle_projection{MPM_MATERIAL_PROJECTION_VERSION, 0, ENTRIES(does_nothing)};
 
-struct ColdRubber : WarmRubber {  // takes a temperature and does not look at it
+struct ColdRubber : WarmRubber {  // it takes a temperature and does not look at it
   template <class G, class S = typename G::Scalar>
   MPM_HD static S warmth(const WarmState<G>&) {
     return S(real<S>(0));
@@ -156,7 +156,7 @@ void counts_lists(const void*, const mpm_cost_case*, mpm_cost* cost) {
 }
 constexpr mpm_costs list_costs{MPM_COSTS_VERSION, 0, &counts_lists};
 
-struct LongStep : Fmpm {  // as if the order took nothing
+struct LongStep : Fmpm {  // its step limit is as if the order took nothing
   static double step_limit(const Parameters&, double unfiltered) { return unfiltered; }
 };
 struct FixedStep : Fmpm {
@@ -236,8 +236,8 @@ TEST_CASE("a filter's limit of the step covers what it amplifies") {
 }
 
 TEST_CASE("the tangent of a tension test is Young's modulus where it is small, and less where metal flows") {
-  // One particle, confined at its sides: dtau_xx / deps_xx = lambda + 2 mu at rest. Beyond yield, without hardening, a
-  // shear adds no stress: dtau_xy / dgamma falls to zero as the shear grows.
+  // The first particle is confined at its sides: dtau_xx / deps_xx = lambda + 2 mu at rest. Beyond yield, without
+  // hardening, a shear adds no stress: dtau_xy / dgamma falls to zero as the shear grows.
   const VonMises::Parameters metal{200e9, 0.3, 7800, 250e6, 0, 0};
   const double lambda = lame_lambda(200e9, 0.3), mu = shear_modulus(200e9, 0.3);
   alignas(64) double state[4 + 2][MPM_LANES]{}, gradient[4][MPM_LANES]{}, direction[4][MPM_LANES]{};

@@ -29,7 +29,7 @@ F3 diagonal(double a, double b, double c) {
   return {{a, 0, 0, 0, b, 0, 0, 0, c}};
 }
 
-/// lambda U'(J) through J U'.
+/// The slope lambda U'(J), by way of J U'.
 double slope(int volumetric, double J) {
   return lambda * volumetric_stress(forms[volumetric], J) / J;
 }
@@ -81,7 +81,7 @@ TEST_CASE("Neo-Hookean: slopes are the derivatives of the volumetric energies, t
 TEST_CASE("Neo-Hookean: limits of the volumetric energies when crushed and when stretched") {
   const double tiny = 1e-12, huge = 1e12, l = std::log(tiny);
   CHECK(volumetric_energy(forms[0], tiny) == near(l * l / 2));
-  CHECK(volumetric_energy(forms[1], tiny) == near(0.5));  // finite: no barrier
+  CHECK(volumetric_energy(forms[1], tiny) == near(0.5));  // the energy is finite: there is no barrier
   CHECK(volumetric_energy(forms[2], tiny) == near(-l / 2 - 0.25));
   CHECK(slope(0, huge) < 1e-6);
   CHECK(slope(1, huge) / huge == near(lambda));
@@ -99,9 +99,9 @@ TEST_CASE("tangents of the volumetric energies from J = 0.01 to 100") {
     CHECK(volumetric_tangent(forms[1], J) == Approx(J * J).epsilon(1e-15));
     CHECK(volumetric_tangent(forms[2], J) == Approx((J * J + 1) / 2).epsilon(1e-15));
   }
-  CHECK(volumetric_tangent(forms[0], 100.0) < 0);      // unstable beyond J = e
-  CHECK(volumetric_tangent(forms[1], 0.01) < 1.1e-4);  // soft when crushed
-  CHECK(volumetric_tangent(forms[2], 0.01) > 0.5);     // stiff at both ends
+  CHECK(volumetric_tangent(forms[0], 100.0) < 0);      // the form is unstable beyond J = e
+  CHECK(volumetric_tangent(forms[1], 0.01) < 1.1e-4);  // the form is soft when crushed
+  CHECK(volumetric_tangent(forms[2], 0.01) > 0.5);     // the form is stiff at both ends
   CHECK(volumetric_tangent(forms[2], 100.0) > 5000);
 }
 

@@ -12,8 +12,8 @@ using namespace mpm;
 using Mat3 = Mat<3, double>;
 using State3 = VonMises::State<3, double>;
 
-// G = 1000 and K = 2000 as in docs/verification.md. The yield stress is 1/100 of the 10 there, and so are strains and
-// stresses.
+// The moduli are G = 1000 and K = 2000 as in docs/verification.md. The yield stress is 1/100 of the 10 there, and so
+// are strains and stresses.
 constexpr double shear = 1000, bulk = 2000, yield = 0.1;
 constexpr double young = 9 * bulk * shear / (3 * bulk + shear);
 constexpr double poisson = (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear));
@@ -33,7 +33,7 @@ struct Particle {
   Sym<3, double> stress() const { return VonMises::kirchhoff_stress(constants, state); }
   void strain(const Mat3& increment) { VonMises::advance(constants, increment, 1.0, state); }
 
-  /// Axial increment with free sides: the lateral increment is found by Newton on the lateral stress.
+  /// Adds an axial increment with free sides: the lateral increment is found by Newton on the lateral stress.
   void pull(double axial) {
     double side = -poisson * axial;
     const State3 before = state;
@@ -64,8 +64,8 @@ TEST_CASE("von Mises: uniaxial strain, perfect plasticity") {
   for (int k = 1; k <= 200; ++k) {
     particle.strain(increment);
     const double strain = k * 1e-6, sigma = particle.stress()(0, 0);
-    if (k == 50) CHECK(sigma == near(0.16666667));   // yield at sy / (2 G) = 5e-5
-    if (k == 200) CHECK(sigma == near(0.46666667));  // K eps + 2 sy / 3
+    if (k == 50) CHECK(sigma == near(0.16666667));   // it yields at sy / (2 G) = 5e-5
+    if (k == 200) CHECK(sigma == near(0.46666667));  // exact: K eps + 2 sy / 3
     if (k < 50) CHECK(sigma == near((bulk + 4 * shear / 3) * strain));
     if (k > 50) CHECK(sigma == near(bulk * strain + 2 * yield / 3));
   }
@@ -122,8 +122,8 @@ TEST_CASE("von Mises: simple shear yields at sy / sqrt 3 and hardens with G H / 
 }
 
 TEST_CASE("von Mises: the dissipated energy of uniaxial strain is the plastic work") {
-  // Perfect plasticity: sy times the equivalent plastic strain, to the order of the increment for a backward-Euler
-  // return.
+  // The heat of perfect plasticity is sy times the equivalent plastic strain, to the order of the increment for a
+  // backward-Euler return.
   Particle particle(0);
   double heat = 0;
   for (int k = 0; k < 2000; ++k)
@@ -142,7 +142,7 @@ TEST_CASE("det(b_e) stays 1 along long random paths") {
       Mat3 L;
       for (double& entry : L.m) entry = 0.02 * number();
       const double third = (L(0, 0) + L(1, 1) + L(2, 2)) / 3;
-      for (int i = 0; i < 3; ++i) L(i, i) -= third;  // or the volume would wander off
+      for (int i = 0; i < 3; ++i) L(i, i) -= third;  // without it the volume would wander off
       VonMises::advance(constants, L, 1.0, state);
       worst = std::max(worst, std::abs(determinant(state.elastic_left_cauchy_green) - 1));
     }

@@ -38,7 +38,7 @@ struct Particle {
   }
   double advance(double x, double y, double z) { return advance({{x, 0, 0, 0, y, 0, 0, 0, z}}); }
 
-  /// Compression positive.
+  /// The deviatoric stress; compression is positive.
   double q() const { return stress()(1, 1) - stress()(0, 0); }
   double p() const { return -trace(stress()) / 3; }
 
@@ -48,7 +48,7 @@ struct Particle {
     REQUIRE(std::abs(p() / pressure - 1) < 1e-9);
   }
 
-  /// Axial compression while the lateral stress stays: the lateral increment by a secant.
+  /// Compresses axially while the lateral stress stays: the lateral increment by a secant.
   void squeeze(double axial, double lateral_stress) {
     const Particle before = *this;
     const auto miss = [&](double side) {
@@ -104,7 +104,7 @@ TEST_CASE("sand: the published numbers at 30 degrees") {
   for (int step = 0; step < 60; ++step) sand.squeeze(1e-3, 1e5);
   CHECK(std::abs(sand.q() / 200e3 - 1) < 1e-8);
   CHECK(std::abs(-sand.stress()(0, 0) / 300e3 - 1) < 1e-8);
-  // alpha of Klar et al.: k = alpha (3 lambda + 2 mu)/(2 mu).
+  // The cone's slope from the alpha of Klar et al.: k = alpha (3 lambda + 2 mu)/(2 mu).
   const auto& c = sand.constants;
   CHECK(std::abs(c.slope * 2 * c.mu / (3 * c.lambda + 2 * c.mu) - 0.32659863) < 5e-9);
 }
@@ -116,7 +116,7 @@ TEST_CASE("sand: flow at failure keeps the volume and dissipates q times the pla
   const double volume = sand.state.volume_ratio, heat = sand.heat;
   for (int step = 0; step < 20; ++step) sand.squeeze(1e-4, 1e5);
   CHECK(std::abs(sand.state.volume_ratio - volume) < 1e-9);
-  // Axial strain e, lateral -e/2 each: work s1 e - s3 e = q e, all of it heat at constant stress.
+  // With axial strain e and lateral -e/2 each, the work is s1 e - s3 e = q e, all of it heat at constant stress.
   CHECK(sand.heat - heat == Approx(200e3 * -20 * std::log(1 - 1e-4)).epsilon(1e-6));
 }
 

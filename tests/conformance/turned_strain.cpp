@@ -20,7 +20,7 @@ Mat2 rotation(double angle) {
   return {{std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle)}};
 }
 
-/// Q tau Q^T in the plane; zz stays.
+/// The turned stress Q tau Q^T in the plane; zz stays.
 Sym2 rotated(const Sym2& tau, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {{c * c * tau.s[0] - 2 * c * s * tau.s[3] + s * s * tau.s[1],
@@ -56,7 +56,7 @@ TEST_CASE("stress turns with the particle") {
     for (double volumetric : {0, 1, 2})
       check_rotation<NeoHookean>(NeoHookean::Constants<double>({1000, 0.3, 1000, form, volumetric}), {Mat2::identity()},
                                  1000);
-  // Elastic, and yielding before it turns.
+  // The first case is elastic, the second yields before it turns.
   for (double yield : {1e4, 50.0})
     check_rotation<VonMises>(VonMises::Constants<double>({1000, 0.3, 1000, yield, 10, 2}), {Sym2::identity(), 1, 0},
                              1000);

@@ -92,7 +92,7 @@ struct MissesNode : Cpdi {
   }
 };
 
-struct TurnsListGradient : Cpdi {  // R^-1 where R^-T belongs
+struct TurnsListGradient : Cpdi {  // takes R^-1 where R^-T belongs
   template <int D, class T>
   MPM_HD static void evaluate(const Parameters& p, const Vec<D, T>& x, const Mat<D, T>& domain, List<D, T>& out) {
     Mat<D, T> turned;
@@ -154,7 +154,7 @@ struct BoxTooWide : Cpdi {
   }
 };
 
-struct BoxLosesMoment : Cpdi {  // without the tents' own width
+struct BoxLosesMoment : Cpdi {  // leaves the tents' own width out
   template <int W, int D, class S>
   MPM_HD static Mat<D, S> moment_of_box(const Rows<W, D, S>&, const Mat<D, S>& domain) {
     Mat<D, S> moment{};
@@ -165,7 +165,7 @@ struct BoxLosesMoment : Cpdi {  // without the tents' own width
   }
 };
 
-struct BoxRoundsCells : Cpdi {  // differently on both sides of zero
+struct BoxRoundsCells : Cpdi {  // rounds differently on both sides of zero
   template <int D, class S>
   MPM_HD static S box(const Parameters& p, const Vec<D, S>& x, const Mat<D, S>& domain, bool gradients,
                       Vec<D, S>& base) {
@@ -275,7 +275,7 @@ struct FilterMakesNaN : Fmpm {
   MPM_HD static void update(const Parameters& p, int iteration, const Vec<D, S>& projected, Vec<D, S>& increment,
                             Vec<D, S>& velocity) {
     Fmpm::update(p, iteration, projected, increment, velocity);
-    velocity[0] = velocity[0] + (sqrt(projected[0]) - sqrt(projected[0]));  // of a negative number
+    velocity[0] = velocity[0] + (sqrt(projected[0]) - sqrt(projected[0]));  // root of a negative number
   }
 };
 
@@ -292,7 +292,7 @@ struct FilterRunsBackwards : Fmpm {
   MPM_HD static int iterations(const Parameters& p) { return -static_cast<int>(p.order); }
 };
 
-/// Reads the node after each: the last reads beyond the batch.
+/// A filter that reads the node after each: the last reads beyond the batch.
 template <int D, class S>
 void reads_beyond(const void* parameters, const mpm_filter_batch* q) {
   using T = scalar_of<S>;
@@ -301,7 +301,7 @@ void reads_beyond(const void* parameters, const mpm_filter_batch* q) {
   const T* projected = static_cast<const T*>(q->projected);
   for (std::uint32_t lane = 0; lane < q->count; ++lane) velocity[lane] += projected[lane + 1] - projected[lane];
 }
-/// Writes the velocity of one node more than there are.
+/// A filter that writes the velocity of one node more than there are.
 template <int D, class S>
 void writes_beyond(const void* parameters, const mpm_filter_batch* q) {
   sdk::filter_batch<Fmpm, D, S>(parameters, q);
@@ -432,7 +432,7 @@ struct Pulls : Coulomb {
   }
 };
 
-struct PullsOpenly : Pulls {  // the same law, declared
+struct PullsOpenly : Pulls {  // is the same law, declared
   static constexpr unsigned traits = MPM_PULLS;
 };
 
@@ -452,7 +452,7 @@ struct SlowWave : NeoHookean {
   }
 };
 
-struct NotObjective : NeoHookean {  // right instead of left Cauchy-Green tensor
+struct NotObjective : NeoHookean {  // takes the right instead of the left Cauchy-Green tensor
   template <int D, class S>
   MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
     State<D, S> transposed;
@@ -477,7 +477,7 @@ struct HidesInversion : NeoHookean {
   }
 };
 
-/// One descriptor a functor, alive for the whole test.
+/// The descriptor of a functor, alive for the whole test.
 template <class F>
 constexpr mpm_descriptor wrong_shape = sdk::shape<F>(manual, source);
 template <class F>

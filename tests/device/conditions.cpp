@@ -68,7 +68,7 @@ TEST_CASE("boxes of conditions on the host-run device", "[device]") {
       mix.more = ", \"node_conditions\": [" + box(dimension, condition == "prescribed" ? prescribed : condition) + "]";
       check_on_device(mix);
     }
-  // Of two boxes and a wall that hold the same node the last one counts.
+  // Where two boxes and a wall hold the same node, the last one counts.
   for (const std::string& order : orders) {
     Mix mix = close_mix(2);
     mix.contact = coulomb, mix.stress_update = order, mix.filter = R"({"type": "fmpm", "order": 2})";
@@ -95,7 +95,7 @@ TEST_CASE("body forces on the host-run device", "[device]") {
 TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]") {
   for (const int dimension : {2, 3})
     for (const std::string& order : orders) {
-      if (dimension == 3 && order == "first") continue;  // 2-D has them all
+      if (dimension == 3 && order == "first") continue;  // 2-D has all orders
       Mix mix = close_mix(dimension);
       mix.material = von_mises, mix.contact = coulomb, mix.stress_update = order;
       mix.filter = R"({"type": "xpic", "order": 2})";
@@ -106,7 +106,7 @@ TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]"
       mix.filter = R"({"type": "fmpm", "order": 2})";
       check_on_device(mix);
     }
-  // All of them are there, so that none is compared with zero.
+  // The bodies must all be there, so that none is compared with zero.
   Mix mix = close_mix(2);
   mix.material = von_mises, mix.contact = coulomb, mix.filter = R"({"type": "xpic", "order": 2})";
   mix.more = R"J(, "body_force": ["2*sin(3*X)+t", "x-Y*y"])J";
@@ -155,7 +155,7 @@ TEST_CASE("a restored run on the host-run device goes on bit for bit", "[device]
       steps(whole, 6);
       ArchiveWriter archive;
       whole.simulation.save(archive);
-      steps(resumed, 2);  // whatever it did before
+      steps(resumed, 2);  // steps to be forgotten, whatever they did
       ArchiveReader reader(archive.bytes());
       resumed.simulation.restore(reader);
       CHECK(reader.at_end());

@@ -53,7 +53,8 @@ inline Mix mix_with(const Plugin& plugin, int dimension) {
   return mix;
 }
 
-/// No file names this backend: it is chosen afterwards, and so is float, which the reference backend has not.
+/// An experiment on the device. No file names this backend: it is chosen afterwards, and so is float, which the
+/// reference backend has not.
 inline Experiment device_experiment(const std::string& text, const std::string& precision,
                                     std::vector<std::string> overrides = {}) {
   for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
@@ -86,7 +87,7 @@ class Devices {
     const std::lock_guard lock(mutex_);
     return devices_.emplace(composition.hash, made).first->second;
   }
-  /// Compiles several at once, two side by side.
+  /// Compiles several compositions at once, two side by side.
   void prepare(const std::vector<device::Choice>& choices) {
     const auto every_second = [&](std::size_t first) {
       for (std::size_t k = first; k < choices.size(); k += 2) of(choices[k]);
@@ -123,7 +124,7 @@ class DeviceScene {
   Metrics metrics;
 };
 
-/// Scale of a field that only some scenes hold: temperatures of those in these tests are some 30 K.
+/// The scale of a field that only some scenes hold: temperatures of those in these tests are some 30 K.
 inline double scale_of(const std::string& field, double h) {
   if (field == "temperature") return 30;
   return field.rfind(temperature_state, 0) == 0 ? 30 / h : 1;
@@ -150,7 +151,7 @@ inline double state_difference(const Experiment& experiment, const BodyState& ex
   return worst;
 }
 
-/// Largest of all bodies, and of the ledger's entries over the kinetic energy at the start.
+/// The largest difference of all bodies, and of the ledger's entries over the kinetic energy at the start.
 template <class Reference>
 double scene_difference(const Reference& reference, const DeviceScene& found) {
   double worst = difference(ledger_values(reference), ledger_values(found), reference.metrics.initial().kinetic);

@@ -9,7 +9,7 @@ namespace {
 
 const std::vector<std::string> precisions{"double", "float"};
 
-/// Compositions of these mixes in both precisions, compiled side by side.
+/// Compiles compositions of these mixes in both precisions, side by side.
 void prepare(const std::vector<Mix>& mixes, const std::vector<std::string>& in = precisions) {
   std::vector<device::Choice> choices;
   std::set<std::string> texts;

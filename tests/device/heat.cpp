@@ -37,7 +37,7 @@ Mix warm_and_close(int dimension) {
   mix.dimension = dimension, mix.close = true;
   return warm(mix);
 }
-/// Every kind of wall: held at a temperature, a flux, convection; the others let no heat through.
+/// Walls of every kind: held at a temperature, a flux, convection; the others let no heat through.
 std::string boundaries(int dimension, const std::string& type) {
   std::string text = R"({"all": ")" + type + R"(", "x_min": {"type": ")" + type +
                      R"(", "temperature": "30+10*y-20*t"}, "x_max": {"type": ")" + type +
@@ -75,7 +75,7 @@ std::vector<double> heat_ledger_values(const AnyScene& scene) {
   return {l.scatter, l.images, l.gather, l.walls, l.flux, l.convection, l.boxes, l.dissipation};
 }
 
-/// Heat that the particles hold beyond 0 K, without what they have melted with, J.
+/// The heat that the particles hold beyond 0 K, without what they have melted with, J.
 template <class AnyScene>
 double heat_content(const AnyScene& scene) {
   double sum = 0;
@@ -89,7 +89,7 @@ double heat_content(const AnyScene& scene) {
   return sum;
 }
 
-/// As check_on_device, and the heat ledger too. Returns the reference's rows over its heat content.
+/// Checks what check_on_device does, and the heat ledger too. Returns the reference's rows over its heat content.
 std::vector<double> check_heat(const Mix& mix, const std::vector<std::string>& precisions = {"double"}) {
   INFO(mix.name());
   const std::string text = mix.text();
@@ -206,7 +206,7 @@ TEST_CASE("boxes of nodes that are warmed or held at a temperature on the host-r
     mix.more = R"(, "node_conditions": [{)" + what + R"(, "lower": [0.2, 0.1, 0.1], "upper": [0.4, 0.3, 0.3]}])";
     CHECK(std::abs(check_heat(mix)[6]) > 1e-3);
   }
-  // Of two boxes and a wall that hold the same node the last one counts; a warmed one is shared by all fields.
+  // Where two boxes and a wall hold the same node, the last one counts; a warmed one is shared by all fields.
   Mix mix = warm_and_close(2);
   mix.boundaries = boundaries(2, "slip"), mix.contact = R"({"type": "coulomb", "friction": 0.2})";
   mix.more = R"(, "node_conditions": [)" + box(R"("type": "thermal", "temperature": "50")") +
@@ -311,7 +311,7 @@ TEST_CASE("heat by closed forms on the host-run device", "[device]") {
       even.run();
       for (const double T : temperatures(even)) CHECK(std::abs(T - 37) < 1e3 * epsilon);
     }
-    {  // q A t through a wall of 0.4 m, P t in a box.
+    {  // The heat is q A t through a wall of 0.4 m, and P t in a box.
       DeviceScene scene(slab("20", R"({"all": "slip", "x_max": {"type": "slip", "heat_flux": 30000}})",
                              R"(, "node_conditions": [{"type": "thermal", "heating": 7000, "lower": [0.1, 0.1],
                                 "upper": [0.3, 0.2]}])"),
@@ -323,7 +323,7 @@ TEST_CASE("heat by closed forms on the host-run device", "[device]") {
       CHECK(ledger.boxes == Approx(7000 * 0.2).epsilon(1e3 * epsilon));
       CHECK(heat_content(scene) - before == Approx(ledger.flux + ledger.boxes).epsilon(1e5 * epsilon));
     }
-    {  // So is a straight line between a wall that is held and one that gives the flux by Fourier's law.
+    {  // A straight line between a held wall and one that gives the flux by Fourier's law is steady too.
       DeviceScene scene(slab("10+50*x", R"({"all": "slip", "x_min": {"type": "slip", "temperature": 10},
                                             "x_max": {"type": "slip", "heat_flux": 25000}})"),
                         precision, {}, {set("/transfer", transfer_named("flip"))});
@@ -332,7 +332,7 @@ TEST_CASE("heat by closed forms on the host-run device", "[device]") {
       for (std::size_t p = 0; p < temperatures(scene).size(); ++p)
         CHECK(std::abs(temperatures(scene)[p] - (10 + 50 * state.position[2 * p])) < 3e3 * epsilon);
     }
-    {  // Convection: the slowest mode of a slab decays.
+    {  // Under convection the slowest mode of a slab decays.
       const SlabOfConvection exact{{500, 10, 1000}, 0.8, 2500, 60, -30};
       DeviceScene scene(slab("60-30*cos(" + digits(exact.root() / 0.8) + "*(0.8-x))",
                              R"({"all": "slip", "x_min": {"type": "slip",
@@ -345,7 +345,7 @@ TEST_CASE("heat by closed forms on the host-run device", "[device]") {
         const double x = state.position[2 * p], start = exact.temperature(x, 0);
         gained += temperatures(scene)[p] - start, expected += exact.temperature(x, 2) - start;
       }
-      CHECK(gained == Approx(expected).epsilon(0.02));  // cells of an eighth of the slab
+      CHECK(gained == Approx(expected).epsilon(0.02));  // cells are an eighth of the slab
     }
   }
 }
@@ -387,7 +387,7 @@ TEST_CASE("a restored run with temperature on the host-run device goes on bit fo
     for (int k = 0; k < 6; ++k) whole.simulation.step();
     ArchiveWriter archive;
     whole.simulation.save(archive);
-    for (int k = 0; k < 2; ++k) resumed.simulation.step();  // whatever it did before
+    for (int k = 0; k < 2; ++k) resumed.simulation.step();  // steps to be forgotten, whatever they did
     ArchiveReader reader(archive.bytes());
     resumed.simulation.restore(reader);
     CHECK(reader.at_end());

@@ -28,7 +28,7 @@ TEST_CASE("walls, open sides and periodic images on the host-run device", "[devi
   for (const int dimension : {2, 3})
     for (const std::string& boundary : boundaries)
       for (const std::string& order : orders) {
-        if (dimension == 3 && order == "first") continue;  // 2-D has them all
+        if (dimension == 3 && order == "first") continue;  // 2-D has all orders
         Mix mix = mix_with(plugin(MPM_CONTACT, "coulomb"), dimension);
         mix.boundaries = boundary, mix.stress_update = order, mix.close = true;
         mix.transfer = R"({"type": "flip"})";
@@ -59,7 +59,8 @@ TEST_CASE("lists of nodes that reach beyond a block's tile on the host-run devic
       REQUIRE(at != text.npos);
       text.replace(at, from.size(), to);
     };
-    // One soft particle a cell, pulled to more than twice its length: semi-sides of more than a cell.
+    // The body has one soft particle a cell and is pulled to more than twice its length: semi-sides of more than a
+    // cell.
     replace("\"youngs_modulus\": 1000", "\"youngs_modulus\": 1");
     replace("\"name\": \"a\",", "\"name\": \"a\", \"particles_per_cell_axis\": 1,");
     replace("1.4-0.9*(y-0.43)", "2.4+16*(x-0.31)");
@@ -133,7 +134,7 @@ TEST_CASE("automatic time steps on the host-run device are those of the referenc
   DeviceScene scene(text, "double");
   reference.run();
   scene.run();
-  REQUIRE(reference.simulation.steps() > 8);  // past a second estimate
+  REQUIRE(reference.simulation.steps() > 8);  // the run is past a second estimate
   CHECK(scene.simulation.steps() == reference.simulation.steps());
   CHECK(scene_difference(reference, scene) <= 1e3 * 0x1p-52);
 }

@@ -12,7 +12,7 @@ namespace {
 struct SmallGrid {
   int nodes;
   std::vector<std::vector<double>> arrays;
-  std::map<std::string, double*> of;  ///< by the field's id
+  std::map<std::string, double*> of;  ///< fields by their id
   double *mass, *momentum, *velocity;
   std::vector<int> folded;
   device::Arguments<double> a{};
@@ -129,10 +129,10 @@ TEST_CASE("nodes clear and fold what is added to the plan's list on the host-run
     CHECK(value("couple", 0, i) == 0);
     CHECK(value("couple", 1, i) == (i == 1 ? 4 : 0));  // slip mirrors what lies across the wall, stick everything
   }
-  CHECK(value("normal", 0, 0) == 0);  // vanishes on the wall
+  CHECK(value("normal", 0, 0) == 0);  // the normal component vanishes on the wall
   CHECK(value("normal", 1, 0) == 2);
   CHECK(value("couple", 0, 0) == 1);
   CHECK(value("heat", 0, 4) == 1);
-  CHECK(value("heat", 0, -1) == 0);  // has been given away
+  CHECK(value("heat", 0, -1) == 0);  // the ghost's heat has been given away
   CHECK(value("couple", 1, -1) == 0);
 }

@@ -50,7 +50,7 @@ bool is_white(const Image& image, int x, int y) {
   return p[0] == 255 && p[1] == 255 && p[2] == 255;
 }
 
-// Every element that is opened is closed, in order; attributes and entities are not looked into.
+// Whether every element that is opened is closed, in order; attributes and entities are not looked into.
 bool is_balanced_xml(const std::string& text) {
   std::vector<std::string> open;
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
@@ -311,7 +311,7 @@ TEST_CASE("a heat map takes out a power of ten, and never shows a part of a numb
   write_figure(map, folder / "small");
   const std::string svg = text_of(folder / "small.svg");
   for (const char* words : {">20<", ">4.57<", ">error e (10⁻⁶ m)<"}) CHECK(svg.find(words) != std::string::npos);
-  // Far more cells than text fits.
+  // The map has far more cells than text fits.
   map.x_names.assign(60, "a long name of a column");
   map.y_names.assign(60, "a long name of a row");
   map.values.assign(3600, 0.125);
@@ -353,12 +353,12 @@ TEST_CASE("small multiples share axes, looks and one legend", "[figures]") {
                             ">2.00<", ">3.00<", ">no data to show<"}) {
     const auto at = svg.find(words);
     REQUIRE(at != std::string::npos);
-    CHECK(svg.find(words, at + 1) == std::string::npos);  // once
+    CHECK(svg.find(words, at + 1) == std::string::npos);  // the words stand there once
   }
   CHECK(svg.find("1 point not above zero, left out") != std::string::npos);
   m.panels[1].series[0].y.pop_back();
   CHECK_THROWS_WITH(write_figure(m, folder / "multiples"), "panel 'cubic', series 'FLIP': 3 values of x, but 2 of y");
-  // Above small panels, with one digit where two have no room; none is left out for want of the second.
+  // Orders stand above small panels, with one digit where two have no room; none is left out for want of the second.
   const std::vector<Series> four{line("PIC", 1), line("FLIP", 2), line("APIC", 1.5), line("MLS", 0.5)};
   m.panels.assign(8, {"shape", {four[0], four[1]}});
   write_figure(m, folder / "small");
@@ -398,8 +398,8 @@ TEST_CASE("a particle is drawn at its true size and place", "[figures]") {
   }
   REQUIRE(count > 0);
   const double side = right - left + 1;
-  CHECK(static_cast<double>(count) == Approx(side * side).epsilon(0.05));  // a square
-  // Half of the domain, whose edge is the longest dark row of the picture.
+  CHECK(static_cast<double>(count) == Approx(side * side).epsilon(0.05));  // the particle is a square
+  // The square is half of the domain, whose edge is the longest dark row of the picture.
   int longest = 0;
   for (int y = 0; y < image.height; ++y) {
     int run = 0;

@@ -31,7 +31,7 @@ Field of_nodes(const std::string& id, AtWall at_wall, Folded folded, const std::
   return field;
 }
 
-/// Kelvin; seeds give it for each particle.
+/// The temperature, in kelvin, that seeds give each particle.
 double seeded_temperature(std::size_t particle) {
   return 250 + 0.25 * static_cast<double>(particle);
 }
@@ -69,7 +69,7 @@ class RunWithMore {
       REQUIRE(stretch.size() == n * D * D);
       std::size_t wrong = 0;
       for (std::size_t p = 0; p < n; ++p) {
-        wrong += temperature[p] != seeded_temperature(p);  // exact in float
+        wrong += temperature[p] != seeded_temperature(p);  // the numbers are exact in float
         for (std::size_t k = 0; k < D * D; ++k) wrong += stretch[p * D * D + k] != (k % (D + 1) == 0 ? 1 : 0);
       }
       CHECK(wrong == 0);
@@ -106,7 +106,7 @@ TEST_CASE("particles keep what is added to the plan's list", "[parity]") {
   for (const std::string precision : {"double", "float"}) {
     const std::vector<std::string> overrides{set("/precision", precision), "/solver/end_time=0.9"};
     Mix mix;
-    mix.transfer = R"({"type": "mls"})";  // sorts between scatter and gather, and leaves motion behind
+    mix.transfer = R"({"type": "mls"})";  // mls sorts between scatter and gather, and leaves motion behind
     check_more_fields(mix, overrides);
     mix.dimension = 3;
     mix.transfer = R"({"type": "flip"})";
@@ -137,7 +137,7 @@ TEST_CASE("nodes clear and fold what is added to the plan's list", "[parity]") {
   CHECK(cpu::channel_of(plan, "guess") == couple);
   CHECK_FALSE(grid.has(cpu::channel_of(plan, "no such field")));
 
-  // One block of particles over the whole domain: blocks for all nodes.
+  // The particles fill one block over the whole domain, so that there are blocks for all nodes.
   std::vector<cpu::Particles<2, double>> particles(1);
   for (int x = 0; x <= 1; ++x)
     for (int y = 0; y <= 1; ++y) {
@@ -169,20 +169,20 @@ TEST_CASE("nodes clear and fold what is added to the plan's list", "[parity]") {
     return std::array<double, 3>{quad[0], quad[1], quad[3]};
   };
   using Values = std::array<double, 3>;
-  // y = 5 has no image along y; three nodes beyond each wall are folded. Cells: 13 x 10.
+  // At y = 5 there is no image along y; three nodes beyond each wall are folded. There are 13 x 10 cells.
   for (const int x : {1, 12}) {
     CHECK(value(heat, x, 5) == Values{2, 4, 6});
     CHECK(value(normal, x, 5) == Values{0, 4, 6});
   }
-  CHECK(value(couple, 1, 5) == Values{0, 4, 6});   // slip: across the wall alone
-  CHECK(value(couple, 12, 5) == Values{0, 0, 6});  // stick: every component
-  CHECK(value(normal, 0, 5) == Values{0, 2, 3});   // vanishes on the wall
+  CHECK(value(couple, 1, 5) == Values{0, 4, 6});   // slip mirrors across the wall alone
+  CHECK(value(couple, 12, 5) == Values{0, 0, 6});  // stick mirrors every component
+  CHECK(value(normal, 0, 5) == Values{0, 2, 3});   // the normal component vanishes on the wall
   CHECK(value(couple, 0, 5) == Values{1, 2, 3});
   CHECK(value(heat, 6, 5) == Values{1, 2, 3});
-  CHECK(value(heat, -1, 5) == Values{0, 0, 0});  // has been given away
+  CHECK(value(heat, -1, 5) == Values{0, 0, 0});  // the ghost's heat has been given away
   CHECK(value(couple, -1, 5) == Values{0, 0, 0});
-  CHECK(value(heat, 6, 0) == Values{2, 4, 6});  // and node 10
+  CHECK(value(heat, 6, 0) == Values{2, 4, 6});  // node 10 adds to it
   CHECK(value(couple, 6, 0) == Values{2, 4, 6});
   CHECK(value(normal, 6, 0) == Values{2, 4, 6});
-  CHECK(value(heat, 1, 0) == Values{4, 8, 12});  // a corner: images first, then the wall
+  CHECK(value(heat, 1, 0) == Values{4, 8, 12});  // at a corner: images first, then the wall
 }

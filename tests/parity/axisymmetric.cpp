@@ -15,7 +15,7 @@ Mix ring_mix() {
   return mix;
 }
 
-/// Body b stands on the axis.
+/// Puts body b on the axis.
 void put_on_axis(Mix& mix) {
   mix.overrides.insert(mix.overrides.end(),
                        {R"(/bodies/1/geometry={"type": "box", "lower": [0, -0.1], "upper": [0.21, 0.18]})",

@@ -7,7 +7,7 @@ using namespace mpm::test;
 
 namespace {
 
-/// The bodies of the scene are driven into the walls: the domain is cut close to them.
+/// Checks a scene whose bodies are driven into the walls: the domain is cut close to them.
 void check_boundaries(const std::string& boundaries, const std::string& more) {
   for (const int dimension : {2, 3})
     for (const std::string& shape : variants(MPM_SHAPE))
@@ -25,7 +25,7 @@ void check_boundaries(const std::string& boundaries, const std::string& more) {
                   R"({"type": "neo_hookean", "youngs_modulus": 2000, "poisson_ratio": 0.3, "density": 1000})";
             const std::size_t open = boundaries.find("\"0.1*x\"]");
             if (dimension == 3 && open != boundaries.npos) mix.boundaries.replace(open, 8, "\"0.1*x\", 0]");
-            if (dimension == 3 && order == "first") continue;  // 2-D has them all
+            if (dimension == 3 && order == "first") continue;  // 2-D has all orders
             mix.close = true;
             check_parity(mix);
           }

@@ -15,7 +15,7 @@ bool takes_increments(const std::string& transfer) {
   throw std::runtime_error("no transfer " + transfer);
 }
 
-/// FLIP is filtered periodically only.
+/// The filters of a transfer: FLIP is filtered periodically only.
 std::vector<std::string> filters(const std::string& transfer) {
   if (takes_increments(transfer))
     return {R"({"type": "fmpm", "order": 3, "every_steps": 2})", R"({"type": "xpic", "order": 2, "every_steps": 3})"};
@@ -31,7 +31,7 @@ TEST_CASE("parity of filters on every shape and transfer", "[parity]") {
         for (const std::string& filter : filters(transfer)) {
           Mix mix;
           mix.dimension = dimension;
-          // Without a ledger forces may come merged with momenta: not where the filter looks between them.
+          // Without a ledger forces may come merged with momenta, but not where the filter looks between them.
           if (dimension == 2) mix.more = R"(, "output": {"ledger": false})";
           mix.shape = shape, mix.transfer = transfer, mix.filter = filter;
           // Linear shapes in 3-D do not bear a third order at this step: particles are inverted, on either backend.

@@ -10,12 +10,12 @@ namespace {
 
 struct Outcome {
   std::vector<double> results;
-  long scattered = 0, refused = 0;  ///< steps whose end left the next grid, or not
+  long scattered = 0, refused = 0;  ///< steps whose end left the next grid, and steps whose end did not
   long passed = 0;                  ///< steps after which particles had no velocity of their own
-  double farthest = 0;              ///< way of a particle along an axis, cells
+  double farthest = 0;              ///< largest way of a particle along an axis, cells
 };
 
-/// `observed`: every so many steps, and the last.
+/// Runs a scene; `observed` is the number of steps from one that is observed to the next, and the last one is too.
 Outcome run(const std::string& text, std::vector<std::string> overrides, const std::string& passes, int threads,
             long steps, long observed = 1) {
   overrides.push_back(set("/solver/passes", passes));

@@ -27,7 +27,7 @@ std::vector<Mix> mixes() {
     mix.dimension = dimension;
     mix.transfer = R"({"type": "mls"})", mix.material = von_mises;
     all.push_back(mix);
-    mix.close = true;  // walls take part
+    mix.close = true;  // the walls take part
     all.push_back(mix);
     mix.stress_update = "modified_last";
     all.push_back(mix);
@@ -64,7 +64,7 @@ TEST_CASE("a ledger of every third step holds the entries of those steps", "[par
         for (std::size_t i = 0; i < now.size(); ++i)
           if (step == 0 || (step - 1) % every == every / 2) {
             expected[i] += now[i] - before[i];
-            counted[i] += (step == 0 ? 1 : every) * (now[i] - before[i]);  // for the steps around it
+            counted[i] += (step == 0 ? 1 : every) * (now[i] - before[i]);  // each entry stands for the steps around it
           }
         before = now;
       }
@@ -72,7 +72,7 @@ TEST_CASE("a ledger of every third step holds the entries of those steps", "[par
       const double scale = whole.metrics.initial().kinetic;
       CHECK(difference(expected, found, scale) < 1e-11);
       CHECK(difference(counted, entries(part.simulation.ledger()), scale) < 1e-11);
-      CHECK(std::abs(found[0]) > 1e-6 * scale);  // scatter
+      CHECK(std::abs(found[0]) > 1e-6 * scale);  // the scatter's entry
       compare_states(whole, part, std::numeric_limits<double>::epsilon(), parity_tolerance);
     }
 }

@@ -18,7 +18,7 @@ struct Stretch {
   int dimension = 2;
   std::string transfer = "apic", boundaries = R"({"all": "slip"})", stress_update = "last", more;
   double rate = 15;   ///< 1/s
-  bool wide = false;  ///< nothing keeps the particles inside: give them room (in 2-D)
+  bool wide = false;  ///< gives the particles room (in 2-D), where nothing keeps them inside
 
   std::string text() const {
     const bool flat = dimension == 2;
@@ -43,7 +43,7 @@ struct Stretch {
   }
 };
 
-/// Largest reach of a particle's domain along an axis, in cells.
+/// The largest reach of a particle's domain along an axis, in cells.
 double largest_reach(const Scene& scene) {
   const int D = scene.experiment.dimension;
   const BodyState state = scene.body();
@@ -56,7 +56,7 @@ double largest_reach(const Scene& scene) {
   return largest;
 }
 
-/// On the reference and on the cpu, in both precisions and with one worker and two.
+/// Checks the scene on the reference and on the cpu, in both precisions and with one worker and two.
 void check_stretch(const Stretch& stretch) {
   const std::string text = stretch.text();
   INFO(text);
@@ -70,7 +70,7 @@ void check_stretch(const Stretch& stretch) {
     const std::vector<std::string> overrides{set("/backend", "cpu"), set("/precision", precision)};
     Scene cpu(text, overrides);
     cpu.run();
-    // Stretches of 10 and velocities of 2 m/s where the other scenes have 1.
+    // The scene has stretches of 10 and velocities of 2 m/s where the other scenes have 1.
     Tolerance allowed = parity_tolerance;
     for (double* factor : {&allowed.position, &allowed.velocity, &allowed.transfer, &allowed.material, &allowed.ledger})
       *factor *= 10;
@@ -92,7 +92,7 @@ void count_and_evaluate_box(const void* parameters, const mpm_box_batch* batch) 
   ++boxes_evaluated;
   evaluate_box(parameters, batch);
 }
-/// Boxes that are counted, in place of those of the shape.
+/// The shape's extension with boxes that are counted.
 mpm_shape_boxes counted_boxes;
 const void* with_counted_boxes(const char* id) {
   return id == std::string(MPM_SHAPE_BOXES_ID) ? &counted_boxes : nullptr;
@@ -101,7 +101,7 @@ const void* without_extensions(const char*) {
   return nullptr;
 }
 
-/// Both bodies at the end of a run, by one worker, whose shape has these extensions.
+/// Both bodies at the end of a run, by one worker, with a shape that has these extensions.
 std::vector<BodyState> run_with(Experiment& experiment, const void* (*extension)(const char*)) {
   mpm_descriptor descriptor = *experiment.shape.plugin->descriptor;
   descriptor.extension = extension;

@@ -1,4 +1,4 @@
-// When a step updates stress (USF, USL, MUSL), and body forces, on every shape and transfer.
+// The times at which a step updates stress (USF, USL, MUSL), and body forces, on every shape and transfer.
 
 #include "parity/parity.hpp"
 

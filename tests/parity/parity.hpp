@@ -10,7 +10,8 @@
 
 namespace mpm::test {
 
-/// A parameter that has no default and is not named here stops the suite: give it a value fit for these scenes.
+/// The value of a required parameter. One that has no default and is not named here stops the suite: give it a value
+/// fit for these scenes.
 inline double required_value(const mpm_parameter& parameter) {
   static const std::map<std::string, double> values{{"youngs_modulus", 1000}, {"poisson_ratio", 0.3},
                                                     {"density", 1000},        {"yield_stress", 60},
@@ -36,7 +37,7 @@ inline std::vector<std::string> variants(const Plugin& plugin) {
     } else if (std::string(parameter.name) == "beta_max") {
       values = {"0.3"};  // with 1, where nothing counts as pressed together, particles leave through the walls
     } else if (std::string(parameter.name) == "threshold") {
-      values = {"-1", "1"};  // either side of a jump, which float and double may take in different steps
+      values = {"-1", "1"};  // values on either side of a jump, which float and double may take in different steps
     } else {
       continue;
     }
@@ -50,7 +51,7 @@ inline std::vector<std::string> variants(const Plugin& plugin) {
   return texts;
 }
 
-/// Of all plugins of a kind.
+/// The variants of all plugins of a kind.
 inline std::vector<std::string> variants(mpm_kind kind) {
   std::vector<std::string> all;
   for (const Plugin* plugin : plugins().of_kind(kind)) {
@@ -66,7 +67,7 @@ struct Mix {
   std::string shape = R"({"type": "bspline_quadratic"})", transfer = R"({"type": "apic"})", contact, filter;
   std::string material = R"({"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000})";
   std::string boundaries = R"({"all": "slip"})", stress_update = "last", more;
-  std::vector<std::string> overrides;  ///< of the text, for all runs
+  std::vector<std::string> overrides;  ///< overrides of the text, for all runs
   bool close = false;                  ///< the domain ends where the bodies do, so that they press against its walls
 
   std::string name() const {
@@ -122,7 +123,7 @@ inline double difference(const std::vector<double>& a, const std::vector<double>
   return largest;
 }
 
-/// The same modulo the domain's size on periodic axes, where a backend may wrap later.
+/// Wraps positions modulo the domain's size on periodic axes, where a backend may wrap later.
 inline void wrap_onto(const Experiment& experiment, const std::vector<double>& reference, std::vector<double>& x) {
   const int D = experiment.dimension;
   for (std::size_t i = 0; i < std::min(x.size(), reference.size()); ++i) {
@@ -154,7 +155,7 @@ inline void compare_states(const Scene& reference, const Scene& cpu, double epsi
     for (const auto& [name, values] : expected.transfer_state)
       CHECK(difference(values, found.transfer_state.at(name), speed / h) <= allowed.transfer * epsilon);
     REQUIRE(expected.material_state.size() == found.material_state.size());
-    for (const auto& [name, values] : expected.material_state)  // strains and stretches: of order 1
+    for (const auto& [name, values] : expected.material_state)  // strains and stretches are of order 1
       CHECK(difference(values, found.material_state.at(name), 1.0) <= allowed.material * epsilon);
     CHECK(difference(expected.domain, found.domain, h) <= allowed.material * epsilon);
     CHECK(difference(expected.corners, found.corners, h) <= allowed.material * epsilon);
@@ -176,8 +177,8 @@ std::vector<double> filter_values(const AnyScene& scene, double scale) {
   return {static_cast<double>(f.iterations), f.first_norm / scale, f.last_norm / scale};
 }
 
-/// Force over the scene's scale. Counts of nodes are no part of it: a pair whose approach is zero to rounding (after a
-/// contact that made it so) touches or not by its rounding, with an impulse of rounding either way.
+/// The contact force over the scene's scale. Counts of nodes are no part of it: a pair whose approach is zero to
+/// rounding (after a contact that made it so) touches or not by its rounding, with an impulse of rounding either way.
 template <class AnyScene>
 std::vector<double> contact_values(const AnyScene& scene, double scale) {
   const ContactRecord& c = scene.simulation.backend().contact_record();
@@ -201,7 +202,7 @@ inline std::vector<double> total_values(const Totals& t, const Totals& start, do
 inline void check_parity(const Mix& mix) {
 #ifdef __SANITIZE_ADDRESS__
   static int mixes = 0;
-  if (mixes++ % 5 != 0) return;  // many times as slow, and to find bad memory a fifth of the mixes will do
+  if (mixes++ % 5 != 0) return;  // runs are many times as slow here, and a fifth of the mixes finds bad memory
 #endif
   // The linear shape's gradient does not vanish with its weight: f/m of a node barely reached is unbounded, worst in
   // 3-D. Measured: up to 4e6 epsilon; in float that leaves a check against gross errors only.

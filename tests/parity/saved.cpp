@@ -21,7 +21,7 @@ void check_saved(const std::string& text, const std::vector<std::string>& overri
     whole.simulation.save(archive);
     for (const int threads : {1, 2}) {
       CpuRun resumed(text, overrides, threads);
-      if (threads == 2) resumed.steps(5);  // whatever it did before
+      if (threads == 2) resumed.steps(5);  // steps to be forgotten, whatever they did
       ArchiveReader reader(archive.bytes());
       resumed.simulation.restore(reader);
       CHECK(reader.at_end());
@@ -31,7 +31,7 @@ void check_saved(const std::string& text, const std::vector<std::string>& overri
       CHECK(different(expected, all_results(resumed.simulation)) == 0);
     }
   }
-  CHECK((scattered > 0) == fused);  // saved while the grid held the next step's scatter
+  CHECK((scattered > 0) == fused);  // the run was saved while the grid held the next step's scatter
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ TEST_CASE("a restored run goes on bit for bit", "[parity]") {
         mix.stress_update = order;
         check_saved(mix.text(), overrides);
       }
-      // Polynomials where the scatter is a pass of its own, is done twice, and through a filter's loop.
+      // Polynomials are saved where the scatter is a pass of its own, is done twice, and goes through a filter's loop.
       mix.shape = R"({"type": "bspline_cubic"})", mix.transfer = R"({"type": "polypic", "basis": "full"})";
       for (const std::string order : {"last", "modified_last"}) {
         mix.stress_update = order;

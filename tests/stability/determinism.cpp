@@ -8,7 +8,7 @@ using namespace mpm::test;
 
 namespace {
 
-// Large enough for several blocks a thread; bodies spin, collide, press on walls and are sorted again.
+// The scene is large enough for several blocks a thread; bodies spin, collide, press on walls and are sorted again.
 const char* flat = R"J({
   "title": "determinism", "dimension": 2, "seed": 5, "gravity": [0.3, -1],
   "grid": {"cell_size": 0.025, "domain": [[0, 0], [1.2, 0.8]], "boundaries": {"all": "separate", "x_min": "periodic", "x_max": "periodic"}},
@@ -51,7 +51,7 @@ TEST_CASE("results are the same bits for any number of threads", "[stability][de
       for (const std::string order : {"last", "modified_last"}) {
         const std::vector<std::string> overrides{set("/precision", precision), set("/solver/stress_update", order)};
         const auto one = results(text, overrides, 1);
-        for (const int threads : {1, 2, 3, 5}) {  // 1 again: run to run
+        for (const int threads : {1, 2, 3, 5}) {  // 1 comes again, for run to run
           INFO(precision << " " << order << " " << threads << " threads" << (text == flat ? ", 2-D" : ", 3-D"));
           CHECK(different(one, results(text, overrides, threads)) == 0);
         }

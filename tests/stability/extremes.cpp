@@ -40,7 +40,7 @@ std::optional<Outcome> failure(const std::vector<std::string>& overrides, int th
   return std::nullopt;
 }
 
-/// Both backends and both precisions fail for the same particle in the same step; returns what it is.
+/// The failure that both backends and both precisions have in common: the same particle in the same step.
 Outcome common_failure(std::vector<std::string> overrides, bool in_float = true) {
   overrides.push_back(set("/backend", "reference"));
   const auto expected = failure(overrides);
@@ -129,7 +129,7 @@ TEST_CASE("bodies a million times stiffer or heavier than their partner stay bou
                    set("/constants/speed", stiff ? "0.6" : "0.2")});
       const double start = scene.metrics.initial().total_energy();
       CHECK(largest_energy(scene) <= 1.01 * start);
-      CHECK(scene.simulation.backend().ledger().contact != 0);  // they have met
+      CHECK(scene.simulation.backend().ledger().contact != 0);  // the bodies have met
     }
 }
 

@@ -40,7 +40,7 @@ TEST_CASE("a run holds at most one and a half times its state, sorted again and 
     const std::uint64_t first = bytes_held(run.simulation);
     CHECK(first > state);
     CHECK(2 * first <= 3 * state);
-    run.steps(60);  // four cells
+    run.steps(60);  // the cube crosses four cells
     INFO(threads << " threads: " << bytes_held(run.simulation) << " bytes for a state of " << state);
     CHECK(2 * bytes_held(run.simulation) <= 3 * state);
   }
