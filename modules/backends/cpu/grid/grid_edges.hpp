@@ -130,7 +130,7 @@ template <int D, class T>
 void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step) {
   const double dt = remap ? 0.0 : step.dt;
   for (FaceNodes& face : grid_.faces()) {
-    if (face.periodic() != periodic) continue;
+    if (face.periodic() != periodic || (face.pairs.empty() && face.wall.empty())) continue;
     const bool separate = face.condition->type == ConditionType::separate;
     signs_.clear();
     for (const Channel c : folded_[static_cast<int>(Folded::with_mass)])
