@@ -258,6 +258,49 @@ TEST_CASE("a ledger of some steps says so, and warns where they are too few") {
   CHECK(!has(slurp(folder / "every/report.html"), "After the first step one in"));
 }
 
+TEST_CASE("a run with temperature records the heat, and others say nothing of it") {
+  const Folder folder;
+  Json scene = two_balls();
+  scene["figures"] = {"heat"};
+  spill(folder / "cold.json", scene.dump());
+  const Result cold = call(folder, {"run", "cold.json", "--out", "cold", "--backend", "reference"});
+  INFO(cold.err);
+  CHECK(cold.code != 0);
+  CHECK(has(cold.err,
+            "figure \"heat\" needs \"heat ledger residual\", which the run does not record: give the materials "
+            "\"thermal\" and set /output/ledger to true"));
+
+  const Json boundaries = {{"all", "slip"}, {"y_min", {{"type", "slip"}, {"heat_flux", 100}}}};
+  scene["grid"]["boundaries"] = boundaries;
+  for (auto& [name, material] : scene["materials"].items())
+    material["thermal"] = {
+        {"conductivity", 10}, {"heat_capacity", 100}, {"phase_change", {{"temperature", 300}, {"latent_heat", 1000}}}};
+  for (Json& body : scene["bodies"]) body["temperature"] = "299 + x";
+  scene["output"]["frames"] = 2, scene["output"]["vtk"] = true, scene["output"]["colour_by"] = "temperature";
+  run_as(folder, scene, "warm", {"--backend", "reference"});
+  const Json heat = json_in(folder / "warm/summary.json")["heat"];
+  CHECK(heat["ledger"].size() == 8);
+  CHECK(std::abs(heat["ledger"]["residual"].get<double>()) < 1e-9);
+  CHECK(heat["lowest_temperature"] < heat["highest_temperature"]);
+  CHECK(heat["latent"]["final"].is_number());
+  const support::Table table = support::read_csv(folder / "warm/metrics.csv");
+  for (const char* column :
+       {"heat content", "latent heat", "lowest temperature", "highest temperature", "heat ledger scatter",
+        "heat ledger gather", "heat ledger walls", "heat ledger flux", "heat ledger convection", "heat ledger boxes",
+        "heat ledger dissipation", "heat ledger residual"})
+    CHECK(table.find(column));
+  for (const char* file : {"figures/heat.svg", "figures/heat_held.svg", "frames/frame_0000.png"})
+    CHECK(fs::is_regular_file(folder / ("warm/" + std::string(file))));
+  CHECK(has(slurp(folder / "warm/figures/heat.csv"), "residual"));
+  CHECK(has(slurp(folder / "warm/vtk/particles_0000.vtu"), "temperature (K)"));
+
+  scene["output"]["ledger"] = false;
+  scene.erase("figures");
+  run_as(folder, scene, "unaccounted", {"--backend", "reference"});
+  CHECK_FALSE(json_in(folder / "unaccounted/summary.json")["heat"].contains("ledger"));
+  CHECK_FALSE(has(slurp(folder / "unaccounted/metrics.csv"), "heat ledger"));
+}
+
 TEST_CASE("a filtered run records what the filter did, and others say nothing of it") {
   const Folder folder;
   Json scene = two_balls();

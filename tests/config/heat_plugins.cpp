@@ -95,3 +95,25 @@ TEST_CASE("a scene whose transfer does not carry a temperature has no plan", "[c
   }
   CHECK(refusal({"/solver/passes=\"fused\""}).find("temperature takes two passes") != std::string::npos);
 }
+
+TEST_CASE("nothing is coloured by a temperature that no material has", "[config]") {
+  const std::string scene = R"J({ "dimension": 2,
+    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]},
+    "shape": {"type": "linear"}, "transfer": {"type": "flip"},
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000}},
+    "bodies": [{"name": "b", "material": "m", "geometry": {"type": "box", "lower": [0, 0.2], "upper": [0.4, 0.4]}}],
+    "solver": {"end_time": 1}, "output": {"colour_by": "speed"}})J";
+  for (const std::string quantity : {"temperature", "melted_fraction"}) {
+    ReadOptions options;
+    options.colour_quantities = {"speed", "temperature", "melted_fraction"};
+    options.overrides = {"/output/colour_by=" + quantity};
+    try {
+      read_experiment_text(scene, "test.json", ComponentLookup(plugins()), options);
+      FAIL("accepted " << quantity);
+    } catch (const InputError& error) {
+      REQUIRE(error.problems().size() == 1);
+      CHECK(error.problems()[0].pointer == "/output/colour_by");
+      CHECK(error.problems()[0].message.starts_with("nothing has a temperature here, as no material has \"thermal\""));
+    }
+  }
+}
