@@ -10,7 +10,8 @@
 
 namespace mpm::test {
 
-/// Of any entry; NaN when one is not a number. Fails the test when the lists have different lengths or none.
+/// The largest difference of any entry; NaN when one is not a number. Fails the test when the lists have different
+/// lengths or none.
 inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
   REQUIRE(a.size() == b.size());
   REQUIRE(!a.empty());
@@ -23,7 +24,7 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
   return largest;
 }
 
-/// Change of angular momentum over its size.
+/// The change of angular momentum over its size.
 inline double lost_spin(const Totals& start, const Totals& end) {
   double change = 0, size = 0;
   for (int c = 0; c < 3; ++c) {

@@ -25,7 +25,7 @@ struct WarmRubber {
   template <class G>
   struct WarmState {
     G deformation_gradient;
-    typename G::Scalar temperature;  ///< K, of the host
+    typename G::Scalar temperature;  ///< K, from the host
   };
   template <int D, class S>
   using State = WarmState<Mat<D, S>>;
@@ -80,7 +80,7 @@ struct WarmRubber {
 struct BandHardening : VonMises {
   struct Parameters {
     double youngs_modulus, poisson_ratio, density, yield_stress, stiffness;
-    double cell_size;  ///< m, of the host
+    double cell_size;  ///< m, from the host
   };
   template <class T>
   struct Constants : VonMises::Constants<T> {

@@ -1,6 +1,6 @@
 #pragma once
 // Exact solutions of conduction that scenes with temperature are held against: slabs with each kind of end, Stefan's
-// problem with one phase and with two (Neumann), plastic work in simple shear. Nothing here is of the program.
+// problem with one phase and with two (Neumann), plastic work in simple shear. Nothing here comes from the program.
 
 #include <cmath>
 #include <functional>
@@ -37,7 +37,7 @@ class StefanProblem {
   /// Stefan number c |T_m - T_w| / L of the phase at the wall.
   double stefan_number() const { return at_wall.heat_capacity * std::abs(melting - wall) / latent_heat; }
 
-  /// The front is at 2 lambda sqrt(alpha t), alpha of the phase at the wall.
+  /// The number lambda: the front is at 2 lambda sqrt(alpha t), alpha of the phase at the wall.
   double lambda() const {
     const double root = std::sqrt(at_wall.diffusivity() / beyond.diffusivity());
     const double ratio = beyond.conductivity / at_wall.conductivity * root * (start - melting) / (melting - wall);

@@ -9,8 +9,8 @@
 
 namespace mpm::test {
 
-/// Particles, ledgers, contact, filter, time. Without the fields of the host that have no member of their own where
-/// one of two runs carries more of them.
+/// All results of a run: particles, ledgers, contact, filter, time. Where one of two runs carries more fields of the
+/// host that have no member of their own, both are compared without such fields.
 inline std::vector<double> all_results(const Simulation& simulation, bool with_host_state = true) {
   std::vector<double> all{simulation.time(), simulation.last_time_step()};
   const auto append = [&](const std::vector<double>& values) { all.insert(all.end(), values.begin(), values.end()); };
@@ -35,7 +35,7 @@ inline std::vector<double> all_results(const Simulation& simulation, bool with_h
   return all;
 }
 
-/// Different bits, NaN included.
+/// Number of entries with different bits, NaN included.
 inline std::size_t different(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.size() != b.size()) return std::max(a.size(), b.size());
   std::size_t count = 0;

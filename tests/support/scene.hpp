@@ -62,7 +62,7 @@ inline std::string set(const std::string& pointer, const std::string& value) {
   return pointer + "=" + value;
 }
 
-/// Each shape with each transfer, but for PolyPIC on lists of nodes, which have no axes: refused by name
+/// Each shape with each transfer, but for PolyPIC on lists of nodes, which have no axes and are refused by name
 /// (polynomial.cpp).
 inline std::vector<std::pair<std::string, std::string>> pairs_of(const std::vector<std::string>& shapes,
                                                                  const std::vector<std::string>& transfers) {

@@ -10,7 +10,7 @@
 
 namespace mpm::test {
 
-/// Fresh, and removed at the end with all it holds.
+/// A folder that is fresh, and removed at the end with all it holds.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

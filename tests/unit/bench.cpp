@@ -117,10 +117,10 @@ TEST_CASE("operations and bytes of the standard combination", "[bench]") {
   // Neo-Hookean: (I + dt L) F 45 + 18, J 14, and in the stress b 30 + 3 (it starts as I), J 14, log 19,
   // lambda ln J - mu 2, mu b 6, + p 3.
   CHECK(flops->material == 45 + 18 + 14 + 30 + 3 + 14 + 19 + 2 + 6 + 3);
-  CHECK(flops->transfer == 12);       // m v and m C
+  CHECK(flops->transfer == 12);       // counts m v and m C
   CHECK(flops->shape == 2 * 3 * 12);  // two evaluations of 11 an axis and the offset
   CHECK(flops->grid == 0.5 * 4 * 3);
-  CHECK(bytes_per_particle(experiment, plan, 0.5) == 2 * 4 * (3 + 9) + 2 * 0.5 * 32);  // x and F; v and C pass
+  CHECK(bytes_per_particle(experiment, plan, 0.5) == 2 * 4 * (3 + 9) + 2 * 0.5 * 32);  // counts x and F; v and C pass
   const Experiment ledger = mpm::test::experiment_from(block(3), {"/output/ledger=true"});
   CHECK_FALSE(flops_per_particle(ledger, make_plan(ledger), {0.5, true, {}, {}, false}));
 }
@@ -152,9 +152,10 @@ TEST_CASE("each pass over the particles that a scene adds is counted", "[bench]"
 }
 
 TEST_CASE("sums of polynomials beyond affine cost what a hand count gives", "[bench]") {
-  // 2-D, 3 nodes, powers to 1: of each line 3 nodes give 2 powers, and these go into 2 * 2 products; x and y.
+  // In 2-D with 3 nodes and powers to 1, each line's 3 nodes give 2 powers, and these go into 2 * 2 products; x and y.
   CHECK(polynomial_sums(2, 3, 1) == 3 * (3 * 2 + 2 * 2) * 2 * 2);
-  // 3-D, 4 nodes, powers to 3: lines of 4 * 4, planes of 4 lines and 4 * 4 a line, 4^3 products a plane.
+  // In 3-D with 4 nodes and powers to 3 there are lines of 4 * 4, planes of 4 lines and 4 * 4 a line, 4^3 products a
+  // plane.
   CHECK(polynomial_sums(3, 4, 3) == 4 * (4 * (4 * 4 + 4 * 4) + 64) * 2 * 3);
 }
 
@@ -173,11 +174,11 @@ TEST_CASE("PolyPIC costs what APIC does and its polynomials", "[bench]") {
   CHECK(multilinear.shape == apic.shape);
   CHECK(multilinear.transfer == apic.transfer);
   CHECK(multilinear.material == apic.material);
-  // One product, x y. The bases of an axis: P_0 of distances 3, w P 3, norm 6, moment 9, giving back 3; P_1 of as many,
-  // its recurrence 12 and two ratios.
+  // There is one product, x y. The bases of an axis take: P_0 of distances 3, w P 3, norm 6, moment 9, giving back 3;
+  // P_1 as many, its recurrence 12 and two ratios.
   const double gather = 2 * (24 + 38) + polynomial_sums(2, 3, 1);
   CHECK(multilinear.gather - apic.gather == gather);
-  CHECK(multilinear.scatter - apic.scatter == gather + 2);  // times the mass
+  CHECK(multilinear.scatter - apic.scatter == gather + 2);  // coefficients are taken times the mass
   CHECK(quadratic.gather - apic.gather > 6 * 2 * 3);
   CHECK(quadratic.gather > multilinear.gather);
   // Each pass of a filter's loop gathers and scatters them, MUSL scatters them once more.

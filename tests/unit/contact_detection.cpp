@@ -46,8 +46,8 @@ TEST_CASE("the edge model inverts itself", "[contact]") {
 }
 
 TEST_CASE("normal, separation and area of a flat interface", "[contact]") {
-  // Two half spaces that touch at a node: means at -27/64 and 27/64 cell, opposite gradients, half a cell of volume
-  // each.
+  // For two half spaces that touch at a node the means are at -27/64 and 27/64 cell, the gradients opposite, and each
+  // has half a cell of volume.
   const EdgeModel model(shape("bspline_quadratic"), 2);
   const double h = 0.1;
   ContactFieldNode a, b;

@@ -29,7 +29,7 @@ std::string error_of(const std::string& text) {
 TEST_CASE("expressions give what C++ gives", "[expression]") {
   struct Case {
     const char* text;
-    std::function<double(double, double, double, double)> expected;  // of x, y, X, t
+    std::function<double(double, double, double, double)> expected;  // arguments x, y, X, t
   };
   constexpr double pi = std::numbers::pi;
   const Case cases[] = {

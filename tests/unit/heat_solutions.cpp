@@ -17,7 +17,7 @@ StefanProblem freezing(double start) {
   return {ice, water, 334000, 263.15, 273.15, start};
 }
 
-/// One phase alone, beginning at its melting temperature.
+/// The problem of one phase alone, beginning at its melting temperature.
 StefanProblem one_phase(double stefan_number) {
   const ConductingPhase unit{1, 1, 1};
   return {unit, unit, 1 / stefan_number, 1, 0, 0};
@@ -28,7 +28,7 @@ double slope(const Solution& solution, double x, double t, double step) {
   return (solution.temperature(x + step, t) - solution.temperature(x - step, t)) / (2 * step);
 }
 
-/// dT/dt - alpha d2T/dx2 over the largest of the two, by central differences.
+/// The residual dT/dt - alpha d2T/dx2 over the largest of the two, by central differences.
 template <class Solution>
 double heat_equation_residual(const Solution& s, double diffusivity, double x, double t, double dx, double dt) {
   const double rate = (s.temperature(x, t + dt) - s.temperature(x, t - dt)) / (2 * dt);
@@ -39,8 +39,8 @@ double heat_equation_residual(const Solution& s, double diffusivity, double x, d
 }  // namespace
 
 TEST_CASE("Stefan's problem of one phase has the lambdas of the literature", "[heat]") {
-  // Alexiades & Solomon (1993), Mathematical Modeling of Melting and Freezing Processes; here to six digits from
-  // lambda exp(lambda^2) erf(lambda) = St / sqrt(pi) in 30 digits by mpmath.
+  // The values are those of Alexiades & Solomon (1993), Mathematical Modeling of Melting and Freezing Processes; here
+  // to six digits from lambda exp(lambda^2) erf(lambda) = St / sqrt(pi) in 30 digits by mpmath.
   CHECK(one_phase(0.05).lambda() == Approx(0.156820922335).epsilon(1e-11));
   CHECK(one_phase(0.1).lambda() == Approx(0.220016272743).epsilon(1e-11));
   CHECK(one_phase(0.5).lambda() == Approx(0.464785920646).epsilon(1e-11));
@@ -101,9 +101,10 @@ TEST_CASE("slabs conduct, and their ends are what they say", "[heat]") {
 TEST_CASE("plastic work in shear is the work less what is stored", "[heat]") {
   const double mu = 1e9, yield = 1e6, hardening = 2e8;
   CHECK(plastic_work_in_shear(yield / (std::sqrt(3.0) * mu), mu, yield, hardening) == 0);
-  // Perfect plasticity: tau = yield / sqrt(3) over the shear that is not elastic.
+  // With perfect plasticity tau = yield / sqrt(3) acts over the shear that is not elastic.
   CHECK(plastic_work_in_shear(0.1, mu, yield, 0) == Approx(1e6 / std::sqrt(3.0) * (0.1 - 1e-3 / std::sqrt(3.0))));
-  // The stress step by step, its work summed: half of the hardening part and all that is stored elastically come off.
+  // The stress is followed step by step and its work summed: half of the hardening part and all that is stored
+  // elastically come off.
   double plastic = 0, dissipated = 0, work = 0, stress = 0;
   const double step = 1e-6;
   for (double shear = step; shear < 0.1 + 0.5 * step; shear += step) {

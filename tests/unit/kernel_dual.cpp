@@ -36,7 +36,7 @@ double largest(const Mat<D, double>& a) {
   return r;
 }
 
-/// ln of the left stretch, U diag(ln s) U^T, whose derivative at F = I is the symmetric part of dF.
+/// The logarithm ln V = U diag(ln s) U^T of the left stretch, whose derivative at F = I is the symmetric part of dF.
 template <int D>
 Mat<D, X> left_hencky_strain(const Mat<D, X>& F) {
   const LeftStretches<D, X> parts = left_stretches(F);
@@ -64,7 +64,7 @@ TEST_CASE("derivatives of elementary functions") {
   CHECK(max(x, 3.0 * x).derivative == 3);
   CHECK(min(x, 3.0 * x).derivative == 1);
   CHECK(select(x > 0.5, x * x, X(1.0)).derivative == Approx(1.4));
-  CHECK(sqrt(X(0, 1)).derivative == 0);  // a choice: there is none
+  CHECK(sqrt(X(0, 1)).derivative == 0);  // zero by choice: there is no derivative
 }
 
 TEST_CASE("packs carry the derivatives of each lane") {
@@ -98,7 +98,7 @@ TEST_CASE("the rotation nearest to the identity turns with the skew part of its 
 }
 
 TEST_CASE("the rotation nearest to a matrix changes as differences say, however far its stretches are apart") {
-  for (const double stretch : {1.0, 3.0, 400.0}) {  // the last leaves the closed form to singular values
+  for (const double stretch : {1.0, 3.0, 400.0}) {  // the last stretch leaves the closed form to singular values
     Mat<3, double> F = some;
     for (int i = 0; i < 3; ++i) F(i, i) += i == 0 ? stretch + 1 : 2;
     const Mat<3, double> dF{{0.1, 0.4, -0.3, 0.2, -0.6, 0.5, -0.1, 0.3, 0.7}};
@@ -112,7 +112,7 @@ TEST_CASE("the rotation nearest to a matrix changes as differences say, however 
 }
 
 TEST_CASE("functions of equal singular values have their derivative") {
-  // ln V at F = a I: dF_sym / a, although the directions of the stretches turn without limit.
+  // The derivative of ln V at F = a I is dF_sym / a, although the directions of the stretches turn without limit.
   for (const double a : {1.0, 0.4}) {
     Mat<3, double> F{};
     for (int i = 0; i < 3; ++i) F(i, i) = a;

@@ -24,7 +24,7 @@ double ulps(T value, long double exact) {
   return static_cast<double>(std::abs(static_cast<long double>(value) - exact) / spacing);
 }
 
-/// Worst error of log over all magnitudes of normal numbers, and close around 1, where the result is small.
+/// The worst error of log over all magnitudes of normal numbers, and close around 1, where the result is small.
 template <class T>
 double worst_log() {
   double worst = 0;
@@ -38,7 +38,7 @@ double worst_log() {
   return worst;
 }
 
-/// Worst error of exp over the range it does not saturate in.
+/// The worst error of exp over the range it does not saturate in.
 template <class T>
 double worst_exp() {
   const double limit = sizeof(T) == 4 ? 86.9 : 707.9;

@@ -65,7 +65,7 @@ Exact<D> random_rotation(std::mt19937& numbers) {
   return reference<D>(random_matrix<D>(numbers)).R;
 }
 
-/// U diag(values) V^T with random rotations.
+/// The product U diag(values) V^T with random rotations.
 template <int D>
 Exact<D> stretched(std::mt19937& numbers, const double* values) {
   Exact<D> S = Exact<D>::Zero();
@@ -102,8 +102,8 @@ void check(const std::vector<Mat<D, T>>& all) {
   for (const Mat<D, T>& F : all) judge(F, nearest_rotation(F), errors);
   CAPTURE(D, sizeof(T));
   CHECK(errors.turned <= 12);
-  CHECK(errors.of_svd <= 45);  // the bound of svd.hpp itself
-  CHECK(errors.skew <= 32);    // that of svd.hpp, where it takes over
+  CHECK(errors.of_svd <= 45);  // bound of svd.hpp itself
+  CHECK(errors.skew <= 32);    // bound of svd.hpp, where it takes over
   CHECK(errors.proper);
 }
 
@@ -117,7 +117,7 @@ std::vector<Mat<D, T>> moderate(double strain) {
   return all;
 }
 
-/// Stretches from 1e-3 to 1e3, of either sign of the determinant.
+/// Checks stretches from 1e-3 to 1e3, of either sign of the determinant.
 template <int D, class T>
 std::vector<Mat<D, T>> extreme() {
   std::mt19937 numbers(7);
@@ -131,7 +131,7 @@ std::vector<Mat<D, T>> extreme() {
   return all;
 }
 
-/// Whatever has no unique rotation, or nearly none, and what lies at the ends of the range.
+/// Checks matrices that have no unique rotation, or nearly none, and those at the ends of the range.
 template <int D, class T>
 std::vector<Mat<D, T>> degenerate() {
   std::mt19937 numbers(11);
@@ -164,7 +164,7 @@ Mat<D, T> lane_of(const Mat<D, Lanes<T>>& pack, int lane) {
   return r;
 }
 
-/// Each lane as good as alone, and the same bits whichever matrices share the pack.
+/// Checks that each lane is as good as alone, and has the same bits whichever matrices share the pack.
 template <int D, class T>
 void check_lanes() {
   std::vector<Mat<D, T>> all;
@@ -182,7 +182,7 @@ void check_lanes() {
   }
   CAPTURE(D, sizeof(T));
   CHECK(errors.turned <= 12);
-  CHECK(errors.skew <= 32);  // that of svd.hpp, where it takes over
+  CHECK(errors.skew <= 32);  // bound of svd.hpp, where it takes over
   CHECK(errors.proper);
   CHECK(same);
 }

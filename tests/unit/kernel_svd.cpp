@@ -48,7 +48,7 @@ template <int D, class T>
 Judged<D, T> judged(const Mat<D, T>& A, const SingularValues<D, T>& r) {
   Judged<D, T> judged;
   const double size = largest(A);
-  Vec<D, T> shrunk;  // so that the product of a huge or minute matrix stays in range
+  Vec<D, T> shrunk;  // shrunk, so that the product of a huge or minute matrix stays in range
   for (int i = 0; i < D; ++i) shrunk[i] = size > 0 ? static_cast<T>(r.values[i] / size) : r.values[i];
   Mat<D, T> relative = A;
   for (T& entry : relative.m) entry = size > 0 ? static_cast<T>(entry / size) : entry;
@@ -70,7 +70,7 @@ void check(const Mat<D, T>& A) {
   const Judged<D, T> j = judged(A, singular_value_decomposition(A));
   std::vector<double> entries(A.m, A.m + D * D);
   CAPTURE(D, sizeof(T), entries, j.product, j.orthogonal, j.order);
-  // 1e-14 of the largest entry in double; the same number of roundings in float.
+  // The bound is 1e-14 of the largest entry in double, and the same number of roundings in float.
   CHECK(j.product <= 45);
   CHECK(j.orthogonal <= 45);
   CHECK(j.order <= 16);
@@ -106,14 +106,14 @@ std::vector<Mat<D, T>> matrices() {
     all.push_back(Q);
     Vec<D, T> values{};
     values[0] = T(1 + k % 7);
-    all.push_back(composed(Q, values, R));  // rank one
+    all.push_back(composed(Q, values, R));  // values of rank one
     values[1] = values[0];
-    all.push_back(composed(Q, values, R));  // repeated; singular in 3-D
+    all.push_back(composed(Q, values, R));  // repeated values; singular in 3-D
     values[D - 1] = -values[0];
     all.push_back(composed(Q, values, R));  // a reflection with equal stretches
     values[D - 1] = static_cast<T>(std::ldexp(1.0, -(k % 60)));
     values[1] = static_cast<T>(values[0] * (1 + (k % 5) * epsilon<T>));
-    all.push_back(composed(Q, values, R));  // nearly repeated, badly conditioned
+    all.push_back(composed(Q, values, R));  // nearly repeated values, badly conditioned
     Mat<D, T> sparse = A;
     for (int i = 0; i < D * D; ++i)
       if (k >> (i % 11) & 1) sparse.m[i] = 0;

@@ -154,7 +154,7 @@ void draw_curves(const RunFolder& run, const std::string& stem, const std::vecto
   write_atomically(run.figures() / (stem + ".png"), picture);
 }
 
-/// sum m |v| = 10 kg m/s, sum m |x| |v| = 40 kg m^2/s, 5 s, at most 8 J: energies are rounding to 8e-12 J.
+/// A run with sum m |v| = 10 kg m/s, sum m |x| |v| = 40 kg m^2/s, 5 s, at most 8 J: energies are rounding to 8e-12 J.
 RunFolder run_with_sizes(const fs::path& path) {
   RunFolder run = RunFolder::create(path);
   run.write_json("summary.json",
@@ -215,12 +215,12 @@ TEST_CASE("a figure of rounding is folded away behind the others, and says how s
 TEST_CASE("a figure that may show more than rounding is not folded", "[output][report]") {
   const TemporaryFolder scratch;
   const RunFolder run = run_with_sizes(scratch / "run");
-  draw_curves(run, "momentum", {0, 0, 0, 0, 0, -1.1e-11});     // one number is enough
-  draw_curves(run, "angular_momentum", {0, NAN, 0, 0, 0, 0});  // a run that broke down
+  draw_curves(run, "momentum", {0, 0, 0, 0, 0, -1.1e-11});     // one number above the limit is enough
+  draw_curves(run, "angular_momentum", {0, NAN, 0, 0, 0, 0});  // the numbers of a run that broke down
   draw_curves(run, "contact", {0, 2.1e-12, 0, 0, 0, 0});       // 10 kg m/s in 5 s are 2 N
   draw_curves(run, "contact_nodes", {0, 1, 0, 0, 0, 0});
   draw_curves(run, "volume_ratio", {1, 1, 1, 1, 1, 1 + 1.1e-12});
-  draw_curves(run, "error", {0, 4.1e-12, 0, 0, 0, 0});  // 4 m from the origin
+  draw_curves(run, "error", {0, 4.1e-12, 0, 0, 0, 0});  // the mean distance from the origin is 4 m
   draw_curves(run, "dissipation", {0, 8.1e-12, 0, 0, 0, 0});
   write_atomically(run.figures() / "ledger.csv", "time t (s),filter (J),residual (J)\n0,0,0\n5,0,8.1e-12\n");
   write_atomically(run.figures() / "ledger.png", picture);

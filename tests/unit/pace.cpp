@@ -12,7 +12,7 @@ using mpm::support::Pace;
 
 namespace {
 
-/// Steps a second by the number of threads.
+/// Steps a second as a function of the number of threads.
 using Speed = std::function<double(int)>;
 
 class Machine {
@@ -25,7 +25,7 @@ class Machine {
     preemptions_ = preemptions_a_second;
     noise_ = noise;
   }
-  /// Makes steps for so long, s; how many a second over what the best number of threads would have made.
+  /// Makes steps for so long, s. Returns how many a second, over what the best number of threads would have made.
   double share_of_best(double seconds) {
     double best = 0, took = 0;
     for (int threads = 1; threads <= most_; ++threads) best = std::max(best, speed_(threads));

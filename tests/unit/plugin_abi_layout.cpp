@@ -18,7 +18,7 @@ struct Struct {
   std::vector<std::string> fields;
 };
 
-/// A header without comments.
+/// The text of a header without its comments.
 std::string header(const std::string& name) {
   const std::string text = fixture::contents(std::string(MPM_SOURCE_DIR) + "/modules/plugin/" + name);
   return std::regex_replace(text, std::regex(R"(/\*[^*]*\*+([^/*][^*]*\*+)*/)"), "");
@@ -29,7 +29,7 @@ std::vector<std::smatch> matches(const std::string& text, const std::string& pat
   return {std::sregex_iterator(text.begin(), text.end(), regex), std::sregex_iterator()};
 }
 
-/// Names declared by one declaration of a struct: of "void (*f[3])(int)" f, of "int a, b[2]" a and b.
+/// The names declared by one declaration of a struct: f of "void (*f[3])(int)", a and b of "int a, b[2]".
 std::vector<std::string> declared(const std::string& declaration) {
   std::smatch pointer;
   if (std::regex_search(declaration, pointer, std::regex(R"(\(\*(\w+))"))) return {pointer[1]};
@@ -50,7 +50,7 @@ std::vector<Struct> structs(const std::string& text) {
   return found;
 }
 
-/// Names of numbers: of enumerations, and of macros that are one.
+/// The names of numbers: of enumerations, and of macros that are one.
 std::vector<std::string> numbers(const std::string& text) {
   std::vector<std::string> names;
   for (const std::smatch& one : matches(text, R"(#define (MPM_\w+) \d+u)")) names.push_back(one[1]);

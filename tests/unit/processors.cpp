@@ -25,7 +25,7 @@ void write(const fs::path& file, const std::string& text) {
   std::ofstream(file) << text;
 }
 
-/// Restores where this thread may run.
+/// Restores, at its end, the processors that this thread may run on.
 class Affinity {
  public:
   Affinity() { ::sched_getaffinity(0, sizeof before_, &before_); }
@@ -77,7 +77,7 @@ TEST_CASE("control groups of version 1: quota over period of the controller cpu"
   CHECK(std::isinf(processors_of_control_groups(membership, root.path())));
   write(root / "cpu,cpuacct/job/cpu.cfs_quota_us", "400000\n");
   CHECK(processors_of_control_groups(membership, root.path()) == 4);
-  write(root / "memory/m/cpu.cfs_quota_us", "1000\n");  // of another controller: says nothing
+  write(root / "memory/m/cpu.cfs_quota_us", "1000\n");  // limit of another controller, which says nothing
   write(root / "memory/m/cpu.cfs_period_us", "100000\n");
   CHECK(processors_of_control_groups(membership, root.path()) == 4);
 }

@@ -189,7 +189,7 @@ TEST_CASE("bisection brackets the last stable value with few questions", "[study
   CHECK(*search.unstable() - *search.stable() <= 0.01 * *search.stable());
   CHECK(questions == 2 + 9);  // log(100) / 2^9 < log(1.01)
 
-  BisectionSearch downwards(1, 0.001, 0.1);  // the smallest cell: large is stable
+  BisectionSearch downwards(1, 0.001, 0.1);  // finds the smallest cell: large is stable
   while (const auto value = downwards.next()) downwards.answer(*value >= 0.03);
   CHECK(*downwards.stable() >= 0.03);
   CHECK(*downwards.unstable() < 0.03);
@@ -208,7 +208,7 @@ TEST_CASE("bisection brackets the last stable value with few questions", "[study
 }
 
 TEST_CASE("the Pareto front names what dominates each point", "[study]") {
-  // In the order of the combinations: cost, error.
+  // The pairs are cost and error, in the order of the combinations.
   const Results results = measured({{1, 8}, {2, 4}, {2, 4}, {3, 5}, {4, 1}, {4, 2}, {5, 1}, {0.5, 9}});
   const auto points = pareto(results, {}, "seconds", "e");
   REQUIRE(points.size() == 8);
@@ -240,7 +240,7 @@ TEST_CASE("advice: the cheapest that reaches an error, the most exact within a c
 }
 
 TEST_CASE("observed orders of each combination", "[study]") {
-  // coarse, fine: second order, first order, none, growing
+  // The pairs (coarse, fine) have second order, first order, none, and a growing error.
   Results results = measured({{1, 4}, {1, 1}, {1, 2}, {1, 1}, {1, 3}, {1, 3}, {1, 1}, {1, 2}});
   const auto orders = observed_orders(results, results.study.figures[0]);
   REQUIRE(orders.size() == 4);

@@ -22,7 +22,7 @@ using namespace mpm::output::testing;
 
 namespace {
 
-// While it lives no file can grow beyond `bytes`: the disk that is full, without filling one.
+// Keeps every file below `bytes` while it lives: the disk that is full, without filling one.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -226,7 +226,7 @@ TEST_CASE("a process killed while it writes leaves whole rows", "[support][csv]"
   const fs::path path = scratch / "m.csv";
   const pid_t child = ::fork();
   if (child == 0) {
-    ::alarm(60);  // should the test itself die first
+    ::alarm(60);  // ends the child, should the test itself die first
     CsvAppender csv(path, {"a", "b"});
     for (double i = 0;; ++i) csv.row(std::vector<double>{i, i / 3.0});
   }

@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// The wait policy of the environment, for a while.
+/// Sets the wait policy of the environment for a while.
 class Policy {
  public:
   explicit Policy(const char* value) {
@@ -75,7 +75,7 @@ class Held {
   ~Held() {
     const char byte = 0;
     if (::write(gate[1], &byte, 1) != 1) std::abort();
-    // The pipe and the handler stay until the thread has left it, which nothing tells: they are kept.
+    // The pipe and the handler are kept until the end: nothing tells when the thread has left them.
   }
 
  private:
@@ -116,7 +116,7 @@ TEST_CASE("all threads of a team come where they can, call after call") {
     std::vector<int> calls(4, 0);
     on_all(team, [&](int thread) { ++calls[static_cast<std::size_t>(thread)]; });
     CHECK(calls == std::vector<int>(4, 1));
-    if (call % 50 == 0) std::this_thread::sleep_for(2ms);  // they sleep meanwhile
+    if (call % 50 == 0) std::this_thread::sleep_for(2ms);  // the workers sleep meanwhile
   }
 }
 
@@ -144,7 +144,7 @@ TEST_CASE("only as many threads take part as are to be used") {
 }
 
 TEST_CASE("no loop waits for a thread that is given no processor") {
-  static Team team(3);  // outlives the handler of the signal
+  static Team team(3);  // the team outlives the handler of the signal
   std::vector<pthread_t> identities(3);
   on_all(team, [&](int thread) { identities[static_cast<std::size_t>(thread)] = ::pthread_self(); });
   {

@@ -26,7 +26,7 @@ struct Columns {
   std::vector<TestBlock> blocks;
   std::map<Column, int> colour;
 
-  /// Some of the columns of a 7 x 5 field (7 in 2-D), two blocks high.
+  /// Makes some of the columns of a 7 x 5 field (7 in 2-D), two blocks high.
   Columns() {
     for (int c = 0; c < colour_count<D>; ++c)
       for (int x = -3; x < 4; ++x)
@@ -67,7 +67,7 @@ void check_order() {
       if (are_neighbours(column, here) && colour < columns.colour.at(here)) expected.insert(column);
     CHECK(waits_for == expected);
   }
-  // the last colour ends with its smallest unit
+  // The last colour ends with its smallest unit.
   const auto last_colour = [&](const UnitTask& task) {
     return columns.colour.at(columns.column(task.unit)) == colour_count<D> - 1;
   };
@@ -117,7 +117,7 @@ TEST_CASE("each thread has a part of space with about as many particles") {
     CHECK(shared_out.size() == order.tasks.size());
     for (const std::uint64_t has : particles) CHECK(has <= all / static_cast<std::uint64_t>(threads) + largest_unit);
   }
-  // across the longer side, also where that is y
+  // Parts follow one another across the longer side, also where that is y.
   Columns<3> high;
   for (TestBlock& block : high.blocks) block.at = {block.at[1], block.at[0], block.at[2]};
   const UnitOrder order = ordered_units<3>(high.units, high.blocks, 2);
@@ -146,7 +146,7 @@ TEST_CASE("neighbouring units are never in work at once and follow their colours
   std::map<Column, std::atomic<int>> state;  // 0 waiting, 1 in work, 2 done
   for (const auto& [column, colour] : columns.colour) state[column] = 0;
   std::vector<std::atomic<int>> states;
-  // also fewer or more than the body was shared out to, as a system may give
+  // There may be fewer or more threads than the body was shared out to, as a system may give.
   for (const auto& [parts, threads] : {std::pair{1, 1}, {2, 2}, {5, 5}, {5, 2}, {2, 5}}) {
     const UnitOrder order = ordered_units<3>(columns.units, columns.blocks, parts);
     const std::vector<UnitTask>& tasks = order.tasks;

@@ -13,7 +13,7 @@ namespace {
 
 const fs::path source = MPM_SOURCE_DIR;
 
-/// Paths in a row of the page; a name without a folder lies in the folder of the name before.
+/// The paths in the rows of the page; a name without a folder lies in the folder of the name before.
 std::set<std::string> named_files() {
   const std::string page = mpm::support::read_file(source / "docs/verification.md");
   const std::regex quoted("`((?:tests|modules)/(?:[a-z_]+/)+)?([a-z0-9_]+\\.cpp)`");

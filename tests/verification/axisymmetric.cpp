@@ -24,7 +24,7 @@ const char* expansion = R"J({
   "bodies": [{"name": "rod", "material": "m", "geometry": {"type": "box", "lower": [0, 0.3], "upper": [0.8, 0.6]}, "velocity": ["0.5*x", 0]}],
   "solver": {"time_step": 0.01, "end_time": 0.4}})J";
 
-/// A tube instead of the rod.
+/// Overrides that put a tube in place of the rod.
 const std::vector<std::string> annulus{
     R"(/bodies/0/geometry={"type": "box", "lower": [0.4, 0.3], "upper": [0.9, 0.6]})"};
 
@@ -39,7 +39,8 @@ TEST_CASE("axisymmetric uniform expansion stretches around the axis as along the
           std::vector<std::string> overrides{set("/backend", backend), set("/shape/type", shape),
                                              set("/transfer/type", transfer)};
           if (hollow) overrides.insert(overrides.end(), annulus.begin(), annulus.end());
-          // One step: later ones scatter the affine velocity of the step before, which a field that spreads has left.
+          // Only one step is made: later ones scatter the affine velocity of the step before, which a field that
+          // spreads has left.
           overrides.insert(overrides.end(), {R"(/bodies/0/velocity=["10*x", 0])", "/solver/end_time=0.01"});
           Scene scene(expansion, overrides);
           scene.run();
@@ -61,7 +62,8 @@ TEST_CASE("axisymmetric mass and energy are those of the whole body", "[axisymme
   Scene scene(expansion, {"/solver/end_time=0.01"});
   const double volume = std::numbers::pi * 0.8 * 0.8 * 0.3, mass = 1000 * volume;
   CHECK(scene.metrics.initial().mass == Approx(mass).epsilon(1e-12));
-  // Kinetic energy of v_r = a r: rho a^2 pi L R^4 / 4, the affine part being that of the cells about their centres.
+  // The kinetic energy of v_r = a r is rho a^2 pi L R^4 / 4, the affine part being that of the cells about their
+  // centres.
   CHECK(scene.metrics.initial().kinetic ==
         Approx(1000 * 0.25 * std::numbers::pi * 0.3 * std::pow(0.8, 4) / 4).epsilon(0.02));
 }
@@ -79,7 +81,7 @@ TEST_CASE("axisymmetric free flight along the axis is exact", "[axisymmetric][fr
     for (const std::string shape : {"linear", "bspline_quadratic", "gimp", "cpdi"})
       for (const std::string transfer : {"pic", "flip", "apic", "mls"})
         for (const std::string order : {"last", "first", "modified_last", "averaged"}) {
-          if (backend == "reference" && order != "last") continue;  // parity has the others
+          if (backend == "reference" && order != "last") continue;  // parity covers the other orders
           INFO(backend << " " << shape << " " << transfer << " " << order);
           Scene scene(text, {set("/backend", backend), set("/shape/type", shape), set("/transfer/type", transfer),
                              set("/solver/stress_update", order)});
@@ -100,7 +102,7 @@ double bessel(int order, double x) {
   return sum;
 }
 
-/// First root of x J0(x) = (1 - 2 nu)/(1 - nu) J1(x): the free surface of a cylinder that breathes.
+/// The first root of x J0(x) = (1 - 2 nu)/(1 - nu) J1(x), which frees the surface of a cylinder that breathes.
 double breathing_root(double poisson_ratio) {
   const auto f = [&](double x) {
     return x * bessel(0, x) - (1 - 2 * poisson_ratio) / (1 - poisson_ratio) * bessel(1, x);
@@ -113,7 +115,7 @@ double breathing_root(double poisson_ratio) {
   return low;
 }
 
-/// Period of the mode's velocity over its first four periods.
+/// The period of the mode's velocity, over its first four periods.
 double breathing_period(const std::vector<std::string>& overrides, double root) {
   std::ostringstream text;
   text.precision(17);
@@ -148,7 +150,7 @@ double breathing_period(const std::vector<std::string>& overrides, double root) 
 
 TEST_CASE("an axisymmetric cylinder breathes at its exact frequency", "[axisymmetric]") {
   const double nu = 0.3, root = breathing_root(nu);
-  const double speed = std::sqrt((1 - nu) / ((1 + nu) * (1 - 2 * nu)));  // c_p of E = rho = 1
+  const double speed = std::sqrt((1 - nu) / ((1 + nu) * (1 - 2 * nu)));  // c_p for E = rho = 1
   const double exact = 2 * std::numbers::pi / (root * speed);
   std::printf("breathing of a cylinder: root %.6f, exact period %.6f s\n", root, exact);
   for (const std::string transfer : {"apic", "mls", "flip"})
@@ -187,8 +189,8 @@ std::string impact(bool axisymmetric, double cell) {
 }
 
 struct Rebound {
-  double turn = 0, leave = 0;     ///< s: centre of mass turns, wall gives no more
-  double speed = 0, kinetic = 0;  ///< of the centre of mass after it, and kinetic energy of all, over those before
+  double turn = 0, leave = 0;     ///< s: the centre of mass turns, the wall gives no more
+  double speed = 0, kinetic = 0;  ///< speed of the centre of mass after it and kinetic energy of all, over those before
 };
 
 Rebound rebound_of(bool axisymmetric, double cell) {
@@ -236,7 +238,7 @@ TEST_CASE("a Taylor bar of copper keeps its length and foot", "[axisymmetric][ta
     radius = std::max(radius, state.position[2 * p]);
     length = std::max(length, state.position[2 * p + 1]);
   }
-  const double half = experiment.grid.cell_size / 4;  // a particle's, undeformed
+  const double half = experiment.grid.cell_size / 4;  // half length of a particle, undeformed
   length += half, radius += half;
   std::printf("Taylor bar: length %.3f mm, radius %.3f mm, largest plastic strain %.2f\n", 1e3 * length, 1e3 * radius,
               *std::max_element(plastic.begin(), plastic.end()));
@@ -299,7 +301,7 @@ TEST_CASE("an axisymmetric particle that comes to the axis ends the run", "[axis
 
 namespace {
 
-/// What is wrong with the expansion after these overrides; "" when nothing.
+/// Says what is wrong with the expansion after these overrides; "" when nothing is.
 std::string refusal(const std::vector<std::string>& overrides) {
   try {
     (void)make_plan(experiment_from(expansion, overrides));

@@ -47,7 +47,7 @@ std::vector<double> turning_times(Scene& scene, double& largest_energy_error) {
 TEST_CASE("bar vibration: period and energy", "[bar]") {
   for (const int mode : {1, 2}) {
     INFO("mode " << mode);
-    // 13 cells for the first mode; as many a wave length need 39 for the second, 26 are within the band.
+    // The first mode has 13 cells; as many a wave length need 39 for the second, and 26 are within the band.
     Scene scene(bar, {set("/constants/mode", std::to_string(mode)), set("/grid/cell_size", digits(height / mode)),
                       set("/solver/time_step", digits(0.01 * height / mode))});
     CHECK(scene.metrics.initial().total_energy() / height ==
@@ -73,8 +73,9 @@ TEST_CASE("bar vibration: velocity of the centre of mass", "[bar]") {
 
 namespace {
 
-/// Order in dt of the ledger's largest residual. Smooth motion without crossings, well resolved, of a hyperelastic body
-/// (small-strain elasticity has no energy whose derivative is its stress): what is left is time integration alone.
+/// The order in dt of the ledger's largest residual. The motion is smooth, without crossings and well resolved, of a
+/// hyperelastic body (small-strain elasticity has no energy whose derivative is its stress): what is left is time
+/// integration alone.
 double order_of_residual(const std::string& backend, const std::string& shape, const std::string& update,
                          const std::string& speed) {
   const std::vector<double> steps{0.02, 0.01, 0.005};
@@ -84,7 +85,7 @@ double order_of_residual(const std::string& backend, const std::string& shape, c
         bar, {set("/backend", backend), set("/solver/stress_update", update), set("/materials/m/type", "neo_hookean"),
               set("/shape/type", shape), set("/bodies/0/particles_per_cell_axis", "2"), set("/constants/v", speed),
               set("/solver/time_step", digits(step)), set("/solver/end_time", "4")});
-    residuals.push_back(0);  // the largest of the run: at single times it passes through zero
+    residuals.push_back(0);  // the run's largest: at single times it passes through zero
     while (!scene.simulation.finished()) {
       scene.simulation.step();
       residuals.back() = std::max(residuals.back(), std::abs(scene.metrics.ledger_residual(scene.metrics.measure())));

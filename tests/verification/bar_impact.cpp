@@ -12,7 +12,8 @@ using namespace mpm::test;
 
 namespace {
 
-// L = 1 m, E = 1e4 Pa, density 1: c = 100 m/s. Each at 0.1 m/s: they touch for 2 L / c = 0.02 s with rho c v = 10 Pa.
+// With L = 1 m, E = 1e4 Pa and density 1, c = 100 m/s. At 0.1 m/s each, the bars touch for 2 L / c = 0.02 s with rho c
+// v = 10 Pa.
 const char* two_bars = R"J({
   "dimension": 2,
   "grid": {"cell_size": 0.01, "domain": [[0, 0], [3, 0.01]],
@@ -31,11 +32,11 @@ double mean_velocity(const BodyState& state) {
 }
 
 struct Impact {
-  double stress = 0, velocity = 0;  ///< behind the fronts at t = L / (2 c), mean
-  double at_interface = 0;          ///< stress within ten cells of the interface then, mean
-  double duration = 0;              ///< s, the contact force is above half of rho c v
+  double stress = 0, velocity = 0;  ///< means behind the fronts at t = L / (2 c)
+  double at_interface = 0;          ///< mean stress within ten cells of the interface then
+  double duration = 0;              ///< s for which the contact force is above half of rho c v
   double left = 0;                  ///< m/s, mean velocity of the left bar at the end
-  double kinetic = 0, total = 0;    ///< at the end, over the initial
+  double kinetic = 0, total = 0;    ///< at the end, over the initial values
 };
 
 Impact meet(const std::vector<std::string>& settings) {
@@ -94,7 +95,7 @@ TEST_CASE("two equal bars exchange their velocities", "[impact]") {
     check(transfer, {set("/transfer/type", transfer)}, 0.98);
   check("flip", {}, 0.97);
   for (const std::string transfer : {"pic", "rpic"}) check(transfer, {set("/transfer/type", transfer)}, 0.85);
-  // Three times as many steps. What is lost falls with the order.
+  // There are three times as many steps. The loss falls with the order.
   double before = 0;
   for (const int order : {1, 2, 4, 8}) {
     const double kept = check(
@@ -108,7 +109,8 @@ TEST_CASE("two equal bars exchange their velocities", "[impact]") {
 }
 
 TEST_CASE("contact on every increment gives the shock of a single field", "[impact][contact][filters]") {
-  // Published: within 0.5 % from order 4 on. Periodic across: bars without corners, whose normals would be tilted.
+  // The published bound is 0.5 % from order 4 on. The domain is periodic across: bars without corners, whose normals
+  // would be tilted.
   const std::vector<std::string> slab{set("/transfer/type", "pic"), set("/solver/time_step", "1e-5"),
                                       set("/solver/end_time", "0.00501"), set("/grid/boundaries/y_min", "periodic"),
                                       set("/grid/boundaries/y_max", "periodic")};
@@ -133,8 +135,8 @@ TEST_CASE("contact on every increment gives the shock of a single field", "[impa
 
 namespace {
 
-// E = 3e7, density 0.73, L = 10, v = 202.2, gap 0.01. The end flies through 60 cells meanwhile: on linear functions
-// particles invert.
+// E = 3e7, density 0.73, L = 10, v = 202.2 and the gap is 0.01. The end flies through 60 cells meanwhile: on linear
+// functions particles invert.
 const char* on_wall = R"J({
   "dimension": 2,
   "grid": {"cell_size": 0.01, "domain": [[0, 0], [11, 0.01]],
@@ -161,7 +163,7 @@ TEST_CASE("a bar on a rigid wall (VM265)", "[impact]") {
   for (const std::string transfer : {"flip", "apic"}) {
     Scene scene(on_wall, {set("/transfer/type", transfer)});
     const double mass = scene.metrics.initial().mass, full = mass * speed;
-    // The wall's impulse so far, of 2 m v; contact as the line through its first and last quarter.
+    // The wall's impulse so far, over 2 m v. Contact is read from the line through its first and last quarter.
     std::vector<double> times, impulse;
     while (!scene.simulation.finished()) {
       scene.simulation.step();

@@ -34,7 +34,7 @@ const char* scene_text = R"J({
   "compare": {"exact": {"type": "bar_vibration", "velocity_amplitude": 0.1, "mode": 1, "length": 25,
                         "youngs_modulus": 100, "density": 1}}})J";
 
-/// One row of cells; beyond the free end is as much room again.
+/// Settings of one row of cells; beyond the free end is as much room again.
 std::vector<std::string> settings(const Bar& bar) {
   const double h = length / bar.cells;
   const std::string height = digits(h), speed = digits(bar.speed);
@@ -52,12 +52,12 @@ std::vector<std::string> settings(const Bar& bar) {
 }
 
 struct Found {
-  double period = 0;        ///< s, of the centre of mass
-  double velocity = 0;      ///< m/s, of the centre of mass at the start
-  double velocity_end = 0;  ///< at the end, over the exact one
+  double period = 0;        ///< s, period of the centre of mass
+  double velocity = 0;      ///< m/s, velocity of the centre of mass at the start
+  double velocity_end = 0;  ///< velocity at the end, over the exact one
   double tip = 0;           ///< m, largest displacement of the free end in the first period
   double energy = 0;        ///< J/m^2 at the start
-  double energy_error = 0;  ///< largest, relative
+  double energy_error = 0;  ///< largest relative error
 };
 
 Found vibrate(const Bar& bar) {
@@ -86,7 +86,7 @@ Found vibrate(const Bar& bar) {
   return found;
 }
 
-/// rms error of position after a whole period, over the amplitude.
+/// The rms error of position after a whole period, over the amplitude.
 double error(const Bar& bar) {
   Scene scene(scene_text, settings(bar));
   const double w = (2 * bar.mode - 1) * pi / (2 * length) * wave_speed;
@@ -140,9 +140,9 @@ TEST_CASE("bar vibration: without crossings linear functions are of second order
 }
 
 TEST_CASE("bar vibration: with strains of one, cells are crossed: noise but for domains that stretch", "[bar]") {
-  // No exact solution: noise is the second difference of neighbours' stretches, when the wave has gone a fifth of its
-  // way and the bar is stretched by up to 1.6. With one particle a cell, splines leave nodes between particles that are
-  // two cells apart: they are no better than linear functions here. CPDI's domains stretch with the bar.
+  // There is no exact solution: noise is the second difference of neighbours' stretches, when the wave has gone a fifth
+  // of its way and the bar is stretched by up to 1.6. With one particle a cell, splines leave nodes between particles
+  // that are two cells apart: they are no better than linear functions here. CPDI's domains stretch with the bar.
   std::printf("Bar, v0 = 10 m/s: rms second difference of the stretch at t = 1 s on 25, 50, 100 cells\n");
   std::vector<double> finest;
   for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic", "cpdi"}) {

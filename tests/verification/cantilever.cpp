@@ -18,7 +18,7 @@ namespace {
 constexpr double length = 1, thickness = 0.05, modulus = 1e6, poisson = 0.3, density = 1000;
 constexpr double stiffness = modulus * thickness * thickness * thickness / (12 * (1 - poisson * poisson));
 
-// H / L = 1 / 20, held at x = 0.
+// The beam has H / L = 1 / 20 and is held at x = 0.
 const char* beam = R"J({
   "dimension": 2,
   "grid": {"cell_size": 0.0125, "domain": [[0, -1], [1.1, 0.1]], "boundaries": {"all": "free", "x_min": "stick"}},
@@ -28,12 +28,12 @@ const char* beam = R"J({
   "gravity": [0, -1],
   "solver": {"time_step": "auto", "courant": 0.4, "end_time": 1}, "output": {"ledger": false}})J";
 
-/// Tip of a beam under kappa = q L^3 / EI by shooting, Runge-Kutta of fourth order. With R = kappa (1 - s) downwards on
-/// the section, thickness H over length a, nu = 0.3 and plane strain (Reissner 1972; shear factor 5/6):
+/// The tip of a beam under kappa = q L^3 / EI by shooting, Runge-Kutta of fourth order. With R = kappa (1 - s)
+/// downwards on the section, thickness H over length a, nu = 0.3 and plane strain (Reissner 1972; shear factor 5/6):
 ///   theta'' = -R x',  x' = (1 + e) cos(theta) - g sin(theta),  y' = (1 + e) sin(theta) + g cos(theta),
 ///   stretch e = R sin(theta) EI / (EA L^2),  EI / (EA L^2) = a^2 / 12,
 ///   shear g = R cos(theta) EI / (5/6 GA L^2),  EI / (5/6 GA L^2) = a^2 / (5 (1 - nu)).
-/// theta(0) = 0, theta'(1) = 0; a = 0 is the elastica. @returns x, y (downwards) over L.
+/// The ends have theta(0) = 0 and theta'(1) = 0; a = 0 is the elastica. Returns x and y (downwards) over L.
 std::pair<double, double> beam_tip(double kappa, double a) {
   using State = std::array<double, 4>;  // theta, theta', x, y
   const double stretch = a * a / 12, shear = a * a / (5 * (1 - poisson));
@@ -68,8 +68,8 @@ std::pair<double, double> beam_tip(double kappa, double a) {
 }
 
 struct Rest {
-  double x = 0, y = 0;  ///< of the tip, over L
-  double speed = 0;     ///< m/s, largest
+  double x = 0, y = 0;  ///< place of the tip, over L
+  double speed = 0;     ///< m/s, largest speed
   double misfit = 0;    ///< rms |x_q - x_p - (F_p + F_q) dX / 2| / |dX| of neighbours p, q along the beam
 };
 
@@ -77,7 +77,7 @@ struct Rest {
 double neighbour_misfit(const std::vector<double>& X, const BodyState& state) {
   const auto& F = state.material_state.at("deformation_gradient");
   const std::vector<double>& x = state.position;
-  std::map<std::pair<double, double>, std::size_t> rows;  // by Y, then by X
+  std::map<std::pair<double, double>, std::size_t> rows;  // rows by Y, then by X
   for (std::size_t p = 0; p < X.size() / 2; ++p) rows[{std::round(1e6 * X[2 * p + 1]), X[2 * p]}] = p;
   double sum = 0, count = 0;
   for (auto at = rows.begin(), next = std::next(at); next != rows.end(); ++at, ++next) {
@@ -99,7 +99,7 @@ Rest settle(double kappa, const std::vector<std::string>& more) {
   const std::vector<double> X = scene.body().position;
   const Totals end = scene.run();
   const std::vector<double> x = scene.body().position;
-  // The end of the middle line, from the four particles beside it in the last two columns.
+  // The end of the middle line is found from the four particles beside it in the last two columns.
   Rest rest{.speed = end.largest_speed, .misfit = neighbour_misfit(X, scene.body())};
   double last = 0, next = 0;
   for (std::size_t p = 0; p < X.size(); p += 2) last = std::max(last, X[p]);
@@ -139,7 +139,7 @@ namespace {
 /// Distance of the tip from the elastica's, and from that of the beam that shears and stretches, over L.
 struct Gap {
   double elastica = 0, beam = 0;
-  double misfit = 0;  ///< of Rest
+  double misfit = 0;  ///< misfit of Rest
 };
 
 Gap check_rest(const std::string& shape, double cell, double kappa, double bound, double end = 12) {

@@ -44,7 +44,7 @@ std::vector<char> with_first(std::vector<char> bytes, const std::string& field, 
   return bytes;
 }
 
-/// Momenta of the three probes over dt after one step, the loaded particle being at x.
+/// The momenta of the three probes over dt after one step, the loaded particle being at x.
 std::vector<double> forces(const std::string& shape, double x) {
   const Experiment experiment = experiment_from(line(shape));
   Simulation simulation(experiment, [x](const Experiment& e, const Plan& p, std::vector<SeededBody> bodies) {
@@ -83,7 +83,7 @@ TEST_CASE("the force of a node jumps by sigma V / h at a cell face on tents, on 
       for (int k = 0; k < 3; ++k) jump[k] = (after[k] - before[k]) / pull;
       if (place == 4) std::printf("  %-17s %9.1e %9.1e %9.1e\n", shape.c_str(), jump[0], jump[1], jump[2]);
       INFO(shape << " at " << place << ": " << jump[0] << " " << jump[1] << " " << jump[2]);
-      CHECK(std::abs(after[0] - after[2]) > 0.1 * pull);  // it is felt
+      CHECK(std::abs(after[0] - after[2]) > 0.1 * pull);  // the crossing is felt
       const bool crosses = shape == "linear" && place == 4;
       // On tents a probe sees its own node, whose mass is its own and, of the middle one, the loaded particle's.
       const double loaded = 1 / (1 + 0.25 / heavy);

@@ -22,7 +22,7 @@ const char* discs = R"J({
     {"name": "upper", "material": "m", "geometry": {"type": "ball", "centre": [0.8, 0.8], "radius": 0.2}, "velocity": [-0.1, -0.1]}],
   "solver": {"time_step": 0.001, "end_time": 3.5}, "output": {"ledger": false}})J";
 
-// The upper disc moved by 0.1 across its velocity, both in free space.
+// The upper disc is moved by 0.1 across its velocity, both in free space.
 const std::vector<std::string> oblique{
     R"(/grid={"cell_size": 0.025, "domain": [[-0.1, -0.1], [1.1, 1.1]], "boundaries": {"all": "free"}})",
     "/bodies/1/geometry/centre=[0.729289322, 0.870710678]", "/solver/end_time=3"};
@@ -45,7 +45,7 @@ TEST_CASE("two discs: masses and kinetic energy tend to the discs'", "[discs]") 
     const Scene scene(discs, {set("/grid/cell_size", digits(1.0 / n))});
     const Totals start = scene.metrics.initial();
     std::printf("  %d: %.4f %.8f\n", n, start.mass / 2, start.kinetic);
-    // 0.96 % on 40 cells; the count of lattice points in a circle errs by less than its edge's.
+    // The error is 0.96 % on 40 cells; the count of lattice points in a circle errs by less than its edge's.
     const double bound = n == 40 ? 0.01 : 0.35 / n;
     CHECK(start.mass == Approx(2 * mass).epsilon(bound));
     CHECK(start.kinetic == Approx(kinetic).epsilon(bound));
@@ -56,11 +56,11 @@ TEST_CASE("two discs: masses and kinetic energy tend to the discs'", "[discs]") 
 namespace {
 
 struct Collision {
-  double first = 0, clear = 0;   ///< s: strain energy above 1e-6 and 1e-2 of the kinetic
-  double kept = 0, kinetic = 0;  ///< at the end, total and kinetic over the initial
-  double largest = 0;            ///< total over the initial
-  double transfers = 0;          ///< lost over the initial in scatter and gather, by the ledger
-  double steps = 0;              ///< lost over the initial by time integration, likewise
+  double first = 0, clear = 0;   ///< s at which strain energy is above 1e-6 and 1e-2 of the kinetic
+  double kept = 0, kinetic = 0;  ///< total and kinetic energy at the end, over the initial
+  double largest = 0;            ///< largest total energy over the initial
+  double transfers = 0;          ///< loss over the initial in scatter and gather, by the ledger
+  double steps = 0;              ///< loss over the initial by time integration, likewise
   double drift = 0;              ///< kg m/s, momentum at the end
   double mass = 0;
 };
@@ -124,13 +124,13 @@ TEST_CASE("two discs: time of touch and energy of every transfer", "[discs]") {
     CHECK(found.clear < touch);
     CHECK(found.clear > touch - 2 * cell / approach);
   };
-  // E_tot within 2 %: FLIP with MUSL on every shape, as in the literature (linear); on gimp with USL too. USL takes 2 %
-  // on wider shapes, see below.
+  // The case asks for E_tot within 2 %: FLIP with MUSL keeps it on every shape, as in the literature (linear); on gimp
+  // with USL too. USL takes 2 % on wider shapes, see below.
   for (const std::string shape : {"linear", "gimp", "bspline_quadratic"}) check(shape, "flip", "modified_last", 0.98);
   check("gimp", "flip", "last", 0.98);
   for (const std::string shape : {"linear", "bspline_quadratic", "cpdi"}) check(shape, "flip", "last", 0.96, 0.98);
   check("bspline_cubic", "flip", "last", 0.93, 0.95);
-  // AFLIP and ASFLIP take 1 % of PIC at every step, the others all of it; what finer cells give is below.
+  // At every step AFLIP and ASFLIP take 1 % of PIC, the others all of it; what finer cells give is below.
   for (const std::string transfer : {"aflip", "asflip"}) check("gimp", transfer, "last", 0.97, 0.98);
   for (const std::string transfer : {"apic", "mls", "tpic"}) check("gimp", transfer, "last", 0.75, 0.82);
   for (const std::string transfer : {"rpic", "pic"}) check("gimp", transfer, "last", 0.1, 0.3);
@@ -150,7 +150,7 @@ TEST_CASE("two discs: what is lost goes in the transfers or by the time step", "
   CHECK(1 - lost("bspline_quadratic flip, dt/2", usl + set("/solver/time_step", "0.0005")).kept < 0.7 * whole);
   CHECK(std::abs(1 - lost("bspline_quadratic flip MUSL", scheme("bspline_quadratic", "flip", "modified_last")).kept) <
         0.1 * whole);
-  // APIC's is its scatter and gather.
+  // The loss of APIC is that of its scatter and gather.
   const Collision apic = lost("gimp apic", scheme("gimp", "apic"));
   CHECK(apic.transfers > 0.9 * (1 - apic.kept));
 }
@@ -162,7 +162,8 @@ TEST_CASE("two discs: losses fall with the step or with the cells", "[discs][slo
     check_collision(name, found, 0.1);
     return 1 - found.kept;
   };
-  // USL: within 2 % at a quarter of the step, bspline_cubic just not. On linear a smaller step hardly helps.
+  // With USL the loss is within 2 % at a quarter of the step, on bspline_cubic just not. On linear a smaller step
+  // hardly helps.
   for (const std::string shape : {"gimp", "bspline_quadratic", "cpdi", "bspline_cubic"}) {
     const auto usl = scheme(shape, "flip");
     const double whole = lost(shape + " flip", usl);
@@ -185,7 +186,7 @@ TEST_CASE("two discs: losses fall with the step or with the cells", "[discs][slo
     CHECK(std::log2(coarse / fine) / 2 > (affine ? 1.5 : 0.6));
     if (affine) CHECK(fine < 0.025);
   }
-  // FMPM on PIC: the higher its order, the less.
+  // The higher the order of FMPM on PIC, the less is lost.
   const auto filtered = [&](int order) {
     const std::string number = std::to_string(order);
     return lost("gimp fmpm " + number,
@@ -217,7 +218,7 @@ TEST_CASE("angular momentum of an oblique collision", "[discs]") {
       CHECK(kept == Approx(1).epsilon(0.005));
   };
   for (const std::string transfer : {"apic", "mls", "tpic", "rpic", "pic"}) check("one field", "null", transfer);
-  // apic and mls with friction: discs.cpp.
+  // The friction of apic and mls is in discs.cpp.
   for (const std::string transfer : {"tpic", "rpic"}) check("friction 0.3", friction, transfer);
   check("no friction", R"({"type": "coulomb", "friction": 0})", "flip");
 }
@@ -232,7 +233,7 @@ TEST_CASE("the spin that FLIP, AFLIP and ASFLIP lose in a collision", "[discs]")
     return oblique + set("/transfer/type", transfer) + set("/shape/type", "bspline_quadratic");
   };
   for (const std::string& transfer : transfers) {
-    // Without the share of PIC that AFLIP and ASFLIP take otherwise.
+    // The runs go without the share of PIC that AFLIP and ASFLIP take otherwise.
     Scene scene(discs, settings(transfer) + set("/transfer/pic_fraction", "0"));
     const SpinBalance found = spin_balance(scene, 1000, 0.3);
     check_balance(transfer, found);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double youngs_modulus = 1e6, density = 80, gravity = 10, height = 50;
 
-/// Gravity grows smoothly over 20 s, eleven periods of the column, so that it settles without swinging.
+/// The column. Gravity grows smoothly over 20 s, eleven periods of the column, so that it settles without swinging.
 std::string column(const std::string& shape, double cell) {
   const double top = std::ceil(height / cell + 1) * cell;
   return R"({"dimension": 2, "backend": "cpu", "grid": {"cell_size": )" + digits(cell) + R"(, "domain": [[0, 0], [)" +
@@ -28,7 +28,7 @@ std::string column(const std::string& shape, double cell) {
 })";
 }
 
-/// Neo-Hookean at nu = 0: sigma = mu (l - 1 / l), l the vertical stretch, mu = E / 2.
+/// The stress of a Neo-Hookean column at nu = 0: sigma = mu (l - 1 / l), l the vertical stretch, mu = E / 2.
 double stress(double stretch) {
   return 0.5 * youngs_modulus * (stretch - 1 / stretch);
 }

@@ -35,7 +35,7 @@ std::vector<Case> cases_of_ends() {
   return cases;
 }
 
-/// Errors with 8, 16 ... cells.
+/// The errors with 8, 16 ... cells.
 std::vector<double> errors_of(const Case& slab_case, Slab slab, const std::vector<double>& cells) {
   std::vector<double> errors;
   for (const double count : cells) {
@@ -60,7 +60,7 @@ TEST_CASE("conduction is of second order with every kind of end", "[temperature]
         const auto errors = errors_of(with_end, slab, {8, 16, 32});
         INFO(backend << " " << shape << ", " << with_end.name << ": errors " << errors[0] << " " << errors[1] << " "
                      << errors[2] << " K");
-        CHECK(errors[0] < 0.25);  // of 10 to 30 K
+        CHECK(errors[0] < 0.25);  // of temperatures of 10 to 30 K
         CHECK(observed_order({1, 2, 4}, errors) == Approx(-2).margin(0.1));
       }
 }
@@ -106,7 +106,7 @@ TEST_CASE("every transfer keeps a straight profile between walls to rounding", "
         scene.run_steps(20);
         const BodyState state = scene.body();
         CHECK(temperature_error(state, 2, [](double x) { return 300 + 40 * x; }) < 1e-11);
-        // What the transfer carries beside is the gradient, 40 K/m along x.
+        // The transfer also carries the gradient, 40 K/m along x.
         for (const char* name : {"temperature_of_affine_velocity", "temperature_of_velocity_gradient"}) {
           const auto found = state.host_state.find(name);
           if (found == state.host_state.end()) continue;
@@ -125,7 +125,7 @@ TEST_CASE("a box of nodes gives its power, and holds its temperature", "[tempera
       "heating": "100*t"}], "shape")";
     Scene scene(text.replace(text.find("\"shape\""), 7, heated));
     const Totals end = scene.run();
-    // Left Riemann sum of 100 t over the steps.
+    // The power is the left Riemann sum of 100 t over the steps.
     double power = 0;
     const double dt = scene.simulation.largest_time_step();
     for (double t = 0; t < slab.end * (1 - 1e-9); t += dt) power += 100 * t * std::min(dt, slab.end - t);

@@ -17,7 +17,7 @@ namespace {
 
 const std::vector<std::string> backends{"reference", "cpu"};
 
-// A square that is sheared, turned and bent by its first velocities; no walls, no forces but its own.
+// A square that is sheared, turned and bent by its first velocities, without walls and forces but its own.
 std::string bending(int dimension) {
   const bool flat = dimension == 2;
   return R"({"title": "bending", "dimension": )" + std::to_string(dimension) + R"(,
@@ -79,7 +79,8 @@ std::vector<Vec<D, double>> random_corners(std::mt19937& random, double bend) {
 }  // namespace
 
 TEST_CASE("the means over a quadrilateral are those of the paper", "[kernel][cpdi2]") {
-  // Sadeghirad et al. 2013: weights from the areas a and b, gradients from the opposite corners; corners in a ring.
+  // By Sadeghirad et al. 2013 weights follow from the areas a and b, gradients from the opposite corners; corners in a
+  // ring.
   std::mt19937 random(4);
   for (int trial = 0; trial < 200; ++trial) {
     const auto corner = random_corners<2>(random, 0.12);
@@ -104,7 +105,7 @@ TEST_CASE("the means over a quadrilateral are those of the paper", "[kernel][cpd
 }
 
 TEST_CASE("8 Gauss points integrate a hexahedron exactly, and keep volume and affine fields", "[kernel][cpdi2]") {
-  // Against 64 points; the divergence of x is the volume's own.
+  // The integrals are compared with 64 points; the divergence of x is the volume's own.
   const double place[4] = {.8611363115940526, .3399810435848563, -.3399810435848563, -.8611363115940526};
   const double share[4] = {.3478548451374538, .6521451548625461, .6521451548625461, .3478548451374538};
   std::mt19937 random(5);
@@ -184,8 +185,8 @@ TEST_CASE("on a parallelogram CPDI2 is CPDI", "[kernel][cpdi2]") {
 }
 
 TEST_CASE("under affine motion CPDI2 moves as CPDI, to rounding", "[cpdi2]") {
-  // One long step: the field of bodies in free flight is affine only at the start, since C lags behind it. (With USAVG
-  // CPDI's domain takes two half strains, (1 + dt L / 2)^2, and corners one way, 1 + dt L.)
+  // Only one long step is made: the field of bodies in free flight is affine only at the start, since C lags behind it.
+  // (With USAVG CPDI's domain takes two half strains, (1 + dt L / 2)^2, and corners one way, 1 + dt L.)
   for (const std::string& backend : backends)
     for (const std::string order : {"last", "first", "modified_last"}) {
       const auto run = [&](const std::string& shape) {

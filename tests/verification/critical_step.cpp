@@ -31,7 +31,7 @@ enum class Scheme { flip_last, pic_last, flip_other, pic_other, xpic, fmpm };
 struct Column {
   const char* name;
   Scheme scheme;
-  int order;  // of the filter
+  int order;  // order of the filter
   const char *transfer, *update;
 };
 
@@ -49,8 +49,8 @@ constexpr std::array columns{
 
 struct Row {
   const char* name;
-  std::vector<std::string> shapes;  // all the same where particles are boxes of one cell
-  double offset;                    // 0: at cell centres, 1/2: on nodes
+  std::vector<std::string> shapes;  // shapes that are the same where particles are boxes of one cell
+  double offset;                    // 0: particles at cell centres, 1/2: on nodes
   std::array<double, columns.size()> table;
 };
 
@@ -79,7 +79,7 @@ const std::vector<Row>& rows() {
 }
 
 struct Symbol {
-  double weight, gradient;  // moduli, of the shape and of its derivative in units of 1 / h
+  double weight, gradient;  // moduli of the shape's symbol and of its derivative's, in units of 1 / h
 };
 
 Symbol symbol_of(std::size_t row, double theta) {
@@ -98,7 +98,7 @@ Symbol symbol_of(std::size_t row, double theta) {
 
 bool is_bounded(const Column& column, double s2, double z2) {
   const double kept = 1 - std::pow(1 - s2, column.order);
-  // K of FMPM in the limit of s2 = 0 is the order.
+  // In the limit of s2 = 0 the K of FMPM is the order.
   const double K = s2 > 1e-12 ? kept / s2 : column.order;
   double trace = 0, det = 0;
   switch (column.scheme) {
@@ -122,7 +122,7 @@ bool is_bounded(const Column& column, double s2, double z2) {
   return std::abs(trace) <= 1 + det + 1e-12 && det <= 1 + 1e-12;
 }
 
-/// C_max by the formulas above.
+/// The limit C_max by the formulas above.
 double exact_limit(std::size_t row, const Column& column, int cells) {
   const auto all_bounded = [&](double courant) {
     for (int n = 1; 2 * n <= cells; ++n) {
@@ -159,7 +159,8 @@ bool stable(const Line& line) {
   return last < 4 * middle;
 }
 
-/// The shortest wave does not show in the velocities of particles at cell centres: jitter brings it in.
+/// The line of a run. The shortest wave does not show in the velocities of particles at cell centres: jitter brings it
+/// in.
 Line line_of(const std::string& shape, const Row& row, const Column& column, int cells) {
   const bool is_filtered = column.scheme == Scheme::xpic || column.scheme == Scheme::fmpm;
   return {.shape = shape,
@@ -177,7 +178,7 @@ bool stable_at(Line line, double courant) {
   return stable(line);
 }
 
-/// C_max to within 0.001 by runs, from 3 % below to 3 % above `expected`, both of which are run.
+/// The limit C_max to within 0.001 by runs, from 3 % below to 3 % above `expected`, both of which are run.
 double found_limit(const Line& line, double expected) {
   double low = 0.97 * expected, high = 1.03 * expected;
   if (!stable_at(line, low)) return 0;
@@ -233,7 +234,7 @@ TEST_CASE("FMPM at cell centres is stable to 1 / sqrt(2 k)", "[critical_step]") 
   }
 }
 
-// See stress_update.cpp: z is 2 C sin(theta / 2) at cell centres and C sin(theta) on nodes.
+// Here z is 2 C sin(theta / 2) at cell centres and C sin(theta) on nodes (stress_update.cpp).
 TEST_CASE("averaged stress updates are stable to z = 2", "[critical_step]") {
   for (const auto& [row, expected] : {std::pair{0, 1.0}, std::pair{2, 2.0}})
     for (const char* transfer : {"flip", "pic"}) {
@@ -274,7 +275,7 @@ TEST_CASE("a line of 32 cells has the limits of its own waves", "[critical_step]
     }
     std::printf("\n");
   }
-  // What the case's table would miss: USF-PIC of a long line, 1 + 1 / sqrt(2).
+  // The case's table would miss the limit of USF-PIC on a long line, 1 + 1 / sqrt(2).
   CHECK(exact_limit(0, columns[5], 4096) == Approx(1 + root_half).epsilon(1e-5));
 }
 

@@ -25,7 +25,7 @@ const char* spinning = R"J({
               "velocity": ["-w*(y-0.8)", "w*(x-0.8)"]}],
   "solver": {"time_step": "auto", "courant": 0.4, "end_time": 0.25}, "output": {"ledger": false}})J";
 
-// Without stress, drawn out along x at a constant rate: F_xx = 1 + 2 t.
+// The body is without stress and drawn out along x at a constant rate: F_xx = 1 + 2 t.
 const char* drawn = R"J({
   "title": "drawn out", "dimension": 2, "precision": "double", "backend": "reference",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [8, 1]], "boundaries": {"all": "slip"}},
@@ -34,7 +34,7 @@ const char* drawn = R"J({
   "bodies": [{"name": "bar", "material": "m", "geometry": {"type": "box", "lower": [1, 0.3], "upper": [1.4, 0.7]}, "velocity": ["2*x", 0]}],
   "solver": {"time_step": 0.001, "end_time": 3}, "output": {"ledger": false}})J";
 
-/// Smallest and largest half length of the boxes of a body, in cells.
+/// The smallest and largest half length of the boxes of a body, in cells.
 std::pair<double, double> half_lengths(const BodyState& state, double cell_size, double stretch_by) {
   std::pair<double, double> range{1e9, 0};
   for (std::size_t k = 0; k < state.domain.size(); k += 4) {
@@ -78,7 +78,7 @@ TEST_CASE("the box follows a stretch, and a run stops by name where four nodes d
     } catch (const RunFailure& failure) {
       end = {failure.cause, failure.particle, scene.simulation.steps()};
     }
-    // A box as long as two cells, and longer by no more than one step's stretch.
+    // The longest box is two cells long, and longer by no more than one step's stretch.
     const double longest = half_lengths(scene.body(), 0.1, 0).second;
     CHECK(longest > 1);
     CHECK(longest < 1.003);
@@ -103,8 +103,8 @@ TEST_CASE("the box follows a stretch, and a run stops by name where four nodes d
 
 TEST_CASE("a bar that is thrown from its clamp does not come apart while contiguous boxes are shorter than a cell",
           "[gimp_contiguous]") {
-  // Lesson 5's bar, stretched by 4. Finite differences (lessons_3_to_5.cpp) have its centre of mass at 0.467 m in the
-  // end.
+  // The bar is that of lesson 5, stretched by 4. Finite differences (lessons_3_to_5.cpp) have its centre of mass at
+  // 0.467 m in the end.
   const auto last = [](const std::string& shape, const std::string& particles) {
     Lesson bar("stretched_bar_gimp", {"/shape=" + shape, set("/bodies/0/particles_per_cell_axis", particles)});
     Totals now;
@@ -120,6 +120,6 @@ TEST_CASE("a bar that is thrown from its clamp does not come apart while contigu
     CHECK(centre == Approx(0.4695).margin(0.001));
     CHECK(energy == Approx(0.999).margin(0.001));
   }
-  CHECK(last(R"({"type":"gimp"})", "4").first > 2);  // in pieces
-  CHECK(last(by_F, "2").first > 1.5);                // boxes of up to two cells: so is this one
+  CHECK(last(R"({"type":"gimp"})", "4").first > 2);  // the bar is in pieces
+  CHECK(last(by_F, "2").first > 1.5);                // boxes of up to two cells leave it in pieces too
 }
