@@ -18,7 +18,7 @@ const std::vector<std::string> shapes{
     "linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2"};
 const std::vector<std::string> filtered_transfers{"pic", "apic", "mls", "tpic", "rpic", "polypic"};
 
-/// Filtered every few steps; at every step they are refused.
+/// Whether a transfer is of the FLIP family, which is filtered every few steps; at every step it is refused.
 bool is_flip(const std::string& transfer) {
   return transfer.ends_with("flip");
 }
@@ -28,7 +28,7 @@ std::vector<std::string> all_transfers() {
   return all;
 }
 
-// Random places, and velocities that the grid cannot hold.
+// The particles have random places, and velocities that the grid cannot hold.
 const char* rough = R"J({
   "title": "rough field", "dimension": 2, "precision": "double", "backend": "reference",
   "constants": {"U": 0, "W": 0},
@@ -65,14 +65,14 @@ double largest_difference(const Scene& a, const Scene& b) {
                   largest_difference(a.body().position, b.body().position));
 }
 
-/// Velocities after `steps` steps of no duration.
+/// The velocities after `steps` steps of no duration.
 std::vector<double> visited(const std::vector<std::string>& overrides, int steps) {
   Scene scene(rough, overrides + set("/solver/time_step", "1e-15"));
   scene.run_steps(steps);
   return scene.body().velocity;
 }
 
-/// sum_(j<k) (I - S+S)^j v from v, S+S v, ...: binomials -(-1)^j (k choose j).
+/// The sum sum_(j<k) (I - S+S)^j v from v, S+S v, ...: binomials -(-1)^j (k choose j).
 std::vector<double> combined(const std::vector<std::string>& overrides, int order) {
   std::vector<double> sum;
   double binomial = 1;
@@ -126,7 +126,7 @@ TEST_CASE("a filter of order k combines the first k visits of the grid", "[filte
 }
 
 TEST_CASE("a moving wall is a wall at rest seen from a moving train", "[filters][walls]") {
-  // All velocities of a stick wall's run plus those of the wall.
+  // The velocities expected are all those of a stick wall's run plus those of the wall.
   const std::string stick = set("/grid/boundaries", R"({"all":"stick"})");
   const std::string moving = set("/grid/boundaries", R"({"all":{"type":"prescribed","velocity":["2","-3"]}})");
   for (const std::string& backend : backends)
@@ -241,7 +241,8 @@ TEST_CASE("no wall breaks the contraction", "[filters][walls]") {
                                              set("/grid/boundaries/all", wall), set("/solver/time_step", "1e-4")});
         scene.run_steps(5);
         INFO(backend << " " << shape << " " << transfer << " " << wall);
-        // On two nodes an axis multilinear polynomials are all there are: PolyPIC leaves the filter nothing to do.
+        // Polynomials that are multilinear are all there are on two nodes an axis: PolyPIC leaves the filter nothing to
+        // do.
         if (shape == "linear" && transfer == "polypic")
           CHECK(scene.simulation.backend().filter_record().last_norm <
                 1e-12 * scene.simulation.backend().filter_record().first_norm);
@@ -261,7 +262,8 @@ TEST_CASE("the record takes the largest growth, of rounding none", "[filters]") 
 }
 
 TEST_CASE("the loop contracts in the mass norm, and ends at the tolerance", "[filters]") {
-  // S+ S of PIC and of the affine transfers is a mean of projections in the mass norm: I - S+S never grows anything.
+  // The operator S+ S of PIC and of the affine transfers is a mean of projections in the mass norm: I - S+S never grows
+  // anything.
   for (const std::string& backend : backends)
     for (const auto& [shape, transfer] : pairs_of(shapes, {"pic", "apic", "mls", "rpic", "polypic"})) {
       const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),

@@ -31,11 +31,11 @@ std::string flight(int dimension) {
 }
 
 struct Errors {
-  double position = 0, velocity = 0, momentum = 0;  // relative; velocity and momentum to the speed
-  double deformation = 0, domain = 0;               // of F; of a domain's sides or corners over its own size
+  double position = 0, velocity = 0, momentum = 0;  // all relative; velocity and momentum to the speed
+  double deformation = 0, domain = 0;               // error of F; error of a domain's sides or corners over its size
 };
 
-/// Largest difference over the largest expected entry.
+/// The largest difference over the largest expected entry.
 double relative(const std::vector<double>& found, const std::vector<double>& expected) {
   double size = 0;
   for (const double value : expected) size = std::max(size, std::abs(value));
@@ -75,7 +75,7 @@ bool takes_increments(const Plugin& transfer) {
   return transfer.transfer().traits & MPM_GATHERS_INCREMENT;
 }
 
-/// Each as the value of /transfer, with the whole basis of PolyPIC beside the default.
+/// All transfers, each as the value of /transfer, with the whole basis of PolyPIC beside the default.
 std::vector<std::pair<const Plugin*, std::string>> all_transfers() {
   std::vector<std::pair<const Plugin*, std::string>> all;
   for (const Plugin* transfer : plugins().of_kind(MPM_TRANSFER)) {
@@ -86,7 +86,7 @@ std::vector<std::pair<const Plugin*, std::string>> all_transfers() {
   return all;
 }
 
-/// Which pairs exist: products of polynomials need nodes along axes, their powers all of a stencil's nodes.
+/// Whether a pair is refused: products of polynomials need nodes along axes, their powers all of a stencil's nodes.
 bool is_refused(const std::string& shape, const std::string& transfer) {
   if (transfer.find("polypic") == transfer.npos) return false;
   return shape.find("cpdi") == 0 || (transfer.find("full") != transfer.npos && shape.find("gimp") != shape.npos);
@@ -104,7 +104,7 @@ void print_heading(const char* filters) {
               filters);
 }
 
-/// All pairs of shape and transfer on a backend, with a filter (its type and order) or none.
+/// Flies all pairs of shape and transfer on a backend, with a filter (its type and order) or none.
 Count fly_all(int dimension, const std::string& backend, const std::string& filter) {
   Count count;
   for (const Plugin* shape : plugins().of_kind(MPM_SHAPE))

@@ -8,7 +8,7 @@ using namespace mpm::test;
 
 namespace {
 
-/// Velocities of 1, steps of a tenth of a cell's transit; no stiffness to speak of.
+/// A line with velocities of 1 and steps of a tenth of a cell's transit; no stiffness to speak of.
 Line finite_line() {
   Line line;
   line.time_step = 0.1, line.youngs_modulus = 1e-30, line.frozen = true;

@@ -99,7 +99,7 @@ TEST_CASE("the heat ledger closes to rounding whatever heats, moves and melts", 
     };
     for (const std::string& transfer : carriers) {
       INFO(backend << " " << transfer);
-      // From wall to wall, so that every row has something to say.
+      // The block moves from wall to wall, so that every row has something to say.
       Scene scene(wax(backend), {"/transfer/type=\"" + transfer + "\"", "/bodies/0/velocity=[0, 0]",
                                  "/bodies/0/geometry/lower=[0, 0]", "/bodies/0/geometry/upper=[1, 0.5]"});
       check(scene);
@@ -124,7 +124,7 @@ TEST_CASE("a scene with temperature goes on from what it saved with the same bit
 }
 
 TEST_CASE("a melted body has the parameters of its melt", "[temperature]") {
-  // The same scene twice: of a solid with the melt's parameters, and of a material that is melted from the start.
+  // The same scene runs twice: of a solid with the melt's parameters, and of a material that is melted from the start.
   for (const std::string& backend : heat_backends()) {
     const auto scene_of = [&](const std::string& material) {
       return R"J({"dimension": 2, "backend": ")J" + backend + R"J(",

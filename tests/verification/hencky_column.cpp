@@ -22,7 +22,7 @@ double exact_stress(double Y) {
   return -density * gravity * (height - Y);
 }
 
-/// Root of E ln(l) / l = stress by Newton's method.
+/// The root of E ln(l) / l = stress by Newton's method.
 double stretch_of(double stress) {
   double l = 1;
   for (int k = 0; k < 50; ++k)
@@ -30,7 +30,7 @@ double stretch_of(double stress) {
   return l;
 }
 
-/// Height at rest of what began at Y: the integral of the stretch, by Simpson's rule.
+/// The height at rest of what began at Y: the integral of the stretch, by Simpson's rule.
 double exact_height(double Y) {
   constexpr int n = 1000;
   double sum = 0;
@@ -38,7 +38,7 @@ double exact_height(double Y) {
   return sum * Y / n / 3;
 }
 
-/// Gravity grows over 20 s, eleven periods 4 L / c.
+/// The column. Gravity grows over 20 s, eleven periods 4 L / c.
 const char* column = R"J({
   "dimension": 2,
   "grid": {"cell_size": 1, "domain": [[0, 0], [1, 60]], "boundaries": {"all": "slip"}},
@@ -59,7 +59,7 @@ std::vector<std::string> settings(const std::string& shape, const std::string& t
 
 struct Settled {
   double stress_error = 0;      ///< sum |sigma_p - sigma| V0 / (g density l0 V)
-  std::vector<double> heights;  ///< m, of Y = 10, 25, 40, 50
+  std::vector<double> heights;  ///< m, heights of Y = 10, 25, 40, 50
 };
 
 const std::vector<double> marks{10, 25, 40, 50};
@@ -101,7 +101,7 @@ namespace {
 
 const std::vector<double> grids{5, 2.5, 1.25, 0.625};
 
-/// Stress errors on `cells`; prints them, and the heights on the last.
+/// The stress errors on `cells`; prints them, and the heights on the last.
 std::vector<double> errors_on(const std::string& shape, const std::vector<double>& cells,
                               std::vector<double>& heights) {
   std::vector<double> errors;

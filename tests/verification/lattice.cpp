@@ -9,10 +9,10 @@ using namespace mpm::test;
 
 namespace {
 
-/// |symbol of S|^2 of a particle at the middle of a cell (offset 0) or on a node (1/2). The domain of a cpdi
+/// The squared symbol |S|^2 of a particle at the middle of a cell (offset 0) or on a node (1/2). The domain of a cpdi
 /// or cpdi2 particle on a node straddles it: weights 1/4, 1/2, 1/4.
 double symbol_squared(const std::string& shape, double offset, double theta) {
-  if (shape == "bspline_cubic" || shape == "b2gimp") {  // the same at one particle a cell
+  if (shape == "bspline_cubic" || shape == "b2gimp") {  // both are the same at one particle a cell
     if (offset == 0) return std::pow((23 * std::cos(theta / 2) + std::cos(1.5 * theta)) / 24, 2);
     return std::pow((2 + std::cos(theta)) / 3, 2);
   }
@@ -50,14 +50,15 @@ TEST_CASE("damping of a mode by PIC, XPIC, FMPM and FLIP is that of the symbol",
 }
 
 TEST_CASE("affine transfers damp by the fourth power of the wave number", "[damping]") {
-  // 1 - (3/64) theta^4, against 1 - theta^2 / 4 of PIC; TPIC's gradient is APIC's affine matrix on this lattice.
+  // The factor is 1 - (3/64) theta^4, against 1 - theta^2 / 4 of PIC; TPIC's gradient is APIC's affine matrix on this
+  // lattice.
   const double theta = 2 * std::numbers::pi / 32;
   for (const char* transfer : {"apic", "mls", "tpic", "polypic"}) {
     INFO(transfer);
     const double loss = 1 - factor({.shape = "bspline_quadratic", .transfer = transfer, .offset = 0.5});
     CHECK(loss == Approx(3.0 / 64 * std::pow(theta, 4)).epsilon(0.05));
   }
-  // Lists of nodes on a node: second moment 1/2, first moment i sin(theta) / 2.
+  // For lists of nodes on a node the second moment is 1/2, the first moment i sin(theta) / 2.
   for (const int mode : modes) {
     const double angle = 2 * std::numbers::pi * mode / 32;
     const double exact = std::pow(std::cos(angle / 2), 4) + 0.5 * std::pow(std::sin(angle), 2);
@@ -73,7 +74,7 @@ TEST_CASE("affine transfers damp by the fourth power of the wave number", "[damp
 }
 
 TEST_CASE("the null space: FLIP keeps it, every other transfer and filter order removes it", "[null_space]") {
-  // Particles at 1/4 and 3/4 of their cell, with velocities +1 and -1: no node sees anything.
+  // The particles are at 1/4 and 3/4 of their cell, with velocities +1 and -1: no node sees anything.
   const auto alternating = [](double x) { return x - std::floor(x) < 0.5 ? 1.0 : -1.0; };
   for (const char* shape :
        {"linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2"}) {
@@ -92,8 +93,8 @@ TEST_CASE("the null space: FLIP keeps it, every other transfer and filter order 
     }
     for (const int order : {2, 5, 20})
       for (const char* type : {"xpic", "fmpm"}) CHECK(run("pic", filter(type, order), 1)->largest_speed() <= 1e-14);
-    // Periodic filtering is what removes FLIP's noise.
-    // Steps of 1e-13 s; waves and particles together run 2e-13 cells a step.
+    // Periodic filtering is what removes FLIP's noise. The steps last 1e-13 s; waves and particles together run 2e-13
+    // cells a step.
     for (const char* every_third : {"\"every_steps\": 3", "\"every_time\": 3e-13", "\"every_courant\": 5e-13"}) {
       INFO(every_third);
       const std::string periodic = R"({"type": "fmpm", "order": 4, )" + std::string(every_third) + "}";
@@ -101,6 +102,6 @@ TEST_CASE("the null space: FLIP keeps it, every other transfer and filter order 
       CHECK(run("flip", periodic, 3)->largest_speed() <= 1e-14);
     }
   }
-  // What the grid does see survives a high order: 1 - (1 - s2)^5 of the published check.
+  // The waves that the grid does see survive a high order: 1 - (1 - s2)^5 of the published check.
   CHECK(std::abs(factor({.filter = filter("xpic", 5), .mode = 4}) - .99993264) <= 1e-8);
 }

@@ -9,21 +9,21 @@
 
 namespace mpm::test {
 
-/// `transfer` is an id, or an object with parameters.
+/// A line of particles; `transfer` is an id, or an object with parameters.
 struct Line {
   std::string shape = "linear", transfer = "pic", filter = {}, stress_update = "last", backend = "reference";
   int cells = 32, particles_per_cell = 1, mode = 1;
   double offset = 0;         ///< cells by which the lattice is moved along the line
   double jitter = 0;         ///< largest shift of a particle, cells: couples modes that a perfect lattice keeps apart
   double time_step = 1e-13;  ///< s; with unit cells and unit wave speed, also the Courant number
-  double pic_fraction = 0;   ///< of flip
+  double pic_fraction = 0;   ///< pic_fraction of flip
   double youngs_modulus = 1;
   bool frozen = false;
 };
 
-/// Wave speed, cell size and density are one. Periodic across the line too: both rows of nodes are one, so that no
-/// shear across it, with a limit of its own, can grow out of rounding. Velocities are those of the mode, or what
-/// `velocity` gives of the place on the line before the offset.
+/// The scene of a line. Wave speed, cell size and density are one. It is periodic across the line too: both rows of
+/// nodes are one, so that no shear across it, with a limit of its own, can grow out of rounding. Velocities are those
+/// of the mode, or what `velocity` gives of the place on the line before the offset.
 class LineScene {
  public:
   explicit LineScene(const Line& line, const std::function<double(double)>& velocity = {})
@@ -50,21 +50,21 @@ class LineScene {
     for (std::size_t k = 0; k < state.velocity.size(); k += 2) v.push_back(state.velocity[k]);
     return v;
   }
-  /// On the line, cells from its start.
+  /// The particles' places on the line, cells from its start.
   std::vector<double> places() const {
     const BodyState state = simulation_.backend().body_state(0);
     std::vector<double> x;
     for (std::size_t k = 0; k < state.position.size(); k += 2) x.push_back(state.position[k]);
     return x;
   }
-  /// Along the line, F - 1.
+  /// The particles' strains along the line, F - 1.
   std::vector<double> strains() const {
     const auto F = simulation_.backend().body_state(0).material_state.at("deformation_gradient");
     std::vector<double> strain;
     for (std::size_t k = 0; k < F.size(); k += 4) strain.push_back(F[k] - 1);
     return strain;
   }
-  /// sum v sin(2 pi mode x / length).
+  /// The amplitude sum v sin(2 pi mode x / length).
   double amplitude() const {
     const BodyState state = simulation_.backend().body_state(0);
     double sum = 0;
@@ -78,7 +78,7 @@ class LineScene {
     return largest;
   }
 
-  /// Of velocity over wave speed and of strain: the shortest wave shows in strains only.
+  /// The largest of velocity over wave speed and of strain: the shortest wave shows in strains only.
   double largest_disturbance() const {
     double largest = largest_speed();
     for (const double strain : strains()) largest = std::max(largest, std::abs(strain));
@@ -115,7 +115,7 @@ class LineScene {
   Simulation simulation_;
 };
 
-/// Factor on the velocity of a mode in one step. The first step brings affine velocities to the mode's own.
+/// The factor on the velocity of a mode in one step. The first step brings affine velocities to the mode's own.
 inline double factor(const Line& line) {
   LineScene scene(line);
   scene.step();
@@ -124,12 +124,12 @@ inline double factor(const Line& line) {
   return scene.amplitude() / before;
 }
 
-/// The `filter` of an experiment.
+/// The `filter` of an experiment as JSON.
 inline std::string filter(const std::string& type, int order) {
   return R"({"type": ")" + type + R"(", "order": )" + std::to_string(order) + "}";
 }
 
-/// Those of `names` that this build has: tables also name shapes that a build may lack.
+/// The shapes of `names` that this build has: tables also name shapes that a build may lack.
 inline std::vector<std::string> shapes_present(const std::vector<std::string>& names) {
   std::vector<std::string> found;
   for (const std::string& name : names)

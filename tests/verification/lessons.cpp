@@ -15,7 +15,7 @@ double kept_spin(const Lesson& lesson, const Totals& end) {
   return end.angular_momentum[2] / lesson.metrics.initial().angular_momentum[2];
 }
 
-/// Share of the wave's energy that is left: the flight of the whole bar does not count.
+/// The share of the wave's energy that is left: the flight of the whole bar does not count.
 double kept_wave(const Lesson& lesson, const Totals& end, double drift) {
   const Totals& start = lesson.metrics.initial();
   const double flight = 0.5 * start.mass * drift * drift;

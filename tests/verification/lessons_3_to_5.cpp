@@ -34,8 +34,8 @@ double largest_distance(const Lesson& a, const Lesson& b) {
 
 /// Times and sizes of an impact.
 struct Impact {
-  double first_strain = -1;                        ///< s, strain energy above a thousandth of the total
-  double first_nodes = -1, last_nodes = -1;        ///< s, the contact law acted
+  double first_strain = -1;                        ///< s at which strain energy is above a thousandth of the total
+  double first_nodes = -1, last_nodes = -1;        ///< s at which the contact law acted first and last
   double largest_strain = 0, time_of_largest = 0;  ///< J/m, s
   Totals end;
 };
@@ -57,7 +57,7 @@ Impact run_impact(Lesson& lesson) {
 }
 
 /// The bar of lesson 5 by finite differences along its own particles: no grid, no shape functions, nothing shared with
-/// the program. @returns mean position at `times`, m.
+/// the program. Returns the mean position at `times`, m.
 std::vector<double> bar_by_finite_differences(double speed, double modulus, double density,
                                               const std::vector<double>& times) {
   constexpr int cells = 400;
@@ -69,7 +69,7 @@ std::vector<double> bar_by_finite_differences(double speed, double modulus, doub
     for (; time < wanted; time += dt) {
       for (int i = 0; i < cells; ++i) {
         const double stretch = (x[i + 1] - x[i]) / dx;
-        stress[i] = 0.5 * modulus * (stretch - 1 / stretch);  // neo-Hookean, no Poisson effect
+        stress[i] = 0.5 * modulus * (stretch - 1 / stretch);  // neo-Hookean stress without Poisson's effect
       }
       for (int i = 1; i < cells; ++i) v[i] += dt * (stress[i] - stress[i - 1]) / (density * dx);
       v[cells] -= dt * stress[cells - 1] / (0.5 * density * dx);
@@ -101,7 +101,7 @@ TEST_CASE("lesson 3: one field squeezes the discs before they touch, contact wai
   CHECK(welded.first_nodes == Approx(1.314).margin(0.002));
   CHECK(welded.last_nodes == Approx(2.78).margin(0.01));
   CHECK(largest_distance(one, stick) < 1e-12);  // "to rounding"
-  CHECK(largest_distance(one, stick) > 0);      // two runs, not one
+  CHECK(largest_distance(one, stick) > 0);      // they are two runs, not one
 
   Lesson contact("two_discs_contact");
   const Impact bounce = run_impact(contact);

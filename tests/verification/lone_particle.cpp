@@ -11,8 +11,8 @@ using namespace mpm::test;
 
 namespace {
 
-/// The particle stands at `f` of the middle cell of a strip. Until `restore` an end of its cell is dragged, which
-/// strains it; then it is alone.
+/// The experiment. The particle stands at `f` of the middle cell of a strip. Until `restore` an end of its cell is
+/// dragged, which strains it; then it is alone.
 std::string text(const std::string& shape, const std::string& transfer, const std::string& update, double time_step,
                  bool dragged, const std::string& backend) {
   return R"({"dimension": 2, "backend": ")" + backend +
@@ -40,7 +40,7 @@ BackendFactory placed_at(double f) {
   };
 }
 
-/// Largest strain after `steps` free steps, over that at their start.
+/// The largest strain after `steps` free steps, over that at their start.
 double growth(const std::string& shape, const std::string& transfer, const std::string& update, double f,
               double courant, int steps, const std::string& backend = "reference") {
   const Experiment dragged = experiment_from(text(shape, transfer, update, courant, true, backend)),

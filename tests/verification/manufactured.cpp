@@ -34,7 +34,7 @@ double error(int cells, const std::string& shape, const std::string& transfer, d
   return scene.run().position_error_rms;
 }
 
-/// Errors over three grids; the step falls with h^2 so that first order in time is second order in h.
+/// The errors over three grids; the step falls with h^2 so that first order in time is second order in h.
 std::vector<double> errors(const std::string& shape, const std::string& transfer, double amplitude) {
   std::vector<double> list;
   for (const int cells : {8, 16, 32})

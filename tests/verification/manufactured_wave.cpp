@@ -22,7 +22,7 @@ double phase(int axis) {
   return axis == 1 ? pi : 0;
 }
 
-/// x_tt - P' / density of the motion with amplitude A, by differences of P.
+/// The force x_tt - P' / density of the motion with amplitude A, by differences of P.
 double force_by_differences(const std::array<double, 3>& X, double t, double A, int axis, int dimension) {
   const auto stretch = [&](int a, double at) {
     return 1 + pi * A * std::cos(pi * at) * std::sin(speed * pi * t + phase(a));
@@ -49,9 +49,9 @@ std::string force(int axis, int dimension) {
          "))+mu*(1+1/" + F(axis) + "^2)-E)";
 }
 
-/// A quarter of a period T, where the square is stretched most, or all of it. At T each particle passes its place
-/// at full speed, and the half step by which velocities lag is pi c dt / 2 of the amplitude: there the step falls with
-/// h^2, so that first order in time is second in h.
+/// The end of a run: a quarter of a period T, where the square is stretched most, or all of it. At T each particle
+/// passes its place at full speed, and the half step by which velocities lag is pi c dt / 2 of the amplitude: there the
+/// step falls with h^2, so that first order in time is second in h.
 enum class Until { quarter, period };
 
 std::vector<std::string> settings(int cells, const std::string& shape, const std::string& transfer, double A,
@@ -83,7 +83,7 @@ std::vector<double> errors(const std::string& shape, const std::string& transfer
   return list;
 }
 
-/// The same along one row of cells.
+/// The errors along one row of cells.
 std::vector<double> line_errors(const std::string& shape, double A, Until until) {
   std::vector<double> list;
   for (const double size : sizes) {
@@ -93,7 +93,7 @@ std::vector<double> line_errors(const std::string& shape, double A, Until until)
                                set("/grid/domain", "[[0, 0], [1, " + height + "]]"),
                                set("/bodies/0/geometry/upper", "[1, " + height + "]"), set("/compare", "null"),
                                "/bodies/0/velocity=[\"A*c*pi*sin(pi*x)\", 0]"});
-    words.erase(words.begin() + 4);  // of the comparison
+    words.erase(words.begin() + 4);  // the words of the comparison go
     ShippedScene scene(wave, words);
     const auto X = scene.simulation.backend().body_state(0).position;
     scene.run();
@@ -107,7 +107,7 @@ std::vector<double> line_errors(const std::string& shape, double A, Until until)
   return list;
 }
 
-/// Between every two neighbours.
+/// The observed orders between every two neighbours.
 std::vector<double> orders(const std::vector<double>& on, const std::vector<double>& list) {
   std::vector<double> all;
   for (std::size_t k = 1; k < on.size(); ++k)
@@ -115,7 +115,7 @@ std::vector<double> orders(const std::vector<double>& on, const std::vector<doub
   return all;
 }
 
-/// What makes the scene a cube.
+/// The overrides that make the scene a cube.
 const std::vector<std::string>& cube() {
   static const std::vector<std::string> words{
       "/dimension=3", "/grid/domain=[[0, 0, 0], [1, 1, 1]]",
@@ -156,7 +156,7 @@ TEST_CASE("manufactured wave: before cells are crossed all shapes are of second 
       if (A < 0.001)
         CHECK(order > 1.7);
       else if (shape == "linear")
-        CHECK(order < -0.3);  // grows with refinement: the finer the cells, the more of them are crossed
+        CHECK(order < -0.3);  // the error grows with refinement: the finer the cells, the more of them are crossed
       else if (shape == "bspline_cubic" || shape == "cpdi")
         CHECK(order > 1.8);
       else  // quadrature of two particles a cell; and boxes that neither stretch nor meet
@@ -189,7 +189,7 @@ TEST_CASE("manufactured wave: a whole period of every shape at every amplitude",
         if (A < 0.001)
           CHECK(order > 1.9);
         else if (shape == "linear")
-          CHECK(order < 0.3);                                      // stalls
+          CHECK(order < 0.3);                                      // the error stalls
         else if (shape == "gimp" || shape == "bspline_quadratic")  // the same quadrature, boxes that do not stretch
           CHECK((A < 0.1 ? order > 1.5 && order < 1.9 : order < 1.3));
         else

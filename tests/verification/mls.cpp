@@ -27,7 +27,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Multiple of the next difference by which D^-1 w d exceeds the gradient, times h; x in cells.
+/// The multiple of the next difference by which D^-1 w d exceeds the gradient, times h; x in cells.
 double excess(const std::string& shape, double x) {
   if (shape == "bspline_quadratic") {
     const double s = x - std::round(x);
@@ -37,7 +37,7 @@ double excess(const std::string& shape, double x) {
   return -f * f * (1 - f) * (1 - f) / 2;
 }
 
-/// Sums over the nodes of one axis: of the gradient and of D^-1 w d, times d^power.
+/// Sums over the nodes of one axis of the gradient and of D^-1 w d, times d^power.
 struct Moments {
   double gradient[5]{}, fit[5]{};
 };
@@ -57,7 +57,7 @@ Moments moments_at(double x, double second_moment) {
   return sums;
 }
 
-/// Node by node: D^-1 w d - grad w against the multiple of the difference.
+/// Checks node by node D^-1 w d - grad w against the multiple of the difference.
 template <class Shape>
 double largest_mismatch(double x, double second_moment, double multiple, const std::array<double, 4>& difference) {
   double base, w[Shape::width], g[Shape::width], largest = 0;
@@ -77,7 +77,8 @@ TEST_CASE("the gradient of MLS differs from the spline's by a known difference o
     CHECK(largest_mismatch<BsplineCubic>(x, 1.0 / 3, excess("bspline_cubic", x), {-1, 3, -3, 1}) < 1e-14);
     if (f > 0.001) CHECK(largest_mismatch<Linear>(x, f * (1 - f), 0, {}) < 1e-12);
 
-    // What these do to 1, d, d^2, d^3 about the particle: exact on linear fields; the gradient is on quadratic ones.
+    // The sums show what the two do to 1, d, d^2, d^3 about the particle: both are exact on linear fields; the gradient
+    // is on quadratic ones.
     const Moments quadratic = moments_at<BsplineQuadratic>(x, 0.25), cubic = moments_at<BsplineCubic>(x, 1.0 / 3);
     for (const Moments& sums : {quadratic, cubic})
       for (const double* of : {sums.gradient, sums.fit}) {
@@ -95,7 +96,7 @@ TEST_CASE("the gradient of MLS differs from the spline's by a known difference o
 
 namespace {
 
-// A free body, thrown, spinning and rough, at random places in its cells.
+// The body is free, thrown, spinning and rough, at random places in its cells.
 const char* rough = R"J({
   "title": "rough", "dimension": 2, "precision": "double", "backend": "reference",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [3, 3]], "boundaries": {"all": "free"}},
@@ -105,8 +106,8 @@ const char* rough = R"J({
               "velocity": ["1 - 4*(y-1.2) + 0.5*sin(31*x)", "-2 + 4*(x-1.3) + 0.5*cos(27*y)"]}],
   "solver": {"time_step": 1e-3, "end_time": 1}, "output": {"ledger": false}})J";
 
-/// sum m (v x^T + C D), x being the places that v and C were gathered at: the grid's sum m_i v_i x_i^T before a scatter
-/// there and after a gather, to rounding.
+/// The moment sum m (v x^T + C D), x being the places that v and C were gathered at: the grid's sum m_i v_i x_i^T
+/// before a scatter there and after a gather, to rounding.
 Mat<2, double> first_moment(const BodyState& state, const BodyState& place, const std::string& shape) {
   const std::vector<double>& C = state.transfer_state.at("affine_velocity");
   const double constant = 0.01 * (shape == "bspline_quadratic" ? 1.0 / 4 : 1.0 / 3);
@@ -124,7 +125,7 @@ Mat<2, double> first_moment(const BodyState& state, const BodyState& place, cons
   return sum;
 }
 
-/// sum V0 tau.
+/// The total stress sum V0 tau.
 Mat<2, double> total_stress(const BodyState& state) {
   const NeoHookean::Constants<double> constants({1e5, 0.3, 1000, 0, 0});
   const std::vector<double>& F = state.material_state.at("deformation_gradient");
@@ -141,7 +142,8 @@ Mat<2, double> total_stress(const BodyState& state) {
 }  // namespace
 
 TEST_CASE("the forces of MLS do the work of the stress on every affine field, as standard MPM's", "[round_trip][mls]") {
-  // sum f_i x_i^T = -sum V0 tau, whatever the stress and the places, since sum (D^-1 w d) d^T = I = sum grad w d^T.
+  // The sum of f_i x_i^T is -sum V0 tau, whatever the stress and the places, since sum (D^-1 w d) d^T = I = sum grad w
+  // d^T.
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string shape :
          {"bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2"})
@@ -165,8 +167,8 @@ TEST_CASE("the forces of MLS do the work of the stress on every affine field, as
 
 namespace {
 
-// A periodic square without stress; one step strains by the gradient of the same grid velocities. Particles at 1/4 and
-// 3/4 of their cell.
+// A periodic square without stress; one step strains by the gradient of the same grid velocities. The particles are at
+// 1/4 and 3/4 of their cell.
 std::string smooth_field(int cells) {
   return R"J({"dimension": 2, "backend": "cpu", "grid": {"cell_size": )J" + digits(1.0 / cells) +
          R"J(, "domain": [[0, 0], [1, 1]], "boundaries": {"all": "periodic"}},
@@ -177,7 +179,7 @@ std::string smooth_field(int cells) {
       "solver": {"time_step": 1e-4, "end_time": 1}, "output": {"ledger": false}})J";
 }
 
-/// Next derivative (second or third) of component i by x_j of that velocity.
+/// The next derivative (second or third) of component i by x_j of that velocity.
 double derivative(int i, int j, int order, double x, double y) {
   const double phase = order * pi / 2, k = i == 0 ? 2 * pi : j == 0 ? 2 * pi : 4 * pi;
   const double value = i == 1   ? std::cos(2 * pi * (x + 2 * y) + phase)
@@ -187,7 +189,7 @@ double derivative(int i, int j, int order, double x, double y) {
 }
 
 struct Difference {
-  double largest = 0, unexplained = 0;  ///< of the two velocity gradients, 1/s
+  double largest = 0, unexplained = 0;  ///< differences of the two velocity gradients, 1/s
 };
 
 Difference gradients_differ(const std::string& shape, int cells) {
@@ -234,10 +236,10 @@ TEST_CASE("the velocity gradient of MLS is off by h on quadratic splines and by 
 namespace {
 
 struct Apart {
-  double place = 0, strain = 0;  ///< of two runs, over the amplitude of each
+  double place = 0, strain = 0;  ///< differences of two runs, over the amplitude of each
 };
 
-/// A standing wave after a quarter of its period, with MLS and with the splines' gradients.
+/// Runs a standing wave for a quarter of its period, with MLS and with the splines' gradients.
 Apart vibrate(const std::string& shape, int cells) {
   constexpr double speed = 1e-5, step = 0.25;
   const auto run = [&](const std::string& transfer) {
@@ -248,7 +250,7 @@ Apart vibrate(const std::string& shape, int cells) {
     return std::pair{scene.places(), scene.strains()};
   };
   const auto standard = run("apic"), fit = run("mls");
-  const double strain = speed;  // wave speed one
+  const double strain = speed;  // the wave speed is one
   return {largest_difference(standard.first, fit.first) / (strain * cells / (2 * pi)),
           largest_difference(standard.second, fit.second) / strain};
 }

@@ -37,7 +37,7 @@ const char* flight_3d = R"J({
   "solver": {"time_step": 0.002, "end_time": 0.06}, "output": {"ledger": true},
   "compare": {"exact": {"type": "free_fall"}}})J";
 
-// Thrown, spinning and vibrating, at random places in its cells.
+// The body is thrown, spinning and vibrating, at random places in its cells.
 const char* free_body = R"J({
   "title": "free body", "dimension": 2, "precision": "double", "backend": "reference",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [3, 3]], "boundaries": {"all": "free"}},
@@ -47,7 +47,7 @@ const char* free_body = R"J({
               "velocity": ["1 - 4*(y-1.2) + 0.5*sin(9*x)", "-2 + 4*(x-1.3) + 0.5*cos(7*y)"]}],
   "solver": {"time_step": 1e-3, "end_time": 1}, "output": {"ledger": true}})J";
 
-// Turning and stretched: v = (1, 2) + G x, without stress.
+// The field turns and stretches: v = (1, 2) + G x, without stress.
 const char* affine_field = R"J({
   "title": "affine field", "dimension": 2, "precision": "double", "backend": "reference",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [3, 3]], "boundaries": {"all": "free"}},
@@ -76,7 +76,7 @@ TEST_CASE("free flight with sized shapes and Taylor transfer", "[free_flight]") 
     for (const std::string shape : {"gimp", "gimp_contiguous", "b2gimp", "cpdi", "cpdi2", "linear"})
       for (const std::string& transfer : transfers)
         for (const std::string order : {"last", "first", "modified_last"}) {
-          if (shape == "linear" && transfer != "tpic") continue;  // free_fall.cpp
+          if (shape == "linear" && transfer != "tpic") continue;  // the others are in free_fall.cpp
           if (order == "first" && transfer != "tpic") continue;
           INFO(backend << " " << shape << " " << transfer << " " << order);
           check_flight(flight, {set("/backend", backend), set("/shape/type", shape), set("/transfer/type", transfer),
@@ -128,7 +128,7 @@ TEST_CASE("affine transfers on sized shapes keep angular momentum over every tra
 }
 
 TEST_CASE("an affine field comes back exactly", "[round_trip]") {
-  // The first affine velocity is a central difference over 2e-4 cells of velocities up to 20 m/s: no better than this.
+  // The bound is that of the first affine velocity, a central difference over 2e-4 cells of velocities up to 20 m/s.
   const double seeded = 2.2e-16 * 20 / (1e-4 * 0.1);
   for (const std::string& backend : backends)
     for (const std::string shape :
@@ -174,7 +174,7 @@ TEST_CASE("the domain of a CPDI particle follows the velocity gradient", "[cpdi]
 }
 
 TEST_CASE("a domain that reaches far beyond the edge stops the run by name", "[cpdi]") {
-  // A shear of 80 in one step: the lower row stays, its domains reach 20 cells to either side.
+  // The body is sheared by 80 in one step: the lower row stays, its domains reach 20 cells to either side.
   const char* sheared = R"J({
     "title": "sheared", "dimension": 2, "precision": "double", "backend": "reference",
     "grid": {"cell_size": 1, "domain": [[0, 0], [60, 4]], "boundaries": {"all": "free"}},
@@ -255,7 +255,7 @@ TEST_CASE("a slip wall is the plane of symmetry of a whole body, also where it i
         full.run_steps(20), half.run_steps(20);
         const BodyState a = full.body(), b = half.body();
         INFO(backend << " " << shape << " " << transfer);
-        // Particles of the whole body right of the plane, in the order of seeding.
+        // The particles of the whole body right of the plane come in the order of seeding.
         std::size_t k = 0;
         double error = 0;
         for (std::size_t p = 0; p < a.position.size(); p += 2) {

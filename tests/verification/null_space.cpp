@@ -11,7 +11,7 @@ using namespace mpm;
 using namespace mpm::test;
 
 TEST_CASE("what no node sees does not move", "[null_space]") {
-  // Particles at 1/4 and 3/4 of their cell.
+  // The particles are at 1/4 and 3/4 of their cell.
   const auto alternating = [](double x) { return x - std::floor(x) < 0.5 ? 1.0 : -1.0; };
   std::printf("Null space: largest velocity after one step, seeded with 1; FLIP: largest change in 100 steps\n");
   for (const std::string& shape : shapes_present(
@@ -24,7 +24,7 @@ TEST_CASE("what no node sees does not move", "[null_space]") {
            {std::pair{"pic", std::string()}, std::pair{"apic", std::string()}, std::pair{"mls", std::string()},
             std::pair{"tpic", std::string()}, std::pair{"rpic", std::string()}, std::pair{"polypic", std::string()},
             std::pair{"pic", filter("xpic", 5)}, std::pair{"pic", filter("fmpm", 4)}}) {
-        if (pairs_of({shape}, {transfer}).empty()) continue;  // refused
+        if (pairs_of({shape}, {transfer}).empty()) continue;  // such a pair is refused
         line.transfer = transfer;
         line.filter = with_filter;
         LineScene scene(line, alternating);

@@ -17,7 +17,7 @@ const std::vector<std::string> backends{"reference", "cpu"};
 const char *multilinear = R"({"type": "polypic", "basis": "multilinear"})",
            *full = R"({"type": "polypic", "basis": "full"})";
 
-// Jittered particles of soft material without forces; a step without time is a visit of the grid alone.
+// The particles are jittered, of soft material and without forces; a step without time is a visit of the grid alone.
 std::string block(int dimension, const std::string& velocity) {
   const bool flat = dimension == 2;
   return R"({"title": "block", "dimension": )" + std::to_string(dimension) +
@@ -88,7 +88,7 @@ TEST_CASE("a whole basis loses nothing: gather and scatter of resting particles 
           INFO(backend << " " << shape << " " << dimension << "-D " << transfer);
           const double change = largest_difference(once.velocity, later.velocity),
                        of_basis = largest_difference(coefficients(once), coefficients(later));
-          if (transfer == full || shape == "linear") {  // on two nodes an axis the multilinear basis is the whole one
+          if (transfer == full || shape == "linear") {  // on two nodes an axis the multilinear basis is whole
             CHECK(change < 1e-11);
             CHECK(of_basis < 1e-10);
             CHECK(after.kinetic == Approx(before.kinetic).epsilon(1e-12));
@@ -127,7 +127,7 @@ TEST_CASE("a multilinear field passes PolyPIC unchanged once its particles hold 
                {choice[0], choice[1], R"(/transfer={"type": "apic"})"});
     apic.run_steps(3);
     INFO(shape);
-    // The first gradient is a central difference over 2e-5 m.
+    // The bound is that of the first gradient, a central difference over 2e-5 m.
     CHECK(largest_difference(before.velocity, after.velocity) < 1e-10);
     for (std::size_t k = 0; k < 2 * particles; ++k)
       CHECK(std::abs(coefficients(after)[k] - h * h * factor[k % 2]) < 1e-10);

@@ -43,7 +43,7 @@ TEST_CASE("the contacts of a resting stack carry what lies above them", "[stack]
   for (const char* shape : {"bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp", "cpdi"}) {
     Scene scene(stack(frictionless, shape, 0), {"/solver/end_time=1.5"});
     while (scene.simulation.time() < 1) scene.simulation.step();
-    // Over six periods 4 L / c of the vibration that is left.
+    // The impulse is summed over six periods 4 L / c of the vibration that is left.
     double impulse = 0;
     while (!scene.simulation.finished()) {
       scene.simulation.step();
@@ -52,7 +52,7 @@ TEST_CASE("the contacts of a resting stack carry what lies above them", "[stack]
     const double force = impulse / 0.5;
     INFO(shape << ": " << force / block_weight << " weights of a block");
     CHECK(std::abs(force) ==
-          Approx(3 * block_weight).epsilon(0.01));  // two above the lower contact, one above the upper
+          Approx(3 * block_weight).epsilon(0.01));  // two blocks above the lower contact, one above the upper
     for (int body = 0; body < 3; ++body) {
       // The stack of 0.75 m is 5 mm shorter at its top.
       CHECK(height_of(scene, body) == Approx(0.125 + 0.25 * body).margin(0.006));
@@ -62,7 +62,7 @@ TEST_CASE("the contacts of a resting stack carry what lies above them", "[stack]
 }
 
 TEST_CASE("what rests can be lifted off a contact, and not off a single velocity field", "[stack]") {
-  // Three times its weight upwards: the block leaves with 2 g, for 0.1 s.
+  // The block is drawn upwards with three times its weight and leaves with 2 g, for 0.1 s.
   const auto lifted = [](const std::string& contact) {
     Scene scene(stack(contact, "bspline_quadratic", 3));
     scene.run();

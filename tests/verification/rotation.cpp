@@ -36,7 +36,7 @@ double kept_spin(Scene& scene, Totals& end) {
 }  // namespace
 
 TEST_CASE("spinning disc, one turn: APIC, MLS and FLIP keep the spin, PIC loses it", "[spin]") {
-  const double exact = 98.17477 * 2 * std::numbers::pi;  // pi rho R^4 / 2 times w
+  const double exact = 98.17477 * 2 * std::numbers::pi;  // exact: pi rho R^4 / 2 times w
   for (const std::string transfer : {"apic", "mls", "flip"}) {
     Scene scene(disc, {set("/transfer/type", transfer)});
     Totals end;
@@ -45,7 +45,7 @@ TEST_CASE("spinning disc, one turn: APIC, MLS and FLIP keep the spin, PIC loses 
     const double affine = transfer == "flip" ? 0.0 : 4 * (0.05 * 0.05 / 4) / (0.5 * 0.5);
     CHECK(scene.metrics.initial().angular_momentum[2] == Approx(exact * (1 + affine)).epsilon(0.02));
     CHECK(std::abs(kept_spin(scene, end) - 1) < (transfer == "flip" ? 0.03 : 1e-10));
-    CHECK(end.position_error_rms < (transfer == "flip" ? 0.06 : 0.01));  // m; FLIP's lost spin is a lag
+    CHECK(end.position_error_rms < (transfer == "flip" ? 0.06 : 0.01));  // m; the spin that FLIP loses is a lag
     CHECK(std::abs(end.smallest_volume_ratio - 1) < 0.02);
   }
   Scene scene(disc, {set("/transfer/type", "pic")});

@@ -13,8 +13,8 @@ using namespace mpm::test;
 
 namespace {
 
-// A visit alone: the step has no time. Both bodies share one velocity field and one place; their particles are shifted
-// apart at random and weigh 1 to 3.
+// The run is a visit alone: the step has no time. Both bodies share one velocity field and one place; their particles
+// are shifted apart at random and weigh 1 to 3.
 std::string text(const std::string& vx, const std::string& vy, const std::string& jitter) {
   const auto body = [&](const std::string& name) {
     return R"({"name": ")" + name + R"(", "material": ")" + name + R"(", "jitter": )" + jitter +
@@ -33,7 +33,7 @@ std::string text(const std::string& vx, const std::string& vy, const std::string
 const char *affine_x = "1 + 0.7*x - 3*y", *affine_y = "2 + 5*x - 0.4*y";
 const char *any_x = "1 - 4*y + 0.5*sin(90*x)*cos(31*y)", *any_y = "-2 + 4*x + 0.5*cos(70*y)*sin(43*x)";
 
-/// Largest change of a velocity component, of particles at least `inside` from the edge of the block.
+/// The largest change of a velocity component, of particles at least `inside` from the edge of the block.
 double largest_change(const BodyState& before, const BodyState& after, double inside) {
   double largest = 0;
   for (std::size_t k = 0; k < before.velocity.size(); k += 2) {
@@ -46,8 +46,8 @@ double largest_change(const BodyState& before, const BodyState& after, double in
 }
 
 struct Visit {
-  double change = 0, spin = 0;  // of a velocity, m/s; of the angular momentum, relative
-  double momentum = 0;          // relative to mass times 1 m/s
+  double change = 0, spin = 0;  // change of a velocity, m/s; relative change of the angular momentum
+  double momentum = 0;          // change relative to mass times 1 m/s
 };
 
 Visit visit(const std::string& text, const std::vector<std::string>& overrides, double inside = 0) {
@@ -77,7 +77,7 @@ TEST_CASE("round trip: particles of two masses at random places: momentum, spin,
                     affine.change, any.momentum, any.spin);
         INFO(backend << " " << shape << " " << transfer << ": change " << affine.change << ", spin " << any.spin);
         CHECK(any.momentum <= 1e-12);
-        // The first affine velocity is a central difference over 2e-5 m of velocities up to 10 m/s.
+        // The bound is that of the first affine velocity, a central difference over 2e-5 m of velocities up to 10 m/s.
         const double seeded = 2.2e-16 * 10 / 1e-5 * 0.1;
         if (transfer == "pic")
           CHECK(affine.change > 0.1);
@@ -85,13 +85,13 @@ TEST_CASE("round trip: particles of two masses at random places: momentum, spin,
           CHECK(affine.change <= (transfer == "flip" ? 1e-12 : seeded));
         if (transfer == "apic" || transfer == "mls") CHECK(std::abs(any.spin) <= 1e-12);
         if (transfer == "pic") CHECK(any.spin < -0.02);
-        if (transfer == "flip") CHECK(any.change <= 1e-12);  // the identity, for any field
+        if (transfer == "flip") CHECK(any.change <= 1e-12);  // the identity is kept for any field
       }
 }
 
 TEST_CASE("round trip: particles that carry an affine field itself get it back, velocities and gradients",
           "[round_trip]") {
-  // Seeded by the field's own gradient, which in the case above is a difference quotient.
+  // Particles are seeded by the field's own gradient, which in the case above is a difference quotient.
   constexpr double B[4] = {0.7, -3, 5, -0.4};
   std::printf("Round trip: change of an affine field (m/s) and of its gradient (1/s), seeded exactly\n");
   for (const std::string backend : {"reference", "cpu"})
@@ -144,7 +144,7 @@ TEST_CASE("round trip: PIC keeps an affine field inside a uniform lattice, and l
     for (const std::string shape : {"linear", "bspline_quadratic", "bspline_cubic"}) {
       const std::vector<std::string> choice{set("/backend", backend), set("/shape/type", shape),
                                             set("/transfer/type", "pic")};
-      // A particle's nodes, and what those see, are one support farther each.
+      // The nodes of a particle, and what those see, are one support farther each.
       const double inside_of = shape == "linear" ? 0.2 : shape == "bspline_quadratic" ? 0.3 : 0.4;
       const Visit inside = visit(text(affine_x, affine_y, "0"), choice, inside_of);
       const Visit all = visit(text(affine_x, affine_y, "0"), choice);

@@ -10,7 +10,7 @@
 
 namespace mpm::test {
 
-/// `path` below experiments/.
+/// The shipped experiment at `path` below experiments/.
 inline Experiment shipped(const std::string& path, const std::vector<std::string>& overrides = {}) {
   ReadOptions options;
   options.overrides = overrides;
@@ -18,13 +18,13 @@ inline Experiment shipped(const std::string& path, const std::vector<std::string
   return read_experiment(std::string(MPM_SOURCE_DIR "/experiments/") + path, ComponentLookup(plugins()), options);
 }
 
-/// A shipped experiment's run; one that stops on the way keeps the reason.
+/// A run of a shipped experiment; one that stops on the way keeps the reason.
 class ShippedScene {
  public:
   explicit ShippedScene(const std::string& path, const std::vector<std::string>& overrides = {})
       : experiment(shipped(path, overrides)), simulation(experiment, backend_factory(1)), metrics(simulation) {}
 
-  /// `each` is called after every step.
+  /// Runs to the end and returns the totals there. `each` is called after every step.
   Totals run(const std::function<void()>& each = {}) {
     try {
       while (!simulation.finished()) {
@@ -43,7 +43,7 @@ class ShippedScene {
   std::string failure;  ///< empty when the run came to its end
 };
 
-/// A row of errors with the orders between neighbours; NaN where a run stopped.
+/// Prints a row of errors with the orders between neighbours; NaN where a run stopped.
 inline void print_orders(const std::string& name, const std::vector<double>& sizes, const std::vector<double>& errors) {
   std::printf("  %-28s", name.c_str());
   for (const double error : errors) std::printf(" %10.3e", error);

@@ -14,10 +14,10 @@ inline std::vector<std::string> heat_backends() {
 
 struct Slab {
   std::string backend = "reference", shape = "bspline_quadratic", transfer = "\"apic\"", start = "0";
-  std::string x_min = R"("slip")", x_max = R"("slip")";  ///< conditions, JSON
+  std::string x_min = R"("slip")", x_max = R"("slip")";  ///< conditions as JSON
   std::string phase_change;                              ///< JSON of the key, or nothing
   ConductingPhase material{1, 1, 1};
-  int dimension = 2, cells = 16, particles = 2;  ///< a cell axis
+  int dimension = 2, cells = 16, particles = 2;  ///< `particles` counts along an axis of a cell
   double length = 1;                             ///< m
   double fourier = 0.1;                          ///< alpha dt / h^2
   double end = 0.05;                             ///< s
@@ -43,19 +43,19 @@ struct Slab {
   }
 };
 
-/// Length of the slab that is melted, m.
+/// The length of the slab that is melted, m.
 inline double melted_length(const BodyState& state, const Slab& slab) {
   double volume = 0;
   for (const double fraction : state.host_state.at("melted_fraction")) volume += fraction * state.volume;
   return volume / std::pow(3 * slab.cell(), slab.dimension - 1);
 }
 
-/// Heat that no row of the ledger explains, over the heat that the particles hold.
+/// The heat that no row of the ledger explains, over the heat that the particles hold.
 inline double relative_heat_residual(const Scene& scene, const Totals& now) {
   return std::abs(scene.metrics.heat_residual(now)) / (std::abs(now.heat_content) + std::abs(now.latent_heat));
 }
 
-/// Root mean square over the particles of the first body of what their temperature differs by from f(x), K.
+/// The root mean square, over the particles of the first body, of what their temperature differs by from f(x), K.
 inline double temperature_error(const BodyState& state, int dimension, const std::function<double(double)>& exact) {
   const std::vector<double>& T = state.host_state.at("temperature");
   double sum = 0;

@@ -32,7 +32,7 @@ inline Vectors pairs(const std::vector<double>& flat) {
   return list;
 }
 
-/// sum a x b.
+/// The moment sum a x b.
 inline double moment(const Vectors& a, const Vectors& b) {
   double sum = 0;
   for (std::size_t p = 0; p < a.size(); ++p) sum += cross(a[p], b[p]);
@@ -62,21 +62,21 @@ class Nodes {
     centre = scatter(position);
   }
 
-  /// S+ v.
+  /// The scatter S+ v.
   Vectors scatter(const Vectors& v) const {
     Vectors at(place.size());
     for (std::size_t k = 0; k < links_.size(); ++k)
       for (int c = 0; c < 2; ++c) at[links_[k].node][c] += links_[k].weight * v[k / 9][c] / mass[links_[k].node];
     return at;
   }
-  /// S v.
+  /// The gather S v.
   Vectors gather(const Vectors& v) const {
     Vectors at(links_.size() / 9);
     for (std::size_t k = 0; k < links_.size(); ++k)
       for (int c = 0; c < 2; ++c) at[k / 9][c] += links_[k].weight * v[links_[k].node][c];
     return at;
   }
-  /// -sum V0 tau grad w over the particle's mass; tau: xx, xy, yy.
+  /// The force -sum V0 tau grad w over the particle's mass; tau is xx, xy, yy.
   Vectors force(const std::vector<std::array<double, 3>>& tau, double volume_over_mass) const {
     Vectors at(place.size());
     for (std::size_t k = 0; k < links_.size(); ++k) {
@@ -88,7 +88,7 @@ class Nodes {
     return at;
   }
 
-  std::vector<double> mass;  ///< in particles
+  std::vector<double> mass;  ///< mass of each node in particles
   Vectors place, centre;     ///< x_i, c_i
 
  private:
@@ -107,7 +107,7 @@ class Nodes {
   std::map<std::pair<double, double>, std::size_t> known_;
 };
 
-/// (I - S S+) v.
+/// The unseen part (I - S S+) v.
 inline Vectors unseen(const Nodes& nodes, const Vectors& v) {
   Vectors rest = nodes.gather(nodes.scatter(v));
   for (std::size_t p = 0; p < v.size(); ++p)
@@ -115,7 +115,7 @@ inline Vectors unseen(const Nodes& nodes, const Vectors& v) {
   return rest;
 }
 
-/// d_m of a rigid turn r: <r, (I - S S+)^m r> / <r, r>.
+/// The loss d_m of a rigid turn r: <r, (I - S S+)^m r> / <r, r>.
 inline double taken_of_turn(const Vectors& position, double cell, int order) {
   const Nodes nodes(position, cell);
   Vectors turn;
@@ -125,7 +125,7 @@ inline double taken_of_turn(const Vectors& position, double cell, int order) {
   return moment(position, turn) / whole;
 }
 
-/// Neo-Hookean particles of equal mass, of every body.
+/// The particles of every body, Neo-Hookean and of equal mass.
 struct Solid {
   Solid(const Scene& scene, double modulus, double poisson) {
     const double mu = modulus / (2 * (1 + poisson)), lambda = modulus * poisson / ((1 + poisson) * (1 - 2 * poisson));
@@ -140,7 +140,7 @@ struct Solid {
   double spin() const { return moment(position, velocity); }
 
   Vectors position, velocity;
-  std::vector<std::array<double, 3>> stress;  ///< Kirchhoff: xx, xy, yy
+  std::vector<std::array<double, 3>> stress;  ///< Kirchhoff stress: xx, xy, yy
   double volume_over_mass = 0;
 
  private:
@@ -153,15 +153,15 @@ struct Solid {
   }
 };
 
-/// Parts of the change of L over a run, over L at the start.
+/// The parts of the change of L over a run, over L at the start.
 struct SpinBalance {
   double lumping = 0, motion = 0, filter = 0;
-  double change = 0;  ///< the run's own
-  double gap = 0;     ///< the largest of a step that the parts leave
-  double torque = 0;  ///< the largest of a step's forces about the nodes; none in exact arithmetic
+  double change = 0;  ///< change that the run shows
+  double gap = 0;     ///< largest change in a step that the parts do not explain
+  double torque = 0;  ///< largest torque of a step's forces about the nodes; none in exact arithmetic
 };
 
-/// One step, from the particles before and after it. `order` 0: no filter.
+/// Adds one step, from the particles before and after it. `order` 0 means no filter.
 inline void add_step(const Solid& before, const Solid& after, double cell, double dt, int order, double whole,
                      SpinBalance& sum) {
   const Vectors &x = before.position, &v = before.velocity;
@@ -198,7 +198,7 @@ inline SpinBalance spin_balance(Scene& scene, double modulus, double poisson, in
   return sum;
 }
 
-/// A row: parts, their sum, the run's, the gap. Checks that the balance closes.
+/// Prints a row: parts, their sum, the run's, the gap. Checks that the balance closes.
 inline void check_balance(const std::string& name, const SpinBalance& b) {
   std::printf("  %-12s %11.3e %11.3e %11.3e | %11.3e %11.3e | %.1e\n", name.c_str(), b.lumping, b.motion, b.filter,
               b.lumping + b.motion + b.filter, b.change, b.gap);

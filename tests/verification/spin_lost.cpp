@@ -29,7 +29,7 @@ std::string xpic(int order) {
   return R"(/filter={"type": "xpic", "order": )" + std::to_string(order) + "}";
 }
 
-/// FLIP on a disc ten times as soft as the case's, unless `settings` say otherwise.
+/// A scene of FLIP on a disc ten times as soft as the case's, unless `settings` say otherwise.
 Scene spinning(const std::vector<std::string>& settings) {
   std::vector<std::string> all{set("/transfer/type", "flip"), set("/materials/m/youngs_modulus", digits(modulus))};
   all.insert(all.end(), settings.begin(), settings.end());
@@ -83,10 +83,10 @@ TEST_CASE("what one step of a filter takes of a rigid turn", "[spin]") {
     }
     std::printf("\n");
     CHECK(taken < before);
-    if (order > 4) CHECK(before / taken == Approx(4).epsilon(0.15));  // as 1/m^2 only
+    if (order > 4) CHECK(before / taken == Approx(4).epsilon(0.15));  // the loss falls as 1/m^2 only
     before = taken;
   }
-  // PIC by the closed form, and near h^2/R^2.
+  // The loss of PIC follows the closed form, and is near h^2/R^2.
   const Nodes nodes(x, 0.05);
   double square = 0, rim = 0;
   for (const auto& place : x) square += place[0] * place[0] + place[1] * place[1];
@@ -104,7 +104,8 @@ TEST_CASE("XPIC at every step loses more than its filter takes of a rigid turn",
   std::printf("Spin, XPIC on PIC: order; share of spin kept in a turn if the filter alone took it, kept, steps\n");
   const Vectors start = pairs(spinning({}).body().position);
   for (const int order : {4, 8}) {
-    // d_m hardly depends on how the disc lies on the grid; the mean over angles, by symmetry up to an eighth of a turn.
+    // The loss d_m hardly depends on how the disc lies on the grid; its mean is over angles, by symmetry up to an
+    // eighth of a turn.
     double taken = 0;
     constexpr int angles = 6;
     for (int k = 0; k < angles; ++k) {
@@ -122,7 +123,7 @@ TEST_CASE("XPIC at every step loses more than its filter takes of a rigid turn",
     std::printf("  %2d: %.4f %.4f, %ld\n", order, rigid, kept, scene.simulation.steps());
     CHECK(kept < rigid);
     CHECK(rigid < 0.99);
-    CHECK(std::pow(rigid, 10) < 0.9);  // ten turns
+    CHECK(std::pow(rigid, 10) < 0.9);  // loss in ten turns
   }
 }
 
@@ -137,7 +138,7 @@ TEST_CASE("FLIP loses less spin on finer cells and with more particles", "[spin]
   const double coarse = lost(20, 2), more = lost(20, 4), fine = lost(40, 2);
   CHECK(more < 0.004);
   CHECK(more < 0.5 * coarse);
-  CHECK(fine < 0.25 * coarse);  // of second order at least
+  CHECK(fine < 0.25 * coarse);  // the loss is of second order at least
 }
 
 TEST_CASE("spinning disc: ten turns of a stiff one: APIC, XPIC on APIC and FLIP lose less than 1 %", "[spin][slow]") {

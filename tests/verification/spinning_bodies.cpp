@@ -20,7 +20,7 @@ constexpr double pi = std::numbers::pi, omega = 2 * pi;
 const std::string square = R"(/bodies/0/geometry={"type": "box", "lower": [-0.5, -0.5], "upper": [0.5, 0.5]})";
 
 struct Kept {
-  double spin = 0, kinetic = 0, error = 0;  ///< over the initial; m
+  double spin = 0, kinetic = 0, error = 0;  ///< spin and energy over the initial; error in m
 };
 
 Kept turn(const std::vector<std::string>& settings) {
@@ -76,8 +76,8 @@ TEST_CASE("spinning disc: one turn of every transfer", "[spin]") {
     check(transfer, {set("/transfer/type", transfer)}, 0.9999, 1.0001);
   check("flip", {set("/transfer/type", "flip")}, 0.97, 0.99);
   check("pic", {set("/transfer/type", "pic")}, -1e-3, 1e-3);
-  // On PIC, filters at every step take of the rim's spin at every step; ten times the case's ratio for a third of the
-  // steps. On APIC their round trip keeps rotations.
+  // On PIC, filters at every step take of the rim's spin at every step; the ratio is ten times the case's for a third
+  // of the steps. On APIC their round trip keeps rotations.
   const std::string soft = set("/materials/m/youngs_modulus", "9.869604401e6"), pic = set("/transfer/type", "pic"),
                     courant = set("/solver/courant", "0.4"), xpic = R"(/filter={"type": "xpic", "order": 4})",
                     fmpm = R"(/filter={"type": "fmpm", "order": 4})";
@@ -87,8 +87,8 @@ TEST_CASE("spinning disc: one turn of every transfer", "[spin]") {
 }
 
 TEST_CASE("linear elasticity makes false stress of a turn", "[spin]") {
-  // 2 (lambda + mu)(cos theta - 1) in the plane: at a quarter turn the disc would be crushed. Neo-Hookean keeps
-  // the volume to what spinning stretches it by.
+  // The false stress is 2 (lambda + mu)(cos theta - 1) in the plane: at a quarter turn the disc would be crushed.
+  // Neo-Hookean keeps the volume to what spinning stretches it by.
   for (const std::string material : {"linear_elastic", "neo_hookean"}) {
     Scene scene(spinning_disc, {set("/materials/m/type", material), set("/solver/end_time", "0.1")});
     double energy = 0;
@@ -103,10 +103,11 @@ TEST_CASE("linear elasticity makes false stress of a turn", "[spin]") {
 }
 
 TEST_CASE("the stress of a steadily spinning disc", "[spin]") {
-  // Set spinning without strain the disc breathes about the steady state of plane strain, in linear elasticity with
-  //   s_r = K1 rho w^2 (R^2 - r^2), s_t = rho w^2 (K1 R^2 - K2 r^2), K1 = (3 - 2 nu)/(8 (1 - nu)), K2 = (1 + 2 nu)/(8
-  //   (1 - nu)):
-  // means over many breaths are the steady stresses. density (w R)^2 / E = 1e-4.
+  // A disc that is set spinning without strain breathes about the steady state of plane strain, in linear elasticity
+  // with
+  //   s_r = K1 rho w^2 (R^2 - r^2), s_t = rho w^2 (K1 R^2 - K2 r^2),
+  //   K1 = (3 - 2 nu)/(8 (1 - nu)), K2 = (1 + 2 nu)/(8 (1 - nu)):
+  // means over many breaths are the steady stresses. Here density (w R)^2 / E = 1e-4.
   constexpr double radius = 0.5, spin = 10, nu = 0.3, K1 = (3 - 2 * nu) / (8 * (1 - nu)),
                    K2 = (1 + 2 * nu) / (8 * (1 - nu)), scale = 1000 * spin * spin, modulus = 2.5e8;
   CHECK(K1 * scale * radius * radius == Approx(10714.2857).epsilon(1e-8));
@@ -129,7 +130,7 @@ TEST_CASE("the stress of a steadily spinning disc", "[spin]") {
       for (std::size_t p = 0; p < count; ++p) {
         const double* f = &F[4 * p];
         const double J = f[0] * f[3] - f[1] * f[2], pressure = lambda * std::log(J) - mu;
-        // tau = mu b + (lambda ln J - mu) I along the radius and across it.
+        // The exact stress is tau = mu b + (lambda ln J - mu) I along the radius and across it.
         const double x = state.position[2 * p], y = state.position[2 * p + 1], r = std::hypot(x, y);
         const double rx = x / r, ry = y / r;
         const double a = f[0] * rx + f[2] * ry, b = f[1] * rx + f[3] * ry, c = -f[0] * ry + f[2] * rx,
@@ -159,9 +160,9 @@ TEST_CASE("the stress of a steadily spinning disc", "[spin]") {
 
 namespace {
 
-/// Means of a square's Cauchy stress over a while, along its own axes.
+/// The means of a square's Cauchy stress over a while, along its own axes.
 struct SquareStress {
-  double whole[3] = {};   ///< of all of it: xx, yy, xy
+  double whole[3] = {};   ///< mean of the whole square: xx, yy, xy
   double middle[2] = {};  ///< halfway from the centre to the middles of its edges: along the edge, across
   long samples = 0;
 };
@@ -175,7 +176,7 @@ void add_sample(const Scene& scene, const std::vector<double>& X, double lambda,
   for (std::size_t p = 0; p < particles; ++p) {
     const double* f = &F[4 * p];
     const double J = f[0] * f[3] - f[1] * f[2], pressure = (lambda * std::log(J) - mu) / J;
-    // Turned back: Q^T F.
+    // The deformation is turned back: Q^T F.
     const double g[4] = {c * f[0] + s * f[2], c * f[1] + s * f[3], c * f[2] - s * f[0], c * f[3] - s * f[1]};
     const double xx = mu * (g[0] * g[0] + g[1] * g[1]) / J + pressure,
                  yy = mu * (g[2] * g[2] + g[3] * g[3]) / J + pressure;
@@ -201,7 +202,7 @@ TEST_CASE("the stress of a spinning square turns with it", "[spin]") {
   Scene scene(spinning_disc, {square, set("/solver/end_time", "1.04")});
   const std::vector<double> X = scene.body().position;
   const Totals start = scene.metrics.initial();
-  constexpr double middles[] = {0.04, 0.125, 1};  // of the times sampled, s
+  constexpr double middles[] = {0.04, 0.125, 1};  // middles of the times sampled, s
   SquareStress sums[3];
   while (!scene.simulation.finished()) {
     scene.simulation.step();
@@ -220,7 +221,7 @@ TEST_CASE("the stress of a spinning square turns with it", "[spin]") {
     INFO(middles[k] << " turns");
     for (int c = 0; c < 2; ++c) CHECK(sum.whole[c] / n == Approx(exact).epsilon(0.01));
     CHECK(std::abs(sum.whole[2] / n) < 0.01 * exact);
-    // The first while has the shock of starting to turn without strain.
+    // The first while holds the shock of starting to turn without strain.
     const SquareStress& other = sums[k == 1 ? 0 : 1];
     for (int c = 0; c < 2; ++c)
       CHECK(sum.middle[c] / n ==

@@ -9,10 +9,11 @@ using namespace mpm::test;
 namespace {
 
 struct Front {
-  double position, temperature;  ///< errors: of the way, and root mean square over the range of temperatures
+  double position, temperature;  ///< errors: over the way, and root mean square over the range of temperatures
 };
 
-/// One phase: a solid at its melting temperature beside a wall that is one kelvin warmer, until half of it is melted.
+/// The problem of one phase: a solid at its melting temperature beside a wall that is one kelvin warmer, until half of
+/// it is melted.
 Front melt(const std::string& backend, double stefan_number, int cells) {
   const StefanProblem exact{{1, 1, 1}, {1, 1, 1}, 1 / stefan_number, 301, 300, 300};
   Slab slab;
@@ -28,14 +29,14 @@ Front melt(const std::string& backend, double stefan_number, int cells) {
           temperature_error(state, 2, [&](double x) { return exact.temperature(x, slab.end); })};
 }
 
-/// Two phases: water that freezes from a wall at -10 C for an hour; error of the front.
+/// The problem of two phases: water that freezes from a wall at -10 C for an hour. Returns the error of the front.
 double freeze(const std::string& backend, double start, int cells) {
   const ConductingPhase ice{2.22, 2090, 917}, water{0.556, 4200, 917};
   const StefanProblem exact{ice, water, 334000, 263.15, 273.15, 273.15 + start};
   Slab slab;
   slab.backend = backend, slab.cells = cells, slab.fourier = 0.2, slab.length = 0.16, slab.end = 3600;
   slab.material = ice;
-  slab.start = digits(273.15 + start + 1e-9);  // above the melting temperature: water
+  slab.start = digits(273.15 + start + 1e-9);  // water starts above the melting temperature
   slab.x_min = R"({"type": "slip", "temperature": 263.15})";
   slab.phase_change = R"(, "phase_change": {"temperature": 273.15, "latent_heat": "334 kJ/kg",
     "melted": {"conductivity": 0.556, "heat_capacity": 4200}})";
@@ -45,7 +46,7 @@ double freeze(const std::string& backend, double start, int cells) {
   return (slab.length - melted_length(scene.body(), slab)) / exact.front(slab.end) - 1;
 }
 
-/// The error falls with the cell size, about as h: the front is somewhere in a cell.
+/// Checks that the error falls with the cell size, about as h: the front is somewhere in a cell.
 void check_falling(const std::vector<double>& errors, double last) {
   for (std::size_t k = 1; k < errors.size(); ++k) CHECK(std::abs(errors[k]) < 0.62 * std::abs(errors[k - 1]));
   CHECK(std::abs(errors.back()) < last);

@@ -34,14 +34,14 @@ Wave exact_wave(const std::string& update, int mode, double courant) {
   return {2 - s2 * z * z, 1};
 }
 
-/// Velocities of 1e-7 wave speeds: finite strain enters with that, relative.
+/// A scene with velocities of 1e-7 wave speeds: finite strain enters with that, relative.
 LineScene line_scene(const std::string& backend, const std::string& update, int mode, double courant) {
   return LineScene(
       {.transfer = "flip", .stress_update = update, .backend = backend, .mode = mode, .time_step = courant},
       [mode](double x) { return 1e-7 * std::sin(2 * std::numbers::pi * mode * x / 32); });
 }
 
-/// Trace and determinant of `power` steps, from four amplitudes.
+/// The trace and determinant of `power` steps, from four amplitudes.
 Wave found_wave(LineScene scene, int power) {
   double q[4];
   for (double& value : q) {
@@ -52,7 +52,7 @@ Wave found_wave(LineScene scene, int power) {
   return {(q[0] * q[3] - q[1] * q[2]) / minor, (q[1] * q[3] - q[2] * q[2]) / minor};
 }
 
-/// Steps of about a radian: there the four amplitudes tell the wave best.
+/// The number of steps that make about a radian: there the four amplitudes tell the wave best.
 int radian(const Wave& wave) {
   return std::max(1, static_cast<int>(1 / std::acos(wave.trace / (2 * std::sqrt(wave.det)))));
 }

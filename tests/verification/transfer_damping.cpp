@@ -17,16 +17,16 @@ namespace {
 constexpr std::array modes{1, 2, 4, 8};
 
 struct Row {
-  std::vector<std::string> shapes;     // that coincide with the first where particles are boxes of one cell
-  std::vector<std::string> transfers;  // that coincide with the first on this lattice
+  std::vector<std::string> shapes;     // shapes that coincide with the first where particles are boxes of one cell
+  std::vector<std::string> transfers;  // transfers that coincide with the first on this lattice
   double offset = 0;                   // 0: at cell centres, or at 1/4 and 3/4 with two a cell; 1/2: on nodes
   int particles_per_cell = 1;
-  std::array<double, 4> factors;  // of modes 1, 2, 4, 8, as docs/verification.md prints them
+  std::array<double, 4> factors;  // factors of modes 1, 2, 4, 8, as docs/verification.md prints them
   double printed = 1e-10;         // one unit of their last digit
   bool is_quotient = false;       // one step of the seeded mode, v'Mv / v'v: it is no mode of the lattice
 };
 
-/// Weight of a node at distance d, in cells.
+/// The weight of a node at distance d, in cells.
 double weight(const std::string& shape, double d) {
   d = std::abs(d);
   if (shape == "linear") return std::max(0.0, 1 - d);
@@ -57,7 +57,7 @@ double closed_form(const Row& row, int mode) {
                          : sum / row.particles_per_cell;
 }
 
-/// What one step leaves of the mode; of an affine transfer, once its affine velocities are the mode's own.
+/// The factor of one step on the mode; for an affine transfer, once its affine velocities are the mode's own.
 double one_step(const Row& row, const Line& line) {
   if (!row.is_quotient) return factor(line);
   LineScene scene(line);

@@ -15,7 +15,7 @@ namespace {
 const std::vector<std::string> backends{"reference", "cpu"};
 const std::vector<std::string> shapes{"linear", "bspline_quadratic", "gimp", "cpdi", "cpdi2"};
 
-// A rough field, spinning, at random places in its cells.
+// The field is rough and spinning, at random places in its cells.
 const char* rough_2d = R"J({
   "title": "rough", "dimension": 2, "precision": "double", "backend": "reference",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [3, 3]], "boundaries": {"all": "free"}},
@@ -54,7 +54,8 @@ TEST_CASE("every transfer conserves momentum under stress", "[round_trip][moment
 }
 
 TEST_CASE("RPIC keeps angular momentum over every visit of the grid, on every shape", "[round_trip]") {
-  // As of APIC: steps without time are visits alone, since the second moment moves with the particle on most shapes.
+  // For these as for APIC, steps without time are visits alone, since the second moment moves with the particle on most
+  // shapes.
   for (const std::string& backend : backends)
     for (const std::string& shape : shapes)
       for (const char* text : {rough_2d, rough_3d}) {
@@ -63,7 +64,7 @@ TEST_CASE("RPIC keeps angular momentum over every visit of the grid, on every sh
         const Totals start = scene.metrics.initial(), end = scene.run_steps(20);
         INFO(backend << " " << shape << (flat ? " 2-D" : " 3-D") << " lost " << lost_spin(start, end));
         CHECK(lost_spin(start, end) < 1e-11);
-        CHECK(end.kinetic < 0.999 * start.kinetic);  // what is not rigid is damped
+        CHECK(end.kinetic < 0.999 * start.kinetic);  // the part that is not rigid is damped
         const std::vector<double> spin = scene.body().transfer_state.at("spin");
         const std::size_t D = flat ? 2 : 3;
         for (std::size_t p = 0; p < spin.size(); p += D * D)
@@ -95,7 +96,7 @@ TEST_CASE("rigid motion passes RPIC, shear does not", "[round_trip]") {
     scene.run_steps(1);
     return largest_difference(before, scene.body().velocity);
   };
-  // The first spin is a central difference over 2e-4 cells: no better than this.
+  // The bound is that of the first spin, a central difference over 2e-4 cells.
   const double seeded = 2.2e-16 * 10 / (1e-4 * 0.1);
   for (const std::string& backend : backends)
     for (const std::string& shape : shapes) {
@@ -133,7 +134,8 @@ TEST_CASE("an affine field passes AFLIP and ASFLIP unchanged, and moves ASFLIP's
 }
 
 TEST_CASE("RPIC damps a compression wave as PIC, AFLIP keeps it", "[damping]") {
-  // A wave along a line has no spin. AFLIP without PIC keeps velocities; with a fraction a, the loss of APIC times a.
+  // A wave along a line has no spin. AFLIP without PIC keeps velocities; with a fraction a it loses what APIC does
+  // times a.
   const double theta = 2 * std::numbers::pi * 4 / 32, pic = std::pow(0.75 + std::cos(theta) / 4, 2);
   const auto factor = [](const std::string& transfer) {
     LineScene scene({.shape = "bspline_quadratic", .transfer = transfer, .mode = 4, .offset = 0.5});
@@ -174,7 +176,7 @@ TEST_CASE("AFLIP's energies swing by what the grid takes over what it gives back
 }
 
 TEST_CASE("AFLIP keeps the null space, RPIC removes it, and ASFLIP's particles part", "[null_space]") {
-  // Particles at 1/4 and 3/4 of their cell, with velocities +1 and -1: no node sees anything.
+  // The particles are at 1/4 and 3/4 of their cell, with velocities +1 and -1: no node sees anything.
   const auto alternating = [](double x) { return x - std::floor(x) < 0.5 ? 1.0 : -1.0; };
   for (const std::string& backend : backends)
     for (const std::string& shape : shapes) {
@@ -221,7 +223,7 @@ TEST_CASE("ASFLIP that never separates is AFLIP", "[asflip]") {
 
 TEST_CASE("with USAVG a CPDI domain takes both halves of the strain, by the weights of the step", "[cpdi]") {
   const double gradient[4] = {0.7, -3, 5, -0.4}, dt = 1e-3, side = 0.1 / 6;
-  double once[4], twice[4];  // (I + dt/2 L)^2
+  double once[4], twice[4];  // domain factors (I + dt/2 L)^2
   for (int k = 0; k < 4; ++k) once[k] = (k % 3 == 0) + dt / 2 * gradient[k];
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 2; ++j) twice[2 * i + j] = once[2 * i] * once[j] + once[2 * i + 1] * once[2 + j];

@@ -31,18 +31,18 @@ const char* vortex = "studies/generalised_vortex.json";
 
 using Vec2 = std::array<double, 2>;
 
-/// Place of a particle at angle and radius, G = T = 1.
+/// The place of a particle at angle and radius, G = T = 1.
 Vec2 place(double X, double Y, double t) {
   const double q = std::hypot(X, Y) - 1, w = 1 - 16 * q * q, a = std::sin(pi * t) * w * w;
   return {X * std::cos(a) - Y * std::sin(a), X * std::sin(a) + Y * std::cos(a)};
 }
 
-/// First Piola stress of the Neo-Hookean law, from differences of the motion. Row by row.
+/// The first Piola stress of the Neo-Hookean law, from differences of the motion, row by row.
 std::array<double, 4> piola(double X, double Y, double t) {
   constexpr double d = 1e-4;
   std::array<double, 4> F{};
   const auto difference = [&](double sx, double sy, int c) {
-    // Fourth order.
+    // The differences are of fourth order.
     return (8 * (place(X + sx * d, Y + sy * d, t)[c] - place(X - sx * d, Y - sy * d, t)[c]) -
             (place(X + 2 * sx * d, Y + 2 * sy * d, t)[c] - place(X - 2 * sx * d, Y - 2 * sy * d, t)[c])) /
            (12 * d);
@@ -53,7 +53,7 @@ std::array<double, 4> piola(double X, double Y, double t) {
           mu * F[3] + pressure * F[0]};
 }
 
-/// x_tt - div P / density by differences.
+/// The force x_tt - div P / density by differences.
 Vec2 force_by_differences(double X, double Y, double t) {
   constexpr double d = 1e-3, dt = 1e-3;
   Vec2 b;
@@ -74,7 +74,7 @@ std::vector<std::string> settings(int cells, const std::string& shape, const std
   return {set("/grid/cell_size", digits(1.0 / cells)), set("/shape/type", shape), set("/transfer/type", transfer),
           set("/constants/G", digits(twist)), set("/compare/exact/amplitude", digits(twist)),
           set("/solver/end_time", digits(end)),
-          // As in experiments/studies/vortex.json.
+          // The Courant number is that of experiments/studies/vortex.json.
           set("/solver/courant", twist < 1 ? "0.3" : "0.5")};
 }
 
@@ -82,7 +82,7 @@ struct Errors {
   std::vector<double> place, volume, largest_volume;  // m, rms; J - 1, exactly zero: rms, and the largest of a particle
 };
 
-/// On grids of `cells` a metre; NaN where a run stops.
+/// The errors on grids of `cells` a metre; NaN where a run stops.
 Errors errors(const std::vector<int>& cells, const std::string& shape, const std::string& transfer, double twist,
               double end, int particles_per_cell_axis = 2) {
   Errors found;
@@ -112,7 +112,7 @@ double order(const std::vector<double>& e) {
   return std::log2(e[e.size() - 2] / e.back());
 }
 
-/// On every finer grid.
+/// Whether an error falls on every finer grid.
 bool falls(const std::vector<double>& e) {
   for (std::size_t k = 1; k < e.size(); ++k)
     if (!(e[k] < e[k - 1])) return false;
@@ -150,14 +150,15 @@ TEST_CASE("vortex: the published force with the other sign is that of another mo
     const Vector3 X{0.9 * std::cos(0.7), 0.9 * std::sin(0.7), 0};
     const Vector3 b = (*experiment.body_force)(X, X, t);
     const double w = 1 - 16 * 0.01, rate = pi * std::cos(pi * t) * w * w, alpha = std::sin(pi * t) * w * w;
-    // + R (g' h)^2 sin(alpha) for - R (g' h)^2 sin(alpha), along the circle at the initial angle.
+    // The published force has + R (g' h)^2 sin(alpha) for - R (g' h)^2 sin(alpha), along the circle at the initial
+    // angle.
     const Vec2 published{b[0] - 2 * rate * rate * std::sin(alpha) * X[1],
                          b[1] + 2 * rate * rate * std::sin(alpha) * X[0]};
     const Vec2 found = force_by_differences(X[0], X[1], t);
     const double distance = std::hypot(published[0] - found[0], published[1] - found[1]);
     std::printf("Vortex, t = %.2f: the published force is off by %.3g N/kg of %.3g\n", t, distance,
                 std::hypot(b[0], b[1]));
-    CHECK((distance < 1e-5) == (t == 0.5));  // g' = 0 there
+    CHECK((distance < 1e-5) == (t == 0.5));  // there g' = 0
     CHECK((distance > 1) == (t != 0.5));
   }
 }
@@ -192,7 +193,7 @@ TEST_CASE("vortex: a small twist: splines, boxes and domains converge, linear fu
     CHECK(falls(e.largest_volume));
   }
   const Errors e = errors({8, 16, 32}, "linear", "apic", 0.1, 0.5);
-  CHECK(order(e.place) < 0);  // grows
+  CHECK(order(e.place) < 0);  // the error grows
   CHECK(order(e.volume) < 0.3);
   CHECK_FALSE(falls(e.largest_volume));
 }
@@ -212,13 +213,13 @@ TEST_CASE("vortex: a full twist: GIMP and linear functions fail, splines and CPD
     const Errors failing = errors({8, 16, 32}, shape, "apic", 1, 0.2);
     INFO(shape);
     CHECK(order(failing.place) < (shape == "gimp" ? 1 : 0));
-    CHECK(order(failing.volume) < 0);  // grows
+    CHECK(order(failing.volume) < 0);  // the error grows
   }
 }
 
 TEST_CASE("vortex: a full twist: the volume of splines converges with three particles a cell and axis",
           "[vortex][slow]") {
-  // Two, which the shear has drawn 1.8 cells apart, leave J where it was on the finest grid.
+  // Two particles, which the shear has drawn 1.8 cells apart, leave J where it was on the finest grid.
   std::printf("Vortex, G = 1, t = 0.2, 3 x 3 particles a cell: rms error on 8, 16, 32 cells a metre (m), orders\n");
   const Errors e = errors({8, 16, 32}, "bspline_cubic", "apic", 1, 0.2, 3);
   CHECK(order(e.place) > 1.8);

@@ -14,7 +14,7 @@ using namespace mpm::test;
 
 namespace {
 
-// A bar cut in two halves, thrown and vibrating, so that the interface crosses cells and carries stress.
+// The bar is cut in two halves, thrown and vibrating, so that the interface crosses cells and carries stress.
 const char* halves = R"J({
   "title": "two halves", "dimension": 2, "precision": "double", "backend": "cpu",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [6, 3]], "boundaries": {"all": "free"}},
@@ -76,7 +76,7 @@ TEST_CASE("a weld on every increment is transparent to filters, a weld at the en
                                              set("/backend", backend),
                                              std::string(R"(/filter={"type":")") + type + R"(","order":)" + order +
                                                  "," + interval + R"("constraints":")" + constraints + "\"}"};
-          // FMPM drives light surface nodes harder than the transfer alone: a step below its limit there.
+          // The step is below FMPM's limit at light surface nodes, which FMPM drives harder than the transfer alone.
           overrides.insert(overrides.end(), {set("/solver/time_step", "0.001"), set("/bodies/0/velocity", rough),
                                              set("/bodies/1/velocity", rough)});
           if (!weld) overrides.emplace_back("/contact=null");
@@ -99,7 +99,7 @@ TEST_CASE("a weld on every increment is transparent to filters, a weld at the en
         if (whole)
           CHECK(late < 1e-14);
         else
-          CHECK(late > 1e-5);  // ten orders above
+          CHECK(late > 1e-5);  // the difference is ten orders above
         if (!whole) least = std::min(least, late), most = std::max(most, late);
         step_all(20);
         exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
@@ -112,8 +112,8 @@ TEST_CASE("a weld on every increment is transparent to filters, a weld at the en
 }
 
 TEST_CASE("what a weld at the end loses grows with the order of the filter", "[weld][filters]") {
-  // Up to order 2 nothing: of the welded v- both fields' projections average to that of the single field. Later
-  // increments start from projections that nothing has welded.
+  // Up to order 2 there is no difference: of the welded v- both fields' projections average to that of the single
+  // field. Later increments start from projections that nothing has welded.
   const std::string rough = R"J(["1+0.3*sin(40*x)","0.4*x+0.3*cos(31*x*y)"])J";
   std::printf("Weld in the filter's loop: velocity after a step less that of one field (m/s)\n");
   for (const std::string shape : {"linear", "bspline_quadratic"})
