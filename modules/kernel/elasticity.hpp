@@ -8,12 +8,12 @@ namespace mpm {
 /// Volumetric energies U(J) = modulus * u(J). Only `simo` is stiff at both ends: its tangent grows as J -> 0 and as J
 /// -> infinity.
 enum class VolumetricEnergy {
-  logarithmic = 0 /* (ln J)^2 / 2 */,
-  quadratic = 1 /* (J-1)^2 / 2 */,
-  simo = 2 /* ((J^2-1)/2 - ln J) / 2 */
+  logarithmic = 0,  ///< (ln J)^2 / 2
+  quadratic = 1,    ///< (J-1)^2 / 2
+  simo = 2          ///< ((J^2-1)/2 - ln J) / 2
 };
 
-/// u(J).
+/// The volumetric energy u(J) over its modulus.
 template <class S>
 MPM_HD S volumetric_energy(VolumetricEnergy form, S J) {
   const scalar_of<S> half = real<S>(0.5), one = real<S>(1);

@@ -24,8 +24,8 @@
 extern "C" {
 #endif
 
-/* Unstable until 1.0 of the sandbox: any change of a struct or number below makes a new version, and a host takes
- * plugins of its own version alone. */
+/* The boundary is unstable until 1.0 of the sandbox: any change of a struct or number below makes a new version, and a
+ * host takes plugins of its own version alone. */
 #define MPM_ABI_VERSION 2u
 #define MPM_BATCH 64u /* particles or nodes in a full batch */
 #define MPM_LANES 16u /* counts are padded to a multiple of this */
@@ -128,12 +128,12 @@ typedef struct mpm_shape {
   void (*evaluate[MPM_PRECISIONS])(const void* parameters,
                                    const mpm_shape_batch* batch); /* tensor product, else null */
   uint32_t capacity[2];                                           /* most nodes of a list, [dimension - 2] */
-  double reach;                                                   /* of a list: see mpm_list_batch */
+  double reach;                                                   /* reach of a list, see mpm_list_batch */
   void (*evaluate_list[MPM_PRECISIONS][2])(const void* parameters, const mpm_list_batch* batch); /* list, else null */
-  /* Of a list, [dimension - 2]: 0, or 4 and 8: each particle carries the corners of a quadrilateral and of a
-   * hexahedron as its domain (corner c is at the upper end along axis k where bit k of c is set), which the host moves
-   * with the grid's multilinear velocity and whose centroid the particle is. No node lies farther than the farthest
-   * corner + reach along an axis. A domain turned inside out has node_count 0, and the run stops. */
+  /* Corners that each particle of a list carries, [dimension - 2]: 0, or 4 and 8. The corners of a quadrilateral and of
+   * a hexahedron are then its domain (corner c is at the upper end along axis k where bit k of c is set), which the
+   * host moves with the grid's multilinear velocity and whose centroid the particle is. No node lies farther than the
+   * farthest corner + reach along an axis. A domain turned inside out has node_count 0, and the run stops. */
   uint32_t sample_points[2];
 } mpm_shape;
 
@@ -153,7 +153,7 @@ enum mpm_transfer_trait {
   MPM_STARTS_WITH_GRADIENT = 512, /* state 0, a matrix, starts as the gradient of the first velocity field, as it does
                                     with MPM_AFFINE_CARRIES_ENERGY; its energy and momentum do not count */
   /* Velocity and state after a gather follow from what is gathered alone (neither is read), and the particle moves with
-   * the gathered velocity: the host need not keep them from one step to the next. */
+   * the gathered velocity: the host need not keep velocity and state from one step to the next. */
   MPM_REPLACES_MOTION = 1024
 };
 typedef struct mpm_scatter_batch {
@@ -193,8 +193,8 @@ typedef struct mpm_transfer {
  *   until the mass norm of the increment is small enough, when the experiment says so.
  * Gathered, the result replaces the particles' velocity and moves them; after the forces it strains them as well. */
 enum mpm_filter_trait {
-  /* Filters v-: particles take it plus dt f / m, the strain is that of the unfiltered velocity (XPIC). Else v+ is
-   * filtered for everything (FMPM). */
+  /* The filter acts on v-: particles take it plus dt f / m, the strain is that of the unfiltered velocity (XPIC).
+   * Without this trait v+ is filtered for everything (FMPM). */
   MPM_FILTERS_BEFORE_FORCES = 1
 };
 typedef struct mpm_filter_batch {
@@ -277,7 +277,7 @@ enum mpm_need {
 
 typedef struct mpm_descriptor {
   const char* id;       /* lower_case, unique within its kind */
-  const char* version;  /* of the plugin, "1.0.0" */
+  const char* version;  /* the plugin's own version, "1.0.0" */
   const char* summary;  /* one line */
   const char* citation; /* paper, equation */
   const char* manual;   /* Markdown: what it models, its equations, when to use it */

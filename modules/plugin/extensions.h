@@ -1,5 +1,5 @@
-/* What only some components have: a table for each ability, which the host asks for by its id
- * (mpm_descriptor::extension) and does without where the answer is null. The first word of every table is its own
+/* Tables of what only some components have, one for each ability. The host asks for a table by its id
+ * (mpm_descriptor::extension) and does without it where the answer is null. The first word of every table is its own
  * version; the host refuses a plugin with a table of another version by name, and one of another kind than the id says.
  *
  * The rules of abi.h for functions and batches hold here too. docs/design/plugin_boundary.md says who asks for each
@@ -26,11 +26,11 @@ typedef struct mpm_cost_case {
   double half_size;          /* shapes: half of an undeformed particle's box, cells */
 } mpm_cost_case;
 typedef struct mpm_cost {
-  /* Of a shape: the weights of one particle along all axes, or its list in the mean over places in a cell. Of a
-   * transfer: a particle's gather and scatter. Of a filter: a node's update. Of a material: a particle's advance, J
-   * and stress. */
+  /* The operations counted are, for a shape, the weights of one particle along all axes, or its list in the mean over
+   * places in a cell; for a transfer a particle's gather and scatter; for a filter a node's update; for a material a
+   * particle's advance, J and stress. */
   double operations;
-  double nodes; /* of a list, in the mean over the same places; else 0 */
+  double nodes; /* nodes of a list, in the mean over the same places; else 0 */
 } mpm_cost;
 typedef struct mpm_costs {
   uint32_t version, reserved;
@@ -65,8 +65,8 @@ typedef struct mpm_shape_boxes {
 /* ---- mpm.transfer.polynomials -----------------------------------------------------------------------------------
  * The highest power along an axis, 0 to 3, of the polynomials that a particle carries beyond b and A: products over
  * the axes of polynomials orthogonal under the shape's weights (kernel/polynomial_basis.hpp), as many an axis as the
- * shape has nodes at most. The host carries, scatters (times the mass) and gathers their coefficients. 0: none. Needs
- * a tensor product, and the traits MPM_SCATTERS_AFFINE, MPM_GATHERS_AFFINE and MPM_AFFINE_CARRIES_ENERGY. */
+ * shape has nodes at most. The host carries, scatters (times the mass) and gathers their coefficients; 0 means none.
+ * They need a tensor product, and the traits MPM_SCATTERS_AFFINE, MPM_GATHERS_AFFINE and MPM_AFFINE_CARRIES_ENERGY. */
 #define MPM_TRANSFER_POLYNOMIALS_ID "mpm.transfer.polynomials"
 #define MPM_TRANSFER_POLYNOMIALS_VERSION 1u
 typedef struct mpm_transfer_polynomials {
@@ -159,7 +159,7 @@ typedef struct mpm_material_temperature {
 #define MPM_MATERIAL_CELL_SIZE_VERSION 1u
 typedef struct mpm_material_cell_size {
   uint32_t version;
-  uint32_t offset; /* of an 8-byte double in the block, m */
+  uint32_t offset; /* place of the 8-byte double in the block, m */
 } mpm_material_cell_size;
 
 #ifdef __cplusplus
