@@ -13,7 +13,7 @@ namespace {
 using conformance::ParameterSample;
 using conformance::Random;
 
-constexpr double step = 0x1p-10;  // s
+constexpr double step = 0x1p-10;  ///< s
 
 /// One plugin in one dimension and precision.
 struct Variant {

@@ -25,7 +25,7 @@ void keep(V& value) {
   asm volatile("" : : "m"(value) : "memory");
 }
 
-constexpr int chains = 12;  // latency 4 times 2 ports is 8; with 2 operands they fit the 16 registers of AVX2
+constexpr int chains = 12;  ///< latency 4 times 2 ports is 8; with 2 operands they fit the 16 registers of AVX2
 
 /// Repeats x <- x a + b in `chains` independent registers.
 template <class T>

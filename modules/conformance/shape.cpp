@@ -123,8 +123,8 @@ ShapeBatch evaluated(const Plugin& plugin, const Variant& v, const ParameterSamp
 struct StencilSums {
   double weight = 0, least_weight = 1;
   Vector3 gradient{}, first{};
-  Matrix3 second{}, affine{};    // w d d^T and d (x) grad w
-  double gradient_identity = 0;  // largest |w d_a - D_aa (grad w)_a|
+  Matrix3 second{}, affine{};    ///< w d d^T and d (x) grad w
+  double gradient_identity = 0;  ///< largest |w d_a - D_aa (grad w)_a|
 };
 
 /// The second moment of one axis, in cells.

@@ -14,8 +14,8 @@ namespace mpm::conformance {
 namespace {
 
 constexpr int full = MPM_BATCH;
-constexpr int side = 8;            // nodes an axis
-constexpr double spacing = 0.125;  // m
+constexpr int side = 8;            ///< nodes an axis
+constexpr double spacing = 0.125;  ///< m
 constexpr double second_moment = spacing * spacing / 4;
 
 unsigned traits_of(const Plugin& plugin) {

@@ -16,7 +16,7 @@ namespace mpm {
 namespace {
 
 constexpr std::string_view variable_letters = "xyzXYZt";
-constexpr std::size_t longest = 2000;  // characters; beyond this it is no formula a person wrote
+constexpr std::size_t longest = 2000;  ///< characters; beyond this it is no formula a person wrote
 
 double minimum(const double* values, int count) {
   return *std::min_element(values, values + count);
@@ -32,7 +32,7 @@ struct Function {
       call;
 };
 
-// All functions are defined here rather than taken from muParser, whose `log` changed its base between versions.
+/// All functions are defined here rather than taken from muParser, whose `log` changed its base between versions.
 const Function functions[] = {
     {"sin", +[](double a) { return std::sin(a); }},
     {"cos", +[](double a) { return std::cos(a); }},

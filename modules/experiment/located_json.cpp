@@ -12,7 +12,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t deepest = 64;  // bound, so that walking the tree needs little stack, whatever the input
+constexpr std::size_t deepest = 64;  ///< bound, so that walking the tree needs little stack, whatever the input
 
 using Json = nlohmann::json;
 

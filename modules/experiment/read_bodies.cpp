@@ -8,7 +8,7 @@ namespace mpm {
 namespace {
 
 constexpr const char* axis_names[] = {"x", "y", "z"};
-constexpr double most_samples = 4e6;  // bound on points tried, so that looking for a body's first one stays quick
+constexpr double most_samples = 4e6;  ///< bound on points tried, so that looking for a body's first one stays quick
 
 }  // namespace
 

@@ -10,7 +10,7 @@ namespace {
 
 using Json = OrderedJson;
 
-// The pattern of a number, then a unit: what units.hpp parses, as far as a pattern can tell.
+/// The pattern of a number, then a unit: what units.hpp parses, as far as a pattern can tell.
 constexpr const char* quantity_pattern = "^\\s*[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?\\s*[^0-9\\s.].*$";
 
 Json reference(const std::string& definition) {

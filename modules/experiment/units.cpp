@@ -26,7 +26,7 @@ constexpr Dimension pure = dimension(0, 0, 0), mass = dimension(1, 0, 0), length
                     angle = dimension(0, 0, 0, 0, 1), frequency = dimension(0, 0, -1), force = dimension(1, 1, -2),
                     pressure = dimension(1, -1, -2), energy = dimension(1, 2, -2), power = dimension(1, 2, -3);
 
-// Every symbol is listed in full, prefix included: no surprises such as a "cPa" nobody meant.
+/// Every symbol is listed in full, prefix included: no surprises such as a "cPa" nobody meant.
 const Symbol symbols[] = {
     {"m", 1, 1, length},        {"km", 1e3, 1, length},
     {"dm", 1, 10, length},      {"cm", 1, 100, length},

@@ -33,7 +33,7 @@ std::optional<fs::path> find_on_path(const std::string& program) {
   return std::nullopt;
 }
 
-// A folder under the system's temporary one that goes away with this object.
+/// A folder under the system's temporary one that goes away with this object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -53,7 +53,7 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-// Numbered links let ffmpeg's plainest input pattern work whatever the frames and their folder are called.
+/// Numbered links let ffmpeg's plainest input pattern work whatever the frames and their folder are called.
 void link_numbered(const std::vector<fs::path>& frames, const fs::path& folder) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     std::string number = std::to_string(i);
@@ -94,7 +94,8 @@ class FileActions {
   posix_spawn_file_actions_t actions_;
 };
 
-// Runs a program without a shell in `folder`, both outputs into `log`. Returns its exit status, 128 + signal if killed.
+/// Runs a program without a shell in `folder`, both outputs into `log`. Returns its exit status, or 128 + signal if it
+/// was killed.
 int run_program(const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& log) {
   FileActions actions;
   posix_spawn_file_actions_addchdir_np(actions.get(), folder.c_str());

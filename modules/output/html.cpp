@@ -12,13 +12,13 @@
 namespace mpm::output {
 namespace {
 
-constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
-constexpr std::string_view minus = "\xE2\x88\x92";        // U+2212
-constexpr std::string_view thin_space = "\xE2\x80\xAF";   // U+202F, narrow and unbreakable
-constexpr std::string_view nothing = "\xE2\x80\x94";      // an em dash stands for a missing value
+constexpr std::string_view replacement = "\xEF\xBF\xBD";  ///< U+FFFD
+constexpr std::string_view minus = "\xE2\x88\x92";        ///< U+2212
+constexpr std::string_view thin_space = "\xE2\x80\xAF";   ///< U+202F, narrow and unbreakable
+constexpr std::string_view nothing = "\xE2\x80\x94";      ///< an em dash stands for a missing value
 constexpr std::size_t longest_open_list = 12;
 
-// Length of the valid UTF-8 sequence at the front of `text`, 0 when there is none.
+/// Length of the valid UTF-8 sequence at the front of `text`, 0 when there is none.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const auto continues = [&](std::size_t i) { return i < text.size() && (byte(i) & 0xC0) == 0x80; };
@@ -133,7 +133,7 @@ std::vector<std::string> all_keys(const Json& rows) {
   return keys;
 }
 
-// Whether an object of flat objects is better shown as one grid: {"kinetic": {"initial": …, "final": …}, …}.
+/// Whether an object of flat objects is better shown as one grid: {"kinetic": {"initial": …, "final": …}, …}.
 bool is_grid(const Json& object) {
   if (object.size() < 2) return false;
   std::size_t filled = 0;
@@ -144,7 +144,7 @@ bool is_grid(const Json& object) {
   return 2 * filled > object.size() * all_keys(object).size();
 }
 
-// Rows are the members of a list, or of an object, whose keys then head the rows.
+/// Rows are the members of a list, or of an object, whose keys then head the rows.
 std::string columns_table(const Json& rows) {
   const std::vector<std::string> keys = all_keys(rows);
   const auto is_number_column = [&](const std::string& key) {

@@ -14,8 +14,8 @@ std::string without_quotes(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t\"\r") - first + 1);
 }
 
-// The value behind the first line of a system file that starts with `key` and has `separator`; empty when there is
-// none.
+/// The value behind the first line of a system file that starts with `key` and has `separator`; empty when there is
+/// none.
 std::string value_in(const char* file, const std::string& key, char separator) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);) {

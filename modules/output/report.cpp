@@ -7,7 +7,7 @@ namespace mpm::output {
 namespace report {
 namespace {
 
-// Cut or malformed files are named on the page instead of costing the page.
+/// Cut or malformed files are named on the page instead of costing the page.
 Json read_object(Run& run, const char* name) {
   std::error_code ignored;
   const std::filesystem::path path = run.folder / name;

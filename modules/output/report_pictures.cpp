@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_frames = 8;
-constexpr std::uintmax_t largest_vector_figure = 2 << 20;  // a scatter of many particles is smaller as pixels
+constexpr std::uintmax_t largest_vector_figure = 2 << 20;  ///< a scatter of many particles is smaller as pixels
 
 std::string image(const fs::path& path, const std::string& description) {
   const char* type = path.extension() == ".svg" ? "image/svg+xml" : "image/png";
@@ -30,7 +30,7 @@ std::string caption_of(const fs::path& path) {
   return words;
 }
 
-// The order of figures: what a reader asks first comes first; figures of other names follow as people count.
+/// The order of figures: what a reader asks first comes first; figures of other names follow as people count.
 constexpr std::array<std::string_view, 11> reading_order{
     "energy", "dissipation", "contact",      "contact_nodes", "error",           "ledger",
     "heat",   "heat_held",   "volume_ratio", "momentum",      "angular_momentum"};
@@ -40,8 +40,8 @@ std::size_t place_of(const fs::path& figure) {
                                   reading_order.begin());
 }
 
-// The picture of each figure: the vector twin, which is sharp at every width, unless it is very large and there are
-// pixels.
+/// The picture of each figure: the vector twin, which is sharp at every width, unless it is very large and there are
+/// pixels.
 std::vector<fs::path> chosen_figures(const fs::path& folder) {
   std::vector<fs::path> chosen;
   for (const fs::path& path : support::files_with_ending(folder, {".svg", ".png"})) {
@@ -56,7 +56,7 @@ std::vector<fs::path> chosen_figures(const fs::path& folder) {
   return chosen;
 }
 
-// Links to the files of the same name: the numbers behind the figure, and its other forms.
+/// Links to the files of the same name: the numbers behind the figure, and its other forms.
 std::string twin_links(const fs::path& figure) {
   std::string html;
   for (const char* ending : {".csv", ".svg", ".png", ".pdf"}) {

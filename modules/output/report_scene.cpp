@@ -12,13 +12,13 @@ std::string text_at(const Json& value, std::initializer_list<const char*> keys) 
   return found != nullptr && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-// The id of a method whether it is written "flip" or {"type": "flip", …}.
+/// The id of a method whether it is written "flip" or {"type": "flip", …}.
 std::string type_of(const Json& experiment, const char* key) {
   const std::string direct = text_at(experiment, {key});
   return direct.empty() ? text_at(experiment, {key, "type"}) : direct;
 }
 
-// Ids stay as they are written in files and on the command line.
+/// Ids stay as they are written in files and on the command line.
 std::string id_html(const std::string& id) {
   return "<code>" + escape_html(id) + "</code>";
 }
@@ -123,7 +123,7 @@ std::string shell_quoted(const std::string& word) {
   return text + "'";
 }
 
-// The command as a line that can be pasted, whether it was recorded as one string or as a list of words.
+/// The command as a line that can be pasted, whether it was recorded as one string or as a list of words.
 std::string command_line(const Json& command) {
   if (command.is_string()) return command.get<std::string>();
   if (!command.is_array()) return {};

@@ -2,7 +2,7 @@
 
 namespace mpm::output::report {
 
-// System fonts only, two themes from one set of variables, and rules that keep figures whole on paper.
+/// System fonts only, two themes from one set of variables, and rules that keep figures whole on paper.
 const char* style() {
   return R"css(
 :root { --text: #1c2330; --soft: #5a6475; --page: #ffffff; --panel: #f4f6f9; --line: #d9dee6; --accent: #0072b2;

@@ -83,7 +83,7 @@ std::string outcome_banner(const Run& run) {
   return banner(good ? "good" : "bad", meaning_of(code->get<std::int64_t>(), broke_a_limit(run)) + code_text, body);
 }
 
-// Finds a value by the end of its dotted path: "dt_min" or "time_step.min", wherever its group is, nearest to the top.
+/// Finds a value by the end of its dotted path: "dt_min" or "time_step.min", wherever its group is, nearest to the top.
 const Json* find_by_path(const Json& root, std::initializer_list<const char*> names) {
   std::vector<std::pair<std::string, const Json*>> level = {{"", &root}};
   while (!level.empty()) {
@@ -152,7 +152,7 @@ std::string requirement(const Json& expectation) {
   return html;
 }
 
-// What an expectation says beyond the known keys (a tolerance, a note), to be kept beside its requirement.
+/// What an expectation says beyond the known keys (a tolerance, a note), to be kept beside its requirement.
 std::string other_terms(const Json& expectation) {
   static const std::set<std::string> known = {"metric", "at_least", "at_most", "equals", "value", "held"};
   std::string html;
@@ -174,7 +174,7 @@ bool is_closing(const std::string& cause) {
   return cause.find("residual") != std::string::npos;
 }
 
-// A bar from a common zero; the scale leaves room on the negative side only when something is negative.
+/// A bar from a common zero; the scale leaves room on the negative side only when something is negative.
 std::string bar(double value, double least, double most) {
   const double span = most - least;
   if (!(span > 0.0) || !std::isfinite(span) || !std::isfinite(value)) return "<span class=\"track\"></span>";
@@ -201,7 +201,7 @@ std::vector<Share> shares_of(const Json& object) {
   return shares;
 }
 
-// Members that are not numbers, for a plain table after the bars.
+/// Members that are not numbers, for a plain table after the bars.
 std::string remainder_html(const Json& object) {
   Json rest = Json::object();
   for (const auto& item : object.items()) {
@@ -266,7 +266,7 @@ std::string passes(const Json& performance) {
          remainder_html(*seconds);
 }
 
-// A group of the summary as a plain table, without the members that another table shows.
+/// A group of the summary as a plain table, without the members that another table shows.
 std::string group(const Run& run, const char* name, std::initializer_list<const char*> shown) {
   const Json* found = member(run.summary, {name});
   if (found == nullptr || found->is_null()) return {};
@@ -289,7 +289,7 @@ std::string performance_section(const Run& run) {
   return section("Performance", group(run, "performance", {"seconds_by_pass"}) + passes(*performance));
 }
 
-// Tables of groups and values that no other section knows: nothing that was recorded is hidden.
+/// Tables of groups and values that no other section knows: nothing that was recorded is hidden.
 std::string other_groups(const Run& run) {
   static const std::set<std::string> known = {"outcome",  "warnings", "expect", "limits",    "flags",      "energy",
                                               "momentum", "contact",  "error",  "stability", "performance"};

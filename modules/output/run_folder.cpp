@@ -23,7 +23,7 @@ bool is_temporary(const fs::path& path) {
   return name.starts_with('.') && name.ends_with(".tmp");
 }
 
-// Empty subfolders and half-written files do not count: a run that was killed at its very start leaves those.
+/// Empty subfolders and half-written files do not count: a run that was killed at its very start leaves those.
 bool holds_no_file(const fs::path& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (is_temporary(entry.path()) && entry.is_regular_file()) continue;

@@ -31,7 +31,7 @@ class RunFolder {
 
   const std::filesystem::path& root() const { return root_; }
 
-  // The folder of figures, as each subfolder below, is made at first use. Throws MachineError.
+  /// The folder of figures, as each subfolder below, is made at first use. Throws MachineError.
   std::filesystem::path figures() const { return subfolder("figures"); }
   std::filesystem::path frames() const { return subfolder("frames"); }
   std::filesystem::path vtk() const { return subfolder("vtk"); }
@@ -50,7 +50,7 @@ class RunFolder {
   explicit RunFolder(std::filesystem::path root) : root_(std::move(root)) {}
   std::filesystem::path subfolder(const char* name) const;
 
-  std::filesystem::path root_;  // absolute, so that a later change of the working folder cannot move it
+  std::filesystem::path root_;  ///< absolute, so that a later change of the working folder cannot move it
 };
 
 /// A lock held by the one program that writes to a run folder; the system lets go of it when that program ends, however

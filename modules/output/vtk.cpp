@@ -15,7 +15,7 @@ namespace mpm::output {
 namespace {
 
 constexpr const char* byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-constexpr std::uint8_t vertex_cell = 1;  // VTK_VERTEX
+constexpr std::uint8_t vertex_cell = 1;  ///< VTK_VERTEX
 
 template <typename T>
 constexpr const char* type_name();
@@ -32,7 +32,7 @@ constexpr const char* type_name<std::uint8_t>() {
   return "UInt8";
 }
 
-// Writes one DataArray, inline: a byte count and the bytes themselves, together in base64.
+/// Writes one DataArray, inline: a byte count and the bytes themselves, together in base64.
 template <typename T>
 void append_array(std::string& xml, const std::string& name, int components, const std::vector<T>& values,
                   const std::string& more_attributes = "") {
@@ -55,7 +55,7 @@ std::vector<double> padded_to_three(const std::vector<double>& values, int compo
   return padded;
 }
 
-// Returns the number of particles, or refuses sizes that would write a file nobody can read.
+/// Returns the number of particles, or refuses sizes that would write a file nobody can read.
 std::size_t checked_count(const ParticleSnapshot& snapshot) {
   if (snapshot.dimension < 1 || snapshot.dimension > 3) {
     throw std::invalid_argument("a particle snapshot has dimension 1, 2 or 3, not " +

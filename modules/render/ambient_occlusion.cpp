@@ -7,9 +7,9 @@
 namespace mpm::render {
 namespace {
 
-constexpr int kRays = 10;       // samples a radius
-constexpr int kPattern = 4;     // the sample disc turns in a 4 x 4 pattern, which a 4 x 4 mean then smooths away
-constexpr float kBias = 0.08f;  // sine of the angle below which a neighbour counts as the same surface
+constexpr int kRays = 10;       ///< samples a radius
+constexpr int kPattern = 4;     ///< the sample disc turns in a 4 x 4 pattern, which a 4 x 4 mean then smooths away
+constexpr float kBias = 0.08f;  ///< sine of the angle below which a neighbour counts as the same surface
 
 float occlusion(const GeometryBuffer& g, int x, int y, double radius, double scale) {
   const std::size_t here = static_cast<std::size_t>(y) * g.width + x;
@@ -34,7 +34,7 @@ float occlusion(const GeometryBuffer& g, int x, int y, double radius, double sca
   return sum / kRays;
 }
 
-// The mean over the pattern, within the same surface only, so that outlines stay sharp.
+/// The mean over the pattern, within the same surface only, so that outlines stay sharp.
 std::vector<float> smoothed(const GeometryBuffer& g, const std::vector<float>& values, double tolerance) {
   std::vector<float> result(values.size(), 1);
   for (int y = 0; y < g.height; ++y) {

@@ -13,7 +13,7 @@
 namespace mpm::render {
 namespace {
 
-constexpr int kSamples = 3;  // samples a pixel in each direction
+constexpr int kSamples = 3;  ///< samples a pixel in each direction
 constexpr double kLineSpacing = 1.35;
 
 void draw_value_numbers(Canvas& canvas, const Theme& theme, const Scales& s, bool show_numbers) {

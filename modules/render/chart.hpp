@@ -16,8 +16,8 @@ namespace mpm::render {
 /// Sizes in pixels, in proportion to the picture's height.
 struct Theme {
   double width = 0, height = 0;
-  double unit = 1;  // one pixel of a picture 1000 high
-  double text = 0;  // never below 1/45 of the height
+  double unit = 1;  ///< one pixel of a picture 1000 high
+  double text = 0;  ///< never below 1/45 of the height
   double title = 0;
   double margin = 0;
 
@@ -87,7 +87,7 @@ struct EndLabel {
   std::string text;
   Colour colour;
   Point end;
-  std::function<void(Canvas&, Point, double)> sample = {};  // draws the line's mark at a point, given a radius
+  std::function<void(Canvas&, Point, double)> sample = {};  ///< draws the line's mark at a point, given a radius
 };
 
 /// Pixels to keep free at the right for end labels, or nothing when they are too wide or too many for the height.
@@ -104,7 +104,7 @@ void draw_end_labels(Canvas& canvas, const Theme& theme, std::span<const EndLabe
 struct LegendEntry {
   std::string text;
   std::function<void(Canvas&, const Box&)> sample;
-  bool is_wide = true;  // a line needs more room than a mark
+  bool is_wide = true;  ///< a line needs more room than a mark
 };
 
 /// Lays entries out in rows from the top of `space`; returns the height used, and draws when `canvas_to_draw` is given.

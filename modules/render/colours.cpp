@@ -12,16 +12,16 @@ constexpr Colour from_hex(unsigned rgb) {
   return {((rgb >> 16) & 255) / 255.0, ((rgb >> 8) & 255) / 255.0, (rgb & 255) / 255.0};
 }
 
-// Okabe & Ito (2008); black is kept for exact and published data, yellow comes last because it is faint on white.
+/// Okabe & Ito (2008); black is kept for exact and published data, yellow comes last because it is faint on white.
 constexpr std::array<Colour, 7> kPalette{from_hex(0x0072B2), from_hex(0xD55E00), from_hex(0x009E73), from_hex(0xE69F00),
                                          from_hex(0xCC79A7), from_hex(0x56B4E9), from_hex(0xF0E442)};
 
-// ColorBrewer's red-blue map with its centre moved from light grey to pure white.
+/// ColorBrewer's red-blue map with its centre moved from light grey to pure white.
 constexpr std::array<Colour, 11> kDiverging{
     from_hex(0x053061), from_hex(0x2166AC), from_hex(0x4393C3), from_hex(0x92C5DE), from_hex(0xD1E5F0), kWhite,
     from_hex(0xFDDBC7), from_hex(0xF4A582), from_hex(0xD6604D), from_hex(0xB2182B), from_hex(0x67001F)};
 
-// Polynomial fit of matplotlib's viridis by M. Zucker, coefficients of t^0 ... t^6.
+/// Polynomial fit of matplotlib's viridis by M. Zucker, coefficients of t^0 ... t^6.
 constexpr std::array<Colour, 7> kViridis{{{0.2777273272, 0.0054073445, 0.3340998053},
                                           {0.1050930431, 1.4046135299, 1.3845901626},
                                           {-0.3308618287, 0.2148475595, 0.0950951630},

@@ -46,8 +46,8 @@ Look look_of(SeriesKind kind, std::size_t coloured, std::size_t black, double u)
   return {colour, {colour, 3.6 * u, dash_of(coloured, u)}, marker, true};
 }
 
-// Marks the Pareto front. Least x and least y are best; a point is dominated when another is no worse in both and
-// better in one.
+/// Marks the Pareto front. Least x and least y are best; a point is dominated when another is no worse in both and
+/// better in one.
 std::vector<Point> mark_front(Content& content) {
   struct Candidate {
     double x, y;
@@ -69,7 +69,7 @@ std::vector<Point> mark_front(Content& content) {
   return front;
 }
 
-// What the front attains: steps, because nothing was computed between two of its points.
+/// What the front attains: steps, because nothing was computed between two of its points.
 std::vector<Point> staircase(const std::vector<Point>& front, const Scales& s) {
   std::vector<Point> line;
   for (const Point& p : front) {
@@ -79,8 +79,8 @@ std::vector<Point> staircase(const std::vector<Point>& front, const Scales& s) {
   return line;
 }
 
-// The points that get a mark: every point of a short series; on a long one a few, staggered so that the marks of
-// coinciding lines lie side by side.
+/// The points that get a mark: every point of a short series; on a long one a few, staggered so that the marks of
+/// coinciding lines lie side by side.
 std::vector<std::size_t> marked_points(const std::vector<Point>& line, std::size_t rank, std::size_t ranks,
                                        bool only_marks) {
   std::vector<std::size_t> chosen;
@@ -155,7 +155,7 @@ void draw_series(Canvas& canvas, const Theme& theme, const Scales& s, const Cont
   }
 }
 
-// What stands in the plot already: new labels look for a place that none of it crosses.
+/// What stands in the plot already: new labels look for a place that none of it crosses.
 struct Occupied {
   std::vector<std::vector<Point>> lines;
   std::vector<Box> boxes;
@@ -181,7 +181,7 @@ Occupied occupied_by(const Content& content, const Scales& s, double u) {
   return result;
 }
 
-// A free place beside the point, else the one least in the way, and what is wrong with it.
+/// A free place beside the point, else the one least in the way, and what is wrong with it.
 std::pair<Box, double> place_label(const Theme& theme, const Scales& s, Point at, double width, double labels_to,
                                    const Occupied& occupied) {
   const double gap = 14 * theme.unit, height = theme.text;
@@ -228,7 +228,7 @@ struct Triangle {
   Box label;
 };
 
-// A triangle whose long side is parallel to the fitted line, beside the data at `middle`.
+/// A triangle whose long side is parallel to the fitted line, beside the data at `middle`.
 Triangle slope_triangle(const Canvas& canvas, const Theme& theme, Point middle, double rise, bool is_below,
                         const std::string& text) {
   const double half = 50 * theme.unit, away = (is_below ? 20 : -20) * theme.unit;

@@ -13,7 +13,7 @@ namespace mpm::render {
 
 struct Look {
   Colour colour;
-  Stroke line;  // width 0: no line
+  Stroke line;  ///< width 0: no line
   Marker marker = Marker::circle;
   bool has_marker = false, is_hollow = false;
 };
@@ -21,13 +21,13 @@ struct Look {
 struct Shown {
   Series data;
   Look look;
-  std::vector<bool> is_faded;  // Pareto: dominated
+  std::vector<bool> is_faded;  ///< Pareto: dominated
 };
 
 struct Content {
   std::vector<Shown> series;
-  std::size_t not_finite = 0, not_positive = 0;  // points left out
-  std::string empty;                             // names of series that nothing is left of
+  std::size_t not_finite = 0, not_positive = 0;  ///< points left out
+  std::string empty;                             ///< names of series that nothing is left of
   bool has_long_lines = false;
 };
 

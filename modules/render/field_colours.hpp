@@ -30,7 +30,7 @@ class FieldColours {
   std::string label_;
   std::vector<std::string> categories_;
   double lo_ = 0, hi_ = 1;
-  bool is_above_ = false, is_below_ = false;  // values beyond a range that was given
+  bool is_above_ = false, is_below_ = false;  ///< values beyond a range that was given
 };
 
 }  // namespace mpm::render

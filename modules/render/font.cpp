@@ -28,7 +28,8 @@ std::string find_font(const char* name) {
   return {};
 }
 
-// Superscripts are the ordinary glyph, smaller and raised: a font's own set is rarely complete, and mixing fonts shows.
+/// Superscripts are the ordinary glyph, smaller and raised: a font's own set is rarely complete, and a mix of fonts
+/// shows.
 struct Shifted {
   char32_t base;
   double rise;
@@ -88,7 +89,7 @@ std::vector<char32_t> decode_utf8(std::string_view utf8) {
 struct FontSet::Impl {
   FT_Library library = nullptr;
   std::vector<FT_Face> faces;
-  std::vector<int> regular, bold;  // faces in the order in which a glyph is looked for
+  std::vector<int> regular, bold;  ///< faces in the order in which a glyph is looked for
 
   void open(const char* name, std::vector<int>& chain) {
     const std::string path = find_font(name);

@@ -10,11 +10,11 @@ namespace mpm::render {
 
 /// A glyph ready to be laid out: which outline, at which scale of the em, raised by how much of the em.
 struct GlyphPlace {
-  int face = 0;        // index into the font set
-  unsigned glyph = 0;  // FreeType's glyph index
-  double scale = 1;    // superscripts and subscripts are smaller
-  double rise = 0;     // em, upwards
-  double advance = 0;  // em of the whole string's size
+  int face = 0;        ///< index into the font set
+  unsigned glyph = 0;  ///< FreeType's glyph index
+  double scale = 1;    ///< superscripts and subscripts are smaller
+  double rise = 0;     ///< em, upwards
+  double advance = 0;  ///< em of the whole string's size
 };
 
 /// Coverage 0..255 in rows of `width`; (left, top) is the bitmap's corner from the pen, y upwards, pixels.

@@ -18,7 +18,7 @@ namespace mpm::render {
 namespace {
 
 constexpr std::size_t kMostVectorParticles = 20000;
-constexpr int kWritingSamples = 2;  // samples a pixel in each direction over a 3-D scene
+constexpr int kWritingSamples = 2;  ///< samples a pixel in each direction over a 3-D scene
 constexpr std::array<const char*, 3> kAxisNames{"x", "y", "z"};
 
 void check(const ParticleFrame& f) {
@@ -81,7 +81,7 @@ std::string remark(const ParticleFrame& f, const std::vector<std::size_t>& shown
                 counted(outside, "particle", "outside the domain"));
 }
 
-// The map from metres of a 2-D domain to pixels, with one scale for both axes.
+/// The map from metres of a 2-D domain to pixels, with one scale for both axes.
 struct PlaneView {
   Box box;
   double x0, y0, scale;
@@ -161,7 +161,7 @@ void draw_plane(Canvas& canvas, const ParticleFrame& f, const Theme& theme, cons
   colours.draw_key(canvas, theme, {view.box.x1 + gap, key_top, page.x1, key_top + key_height});
 }
 
-// The order of the axes on the picture: two in the ground plane, then up; a cyclic shift keeps the space right-handed.
+/// The order of the axes on the picture: two in the ground plane, then up; a cyclic shift keeps the space right-handed.
 std::array<int, 3> view_axes(const ParticleFrame& f) {
   const int up = f.up_axis < 0 ? 2 : f.up_axis;
   return {(up + 1) % 3, (up + 2) % 3, up};
@@ -178,7 +178,7 @@ std::vector<Ball> balls_of(const ParticleFrame& f, const std::vector<std::size_t
   return balls;
 }
 
-// Names and lengths of the three edges that meet the eye first.
+/// Names and lengths of the three edges that meet the eye first.
 void draw_edge_lengths(Canvas& canvas, const Theme& theme, const ParticleFrame& f, const Camera& camera, const Vec3& lo,
                        const Vec3& hi) {
   const auto axes = view_axes(f);
@@ -192,7 +192,7 @@ void draw_edge_lengths(Canvas& canvas, const Theme& theme, const ParticleFrame& 
   canvas.text({post.x - 0.6 * theme.text, post.y}, name(2), theme.style(kInk, Anchor::end, Baseline::middle));
 }
 
-// Draws a 3-D picture: the scene is rendered once, then laid under the writing.
+/// Draws a 3-D picture: the scene is rendered once, then laid under the writing.
 Image draw_space(const ParticleFrame& f, const Theme& theme, const std::vector<std::size_t>& shown,
                  const FieldColours& colours) {
   const auto axes = view_axes(f);

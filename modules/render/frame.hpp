@@ -17,21 +17,21 @@ enum class ColourMap { viridis, diverging, categorical };
 /// Lengths in metres, times in seconds; n is the number of particles.
 struct ParticleFrame {
   int dimension = 2;
-  std::array<double, 3> lower{}, upper{};  // the domain
-  std::vector<double> positions = {};      // n * dimension
-  std::vector<double> half_size = {};    // n: half the side of the particle; in 3-D a ball of the same volume is drawn
-  std::vector<double> domain_axes = {};  // optional, 2-D: n * 4, semi-side vectors of the parallelogram to draw
-  std::vector<double> values = {};       // n, in `unit`
-  std::string quantity = {}, unit = {};  // colour bar: "von Mises stress σᵥ" and "Pa"
-  std::vector<std::string> categories = {};  // names of the values 0, 1, 2, ... of a categorical map
+  std::array<double, 3> lower{}, upper{};    ///< the domain
+  std::vector<double> positions = {};        ///< n * dimension
+  std::vector<double> half_size = {};        ///< n: half the particle's side; in 3-D a ball of the same volume is drawn
+  std::vector<double> domain_axes = {};      ///< optional, 2-D: n * 4, semi-side vectors of the parallelogram to draw
+  std::vector<double> values = {};           ///< n, in `unit`
+  std::string quantity = {}, unit = {};      ///< colour bar: "von Mises stress σᵥ" and "Pa"
+  std::vector<std::string> categories = {};  ///< names of the values 0, 1, 2, ... of a categorical map
   ColourMap map = ColourMap::viridis;
-  std::optional<std::pair<double, double>> range = {};  // colour scale, to be fixed over a film; else from the values
+  std::optional<std::pair<double, double>> range = {};  ///< colour scale, to be fixed over a film; else from the values
   double time = 0;
   long step = 0;
-  double cell_size = 0;  // > 0: light grid lines in 2-D, unless the cells are smaller than a few pixels
-  int up_axis = -1;      // 3-D: the axis that points upwards on the picture; -1 is the last
+  double cell_size = 0;  ///< > 0: light grid lines in 2-D, unless the cells are smaller than a few pixels
+  int up_axis = -1;      ///< 3-D: the axis that points upwards on the picture; -1 is the last
   std::string title = {}, footnote = {};
-  int width = 1600, height = 1000;  // pixels
+  int width = 1600, height = 1000;  ///< pixels
 };
 
 /// Writes STEM.png, STEM.csv (positions and values) and, in 2-D up to 20 000 particles, STEM.svg. Particles with a

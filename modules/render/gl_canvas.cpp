@@ -14,7 +14,7 @@
 namespace mpm::render {
 namespace {
 
-constexpr int kLargestTile = 2048;  // pixels of the result; times the samples it stays below every driver's limit
+constexpr int kLargestTile = 2048;  ///< pixels of the result; times the samples it stays below every driver's limit
 
 void set_colour(const Colour& c) {
   glColor4d(c.r, c.g, c.b, c.a);

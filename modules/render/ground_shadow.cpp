@@ -9,12 +9,12 @@ namespace {
 constexpr int kSize = 384;
 constexpr int kLayers = 6;
 constexpr double kDarkest = 0.38;
-constexpr double kReach[kLayers] = {0.03, 0.08, 0.16, 0.28, 0.5, 1e9};  // heights, as fractions of the ground's length
-constexpr int kBlur[kLayers] = {2, 3, 5, 7, 10, 14};  // cells; a shadow softens with the height of what casts it
+constexpr double kReach[kLayers] = {0.03, 0.08, 0.16, 0.28, 0.5, 1e9};  ///< heights as fractions of the ground's length
+constexpr int kBlur[kLayers] = {2, 3, 5, 7, 10, 14};  ///< cells; a shadow softens with the height of what casts it
 
 using Grid = std::vector<float>;
 
-// Takes the running mean along one direction; three of them come close to a Gaussian.
+/// Takes the running mean along one direction; three of them come close to a Gaussian.
 void blur_rows(Grid& grid, int radius, std::size_t along, std::size_t across) {
   std::vector<float> line(kSize);
   for (std::size_t row = 0; row < kSize; ++row) {

@@ -12,9 +12,9 @@ namespace mpm::render {
 namespace {
 
 constexpr Colour kNoColour{0.92, 0.92, 0.92};
-constexpr double kLine = 1.2;  // spacing of lines in a cell, in em
+constexpr double kLine = 1.2;  ///< spacing of lines in a cell, in em
 
-// The least size of text that a picture may have: cells are narrow.
+/// The least size of text that a picture may have: cells are narrow.
 double cell_text(const Theme& theme) {
   return theme.height / 45;
 }
@@ -35,7 +35,7 @@ bool has_colour(const HeatMap& map, double value) {
   return std::isfinite(value) && (!map.log_scale || value > 0);
 }
 
-// The power of ten, a multiple of three, that all numbers are divided by so that few need one of their own.
+/// The power of ten, a multiple of three, that all numbers are divided by so that few need one of their own.
 int common_exponent(const HeatMap& map) {
   Range sizes;
   for (const double value : map.values) {
@@ -60,11 +60,11 @@ Axis colours_of(const HeatMap& map, double factor, int count) {
 /// Places and sizes of everything on the page.
 struct Layout {
   Box cells;
-  Axis colours;                                         // axis of the values over `factor`
-  double factor = 1;                                    // taken out of all numbers
-  std::vector<std::vector<std::string>> rows, columns;  // wrapped names
+  Axis colours;                                         ///< axis of the values over `factor`
+  double factor = 1;                                    ///< taken out of all numbers
+  std::vector<std::vector<std::string>> rows, columns;  ///< wrapped names
   double column_width = 0, row_height = 0;
-  bool is_upright = false;  // names of columns are turned by a right angle
+  bool is_upright = false;  ///< names of columns are turned by a right angle
   std::vector<std::string> value_label;
 };
 
@@ -87,7 +87,7 @@ std::vector<std::string> fitted(const Canvas& canvas, const Theme& theme, const 
   return lines;
 }
 
-// Lays column names level where every word of every name fits its column in at most three lines; else upright.
+/// Lays column names level where every word of every name fits its column in at most three lines; else upright.
 double lay_column_names(const Canvas& canvas, const Theme& theme, const HeatMap& map, double page_height, Layout& at) {
   const double width = at.column_width - 0.5 * theme.text;
   std::size_t lines = 1;
@@ -129,7 +129,7 @@ Layout lay_out(const Canvas& canvas, const Theme& theme, const HeatMap& map, con
   return at;
 }
 
-// A number with as many digits as fit the column, two at least; a power of ten may take a line of its own.
+/// A number with as many digits as fit the column, two at least; a power of ten may take a line of its own.
 std::vector<std::string> number_in(const Canvas& canvas, double size, double value, int digits, double width) {
   std::vector<std::string> lines;
   for (int n = digits; n >= std::min(digits, 2); --n) {

@@ -26,12 +26,12 @@ void check(const Multiples& m) {
 
 /// What the panels show, and every look once.
 struct Sheet {
-  std::vector<Content> contents;  // one a panel
+  std::vector<Content> contents;  ///< one a panel
   std::vector<Shown> legend;
   std::string remark;
 };
 
-// The series of all panels, each label and kind once.
+/// The series of all panels, each label and kind once.
 std::vector<Series> distinct(const Multiples& m) {
   std::vector<Series> all;
   for (const Panel& panel : m.panels) {
@@ -73,7 +73,7 @@ struct Grid {
   std::size_t columns = 1, rows = 1;
 };
 
-// The grid whose panels are a little wider than high and which leaves few places empty.
+/// The grid whose panels are a little wider than high and which leaves few places empty.
 Grid grid_of(std::size_t panels, int columns, const Box& space) {
   const auto rows_for = [&](std::size_t c) { return (panels + c - 1) / c; };
   if (panels == 0) return {};
@@ -96,13 +96,13 @@ bool has_slopes(const Multiples& m) {
 /// Sizes of the grid; all panels are equal.
 struct Layout {
   Grid grid;
-  bool orders_as_text = false;   // orders stand above the axes: triangles have no room in small panels
-  double left = 0, top = 0;      // corner of the first panel's axes
-  double width = 0, height = 0;  // size of a panel's axes
-  double gap_x = 0, gap_y = 0;   // gaps between axes, titles and numbers included
+  bool orders_as_text = false;   ///< orders stand above the axes: triangles have no room in small panels
+  double left = 0, top = 0;      ///< corner of the first panel's axes
+  double width = 0, height = 0;  ///< size of a panel's axes
+  double gap_x = 0, gap_y = 0;   ///< gaps between axes, titles and numbers included
 };
 
-// A panel has numbers beneath it where no panel follows below.
+/// A panel has numbers beneath it where no panel follows below.
 bool is_lowest(std::size_t panel, std::size_t panels, const Grid& grid) {
   return panel + grid.columns >= panels;
 }
@@ -137,9 +137,9 @@ Layout lay_out(const Canvas& canvas, const Theme& theme, const Multiples& m, con
   return at;
 }
 
-constexpr double order_mark = 0.9, order_gap = 0.6;  // sizes of text
+constexpr double order_mark = 0.9, order_gap = 0.6;  ///< sizes of text
 
-// The digits behind the point with which the orders of every panel have room; at least one.
+/// The digits behind the point with which the orders of every panel have room; at least one.
 int digits_of_orders(const Canvas& canvas, const Theme& theme, const std::vector<Content>& contents, double width) {
   for (const Content& content : contents) {
     double end = -order_gap * theme.text;
@@ -151,8 +151,8 @@ int digits_of_orders(const Canvas& canvas, const Theme& theme, const std::vector
   return 2;
 }
 
-// Draws the observed orders of a panel in the colours of their series, each beside its mark; an order that has no room
-// is dotted.
+/// Draws the observed orders of a panel in the colours of their series, each beside its mark; an order that has no room
+/// is dotted.
 void draw_orders(Canvas& canvas, const Theme& theme, const Content& content, Point at, double width, int digits) {
   double x = at.x;
   for (const Shown& shown : content.series) {

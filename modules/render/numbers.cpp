@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kMinus = "−";
 constexpr const char* kThinSpace = "\u2009";
 
-// std::log10 of an exact power of ten can fall just below the whole number.
+/// std::log10 of an exact power of ten can fall just below the whole number.
 int decade(double value) {
   return static_cast<int>(std::floor(std::log10(value) + 1e-9));
 }

@@ -48,7 +48,7 @@ void check(const OutcomeMap& map) {
   }
 }
 
-// The borders of cells: half way between the centres, in the axis' own measure.
+/// The borders of cells: half way between the centres, in the axis' own measure.
 std::vector<double> borders(const std::vector<double>& centres, bool is_log) {
   const auto in = [&](double v) { return is_log ? std::log(v) : v; };
   const auto out = [&](double v) { return is_log ? std::exp(v) : v; };
@@ -63,7 +63,7 @@ std::vector<double> borders(const std::vector<double>& centres, bool is_log) {
   return result;
 }
 
-// The outcome's colour, lightened so that the mark and the limits stay readable upon it.
+/// The outcome's colour, lightened so that the mark and the limits stay readable upon it.
 Colour cell_colour(int outcome) {
   return outcome < 0 ? kNotRun : mix(kWhite, palette(static_cast<std::size_t>(outcome)), 0.75);
 }

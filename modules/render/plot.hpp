@@ -18,9 +18,9 @@ struct Series {
   std::vector<double> x = {}, y = {};
   std::vector<double> error = {};
   SeriesKind kind = SeriesKind::computed;
-  std::vector<std::string> point_labels = {};  // optional: a short name beside each point
-  std::vector<std::string> point_names = {};   // optional, in the table alone: what each point is
-  std::vector<std::string> dominated_by = {};  // optional, in the table alone: the name of a point that is better
+  std::vector<std::string> point_labels = {};  ///< optional: a short name beside each point
+  std::vector<std::string> point_names = {};   ///< optional, in the table alone: what each point is
+  std::vector<std::string> dominated_by = {};  ///< optional, in the table alone: the name of a point that is better
 };
 
 /// Labels carry quantity, symbol and unit: "kinetic energy T (J)". Sizes are pixels.
@@ -28,8 +28,8 @@ struct Plot {
   std::string title = {}, x_label = {}, y_label = {}, footnote = {};
   bool log_x = false, log_y = false;
   std::vector<Series> series = {};
-  bool slope_triangles = false;  // log-log only: the order fitted to each computed series, written on a triangle
-  bool pareto_front = false;     // draws the front of least x and least y of all `point` series; the rest is faded
+  bool slope_triangles = false;  ///< log-log only: the order fitted to each computed series, written on a triangle
+  bool pareto_front = false;     ///< draws the front of least x and least y of all `point` series; the rest is faded
   int width = 1600, height = 1000;
 };
 
@@ -39,19 +39,20 @@ struct StackedPlot {
   std::string title = {}, x_label = {}, y_label = {}, footnote = {};
   std::vector<double> x = {};
   std::vector<Series> areas = {};
-  std::vector<Series> lines = {};  // drawn in black in a panel of their own, so that a small residual cannot hide
+  std::vector<Series> lines = {};  ///< drawn in black in a panel of their own, so that a small residual cannot hide
   int width = 1600, height = 1000;
 };
 
 /// A map of stability: one cell for each pair of x and y, coloured and marked by what became of the run.
 struct OutcomeMap {
   std::string title = {}, x_label = {}, y_label = {}, footnote = {};
-  std::vector<double> x = {}, y = {};     // centres of the cells, increasing
-  std::vector<std::string> y_names = {};  // empty, or one a row: written in place of the numbers of y
-  std::vector<int> outcome = {};          // y.size() rows of x.size(): index into `outcomes`, -1 where nothing was run
-  // "bounded", "gained energy", "stopped: particle left the grid"; one without a cell keeps its colour for other maps
+  std::vector<double> x = {}, y = {};     ///< centres of the cells, increasing
+  std::vector<std::string> y_names = {};  ///< empty, or one a row: written in place of the numbers of y
+  std::vector<int> outcome = {};          ///< y.size() rows of x.size(): index into `outcomes`, -1: nothing was run
+  /// Words such as "bounded", "gained energy", "stopped: left the grid"; one without a cell keeps its colour for other
+  /// maps.
   std::vector<std::string> outcomes = {};
-  std::vector<Series> limits = {};  // theoretical limits, drawn over the cells in black
+  std::vector<Series> limits = {};  ///< theoretical limits, drawn over the cells in black
   bool log_x = false, log_y = false;
   int width = 1600, height = 1000;
 };
@@ -59,11 +60,11 @@ struct OutcomeMap {
 /// A table of numbers as colours, one cell for each pair of categories, its number written in it.
 struct HeatMap {
   std::string title = {}, x_label = {}, y_label = {}, value_label = {}, footnote = {};
-  std::vector<std::string> x_names = {}, y_names = {};  // columns from the left, rows from the top
-  std::vector<double> values = {};                      // y_names.size() rows of x_names.size(); NaN: not run
-  std::vector<std::string> notes = {};  // empty, or one a cell: beside its number, or in place of "not run"
-  bool log_scale = false;               // whether the colours follow the logarithm
-  int digits = 3;                       // significant digits of the numbers in the cells
+  std::vector<std::string> x_names = {}, y_names = {};  ///< columns from the left, rows from the top
+  std::vector<double> values = {};                      ///< y_names.size() rows of x_names.size(); NaN: not run
+  std::vector<std::string> notes = {};  ///< empty, or one a cell: beside its number, or in place of "not run"
+  bool log_scale = false;               ///< whether the colours follow the logarithm
+  int digits = 3;                       ///< significant digits of the numbers in the cells
   int width = 1600, height = 1000;
 };
 
@@ -78,9 +79,9 @@ struct Panel {
 struct Multiples {
   std::string title = {}, x_label = {}, y_label = {}, footnote = {};
   bool log_x = false, log_y = false;
-  std::vector<Panel> panels = {};                      // row by row
-  int columns = 0;                                     // 0: chosen so that panels are a little wider than high
-  bool slope_triangles = false, pareto_front = false;  // as in Plot, for each panel
+  std::vector<Panel> panels = {};                      ///< row by row
+  int columns = 0;                                     ///< 0: chosen so that panels are a little wider than high
+  bool slope_triangles = false, pareto_front = false;  ///< as in Plot, for each panel
   int width = 1600, height = 1000;
 };
 

@@ -18,11 +18,11 @@
 namespace mpm::render {
 namespace {
 
-constexpr int kSamples = 2;                        // samples a pixel in each direction
-constexpr Vec3 kViewDirection{0.42, -0.83, 0.36};  // from the domain towards the eye
-constexpr Vec3 kToLight{-0.35, -0.40, 0.85};       // normalised where it is used
+constexpr int kSamples = 2;                        ///< samples a pixel in each direction
+constexpr Vec3 kViewDirection{0.42, -0.83, 0.36};  ///< from the domain towards the eye
+constexpr Vec3 kToLight{-0.35, -0.40, 0.85};       ///< normalised where it is used
 constexpr Colour kGround{0.93, 0.93, 0.93};
-constexpr double kGroundOverhang = 0.05;  // fraction of the longer side of the domain's floor
+constexpr double kGroundOverhang = 0.05;  ///< fraction of the longer side of the domain's floor
 
 double dot(const Vec3& a, const Vec3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -46,7 +46,7 @@ std::array<Vec3, 8> corners_of(const Vec3& lo, const Vec3& hi) {
   return corners;
 }
 
-// A ball is one square facing the eye; the fragment program finds the exact point of the sphere.
+/// A ball is one square facing the eye; the fragment program finds the exact point of the sphere.
 constexpr const char* kVertexProgram = R"(#version 120
 varying vec3 centre, ray;
 varying float radius;
@@ -186,14 +186,14 @@ void draw_edges(const Vec3& lo, const Vec3& hi, double width) {
   glEnd();
 }
 
-// Everything that one pass over the scene needs.
+/// Everything that one pass over the scene needs.
 struct Stage {
   std::vector<BallVertex> balls;
   GroundShadow shadow;
-  Vec3 lo, hi, up, light;  // up and light are seen from the eye
+  Vec3 lo, hi, up, light;  ///< up and light are seen from the eye
   unsigned texture = 0;
   GLuint program = 0;
-  double line_width = 1;  // samples
+  double line_width = 1;  ///< samples
 
   void draw(bool writes_normals) const {
     glClearColor(1, 1, 1, 1);
@@ -218,7 +218,7 @@ struct Stage {
   }
 };
 
-// Takes the first sample of each pixel, so that a pixel never mixes two surfaces.
+/// Takes the first sample of each pixel, so that a pixel never mixes two surfaces.
 GeometryBuffer geometry_of(const Camera& camera, const std::vector<float>& depth,
                            const std::vector<std::uint8_t>& normals) {
   const Box& view = camera.view();

@@ -12,7 +12,7 @@ namespace mpm::render {
 using Vec3 = std::array<double, 3>;
 
 struct Ball {
-  Vec3 centre;  // m, the third axis upwards
+  Vec3 centre;  ///< m, the third axis upwards
   double radius;
   Colour colour;
 };

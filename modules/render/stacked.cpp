@@ -23,7 +23,7 @@ void check(const StackedPlot& plot) {
   }
 }
 
-// The rows in which every number is finite, ordered as x.
+/// The rows in which every number is finite, ordered as x.
 std::vector<std::size_t> finite_rows(const StackedPlot& plot) {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < plot.x.size(); ++i) {
@@ -37,7 +37,7 @@ std::vector<std::size_t> finite_rows(const StackedPlot& plot) {
   return rows;
 }
 
-// An area of one cause between two curves, in the data's units.
+/// An area of one cause between two curves, in the data's units.
 struct Layer {
   std::vector<double> from, to;
   Colour colour;
@@ -69,7 +69,7 @@ double interpolated(std::span<const Point> line, double x) {
   return b.x > a.x ? a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x) : b.y;
 }
 
-// Hatches an area as its second cue: white strokes of a direction of its own, cut where they leave the band.
+/// Hatches an area as its second cue: white strokes of a direction of its own, cut where they leave the band.
 void hatch(Canvas& canvas, std::span<const Point> upper, std::span<const Point> lower, int pattern, double u) {
   constexpr double slopes[] = {0, 1, -1, 0, 2.5};
   if (pattern == 0) return;
@@ -110,7 +110,7 @@ void draw_layer(Canvas& canvas, const Scales& s, const std::vector<double>& x, c
   canvas.polyline(thinned(upper), {kWhite, 1.5 * u});
 }
 
-// A swatch with the area's colour and hatch.
+/// A swatch with the area's colour and hatch.
 void draw_swatch(Canvas& canvas, const Box& box, const Layer& layer, double u) {
   const std::vector<Point> upper{{box.x0, box.y0}, {box.x1, box.y0}}, lower{{box.x0, box.y1}, {box.x1, box.y1}};
   canvas.band(upper, lower, layer.colour);
@@ -161,7 +161,7 @@ Scales scales_of(const std::vector<double>& x, const std::vector<Layer>& layers,
   return s;
 }
 
-// Writes the name of each cause, tied to the middle of its area's right end.
+/// Writes the name of each cause, tied to the middle of its area's right end.
 void name_layers(Canvas& canvas, const Theme& theme, const StackedPlot& plot, const std::vector<Layer>& layers,
                  double last_x, const Scales& s) {
   std::vector<EndLabel> labels;

@@ -8,7 +8,7 @@
 namespace mpm::render {
 namespace {
 
-// A number to a hundredth of a pixel, which is finer than any printer.
+/// A number to a hundredth of a pixel, which is finer than any printer.
 std::string number(double value) {
   const std::string text = support::without_trailing_zeros(support::fixed_point(value, 2));
   return text == "-0" ? "0" : text;

@@ -14,7 +14,7 @@
 namespace mpm::study {
 namespace {
 
-constexpr auto pause = std::chrono::milliseconds(5);  // pause between looks at the runs
+constexpr auto pause = std::chrono::milliseconds(5);  ///< pause between looks at the runs
 
 /// What one combination still has to run: a single experiment, or the next of a bisection.
 class Task {

@@ -7,7 +7,7 @@
 namespace mpm::study {
 namespace {
 
-constexpr std::size_t longest_part = 48;  // characters that an axis may take of a folder's name
+constexpr std::size_t longest_part = 48;  ///< characters that an axis may take of a folder's name
 
 /// What a label becomes in the name of a folder.
 std::string as_file_name(const std::string& label) {

@@ -52,14 +52,14 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-// The name without its unit: "kinetic energy (J)" -> "kinetic energy".
+/// The name without its unit: "kinetic energy (J)" -> "kinetic energy".
 std::string_view without_unit(std::string_view name) {
   const auto bracket = name.rfind('(');
   const bool has_unit = bracket != std::string_view::npos && !name.empty() && name.back() == ')';
   return has_unit ? trimmed(name.substr(0, bracket)) : name;
 }
 
-// The number in a cell; an empty cell is NaN.
+/// The number in a cell; an empty cell is NaN.
 std::optional<double> cell_number(std::string_view cell) {
   return trimmed(cell).empty() ? std::numeric_limits<double>::quiet_NaN() : number_in(cell);
 }
@@ -82,8 +82,8 @@ void append_cells(Table& table, std::string_view line, const fs::path& path, std
   }
 }
 
-// Calls `take` with each line that is not empty and its number. Returns false when the last line has no end and was
-// left out: "0.12" may be the start of "0.1234", and no row is better than a wrong one.
+/// Calls `take` with each line that is not empty and its number. Returns false when the last line has no end and was
+/// left out: "0.12" may be the start of "0.1234", and no row is better than a wrong one.
 template <typename Take>
 bool for_each_line(const fs::path& path, Take&& take) {
   const std::string bytes = read_file(path);

@@ -40,8 +40,8 @@ const char* remedy_for(int error) {
   }
 }
 
-// The process id and a counter keep parallel runs and threads apart; the leading dot hides what a killed process
-// leaves.
+/// The process id and a counter keep parallel runs and threads apart; the leading dot hides what a killed process
+/// leaves.
 fs::path temporary_name(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
   std::ostringstream name;
@@ -63,8 +63,8 @@ TemporaryFile open_temporary(const fs::path& target) {
   }
 }
 
-// Syncs the folder, which makes the rename itself durable; a file system that cannot has lost nothing that was
-// promised.
+/// Syncs the folder, which makes the rename itself durable; a file system that cannot has lost nothing that was
+/// promised.
 void sync_folder_of(const fs::path& path) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const FileDescriptor handle(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

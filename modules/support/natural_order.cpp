@@ -12,7 +12,7 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-// Takes a run of digits off the front, without its leading zeros.
+/// Takes a run of digits off the front, without its leading zeros.
 std::string_view take_number(std::string_view& text) {
   const auto digits = static_cast<std::size_t>(std::find_if_not(text.begin(), text.end(), is_digit) - text.begin());
   std::string_view number = text.substr(0, digits);

@@ -8,8 +8,8 @@
 namespace mpm::support {
 namespace {
 
-// Lengths of a window. It holds several slices of time that the system gives to one process after another (some
-// milliseconds each), and steps of every kind: those that sort, and those that do not.
+/// Lengths of a window. It holds several slices of time that the system gives to one process after another (some
+/// milliseconds each), and steps of every kind: those that sort, and those that do not.
 constexpr double window_seconds = 0.02, disturbed_window_seconds = 0.06, longest_window_seconds = 0.5;
 constexpr int window_steps = 8;
 /// The rate of preemptions from which a processor counts as shared; on a quiet machine there are a few a second.

@@ -152,7 +152,7 @@ class Team {
   void deal(std::size_t count);
   bool take(int thread, std::size_t grain, Piece& piece);
 
-  // The state of a call in one word: its number, whether workers may still join it, and how many are in it.
+  /// The state of a call in one word: its number, whether workers may still join it, and how many are in it.
   static constexpr std::uint32_t one_worker = 1, workers = 0x7fff, open = 0x8000, one_call = 0x10000;
 
   const std::chrono::microseconds longest_spin_;

@@ -15,7 +15,7 @@ using counting::RequiredScene;
 
 namespace {
 
-constexpr std::uint64_t quad = 4 * sizeof(float);  // bytes that a channel holds of a node
+constexpr std::uint64_t quad = 4 * sizeof(float);  ///< bytes that a channel holds of a node
 
 RequiredRow counted(const std::string& name) {
   static const std::vector<RequiredRow> rows = [] {

@@ -265,7 +265,7 @@ std::string kernel_text(const Plugin& plugin) {
 
 // ---- inputs and the plugin's own answer ----------------------------------------------------------------------------
 
-using Column = std::vector<double>;  // [component][64]
+using Column = std::vector<double>;  ///< [component][64]
 
 /// A call: what both sides are given and what they fill; `scale` is the size by which an error in each output is
 /// judged.

@@ -12,8 +12,8 @@ using namespace mpm;
 using Mat3 = Mat<3, double>;
 using State3 = VonMises::State<3, double>;
 
-// The moduli are G = 1000 and K = 2000 as in docs/verification.md. The yield stress is 1/100 of the 10 there, and so
-// are strains and stresses.
+/// The moduli are G = 1000 and K = 2000 as in docs/verification.md. The yield stress is 1/100 of the 10 there, and so
+/// are strains and stresses.
 constexpr double shear = 1000, bulk = 2000, yield = 0.1;
 constexpr double young = 9 * bulk * shear / (3 * bulk + shear);
 constexpr double poisson = (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear));

@@ -50,7 +50,7 @@ bool is_white(const Image& image, int x, int y) {
   return p[0] == 255 && p[1] == 255 && p[2] == 255;
 }
 
-// Whether every element that is opened is closed, in order; attributes and entities are not looked into.
+/// Whether every element that is opened is closed, in order; attributes and entities are not looked into.
 bool is_balanced_xml(const std::string& text) {
   std::vector<std::string> open;
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {

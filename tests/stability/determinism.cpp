@@ -8,7 +8,7 @@ using namespace mpm::test;
 
 namespace {
 
-// The scene is large enough for several blocks a thread; bodies spin, collide, press on walls and are sorted again.
+/// The scene is large enough for several blocks a thread; bodies spin, collide, press on walls and are sorted again.
 const char* flat = R"J({
   "title": "determinism", "dimension": 2, "seed": 5, "gravity": [0.3, -1],
   "grid": {"cell_size": 0.025, "domain": [[0, 0], [1.2, 0.8]], "boundaries": {"all": "separate", "x_min": "periodic", "x_max": "periodic"}},

@@ -11,7 +11,7 @@ using namespace mpm::test;
 namespace {
 
 constexpr ConductingPhase ice{2.22, 2090, 917}, water{0.556, 4200, 917}, metal{40, 500, 8000};
-constexpr double hour = 3600;  // s
+constexpr double hour = 3600;  ///< s
 
 StefanProblem freezing(double start) {
   return {ice, water, 334000, 263.15, 273.15, start};

@@ -19,7 +19,7 @@ std::string path_variable() {
   return value ? value : "";
 }
 
-// Sets PATH to the given folder alone while it lives; ffmpeg itself is then found or missing as the test wants.
+/// Sets PATH to the given folder alone while it lives; ffmpeg itself is then found or missing as the test wants.
 class OnlyPath {
  public:
   explicit OnlyPath(const fs::path& folder) : old_(path_variable()) { ::setenv("PATH", folder.c_str(), 1); }
@@ -37,7 +37,7 @@ void install_stand_in(const TemporaryFolder& scratch, const std::string& script)
   ::chmod((scratch / "bin/ffmpeg").c_str(), 0755);
 }
 
-// Makes eleven frames in a folder whose name would trip a shell or ffmpeg's own patterns.
+/// Makes eleven frames in a folder whose name would trip a shell or ffmpeg's own patterns.
 fs::path make_frames(const TemporaryFolder& scratch) {
   const fs::path folder = scratch / "my %d frames; *";
   fs::create_directory(folder);

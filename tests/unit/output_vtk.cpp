@@ -32,7 +32,7 @@ bool system_python_runs(const std::string& code) {
   return std::system(("/usr/bin/python3 -c '" + code + "' >/dev/null 2>&1").c_str()) == 0;
 }
 
-// Runs a script that fails by assertion; the scratch folder is its first argument.
+/// Runs a script that fails by assertion; the scratch folder is its first argument.
 int run_script(const TemporaryFolder& scratch, const std::string& script) {
   write_atomically(scratch / "check.py", script);
   return std::system(

@@ -22,7 +22,7 @@ using namespace mpm::output::testing;
 
 namespace {
 
-// Keeps every file below `bytes` while it lives: the disk that is full, without filling one.
+/// Keeps every file below `bytes` while it lives: the disk that is full, without filling one.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -51,7 +51,7 @@ double processor_seconds(pthread_t thread) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// A signal holds the thread that receives it until a byte comes through a pipe: as if it were given no processor.
+/// A signal holds the thread that receives it until a byte comes through a pipe: as if it were given no processor.
 std::atomic<bool> held{false};
 int gate[2];
 void hold(int) {

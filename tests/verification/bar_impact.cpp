@@ -12,8 +12,8 @@ using namespace mpm::test;
 
 namespace {
 
-// With L = 1 m, E = 1e4 Pa and density 1, c = 100 m/s. At 0.1 m/s each, the bars touch for 2 L / c = 0.02 s with rho c
-// v = 10 Pa.
+/// With L = 1 m, E = 1e4 Pa and density 1, c = 100 m/s. At 0.1 m/s each, the bars touch for 2 L / c = 0.02 s with rho c
+/// v = 10 Pa.
 const char* two_bars = R"J({
   "dimension": 2,
   "grid": {"cell_size": 0.01, "domain": [[0, 0], [3, 0.01]],
@@ -135,8 +135,8 @@ TEST_CASE("contact on every increment gives the shock of a single field", "[impa
 
 namespace {
 
-// E = 3e7, density 0.73, L = 10, v = 202.2 and the gap is 0.01. The end flies through 60 cells meanwhile: on linear
-// functions particles invert.
+/// E = 3e7, density 0.73, L = 10, v = 202.2 and the gap is 0.01. The end flies through 60 cells meanwhile: on linear
+/// functions particles invert.
 const char* on_wall = R"J({
   "dimension": 2,
   "grid": {"cell_size": 0.01, "domain": [[0, 0], [11, 0.01]],
@@ -193,7 +193,7 @@ TEST_CASE("a bar on a rigid wall (VM265)", "[impact]") {
 
 namespace {
 
-// A pulse of velocity at x = 0.5 parts into two of half its height; one meets the step at x = 1.
+/// A pulse of velocity at x = 0.5 parts into two of half its height; one meets the step at x = 1.
 const char* step = R"J({
   "dimension": 2,
   "grid": {"cell_size": 0.0025, "domain": [[0, 0], [2, 0.0025]], "boundaries": {"all": "slip"}},

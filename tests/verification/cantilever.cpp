@@ -18,7 +18,7 @@ namespace {
 constexpr double length = 1, thickness = 0.05, modulus = 1e6, poisson = 0.3, density = 1000;
 constexpr double stiffness = modulus * thickness * thickness * thickness / (12 * (1 - poisson * poisson));
 
-// The beam has H / L = 1 / 20 and is held at x = 0.
+/// The beam has H / L = 1 / 20 and is held at x = 0.
 const char* beam = R"J({
   "dimension": 2,
   "grid": {"cell_size": 0.0125, "domain": [[0, -1], [1.1, 0.1]], "boundaries": {"all": "free", "x_min": "stick"}},

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double dt = 1e-3, heavy = 1e3, stretch = 1.25;
 
-// A quarter of a cell that will be stretched, and three heavy particles that will stand on the nodes 3, 4 and 5 and
-// take the force as momentum. Periodic across, so that all is one row of nodes; unit cells and unit modulus.
+/// A quarter of a cell that will be stretched, and three heavy particles that will stand on the nodes 3, 4 and 5 and
+/// take the force as momentum. Periodic across, so that all is one row of nodes; unit cells and unit modulus.
 std::string line(const std::string& shape) {
   return R"({"dimension": 2, "backend": "reference", "grid": {"cell_size": 1, "domain": [[0, 0], [9, 1]],
       "boundaries": {"x_min": "free", "x_max": "free", "y_min": "periodic", "y_max": "periodic"}},

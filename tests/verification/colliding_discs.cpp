@@ -22,7 +22,7 @@ const char* discs = R"J({
     {"name": "upper", "material": "m", "geometry": {"type": "ball", "centre": [0.8, 0.8], "radius": 0.2}, "velocity": [-0.1, -0.1]}],
   "solver": {"time_step": 0.001, "end_time": 3.5}, "output": {"ledger": false}})J";
 
-// The upper disc is moved by 0.1 across its velocity, both in free space.
+/// The upper disc is moved by 0.1 across its velocity, both in free space.
 const std::vector<std::string> oblique{
     R"(/grid={"cell_size": 0.025, "domain": [[-0.1, -0.1], [1.1, 1.1]], "boundaries": {"all": "free"}})",
     "/bodies/1/geometry/centre=[0.729289322, 0.870710678]", "/solver/end_time=3"};

@@ -11,7 +11,7 @@ using namespace mpm::test;
 
 namespace {
 
-// The two bars run into each other in the middle of a cell; y = 0 cuts them in half.
+/// The two bars run into each other in the middle of a cell; y = 0 cuts them in half.
 const char* whole = R"J({
   "dimension": 2, "backend": "reference",
   "grid": {"cell_size": 0.1, "domain": [[0, -0.8], [3, 0.8]], "boundaries": {"all": "free"}},

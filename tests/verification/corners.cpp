@@ -17,7 +17,7 @@ namespace {
 
 const std::vector<std::string> backends{"reference", "cpu"};
 
-// A square that is sheared, turned and bent by its first velocities, without walls and forces but its own.
+/// A square that is sheared, turned and bent by its first velocities, without walls and forces but its own.
 std::string bending(int dimension) {
   const bool flat = dimension == 2;
   return R"({"title": "bending", "dimension": )" + std::to_string(dimension) + R"(,

@@ -31,7 +31,7 @@ enum class Scheme { flip_last, pic_last, flip_other, pic_other, xpic, fmpm };
 struct Column {
   const char* name;
   Scheme scheme;
-  int order;  // order of the filter
+  int order;  ///< order of the filter
   const char *transfer, *update;
 };
 
@@ -49,8 +49,8 @@ constexpr std::array columns{
 
 struct Row {
   const char* name;
-  std::vector<std::string> shapes;  // shapes that are the same where particles are boxes of one cell
-  double offset;                    // 0: particles at cell centres, 1/2: on nodes
+  std::vector<std::string> shapes;  ///< shapes that are the same where particles are boxes of one cell
+  double offset;                    ///< 0: particles at cell centres, 1/2: on nodes
   std::array<double, columns.size()> table;
 };
 
@@ -79,7 +79,7 @@ const std::vector<Row>& rows() {
 }
 
 struct Symbol {
-  double weight, gradient;  // moduli of the shape's symbol and of its derivative's, in units of 1 / h
+  double weight, gradient;  ///< moduli of the shape's symbol and of its derivative's, in units of 1 / h
 };
 
 Symbol symbol_of(std::size_t row, double theta) {

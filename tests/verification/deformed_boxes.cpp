@@ -25,7 +25,7 @@ const char* spinning = R"J({
               "velocity": ["-w*(y-0.8)", "w*(x-0.8)"]}],
   "solver": {"time_step": "auto", "courant": 0.4, "end_time": 0.25}, "output": {"ledger": false}})J";
 
-// The body is without stress and drawn out along x at a constant rate: F_xx = 1 + 2 t.
+/// The body is without stress and drawn out along x at a constant rate: F_xx = 1 + 2 t.
 const char* drawn = R"J({
   "title": "drawn out", "dimension": 2, "precision": "double", "backend": "reference",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [8, 1]], "boundaries": {"all": "slip"}},

@@ -20,7 +20,7 @@ const char* discs = R"J({
     {"name": "upper", "material": "m", "geometry": {"type": "ball", "centre": [0.8, 0.8], "radius": 0.2}, "velocity": [-0.1, -0.1]}],
   "solver": {"time_step": 0.001, "end_time": 3.5}})J";
 
-// The upper disc is moved perpendicular to the velocity by b = 0.1, with a contact law, in free space.
+/// The upper disc is moved perpendicular to the velocity by b = 0.1, with a contact law, in free space.
 const char* oblique = R"J({
   "title": "oblique discs", "dimension": 2, "precision": "double", "backend": "cpu",
   "grid": {"cell_size": 0.025, "domain": [[-0.1, -0.1], [1.1, 1.1]], "boundaries": {"all": "free"}},

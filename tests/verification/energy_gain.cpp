@@ -14,7 +14,7 @@ using namespace mpm::test;
 
 namespace {
 
-// With a wave speed of 1 m/s a wave crosses the block in 1 s, and a period lasts 2 s.
+/// With a wave speed of 1 m/s a wave crosses the block in 1 s, and a period lasts 2 s.
 const char* block = R"J({
   "title": "free block", "dimension": 2, "precision": "double", "backend": "cpu",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [1.6, 1.2]], "boundaries": {"all": "free"}},
@@ -25,9 +25,9 @@ const char* block = R"J({
   "solver": {"time_step": 0.02, "end_time": 10}})J";
 
 struct Energies {
-  double largest, last;    // over the first energy
-  double lasting_rise;     // relative rise of the mean over a period, kept up for two
-  double largest_kinetic;  // over the first energy
+  double largest, last;    ///< over the first energy
+  double lasting_rise;     ///< relative rise of the mean over a period, kept up for two
+  double largest_kinetic;  ///< over the first energy
 };
 
 /// Velocities belong to the middle of steps, strains to their ends (USF: to their starts): kinetic energies on both

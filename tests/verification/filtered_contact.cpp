@@ -14,8 +14,8 @@ using namespace mpm::test;
 
 namespace {
 
-// The bodies are two halves of a bar in one dimension that overlap by half a cell and run into each other, with a rough
-// velocity on top.
+/// The bodies are two halves of a bar in one dimension that overlap by half a cell and run into each other, with a
+/// rough velocity on top.
 const char* halves = R"J({
   "title": "two halves", "dimension": 2, "precision": "double", "backend": "cpu",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [6, 0.2]],
@@ -67,7 +67,7 @@ TEST_CASE("contact that stays pressed is a weld to every filter", "[contact][fil
 
 namespace {
 
-// The right half flies alone at a wall.
+/// The right half flies alone at a wall.
 const char* half = R"J({
   "title": "half a bar", "dimension": 2, "precision": "double", "backend": "cpu",
   "grid": {"cell_size": 0.1, "domain": [[2, 0], [6, 0.2]],
@@ -99,7 +99,7 @@ TEST_CASE("a separating wall that stays pressed is a slip wall to every filter",
 
 namespace {
 
-// The discs are those of experiments/studies/disc_impact.json on cells of 2 mm, nearer to each other.
+/// The discs are those of experiments/studies/disc_impact.json on cells of 2 mm, nearer to each other.
 const char* discs = R"J({
   "title": "two discs", "dimension": 2, "precision": "double", "backend": "cpu",
   "grid": {"cell_size": "2 mm", "domain": [[0, 0], ["48 mm", "28 mm"]], "boundaries": {"all": "free"}},
@@ -114,7 +114,7 @@ const char* discs = R"J({
   "solver": {"time_step": 4e-7, "end_time": 2.5e-4}, "output": {"ledger": false}})J";
 
 struct Energies {
-  double largest, last;  // over the first energy
+  double largest, last;  ///< over the first energy
 };
 Energies collide(const std::vector<std::string>& settings) {
   Scene scene(discs, settings);

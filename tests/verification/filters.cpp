@@ -28,7 +28,7 @@ std::vector<std::string> all_transfers() {
   return all;
 }
 
-// The particles have random places, and velocities that the grid cannot hold.
+/// The particles have random places, and velocities that the grid cannot hold.
 const char* rough = R"J({
   "title": "rough field", "dimension": 2, "precision": "double", "backend": "reference",
   "constants": {"U": 0, "W": 0},

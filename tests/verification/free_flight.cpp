@@ -31,8 +31,8 @@ std::string flight(int dimension) {
 }
 
 struct Errors {
-  double position = 0, velocity = 0, momentum = 0;  // all relative; velocity and momentum to the speed
-  double deformation = 0, domain = 0;               // error of F; error of a domain's sides or corners over its size
+  double position = 0, velocity = 0, momentum = 0;  ///< all relative; velocity and momentum to the speed
+  double deformation = 0, domain = 0;               ///< error of F; error of a domain's sides or corners over its size
 };
 
 /// The largest difference over the largest expected entry.

@@ -11,7 +11,7 @@ using namespace mpm::test;
 
 namespace {
 
-constexpr double side = 0.16;  // m
+constexpr double side = 0.16;  ///< m
 
 double melted(const Lesson& lesson) {
   const std::vector<double> fraction = lesson.simulation.backend().body_state(0).host_state.at("melted_fraction");

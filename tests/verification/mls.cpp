@@ -96,7 +96,7 @@ TEST_CASE("the gradient of MLS differs from the spline's by a known difference o
 
 namespace {
 
-// The body is free, thrown, spinning and rough, at random places in its cells.
+/// The body is free, thrown, spinning and rough, at random places in its cells.
 const char* rough = R"J({
   "title": "rough", "dimension": 2, "precision": "double", "backend": "reference",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [3, 3]], "boundaries": {"all": "free"}},
@@ -167,8 +167,8 @@ TEST_CASE("the forces of MLS do the work of the stress on every affine field, as
 
 namespace {
 
-// A periodic square without stress; one step strains by the gradient of the same grid velocities. The particles are at
-// 1/4 and 3/4 of their cell.
+/// A periodic square without stress; one step strains by the gradient of the same grid velocities. The particles are at
+/// 1/4 and 3/4 of their cell.
 std::string smooth_field(int cells) {
   return R"J({"dimension": 2, "backend": "cpu", "grid": {"cell_size": )J" + digits(1.0 / cells) +
          R"J(, "domain": [[0, 0], [1, 1]], "boundaries": {"all": "periodic"}},

@@ -37,7 +37,7 @@ const char* flight_3d = R"J({
   "solver": {"time_step": 0.002, "end_time": 0.06}, "output": {"ledger": true},
   "compare": {"exact": {"type": "free_fall"}}})J";
 
-// The body is thrown, spinning and vibrating, at random places in its cells.
+/// The body is thrown, spinning and vibrating, at random places in its cells.
 const char* free_body = R"J({
   "title": "free body", "dimension": 2, "precision": "double", "backend": "reference",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [3, 3]], "boundaries": {"all": "free"}},
@@ -47,7 +47,7 @@ const char* free_body = R"J({
               "velocity": ["1 - 4*(y-1.2) + 0.5*sin(9*x)", "-2 + 4*(x-1.3) + 0.5*cos(7*y)"]}],
   "solver": {"time_step": 1e-3, "end_time": 1}, "output": {"ledger": true}})J";
 
-// The field turns and stretches: v = (1, 2) + G x, without stress.
+/// The field turns and stretches: v = (1, 2) + G x, without stress.
 const char* affine_field = R"J({
   "title": "affine field", "dimension": 2, "precision": "double", "backend": "reference",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [3, 3]], "boundaries": {"all": "free"}},

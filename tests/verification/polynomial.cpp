@@ -17,7 +17,7 @@ const std::vector<std::string> backends{"reference", "cpu"};
 const char *multilinear = R"({"type": "polypic", "basis": "multilinear"})",
            *full = R"({"type": "polypic", "basis": "full"})";
 
-// The particles are jittered, of soft material and without forces; a step without time is a visit of the grid alone.
+/// The particles are jittered, of soft material and without forces; a step without time is a visit of the grid alone.
 std::string block(int dimension, const std::string& velocity) {
   const bool flat = dimension == 2;
   return R"({"title": "block", "dimension": )" + std::to_string(dimension) +

@@ -13,8 +13,8 @@ using namespace mpm::test;
 
 namespace {
 
-// The run is a visit alone: the step has no time. Both bodies share one velocity field and one place; their particles
-// are shifted apart at random and weigh 1 to 3.
+/// The run is a visit alone: the step has no time. Both bodies share one velocity field and one place; their particles
+/// are shifted apart at random and weigh 1 to 3.
 std::string text(const std::string& vx, const std::string& vy, const std::string& jitter) {
   const auto body = [&](const std::string& name) {
     return R"({"name": ")" + name + R"(", "material": ")" + name + R"(", "jitter": )" + jitter +
@@ -46,8 +46,8 @@ double largest_change(const BodyState& before, const BodyState& after, double in
 }
 
 struct Visit {
-  double change = 0, spin = 0;  // change of a velocity, m/s; relative change of the angular momentum
-  double momentum = 0;          // change relative to mass times 1 m/s
+  double change = 0, spin = 0;  ///< change of a velocity, m/s; relative change of the angular momentum
+  double momentum = 0;          ///< change relative to mass times 1 m/s
 };
 
 Visit visit(const std::string& text, const std::vector<std::string>& overrides, double inside = 0) {

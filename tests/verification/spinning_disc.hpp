@@ -5,7 +5,7 @@
 
 namespace mpm::test {
 
-// The disc has 20 cells a diameter and turns once a second; density (omega R)^2 / E = 1e-4.
+/// The disc has 20 cells a diameter and turns once a second; density (omega R)^2 / E = 1e-4.
 inline constexpr const char* spinning_disc = R"J({
   "dimension": 2, "constants": {"w": 6.283185307179586},
   "grid": {"cell_size": 0.05, "domain": [[-0.8, -0.8], [0.8, 0.8]], "boundaries": {"all": "free"}},

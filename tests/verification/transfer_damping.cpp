@@ -17,13 +17,13 @@ namespace {
 constexpr std::array modes{1, 2, 4, 8};
 
 struct Row {
-  std::vector<std::string> shapes;     // shapes that coincide with the first where particles are boxes of one cell
-  std::vector<std::string> transfers;  // transfers that coincide with the first on this lattice
-  double offset = 0;                   // 0: at cell centres, or at 1/4 and 3/4 with two a cell; 1/2: on nodes
+  std::vector<std::string> shapes;     ///< shapes that coincide with the first where particles are boxes of one cell
+  std::vector<std::string> transfers;  ///< transfers that coincide with the first on this lattice
+  double offset = 0;                   ///< 0: at cell centres, or at 1/4 and 3/4 with two a cell; 1/2: on nodes
   int particles_per_cell = 1;
-  std::array<double, 4> factors;  // factors of modes 1, 2, 4, 8, as docs/verification.md prints them
-  double printed = 1e-10;         // one unit of their last digit
-  bool is_quotient = false;       // one step of the seeded mode, v'Mv / v'v: it is no mode of the lattice
+  std::array<double, 4> factors;  ///< factors of modes 1, 2, 4, 8, as docs/verification.md prints them
+  double printed = 1e-10;         ///< one unit of their last digit
+  bool is_quotient = false;       ///< one step of the seeded mode, v'Mv / v'v: it is no mode of the lattice
 };
 
 /// The weight of a node at distance d, in cells.

@@ -15,7 +15,7 @@ namespace {
 const std::vector<std::string> backends{"reference", "cpu"};
 const std::vector<std::string> shapes{"linear", "bspline_quadratic", "gimp", "cpdi", "cpdi2"};
 
-// The field is rough and spinning, at random places in its cells.
+/// The field is rough and spinning, at random places in its cells.
 const char* rough_2d = R"J({
   "title": "rough", "dimension": 2, "precision": "double", "backend": "reference",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [3, 3]], "boundaries": {"all": "free"}},

@@ -79,7 +79,7 @@ std::vector<std::string> settings(int cells, const std::string& shape, const std
 }
 
 struct Errors {
-  std::vector<double> place, volume, largest_volume;  // m, rms; J - 1, exactly zero: rms, and the largest of a particle
+  std::vector<double> place, volume, largest_volume;  ///< m, rms; J - 1, exactly zero: rms, and largest of a particle
 };
 
 /// The errors on grids of `cells` a metre; NaN where a run stops.

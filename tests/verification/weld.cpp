@@ -14,7 +14,7 @@ using namespace mpm::test;
 
 namespace {
 
-// The bar is cut in two halves, thrown and vibrating, so that the interface crosses cells and carries stress.
+/// The bar is cut in two halves, thrown and vibrating, so that the interface crosses cells and carries stress.
 const char* halves = R"J({
   "title": "two halves", "dimension": 2, "precision": "double", "backend": "cpu",
   "grid": {"cell_size": 0.1, "domain": [[0, 0], [6, 3]], "boundaries": {"all": "free"}},

@@ -13,7 +13,7 @@
 namespace mpm::counting {
 namespace {
 
-constexpr long first_steps = 50, counted_steps = 1;  // the first ones bind functions, touch memory, settle the heap
+constexpr long first_steps = 50, counted_steps = 1;  ///< the first ones bind functions, touch memory, settle the heap
 
 /// A run as it is counted.
 class Counted {

@@ -34,7 +34,7 @@ struct MyPlugin {
   }
 
 #if MPM_HOST
-  static constexpr unsigned traits = 0;  // no trait: it filters the velocity after the forces
+  static constexpr unsigned traits = 0;  ///< no trait: it filters the velocity after the forces
   static constexpr mpm_parameter parameters[] = {
       MPM_INTEGER_PARAMETER(order, 4, 1, 100, "terms of the series; 1 is the unfiltered velocity"),
   };

@@ -12,7 +12,7 @@ struct MyPlugin : ElasticSolid {  // the particle keeps F, (I + dt L) F after a 
   };
   template <class T>
   struct Constants {  // made of the parameters once a batch
-    T mu, k, rho;     // k = lambda/2
+    T mu, k, rho;     ///< k = lambda/2
     MPM_HD explicit Constants(const Parameters& p)
         : mu(T(p.shear_modulus)), k(T(p.lame_lambda / 2)), rho(T(p.density)) {}
   };
@@ -29,7 +29,7 @@ struct MyPlugin : ElasticSolid {  // the particle keeps F, (I + dt L) F after a 
     const S isotropic = trace(left_cauchy_green(s.deformation_gradient)) - real<S>(3);
     return c.mu * (half * isotropic - log(J)) + c.k * (half * (J * J - real<S>(1)) - log(J));
   }
-  // rho c^2 = mu (1 + n.b.n) + lambda/2 (J^2 + 1), n the direction of largest stretch.
+  /// rho c^2 = mu (1 + n.b.n) + lambda/2 (J^2 + 1), n the direction of largest stretch.
   template <class G, class S = typename G::Scalar>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const ElasticState<G>& s) {
     const S J = volume_ratio(s), stretch = largest_eigenvalue_bound(left_cauchy_green(s.deformation_gradient));
