@@ -48,8 +48,8 @@ struct StudyOptions {
   std::vector<std::string> overrides;  ///< overrides of the base experiment
   std::filesystem::path out;           ///< empty: runs/<name of the file>
   int jobs = 0;                        ///< runs at a time; 0: all processors
-  int threads = 1;                     ///< of each run
-  std::string command;                 ///< as typed
+  int threads = 1;                     ///< threads of each run
+  std::string command;                 ///< command as typed
 };
 
 struct AdviseOptions {

@@ -1,5 +1,5 @@
 #pragma once
-// From a file to a checked Experiment, or to every mistake in it at once.
+// Reads a file into a checked Experiment, or finds every mistake in it at once.
 
 #include <filesystem>
 #include <optional>

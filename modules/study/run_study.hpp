@@ -1,5 +1,5 @@
 #pragma once
-// A study from its file to its results.
+// Runs a study: takes it from its file to its results.
 
 #include <functional>
 #include <string>

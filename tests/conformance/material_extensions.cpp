@@ -45,7 +45,7 @@ void check_caught(const mpm_descriptor& descriptor, const std::string& check) {
   CHECK(failed.count(check) == 1);
 }
 
-/// The same descriptor with another table as its one extension.
+/// A copy of a descriptor with another table as its one extension.
 template <const auto& table>
 mpm_descriptor with_extension(mpm_descriptor descriptor) {
   using Table = std::remove_cvref_t<decltype(table)>;

@@ -327,7 +327,7 @@ mpm_descriptor with_table(mpm_descriptor descriptor, const Table& table) {
   return descriptor;
 }
 
-/// The same descriptor with another table as its one extension.
+/// A copy of a descriptor with another table as its one extension.
 template <const auto& table>
 mpm_descriptor with_extension(mpm_descriptor descriptor) {
   using Table = std::remove_cvref_t<decltype(table)>;

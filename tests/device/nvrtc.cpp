@@ -1,4 +1,4 @@
-// The same text through NVIDIA's run-time compiler, to machine code; no GPU is needed.
+// The composed text goes through NVIDIA's run-time compiler, to machine code; no GPU is needed.
 
 #include "backends/device/drivers/nvrtc.hpp"
 

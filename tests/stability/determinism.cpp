@@ -1,4 +1,4 @@
-// The same bits whatever the number of threads, the cadence of outputs, or the run.
+// Results have the same bits whatever the number of threads, the cadence of outputs, or the run.
 
 #include "support/catch.hpp"
 #include "support/results.hpp"

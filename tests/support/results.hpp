@@ -9,8 +9,8 @@
 
 namespace mpm::test {
 
-/// All results of a run: particles, ledgers, contact, filter, time. Where one of two runs carries more fields of the
-/// host that have no member of their own, both are compared without such fields.
+/// All results of a run: particles, ledgers, contact, filter, time. Without `with_host_state` the fields of the host
+/// that have no member of their own are left out, for runs of which one carries more of them.
 inline std::vector<double> all_results(const Simulation& simulation, bool with_host_state = true) {
   std::vector<double> all{simulation.time(), simulation.last_time_step()};
   const auto append = [&](const std::vector<double>& values) { all.insert(all.end(), values.begin(), values.end()); };

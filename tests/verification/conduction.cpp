@@ -60,7 +60,7 @@ TEST_CASE("conduction is of second order with every kind of end", "[temperature]
         const auto errors = errors_of(with_end, slab, {8, 16, 32});
         INFO(backend << " " << shape << ", " << with_end.name << ": errors " << errors[0] << " " << errors[1] << " "
                      << errors[2] << " K");
-        CHECK(errors[0] < 0.25);  // of temperatures of 10 to 30 K
+        CHECK(errors[0] < 0.25);  // temperatures are 10 to 30 K
         CHECK(observed_order({1, 2, 4}, errors) == Approx(-2).margin(0.1));
       }
 }

@@ -18,7 +18,7 @@ class CountedPlugins {
   ~CountedPlugins();
 
   ComponentLookup lookup() const;
-  /// From here on the calls are those of this experiment, which was read with `lookup`.
+  /// Counts the calls of this experiment from here on; it was read with `lookup`.
   void attach(const Experiment& experiment) const;
   void clear() const;
   Calls calls() const;
