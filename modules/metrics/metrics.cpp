@@ -49,14 +49,8 @@ void add_affine(const Experiment& experiment, const BodyState& state, const doub
 }  // namespace
 
 std::vector<std::pair<std::string, double>> rows_of(const HeatLedger& l) {
-  return {{"scatter", l.scatter},
-          {"images", l.images},
-          {"gather", l.gather},
-          {"walls", l.walls},
-          {"flux", l.flux},
-          {"convection", l.convection},
-          {"boxes", l.boxes},
-          {"dissipation", l.dissipation}};
+  return {{"scatter", l.scatter}, {"images", l.images},         {"gather", l.gather}, {"walls", l.walls},
+          {"flux", l.flux},       {"convection", l.convection}, {"boxes", l.boxes},   {"dissipation", l.dissipation}};
 }
 
 RecordedAxes recorded_axes(const Experiment& experiment) {

@@ -10,7 +10,7 @@ WallWeights wall_weights(const Experiment& experiment) {
   if (shape.form == MPM_NODE_LIST) return {{1.0}, 0};
   constexpr std::size_t n = MPM_LANES;
   const std::size_t width = shape.width;
-  constexpr int wall = 4;  // any node
+  constexpr int wall = 4;         // any node
   constexpr double point = 1e-6;  // half the size of its domain
   const std::vector<double> position(n, wall), half_size(n, point), domain(n, point);
   std::vector<std::int32_t> base(n);
