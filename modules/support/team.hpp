@@ -55,6 +55,7 @@ void wait_while(const std::atomic<Value>& value, Value old, std::chrono::microse
 }
 
 /// A caller and the workers that help it. It serves one call at a time and is not for use inside of a call.
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): what threads watch has lines of the cache of its own
 class Team {
  public:
   /// Makes a team of `threads` >= 1, the caller among them. Where the system refuses a thread the team has fewer:

@@ -221,14 +221,14 @@ auto GridStep<D, T>::fill_temperature_ghosts(double time) -> Beyond {
         if (!face->pair_folds[place]) continue;
         const MirrorPair& pair = face->pairs[i];
         const T of_mirror = grid_.quad(heat, field, pair.mirror)[0];
-        T& ghost = grid_.quad(heat, field, pair.ghost)[0];
-        ghost = mirrored(of_mirror, sign,
-                         holds_temperature(*face->condition)
-                             ? static_cast<T>(face->condition->thermal.value(pair.foot, pair.foot, time))
-                             : T(0));
+        const T of_wall = holds_temperature(*face->condition)
+                              ? static_cast<T>(face->condition->thermal.value(pair.foot, pair.foot, time))
+                              : T(0);
+        T ghost = mirrored(of_mirror, sign, of_wall);
         if (passes_heat(*face->condition))
           ghost = temperature_beyond_wall(ghost, static_cast<T>(gradient_at(*face, field, pair.foot, time, true)),
                                           static_cast<T>(pair.distance));
+        grid_.quad(heat, field, pair.ghost)[0] = ghost;
         const double more = face->folded_capacity[place] * (static_cast<double>(ghost) - of_mirror);
         (holds_temperature(*face->condition) ? beyond.held : beyond.others) += more;
       }
