@@ -133,8 +133,8 @@ std::vector<Section> face_condition_kinds() {
 std::vector<Section> node_condition_kinds() {
   const ParameterSpec lower = parameter("lower", Type::vector, "m", "Lower corner of the box of nodes.").needed();
   const ParameterSpec upper = parameter("upper", Type::vector, "m", "Upper corner of the box of nodes.").needed();
-  const auto box = [&](std::string name, std::string doc, std::vector<ParameterSpec> own) {
-    return kind(std::move(name), std::move(doc), joined(joined({lower, upper}, std::move(own)), box_heat_parameters()));
+  const auto box = [&](std::string name, std::string doc, const std::vector<ParameterSpec>& own) {
+    return kind(std::move(name), std::move(doc), joined(joined({lower, upper}, own), box_heat_parameters()));
   };
   return {
       box("stick", "The nodes are held.", {}),
