@@ -53,7 +53,7 @@ class Machine {
 };
 
 Speed table(std::vector<double> speeds) {
-  return [speeds](int threads) { return speeds.at(static_cast<std::size_t>(threads - 1)); };
+  return [speeds = std::move(speeds)](int threads) { return speeds.at(static_cast<std::size_t>(threads - 1)); };
 }
 
 }  // namespace
