@@ -108,9 +108,9 @@ int bench(const BenchOptions& options) {
     bench::SectionResult result;
     try {
       result = section->run(context);
-    } catch (const RunFailure& failure) {
-      std::cerr << "mpm bench " << section->name << ": a scene became unstable: particle " << failure.particle << " "
-                << failure.cause << "; fewer --repeats end before\n";
+    } catch (const RunFailure& stopped) {
+      std::cerr << "mpm bench " << section->name << ": a scene became unstable: particle " << stopped.failure.particle
+                << " " << name_of(stopped.failure.cause) << "; fewer --repeats end before\n";
       return run_failed;
     }
     result.name = section->name;

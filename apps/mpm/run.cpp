@@ -11,7 +11,6 @@
 #include "backends/make_backend.hpp"
 #include "experiment/diagnostics.hpp"
 #include "mpm/cli.hpp"
-#include "mpm/remedy.hpp"
 #include "mpm/run_figures.hpp"
 #include "mpm/stop_on_signal.hpp"
 #include "output/manifest.hpp"
@@ -117,25 +116,11 @@ std::string resume_command(const RunOptions& options) {
   return options.command + (options.resume ? "" : " --resume");
 }
 
-/// The place of a particle: "(0.1, 0.2) m".
-std::string point_text(const BodyState& state, std::size_t particle, std::size_t dimension) {
-  std::string text = "(";
-  for (std::size_t c = 0; c < dimension; ++c) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%s%.6g", c ? ", " : "", state.position[particle * dimension + c]);
-    text += number;
-  }
-  return text + ") m";
-}
-
-std::string failure_text(const RunFailure& failure, const Simulation& simulation) {
+Outcome outcome_of(const Failure& failure, const Simulation& simulation) {
   const Experiment& experiment = simulation.experiment();
-  const std::size_t D = static_cast<std::size_t>(experiment.dimension);
-  const BodyState state = simulation.backend().body_state(failure.body);
-  return "step " + std::to_string(simulation.steps() + 1) + ", t = " + number_text(simulation.time()) +
-         " s: particle " + std::to_string(failure.particle) + " of body " +
-         in_quotes(experiment.bodies[failure.body].name) + " at " + point_text(state, failure.particle, D) + " " +
-         failure.cause;
+  const FailurePlace place = simulation.place_of(failure);
+  return {run_failed, "failed", place_text(failure, place, experiment) + " " + cause_text(failure, experiment),
+          record_of(failure, place, experiment)};
 }
 
 /// The outcome of a run that something keeps from its end; the run can be resumed from there.
@@ -166,10 +151,10 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints&
   while (!simulation.finished() && !(stop_requested() && simulation.observed())) {
     try {
       simulation.step();
-    } catch (const RunFailure& failure) {
-      const Outcome outcome{run_failed, "failed", failure_text(failure, simulation)};
+    } catch (const RunFailure& stopped) {
+      const Outcome outcome = outcome_of(stopped.failure, simulation);
       progress.show(true);
-      std::cerr << "the run failed: " << outcome.reason << "\n" << remedy_for(failure.cause) << "\n";
+      std::cerr << "the run failed: " << outcome.reason << "\nremedy: " << remedy_for(stopped.failure) << "\n";
       return outcome;
     }
     recorder.record();
@@ -252,9 +237,9 @@ void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
                                         [](double component) { return std::isfinite(component); });
     if (wrong == state.velocity.end()) continue;
     const std::size_t particle = static_cast<std::size_t>(wrong - state.velocity.begin()) / D;
-    problems.push_back(problem_at(
-        experiment, experiment.bodies[body].pointer + "/velocity",
-        "is not a finite number at particle " + std::to_string(particle) + ", " + point_text(state, particle, D)));
+    problems.push_back(problem_at(experiment, experiment.bodies[body].pointer + "/velocity",
+                                  "is not a finite number at particle " + std::to_string(particle) + ", " +
+                                      point_text(std::span(state.position).subspan(particle * D, D))));
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }
@@ -316,6 +301,7 @@ Outcome finish(Outcome outcome, nlohmann::ordered_json summary, const Experiment
   for (const auto& warning : summary["warnings"]) std::cerr << "warning: " << warning.get<std::string>() << "\n";
   const auto write_summary = [&] {
     summary["outcome"] = {{"exit_code", outcome.exit_code}, {"status", outcome.status}, {"reason", outcome.reason}};
+    summary["outcome"].update(outcome.failure);
     folder.write_json("summary.json", summary);
   };
   write_summary();

@@ -48,11 +48,6 @@ void add_affine(const Experiment& experiment, const BodyState& state, const doub
 
 }  // namespace
 
-std::vector<std::pair<std::string, double>> rows_of(const HeatLedger& l) {
-  return {{"scatter", l.scatter}, {"images", l.images},         {"gather", l.gather}, {"walls", l.walls},
-          {"flux", l.flux},       {"convection", l.convection}, {"boxes", l.boxes},   {"dissipation", l.dissipation}};
-}
-
 RecordedAxes recorded_axes(const Experiment& experiment) {
   if (experiment.axisymmetric()) return {1, 3};
   return {0, experiment.dimension == 2 ? 2 : 0};
@@ -163,10 +158,7 @@ void Metrics::add_errors(int body, const BodyState& state, Totals& totals) const
 
 double Metrics::ledger_residual(const Totals& now) const {
   if (!simulation_.plan().ledger) return 0;
-  const Ledger ledger = simulation_.ledger();
-  const double explained = ledger.scatter + ledger.gather + ledger.filter + ledger.boundary + ledger.contact +
-                           ledger.body_force - ledger.material;
-  return now.total_energy() - initial_.total_energy() - explained;
+  return now.total_energy() - initial_.total_energy() - simulation_.ledger().explained();
 }
 
 double Metrics::heat_residual(const Totals& now) const {
@@ -175,88 +167,93 @@ double Metrics::heat_residual(const Totals& now) const {
   return gained - simulation_.backend().heat_ledger().sum();
 }
 
-std::vector<std::string> Metrics::columns() const {
+std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
+  const Plan& plan = simulation_.plan();
+  if (!plan.ledger) return {};
+  std::vector<ValueRow> rows = rows_of(simulation_.ledger());
+  if (!plan.filter) std::erase_if(rows, [](const ValueRow& row) { return row.name == "filter"; });
+  rows.push_back({"residual", "J", ledger_residual(now)});
+  return rows;
+}
+
+std::vector<ValueRow> Metrics::heat_ledger_rows(const Totals& now) const {
+  if (!simulation_.plan().heat_ledger) return {};
+  std::vector<ValueRow> rows = rows_of(simulation_.backend().heat_ledger());
+  rows.push_back({"residual", "J", heat_residual(now)});
+  return rows;
+}
+
+std::vector<ValueRow> Metrics::rows(const Totals& t) const {
   const Experiment& experiment = simulation_.experiment();
+  const Plan& plan = simulation_.plan();
   const bool flat = experiment.dimension == 2 && !experiment.axisymmetric();
-  const std::string energy = flat ? " (J/m)" : " (J)", momentum = flat ? " (kg/s)" : " (kg m/s)",
-                    spin = flat ? " (kg m/s)" : " (kg m²/s)";
-  std::vector<std::string> names{"time (s)", "step", "time step (s)"};
-  for (const char* name : {"kinetic energy", "strain energy", "gravitational energy", "total energy"})
-    names.push_back(name + energy);
-  if (simulation_.plan().ledger) {
-    for (const char* name : {"scatter", "gather", "internal force", "gravity", "body force", "boundary", "contact",
-                             "friction", "material dissipation"})
-      names.push_back(std::string("ledger ") + name + energy);
-    if (simulation_.plan().filter) names.push_back("ledger filter" + energy);
-    names.push_back("ledger residual" + energy);
-  }
+  const std::string energy = flat ? "J/m" : "J", momentum = flat ? "kg/s" : "kg m/s",
+                    spin = flat ? "kg m/s" : "kg m²/s", force = flat ? "N/m" : "N",
+                    norm = std::string("kg^0.5 m/s") + (flat ? " per m^0.5" : "");
   const auto [first, first_spin] = recorded_axes(experiment);
-  for (int c = first; c < experiment.dimension; ++c) names.push_back(std::string("momentum ") + "xyz"[c] + momentum);
-  for (int c = first_spin; c < 3; ++c) names.push_back(std::string("angular momentum ") + "xyz"[c] + spin);
-  for (int c = first; c < experiment.dimension; ++c)
-    names.push_back(std::string("centre of mass ") + "xyz"[c] + " (m)");
-  for (const char* name : {"smallest volume ratio", "largest volume ratio", "largest speed (m/s)"})
-    names.emplace_back(name);
-  if (simulation_.plan().contact) {
-    for (int c = first; c < experiment.dimension; ++c)
-      names.push_back(std::string("contact force ") + "xyz"[c] + (flat ? " (N/m)" : " (N)"));
-    for (const char* name : {"contact nodes", "sticking nodes", "slipping nodes", "largest penetration (m)"})
-      names.emplace_back(name);
+  std::vector<ValueRow> rows;
+  const auto add = [&](const std::string& name, const std::string& unit, double value) {
+    rows.push_back({name, unit, value});
+  };
+  const auto add_components = [&](const std::string& name, const std::string& unit, const std::array<double, 3>& values,
+                                  int begin, int end) {
+    for (int c = begin; c < end; ++c) add(name + " " + "xyz"[c], unit, values[static_cast<std::size_t>(c)]);
+  };
+  const auto add_ledger = [&](const std::string& ledger, const std::vector<ValueRow>& entries) {
+    for (const ValueRow& entry : entries) add(ledger + " " + entry.name, energy, entry.value);
+  };
+  add("time", "s", t.time);
+  add("step", "", static_cast<double>(t.step));
+  add("time step", "s", t.time_step);
+  add("kinetic energy", energy, t.kinetic);
+  add("strain energy", energy, t.strain);
+  add("gravitational energy", energy, t.gravitational);
+  add("total energy", energy, t.total_energy());
+  add_ledger("ledger", ledger_rows(t));
+  add_components("momentum", momentum, t.momentum, first, experiment.dimension);
+  add_components("angular momentum", spin, t.angular_momentum, first_spin, 3);
+  add_components("centre of mass", "m", t.centre_of_mass, first, experiment.dimension);
+  add("smallest volume ratio", "", t.smallest_volume_ratio);
+  add("largest volume ratio", "", t.largest_volume_ratio);
+  add("largest speed", "m/s", t.largest_speed);
+  if (plan.contact) {
+    const ContactRecord& contact = simulation_.backend().contact_record();
+    add_components("contact force", force, contact.force, first, experiment.dimension);
+    add("contact nodes", "", static_cast<double>(contact.nodes));
+    add("sticking nodes", "", static_cast<double>(contact.sticking));
+    add("slipping nodes", "", static_cast<double>(contact.slipping));
+    add("largest penetration", "m", contact.largest_penetration);
   }
-  if (simulation_.plan().filter) {
-    names.push_back(std::string("filter increment norm (kg^0.5 m/s") + (flat ? " per m^0.5)" : ")"));
-    names.emplace_back("filter iterations");
+  if (plan.filter) {
+    const FilterRecord& filter = simulation_.backend().filter_record();
+    add("filter increment norm", norm, filter.last_norm);
+    add("filter iterations", "", static_cast<double>(filter.iterations));
   }
   if (experiment.has_temperature()) {
-    names.insert(names.end(), {"heat content" + energy, "latent heat" + energy});
-    names.insert(names.end(), {"lowest temperature (K)", "highest temperature (K)"});
+    add("heat content", energy, t.heat_content);
+    add("latent heat", energy, t.latent_heat);
+    add("lowest temperature", "K", t.lowest_temperature);
+    add("highest temperature", "K", t.highest_temperature);
   }
-  if (simulation_.plan().heat_ledger) {
-    for (const auto& [name, heat] : rows_of({})) names.push_back("heat ledger " + name + energy);
-    names.push_back("heat ledger residual" + energy);
+  add_ledger("heat ledger", heat_ledger_rows(t));
+  if (experiment.exact) {
+    add("position error rms", "m", t.position_error_rms);
+    add("position error max", "m", t.position_error_max);
+    add("velocity error rms", "m/s", t.velocity_error_rms);
+    add("velocity error max", "m/s", t.velocity_error_max);
   }
-  if (experiment.exact)
-    for (const char* name :
-         {"position error rms (m)", "position error max (m)", "velocity error rms (m/s)", "velocity error max (m/s)"})
-      names.emplace_back(name);
+  return rows;
+}
+
+std::vector<std::string> Metrics::columns() const {
+  std::vector<std::string> names;
+  for (const ValueRow& row : rows(initial_)) names.push_back(heading(row));
   return names;
 }
 
-std::vector<double> Metrics::row(const Totals& t) const {
-  const Experiment& experiment = simulation_.experiment();
-  std::vector<double> values{
-      t.time, static_cast<double>(t.step), t.time_step, t.kinetic, t.strain, t.gravitational, t.total_energy()};
-  if (simulation_.plan().ledger) {
-    const Ledger l = simulation_.ledger();
-    values.insert(values.end(), {l.scatter, l.gather, l.internal_force, l.gravity, l.body_force, l.boundary, l.contact,
-                                 l.friction, l.material});
-    if (simulation_.plan().filter) values.push_back(l.filter);
-    values.push_back(ledger_residual(t));
-  }
-  const auto [first, first_spin] = recorded_axes(experiment);
-  values.insert(values.end(), t.momentum.begin() + first, t.momentum.begin() + experiment.dimension);
-  values.insert(values.end(), t.angular_momentum.begin() + first_spin, t.angular_momentum.end());
-  values.insert(values.end(), t.centre_of_mass.begin() + first, t.centre_of_mass.begin() + experiment.dimension);
-  values.insert(values.end(), {t.smallest_volume_ratio, t.largest_volume_ratio, t.largest_speed});
-  if (simulation_.plan().contact) {
-    const ContactRecord& c = simulation_.backend().contact_record();
-    values.insert(values.end(), c.force.begin() + first, c.force.begin() + experiment.dimension);
-    values.insert(values.end(), {static_cast<double>(c.nodes), static_cast<double>(c.sticking),
-                                 static_cast<double>(c.slipping), c.largest_penetration});
-  }
-  if (simulation_.plan().filter) {
-    const FilterRecord& f = simulation_.backend().filter_record();
-    values.insert(values.end(), {f.last_norm, static_cast<double>(f.iterations)});
-  }
-  if (experiment.has_temperature())
-    values.insert(values.end(), {t.heat_content, t.latent_heat, t.lowest_temperature, t.highest_temperature});
-  if (simulation_.plan().heat_ledger) {
-    for (const auto& [name, heat] : rows_of(simulation_.backend().heat_ledger())) values.push_back(heat);
-    values.push_back(heat_residual(t));
-  }
-  if (experiment.exact)
-    values.insert(values.end(),
-                  {t.position_error_rms, t.position_error_max, t.velocity_error_rms, t.velocity_error_max});
+std::vector<double> Metrics::row(const Totals& totals) const {
+  std::vector<double> values;
+  for (const ValueRow& row : rows(totals)) values.push_back(row.value);
   return values;
 }
 

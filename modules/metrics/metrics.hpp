@@ -41,9 +41,6 @@ struct Totals {
 struct RecordedAxes {
   int linear, angular;
 };
-/// Rows of the heat ledger by name, J.
-std::vector<std::pair<std::string, double>> rows_of(const HeatLedger& ledger);
-
 RecordedAxes recorded_axes(const Experiment& experiment);
 
 /// Keeps what measuring needs of the start: the exact solution and each particle's initial velocity.
@@ -60,7 +57,13 @@ class Metrics {
   /// ledger.
   double heat_residual(const Totals& now) const;
 
-  /// Names with units, and values, of one row of metrics.csv.
+  /// The ledgers' entries and residuals that files have; empty without the ledger. J.
+  std::vector<ValueRow> ledger_rows(const Totals& now) const;
+  std::vector<ValueRow> heat_ledger_rows(const Totals& now) const;
+
+  /// All that metrics.csv has of one time, in order: which and with what units is decided here alone.
+  std::vector<ValueRow> rows(const Totals& totals) const;
+  /// Their headings, and their values.
   std::vector<std::string> columns() const;
   std::vector<double> row(const Totals& totals) const;
 

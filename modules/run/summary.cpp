@@ -54,31 +54,18 @@ Json energy(const Simulation& simulation, const Metrics& metrics, const Recorder
   if (const double scale = available_energy(simulation.experiment(), start); scale > 0)
     json["total"]["gain"] = (recorder.largest_total_energy() - start.total_energy()) / scale;
   if (!simulation.plan().ledger) return json;
-  const Ledger l = simulation.ledger();
-  json["ledger"] = {{"scatter", l.scatter},
-                    {"gather", l.gather},
-                    {"internal_force", l.internal_force},
-                    {"gravity", l.gravity},
-                    {"body_force", l.body_force},
-                    {"boundary", l.boundary},
-                    {"contact", l.contact},
-                    {"friction", l.friction},
-                    {"material_dissipation", l.material},
-                    {"residual", metrics.ledger_residual(end)}};
-  if (simulation.plan().filter) json["ledger"]["filter"] = l.filter;
+  for (const ValueRow& row : metrics.ledger_rows(end)) json["ledger"][key_of(row)] = row.value;
   if (const int every = simulation.plan().ledger_every; every > 1) json["ledger_every"] = every;
   return json;
 }
 
-Json heat(const Simulation& simulation, const Metrics& metrics, const Totals& end) {
+Json heat(const Metrics& metrics, const Totals& end) {
   const Totals& start = metrics.initial();
   Json json{{"content", change(start.heat_content, end.heat_content)},
             {"latent", change(start.latent_heat, end.latent_heat)},
             {"lowest_temperature", end.lowest_temperature},
             {"highest_temperature", end.highest_temperature}};
-  if (!simulation.plan().heat_ledger) return json;
-  for (const auto& [name, heat] : rows_of(simulation.backend().heat_ledger())) json["ledger"][name] = heat;
-  json["ledger"]["residual"] = metrics.heat_residual(end);
+  for (const ValueRow& row : metrics.heat_ledger_rows(end)) json["ledger"][key_of(row)] = row.value;
   return json;
 }
 
@@ -109,6 +96,21 @@ Json warnings(const Simulation& simulation) {
 
 }  // namespace
 
+Json record_of(const Failure& failure, const FailurePlace& place, const Experiment& experiment) {
+  Json record{{"cause", name_of(failure.cause)},
+              {"where",
+               {{"step", place.step},
+                {"time", place.time},
+                {"body", experiment.bodies[failure.body].name},
+                {"particle", failure.particle},
+                {"position", place.position}}}};
+  record["values"] = Json::array();
+  for (const ValueRow& row : values_of(failure, experiment))
+    record["values"].push_back({{"name", row.name}, {"unit", row.unit}, {"value", row.value}});
+  record["remedy"] = remedy_for(failure);
+  return record;
+}
+
 Json summarise(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder, double wall_seconds,
                const EarlierParts& earlier) {
   const Experiment& experiment = simulation.experiment();
@@ -126,7 +128,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
   if (const std::string limiting = simulation.limiting_particle(); !limiting.empty())
     json["limiting_particle"] = limiting;
   json["energy"] = energy(simulation, metrics, recorder);
-  if (experiment.has_temperature()) json["heat"] = heat(simulation, metrics, end);
+  if (experiment.has_temperature()) json["heat"] = heat(metrics, end);
   // A ratio of roundings says nothing: spin counts against mass, speed and size of the domain.
   const double size = experiment.grid.upper[0] - experiment.grid.lower[0];
   const double scale_of_spin = start.mass * start.largest_speed * size;

@@ -15,7 +15,12 @@ struct Outcome {
   int exit_code = 0;
   std::string status = "done";  ///< done, failed, expectation failed, limit broken, interrupted
   std::string reason;
+  nlohmann::ordered_json failure = nlohmann::ordered_json::object();  ///< record_of what stopped it, if that was one
 };
+
+/// What summary.json has beside the reason of a run that a particle stopped: {"cause", "where": {step, time, body,
+/// particle, position}, "values": [{name, unit, value}], "remedy"}.
+nlohmann::ordered_json record_of(const Failure& failure, const FailurePlace& place, const Experiment& experiment);
 
 /// What a resumed run spent before: only the work that led to the result, not what was lost with a process that was
 /// killed.

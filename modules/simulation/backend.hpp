@@ -7,13 +7,13 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "plan/plan.hpp"
 #include "simulation/archive.hpp"
+#include "simulation/failure.hpp"
 
 namespace mpm {
 
@@ -130,17 +130,36 @@ struct Ledger {
   double material = 0;                 ///< dissipated by the materials (positive)
   double filter = 0;                   ///< change of the grid's kinetic energy over the filter's loops
 
-  Ledger plus(const Ledger& other) const {
-    return {scatter + other.scatter, gather + other.gather,         internal_force + other.internal_force,
-            gravity + other.gravity, body_force + other.body_force, boundary + other.boundary,
-            contact + other.contact, friction + other.friction,     material + other.material,
-            filter + other.filter};
-  }
-  Ledger times(double factor) const {
-    return {factor * scatter,  factor * gather,  factor * internal_force, factor * gravity,  factor * body_force,
-            factor * boundary, factor * contact, factor * friction,       factor * material, factor * filter};
-  }
+  Ledger plus(const Ledger& other) const;
+  Ledger times(double factor) const;
+  /// Change of the total energy that the causes explain. In this order, on which the residual's rounding depends.
+  double explained() const { return scatter + gather + filter + boundary + contact + body_force - material; }
 };
+
+/// An entry of a ledger and what it is called. Sums, files and tests go over these lists: a new entry is a member and a
+/// line here, and one without its line does not compile.
+template <class AnyLedger>
+struct LedgerEntry {
+  const char* name;
+  double AnyLedger::*value;
+};
+inline constexpr LedgerEntry<Ledger> ledger_entries[] = {
+    {"scatter", &Ledger::scatter}, {"gather", &Ledger::gather},         {"internal force", &Ledger::internal_force},
+    {"gravity", &Ledger::gravity}, {"body force", &Ledger::body_force}, {"boundary", &Ledger::boundary},
+    {"contact", &Ledger::contact}, {"friction", &Ledger::friction},     {"material dissipation", &Ledger::material},
+    {"filter", &Ledger::filter}};
+static_assert(sizeof(Ledger) == std::size(ledger_entries) * sizeof(double));
+
+inline Ledger Ledger::plus(const Ledger& other) const {
+  Ledger sum;
+  for (const auto& [name, value] : ledger_entries) sum.*value = this->*value + other.*value;
+  return sum;
+}
+inline Ledger Ledger::times(double factor) const {
+  Ledger product;
+  for (const auto& [name, value] : ledger_entries) product.*value = factor * this->*value;
+  return product;
+}
 
 /// What the filter did in the last step that it acted in.
 struct FilterRecord {
@@ -177,24 +196,45 @@ struct HeatLedger {
   double convection = 0;   ///< through walls with convection
   double boxes = 0;        ///< heating of boxes of nodes, and what holds their temperature
   double dissipation = 0;  ///< of the energy that materials dissipate, the share that warms them
-  double sum() const { return scatter + images + gather + walls + flux + convection + boxes + dissipation; }
+  double sum() const;
 };
+inline constexpr LedgerEntry<HeatLedger> heat_ledger_entries[] = {
+    {"scatter", &HeatLedger::scatter}, {"images", &HeatLedger::images},
+    {"gather", &HeatLedger::gather},   {"walls", &HeatLedger::walls},
+    {"flux", &HeatLedger::flux},       {"convection", &HeatLedger::convection},
+    {"boxes", &HeatLedger::boxes},     {"dissipation", &HeatLedger::dissipation}};
+static_assert(sizeof(HeatLedger) == std::size(heat_ledger_entries) * sizeof(double));
+
+inline double HeatLedger::sum() const {
+  double sum = 0;
+  for (const auto& [name, value] : heat_ledger_entries) sum += this->*value;
+  return sum;
+}
+
+/// J, in the order of the entries.
+inline std::vector<ValueRow> rows_of(const Ledger& ledger) {
+  std::vector<ValueRow> rows;
+  for (const auto& [name, value] : ledger_entries) rows.push_back({name, "J", ledger.*value});
+  return rows;
+}
+inline std::vector<ValueRow> rows_of(const HeatLedger& ledger) {
+  std::vector<ValueRow> rows;
+  for (const auto& [name, value] : heat_ledger_entries) rows.push_back({name, "J", ledger.*value});
+  return rows;
+}
+/// The values alone.
+template <class AnyLedger>
+std::vector<double> values_of(const AnyLedger& ledger) {
+  std::vector<double> values;
+  for (const ValueRow& row : rows_of(ledger)) values.push_back(row.value);
+  return values;
+}
 
 struct TimeStepLimit {
   double speed = 0;       ///< largest wave speed + particle speed, m/s
   double wave_speed = 0;  ///< of that particle
   int body = 0;
   std::size_t particle = 0;
-};
-
-/// A run that cannot go on: what, where and when. Maps to exit code 3.
-class RunFailure : public std::runtime_error {
- public:
-  RunFailure(std::string cause, int body, std::size_t particle)
-      : std::runtime_error(cause), cause(std::move(cause)), body(body), particle(particle) {}
-  std::string cause;
-  int body;
-  std::size_t particle;  ///< index in the order of seeding
 };
 
 struct StepInfo {
@@ -211,8 +251,7 @@ class Backend {
   virtual ~Backend() = default;
   virtual std::string_view name() const = 0;
 
-  /// Throws RunFailure for the first particle (lowest body, then index) that is not a number, inverted or outside the
-  /// domain.
+  /// Throws RunFailure for the first particle (comes_before) that is not a number, inverted or outside the domain.
   virtual void execute(const Pass& pass, const StepInfo& step) = 0;
 
   /// Result of the last estimate_time_step pass.

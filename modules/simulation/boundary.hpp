@@ -33,9 +33,6 @@ inline int grid_padding_of(const mpm_shape& shape) {
   return shape.form == MPM_NODE_LIST ? list_grid_padding : grid_padding;
 }
 
-/// Why a run ends in which a particle comes to r <= 0.
-inline constexpr const char* reached_axis = "reached the axis r = 0, where its ring has no circumference";
-
 static_assert(static_cast<int>(ConditionType::free) == wall_free &&
               static_cast<int>(ConditionType::stick) == wall_stick &&
               static_cast<int>(ConditionType::slip) == wall_slip &&

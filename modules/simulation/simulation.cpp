@@ -48,9 +48,16 @@ double Simulation::end_of_step() const {
 void Simulation::take_limit() {
   const TimeStepLimit limit = backend_->time_step_limit();
   if (!(limit.speed > 0) || !std::isfinite(limit.speed))
-    throw RunFailure("not a number: its wave or particle speed gives no time step", limit.body, limit.particle);
+    throw RunFailure({Cause::speed_not_a_number, limit.body, limit.particle, -1, limit.speed});
   estimated_speed_ = limit.speed;
   estimate_ = solver_.limit(experiment_, {limit.speed}).seconds;
+}
+
+FailurePlace Simulation::place_of(const Failure& failure) const {
+  const std::vector<double> positions = backend_->body_state(failure.body).position;
+  const auto D = static_cast<std::ptrdiff_t>(experiment_.dimension);
+  const auto first = positions.begin() + static_cast<std::ptrdiff_t>(failure.particle) * D;
+  return {steps_ + 1, time_, {first, first + D}};
 }
 
 /// Whether the filter acts in the step that begins now.

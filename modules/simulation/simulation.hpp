@@ -49,6 +49,9 @@ class Simulation {
     return backend_->ledger().times(plan_.ledger_every).plus(first_entries_.times(1.0 - plan_.ledger_every));
   }
 
+  /// Of the particle that stopped the last step.
+  FailurePlace place_of(const Failure& failure) const;
+
   /// Everything that later steps depend on. `restore` on a simulation of the same experiment goes on bit for bit,
   /// whatever the number of threads; throws ArchiveError.
   void save(ArchiveWriter& archive) const;

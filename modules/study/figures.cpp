@@ -357,15 +357,8 @@ std::string outcome_words(const Result& result) {
   switch (result.outcome.status) {
     case Status::done:
       break;
-    case Status::failed: {
-      // The cause is cut out of a reason: "step 3, t = 0.1 s: particle 4 of body "b" at (0, 0) m inverted: its volume
-      // ratio …" -> "inverted"
-      const auto place = result.outcome.reason.find(") m ");
-      if (place == std::string::npos) return "stopped";
-      const std::string cause = result.outcome.reason.substr(place + 4);
-      return "stopped: " +
-             cause.substr(0, std::min({cause.find(':'), cause.find(','), cause.find(" ("), cause.find(" at ")}));
-    }
+    case Status::failed:
+      return result.outcome.cause.empty() ? "stopped" : "stopped: " + result.outcome.cause;
     default:
       return name_of(result.outcome.status);
   }

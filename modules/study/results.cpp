@@ -39,6 +39,7 @@ Json json_of_result(const Study& study, const Result& result) {
   json["choices"] = result.combination.choices;
   json["status"] = name_of(result.outcome.status);
   json["reason"] = result.outcome.reason;
+  if (!result.outcome.cause.empty()) json["cause"] = result.outcome.cause;
   json["flags"] = result.flags;
   json["reused"] = result.outcome.reused;
   json["folder"] = result.folder;
@@ -57,7 +58,7 @@ Result result_from(const Json& json) {
   Result result;
   result.combination.name = json.at("name").get<std::string>();
   result.combination.choices = json.at("choices").get<std::vector<std::size_t>>();
-  result.outcome = {status_named(json.at("status")), json.at("reason"), json.at("reused")};
+  result.outcome = {status_named(json.at("status")), json.at("reason"), json.at("reused"), json.value("cause", "")};
   result.flags = json.at("flags").get<std::vector<std::string>>();
   result.folder = json.at("folder").get<std::string>();
   for (const auto& [name, value] : json.at("measures").items()) result.measures[name] = value.get<double>();

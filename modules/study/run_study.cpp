@@ -76,6 +76,7 @@ class Task {
     if (!result_.stable) {
       result_.outcome.status = Status::failed;
       result_.outcome.reason = "unstable already at " + number_text(study_.bisection->from) + ": " + broken.front();
+      result_.outcome.cause = outcome.cause;
       return;
     }
     result_.outcome.status = Status::done;

@@ -96,7 +96,7 @@ std::optional<Outcome> Runner::earlier(const PreparedRun& run) const {
   const Status status = status_named(known.value("status", "not run"));
   if (!is_finished(status) && status != Status::failed) return std::nullopt;
   if (summary(run.name).empty()) return std::nullopt;
-  return Outcome{status, known.value("reason", ""), true};
+  return Outcome{status, known.value("reason", ""), true, known.value("cause", "")};
 }
 
 bool Runner::can_go_on(const PreparedRun& run) const {
@@ -108,7 +108,8 @@ bool Runner::can_go_on(const PreparedRun& run) const {
 }
 
 void Runner::write_record(const PreparedRun& run, const Outcome& outcome) const {
-  const Json json{{"key", run.key}, {"status", name_of(outcome.status)}, {"reason", outcome.reason}};
+  const Json json{
+      {"key", run.key}, {"status", name_of(outcome.status)}, {"reason", outcome.reason}, {"cause", outcome.cause}};
   support::write_atomically(record(run.name, ".json"), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
@@ -201,7 +202,7 @@ Outcome Runner::outcome_of(const std::string& name, int wait_status) const {
   if (code == 4 && known && ending.value("status", "") == output::limit_broken)
     return {Status::done, ""};  // the run is flagged as well
   if (code == 4 && known) return {Status::expectation_failed, reason};
-  if (code == 3 && known) return {Status::failed, reason};
+  if (code == 3 && known) return {Status::failed, reason, false, ending.value("cause", "")};
   if (code == 2) return {Status::refused, last_lines(name)};
   if (code == 5) return {Status::machine_failed, known && !reason.empty() ? reason : last_lines(name)};
   if (code == 130) return {Status::interrupted, "stopped by a signal"};

@@ -235,8 +235,16 @@ inline std::pair<std::string, std::string> stopped_scene(const Folder& folder, c
   CHECK(has(result.err, reason));
   const std::string report = slurp(folder / "run/report.html");
   CHECK(has(report, "</html>"));
-  const auto cause = reason.rfind(") m ") + 4;  // up to a quote or apostrophe, as the report writes entities
-  CHECK(has(report, reason.substr(cause, reason.find_first_of("\"'", cause) - cause)));
+  const Json& outcome = summary["outcome"];
+  CHECK(has(report, outcome["cause"].get<std::string>()));
+  const Json& where = outcome["where"];
+  for (const std::string& place :
+       {"step " + where["step"].dump(), "particle " + where["particle"].dump() + " of body " + where["body"].dump()})
+    CHECK(has(reason, place));
+  CHECK(where["time"].is_number());
+  CHECK(where["position"].size() >= 2);
+  for (const Json& row : outcome["values"]) CHECK((row["name"].is_string() && row["unit"].is_string()));
+  CHECK(has(result.err, "remedy: " + outcome["remedy"].get<std::string>()));
   return {reason, result.err};
 }
 

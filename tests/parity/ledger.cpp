@@ -12,11 +12,6 @@ namespace {
 constexpr int every = 3;
 const std::string sampled = R"(/output={"ledger_every": 3})";
 
-std::vector<double> entries(const Ledger& l) {
-  return {l.scatter,  l.gather,  l.internal_force, l.gravity,  l.body_force,
-          l.boundary, l.contact, l.friction,       l.material, l.filter};
-}
-
 /// Mixes in which the ledger alone asks for what it reads, and others in which more does; each is named by what it has.
 std::vector<Mix> mixes() {
   const std::string von_mises =
@@ -57,10 +52,10 @@ TEST_CASE("a ledger of every third step holds the entries of those steps", "[par
       Scene whole(mix.text(), overrides);
       overrides.push_back(sampled);
       Scene part(mix.text(), overrides);
-      std::vector<double> expected(entries({}).size()), counted = expected, before = expected;
+      std::vector<double> expected(values_of(Ledger{}).size()), counted = expected, before = expected;
       for (long step = 0; step < 14; ++step) {
         whole.run_steps(1), part.run_steps(1);
-        const std::vector<double> now = entries(whole.simulation.backend().ledger());
+        const std::vector<double> now = values_of(whole.simulation.backend().ledger());
         for (std::size_t i = 0; i < now.size(); ++i)
           if (step == 0 || (step - 1) % every == every / 2) {
             expected[i] += now[i] - before[i];
@@ -68,10 +63,10 @@ TEST_CASE("a ledger of every third step holds the entries of those steps", "[par
           }
         before = now;
       }
-      const std::vector<double> found = entries(part.simulation.backend().ledger());
+      const std::vector<double> found = values_of(part.simulation.backend().ledger());
       const double scale = whole.metrics.initial().kinetic;
       CHECK(difference(expected, found, scale) < 1e-11);
-      CHECK(difference(counted, entries(part.simulation.ledger()), scale) < 1e-11);
+      CHECK(difference(counted, values_of(part.simulation.ledger()), scale) < 1e-11);
       CHECK(std::abs(found[0]) > 1e-6 * scale);  // the scatter's entry
       compare_states(whole, part, std::numeric_limits<double>::epsilon(), parity_tolerance);
     }
@@ -102,6 +97,6 @@ TEST_CASE("a ledger of every third step is the same fused, apart and resumed", "
       resumed.simulation.restore(reader);
       resumed.steps(9);
       CHECK(different(all_results(whole.simulation), all_results(resumed.simulation)) == 0);
-      CHECK(different(entries(whole.simulation.ledger()), entries(resumed.simulation.ledger())) == 0);
+      CHECK(different(values_of(whole.simulation.ledger()), values_of(resumed.simulation.ledger())) == 0);
     }
 }

@@ -206,10 +206,10 @@ TEST_CASE("a domain that reaches too far ends the run at the same particle on bo
         Scene scene(text, {set("/backend", backend)});
         try {
           scene.run();
-        } catch (const RunFailure& failure) {
-          causes.push_back(failure.cause);
+        } catch (const RunFailure& stopped) {
+          causes.push_back(cause_text(stopped.failure, scene.experiment));
           steps.push_back(scene.simulation.steps());
-          particles.push_back({failure.body, failure.particle});
+          particles.push_back({stopped.failure.body, stopped.failure.particle});
         }
       }
       REQUIRE(causes.size() == 2);

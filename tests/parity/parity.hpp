@@ -165,9 +165,7 @@ inline void compare_states(const Scene& reference, const Scene& cpu, double epsi
 
 template <class AnyScene>
 std::vector<double> ledger_values(const AnyScene& scene) {
-  const Ledger& l = scene.simulation.backend().ledger();
-  return {l.scatter,  l.gather,  l.internal_force, l.gravity,  l.body_force,
-          l.boundary, l.contact, l.friction,       l.material, l.filter};
+  return values_of(scene.simulation.backend().ledger());
 }
 
 /// Passes and norms of the filter's last loop; `scale` is that of sqrt(m) v.

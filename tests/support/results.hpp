@@ -22,11 +22,8 @@ inline std::vector<double> all_results(const Simulation& simulation, bool with_h
       if (fields != &state.host_state || with_host_state)
         for (const auto& [name, values] : *fields) append(values);
   }
-  const Ledger& l = backend.ledger();
-  append({l.scatter, l.gather, l.internal_force, l.gravity, l.body_force, l.boundary, l.contact, l.friction, l.material,
-          l.filter});
-  const HeatLedger h = backend.heat_ledger();
-  append({h.scatter, h.images, h.gather, h.walls, h.flux, h.convection, h.boxes, h.dissipation});
+  append(values_of(backend.ledger()));
+  append(values_of(backend.heat_ledger()));
   const ContactRecord& c = backend.contact_record();
   append({c.force[0], c.force[1], c.force[2], static_cast<double>(c.nodes), static_cast<double>(c.sticking),
           c.largest_penetration, c.momentum_residual});

@@ -283,7 +283,7 @@ TEST_CASE("numbers of a summary by formula and against bounds", "[study]") {
 TEST_CASE("study.json keeps what advice needs", "[study]") {
   Results results = measured({{1, 8}, {2, 4}, {3, 4}, {3, 5}, {4, 1}, {6, 2}, {5, 1}, {0.5, 9}});
   results.results[1].flags = {"a flag"};
-  results.results[2].outcome = {Status::failed, "inverted", false};
+  results.results[2].outcome = {Status::failed, "step 3: inverted: its volume ratio", false, "inverted"};
   const Json json = json_of(results, Json::object(), "1");
   CHECK(is_study_json(json));
   const Results read = results_from(Json::parse(json.dump()));
@@ -291,6 +291,8 @@ TEST_CASE("study.json keeps what advice needs", "[study]") {
   CHECK(read.study.error == "e");
   CHECK(read.results[1].flags == results.results[1].flags);
   CHECK(read.results[2].outcome.status == Status::failed);
+  CHECK(read.results[2].outcome.cause == "inverted");
+  CHECK(read.results[1].outcome.cause.empty());
   CHECK(label_of(read.study, read.results[7].combination) == "flip, FMPM(4), fine");
   CHECK(advise_for_error(read, "seconds", 4).good.front().result->combination.name == "flip-none-coarse");
   CHECK(objections(read) == std::vector<std::string>{"pic-none-fine: a flag"});
@@ -307,12 +309,10 @@ TEST_CASE("study.json keeps what advice needs", "[study]") {
 TEST_CASE("what became of a run, in few words", "[study]") {
   Result result;
   result.outcome = {Status::failed,
-                    "step 3, t = 0.1 s: particle 4 of body \"b\" at (0.5, nan) m left the domain at x = 2 m", false};
+                    "step 3, t = 0.1 s: particle 4 of body \"b\" at (0.5, nan) m left the domain at x = 2 m", false,
+                    "left the domain"};
   CHECK(outcome_words(result) == "stopped: left the domain");
-  result.outcome.reason =
-      "step 3, t = 0.1 s: particle 4 of body \"b\" at (0, 0) m inverted: its volume ratio J is not positive";
-  CHECK(outcome_words(result) == "stopped: inverted");
-  result.outcome.reason = "max_steps (10) was reached before end_time";
+  result.outcome = {Status::failed, "max_steps (10) was reached before end_time", false};
   CHECK(outcome_words(result) == "stopped");
   result.outcome = {Status::done, "", false};
   CHECK(outcome_words(result) == "bounded");

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 #include <sstream>
 
 #include "experiment/diagnostics.hpp"
-#include "simulation/boundary.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 
@@ -288,14 +288,17 @@ TEST_CASE("an axisymmetric particle that comes to the axis ends the run", "[axis
     Scene scene(expansion,
                 {set("/backend", backend), R"(/bodies/0/velocity=["-9", 0])", set("/solver/time_step", "0.003"),
                  R"(/transfer={"type": "asflip", "beta_max": 1, "threshold": -1})"});
-    std::string cause;
+    std::optional<Failure> failure;
     try {
       scene.run();
-    } catch (const RunFailure& failure) {
-      cause = failure.cause;
+    } catch (const RunFailure& stopped) {
+      failure = stopped.failure;
     }
-    INFO(backend << ": " << cause);
-    CHECK(cause == reached_axis);
+    INFO(backend);
+    REQUIRE(failure);
+    CHECK(failure->cause == Cause::reached_axis);
+    CHECK(failure->axis == 0);
+    CHECK(failure->value <= 0);
   }
 }
 

@@ -188,9 +188,9 @@ TEST_CASE("a domain that reaches far beyond the edge stops the run by name", "[c
     std::string cause;
     try {
       scene.run_steps(1);
-    } catch (const RunFailure& failure) {
-      cause = failure.cause;
-      CHECK(failure.particle == 0);
+    } catch (const RunFailure& stopped) {
+      cause = cause_text(stopped.failure, scene.experiment);
+      CHECK(stopped.failure.particle == 0);
     }
     INFO(backend << ": " << cause);
     CHECK(cause == "its domain reaches more than 8 cells beyond the domain's edge");

@@ -31,8 +31,8 @@ class ShippedScene {
         simulation.step();
         if (each) each();
       }
-    } catch (const RunFailure& reason) {
-      failure = reason.cause;
+    } catch (const RunFailure& stopped) {
+      failure = cause_text(stopped.failure, experiment);
     }
     return metrics.measure();
   }

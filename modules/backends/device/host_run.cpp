@@ -8,11 +8,13 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "backends/device/conditions.hpp"
 #include "backends/device/field_arrays.hpp"
 #include "backends/device/heat_conditions.hpp"
 #include "backends/device/kernels/sums.hpp"  // largest_team
+#include "kernel/corner_domain.hpp"
 #include "simulation/boundary.hpp"
 #include "simulation/contact_pair.hpp"
 
@@ -89,6 +91,19 @@ struct Body {
     Vector3 v{};
     for (int c = 0; c < dimension; ++c) v[c] = component(array, p, c);
     return v;
+  }
+
+  /// Whether a particle's corners, if it has any, have passed one another; false for what is not a number.
+  bool turned_inside_out(std::string_view corners, int p) const {
+    const T* const array = arrays.of(corners);
+    return array && (dimension == 2 ? turned_inside_out<2>(array, p) : turned_inside_out<3>(array, p));
+  }
+  template <int D>
+  bool turned_inside_out(const T* array, int p) const {
+    Vec<D, T> corner[1 << D];
+    load_corners<D>(array, count, p, corner);
+    const CornerDomain<D, T> domain = corner_domain<D, T>(corner);
+    return !domain.upright && std::isfinite(domain.volume);
   }
 
   ParticleArrays<T> table() {
@@ -268,11 +283,13 @@ class HostRun final : public Backend {
   BodyState body_state(int index) const override {
     Body<T> body = bodies_[index];  // a copy, into which the second moments go
     if (plan_.second_moment) {
+      // A particle that has no stencil has none; the next pass that needs it says so.
+      const int moments = body.number("second_moment");
+      std::fill_n(body.arrays.of(moments), body.arrays.size(moments), std::numeric_limits<T>::quiet_NaN());
       int failed = INT_MAX;
       Arguments<T> a = scene_;
       a.particles = body.table(), a.first_failed = &failed;
       device_.run("second_moments", a, teams(body.count), team_);
-      if (failed != INT_MAX) throw RunFailure(outside_grid, index, static_cast<std::size_t>(failed));
     }
     const double h = experiment_.grid.cell_size;
     BodyState state;
@@ -395,17 +412,73 @@ class HostRun final : public Backend {
     return sum(phase, arguments_of(body), body.count)[0];
   }
 
+  /// What a phase reports particles for.
+  enum class Checks { stencil, deformation, position };
+
   /// Runs a phase and stops the run where it reports a particle.
-  void run(const std::string& phase, const Arguments<T>& a, int teams, const Body<T>& body, const char* cause) {
+  void run(const std::string& phase, const Arguments<T>& a, int teams, const Body<T>& body, Checks checks) {
     first_failed_ = INT_MAX;
     device_.run(phase, a, teams, team_);
-    if (first_failed_ != INT_MAX)
-      throw RunFailure(cause, static_cast<int>(&body - bodies_.data()), static_cast<std::size_t>(first_failed_));
+    if (first_failed_ == INT_MAX) return;
+    const Failure failure = checks == Checks::deformation ? failed_deformation(body, first_failed_)
+                            : checks == Checks::position  ? failed_position(body, first_failed_)
+                                                          : failed_stencil(body, first_failed_);
+    throw RunFailure(failure);
+  }
+
+  // A phase reports no more than the particle: what is wrong with it stands in its arrays.
+
+  Failure failure_of(Cause cause, const Body<T>& body, int p) const {
+    return {cause, static_cast<int>(&body - bodies_.data()), static_cast<std::size_t>(p)};
+  }
+  std::optional<Failure> position_not_a_number(const Body<T>& body, int p) const {
+    const Vector3 x = body.vector(body.arrays.of("position"), p);
+    for (int c = 0; c < experiment_.dimension; ++c)
+      if (!std::isfinite(x[c])) {
+        Failure failure = failure_of(Cause::position_not_a_number, body, p);
+        failure.axis = c, failure.value = x[c];
+        return failure;
+      }
+    return std::nullopt;
+  }
+  Failure failed_deformation(const Body<T>& body, int p) const {
+    const T J = body.arrays.of("volume_ratio")[p];
+    Failure failure = failure_of(std::isnan(J) ? Cause::deformation_not_a_number : Cause::inverted, body, p);
+    failure.value = J;
+    return failure;
+  }
+  Failure failed_stencil(const Body<T>& body, int p) const {
+    if (const auto failure = position_not_a_number(body, p)) return *failure;
+    if (body.turned_inside_out("corners", p)) return failure_of(Cause::domain_inside_out, body, p);
+    const bool list = experiment_.shape.plugin->shape().form == MPM_NODE_LIST;
+    return failure_of(list ? Cause::domain_beyond_grid : Cause::domain_outgrew_stencil, body, p);
+  }
+  /// Of the axes beyond which the particle is, the first; the test is that of the phase "move".
+  Failure failed_position(const Body<T>& body, int p) const {
+    if (const auto failure = position_not_a_number(body, p)) return *failure;
+    if (body.turned_inside_out("moved_corners", p)) return failure_of(Cause::domain_inside_out, body, p);
+    Failure failure = failure_of(Cause::left_domain, body, p);
+    T farthest = -std::numeric_limits<T>::infinity();
+    for (int c = 0; c < experiment_.dimension; ++c) {
+      const T x = body.arrays.of("position")[static_cast<std::size_t>(c) * body.count + p];
+      if (c == 0 && experiment_.axisymmetric() && !(x > T(0))) {
+        failure.cause = Cause::reached_axis, failure.axis = c, failure.value = x;
+        return failure;
+      }
+      if (periodic(c)) continue;
+      const T size = T(scene_.cells[c]) * scene_.cell_size, at = x - scene_.lower[c];
+      const auto margin = [&](int side) {
+        return scene_.walls[c][side] == wall_separate ? T(0.5) * scene_.cell_size : position_tolerance<T> * size;
+      };
+      const T beyond = std::max(-at - margin(0), at - size - margin(1));
+      if (beyond > farthest) farthest = beyond, failure.axis = c, failure.value = x;
+      if (beyond > T(0)) break;
+    }
+    return failure;
   }
   void run_material(const std::string& phase, Body<T>& body) { run_material(phase, arguments_of(body), body); }
   void run_material(const std::string& phase, const Arguments<T>& a, Body<T>& body) {
-    run(phase + "_" + std::to_string(body.material_number), a, teams(body.count), body,
-        "inverted: its volume ratio J is not positive");
+    run(phase + "_" + std::to_string(body.material_number), a, teams(body.count), body, Checks::deformation);
   }
   void run_strain(const Pass& pass, Body<T>& body) {
     Arguments<T> a = arguments_of(body);
@@ -415,8 +488,6 @@ class HostRun final : public Backend {
     if (plan_.heat_ledger && body.heat.warming > 0)
       heat_ledger_.dissipation += sum_over_particles("heat_of_dissipation", body);
   }
-  static constexpr const char* outside_grid =
-      "its stencil reaches beyond the grid or does not hold its domain, or its position is not a number";
 
   // ---- passes ------------------------------------------------------------------------------------------------------
 
@@ -448,8 +519,8 @@ class HostRun final : public Backend {
       Arguments<T> a = arguments_of(body);
       a.momentum = pass.has(Act::scatter_momentum), a.force = force;
       a.contact_fields = pass.has(Act::scatter_contact), a.remap = pass.remap();
-      run("scatter", a, body.blocks(), body, outside_grid);
-      if (heat) run("scatter_heat", a, body.blocks(), body, outside_grid);
+      run("scatter", a, body.blocks(), body, Checks::stencil);
+      if (heat) run("scatter_heat", a, body.blocks(), body, Checks::stencil);
       if (heat && plan_.heat_ledger) scattered_heat_ += sum_over_particles("heat_of_particles", body);
       if (accounted_ && enters) energy += sum_over_particles("energy_of_particles", body);
     }
@@ -532,8 +603,8 @@ class HostRun final : public Backend {
     for (Body<T>& body : bodies_) {
       Arguments<T> a = arguments_of(body);
       a.update_particles = true, a.filtered = step.filtered;
-      run("gather", a, teams(body.count), body, outside_grid);
-      if (pass.has(Act::gather_heat)) run("gather_heat", a, teams(body.count), body, outside_grid);
+      run("gather", a, teams(body.count), body, Checks::stencil);
+      if (pass.has(Act::gather_heat)) run("gather_heat", a, teams(body.count), body, Checks::stencil);
       if (pass.has(Act::gather_heat) && plan_.heat_ledger) heat += sum_over_particles("heat_of_particles", body);
       if (accounted_) energy += sum_over_particles("energy_of_particles", body);  // while weights are those of the step
       if (pass.has(Act::strain)) run_strain(pass, body);
@@ -546,17 +617,13 @@ class HostRun final : public Backend {
 
   void strain(const Pass& pass) {
     for (Body<T>& body : bodies_) {
-      run("gather", arguments_of(body), teams(body.count), body, outside_grid);
+      run("gather", arguments_of(body), teams(body.count), body, Checks::stencil);
       run_strain(pass, body);
     }
   }
 
-  const char* move_failure() const {
-    return plan_.sample_points > 0 ? "left the domain, or its corners have turned its own domain inside out"
-                                   : "left the domain";
-  }
   void move() {
-    for (Body<T>& body : bodies_) run("move", arguments_of(body), teams(body.count), body, move_failure());
+    for (Body<T>& body : bodies_) run("move", arguments_of(body), teams(body.count), body, Checks::position);
   }
 
   // ---- heat --------------------------------------------------------------------------------------------------------
@@ -602,7 +669,7 @@ class HostRun final : public Backend {
   }
 
   void conduct() {
-    for (Body<T>& body : bodies_) run("conduct", arguments_of(body), body.blocks(), body, outside_grid);
+    for (Body<T>& body : bodies_) run("conduct", arguments_of(body), body.blocks(), body, Checks::stencil);
   }
 
   /// Temperatures after the step's heat.
@@ -753,7 +820,7 @@ class HostRun final : public Backend {
   void project(const Pass& pass, const StepInfo& step) {
     conditions_.evaluate(time_of(pass, step), scene_);
     for_each_field("clear_projection", vectors());
-    for (Body<T>& body : bodies_) run("project", arguments_of(body), body.blocks(), body, outside_grid);
+    for (Body<T>& body : bodies_) run("project", arguments_of(body), body.blocks(), body, Checks::stencil);
     for_each_axis("fold_projection", folded_axes(), {false, false, filter_.iterations > 0});
   }
 

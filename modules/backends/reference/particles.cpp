@@ -227,13 +227,16 @@ std::int32_t Particles::update_material(const mpm_material_batch& request, const
   return failed < 0 ? failed : static_cast<std::int32_t>(which[static_cast<std::size_t>(failed)]);
 }
 
-void Particles::refuse_inverted(std::int32_t particle) const {
+void Particles::refuse_inverted(std::int32_t particle) {
   if (particle < 0) return;
   const std::size_t p = std::min(static_cast<std::size_t>(particle), count_ - 1);
   for (const Stored& stored : fields_)
     if (stored.declared->origin == Origin::material && !stored.values.col(static_cast<Eigen::Index>(p)).allFinite())
-      throw RunFailure("not a number: its deformation is no longer finite", body_, p);
-  throw RunFailure("inverted: its volume ratio J is not positive", body_, p);
+      throw RunFailure({Cause::deformation_not_a_number, body_, p});
+  mpm_material_batch batch{};
+  batch.volume_ratio = volume_ratio.data();
+  update_material(batch);
+  throw RunFailure({Cause::inverted, body_, p, -1, volume_ratio(0, static_cast<Eigen::Index>(p))});
 }
 
 void Particles::evaluate_stress() {

@@ -115,7 +115,7 @@ class Particles {
   std::vector<Array> state_of_temperature() const;
   double stored_energy();  ///< J, of all particles
   double ring(std::size_t p) const { return circumference_ ? (*circumference_)(0, p) : 1.0; }
-  void refuse_inverted(std::int32_t particle) const;
+  void refuse_inverted(std::int32_t particle);
 
   const Experiment& experiment_;
   const Plan& plan_;

@@ -1,10 +1,8 @@
 #include "backends/reference/reference_backend.hpp"
 
 #include <cmath>
-#include <sstream>
 
 #include "kernel/corner_domain.hpp"
-#include "simulation/domain_too_long.hpp"
 
 namespace mpm {
 namespace reference {
@@ -118,7 +116,7 @@ Vector ReferenceBackend::move_corners(Particles& body, int index, std::size_t p)
     for (int a = 0; a < D; ++a) corner[c][a] = moved(c * D + a, p);
   const CornerDomain<D, double> domain = corner_domain<D, double>(corner);
   if (!domain.upright && std::isfinite(domain.volume))  // keep_inside names what is not a number
-    throw RunFailure(domain_inside_out(*experiment_.shape.plugin), index, p);
+    throw RunFailure({Cause::domain_inside_out, index, p});
   const Vec<D, double> centre = centroid(domain, corner);
   Vector way = Vector::Zero();
   for (int a = 0; a < D; ++a) {
@@ -132,8 +130,8 @@ void ReferenceBackend::keep_inside(Vector& x, int body, std::size_t p) const {
   const GridSpecification& grid = experiment_.grid;
   for (int c = 0; c < experiment_.dimension; ++c) {
     const double size = grid.upper[c] - grid.lower[c];
-    if (!std::isfinite(x[c])) throw RunFailure("not a number: its position is no longer finite", body, p);
-    if (c == 0 && experiment_.axisymmetric() && !(x[0] > 0)) throw RunFailure(reached_axis, body, p);
+    if (!std::isfinite(x[c])) throw RunFailure({Cause::position_not_a_number, body, p, c, x[c]});
+    if (c == 0 && experiment_.axisymmetric() && !(x[0] > 0)) throw RunFailure({Cause::reached_axis, body, p, c, x[c]});
     if (experiment_.faces[c][0].type == ConditionType::periodic) {
       x[c] -= size * std::floor((x[c] - grid.lower[c]) / size);
       continue;
@@ -143,10 +141,7 @@ void ReferenceBackend::keep_inside(Vector& x, int body, std::size_t p) const {
       const double margin =
           experiment_.faces[c][side].type == ConditionType::separate ? 0.5 * grid.cell_size : 1e-9 * size;
       if (side == 0 ? x[c] >= grid.lower[c] - margin : x[c] <= grid.upper[c] + margin) continue;
-      std::ostringstream cause;
-      cause << "left the domain at "
-            << "xyz"[c] << " = " << x[c] << " m";
-      throw RunFailure(cause.str(), body, p);
+      throw RunFailure({Cause::left_domain, body, p, c, x[c]});
     }
   }
 }

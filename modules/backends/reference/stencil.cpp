@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "kernel/polynomial_basis.hpp"
-#include "simulation/domain_too_long.hpp"
 
 namespace mpm::reference {
 namespace {
@@ -166,17 +165,14 @@ Stencil Shape::stencil(const ShapeValues& values, const ShapeArguments& at, std:
     inverse.topLeftCorner(D, D) = second_moment(values, at, p).topLeftCorner(D, D).inverse();
   Stencil stencil;
   const auto add = [&](StencilNode node, const Eigen::Vector3i& coordinates) {
-    if (!grid.contains(coordinates))
-      throw RunFailure(
-          "its domain reaches more than " + std::to_string(grid.padding()) + " cells beyond the domain's edge", body,
-          p);
+    if (!grid.contains(coordinates)) throw RunFailure({Cause::domain_beyond_grid, body, p});
     node.index = grid.index(coordinates);
     node.affine = moment_is_gradient ? node.gradient : Vector(node.weight * (inverse * node.distance));
     stencil.push_back(node);
   };
   Eigen::Vector3i coordinates = Eigen::Vector3i::Zero();
   if (shape_.form == MPM_NODE_LIST) {
-    if (values.count[p] < 1) throw RunFailure(domain_inside_out(*experiment_.shape.plugin), body, p);
+    if (values.count[p] < 1) throw RunFailure({Cause::domain_inside_out, body, p});
     for (int k = 0; k < values.count[p]; ++k) {
       const StencilNode node = list_node(values, at, p, k, coordinates);
       add(node, coordinates);
@@ -186,7 +182,7 @@ Stencil Shape::stencil(const ShapeValues& values, const ShapeArguments& at, std:
   const int K = static_cast<int>(shape_.width);
   for (int c = 0; c < D; ++c)
     if (!(values.weight.col(static_cast<Eigen::Index>(p)).segment(c * K, K).sum() > 0.5))
-      throw RunFailure(domain_too_long(*experiment_.shape.plugin), body, p);
+      throw RunFailure({Cause::domain_outgrew_stencil, body, p});
   for (int k = 0; k < (D == 3 ? K : 1); ++k)
     for (int j = 0; j < K; ++j)
       for (int i = 0; i < K; ++i) {

@@ -6,7 +6,6 @@
 
 #include "backends/cpu/flush_denormals.hpp"
 #include "backends/cpu/particles/particle_step.hpp"
-#include "simulation/domain_too_long.hpp"
 
 namespace mpm::cpu {
 
@@ -192,11 +191,11 @@ std::map<std::string, double> ParticleStep<D, T, Components>::phase_seconds() co
   return seconds;
 }
 
+/// Of particle p of a chunk.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::throw_failure() {
-  if (failure_.severity == 2) return;
-  const Failure failure = std::exchange(failure_, Failure{});
-  throw RunFailure(failure.cause, failure.body, static_cast<std::size_t>(failure.particle));
+void ParticleStep<D, T, Components>::note(Cause cause, const Chunk& chunk, int p, int axis, double value) {
+  const std::lock_guard lock(mutex_);
+  failure_.note({cause, chunk.body.index, static_cast<std::size_t>(chunk.ids[p]), axis, value});
 }
 
 /// Weights (and gradients, and what the second moment needs) of a chunk. Called from several passes that must agree to
@@ -241,11 +240,9 @@ bool ParticleStep<D, T, Components>::stencils_hold(const Chunk& chunk, const Wor
 
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::note_too_long(const Chunk& chunk, const Work& work) {
-  const std::lock_guard lock(mutex_);
   for (int p = 0; p < chunk.count; ++p)
     for (int axis = 0; axis < D; ++axis)
-      if (!(weight_along(work, scene_.width, axis, p) > T(0.5)))
-        failure_.note(-1, chunk.body.index, chunk.ids[p], domain_too_long(*scene_.experiment.shape.plugin));
+      if (!(weight_along(work, scene_.width, axis, p) > T(0.5))) note(Cause::domain_outgrew_stencil, chunk, p);
 }
 
 /// Where stencils begin in the tile to scatter to; the work space gathers what part of it they reach. False when one
@@ -387,12 +384,9 @@ void ParticleStep<D, T, Components>::note_inverted(const Chunk& chunk) {
   request.volume_ratio = ratio;
   if (scene_.axisymmetric) request.velocity_gradient_zz = chunk.values;  // not read
   Components::update_material(chunk.body, request);
-  const std::lock_guard lock(mutex_);
   for (int p = 0; p < chunk.count; ++p)
     if (!(ratio[p] > 0))
-      failure_.note(0, chunk.body.index, chunk.ids[p],
-                    std::isnan(ratio[p]) ? "not a number: its deformation is no longer finite"
-                                         : "inverted: its volume ratio J is not positive");
+      note(std::isnan(ratio[p]) ? Cause::deformation_not_a_number : Cause::inverted, chunk, p, -1, ratio[p]);
 }
 
 /// Sum over a chunk's particles, in doubles, of what value_of(first particle) gives for a pack of them. Lanes beyond

@@ -2,7 +2,6 @@
 // ParticleStep: grid to particles, strain, movement and the time step's limit.
 
 #include <cmath>
-#include <sstream>
 
 #include "backends/cpu/particles/particle_lists.hpp"
 #include "kernel/lanes.hpp"
@@ -41,7 +40,7 @@ void ParticleStep<D, T, Components>::account_for_move() {
 template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::sum_gathered(bool moved) {
   if (moved) account_for_move();
-  throw_failure();
+  failure_.raise();
   Gathered sum;
   if (!accounted_ && !scene_.plan.heat_ledger) return sum;  // blocks lie with the threads that worked on them
   for (const auto& particles : particles_)
@@ -319,7 +318,7 @@ void ParticleStep<D, T, Components>::project(const StepInfo& step) {
     });
     scatter_far(body, [&](const Chunk& chunk, Work& work) { project_chunk(step, chunk, work); });
   }
-  throw_failure();
+  failure_.raise();
 }
 
 /// The transfer acts on a particle at rest with zero state, so that what it scatters is linear in v*.
@@ -461,25 +460,18 @@ auto ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, const 
 
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::note_outside(const Chunk& chunk) {
-  const std::lock_guard lock(mutex_);
   for (int p = 0; p < chunk.count; ++p)
-    for (int axis = D - 1; axis >= 0; --axis) {  // the first axis is noted last and wins
+    for (int axis = 0; axis < D; ++axis) {
       const double x = chunk.at(Particles<D, T>::position + axis)[p], cells = scene_.domain.cells[axis];
       const double from_corner = x + chunk.block.at[axis] * block_side<D>;
-      if (!std::isfinite(x)) {
-        failure_.note(1, chunk.body.index, chunk.ids[p], "not a number: its position is no longer finite");
-        break;
-      }
-      if (chunk.at(Particles<D, T>::position + axis)[p] < least_place(chunk.block, axis)) {
-        failure_.note(1, chunk.body.index, chunk.ids[p], reached_axis);
-        continue;
-      }
-      if (scene_.domain.periodic(axis) || (from_corner >= -margin(axis, 0) && from_corner <= cells + margin(axis, 1)))
-        continue;
-      std::ostringstream cause;
-      cause << "left the domain at "
-            << "xyz"[axis] << " = " << scene_.domain.lower[axis] + scene_.domain.cell_size * from_corner << " m";
-      failure_.note(1, chunk.body.index, chunk.ids[p], cause.str());
+      const double place = scene_.domain.lower[axis] + scene_.domain.cell_size * from_corner;
+      if (!std::isfinite(x))
+        note(Cause::position_not_a_number, chunk, p, axis, place);
+      else if (chunk.at(Particles<D, T>::position + axis)[p] < least_place(chunk.block, axis))
+        note(Cause::reached_axis, chunk, p, axis, place);
+      else if (!scene_.domain.periodic(axis) &&
+               !(from_corner >= -margin(axis, 0) && from_corner <= cells + margin(axis, 1)))
+        note(Cause::left_domain, chunk, p, axis, place);
     }
 }
 
@@ -497,7 +489,7 @@ void ParticleStep<D, T, Components>::move(const StepInfo& step) {
       });
     });
   account_for_move();
-  throw_failure();
+  failure_.raise();
 }
 
 template <int D, class T, class Components>
@@ -528,7 +520,7 @@ TimeStepLimit ParticleStep<D, T, Components>::time_step_limit() {
       if (of_block.speed > of_body.speed || (of_block.speed == of_body.speed && of_block.particle < of_body.particle))
         of_body = of_block;
     });
-    throw_failure();
+    failure_.raise();
     if (of_body.speed > best.speed) best = of_body;
   }
   return best;

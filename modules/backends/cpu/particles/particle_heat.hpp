@@ -113,7 +113,7 @@ void ParticleStep<D, T, Components>::conduct() {
     });
     scatter_far(body, [&](const Chunk& chunk, Work& work) { conduct_chunk(chunk, work); });
   }
-  throw_failure();
+  failure_.raise();
 }
 
 /// -V k grad T for the gradients of the weights, whatever way the transfer takes stress.

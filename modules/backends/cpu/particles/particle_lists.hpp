@@ -2,12 +2,9 @@
 // ParticleStep: lists of nodes. A list whose nodes lie in the tile of its block goes through the tile; the others, of
 // far stretched particles, go to the grid itself, one after another.
 
-#include <sstream>
-
 #include "backends/cpu/particles/particle_chunks.hpp"
 #include "kernel/corner_domain.hpp"
 #include "kernel/lanes.hpp"
-#include "simulation/domain_too_long.hpp"
 
 namespace mpm::cpu {
 
@@ -125,8 +122,7 @@ auto ParticleStep<D, T, Components>::move_with_corners(const Chunk& chunk, Work&
     for (int k = 0; k < 1 << D; ++k)
       for (int a = 0; a < D; ++a) chunk.at(chunk.particles.corners + k * D + a)[p] = corner[k][a] - centre[a];
     if (domain.upright || p >= chunk.count || !std::isfinite(domain.volume)) continue;
-    const std::lock_guard lock(mutex_);
-    failure_.note(-1, chunk.body.index, chunk.ids[p], domain_inside_out(*scene_.experiment.shape.plugin));
+    note(Cause::domain_inside_out, chunk, p);
   }
   return advance_position(chunk, work.advection, T(1));
 }
@@ -141,8 +137,7 @@ int ParticleStep<D, T, Components>::keep_list(const Chunk& chunk, Work& work, in
   const auto shape = [&] { return "shape \"" + std::string(scene_.experiment.shape.plugin->id()) + "\" "; };
   if (count == 0 && chunk.particles.corners >= 0) {
     lists.first[p] = lists.near_end[p] = lists.far_end[p] = entry;
-    const std::lock_guard lock(mutex_);
-    failure_.note(-1, chunk.body.index, chunk.ids[p], domain_inside_out(*scene_.experiment.shape.plugin));
+    note(Cause::domain_inside_out, chunk, p);
     return entry;
   }
   if (count < 1 || count > scene_.capacity)
@@ -207,9 +202,7 @@ bool ParticleStep<D, T, Components>::reaches_too_far(const Chunk& chunk, int p, 
     beyond = beyond || origin + low[a] < -scene_.padding || origin + high[a] > cells + scene_.padding;
   }
   if (!beyond) return false;
-  const std::lock_guard lock(mutex_);
-  failure_.note(-1, chunk.body.index, chunk.ids[p],
-                "its domain reaches more than " + std::to_string(scene_.padding) + " cells beyond the domain's edge");
+  note(Cause::domain_beyond_grid, chunk, p);
   return true;
 }
 

@@ -27,7 +27,7 @@ const std::vector<Channel>& ParticleStep<D, T, Components>::scattered_channels(c
 template <int D, class T, class Components>
 template <class Visit>
 void ParticleStep<D, T, Components>::scatter_far(int body, Visit&& visit) {
-  if (!scene_.list || failure_.severity < 2) return;
+  if (!scene_.list || failure_.any()) return;
   Work& work = *work_[0];
   work.far_only = true;
   for (Block<D>& block : particles_[body].blocks)
@@ -60,7 +60,7 @@ double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo&
     });
     scatter_far(body, [&](const Chunk& chunk, Work& work) { scatter_chunk(pass, step, chunk, work, motion, false); });
   }
-  throw_failure();
+  failure_.raise();
   double sum = 0;
   if (energies)
     for (const auto& particles : particles_)

@@ -16,6 +16,7 @@
 #include "backends/cpu/tiles/box_kernels.hpp"
 #include "backends/cpu/tiles/higher_kernels.hpp"
 #include "kernel/tensor.hpp"
+#include "simulation/failure.hpp"
 
 namespace mpm::cpu {
 
@@ -118,17 +119,6 @@ struct alignas(page) Workspace {
   bool far_only = false;         ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
 
   void clear(Channel c, int scalars) { std::memset(tile[c].data(), 0, std::size_t(scalars) * sizeof(T)); }
-};
-
-/// A particle that cannot go on; the lowest body, then index, is reported.
-struct Failure {
-  int severity = 2;  ///< in the order that a pass looks: -1 domain, 0 inverted, 1 position, 2 none
-  int body = 0;
-  std::int32_t particle = std::numeric_limits<std::int32_t>::max();
-  std::string cause;
-  void note(int s, int b, std::int32_t p, const std::string& why) {
-    if (std::tie(s, b, p) < std::tie(severity, body, particle)) *this = {s, b, p, why};
-  }
 };
 
 /// One body with what the plugins need of it.
@@ -263,7 +253,8 @@ class ParticleStep : NamedChannels {
   void for_each_chunk_of(int body, Block<D>& block, Visit&& visit, T* motion = nullptr);
   States material_states(const Chunk& chunk) const;
   States transfer_states(const Chunk& chunk) const;
-  void throw_failure();
+  void note(Cause cause, const Chunk& chunk, int p, int axis = -1,
+            double value = std::numeric_limits<double>::quiet_NaN());
 
   void evaluate_shape(const Chunk& chunk, Work& work, bool gradients);
   void evaluate_lists(const Chunk& chunk, Work& work, bool gradients);
@@ -383,7 +374,7 @@ class ParticleStep : NamedChannels {
   bool measures_drift_ = false;
   bool accounted_ = false, sums_energy_ = false;  ///< see account_for
   double drift_ = 0, last_drift_ = 0;             ///< since the last sort, and of the last move, in cells
-  Failure failure_;
+  FirstFailure failure_;
   std::exception_ptr exception_;
   std::mutex mutex_;
   PhaseClock::Ticks measured_from_ = 0;

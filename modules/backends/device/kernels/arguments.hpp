@@ -122,4 +122,9 @@ struct Arguments {
   bool filtered;                        ///< gather: the filtered velocity replaces the particle's
 };
 
+/// Beyond a wall by more than this share of the domain a particle has left it; a separating wall lets half a cell
+/// through.
+template <class T>
+inline constexpr T position_tolerance = sizeof(T) == 4 ? T(1e-6) : T(1e-9);
+
 }  // namespace mpm::device

@@ -110,11 +110,6 @@ MPM_HD void second_moments(const Team& team, const Arguments<typename Scene::Sca
   });
 }
 
-/// Beyond a wall by more than this share of the domain a particle has left it; a separating wall lets half a cell
-/// through.
-template <class T>
-inline constexpr T position_tolerance = sizeof(T) == 4 ? T(1e-6) : T(1e-9);
-
 /// x += dt advection; periodic axes are wrapped. Frozen particles stay.
 template <class Scene>
 MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {

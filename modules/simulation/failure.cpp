@@ -1,0 +1,173 @@
+#include "simulation/failure.hpp"
+
+#include <array>
+#include <cstdio>
+#include <sstream>
+#include <tuple>
+
+#include "experiment/diagnostics.hpp"
+#include "simulation/boundary.hpp"
+
+namespace mpm {
+namespace {
+
+/// What a pass looks at, in this order.
+enum class Looks { at_domain, at_deformation, at_position, at_speed };
+
+constexpr const char* smaller_step =
+    "a smaller /solver/courant or /solver/time_step, a transfer with more damping, or a material that is stiffer when "
+    "crushed";
+constexpr const char* finite_expressions =
+    "check the expressions of the file (velocities, /body_force, moving walls) at that place and time; where they are "
+    "finite, a smaller /solver/courant or /solver/time_step";
+
+struct Entry {
+  Cause cause;
+  Looks looks;
+  const char *name, *remedy;
+};
+constexpr std::array entries{
+    Entry{Cause::domain_outgrew_stencil, Looks::at_domain, "its domain has grown too long",
+          "/shape/type \"cpdi\", or more particles a cell (particles_per_cell_axis of the body), so that a longer "
+          "stretch fits the stencil; a smaller step changes nothing where the stretch is meant"},
+    Entry{Cause::domain_inside_out, Looks::at_domain, "its domain is turned inside out",
+          "a smaller /solver/courant or /solver/time_step, or a shape that follows the deformation gradient "
+          "(/shape/type \"cpdi\")"},
+    Entry{Cause::domain_beyond_grid, Looks::at_domain, "its domain reaches too far",
+          "a larger /grid/domain, more particles a cell (particles_per_cell_axis of the body), so that a domain is "
+          "shorter, or a shape whose domain does not follow the deformation (\"gimp\"); a smaller step changes nothing "
+          "where the stretch is meant"},
+    Entry{Cause::deformation_not_a_number, Looks::at_deformation, "not a number", finite_expressions},
+    Entry{Cause::inverted, Looks::at_deformation, "inverted", smaller_step},
+    Entry{Cause::position_not_a_number, Looks::at_position, "not a number", finite_expressions},
+    Entry{Cause::reached_axis, Looks::at_position, "reached the axis r = 0",
+          "a smaller /solver/courant or /solver/time_step, or a transfer whose particles move with the velocity of the "
+          "grid (\"apic\"), which is zero across the axis"},
+    Entry{Cause::left_domain, Looks::at_position, "left the domain",
+          "a larger /grid/domain, or a wall that holds the material (/grid/boundaries); where a particle flew off that "
+          "should not have, a smaller /solver/courant or /solver/time_step"},
+    Entry{Cause::speed_not_a_number, Looks::at_speed, "not a number", finite_expressions}};
+
+constexpr auto causes = [] {
+  std::array<Cause, entries.size()> all{};
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = entries[k].cause;
+  return all;
+}();
+static_assert([] {
+  for (std::size_t k = 0; k < causes.size(); ++k)
+    if (static_cast<std::size_t>(causes[k]) != k) return false;
+  return causes.back() == Cause::speed_not_a_number;
+}());
+
+const Entry& entry_of(Cause cause) {
+  return entries[static_cast<std::size_t>(cause)];
+}
+
+std::string axis_name(const Failure& failure) {
+  return std::string(1, "xyz"[failure.axis]);
+}
+
+std::string shape_text(const Experiment& experiment) {
+  return "shape " + in_quotes(experiment.shape.plugin->id());
+}
+
+}  // namespace
+
+std::span<const Cause> all_causes() {
+  return causes;
+}
+
+const char* name_of(Cause cause) {
+  return entry_of(cause).name;
+}
+
+bool comes_before(const Failure& a, const Failure& b) {
+  const auto key = [](const Failure& f) {
+    return std::tuple(entry_of(f.cause).looks, f.body, f.particle, f.axis, f.cause);
+  };
+  return key(a) < key(b);
+}
+
+std::string cause_text(const Failure& failure, const Experiment& experiment) {
+  std::ostringstream text;
+  text << name_of(failure.cause);
+  switch (failure.cause) {
+    case Cause::domain_outgrew_stencil:
+      text << " for the " << experiment.shape.plugin->shape().width << " nodes an axis of " << shape_text(experiment);
+      break;
+    case Cause::domain_inside_out:
+      text << ": the corners that " << shape_text(experiment) << " moves with the grid have passed one another";
+      break;
+    case Cause::domain_beyond_grid:
+      text.str("");
+      text << "its domain reaches more than " << grid_padding_of(experiment.shape.plugin->shape())
+           << " cells beyond the domain's edge";
+      break;
+    case Cause::deformation_not_a_number:
+      text << ": its deformation is no longer finite";
+      break;
+    case Cause::inverted:
+      text << ": its volume ratio J is not positive";
+      break;
+    case Cause::position_not_a_number:
+      text << ": its position is no longer finite";
+      break;
+    case Cause::reached_axis:
+      text << ", where its ring has no circumference";
+      break;
+    case Cause::left_domain:
+      text << " at " << axis_name(failure) << " = " << failure.value << " m";
+      break;
+    case Cause::speed_not_a_number:
+      text << ": its wave or particle speed gives no time step";
+      break;
+  }
+  return text.str();
+}
+
+std::string point_text(std::span<const double> position) {
+  std::string text = "(";
+  for (std::size_t c = 0; c < position.size(); ++c) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%s%.6g", c ? ", " : "", position[c]);
+    text += number;
+  }
+  return text + ") m";
+}
+
+std::string place_text(const Failure& failure, const FailurePlace& place, const Experiment& experiment) {
+  return "step " + std::to_string(place.step) + ", t = " + number_text(place.time) + " s: particle " +
+         std::to_string(failure.particle) + " of body " + in_quotes(experiment.bodies[failure.body].name) + " at " +
+         point_text(place.position);
+}
+
+std::string remedy_for(const Failure& failure) {
+  return entry_of(failure.cause).remedy;
+}
+
+std::vector<ValueRow> values_of(const Failure& failure, const Experiment& experiment) {
+  switch (failure.cause) {
+    case Cause::domain_outgrew_stencil:
+      return {{"nodes an axis", "", static_cast<double>(experiment.shape.plugin->shape().width)}};
+    case Cause::domain_inside_out:
+    case Cause::deformation_not_a_number:
+      return {};
+    case Cause::domain_beyond_grid:
+      return {{"longest reach", "cells", static_cast<double>(grid_padding_of(experiment.shape.plugin->shape()))}};
+    case Cause::inverted:
+      return {{"volume ratio", "", failure.value}};
+    case Cause::position_not_a_number:
+      return {{axis_name(failure), "m", failure.value}};
+    case Cause::reached_axis:
+      return {{"r", "m", failure.value}};
+    case Cause::left_domain:
+      return {{axis_name(failure), "m", failure.value},
+              {"lower end", "m", experiment.grid.lower[failure.axis]},
+              {"upper end", "m", experiment.grid.upper[failure.axis]}};
+    case Cause::speed_not_a_number:
+      return {{"speed", "m/s", failure.value}};
+  }
+  return {};
+}
+
+}  // namespace mpm

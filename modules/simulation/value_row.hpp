@@ -1,0 +1,28 @@
+#pragma once
+// A measured number with its name and unit. Whatever lists numbers (ledgers, metrics, what a failure found) makes rows
+// once; files and figures take their words from them.
+
+#include <string>
+
+namespace mpm {
+
+struct ValueRow {
+  std::string name;
+  std::string unit;  ///< SI, empty for a pure number
+  double value = 0;
+};
+
+/// "total energy (J)": the head of a column.
+inline std::string heading(const ValueRow& row) {
+  return row.unit.empty() ? row.name : row.name + " (" + row.unit + ")";
+}
+
+/// "internal_force": the key of a row in a JSON file, whose numbers are in SI units.
+inline std::string key_of(const ValueRow& row) {
+  std::string key = row.name;
+  for (char& c : key)
+    if (c == ' ') c = '_';
+  return key;
+}
+
+}  // namespace mpm

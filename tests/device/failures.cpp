@@ -1,0 +1,112 @@
+// A particle that cannot go on stops a run with the same record on the reference, the cpu and the host-run device.
+
+#include <optional>
+
+#include "device/device_support.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+struct Stop {
+  Failure failure;
+  std::string text;
+  long step;
+};
+template <class AnyScene>
+std::optional<Stop> stop_of(AnyScene& scene) {
+  try {
+    while (!scene.simulation.finished()) scene.simulation.step();
+  } catch (const RunFailure& stopped) {
+    return Stop{stopped.failure, cause_text(stopped.failure, scene.experiment), scene.simulation.steps()};
+  }
+  return std::nullopt;
+}
+
+/// Runs a scene of doubles on all three; returns what the reference stopped with.
+Failure common_failure(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  std::vector<std::string> chosen = overrides;
+  chosen.insert(chosen.end(), {"/backend=reference", "/precision=double"});
+  Scene reference(text, chosen);
+  chosen[overrides.size()] = "/backend=cpu";
+  Scene cpu(text, chosen);
+  DeviceScene device(text, "double", {}, overrides);
+  const std::optional<Stop> expected = stop_of(reference);
+  REQUIRE(expected);
+  for (const auto& [name, found] : {std::pair{"cpu", stop_of(cpu)}, {"device", stop_of(device)}}) {
+    INFO(name << ", reference: " << expected->text);
+    REQUIRE(found);
+    CHECK(found->text == expected->text);
+    CHECK(found->failure.cause == expected->failure.cause);
+    CHECK(found->failure.body == expected->failure.body);
+    CHECK(found->failure.particle == expected->failure.particle);
+    CHECK(found->failure.axis == expected->failure.axis);
+    const double value = found->failure.value, wanted = expected->failure.value;
+    CHECK(std::isfinite(value) == std::isfinite(wanted));
+    if (std::isfinite(wanted)) CHECK(value == Approx(wanted).epsilon(1e-6));
+    CHECK(found->step == expected->step);
+  }
+  return expected->failure;
+}
+
+/// A box in a domain of 60 x 4 cells of 1 m that moves as it was thrown, without stress.
+std::string thrown(const std::string& shape, const std::string& transfer, const std::string& velocity,
+                   const std::string& more = "") {
+  return R"J({"title": "thrown", "dimension": 2,
+    "grid": {"cell_size": 1, "domain": [[0, 0], [60, 4]], "boundaries": {"all": "free"})J" +
+         more + R"J(},
+    "shape": {"type": ")J" +
+         shape + R"J("}, "transfer": {"type": ")J" + transfer + R"J("},
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e-9, "poisson_ratio": 0, "density": 1}},
+    "bodies": [{"name": "b", "material": "m", "geometry": {"type": "box", "lower": [1, 1], "upper": [3, 3]},
+                "velocity": )J" +
+         velocity + R"J(}], "solver": {"time_step": 0.01, "end_time": 10}, "output": {"ledger": false}})J";
+}
+
+}  // namespace
+
+TEST_CASE("every backend names the axis and the place at which a particle leaves the domain", "[device][failure]") {
+  const Failure below = common_failure(thrown("bspline_quadratic", "pic", R"(["1", "-30"])"));
+  CHECK(below.cause == Cause::left_domain);
+  CHECK(below.axis == 1);
+  CHECK(below.value < 0);
+  // By a corner: the first axis counts.
+  const Failure corner = common_failure(thrown("bspline_quadratic", "pic", R"(["-200", "-200"])"));
+  CHECK(corner.cause == Cause::left_domain);
+  CHECK(corner.axis == 0);
+}
+
+TEST_CASE("every backend names what is not a number", "[device][failure]") {
+  const std::string text = thrown("bspline_quadratic", "pic", R"(["1", "1"])");
+  const Failure failure = common_failure(text, {R"(/body_force=["sqrt(0.035-t)", "0"])"});
+  CHECK(std::string(name_of(failure.cause)) == "not a number");
+}
+
+TEST_CASE("every backend names an inverted particle with its volume ratio", "[device][failure]") {
+  const Failure failure = common_failure(thrown("bspline_quadratic", "apic", R"(["-150*(x-2)", "0"])"));
+  CHECK(failure.cause == Cause::inverted);
+  CHECK(failure.value <= 0);
+}
+
+TEST_CASE("every backend names a particle that reaches the axis", "[device][failure]") {
+    // A particle that moves with the grid is crushed before; one that moves with its own velocity is not.
+    const Failure failure =
+        common_failure(thrown("bspline_quadratic", "asflip", R"(["-90", "0"])", R"(, "symmetry": "axisymmetric")"),
+                       {R"(/transfer={"type": "asflip", "beta_max": 1, "threshold": -1})",
+                        R"(/grid/boundaries={"all": "free", "x_min": "slip"})"});
+    CHECK(failure.cause == Cause::reached_axis);
+    CHECK(failure.axis == 0);
+    CHECK(failure.value <= 0);
+}
+
+TEST_CASE("every backend names a domain that is too long, inside out or too far", "[device][failure]") {
+    CHECK(common_failure(thrown("gimp_contiguous", "tpic", R"(["2*x", "0"])")).cause == Cause::domain_outgrew_stencil);
+    // A shear of 80 in one step: the lower row stays, its domains reach 20 cells to either side.
+  CHECK(common_failure(thrown("cpdi", "tpic", R"(["80*(y-1.25)", "0"])"), {"/solver/time_step=1"}).cause ==
+        Cause::domain_beyond_grid);
+  // Domains of a whole cell and steps of a cell: corners pass one another before any particle's own J does.
+  CHECK(common_failure(thrown("cpdi2", "apic", R"(["30*sin(1.5*y)*0.1*x", "20*sin(1.5*x)"])"),
+                       {"/bodies/0/particles_per_cell_axis=1"})
+            .cause == Cause::domain_inside_out);
+}
