@@ -67,46 +67,46 @@ std::string thrown(const std::string& shape, const std::string& transfer, const 
 }  // namespace
 
 TEST_CASE("every backend names the axis and the place at which a particle leaves the domain", "[device][failure]") {
-  const Failure below = common_failure(thrown("bspline_quadratic", "pic", R"(["1", "-30"])"));
+  const Failure below = common_failure(thrown("bspline_quadratic", "pic", R"J(["1", "-30"])J"));
   CHECK(below.cause == Cause::left_domain);
   CHECK(below.axis == 1);
   CHECK(below.value < 0);
   // By a corner: the first axis counts.
-  const Failure corner = common_failure(thrown("bspline_quadratic", "pic", R"(["-200", "-200"])"));
+  const Failure corner = common_failure(thrown("bspline_quadratic", "pic", R"J(["-200", "-200"])J"));
   CHECK(corner.cause == Cause::left_domain);
   CHECK(corner.axis == 0);
 }
 
 TEST_CASE("every backend names what is not a number", "[device][failure]") {
-  const std::string text = thrown("bspline_quadratic", "pic", R"(["1", "1"])");
-  const Failure failure = common_failure(text, {R"(/body_force=["sqrt(0.035-t)", "0"])"});
+  const std::string text = thrown("bspline_quadratic", "pic", R"J(["1", "1"])J");
+  const Failure failure = common_failure(text, {R"J(/body_force=["sqrt(0.035-t)", "0"])J"});
   CHECK(std::string(name_of(failure.cause)) == "not a number");
 }
 
 TEST_CASE("every backend names an inverted particle with its volume ratio", "[device][failure]") {
-  const Failure failure = common_failure(thrown("bspline_quadratic", "apic", R"(["-150*(x-2)", "0"])"));
+  const Failure failure = common_failure(thrown("bspline_quadratic", "apic", R"J(["-150*(x-2)", "0"])J"));
   CHECK(failure.cause == Cause::inverted);
   CHECK(failure.value <= 0);
 }
 
 TEST_CASE("every backend names a particle that reaches the axis", "[device][failure]") {
-    // A particle that moves with the grid is crushed before; one that moves with its own velocity is not.
-    const Failure failure =
-        common_failure(thrown("bspline_quadratic", "asflip", R"(["-90", "0"])", R"(, "symmetry": "axisymmetric")"),
-                       {R"(/transfer={"type": "asflip", "beta_max": 1, "threshold": -1})",
-                        R"(/grid/boundaries={"all": "free", "x_min": "slip"})"});
-    CHECK(failure.cause == Cause::reached_axis);
-    CHECK(failure.axis == 0);
-    CHECK(failure.value <= 0);
+  // A particle that moves with the grid is crushed before; one that moves with its own velocity is not.
+  const Failure failure =
+      common_failure(thrown("bspline_quadratic", "asflip", R"J(["-90", "0"])J", R"(, "symmetry": "axisymmetric")"),
+                     {R"(/transfer={"type": "asflip", "beta_max": 1, "threshold": -1})",
+                      R"(/grid/boundaries={"all": "free", "x_min": "slip"})"});
+  CHECK(failure.cause == Cause::reached_axis);
+  CHECK(failure.axis == 0);
+  CHECK(failure.value <= 0);
 }
 
 TEST_CASE("every backend names a domain that is too long, inside out or too far", "[device][failure]") {
-    CHECK(common_failure(thrown("gimp_contiguous", "tpic", R"(["2*x", "0"])")).cause == Cause::domain_outgrew_stencil);
-    // A shear of 80 in one step: the lower row stays, its domains reach 20 cells to either side.
-  CHECK(common_failure(thrown("cpdi", "tpic", R"(["80*(y-1.25)", "0"])"), {"/solver/time_step=1"}).cause ==
+  CHECK(common_failure(thrown("gimp_contiguous", "tpic", R"J(["2*x", "0"])J")).cause == Cause::domain_outgrew_stencil);
+  // A shear of 80 in one step: the lower row stays, its domains reach 20 cells to either side.
+  CHECK(common_failure(thrown("cpdi", "tpic", R"J(["80*(y-1.25)", "0"])J"), {"/solver/time_step=1"}).cause ==
         Cause::domain_beyond_grid);
   // Domains of a whole cell and steps of a cell: corners pass one another before any particle's own J does.
-  CHECK(common_failure(thrown("cpdi2", "apic", R"(["30*sin(1.5*y)*0.1*x", "20*sin(1.5*x)"])"),
+  CHECK(common_failure(thrown("cpdi2", "apic", R"J(["30*sin(1.5*y)*0.1*x", "20*sin(1.5*x)"])J"),
                        {"/bodies/0/particles_per_cell_axis=1"})
             .cause == Cause::domain_inside_out);
 }
