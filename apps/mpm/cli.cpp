@@ -12,6 +12,7 @@
 #include "metrics/particle_quantities.hpp"
 #include "mpm/run_figures.hpp"
 #include "output/run_folder.hpp"
+#include "solvers/solver.hpp"
 #include "support/files.hpp"
 
 namespace mpm::app {
@@ -164,6 +165,7 @@ Registry load_registry() {
 
 ReadOptions read_options(const Registry& registry, const RunOptions& options) {
   ReadOptions read;
+  read.solvers = solver_descriptions();
   read.overrides = options.overrides;
   read.backend = options.backend;
   read.exact = exact_solutions();

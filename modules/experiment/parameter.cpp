@@ -436,18 +436,19 @@ bool Fields::read_expression_vector(const ParameterSpec& spec, const Node& node,
 }
 
 const Section* choose_kind(const Node& node, std::span<const Section> kinds, std::string_view what, bool bare,
-                           ReadContext& context) {
+                           ReadContext& context, const Section* standard) {
   const std::string name(what);
   std::vector<std::string> names;
   for (const Section& kind : kinds) names.push_back(kind.name);
   const bool by_string = bare && node.type == Node::Type::string;
   if (!by_string && node.type != Node::Type::object) {
-    context.problem(node, "expected " + std::string(bare ? "a string or " : "") + "an object with \"type\" (" + name +
-                              "), got " + describe_value(node));
+    context.problem(node, "expected " + std::string(bare ? "a string or " : "") + "an object " +
+                              (standard ? "(" : "with \"type\" (") + name + "), got " + describe_value(node));
     return nullptr;
   }
   const Node* type = by_string ? &node : node.find("type");
   const std::string available = names.empty() ? "no " + name + " is available" : "available: " + quoted_list(names);
+  if (!type && standard) return standard;
   if (!type) {
     context.problem(node.at, child_pointer(node.pointer, "type"), "missing key; expected a " + name + "; " + available);
     return nullptr;

@@ -137,15 +137,16 @@ void ExperimentReader::read_header(const Fields& fields) {
 }
 
 void ExperimentReader::read_solver(const Node* node) {
-  const Fields fields(node, solver_section(), context_);
+  if (!node) return;
+  const std::vector<Section> kinds = solver_kinds(options_);
+  const Section* kind = choose_kind(*node, kinds, "solver", false, context_, kinds.empty() ? nullptr : &kinds.front());
+  if (!kind) return;
+  const Fields fields(node, *kind, context_);
   SolverSpecification& solver = experiment_.solver;
-  solver.type = fields.text("type");
-  solver.stress_update = static_cast<StressUpdate>(fields.choice("stress_update"));
-  if (fields.text("time_step").empty()) solver.time_step = fields.number("time_step");
-  solver.courant = fields.number("courant");
+  solver.type = kind->name;
   solver.end_time = fields.number("end_time");
-  solver.passes = static_cast<PassChoice>(fields.choice("passes"));
   solver.max_steps = static_cast<long>(fields.number("max_steps"));
+  options_.solvers[static_cast<std::size_t>(kind - kinds.data())].read(fields, solver);
   resolved_["solver"] = fields.resolved;
 }
 

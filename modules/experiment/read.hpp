@@ -19,11 +19,21 @@ struct ExactDescription {
   std::vector<ParameterSpec> parameters;
 };
 
+/// A way to make steps that experiments may name under solver/type. Its keys include `end_time_parameter()` and
+/// `max_steps_parameter()` (experiment/sections.hpp), which the reader itself reads.
+struct SolverDescription {
+  std::string name, doc;
+  std::vector<ParameterSpec> parameters;
+  /// Puts what its other keys say.
+  void (*read)(const Fields& fields, SolverSpecification& solver) = nullptr;
+};
+
 /// What the rest of the program offers, so that reading can check names without depending on it.
 struct ReadOptions {
   std::vector<std::string> overrides;  ///< applied in order, "/json/pointer=value"
   std::optional<std::string> backend;  ///< as --backend gave it; it wins over the file
   std::vector<ExactDescription> exact;
+  std::vector<SolverDescription> solvers;  ///< the first is meant where a file names none
   std::vector<std::string> backends{"reference", "cpu"};
   std::vector<std::string> figures;            ///< valid figure names; empty: any
   std::vector<std::string> colour_quantities;  ///< valid for output/colour_by; empty: any

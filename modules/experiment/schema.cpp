@@ -126,19 +126,27 @@ Json section_schema(const Section& section) {
   return schema;
 }
 
-/// An object whose "type" decides which keys it has: editors then complete the keys of that type alone.
-Json choice_schema(const std::vector<Section>& kinds) {
+/// An object whose "type" decides which keys it has: editors then complete the keys of that type alone. With
+/// `first_is_standard` an object without "type" is of the first kind.
+Json choice_schema(const std::vector<Section>& kinds, bool first_is_standard = false) {
   if (kinds.empty()) return {{"not", Json::object()}, {"description", "Nothing of this kind is available."}};
   Json names = Json::array(), branches = Json::array();
   for (const Section& kind : kinds) {
     names.push_back(kind.name);
-    branches.push_back({{"if", {{"properties", {{"type", {{"const", kind.name}}}}}, {"required", {"type"}}}},
-                        {"then", section_schema(kind)}});
+    Json condition = {{"properties", {{"type", {{"const", kind.name}}}}}}, keys = section_schema(kind);
+    const bool may_be_left_out = first_is_standard && &kind == &kinds.front();
+    if (may_be_left_out)
+      keys["required"].erase(0);  // "type", which a tagged section requires before its own keys
+    else
+      condition["required"] = {"type"};
+    branches.push_back({{"if", std::move(condition)}, {"then", std::move(keys)}});
   }
-  return {{"type", "object"},
-          {"required", Json::array({"type"})},
-          {"properties", {{"type", {{"enum", std::move(names)}}}}},
-          {"allOf", std::move(branches)}};
+  Json schema = {{"type", "object"}};
+  if (!first_is_standard) schema["required"] = {"type"};
+  schema["properties"]["type"]["enum"] = std::move(names);
+  if (first_is_standard) schema["properties"]["type"]["default"] = kinds.front().name;
+  schema["allOf"] = std::move(branches);
+  return schema;
 }
 
 Json face_condition_schema() {
@@ -170,7 +178,7 @@ Json definitions(const ComponentLookup& components, const ReadOptions& options) 
   all["body"] = section_schema(body_section());
   all["bodies"] = list_of(reference("body"));
   all["bodies"]["minItems"] = 1;
-  all["solver"] = section_schema(solver_section());
+  all["solver"] = choice_schema(solver_kinds(options), true);
   all["output"] = section_schema(output_section(options));
   all["compare"] = section_schema(compare_section());
   all["limits"] = section_schema(limits_section());

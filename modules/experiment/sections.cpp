@@ -204,36 +204,22 @@ Section body_section() {
       }};
 }
 
-Section solver_section() {
-  return {
-      "solver",
-      "a solver",
-      {
-          parameter("type", Type::choice, "", "Time integration.").of({"explicit"}).standard("explicit"),
-          parameter(
-              "stress_update", Type::choice, "",
-              "When a step updates stress: first (USF), last (USL), last from mapped-back velocities (MUSL), or half "
-              "first and half last (averaged, USAVG).")
-              .of({"first", "last", "modified_last", "averaged"})
-              .standard("last"),
-          parameter("time_step", Type::number, "s", "Fixed time step, or \"auto\" by the wave speed.")
-              .above(0)
-              .or_word("auto")
-              .standard("auto"),
-          parameter("courant", Type::number, "", "Automatic step as a fraction of cell size over fastest speed.")
-              .above(0)
-              .to(1)
-              .standard(0.3),
-          parameter("end_time", Type::number, "s", "Time simulated.").above(0).needed(),
-          parameter("passes", Type::choice, "",
-                    "Whether a gather also scatters for the next step: auto fuses them where that is legal.")
-              .of({"auto", "separate", "fused"})
-              .standard("auto"),
-          parameter("max_steps", Type::integer, "", "Stops with an error when reached before end_time.")
-              .from(1)
-              .to(1e15)
-              .standard(1000000000),
-      }};
+std::vector<Section> solver_kinds(const ReadOptions& options) {
+  std::vector<Section> kinds;
+  for (const SolverDescription& solver : options.solvers)
+    kinds.push_back(kind(solver.name, solver.doc, solver.parameters));
+  return kinds;
+}
+
+ParameterSpec end_time_parameter() {
+  return parameter("end_time", Type::number, "s", "Time simulated.").above(0).needed();
+}
+
+ParameterSpec max_steps_parameter() {
+  return parameter("max_steps", Type::integer, "", "Stops with an error when reached before end_time.")
+      .from(1)
+      .to(1e15)
+      .standard(1000000000);
 }
 
 Section output_section(const ReadOptions& options) {

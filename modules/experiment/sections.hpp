@@ -19,7 +19,11 @@ std::vector<Section> face_condition_kinds();
 std::vector<Section> node_condition_kinds();
 std::vector<Section> geometry_kinds();
 Section body_section();
-Section solver_section();
+/// The solvers that the program offers, each with its own keys.
+std::vector<Section> solver_kinds(const ReadOptions& options);
+/// Keys that every solver has, declared here for all of them.
+ParameterSpec end_time_parameter();
+ParameterSpec max_steps_parameter();
 Section output_section(const ReadOptions& options);
 Section compare_section();
 Section limits_section();

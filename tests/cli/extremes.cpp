@@ -33,6 +33,7 @@ bool is_without_axes(const mpm::study::Combination& combination) {
 
 mpm::ReadOptions options(std::vector<std::string> overrides = {}) {
   mpm::ReadOptions options;
+  options.solvers = mpm::solver_descriptions();
   options.exact = mpm::exact_solutions();
   options.overrides = std::move(overrides);
   return options;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "experiment/read.hpp"
+#include "solvers/solver.hpp"
 
 namespace mpm::test {
 
@@ -67,6 +68,7 @@ inline const ComponentLookup& components() {
 /// Reading options as the program would give them.
 inline ReadOptions options(std::vector<std::string> overrides = {}) {
   ReadOptions result;
+  result.solvers = solver_descriptions();
   result.overrides = std::move(overrides);
   result.figures = {"energy", "dissipation", "contact"};
   result.colour_quantities = {"speed", "pressure", "density"};

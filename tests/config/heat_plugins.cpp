@@ -17,6 +17,7 @@ const Registry& plugins() {
 
 Experiment experiment_from(const std::string& text, const std::vector<std::string>& overrides = {}) {
   ReadOptions options;
+  options.solvers = solver_descriptions();
   options.overrides = overrides;
   return read_experiment_text(text, "test.json", ComponentLookup(plugins()), options);
 }

@@ -23,6 +23,7 @@ inline const Registry& plugins() {
 
 inline Experiment experiment_from(const std::string& text, const std::vector<std::string>& overrides = {}) {
   ReadOptions options;
+  options.solvers = solver_descriptions();
   options.overrides = overrides;
   options.exact = exact_solutions();
   return read_experiment_text(text, "test.json", ComponentLookup(plugins()), options);

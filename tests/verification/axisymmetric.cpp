@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "experiment/diagnostics.hpp"
+#include "solvers/solver.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 
@@ -226,6 +227,7 @@ TEST_CASE("an axisymmetric impact is that of 3-D", "[axisymmetric]") {
 
 TEST_CASE("a Taylor bar of copper keeps its length and foot", "[axisymmetric][taylor_bar]") {
   ReadOptions options;
+  options.solvers = solver_descriptions();
   options.exact = exact_solutions();
   const Experiment experiment =
       read_experiment(MPM_SOURCE_DIR "/experiments/gallery/taylor_bar.json", ComponentLookup(plugins()), options);

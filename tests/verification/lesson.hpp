@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "solvers/solver.hpp"
 #include "support/scene.hpp"
 
 namespace mpm::test {
@@ -35,6 +36,7 @@ struct Lesson {
  private:
   static Experiment read(const std::string& name, const std::vector<std::string>& overrides) {
     ReadOptions options;
+    options.solvers = solver_descriptions();
     options.overrides = overrides;
     options.exact = exact_solutions();
     return read_experiment(std::string(MPM_SOURCE_DIR "/experiments/lessons/") + name + ".json",

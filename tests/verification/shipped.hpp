@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "solvers/solver.hpp"
 #include "support/scene.hpp"
 
 namespace mpm::test {
@@ -13,6 +14,7 @@ namespace mpm::test {
 /// The shipped experiment at `path` below experiments/.
 inline Experiment shipped(const std::string& path, const std::vector<std::string>& overrides = {}) {
   ReadOptions options;
+  options.solvers = solver_descriptions();
   options.overrides = overrides;
   options.exact = exact_solutions();
   return read_experiment(std::string(MPM_SOURCE_DIR "/experiments/") + path, ComponentLookup(plugins()), options);

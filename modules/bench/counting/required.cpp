@@ -9,6 +9,7 @@
 #include "bench/counting/boundary.hpp"
 #include "bench/counting/single_step.hpp"
 #include "experiment/read.hpp"
+#include "solvers/solver.hpp"
 
 namespace mpm::counting {
 namespace {
@@ -34,6 +35,7 @@ class Counted {
 
 Experiment read(int dimension, const RequiredScene& scene, const ComponentLookup& lookup) {
   ReadOptions options;
+  options.solvers = solver_descriptions();
   options.overrides = scene.overrides;
   return read_experiment_text(required_base_scene(dimension), "required.json", lookup, options);
 }

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "experiment/sections.hpp"
 #include "plugin/extension_of.hpp"
 
 namespace mpm {
@@ -34,6 +35,38 @@ StepLimit thermal_limit(const Experiment& experiment) {
 }
 
 }  // namespace
+
+std::vector<ParameterSpec> explicit_parameters() {
+  using Type = ParameterType;
+  return {
+      parameter("stress_update", Type::choice, "",
+                "When a step updates stress: first (USF), last (USL), last from mapped-back velocities (MUSL), or half "
+                "first and half last (averaged, USAVG).")
+          .of({"first", "last", "modified_last", "averaged"})
+          .standard("last"),
+      parameter("time_step", Type::number, "s", "Fixed time step, or \"auto\" by the wave speed.")
+          .above(0)
+          .or_word("auto")
+          .standard("auto"),
+      parameter("courant", Type::number, "", "Automatic step as a fraction of cell size over fastest speed.")
+          .above(0)
+          .to(1)
+          .standard(0.3),
+      end_time_parameter(),
+      parameter("passes", Type::choice, "",
+                "Whether a gather also scatters for the next step: auto fuses them where that is legal.")
+          .of({"auto", "separate", "fused"})
+          .standard("auto"),
+      max_steps_parameter(),
+  };
+}
+
+void read_explicit(const Fields& fields, SolverSpecification& solver) {
+  solver.stress_update = static_cast<StressUpdate>(fields.choice("stress_update"));
+  if (fields.text("time_step").empty()) solver.time_step = fields.number("time_step");
+  solver.courant = fields.number("courant");
+  solver.passes = static_cast<PassChoice>(fields.choice("passes"));
+}
 
 void explicit_step(StepBuilder& step) {
   const Experiment& scene = step.experiment();
