@@ -36,7 +36,7 @@ struct Outcome {
   Status status = Status::not_run;
   std::string reason;
   bool reused = false;  ///< taken from an earlier call, the experiment and the programs being the same
-  std::string cause;    ///< in few words, where a particle stopped the run: name_of(Cause), simulation/failure.hpp
+  std::string cause{};  ///< in few words, where a particle stopped the run: name_of(Cause), simulation/failure.hpp
 };
 
 /// One run of a bisection.

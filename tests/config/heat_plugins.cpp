@@ -106,6 +106,7 @@ TEST_CASE("nothing is coloured by a temperature that no material has", "[config]
     "solver": {"end_time": 1}, "output": {"colour_by": "speed"}})J";
   for (const std::string quantity : {"temperature", "melted_fraction"}) {
     ReadOptions options;
+    options.solvers = solver_descriptions();
     options.colour_quantities = {"speed", "temperature", "melted_fraction"};
     options.overrides = {"/output/colour_by=" + quantity};
     try {

@@ -51,8 +51,8 @@ TEST_CASE("a solver without a type is the explicit one, and resolves as ever", "
 }
 
 TEST_CASE("a solver that does not exist is refused by name, with those that do", "[config]") {
-  CHECK(refusal(R"("solver": {"type": "implicit", "end_time": 1})") ==
-        R"(FILE:32:22: /solver/type: unknown solver "implicit"; available: "explicit")");
+  CHECK(refusal(R"("solver": {"type": "newmark", "end_time": 1})") ==
+        R"(FILE:32:22: /solver/type: unknown solver "newmark"; available: "explicit")");
   CHECK(refusal(R"("solver": {"type": "swepping", "end_time": 1})", with_sweeping()) ==
         R"(FILE:32:22: /solver/type: unknown solver "swepping"; did you mean "sweeping"? )"
         R"((available: "explicit", "sweeping"))");
