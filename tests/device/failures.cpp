@@ -103,10 +103,12 @@ TEST_CASE("every backend names a particle that reaches the axis", "[device][fail
 TEST_CASE("every backend names a domain that is too long, inside out or too far", "[device][failure]") {
   CHECK(common_failure(thrown("gimp_contiguous", "tpic", R"J(["2*x", "0"])J")).cause == Cause::domain_outgrew_stencil);
   // A shear of 80 in one step: the lower row stays, its domains reach 20 cells to either side.
-  CHECK(common_failure(thrown("cpdi", "tpic", R"J(["80*(y-1.25)", "0"])J"), {"/solver/time_step=1"}).cause ==
-        Cause::domain_beyond_grid);
+  CHECK(common_failure(thrown("cpdi", "tpic", R"J(["80*(y-1.25)", "0"])J"),
+                       {"/solver/time_step=1", "/bodies/0/geometry/upper=[2, 2]"})
+            .cause == Cause::domain_beyond_grid);
   // Domains of a whole cell and steps of a cell: corners pass one another before any particle's own J does.
   CHECK(common_failure(thrown("cpdi2", "apic", R"J(["30*sin(1.5*y)*0.1*x", "20*sin(1.5*x)"])J"),
-                       {"/bodies/0/particles_per_cell_axis=1"})
+                       {"/bodies/0/particles_per_cell_axis=1", "/grid/domain=[[0, 0], [20, 20]]",
+                        "/bodies/0/geometry/lower=[7, 7.5]", "/bodies/0/geometry/upper=[12, 12.5]"})
             .cause == Cause::domain_inside_out);
 }
