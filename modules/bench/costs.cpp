@@ -167,19 +167,19 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
   Wanted w;
   w.D = D;
   w.traits = experiment.transfer.plugin->transfer().traits;
-  w.separate_force = plan.separate_force;
-  w.contact = plan.contact;
+  w.separate_force = plan.node_field("force");
+  w.contact = plan.resolves_contact();
   w.moment_is_gradient = shape_table.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
   w.moment_of_particle = shape_table.second_moment_kind == MPM_MOMENT_PER_PARTICLE;
   const double half_size = 0.5 / experiment.bodies[0].particles_per_cell_axis;
   const auto shape = shape_cost<D, T>(experiment.shape, half_size, w);
   const auto transfer = cost_of<D, T>(experiment.transfer);
-  const auto filter = plan.filter ? cost_of<D, T>(*experiment.filter) : mpm_cost{};
+  const auto filter = plan.filters() ? cost_of<D, T>(*experiment.filter) : mpm_cost{};
   const auto material = mean_material_cost<D, T>(experiment, run);
-  if (!shape || !transfer || !filter || !material || (plan.ledger && !run.without_ledger)) return std::nullopt;
+  if (!shape || !transfer || !filter || !material || (plan.has_ledger() && !run.without_ledger)) return std::nullopt;
   const auto stencil = [&](bool gradient) { return gradient ? shape->with_gradient : shape->plain; };
 
-  const double loops = !plan.filter ? 0
+  const double loops = !plan.filters() ? 0
                        : run.filter_passes
                            ? *run.filter_passes
                            : experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data());
@@ -201,7 +201,7 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
                  extra.strains * gather_cost(w, *shape, strains_by_affine, !strains_by_affine) +
                  loops * gather_cost(w, *shape, gathers_affine, gathers_gradient);
   if (w.has(MPM_GATHERS_INCREMENT)) flops.gather += gather_cost(w, *shape, false, false);
-  if (plan.particle_domain) flops.gather += extra.advances * D * D * (2 * D + 2);
+  if (plan.particle_field(0, "domain")) flops.gather += extra.advances * D * D * (2 * D + 2);
   if (plan.sample_points > 0) flops.gather += corner_cost<D, T>(half_size);
   const PolynomialCost polynomials = polynomial_cost<D, T>(shape->width, plan.basis_order);
   flops.gather += (1 + loops) * polynomials.gather;
@@ -210,7 +210,8 @@ std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, co
   const double apart = scatter_cost(w, *shape, scatters_affine, false, false) +
                        scatter_cost(w, *shape, w.stress_by_affine(), !w.stress_by_affine(), true);
   const double merged = scatter_cost(w, *shape, scatters_affine || w.stress_by_affine(), !w.stress_by_affine(), true);
-  const double share = plan.force_for_ledger ? 1.0 / plan.ledger_every : plan.separate_force ? 1 : 0;  // share of steps
+  const Field* force = plan.node_field("force");
+  const double share = !force ? 0 : force->for_ledger ? 1.0 / plan.ledger_every : 1;  // of the steps
   flops.scatter += merged + share * (apart - merged);
   if (w.contact)
     flops.scatter += scatter_cost(w, *shape, false, true, false) + scatter_cost(w, *shape, true, false, false);
@@ -265,7 +266,7 @@ RunFacts facts_of(const Simulation& simulation) {
   for (std::size_t b = 0; b < simulation.experiment().bodies.size(); ++b)
     facts.body_shares.push_back(static_cast<double>(simulation.particle_count(static_cast<int>(b))) /
                                 static_cast<double>(simulation.particle_count()));
-  if (simulation.plan().filter && simulation.steps() > 0)
+  if (simulation.plan().filters() && simulation.steps() > 0)
     facts.filter_passes = static_cast<double>(simulation.filter_passes()) / static_cast<double>(simulation.steps());
   return facts;
 }
@@ -282,7 +283,7 @@ namespace {
 /// Scalars of velocity and the transfer's state, where these go from gather to scatter without being stored.
 double passed_scalars(const Experiment& experiment, const Plan& plan) {
   const Plugin& transfer = *experiment.transfer.plugin;
-  if (!plan.fused || !(transfer.transfer().traits & MPM_REPLACES_MOTION)) return 0;
+  if (!plan.fused() || !(transfer.transfer().traits & MPM_REPLACES_MOTION)) return 0;
   double scalars = experiment.dimension;
   for (const mpm_state& field : transfer.state())
     scalars += state_components(static_cast<mpm_state_shape>(field.shape), experiment.dimension);
@@ -296,8 +297,8 @@ double bytes_per_particle(const Experiment& experiment, const Plan& plan, double
   // The identity is read by sorts alone.
   const double state = static_cast<double>(plan.bytes_per_particle(0)) - 4 - scalar * passed_scalars(experiment, plan);
   const double loops =
-      plan.filter ? experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data()) : 0;
-  const double visits = 2 + (plan.fused ? 0 : 1);  // read and written, and read again where the scatter is apart
+      plan.filters() ? experiment.filter->plugin->filter().iterations(experiment.filter->parameters.data()) : 0;
+  const double visits = 2 + (plan.fused() ? 0 : 1);  // read and written, and read again where the scatter is apart
   return visits * state + loops * experiment.dimension * scalar +
          2 * static_cast<double>(plan.bytes_per_node()) * nodes_per_particle;
 }

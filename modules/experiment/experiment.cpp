@@ -1,5 +1,6 @@
 #include "experiment/experiment.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace mpm {
@@ -12,6 +13,19 @@ double Component::parameter(std::string_view name) const {
   }
   throw std::out_of_range((plugin ? std::string(plugin->id()) : "no plugin") + " has no parameter " +
                           std::string(name));
+}
+
+bool Experiment::any_face(ConditionType type) const {
+  for (int axis = 0; axis < dimension; ++axis)
+    for (const FaceCondition& face : faces[axis])
+      if (face.type == type) return true;
+  return false;
+}
+
+bool Experiment::separates() const {
+  return any_face(ConditionType::separate) || std::any_of(boxes.begin(), boxes.end(), [](const BoxCondition& box) {
+           return box.type == ConditionType::separate;
+         });
 }
 
 std::string Experiment::where(std::string_view pointer) const {

@@ -215,6 +215,10 @@ struct Experiment {
   /// Whether particles carry a temperature: then every body's material conducts, and every body has one.
   bool has_temperature() const;
   bool axisymmetric() const { return grid.symmetry == Symmetry::axisymmetric; }
+  /// Whether a wall of the domain is of this type.
+  bool any_face(ConditionType type) const;
+  /// Whether material may leave a wall or a box.
+  bool separates() const;
 
   /// The place of a JSON pointer's value, "file:line:column", for messages that arise after reading.
   std::string where(std::string_view pointer) const;

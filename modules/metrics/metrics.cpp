@@ -157,27 +157,27 @@ void Metrics::add_errors(int body, const BodyState& state, Totals& totals) const
 }
 
 double Metrics::ledger_residual(const Totals& now) const {
-  if (!simulation_.plan().ledger) return 0;
+  if (!simulation_.plan().has_ledger()) return 0;
   return now.total_energy() - initial_.total_energy() - simulation_.ledger().explained();
 }
 
 double Metrics::heat_residual(const Totals& now) const {
-  if (!simulation_.plan().heat_ledger) return 0;
+  if (!simulation_.plan().has_heat_ledger()) return 0;
   const double gained = now.heat_content - initial_.heat_content + (now.latent_heat - initial_.latent_heat);
   return gained - simulation_.backend().heat_ledger().sum();
 }
 
 std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
   const Plan& plan = simulation_.plan();
-  if (!plan.ledger) return {};
+  if (!plan.has_ledger()) return {};
   std::vector<ValueRow> rows = rows_of(simulation_.ledger());
-  if (!plan.filter) std::erase_if(rows, [](const ValueRow& row) { return row.name == "filter"; });
+  if (!plan.filters()) std::erase_if(rows, [](const ValueRow& row) { return row.name == "filter"; });
   rows.push_back({"residual", "J", ledger_residual(now)});
   return rows;
 }
 
 std::vector<ValueRow> Metrics::heat_ledger_rows(const Totals& now) const {
-  if (!simulation_.plan().heat_ledger) return {};
+  if (!simulation_.plan().has_heat_ledger()) return {};
   std::vector<ValueRow> rows = rows_of(simulation_.backend().heat_ledger());
   rows.push_back({"residual", "J", heat_residual(now)});
   return rows;
@@ -216,7 +216,7 @@ std::vector<ValueRow> Metrics::rows(const Totals& t) const {
   add("smallest volume ratio", "", t.smallest_volume_ratio);
   add("largest volume ratio", "", t.largest_volume_ratio);
   add("largest speed", "m/s", t.largest_speed);
-  if (plan.contact) {
+  if (plan.resolves_contact()) {
     const ContactRecord& contact = simulation_.backend().contact_record();
     add_components("contact force", force, contact.force, first, experiment.dimension);
     add("contact nodes", "", static_cast<double>(contact.nodes));
@@ -224,7 +224,7 @@ std::vector<ValueRow> Metrics::rows(const Totals& t) const {
     add("slipping nodes", "", static_cast<double>(contact.slipping));
     add("largest penetration", "m", contact.largest_penetration);
   }
-  if (plan.filter) {
+  if (plan.filters()) {
     const FilterRecord& filter = simulation_.backend().filter_record();
     add("filter increment norm", norm, filter.last_norm);
     add("filter iterations", "", static_cast<double>(filter.iterations));

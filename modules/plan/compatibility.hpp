@@ -32,6 +32,9 @@ struct Refusal {
 /// Nothing when the mix runs on every backend.
 std::optional<Refusal> refusal_of(const Mix& mix);
 
+/// Throws InputError at the place of a JSON pointer's value.
+[[noreturn]] void refuse(const Experiment& experiment, const std::string& pointer, const std::string& message);
+
 /// Every mix of the registry's plugins: shape x transfer x (no filter, each filter at every step, each filter
 /// periodically) x (no contact, each law) x stress update. Materials mix with everything. A transfer with polynomials
 /// beyond affine comes once for every order that its choices ask for.

@@ -65,7 +65,9 @@ void join_visits(Step& step) {
   step.children = std::move(joined);
 }
 
-bool forces_follow_division(const Step& step) {
+bool Plan::divides_with_forces() const {
+  const Field* force = node_field("force");
+  if (filters() || (force && !force->for_ledger)) return false;
   const auto divides = std::find_if(step.children.begin(), step.children.end(),
                                     [](const Step& child) { return is_pass(child, Act::divide); });
   return step.children.end() - divides > 1 && is_pass(divides[1], Act::accelerate);

@@ -1,5 +1,7 @@
 // What each operator reads, writes and adds to, said once; and the check that every step passes.
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 
@@ -13,17 +15,25 @@ class Uses {
  public:
   Uses(Operator& operation, const Plan& plan) : operation_(operation), plan_(plan) {}
 
-  Uses& reads(std::initializer_list<const char*> names) { return take(operation_.reads, names); }
-  Uses& writes(std::initializer_list<const char*> names) { return take(operation_.writes, names); }
-  Uses& adds(std::initializer_list<const char*> names) { return take(operation_.adds, names); }
+  Uses& reads(const FieldNames& names) { return take(operation_.reads, names); }
+  Uses& writes(const FieldNames& names) { return take(operation_.writes, names); }
+  Uses& adds(const FieldNames& names) { return take(operation_.adds, names); }
 
  private:
-  Uses& take(FieldNames& list, std::initializer_list<const char*> names) {
-    for (const std::string name : names)
-      if (held(name)) list.push_back(name);
+  /// "particles/transfer", "particles/material" and "particles/temperature_state" stand for all state of the plugin's
+  /// table, and for the transfer's state for the temperature, which is named field by field.
+  Uses& take(FieldNames& list, const FieldNames& names) {
+    for (const std::string& name : names) {
+      if (name == "particles/temperature_state") {
+        for (const Field& field : plan_.fields)
+          if (field.of_particles_of(0) && field.id.rfind(temperature_state, 0) == 0)
+            list.push_back("particles/" + field.id);
+      } else if (held(name)) {
+        list.push_back(name);
+      }
+    }
     return *this;
   }
-  /// "particles/transfer" and "particles/material" stand for all state of the plugin's table.
   bool held(const std::string& name) const {
     const std::size_t slash = name.find('/');
     const std::string owner = name.substr(0, slash), id = name.substr(slash + 1);
@@ -47,155 +57,161 @@ class Uses {
 // What walls that heat comes through look at.
 #define MPM_HEATED_WALL "nodes/heated_volume", "nodes/volume_conductivity", "nodes/capacity_position"
 
-/// The transfer's state for the temperature, field by field.
-void use_temperature_state(FieldNames& names, const Plan& plan) {
-  for (const Field& field : plan.fields)
-    if (field.of_particles_of(0) && field.id.rfind(temperature_state, 0) == 0) names.push_back("particles/" + field.id);
-}
+// A velocity that conditions and contact have changed, and the one that a filter keeps aside.
+#define MPM_CONSTRAINED "nodes/velocity", "nodes/velocity_of_constraints"
+#define MPM_KEPT "nodes/unfiltered_velocity", "nodes/unfiltered_velocity_of_constraints"
 
-void describe(Operator& operation, const Pass& pass, const Plan& plan, const Experiment& experiment) {
-  operation.reads.clear(), operation.writes.clear(), operation.adds.clear();
-  operation.where = Where::nodes;
-  Uses uses(operation, plan);
-  switch (operation.act) {
-    case Act::estimate_time_step:
-      operation.where = Where::particles;
-      uses.reads({"particles/velocity", "particles/material"}).writes({"step/dt"});
-      break;
-    case Act::sort:
-      operation.where = Where::particles;
-      uses.reads({MPM_STENCIL}).writes({"step/order"});
-      break;
-    case Act::sort_ahead:
-      operation.where = Where::particles;
-      uses.reads({MPM_STENCIL, "nodes/velocity"}).writes({"step/order"});
-      break;
+/// What an operator says of itself: where it runs, and the values that it uses of those that a scene has.
+struct Declaration {
+  Act act;
+  Where where;
+  FieldNames reads, writes, adds;
+};
+
+const Declaration declarations[] = {
+    {Act::estimate_time_step, Where::particles, {"particles/velocity", "particles/material"}, {"step/dt"}, {}},
+    {Act::sort, Where::particles, {MPM_STENCIL}, {"step/order"}, {}},
+    {Act::sort_ahead, Where::particles, {MPM_STENCIL, "nodes/velocity"}, {"step/order"}, {}},
+    {Act::clear, Where::nodes, {}, {}, {}},
+    {Act::scatter_momentum,
+     Where::particles,
+     {MPM_STENCIL, "particles/velocity", "particles/transfer", "particles/circumference"},
+     {},
+     {}},
+    {Act::scatter_force,
+     Where::particles,
+     {MPM_STENCIL, "particles/material", "particles/circumference"},
+     {},
+     {"nodes/body_force"}},
+    {Act::scatter_contact,
+     Where::particles,
+     {MPM_STENCIL, "particles/material", "particles/circumference"},
+     {},
+     {MPM_PAIRS}},
+    {Act::scatter_heat,
+     Where::particles,
+     {MPM_STENCIL, "particles/temperature", "particles/melted_fraction", "particles/circumference",
+      "particles/temperature_state"},
+     {},
+     {"nodes/heat", "nodes/heat_capacity", MPM_HEATED_WALL}},
+    {Act::divide,
+     Where::nodes,
+     {"nodes/momentum", "nodes/mass", "nodes/next_momentum", "nodes/next_mass", MPM_PAIRS},
+     {MPM_CONSTRAINED},
+     {}},
+    {Act::accelerate,
+     Where::nodes,
+     {MPM_CONSTRAINED, "nodes/mass", "nodes/force", "nodes/body_force", "nodes/weight", "nodes/velocity_before",
+      MPM_PAIRS},
+     {MPM_CONSTRAINED, "nodes/velocity_before"},
+     {}},
+    {Act::divide_heat,
+     Where::nodes,
+     {"nodes/heat", "nodes/heat_capacity", MPM_HEATED_WALL},
+     {"nodes/temperature", "nodes/temperature_before"},
+     {}},
+    {Act::conduct,
+     Where::particles,
+     {MPM_STENCIL, "nodes/temperature", "particles/material", "particles/melted_fraction", "particles/circumference"},
+     {},
+     {"nodes/heat_rate"}},
+    {Act::heat,
+     Where::nodes,
+     {"nodes/temperature", "nodes/temperature_before", "nodes/heat_capacity", "nodes/heat_rate", MPM_HEATED_WALL,
+      "nodes/mass"},
+     {"nodes/temperature"},
+     {}},
+    {Act::begin_filter, Where::nodes, {"nodes/velocity"}, {"nodes/increment"}, {}},
+    {Act::keep_velocity, Where::nodes, {MPM_CONSTRAINED}, {MPM_KEPT}, {}},
+    {Act::project, Where::particles, {MPM_STENCIL, "nodes/increment", "nodes/mass"}, {}, {"nodes/projection"}},
+    {Act::update_filter,
+     Where::nodes,
+     {"nodes/projection", "nodes/increment", MPM_CONSTRAINED, MPM_PAIRS},
+     {MPM_CONSTRAINED, "nodes/trial_velocity", "nodes/increment"},
+     {}},
+    {Act::end_filter, Where::nodes, {MPM_CONSTRAINED, "nodes/increment", MPM_PAIRS}, {MPM_CONSTRAINED}, {}},
+    {Act::restore_velocity, Where::nodes, {MPM_KEPT}, {MPM_CONSTRAINED}, {}},
+    {Act::keep_correction, Where::nodes, {MPM_CONSTRAINED}, {MPM_KEPT}, {}},
+    {Act::add_correction, Where::nodes, {MPM_CONSTRAINED, MPM_KEPT, MPM_PAIRS}, {MPM_CONSTRAINED}, {}},
+    {Act::gather,
+     Where::particles,
+     {MPM_STENCIL, "particles/velocity", "particles/transfer", "nodes/velocity"},
+     {"particles/velocity", "particles/transfer", "particles/advection_velocity", "particles/moved_corners"},
+     {}},
+    {Act::gather_heat,
+     Where::particles,
+     {MPM_STENCIL, "particles/temperature", "nodes/temperature"},
+     {"particles/temperature", "particles/temperature_state"},
+     {}},
+    {Act::strain, Where::particles, {MPM_STENCIL, "nodes/velocity", "particles/material"}, {"particles/material"}, {}},
+    {Act::move,
+     Where::particles,
+     {"particles/position", "particles/advection_velocity", "particles/moved_corners", "particles/strained_domain"},
+     {"particles/position", "particles/corners", "particles/domain"},
+     {}},
+    {Act::change_phase,
+     Where::particles,
+     {"particles/temperature", "particles/melted_fraction"},
+     {"particles/temperature", "particles/melted_fraction"},
+     {}},
+};
+static_assert(std::size(declarations) == act_count);
+
+/// What depends on the pass that an operator stands in, and on the scene.
+void add_what_depends(Uses& uses, Act act, const Pass& pass, const Plan& plan, const Experiment& experiment) {
+  const bool gathers_increment = experiment.transfer.plugin->transfer().traits & MPM_GATHERS_INCREMENT;
+  switch (act) {
     case Act::clear:
       for (const Field& field : plan.fields)
         if (field.owner == Owner::node && field.cleared && !(pass.fused() && field.id == "momentum"))
-          operation.writes.push_back("nodes/" + field.id);
+          uses.writes({"nodes/" + field.id});
       break;
     case Act::scatter_momentum:
-      operation.where = Where::particles;
-      uses.reads({MPM_STENCIL, "particles/velocity", "particles/transfer", "particles/circumference"});
       if (pass.remap()) uses.writes({"nodes/momentum", "nodes/mass"});
       pass.fused() ? uses.adds({"nodes/next_momentum", "nodes/next_mass"})
                    : uses.adds({"nodes/momentum", "nodes/mass"});
       if (!pass.remap()) uses.adds({"nodes/weight"});
       break;
     case Act::scatter_force:
-      operation.where = Where::particles;
-      uses.reads({MPM_STENCIL, "particles/material", "particles/circumference"});
       if (experiment.body_force) uses.reads({"particles/initial_position"});
       plan.node_field("force") ? uses.adds({"nodes/force"})
       : pass.fused()           ? uses.adds({"nodes/next_momentum"})
                                : uses.adds({"nodes/momentum"});
-      uses.adds({"nodes/body_force"});
-      break;
-    case Act::scatter_contact:
-      operation.where = Where::particles;
-      uses.reads({MPM_STENCIL, "particles/material", "particles/circumference"}).adds({MPM_PAIRS});
       break;
     case Act::divide:
-      uses.reads({"nodes/momentum", "nodes/mass", "nodes/next_momentum", "nodes/next_mass", MPM_PAIRS})
-          .writes({"nodes/velocity", "nodes/velocity_of_constraints"});
       if (!pass.remap()) uses.writes({"nodes/velocity_before"});
       break;
     case Act::scatter_heat:
-      operation.where = Where::particles;
-      uses.reads({MPM_STENCIL, "particles/temperature", "particles/melted_fraction", "particles/circumference"})
-          .adds({"nodes/heat", "nodes/heat_capacity", MPM_HEATED_WALL});
       if (plan.node_field("heated_volume")) uses.reads({"particles/material"});
-      use_temperature_state(operation.reads, plan);
-      break;
-    case Act::divide_heat:
-      uses.reads({"nodes/heat", "nodes/heat_capacity", MPM_HEATED_WALL})
-          .writes({"nodes/temperature", "nodes/temperature_before"});
-      break;
-    case Act::conduct:
-      operation.where = Where::particles;
-      uses.reads({MPM_STENCIL, "nodes/temperature", "particles/material", "particles/melted_fraction",
-                  "particles/circumference"})
-          .adds({"nodes/heat_rate"});
-      break;
-    case Act::heat:
-      uses.reads({"nodes/temperature", "nodes/temperature_before", "nodes/heat_capacity", "nodes/heat_rate",
-                  MPM_HEATED_WALL, "nodes/mass"})
-          .writes({"nodes/temperature"});
-      break;
-    case Act::gather_heat:
-      operation.where = Where::particles;
-      uses.reads({MPM_STENCIL, "particles/temperature", "nodes/temperature"});
-      if (experiment.transfer.plugin->transfer().traits & MPM_GATHERS_INCREMENT)
-        uses.reads({"nodes/temperature_before"});
-      uses.writes({"particles/temperature"});
-      use_temperature_state(operation.writes, plan);
-      break;
-    case Act::change_phase:
-      operation.where = Where::particles;
-      uses.reads({"particles/temperature", "particles/melted_fraction"})
-          .writes({"particles/temperature", "particles/melted_fraction"});
-      break;
-    case Act::accelerate:
-      uses.reads({"nodes/velocity", "nodes/mass", "nodes/force", "nodes/body_force", "nodes/weight",
-                  "nodes/velocity_before", "nodes/velocity_of_constraints", MPM_PAIRS})
-          .writes({"nodes/velocity", "nodes/velocity_before", "nodes/velocity_of_constraints"});
-      break;
-    case Act::begin_filter:
-      uses.reads({"nodes/velocity"}).writes({"nodes/increment"});
-      break;
-    case Act::keep_velocity:
-      uses.reads({"nodes/velocity", "nodes/velocity_of_constraints"})
-          .writes({"nodes/unfiltered_velocity", "nodes/unfiltered_velocity_of_constraints"});
-      break;
-    case Act::project:
-      operation.where = Where::particles;
-      uses.reads({MPM_STENCIL, "nodes/increment", "nodes/mass"}).adds({"nodes/projection"});
-      break;
-    case Act::update_filter:
-      uses.reads({"nodes/projection", "nodes/increment", "nodes/velocity", "nodes/velocity_of_constraints", MPM_PAIRS})
-          .writes({"nodes/velocity", "nodes/trial_velocity", "nodes/increment", "nodes/velocity_of_constraints"});
-      break;
-    case Act::end_filter:
-      uses.reads({"nodes/velocity", "nodes/increment", "nodes/velocity_of_constraints", MPM_PAIRS})
-          .writes({"nodes/velocity", "nodes/velocity_of_constraints"});
-      break;
-    case Act::restore_velocity:
-      uses.reads({"nodes/unfiltered_velocity", "nodes/unfiltered_velocity_of_constraints"})
-          .writes({"nodes/velocity", "nodes/velocity_of_constraints"});
-      break;
-    case Act::keep_correction:
-      uses.reads({"nodes/velocity", "nodes/velocity_of_constraints"})
-          .writes({"nodes/unfiltered_velocity", "nodes/unfiltered_velocity_of_constraints"});
-      break;
-    case Act::add_correction:
-      uses.reads({"nodes/velocity", "nodes/unfiltered_velocity", "nodes/velocity_of_constraints",
-                  "nodes/unfiltered_velocity_of_constraints", MPM_PAIRS})
-          .writes({"nodes/velocity", "nodes/velocity_of_constraints"});
       break;
     case Act::gather:
-      operation.where = Where::particles;
-      uses.reads({MPM_STENCIL, "particles/velocity", "particles/transfer", "nodes/velocity"});
-      if (experiment.transfer.plugin->transfer().traits & MPM_GATHERS_INCREMENT) uses.reads({"nodes/velocity_before"});
-      uses.writes(
-          {"particles/velocity", "particles/transfer", "particles/advection_velocity", "particles/moved_corners"});
+      if (gathers_increment) uses.reads({"nodes/velocity_before"});
+      break;
+    case Act::gather_heat:
+      if (gathers_increment) uses.reads({"nodes/temperature_before"});
       break;
     case Act::strain:
-      operation.where = Where::particles;
-      uses.reads({MPM_STENCIL, "nodes/velocity", "particles/material"}).writes({"particles/material"});
-      plan.particle_field(0, "strained_domain") ? uses.writes({"particles/strained_domain"})
-                                                : uses.writes({"particles/domain"});
+      uses.writes({plan.particle_field(0, "strained_domain") ? "particles/strained_domain" : "particles/domain"});
       break;
-    case Act::move:
-      operation.where = Where::particles;
-      uses.reads({"particles/position", "particles/advection_velocity", "particles/moved_corners",
-                  "particles/strained_domain"})
-          .writes({"particles/position", "particles/corners", "particles/domain"});
+    default:
       break;
   }
 }
+
+void describe(Operator& operation, const Pass& pass, const Plan& plan, const Experiment& experiment) {
+  const auto& declared = *std::find_if(std::begin(declarations), std::end(declarations),
+                                       [&](const Declaration& entry) { return entry.act == operation.act; });
+  operation.where = declared.where;
+  operation.reads.clear(), operation.writes.clear(), operation.adds.clear();
+  Uses uses(operation, plan);
+  uses.reads(declared.reads).writes(declared.writes).adds(declared.adds);
+  add_what_depends(uses, operation.act, pass, plan, experiment);
+}
+#undef MPM_CONSTRAINED
+#undef MPM_KEPT
 #undef MPM_STENCIL
 #undef MPM_PAIRS
+#undef MPM_HEATED_WALL
 
 /// Walks a step as it is executed with the filter on or off.
 class Walk {

@@ -23,46 +23,49 @@ inline std::string temperature_state_of(const std::string& state_of_transfer) {
   return temperature_state + state_of_transfer;
 }
 
+/// What a visit of a particle evaluates of its stencil, beside the weights.
+struct StencilNeeds {
+  bool gradients = false;      ///< of the weights
+  bool affine_moment = false;  ///< of the velocities, which becomes C
+  bool second_moment = false;  ///< of the shape, a particle
+};
+
 struct Plan {
   std::vector<Field> fields;
-  int velocity_fields = 1;  ///< that a node holds all its fields for
   Step step;                ///< all that one step of time does
-
-  bool weight_gradients = false;    ///< a pass reads grad w
-  bool affine_moment = false;       ///< a pass gathers C
-  bool separate_force = false;      ///< force has a channel of its own (else it is merged into momentum as dt f)
-  bool velocity_increment = false;  ///< v+ - v- is kept and gathered
-  bool contact = false;
-  bool ledger = false;
-  int ledger_every = 1;                   ///< steps between entries of the ledger
-  bool force_for_ledger = false;          ///< nothing but the ledger asks for separate_force
-  bool heat_ledger = false;               ///< the heat that comes and goes is recorded in every step
-  bool initial_position = false;          ///< particles keep X
-  bool kept_advection = false;            ///< MUSL: the advection velocity waits for `move`
-  bool filter = false;                    ///< the grid keeps an increment and its projection
-  bool kept_velocity = false;             ///< the grid keeps the unfiltered velocity (a pass restores it)
-  bool constrained_velocity = false;      ///< and what one-sided laws have added: an increment may take it back
-  bool particle_domain = false;           ///< particles carry their domain, advanced with L where the material is
-  int sample_points = 0;                  ///< corners of a particle's domain that the grid's velocity moves
-  bool strained_domain = false;           ///< and its strained copy: a later pass of the step needs the old weights
-  int basis_order = 0;                    ///< highest power along an axis of the polynomials beyond affine; 0: none
-  int basis_functions = 0;                ///< how many a particle carries (kernel/polynomial_basis.hpp)
-  bool second_moment = false;             ///< the shape's second moment is evaluated a particle
-  bool velocity_gradient_moment = false;  ///< the transfer gathers L
-  bool sorts_before_gather = false;       ///< velocities that the gather replaces need not travel with the particles
-  bool divides_with_forces = false;       ///< nothing but the ledger reads velocities between divide and accelerate
-  bool fused = false;                     ///< a gather scatters for the next step
-  std::string why_not_fused;              ///< empty when fused
+  std::uint32_t acts = 0;   ///< bit of each act of the step, see `does`
+  int velocity_fields = 1;  ///< that a node holds all its fields for
+  int ledger_every = 0;     ///< steps between entries of the ledger; 0: there is none
+  int sample_points = 0;    ///< corners of a particle's domain that the grid's velocity moves
+  int basis_order = 0;      ///< highest power along an axis of the polynomials beyond affine; 0: none
+  int basis_functions = 0;  ///< how many a particle carries (kernel/polynomial_basis.hpp)
+  StencilNeeds stencil;
+  std::string why_not_fused;  ///< why no gather scatters for the next step; empty where one does
 
   std::uint64_t particles = 0, nodes = 0;  ///< estimates before seeding
   std::uint64_t particle_bytes = 0, grid_bytes = 0;
 
+  bool does(Act act) const { return (acts >> static_cast<int>(act) & 1) != 0; }
+  bool fused() const { return why_not_fused.empty(); }
+  bool filters() const { return does(Act::begin_filter); }
+  bool resolves_contact() const { return does(Act::scatter_contact); }
+  bool has_ledger() const { return ledger_every > 0; }
+  /// Whether the heat that comes and goes is recorded, in every step.
+  bool has_heat_ledger() const { return has_ledger() && does(Act::scatter_heat); }
+  /// Whether nothing but the ledger reads velocities between v- = p / m and the forces.
+  bool divides_with_forces() const;
+  /// The first of the step's passes, and of its operators, with this act; null where none has it.
+  const Pass* pass_of(Act act) const;
+  const Operator* find(Act act) const;
+
   /// Whether the ledger takes its entries from this step (counted from 0): the first, where bodies meet what they were
   /// put on, counts for itself; each other in the middle of those that it counts for.
-  bool accounts_at(long step) const { return ledger && (step == 0 || (step - 1) % ledger_every == ledger_every / 2); }
+  bool accounts_at(long step) const {
+    return has_ledger() && (step == 0 || (step - 1) % ledger_every == ledger_every / 2);
+  }
   /// How many of the first `steps` steps those are.
   long accounts_within(long steps) const {
-    return ledger && steps > 0 ? 1 + (steps - 1 + (ledger_every - 1) / 2) / ledger_every : 0;
+    return has_ledger() && steps > 0 ? 1 + (steps - 1 + (ledger_every - 1) / 2) / ledger_every : 0;
   }
 
   /// The field of nodes with this id; null where the scene has none.

@@ -137,6 +137,21 @@ const Field* Plan::particle_field(int body, std::string_view id, Origin origin) 
   return nullptr;
 }
 
+const Pass* Plan::pass_of(Act act) const {
+  const Pass* found = nullptr;
+  for_each_pass(step, [&](const Pass& pass) {
+    if (!found && pass.has(act)) found = &pass;
+  });
+  return found;
+}
+
+const Operator* Plan::find(Act act) const {
+  if (const Pass* pass = pass_of(act))
+    for (const Operator& operation : pass->operators)
+      if (operation.act == act) return &operation;
+  return nullptr;
+}
+
 std::uint64_t Plan::bytes_per_particle(int body) const {
   std::uint64_t sum = 0;
   for (const Field& field : fields) sum += field.of_particles_of(body) ? field.bytes : 0;
@@ -163,14 +178,14 @@ nlohmann::ordered_json Plan::to_json() const {
   }
   json["velocity_fields"] = velocity_fields;
   json["passes"] = mpm::to_json(step.children);
-  json["weight_gradients"] = weight_gradients;
-  json["affine_moment"] = affine_moment;
-  json["separate_force"] = separate_force;
-  json["velocity_increment"] = velocity_increment;
-  json["ledger"] = ledger;
+  json["weight_gradients"] = stencil.gradients;
+  json["affine_moment"] = stencil.affine_moment;
+  json["separate_force"] = node_field("force") != nullptr;
+  json["velocity_increment"] = node_field("velocity_before") && !node_field("velocity_before")->for_ledger;
+  json["ledger"] = has_ledger();
   if (ledger_every > 1) json["ledger_every"] = ledger_every;
-  json["fused"] = fused;
-  if (!fused) json["why_not_fused"] = why_not_fused;
+  json["fused"] = fused();
+  if (!fused()) json["why_not_fused"] = why_not_fused;
   json["estimate"] = {
       {"particles", particles}, {"nodes", nodes}, {"particle_bytes", particle_bytes}, {"grid_bytes", grid_bytes}};
   return json;
@@ -202,10 +217,10 @@ std::string Plan::to_text() const {
     if (field.owner == Owner::node) print_field(field);
   out << "Passes of a step\n";
   print(out, step.children, 0);
-  out << "Gather and scatter: " << (fused ? "fused, one visit of a particle a step" : "two passes, " + why_not_fused)
+  out << "Gather and scatter: " << (fused() ? "fused, one visit of a particle a step" : "two passes, " + why_not_fused)
       << "\n";
-  out << "Stencil: weights" << (weight_gradients ? " and gradients" : " only, no gradients") << "; force "
-      << (separate_force ? "in a field of its own" : "merged into momentum") << "\n";
+  out << "Stencil: weights" << (stencil.gradients ? " and gradients" : " only, no gradients") << "; force "
+      << (node_field("force") ? "in a field of its own" : "merged into momentum") << "\n";
   out << "Estimate: " << particles << " particles, " << nodes << " nodes, " << (particle_bytes + 524288) / 1048576
       << " MiB of particles (copies and scratch included), " << (grid_bytes + 524288) / 1048576 << " MiB of grid\n";
   return out.str();

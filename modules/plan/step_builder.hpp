@@ -61,6 +61,11 @@ class FilterParts {
   bool before_forces_ = false;
 };
 
+/// Who asked, of a reason: what stands before its explanation.
+inline std::string asker(const std::string& because) {
+  return because.substr(0, because.find(": "));
+}
+
 /// The plan of an experiment whose solver writes its step by `solver_step`. Throws InputError (see make_plan).
 Plan assemble_plan(const Experiment& experiment, const std::function<void(StepBuilder&)>& solver_step);
 
@@ -73,8 +78,6 @@ void check_step(const Plan& plan);
 
 /// Puts operators that one visit can do into one pass.
 void join_visits(Step& step);
-/// Whether nothing stands between v- = p / m and the forces.
-bool forces_follow_division(const Step& step);
 /// Why the gather of a step may not scatter for the next one as well, naming who asked; empty where it may.
 std::string why_not_fused(const Step& step, const Experiment& experiment);
 /// Lets the gather of a step scatter for the next one; the step then begins with a scatter only where that was not done.

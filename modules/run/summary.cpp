@@ -53,7 +53,7 @@ Json energy(const Simulation& simulation, const Metrics& metrics, const Recorder
     json["total"]["largest_over_initial"] = recorder.largest_total_energy() / start.total_energy();
   if (const double scale = available_energy(simulation.experiment(), start); scale > 0)
     json["total"]["gain"] = (recorder.largest_total_energy() - start.total_energy()) / scale;
-  if (!simulation.plan().ledger) return json;
+  if (!simulation.plan().has_ledger()) return json;
   for (const ValueRow& row : metrics.ledger_rows(end)) json["ledger"][key_of(row)] = row.value;
   if (const int every = simulation.plan().ledger_every; every > 1) json["ledger_every"] = every;
   return json;
@@ -144,7 +144,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
   json["scales"] = {{"momentum", recorder.momentum_scale()}, {"angular_momentum", recorder.angular_momentum_scale()}};
   json["centre_of_mass"] = {{"initial", by_axis(start.centre_of_mass, first, experiment.dimension)},
                             {"final", by_axis(end.centre_of_mass, first, experiment.dimension)}};
-  if (simulation.plan().contact) {
+  if (simulation.plan().resolves_contact()) {
     const ContactRecord& contact = simulation.backend().contact_record();
     json["contact"] = {{"largest_force", recorder.largest_contact_force()},
                        {"most_nodes", recorder.most_contact_nodes()},
@@ -158,7 +158,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
   json["stability"] = {{"smallest_volume_ratio", recorder.smallest_volume_ratio()},
                        {"largest_volume_ratio", recorder.largest_volume_ratio()},
                        {"largest_speed", end.largest_speed}};
-  if (simulation.plan().filter) {
+  if (simulation.plan().filters()) {
     const FilterRecord& filter = simulation.backend().filter_record();
     json["stability"]["filter"] = {{"iterations", filter.iterations},
                                    {"increment_norm", filter.last_norm},

@@ -62,7 +62,7 @@ FailurePlace Simulation::place_of(const Failure& failure) const {
 
 /// Whether the filter acts in the step that begins now.
 bool Simulation::filter_due() {
-  if (!plan_.filter) return false;
+  if (!plan_.filters()) return false;
   const FilterSchedule& schedule = experiment_.filter_schedule;
   if (schedule.every_time == 0 && schedule.every_courant == 0) return (steps_ + 1) % schedule.every_steps == 0;
   const bool by_time = schedule.every_time > 0;

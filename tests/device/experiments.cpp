@@ -46,7 +46,7 @@ TEST_CASE("shipped experiments begin on the host-run device as on the reference 
     const std::string text = support::read_file(file);
     const Experiment experiment = device_experiment(text, "double");
     const Plan plan = make_plan(experiment);
-    REQUIRE(plan.ledger);  // the ledger is asked for where nothing else is said
+    REQUIRE(plan.has_ledger());  // the ledger is asked for where nothing else is said
     CHECK_NOTHROW(device::compose(device::choice_of(experiment, plan)));
     if (static_cast<double>(plan.particles) > most_particles) continue;
     ++count;

@@ -225,7 +225,7 @@ void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step
 /// leave its tile, since none moves faster than the fastest node (a domain may outgrow its stencil, though).
 template <int D, class T, class Components>
 bool CpuBackend<D, T, Components>::may_pass_motion(const StepInfo& step) const {
-  return !step.observed && scene_.has(MPM_REPLACES_MOTION) && !scene_.plan.particle_domain &&
+  return !step.observed && scene_.has(MPM_REPLACES_MOTION) && !scene_.plan.particle_field(0, "domain") &&
          particle_step_->stays_within_tiles(step.dt * grid_step_->largest_component() / scene_.domain.cell_size);
 }
 
@@ -270,7 +270,7 @@ void CpuBackend<D, T, Components>::account_for_strain(const typename Step::Gathe
 /// Before the scatter of a step: what only the ledger reads rests in the steps that it leaves out.
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::wake_for_ledger(long step) {
-  grid_.let_ledger_rest(scene_.plan.ledger && !scene_.plan.accounts_at(step));
+  grid_.let_ledger_rest(scene_.plan.has_ledger() && !scene_.plan.accounts_at(step));
 }
 
 template <int D, class T, class Components>
@@ -370,7 +370,7 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
           scene_.domain.lower[a] +
           scene_.domain.cell_size * cells_from_corner(scene_.domain, block, a, values[a * chunk_size<T>]);
   });
-  if (scene_.plan.second_moment) state.second_moment = particle_step_->second_moments(index);
+  if (scene_.plan.stencil.second_moment) state.second_moment = particle_step_->second_moments(index);
   return state;
 }
 
@@ -387,7 +387,7 @@ void CpuBackend<D, T, Components>::save(ArchiveWriter& archive) const {
   archive.put("drift", particle_step_->drift());
   archive.put("last_drift", particle_step_->last_drift());
   archive.put("ledger", ledger_);
-  if (scene_.plan.heat_ledger) archive.put("heat_ledger", heat_ledger_);
+  if (scene_.plan.has_heat_ledger()) archive.put("heat_ledger", heat_ledger_);
   archive.put("contact", contact_);
   archive.put("filter", filter_);
   archive.put("speed", limit_.speed);
@@ -424,7 +424,7 @@ void CpuBackend<D, T, Components>::restore(ArchiveReader& archive) {
   archive.get("drift", drift);
   archive.get("last_drift", last_drift);
   archive.get("ledger", ledger_);
-  if (scene_.plan.heat_ledger) archive.get("heat_ledger", heat_ledger_);
+  if (scene_.plan.has_heat_ledger()) archive.get("heat_ledger", heat_ledger_);
   archive.get("contact", contact_);
   archive.get("filter", filter_);
   archive.get("speed", limit_.speed);

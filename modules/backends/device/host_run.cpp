@@ -142,7 +142,7 @@ struct VelocityField {
   std::vector<int> folded, held;
 
   VelocityField(const Experiment& experiment, const Plan& plan, std::size_t nodes)
-      : arrays(node_fields(experiment, plan), nodes), folded(nodes), held(plan.ledger ? nodes : 0) {}
+      : arrays(node_fields(experiment, plan), nodes), folded(nodes), held(plan.has_ledger() ? nodes : 0) {}
   NodeArrays<T> table() {
     NodeArrays<T> table{{}, folded.data(), held.empty() ? nullptr : held.data()};
     arrays.point(table.field);
@@ -172,7 +172,7 @@ class HostRun final : public Backend {
     const std::size_t nodes = scene_.node_count, D = experiment.dimension;
     for (int field = 0; field < experiment.field_count; ++field) fields_.emplace_back(experiment, plan, nodes);
     for (int axis = 0; axis < experiment.dimension; ++axis) (periodic(axis) ? images_ : walls_).push_back(axis);
-    if (!plan.contact) return;
+    if (!plan.resolves_contact()) return;
     active_.resize(nodes), status_.resize(nodes);
     normal_.resize(D * nodes), impulse_.resize(D * nodes), unbalanced_.resize(D * nodes);
     separation_.resize(nodes), area_.resize(nodes), work_.resize(nodes), dissipated_.resize(nodes);
@@ -253,7 +253,7 @@ class HostRun final : public Backend {
         archive.put(field.id, body.arrays.of(number), body.arrays.size(number));
       });
     archive.put("ledger", ledger_);
-    if (plan_.heat_ledger) archive.put("heat ledger", heat_ledger_);
+    if (plan_.has_heat_ledger()) archive.put("heat ledger", heat_ledger_);
     archive.put("contact", contact_);
     archive.put("filter", filter_);
     archive.put("limit speeds", std::array{limit_.speed, limit_.wave_speed});
@@ -270,7 +270,7 @@ class HostRun final : public Backend {
         std::copy_n(body.arrays.of("domain"), body.arrays.size(body.number("domain")), strained);
     }
     archive.get("ledger", ledger_);
-    if (plan_.heat_ledger) archive.get("heat ledger", heat_ledger_);
+    if (plan_.has_heat_ledger()) archive.get("heat ledger", heat_ledger_);
     archive.get("contact", contact_);
     archive.get("filter", filter_);
     std::array<double, 2> speeds{};
@@ -282,7 +282,7 @@ class HostRun final : public Backend {
 
   BodyState body_state(int index) const override {
     Body<T> body = bodies_[index];  // a copy, into which the second moments go
-    if (plan_.second_moment) {
+    if (plan_.stencil.second_moment) {
       // A particle that has no stencil has none; the next pass that needs it says so.
       const int moments = body.number("second_moment");
       std::fill_n(body.arrays.of(moments), body.arrays.size(moments), std::numeric_limits<T>::quiet_NaN());
@@ -298,7 +298,7 @@ class HostRun final : public Backend {
     });
     state.initial_position = body.initial_position;
     state.mass = body.mass, state.volume = body.volume;
-    if (plan_.second_moment) state.second_moment = body.arrays.index_major(body.number("second_moment"), h * h);
+    if (plan_.stencil.second_moment) state.second_moment = body.arrays.index_major(body.number("second_moment"), h * h);
     return state;
   }
 
@@ -485,7 +485,7 @@ class HostRun final : public Backend {
     a.dt *= static_cast<T>(pass.share);
     run_material("strain", a, body);
     if (accounted_) ledger_.material += sum_over_particles("energy_dissipated", body);
-    if (plan_.heat_ledger && body.heat.warming > 0)
+    if (plan_.has_heat_ledger() && body.heat.warming > 0)
       heat_ledger_.dissipation += sum_over_particles("heat_of_dissipation", body);
   }
 
@@ -521,7 +521,7 @@ class HostRun final : public Backend {
       a.contact_fields = pass.has(Act::scatter_contact), a.remap = pass.remap();
       run("scatter", a, body.blocks(), body, Checks::stencil);
       if (heat) run("scatter_heat", a, body.blocks(), body, Checks::stencil);
-      if (heat && plan_.heat_ledger) scattered_heat_ += sum_over_particles("heat_of_particles", body);
+      if (heat && plan_.has_heat_ledger()) scattered_heat_ += sum_over_particles("heat_of_particles", body);
       if (accounted_ && enters) energy += sum_over_particles("energy_of_particles", body);
     }
     if (!pass.has(Act::scatter_momentum)) return;
@@ -553,7 +553,7 @@ class HostRun final : public Backend {
     const bool accounted = accounted_ && !pass.remap();
     conditions_.evaluate(step.time, scene_);
     if (heat_conditions_) heat_conditions_->evaluate(step.time, scene_);
-    const bool records_heat = plan_.heat_ledger && !pass.remap() && heat_conditions_->walls_act();
+    const bool records_heat = plan_.has_heat_ledger() && !pass.remap() && heat_conditions_->walls_act();
     const double heat = records_heat ? sum_over_nodes("heat_of_nodes") : 0.0;
     for_each_axis("fold_masses", walls_, {pass.remap()});
     if (!pass.remap()) heat_of_images_ = records_heat ? sum_over_nodes("heat_of_nodes") - heat : 0.0;
@@ -562,7 +562,7 @@ class HostRun final : public Backend {
     keep_free_velocity({});
     for_each_field("impose_conditions", nodes());
     if (accounted) ledger_.boundary += sum_over_nodes("energy_of_velocities") - scattered_energy_;
-    if (plan_.contact) {
+    if (plan_.resolves_contact()) {
       resolve_contact(step.dt, pass.remap() ? Recorded::nothing : Recorded::before_forces);
       const double before = accounted ? sum_over_nodes("energy_of_velocities") : 0.0;
       for_each_field("impose_conditions", nodes());
@@ -580,7 +580,7 @@ class HostRun final : public Backend {
     for_each_field("accelerate", nodes());
     keep_free_velocity(after);
     for_each_field("impose_conditions", nodes(), after);
-    if (plan_.contact) {
+    if (plan_.resolves_contact()) {
       resolve_contact(step.dt, Recorded::after_forces);
       for_each_field("impose_conditions", nodes(), after);
     }
@@ -605,12 +605,12 @@ class HostRun final : public Backend {
       a.update_particles = true, a.filtered = step.filtered;
       run("gather", a, teams(body.count), body, Checks::stencil);
       if (pass.has(Act::gather_heat)) run("gather_heat", a, teams(body.count), body, Checks::stencil);
-      if (pass.has(Act::gather_heat) && plan_.heat_ledger) heat += sum_over_particles("heat_of_particles", body);
+      if (pass.has(Act::gather_heat) && plan_.has_heat_ledger()) heat += sum_over_particles("heat_of_particles", body);
       if (accounted_) energy += sum_over_particles("energy_of_particles", body);  // while weights are those of the step
       if (pass.has(Act::strain)) run_strain(pass, body);
     }
     if (accounted_) ledger_.gather += energy - energy_after_;
-    if (pass.has(Act::gather_heat) && plan_.heat_ledger) heat_ledger_.gather += heat - heat_after_;
+    if (pass.has(Act::gather_heat) && plan_.has_heat_ledger()) heat_ledger_.gather += heat - heat_after_;
     if (pass.has(Act::move)) move();
     if (pass.has(Act::change_phase)) change_phase();
   }
@@ -634,11 +634,11 @@ class HostRun final : public Backend {
   /// Temperatures before the step's heat, ghosts too.
   void heat_to_temperature() {
     for_each_field("divide_heat", nodes());
-    if (plan_.heat_ledger)
+    if (plan_.has_heat_ledger())
       heat_ledger_.scatter += sum_over_nodes("heat_of_temperatures") - heat_of_images_ - scattered_heat_;
     const HeatOfTwo held = impose_temperature();
     beyond_ = fill_temperature();
-    if (plan_.heat_ledger) heat_ledger_.images += heat_of_images_ + held[0] + held[1] + beyond_[0] + beyond_[1];
+    if (plan_.has_heat_ledger()) heat_ledger_.images += heat_of_images_ + held[0] + held[1] + beyond_[0] + beyond_[1];
     for_each_field("keep_temperature", nodes());
   }
 
@@ -674,20 +674,21 @@ class HostRun final : public Backend {
 
   /// Temperatures after the step's heat.
   void warm(const StepInfo& step) {
-    const bool records_folds = plan_.heat_ledger && heat_conditions_->walls_act();
+    const bool records_folds = plan_.has_heat_ledger() && heat_conditions_->walls_act();
     const double rate = records_folds ? sum_over_nodes("heat_rate_of_nodes") : 0.0;
     for_each_axis("fold_forces", folded_axes());
     if (records_folds) heat_ledger_.walls += step.dt * (sum_over_nodes("heat_rate_of_nodes") - rate);
     for (const int axis : heat_conditions_->exchanging_axes())
       for (VelocityField<T>& field : fields_) {
         const HeatOfTwo rates = sum_over_lines("exchange_at_walls", field, axis);
-        if (plan_.heat_ledger) heat_ledger_.flux += step.dt * rates[0], heat_ledger_.convection += step.dt * rates[1];
+        if (plan_.has_heat_ledger())
+          heat_ledger_.flux += step.dt * rates[0], heat_ledger_.convection += step.dt * rates[1];
       }
     for (const int box : heat_conditions_->warmed_boxes()) warm_box(box, step.dt);
     for_each_field("warm", nodes());
     heat_conditions_->evaluate(step.time + step.dt, scene_);
     const HeatOfTwo held = impose_temperature(), beyond = fill_temperature();
-    if (!plan_.heat_ledger) return;
+    if (!plan_.has_heat_ledger()) return;
     heat_ledger_.walls += held[0] + beyond[0] - beyond_[0];
     heat_ledger_.boxes += held[1];
     heat_ledger_.images += beyond[1] - beyond_[1];
@@ -708,7 +709,7 @@ class HostRun final : public Backend {
     mass = over_fields("mass_of_box");
     if (!(mass > 0)) return;
     const double power = over_fields("warm_box");
-    if (plan_.heat_ledger) heat_ledger_.boxes += dt * power;
+    if (plan_.has_heat_ledger()) heat_ledger_.boxes += dt * power;
   }
 
   void change_phase() {
@@ -835,19 +836,19 @@ class HostRun final : public Backend {
   }
 
   void keep_free_velocity(const Manner& manner) {
-    if (plan_.constrained_velocity) for_each_field("keep_free_velocity", vectors(), manner);
+    if (plan_.node_field("velocity_of_constraints")) for_each_field("keep_free_velocity", vectors(), manner);
   }
   void measure_constraints() {
-    if (plan_.constrained_velocity) for_each_field("measure_constraints", vectors());
+    if (plan_.node_field("velocity_of_constraints")) for_each_field("measure_constraints", vectors());
   }
 
   /// Conditions, contact and conditions again on the grid's velocity without what they have added so far, and on no
   /// one's record.
   void constrain_velocity(const Pass& pass, const StepInfo& step) {
     conditions_.evaluate(time_of(pass, step), scene_);
-    if (plan_.constrained_velocity) for_each_field("take_free_velocity", vectors());
+    if (plan_.node_field("velocity_of_constraints")) for_each_field("take_free_velocity", vectors());
     for_each_field("impose_conditions", nodes());
-    if (plan_.contact) {
+    if (plan_.resolves_contact()) {
       resolve_contact(step.dt, Recorded::nothing);
       for_each_field("impose_conditions", nodes());
     }

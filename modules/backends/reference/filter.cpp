@@ -24,7 +24,7 @@ void ReferenceBackend::begin_filter(const Pass& pass) {
   for_each_node([&](std::size_t i) {
     increment_[i] = velocity_[i];
     if (pass.stage == Stage::before_forces) unfiltered_[i] = velocity_[i];
-    if (pass.stage == Stage::before_forces && plan_.constrained_velocity) unfiltered_constrained_[i] = constrained_[i];
+    if (pass.stage == Stage::before_forces && keeps_constraints_) unfiltered_constrained_[i] = constrained_[i];
   });
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = grid_.mass_norm(increment_);
@@ -105,7 +105,7 @@ void ReferenceBackend::restore_velocity(const Pass& pass) {
   };
   for_each_node([&](std::size_t i) {
     restore(velocity_[i], unfiltered_[i]);
-    if (plan_.constrained_velocity) restore(constrained_[i], unfiltered_constrained_[i]);
+    if (keeps_constraints_) restore(constrained_[i], unfiltered_constrained_[i]);
   });
 }
 
@@ -114,7 +114,7 @@ void ReferenceBackend::add_correction(const Pass& pass, const StepInfo& step) {
   const double unfiltered = accounted_ ? grid_.kinetic_energy() : 0.0;
   for_each_node([&](std::size_t i) {
     velocity_[i] += unfiltered_[i];
-    if (plan_.constrained_velocity) constrained_[i] += unfiltered_constrained_[i];
+    if (keeps_constraints_) constrained_[i] += unfiltered_constrained_[i];
   });
   constrain_free_velocity(pass, step);
   grid_.fill_velocity_ghosts(time_of(pass, step));
@@ -126,7 +126,7 @@ void ReferenceBackend::add_correction(const Pass& pass, const StepInfo& step) {
 
 /// Conditions and contact on the velocity without what they have added so far.
 void ReferenceBackend::constrain_free_velocity(const Pass& pass, const StepInfo& step) {
-  if (!plan_.constrained_velocity) return constrain_velocity(pass, step);
+  if (!keeps_constraints_) return constrain_velocity(pass, step);
   for_each_node([&](std::size_t i) {
     if (mass_[i] > 0) constrained_[i] = velocity_[i] -= constrained_[i];  // free, until they have acted
   });
@@ -140,7 +140,7 @@ void ReferenceBackend::constrain_free_velocity(const Pass& pass, const StepInfo&
 void ReferenceBackend::constrain_velocity(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
   impose_on_velocity(time);
-  if (!plan_.contact) return;
+  if (!plan_.resolves_contact()) return;
   resolve_contact_of_velocity(step.dt);
   impose_on_velocity(time);
 }

@@ -6,7 +6,7 @@ namespace mpm::reference {
 
 void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& step) {
   const double before = accounted_ ? grid_.kinetic_energy() : 0.0;
-  const bool accounts_heat = plan_.heat_ledger && !pass.remap();
+  const bool accounts_heat = plan_.has_heat_ledger() && !pass.remap();
   const double heat = accounts_heat ? sum(heat_) : 0.0;
   grid_.fold_walls(step.time, pass.remap() ? 0.0 : step.dt);
   if (accounts_heat) heat_ledger_.images += sum(heat_) - heat;
@@ -14,7 +14,7 @@ void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& st
   keep_free_velocity(false);
   impose_conditions(step.time);
   if (accounted_ && !pass.remap()) ledger_.boundary += grid_.kinetic_energy() - before;
-  if (plan_.contact) resolve_contact(step, false, pass.remap());
+  if (plan_.resolves_contact()) resolve_contact(step, false, pass.remap());
   for_each_node([&](std::size_t i) {
     velocity_[i] = over_mass(momentum_[i], i);
     if (!pass.remap()) velocity_before_[i] = velocity_[i];
@@ -25,7 +25,7 @@ void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& st
 
 /// `constrained` <- the velocity without what conditions and contact have added in this step.
 void ReferenceBackend::keep_free_velocity(bool after_forces) {
-  if (!plan_.constrained_velocity) return;
+  if (!keeps_constraints_) return;
   for_each_node([&](std::size_t i) {
     const Vector added = after_forces ? constrained_[i] : Vector(Vector::Zero());
     constrained_[i] = mass_[i] > 0 ? Vector(momentum_[i] / mass_[i] - added) : Vector(Vector::Zero());
@@ -33,7 +33,7 @@ void ReferenceBackend::keep_free_velocity(bool after_forces) {
 }
 
 void ReferenceBackend::measure_constraints() {
-  if (!plan_.constrained_velocity) return;
+  if (!keeps_constraints_) return;
   for_each_node([&](std::size_t i) { constrained_[i] = velocity_[i] - constrained_[i]; });
 }
 
@@ -56,7 +56,7 @@ void ReferenceBackend::apply_forces(const StepInfo& step) {
   });
   keep_free_velocity(true);
   impose_conditions(step.time + step.dt);
-  if (plan_.contact) resolve_contact(step, true);
+  if (plan_.resolves_contact()) resolve_contact(step, true);
   for_each_node([&](std::size_t i) {
     velocity_[i] = over_mass(momentum_[i], i);
     if (accounted_ && mass_[i] > 0) account_for_impulses(i, step.dt);

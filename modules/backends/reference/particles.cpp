@@ -119,7 +119,7 @@ void Particles::pad(Array& array) const {
 
 ShapeArguments Particles::shape_arguments() const {
   ShapeArguments at{make(dimension_), make(dimension_), {}, {}};
-  if (plan_.particle_domain) at.domain = values("domain");
+  if (plan_.particle_field(0, "domain")) at.domain = values("domain");
   if (plan_.sample_points > 0) at.corners = values("corners");
   for (int c = 0; c < dimension_; ++c)
     at.position.row(c) = (position.row(c).array() - experiment_.grid.lower[c]) / experiment_.grid.cell_size;
@@ -255,7 +255,7 @@ double Particles::strain(double dt) {
   batch.velocity_gradient = velocity_gradient.data();
   batch.dissipated_energy = dissipated.data();
   refuse_inverted(update_material(batch));
-  if (plan_.particle_domain && !frozen_) {
+  if (plan_.particle_field(0, "domain") && !frozen_) {
     Array& domain = values("domain");  // (I + dt L) domain, as F
     for (std::size_t p = 0; p < padded_; ++p)
       set(domain, p, Matrix((Matrix::Identity() + dt * matrix(velocity_gradient, p)) * matrix(domain, p)));
@@ -356,7 +356,7 @@ BodyState Particles::state() const {
     if (declared.lifetime != Lifetime::step)
       result.of(declared) = particle_major((cells ? experiment_.grid.cell_size : 1.0) * stored.values);
   }
-  if (plan_.second_moment) {
+  if (plan_.stencil.second_moment) {
     const double h = experiment_.grid.cell_size;
     result.second_moment = particle_major(h * h * shape_.evaluate(shape_arguments()).second_moment);
   }

@@ -153,7 +153,7 @@ void ReferenceBackend::save(ArchiveWriter& archive) const {
   archive.put("ledger", ledger_);
   archive.put("contact", contact_);
   archive.put("filter", filter_);
-  if (plan_.heat_ledger) archive.put("heat ledger", heat_ledger_);
+  if (plan_.has_heat_ledger()) archive.put("heat ledger", heat_ledger_);
   archive.put("limit speeds", std::array{limit_.speed, limit_.wave_speed});
   archive.put("limit particle", std::array<std::uint64_t, 2>{static_cast<std::uint64_t>(limit_.body), limit_.particle});
 }
@@ -163,7 +163,7 @@ void ReferenceBackend::restore(ArchiveReader& archive) {
   archive.get("ledger", ledger_);
   archive.get("contact", contact_);
   archive.get("filter", filter_);
-  if (plan_.heat_ledger) archive.get("heat ledger", heat_ledger_);
+  if (plan_.has_heat_ledger()) archive.get("heat ledger", heat_ledger_);
   std::array<double, 2> speeds{};
   std::array<std::uint64_t, 2> particle{};
   archive.get("limit speeds", speeds);

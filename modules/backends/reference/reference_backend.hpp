@@ -111,7 +111,7 @@ class ReferenceBackend final : public Backend {
   void change_phase();
   /// An entry of the heat ledger, where there is one.
   void account(double& row, double heat) const {
-    if (plan_.heat_ledger) row += heat;
+    if (plan_.has_heat_ledger()) row += heat;
   }
   double heat_of_particles() const;
   double sum(const ScalarField& field);
@@ -148,6 +148,7 @@ class ReferenceBackend final : public Backend {
   VectorField& unfiltered_ = grid_.vector("unfiltered_velocity");
   /// What conditions and contact have added to the velocity in this step.
   VectorField& constrained_ = grid_.vector("velocity_of_constraints");
+  const bool keeps_constraints_ = plan_.node_field("velocity_of_constraints") != nullptr;
   VectorField& unfiltered_constrained_ = grid_.vector("unfiltered_velocity_of_constraints");
   ScalarField &heat_ = grid_.scalar("heat"), &heat_capacity_ = grid_.scalar("heat_capacity");
   ScalarField& temperature_before_ = grid_.scalar("temperature_before");  ///< T-

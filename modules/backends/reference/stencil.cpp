@@ -23,7 +23,7 @@ Shape::Shape(const Experiment& experiment, const Plan& plan)
 
 ShapeValues Shape::evaluate(const ShapeArguments& at) const {
   ShapeValues values;
-  if (plan_.second_moment) values.second_moment = Array::Zero(dimension_ * dimension_, at.position.cols());
+  if (plan_.stencil.second_moment) values.second_moment = Array::Zero(dimension_ * dimension_, at.position.cols());
   if (shape_.form == MPM_NODE_LIST)
     evaluate_list(at, values);
   else
@@ -49,10 +49,10 @@ void Shape::evaluate_product(const ShapeArguments& at, ShapeValues& values) cons
                               values.offset.data(),
                               values.weight.data(),
                               values.gradient.data(),
-                              plan_.second_moment ? diagonal.data() : nullptr};
+                              plan_.stencil.second_moment ? diagonal.data() : nullptr};
   shape_.evaluate[MPM_SCALAR_DOUBLE](experiment_.shape.parameters.data(), &batch);
   // sum w d = 0 along each axis, so that the product's moment is diagonal.
-  for (int a = 0; plan_.second_moment && a < D; ++a) values.second_moment.row(a * (D + 1)) = diagonal.row(a);
+  for (int a = 0; plan_.stencil.second_moment && a < D; ++a) values.second_moment.row(a * (D + 1)) = diagonal.row(a);
 }
 
 void Shape::evaluate_list(const ShapeArguments& at, ShapeValues& values) const {
@@ -74,7 +74,7 @@ void Shape::evaluate_list(const ShapeArguments& at, ShapeValues& values) const {
                              values.node.data(),
                              values.weight.data(),
                              values.gradient.data(),
-                             plan_.second_moment ? values.second_moment.data() : nullptr,
+                             plan_.stencil.second_moment ? values.second_moment.data() : nullptr,
                              plan_.sample_points > 0 ? at.corners.data() : nullptr};
   shape_.evaluate_list[MPM_SCALAR_DOUBLE][D - 2](experiment_.shape.parameters.data(), &batch);
 }
@@ -117,7 +117,7 @@ Matrix Shape::second_moment(const ShapeValues& values, const ShapeArguments& at,
     const double f = at.position(a, p) - std::floor(at.position(a, p));
     if (shape_.second_moment_kind == MPM_MOMENT_IS_GRADIENT) moment(a, a) = h2 * f * (1 - f);
     if (shape_.second_moment_kind == MPM_MOMENT_CONSTANT) moment(a, a) = h2 * shape_.second_moment;
-    for (int b = 0; plan_.second_moment && b < dimension_; ++b)
+    for (int b = 0; plan_.stencil.second_moment && b < dimension_; ++b)
       moment(a, b) = h2 * values.second_moment(a * dimension_ + b, p);
   }
   return moment;
@@ -161,7 +161,7 @@ Stencil Shape::stencil(const ShapeValues& values, const ShapeArguments& at, std:
   const int D = dimension_;
   const bool moment_is_gradient = shape_.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
   Matrix inverse = Matrix::Zero();  // of D
-  if (!moment_is_gradient && (plan_.second_moment || shape_.second_moment_kind == MPM_MOMENT_CONSTANT))
+  if (!moment_is_gradient && (plan_.stencil.second_moment || shape_.second_moment_kind == MPM_MOMENT_CONSTANT))
     inverse.topLeftCorner(D, D) = second_moment(values, at, p).topLeftCorner(D, D).inverse();
   Stencil stencil;
   const auto add = [&](StencilNode node, const Eigen::Vector3i& coordinates) {

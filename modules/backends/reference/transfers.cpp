@@ -105,7 +105,8 @@ void ReferenceBackend::scatter_force(Particles& body, double time) {
     Vector force = Vector::Zero();
     if (experiment_.body_force) {
       const Vector x = body.column(body.position, p);
-      const Vector X = plan_.initial_position ? body.column(body.values("initial_position"), p) : x;
+      const Vector X =
+          plan_.particle_field(0, "initial_position") ? body.column(body.values("initial_position"), p) : x;
       force = body.mass(p) * to_eigen((*experiment_.body_force)({x[0], x[1], x[2]}, {X[0], X[1], X[2]}, time));
     }
     for (const StencilNode& s : body.stencil(p)) {

@@ -135,7 +135,7 @@ void GridStep<D, T>::constrain_free(double time, const StepInfo& step) {
 template <int D, class T>
 void GridStep<D, T>::constrain(double time, const StepInfo& step) {
   impose(time, Account::nothing);
-  if (!scene_.plan.contact) return;
+  if (!scene_.plan.resolves_contact()) return;
   resolve_contact(step, Recorded::filter);
   impose(time, Account::nothing);
 }

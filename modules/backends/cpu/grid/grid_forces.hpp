@@ -27,7 +27,7 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
     folded_[static_cast<int>(grid.field(c).folded)].push_back(c);
     if (grid.field(c).at_wall == AtWall::slip) slipping_.push_back(c);
   }
-  may_merge_ = scene.plan.divides_with_forces;
+  may_merge_ = scene.plan.divides_with_forces();
 }
 
 /// Calls visit(field, first node, partial sums) for every block of nodes of every field.
@@ -136,7 +136,7 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   const Account account = accounted ? Account::change_of_energy : Account::nothing;
   keep_free_velocity(false);
   impose(step.time, account);
-  if (scene_.plan.contact) {
+  if (scene_.plan.resolves_contact()) {
     resolve_contact(step, remap ? Recorded::remap : Recorded::before_forces);
     impose(step.time, account);
   }
@@ -153,7 +153,7 @@ void GridStep<D, T>::find_constrained_slots() {
     for (const std::uint32_t node : face.wall) constrained_[node / block_nodes] = 1;
   for (const BoxNodes& box : grid_.boxes())
     for (const std::uint32_t node : box.nodes) constrained_[node / block_nodes] = 1;
-  if (!scene_.plan.contact) return;
+  if (!scene_.plan.resolves_contact()) return;
   for (const std::uint32_t slot : grid_.shared_slots()) constrained_[slot] = 1;
 }
 
@@ -224,7 +224,7 @@ void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt
     external += body * mean;
     momentum += mass * mean;
     squares += twice_kinetic_energy(v, mass);
-    if (!held || (held[k] == 0 && !scene_.plan.contact)) continue;
+    if (!held || (held[k] == 0 && !scene_.plan.resolves_contact())) continue;
     const Wide work = work_of_reaction(old, v, mass, f + body + mass * gravity, mean, dt);
     if (held[k] == 0)
       contact += work;
@@ -234,7 +234,7 @@ void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt
   partial[of_internal_force] += dt * sum_of_components(internal);
   partial[of_body_force] += dt * sum_of_components(external);
   partial[of_gravity] += dt * sum_of_components(momentum * gravity);
-  if (scene_.plan.contact) partial[at_contact] += sum_of_components(contact);
+  if (scene_.plan.resolves_contact()) partial[at_contact] += sum_of_components(contact);
   partial[of_motion] += 0.5 * sum_of_components(squares);
 }
 
@@ -249,7 +249,7 @@ void GridStep<D, T>::account_for_impulses(double dt) {
   ledger_.body_force += sum_partials(of_body_force);
   ledger_.gravity += sum_partials(of_gravity);
   ledger_.boundary += sum_partials(at_conditions);
-  if (scene_.plan.contact) ledger_.contact += sum_partials(at_contact);
+  if (scene_.plan.resolves_contact()) ledger_.contact += sum_partials(at_contact);
   kinetic_energy_after_ = sum_partials(of_motion);
   account_gravity_corrections(dt);
 }
@@ -345,14 +345,15 @@ void GridStep<D, T>::apply_forces(const StepInfo& step) {
   const Account account = ledger_on() ? Account::mark : Account::nothing;
   keep_free_velocity(true);
   impose(end, account);
-  if (scene_.plan.contact) {
+  if (scene_.plan.resolves_contact()) {
     resolve_contact(step, Recorded::after_forces);
     impose(end, account);
   }
   measure_constraints();
   if (ledger_on()) account_for_impulses(step.dt);
-  if (scene_.plan.velocity_increment) subtract_velocity_before();
-  fill_ghosts(end, scene_.plan.velocity_increment);
+  const bool gathers_increment = scene_.has(MPM_GATHERS_INCREMENT);
+  if (gathers_increment) subtract_velocity_before();
+  fill_ghosts(end, gathers_increment);
 }
 
 }  // namespace mpm::cpu

@@ -23,7 +23,7 @@ void ParticleStep<D, T, Components>::evaluate_boxes(const Chunk& chunk, Work& wo
                             work.offset,
                             boxes.weight.data(),
                             gradients ? boxes.gradient.data() : nullptr,
-                            scene_.plan.second_moment ? work.second_moment : nullptr};
+                            scene_.plan.stencil.second_moment ? work.second_moment : nullptr};
   scene_.evaluate_box(scene_.shape_parameters, &batch);
   work.lists.clear();
   if (!place_boxes(chunk, work)) {
@@ -31,7 +31,7 @@ void ParticleStep<D, T, Components>::evaluate_boxes(const Chunk& chunk, Work& wo
     for (int first = 0; first < chunk.end; first += ListWork<D, T>::lanes)
       entry = evaluate_lists_between_boxes(chunk, work, first, entry, gradients);
   }
-  if (scene_.plan.second_moment) invert_moments(chunk, work);
+  if (scene_.plan.stencil.second_moment) invert_moments(chunk, work);
 }
 
 /// Widths that the kernels have, places in the tile and what the boxes reach; false when a particle has no box there.

@@ -45,13 +45,13 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
     }
     if (scene.plan.basis_functions > 0)
       work.higher.require(std::size_t(scene.plan.basis_functions) * D * chunk_size<T>);
-    if (scene.plan.fused && scene.has(MPM_REPLACES_MOTION))
+    if (scene.plan.fused() && scene.has(MPM_REPLACES_MOTION))
       work.passing_motion.require(std::size_t(D + transfer_components) * chunk_size<T>);
-    if (!scene.plan.filter && !scene.experiment.has_temperature()) continue;
+    if (!scene.plan.filters() && !scene.experiment.has_temperature()) continue;
     work.scratch_velocity.require(std::size_t(D) * chunk_size<T>);
     work.scratch_state.require(std::size_t(std::max(transfer_components, 1)) * chunk_size<T>);
   }
-  measures_drift_ = !scene.list && !scene.plan.particle_domain;
+  measures_drift_ = !scene.list && !scene.plan.particle_field(0, "domain");
   for (int axis = 0; axis < D; ++axis) measures_drift_ = measures_drift_ && !scene.domain.periodic(axis);
   if (measures_drift_) find_first_places();
 }
@@ -74,7 +74,7 @@ void ParticleStep<D, T, Components>::find_first_places() {
                                 work.offset,
                                 work.weight,
                                 nullptr,
-                                scene_.plan.second_moment ? work.second_moment : nullptr};
+                                scene_.plan.stencil.second_moment ? work.second_moment : nullptr};
     Components::evaluate_shape(scene_, batch);
     for (int axis = 0; axis < D; ++axis) {
       const std::int32_t* const base = work.base + axis * chunk_size<T>;
@@ -204,7 +204,7 @@ template <int D, class T, class Components>
 [[gnu::noinline]] void ParticleStep<D, T, Components>::evaluate_shape(const Chunk& chunk, Work& work, bool gradients) {
   if (scene_.evaluate_box) return evaluate_boxes(chunk, work, gradients);
   if (scene_.list) return evaluate_lists(chunk, work, gradients);
-  const bool moments = scene_.plan.second_moment;
+  const bool moments = scene_.plan.stencil.second_moment;
   const mpm_shape_batch batch{static_cast<std::uint32_t>(chunk.end),
                               chunk_size<T>,
                               D,

@@ -42,7 +42,7 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
   if (moved) account_for_move();
   failure_.raise();
   Gathered sum;
-  if (!accounted_ && !scene_.plan.heat_ledger) return sum;  // blocks lie with the threads that worked on them
+  if (!accounted_ && !scene_.plan.has_heat_ledger()) return sum;  // blocks lie with the threads that worked on them
   for (const auto& particles : particles_)
     for (const Block<D>& block : particles.blocks) {
       sum.kinetic_energy += block.kinetic_energy;

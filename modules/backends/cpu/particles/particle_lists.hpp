@@ -22,7 +22,7 @@ void ParticleStep<D, T, Components>::evaluate_list_batch(const Chunk& chunk, Wor
   const bool corners = chunk.particles.corners >= 0;
   if (corners) copy(chunk.at(chunk.particles.corners), (1 << D) * D, lists.corners);
   if (scene_.half_size) copy(chunk.particles.half_size.data(), D, lists.half_size);
-  const bool moments = scene_.plan.second_moment;
+  const bool moments = scene_.plan.stencil.second_moment;
   const mpm_list_batch batch{lanes,
                              lanes,
                              D,
@@ -41,7 +41,7 @@ void ParticleStep<D, T, Components>::evaluate_list_batch(const Chunk& chunk, Wor
 
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::keep_moment(Work& work, int first_lane, int lane) const {
-  if (!scene_.plan.second_moment) return;
+  if (!scene_.plan.stencil.second_moment) return;
   for (int c = 0; c < D * D; ++c)
     work.second_moment[c * chunk_size<T> + first_lane + lane] =
         work.lists.second_moment[c * ListWork<D, T>::lanes + lane];
@@ -60,7 +60,7 @@ void ParticleStep<D, T, Components>::evaluate_lists(const Chunk& chunk, Work& wo
       entry = keep_list(chunk, work, first, lane, entry, gradients);
     }
   }
-  if (scene_.plan.second_moment) invert_moments(chunk, work);
+  if (scene_.plan.stencil.second_moment) invert_moments(chunk, work);
 }
 
 /// The grid's multilinear velocity at a corner, whose nodes the particle's list has made sure of.

@@ -1,0 +1,11 @@
+#pragma once
+// What a scene needs of memory, before anything is allocated.
+
+#include "plan/plan.hpp"
+
+namespace mpm {
+
+/// Fills in the plan's estimates. Throws InputError where the machine, or its control group, has too little memory.
+void estimate_memory(Plan& plan, const Experiment& experiment);
+
+}  // namespace mpm

@@ -1,0 +1,183 @@
+// What each component of a scene keeps at nodes.
+
+#include <algorithm>
+
+#include "experiment/thermal.hpp"
+#include "plan/field_list.hpp"
+
+namespace mpm {
+
+Field& FieldList::of_nodes(const std::string& id, const std::string& unit, int components, const std::string& because,
+                           const std::string& beside) {
+  Field field;
+  field.id = id, field.name = id, field.unit = unit;
+  field.owner = Owner::node, field.lifetime = Lifetime::step;
+  field.components = components;
+  field.beside = beside;
+  if (beside.empty()) field.bytes = 4 * scalar_bytes() * experiment.field_count;
+  field.because = because;
+  plan.fields.push_back(field);
+  return plan.fields.back();
+}
+
+Field& FieldList::summed(const std::string& id, const std::string& unit, int components, AtWall at_wall, Folded folded,
+                         const std::string& because, const std::string& beside) {
+  Field& field = of_nodes(id, unit, components, because, beside);
+  field.at_wall = at_wall, field.folded = folded, field.cleared = true;
+  return field;
+}
+
+void FieldList::in_place_of(const std::string& other, Field& field) const {
+  if (needs.keeps_all_apart) return;
+  field.in_place_of = other;
+  field.bytes = 0;
+}
+
+namespace {
+
+bool gathers_increment(const Experiment& experiment) {
+  return experiment.transfer.plugin->transfer().traits & MPM_GATHERS_INCREMENT;
+}
+
+std::string why_for_ledger(const Plan& plan) {
+  const std::string every = std::to_string(plan.ledger_every);
+  return "/output/ledger: work of the forces" + (plan.ledger_every > 1 ? ", in one step of " + every : "");
+}
+
+void transfer_fields(FieldList& fields) {
+  const int D = fields.experiment.dimension;
+  const std::string transfer = FieldList::named(fields.experiment.transfer) + ": every transfer";
+  fields.summed("momentum", "kg m/s", D, AtWall::momentum, Folded::with_mass, transfer);
+  fields.summed("mass", "kg", 1, AtWall::even, Folded::with_mass, transfer, "momentum");
+  fields.in_place_of("momentum", fields.of_nodes("velocity", "m/s", D, transfer));
+}
+
+void fused_fields(FieldList& fields) {
+  if (!fields.plan.fused()) return;
+  const std::string fused = "/solver/passes: gather and scatter are one";
+  fields.of_nodes("next_momentum", "kg m/s", fields.experiment.dimension, fused);
+  fields.of_nodes("next_mass", "kg", 1, fused, "next_momentum");
+}
+
+void filter_fields(FieldList& fields) {
+  if (!fields.plan.filters()) return;
+  const Experiment& experiment = fields.experiment;
+  const int D = experiment.dimension;
+  const std::string filter = FieldList::named(*experiment.filter);
+  fields.of_nodes("increment", "m/s", D, filter);
+  if (fields.plan.does(Act::project)) fields.of_nodes("projection", "kg m/s", D, filter);
+  const bool constrains_always = experiment.filter_schedule.constrain_always;
+  if (fields.plan.does(Act::project) && constrains_always) {
+    Field& trial = fields.of_nodes("trial_velocity", "m/s", D, filter + ": before conditions and contact");
+    trial.lifetime = Lifetime::pass;
+    fields.in_place_of("projection", trial);
+  }
+  const Operator* keeps = fields.plan.find(Act::keep_velocity);
+  if (keeps) fields.of_nodes("unfiltered_velocity", "m/s", D, keeps->because);
+  if (!constrains_always || !(fields.plan.resolves_contact() || experiment.separates())) return;
+  const std::string because = filter + ": an increment may take back what a one-sided law gave";
+  fields.of_nodes("velocity_of_constraints", "m/s", D, because).name = "velocity that conditions and contact added";
+  if (keeps)
+    fields.of_nodes("unfiltered_velocity_of_constraints", "m/s", D, because).name =
+        "the same of the unfiltered velocity";
+}
+
+void increment_fields(FieldList& fields) {
+  const bool gathered = gathers_increment(fields.experiment);
+  if (!gathered && !fields.plan.has_ledger() && !fields.needs.keeps_all_apart) return;
+  Field& before =
+      fields.of_nodes("velocity_before", "m/s", fields.experiment.dimension,
+                      gathered ? FieldList::named(fields.experiment.transfer) + ": gathers the change of velocity"
+                      : fields.plan.has_ledger() ? why_for_ledger(fields.plan)
+                                                 : fields.why_apart());
+  before.cleared = true, before.for_ledger = !gathered;
+}
+
+/// Who asks for a force that is not merged into the momentum; empty where nobody in the scene does.
+std::string why_separate_force(const FieldList& fields) {
+  const Experiment& experiment = fields.experiment;
+  if (gathers_increment(experiment)) return FieldList::named(experiment.transfer) + ": gathers the change of velocity";
+  if (fields.plan.resolves_contact())
+    return FieldList::named(*experiment.contact) + ": acts before and after the forces";
+  if (experiment.body_force) return experiment.body_force_pointer + ": work of the forces";
+  if (fields.plan.pass_of(Act::strain)->stage == Stage::before_forces)
+    return asker(fields.plan.find(Act::scatter_force)->because) + ": stress after the momenta";
+  if (fields.plan.filters() && fields.plan.pass_of(Act::begin_filter)->stage == Stage::before_forces)
+    return FieldList::named(*experiment.filter) + ": filters before the forces";
+  if (experiment.separates()) return "/grid/boundaries \"separate\": the wall predicts with the forces";
+  return "";
+}
+
+void force_fields(FieldList& fields) {
+  const Experiment& experiment = fields.experiment;
+  const int D = experiment.dimension;
+  const std::string why = why_separate_force(fields);
+  const bool for_ledger = why.empty() && fields.plan.has_ledger();
+  if (!why.empty() || for_ledger || fields.needs.keeps_all_apart)
+    fields
+        .summed("force", "N", D, AtWall::vector, Folded::with_force,
+                !why.empty() ? why
+                : for_ledger ? why_for_ledger(fields.plan)
+                             : fields.why_apart())
+        .for_ledger = for_ledger;
+  if (experiment.body_force)
+    fields.summed("body_force", "N", D, AtWall::vector, Folded::with_force,
+                  experiment.body_force_pointer + ": its work is accounted for apart");
+  if (fields.needs.keeps_weight_apart)
+    fields.summed("weight", "N", D, AtWall::vector, Folded::with_force, "/gravity: its work is accounted for apart");
+}
+
+void contact_fields(FieldList& fields) {
+  if (!fields.plan.resolves_contact()) return;
+  const int D = fields.experiment.dimension;
+  const std::string& contact = fields.experiment.contact->pointer;
+  const std::string normal = contact + "/normal \"average_volume_gradient\"";
+  fields.summed("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, normal);
+  fields.summed("volume", "m^3", 1, AtWall::even, Folded::with_mass, normal, "volume_gradient");
+  fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass,
+                contact + "/detection \"approach_and_position\"");
+}
+
+/// What a wall that heat comes through asks for.
+void heated_wall_fields(FieldList& fields, const std::string& wall) {
+  fields.summed("heated_volume", "m^3", 1, AtWall::even, Folded::with_mass,
+                wall + ": makes the area of the wall that a node stands for");
+  fields.summed("volume_conductivity", "W m^2/K", 1, AtWall::even, Folded::with_mass,
+                wall + ": makes the gradient of the temperature at the wall", "heated_volume");
+  const Component& transfer = fields.experiment.transfer;
+  if ((transfer.plugin->transfer().traits & MPM_SCATTERS_AFFINE) == 0)
+    fields.summed("capacity_position", "J m/K", fields.experiment.dimension, AtWall::slip, Folded::with_mass,
+                  wall + ": " + FieldList::named(transfer) + " carries no gradient to the mirror image");
+}
+
+void temperature_fields(FieldList& fields) {
+  const Experiment& experiment = fields.experiment;
+  if (!experiment.has_temperature()) return;
+  const std::string because = experiment.materials[experiment.bodies[0].material].thermal->pointer;
+  fields.summed("heat", "J", 1, AtWall::heat, Folded::with_mass, because);
+  fields.summed("heat_capacity", "J/K", 1, AtWall::even, Folded::with_mass, because, "heat");
+  fields.in_place_of("heat", fields.of_nodes("temperature", "K", 1, because));
+  fields.summed("heat_rate", "W", 1, AtWall::heat_rate, Folded::with_force, because);
+  const bool gathered = gathers_increment(experiment);
+  if (gathered || fields.needs.keeps_all_apart)
+    fields
+        .of_nodes("temperature_before", "K", 1,
+                  gathered ? FieldList::named(experiment.transfer) + ": gathers the change of temperature"
+                           : fields.why_apart())
+        .cleared = true;
+  for (const auto& faces : experiment.faces)
+    for (const FaceCondition& face : faces)
+      if (passes_heat(face)) return heated_wall_fields(fields, face.thermal.pointer);
+}
+
+}  // namespace
+
+void declare_node_fields(FieldList& fields) {
+  for (const auto declare : {transfer_fields, fused_fields, filter_fields, increment_fields, force_fields,
+                             contact_fields, temperature_fields})
+    declare(fields);
+  for (Field& field : fields.plan.fields)
+    if (field.name == field.id) std::replace(field.name.begin(), field.name.end(), '_', ' ');
+}
+
+}  // namespace mpm

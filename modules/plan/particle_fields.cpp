@@ -1,0 +1,148 @@
+// What each component of a scene keeps with a particle. The order of the components is that of the places in a
+// particle's memory: what a gather may replace stands together.
+
+#include "plan/field_list.hpp"
+
+namespace mpm {
+
+Field& FieldList::of_particles(int body, const std::string& id, const std::string& unit, int components, First first,
+                               const std::string& because) {
+  Field field;
+  field.id = id, field.name = id, field.unit = unit;
+  field.owner = Owner::particle, field.body = body;
+  field.components = components, field.first = first;
+  field.bytes = components * scalar_bytes();
+  field.because = because;
+  plan.fields.push_back(field);
+  return plan.fields.back();
+}
+
+namespace {
+
+/// The state that a plugin declares.
+void state_fields(FieldList& fields, int body, const Component& component, Origin origin) {
+  const Experiment& experiment = fields.experiment;
+  for (const mpm_state& declared : component.plugin->state()) {
+    const First first = declared.initial == MPM_INITIAL_ZERO    ? First::zero
+                        : declared.initial == MPM_INITIAL_ONE   ? First::one
+                        : declared.shape == MPM_STATE_SYMMETRIC ? First::symmetric_identity
+                                                                : First::identity;
+    const int components = state_components(kept_shape(declared, experiment.axisymmetric()), experiment.dimension);
+    fields
+        .of_particles(body, declared.name, declared.unit, components, first,
+                      FieldList::named(component) + ": " + declared.doc)
+        .origin = origin;
+  }
+}
+
+void body_fields(FieldList& fields, int body) {
+  const int D = fields.experiment.dimension;
+  const std::string every = fields.experiment.bodies[body].pointer + ": every particle";
+  fields.of_particles(body, "position", "m", D, First::seeded, every);
+  fields.of_particles(body, "velocity", "m/s", D, First::seeded, every);
+}
+
+void transfer_fields(FieldList& fields, int body) {
+  const Component& transfer = fields.experiment.transfer;
+  state_fields(fields, body, transfer, Origin::transfer);
+  if (const int functions = fields.plan.basis_functions; functions > 0)
+    fields
+        .of_particles(
+            body, polynomial_coefficients, "m/s", fields.experiment.dimension * functions, First::zero,
+            FieldList::named(transfer) + ": " + std::to_string(functions) + " polynomials beyond the affine ones")
+        .origin = Origin::transfer;
+}
+
+void material_fields(FieldList& fields, int body) {
+  const Experiment& experiment = fields.experiment;
+  state_fields(fields, body, experiment.materials[experiment.bodies[body].material].component, Origin::material);
+}
+
+/// The transfer acts on the temperature as on the first component of a velocity, of a particle whose mass is its heat
+/// capacity: of its state a matrix keeps one row, a vector one scalar.
+void temperature_fields(FieldList& fields, int body) {
+  const Experiment& experiment = fields.experiment;
+  const auto& thermal = experiment.materials[experiment.bodies[body].material].thermal;
+  if (!thermal) return;
+  fields.of_particles(body, "temperature", "K", 1, First::seeded, thermal->pointer);
+  for (const mpm_state& declared : experiment.transfer.plugin->state())
+    fields.of_particles(body, temperature_state + std::string(declared.name), "K/m",
+                        declared.shape == MPM_STATE_MATRIX ? experiment.dimension : 1, First::zero,
+                        FieldList::named(experiment.transfer) + ": acts on the temperature too");
+  if (thermal->phase_change)
+    fields.of_particles(body, "melted_fraction", "", 1, First::seeded, thermal->phase_change->pointer);
+}
+
+void backend_fields(FieldList& fields, int body) {
+  if (fields.needs.sorts)
+    fields
+        .of_particles(body, "identity", "", 1, First::seeded,
+                      fields.experiment.bodies[body].pointer + ": results keep the order of seeding")
+        .bytes = 4;
+}
+
+void symmetry_fields(FieldList& fields, int body) {
+  if (fields.experiment.axisymmetric())
+    fields.of_particles(body, "circumference", "m", 1, First::seeded,
+                        "/grid/symmetry \"axisymmetric\": a particle is a ring of volume and mass times 2 pi r");
+}
+
+void output_fields(FieldList& fields, int body) {
+  const Experiment& experiment = fields.experiment;
+  const bool force_asks = experiment.body_force && experiment.body_force->uses_initial_position();
+  if (!experiment.exact && !force_asks && experiment.output.colour_by != "displacement") return;
+  const std::string because = experiment.exact ? experiment.exact->pointer + ": errors are measured at X"
+                              : force_asks     ? experiment.body_force_pointer + ": the force depends on X"
+                                               : "/output/colour_by \"displacement\"";
+  fields.of_particles(body, "initial_position", "m", experiment.dimension, First::seeded, because).lifetime =
+      Lifetime::seeded;
+}
+
+/// Where a step strains between the gather and the move, what the gather found waits for the move.
+void waiting_field(FieldList& fields, int body, const std::string& id, const std::string& unit, int components,
+                   First first, const std::string& what) {
+  const Operator& move = *fields.plan.find(Act::move);
+  const bool waits = !fields.plan.pass_of(Act::gather)->has(Act::move);
+  if (!waits && !fields.needs.keeps_all_apart) return;
+  fields
+      .of_particles(body, id, unit, components, first,
+                    waits ? asker(move.because) + ": " + what + " wait for the remapped strain" : fields.why_apart())
+      .lifetime = Lifetime::step;
+}
+
+void move_fields(FieldList& fields, int body) {
+  waiting_field(fields, body, "advection_velocity", "m/s", fields.experiment.dimension, First::zero, "positions");
+}
+
+void shape_fields(FieldList& fields, int body) {
+  const Experiment& experiment = fields.experiment;
+  const int D = experiment.dimension, corners = D * fields.plan.sample_points;
+  const std::string shape = FieldList::named(experiment.shape);
+  if (corners > 0) {
+    fields.of_particles(body, "corners", "cells", corners, First::half_size_corners, shape + ": corners of the domain");
+    waiting_field(fields, body, "moved_corners", "cells", corners, First::half_size_corners, "corners");
+  }
+  if ((experiment.shape.plugin->descriptor->needs & MPM_NEEDS_DOMAIN) == 0) return;
+  fields.of_particles(body, "domain", "cells", D * D, First::half_size_diagonal,
+                      shape + ": semi-side vectors of the particle's domain");
+  // The reference backend keeps the stencils of a step; the others evaluate them anew in every pass.
+  const Pass& strain = *fields.plan.pass_of(Act::strain);
+  if (!fields.needs.forgets_stencils || strain.remap() || strain.has(Act::gather)) return;
+  const bool by_order = strain.stage == Stage::before_forces;
+  fields
+      .of_particles(body, "strained_domain", "cells", D * D, First::half_size_diagonal,
+                    (by_order ? asker(strain.operators.front().because) : FieldList::named(*experiment.filter)) +
+                        ": the weights of a step stay those before its strain")
+      .lifetime = Lifetime::step;
+}
+
+}  // namespace
+
+void declare_particle_fields(FieldList& fields) {
+  for (int body = 0; body < static_cast<int>(fields.experiment.bodies.size()); ++body)
+    for (const auto declare : {body_fields, transfer_fields, material_fields, temperature_fields, backend_fields,
+                               symmetry_fields, output_fields, move_fields, shape_fields})
+      declare(fields, body);
+}
+
+}  // namespace mpm
