@@ -1,34 +1,34 @@
 #pragma once
-// The edges of the domain and boxes of nodes: who holds what, and how a mirror image is added and taken. The policy is
-// told in simulation/boundary.hpp. A velocity may be one component, a vector of them, or a pack of several nodes.
+// Formulas at the edges of the domain and in boxes of nodes: who holds what, and how mirror images are added and taken.
+// simulation/boundary.hpp states the policy. A velocity may be a component, a vector, or a pack of nodes.
 
 #include "kernel/config.hpp"
 
 namespace mpm {
 
-/// A condition's kind, in the order of ConditionType (simulation/boundary.hpp checks it).
+/// The kind of a condition, in the order of ConditionType, which simulation/boundary.hpp checks.
 enum Wall : int { wall_free = 0, wall_stick, wall_slip, wall_separate, wall_prescribed, wall_periodic };
 
-/// How a field is folded at a wall, in the order of AtWall.
+/// The rule by which a wall folds a field, in the order of AtWall.
 enum Rule : int { rule_none = 0, rule_even, rule_momentum, rule_vector, rule_heat, rule_heat_rate, rule_slip };
 
-/// Sign with which component `component` of a vector is mirrored at a wall normal to `axis`; images at periodic faces
-/// are taken as they are.
+/// Returns the sign with which a wall normal to `axis` mirrors component `component` of a vector. Images at periodic
+/// faces are taken as they are.
 MPM_HD constexpr int mirror_sign(int wall, int axis, int component) {
   if (wall == wall_periodic) return 1;
   if (wall == wall_stick || wall == wall_prescribed) return -1;
   return component == axis ? -1 : 1;
 }
 
-/// The same of a field with this rule, at a wall that is held at a temperature or not.
+/// Returns the sign for a field with this rule, at a wall that may be held at a temperature.
 MPM_HD constexpr int mirror_sign(int rule, int wall, bool holds_temperature, int axis, int component) {
   if (wall == wall_periodic || rule == rule_none || rule == rule_even) return 1;
   if (rule == rule_heat || rule == rule_heat_rate) return holds_temperature ? -1 : 1;
   return mirror_sign(rule == rule_slip ? int(wall_slip) : wall, axis, component);
 }
 
-/// Whether what is mirrored is relative to what the wall's own velocity or temperature makes of the ghost's mass or heat
-/// capacity.
+/// Whether a field is mirrored relative to the wall, that is, to the momentum or heat that the ghost would have with
+/// the wall's own velocity or temperature.
 MPM_HD constexpr bool is_relative_to_wall(int rule) {
   return rule == rule_momentum || rule == rule_heat;
 }
@@ -43,7 +43,7 @@ MPM_HD constexpr bool has_images(int wall) {
   return folds(wall) || wall == wall_periodic;
 }
 
-/// Node that a node of an axis with images is added to: itself, unless it lies beyond a face.
+/// The node that a node of an axis with images is added to: itself, unless it lies beyond a face.
 MPM_HD constexpr int image_of(int node, int cells, bool periodic) {
   if (periodic) return ((node % cells) + cells) % cells;
   return node < 0 ? -node : node > cells ? 2 * cells - node : node;
@@ -54,13 +54,13 @@ MPM_HD constexpr bool holds(int wall, int axis, int component) {
   return folds(wall) && mirror_sign(wall, axis, component) < 0;
 }
 
-/// A value as its mirror image shows it: with the wall's sign, relative to the value of the wall itself.
+/// The mirror image of a value: it has the wall's sign and is relative to the value of the wall itself.
 template <class V, class Sign>
 MPM_HD V mirrored(V value, Sign sign, V of_wall) {
   return of_wall + sign * (value - of_wall);
 }
 
-/// The velocity that a node will have after the forces; folding of separating walls goes by it.
+/// The velocity that a node will have after the forces, by which separating walls decide whether they fold.
 template <class V, class M, class S>
 MPM_HD V predicted_velocity(V momentum, V force, M mass, S dt) {
   return (momentum + dt * force) / mass;

@@ -1,7 +1,7 @@
 #pragma once
-// What happens to the velocity of a node between scatter and gather, and the work of it. A velocity V may be one
-// component, a vector of them, or a pack of several nodes; products are taken component by component. M is the mass, one
-// number or the same one in every component.
+// Formulas for the velocity of a node between scatter and gather, and for the work done on it. A velocity V may be one
+// component, a vector of them, or a pack of several nodes; products are taken component by component. M is the mass,
+// one number or the same one in every component.
 
 #include "kernel/config.hpp"
 
@@ -12,7 +12,7 @@ MPM_HD V velocity_of(V momentum, M mass) {
   return momentum / mass;
 }
 
-/// v + dt (f / m + g).
+/// The velocity after the forces and gravity: v + dt (f / m + g).
 template <class V, class M, class S>
 MPM_HD V accelerated(V velocity, V force, M mass, V gravity, S dt) {
   return velocity + dt * (force / mass + gravity);
@@ -30,19 +30,19 @@ MPM_HD V twice_kinetic_energy(V velocity, M mass) {
   return mass * (velocity * velocity);
 }
 
-/// What a force works at, per unit of it: the mean of the velocities before and after the forces.
+/// The velocity at which a force does work: the mean of the velocities before and after the forces.
 template <class V>
 MPM_HD V mean_velocity(V before, V after) {
   return 0.5 * (before + after);
 }
 
-/// Work of what the forces do not explain of a change of velocity: of the reactions of conditions and contact.
+/// The work of the reactions of conditions and contact: of the change of velocity that the forces do not explain.
 template <class V, class M, class S>
 MPM_HD V work_of_reaction(V before, V after, M mass, V force, V mean, S dt) {
   return (mass * (after - before) - dt * force) * mean;
 }
 
-/// Work of an impulse that changes a velocity at once.
+/// The work of an impulse that changes a velocity at once.
 template <class V, class S>
 MPM_HD V work_of_impulse(S impulse, V before, V after) {
   return 0.5 * impulse * (before + after);
