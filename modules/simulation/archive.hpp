@@ -13,7 +13,7 @@
 
 namespace mpm {
 
-/// The bytes are not those the reader expects: another version, another experiment, or damage.
+/// Thrown when the bytes are not those that the reader expects: another version, another experiment, or damage.
 class ArchiveError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -36,7 +36,7 @@ class ArchiveWriter {
   const std::vector<char>& bytes() const { return bytes_; }
 
  private:
-  // Not inlined: g++ 12 warns of writes beyond the end of a vector whose growth it has lost track of.
+  // This is not inlined, as g++ 12 warns of writes beyond the end of a vector whose growth it has lost track of.
   [[gnu::noinline]] void put_bytes(std::string_view tag, const void* data, std::size_t size, std::size_t count) {
     const std::uint64_t head[3] = {tag.size(), size, count};
     append(head, sizeof head);
@@ -54,7 +54,7 @@ class ArchiveReader {
  public:
   explicit ArchiveReader(std::span<const char> bytes) : bytes_(bytes) {}
 
-  /// All throw ArchiveError when the next value has another tag, size or count.
+  /// Reads what was put. All overloads throw ArchiveError when the next value has another tag, size or count.
   template <class T>
   requires std::is_trivially_copyable_v<T>
   void get(std::string_view tag, T& value) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a backend offers the step: passes of the plan, the particles as doubles, and what it measured on the way.
+// A backend executes the passes of the plan, gives the particles as doubles, and says what it measured on the way.
 
 #include <algorithm>
 #include <array>
@@ -17,19 +17,19 @@
 
 namespace mpm {
 
-/// Some particles of a body as seeded, one after another.
+/// Consecutive particles of a body, as they were seeded.
 struct SeedBatch {
   std::size_t first = 0, count = 0;  ///< in the order of seeding
   const double* position = nullptr;  ///< count*dimension, m, particle-major
   const double* velocity = nullptr;  ///< count*dimension, m/s
-  /// count*dimension*dimension, 1/s, row = component: gradient of the initial velocity. Starts the affine velocity of
-  /// transfers that carry one (MPM_AFFINE_CARRIES_ENERGY, MPM_STARTS_WITH_GRADIENT: state 0), so that no spin is lost
-  /// in the first step; its antisymmetric part with MPM_KEEPS_SPIN_ONLY; null otherwise.
+  /// The gradient of the initial velocity, count*dimension*dimension, 1/s, row = component. It starts the affine
+  /// velocity of transfers that carry one (MPM_AFFINE_CARRIES_ENERGY, MPM_STARTS_WITH_GRADIENT: state 0), so that no
+  /// spin is lost in the first step. With MPM_KEEPS_SPIN_ONLY it is the antisymmetric part; else it is null.
   const double* velocity_gradient = nullptr;
   /// Other fields of the plan that start as seeded, by id; count*components, particle-major.
   std::vector<std::pair<std::string, const double*>> others = {};
 
-  /// What a particle field of the host starts as; null where the seeds do not say.
+  /// The values that a particle field of the host starts with; null where the seeds have none.
   const double* values(std::string_view field) const {
     if (field == "position" || field == "initial_position") return position;
     if (field == "velocity") return velocity;
@@ -39,13 +39,13 @@ struct SeedBatch {
   }
 };
 
-/// All of them: position, velocity, velocity_gradient as in SeedBatch.
+/// The seeds of all particles of a body, in arrays as in SeedBatch.
 struct SeedArrays {
   std::vector<double> position, velocity, velocity_gradient;
 };
 
-/// The particles of one body as seeded: all of one volume and mass. They are made batch by batch when a backend asks,
-/// so that no second copy of a large body is ever held.
+/// The particles of one body as they were seeded, all of one volume and mass. They are made batch by batch when a
+/// backend asks, so that no second copy of a large body is ever held.
 struct SeededBody {
   double volume = 0;  ///< initial, m^3 (m^2 per metre of depth in 2-D, of circumference in axisymmetric scenes)
   double mass = 0;    ///< kg
@@ -54,9 +54,8 @@ struct SeededBody {
   std::function<void(const std::function<void(const SeedBatch&)>&)> make;
 
   std::size_t count() const { return particles; }
-  /// Calls visit(batch) in the order of seeding; the same batches each time.
+  /// Calls visit(batch) in the order of seeding, with the same batches each time.
   void for_each_batch(const std::function<void(const SeedBatch&)>& visit) const { make(visit); }
-  /// Particles in place of those that it had.
   void replace(SeedArrays all) {
     particles = all.position.size() / dimension;
     with_gradient = !all.velocity_gradient.empty();
@@ -65,7 +64,7 @@ struct SeededBody {
              all.velocity_gradient.empty() ? nullptr : all.velocity_gradient.data()});
     };
   }
-  /// All particles' values of a field that starts as seeded; empty where the seeds do not say.
+  /// The values of all particles in a field that starts as seeded; empty where the seeds have none.
   std::vector<double> values(const Field& field) const {
     std::vector<double> all;
     for_each_batch([&](const SeedBatch& batch) {
@@ -74,7 +73,7 @@ struct SeededBody {
     });
     return all;
   }
-  /// For backends that keep doubles anyway.
+  /// Collects all seeds at once, for backends that keep doubles anyway.
   SeedArrays arrays() const {
     SeedArrays all;
     for_each_batch([&](const SeedBatch& batch) {
@@ -89,24 +88,24 @@ struct SeededBody {
   }
 };
 
-/// State of one body in doubles, particle-major, in the order of seeding, whatever the backend's own order and
+/// The state of one body in doubles, particle-major, in the order of seeding, whatever the backend's own order and
 /// precision.
 struct BodyState {
   std::vector<double> position, velocity, initial_position;                   ///< m, m/s, m (empty unless planned)
   std::map<std::string, std::vector<double>> transfer_state, material_state;  ///< by declared field name
-  // velocity and transfer_state may be empty after a step that is not observed
-  double volume = 0, mass = 0;        ///< of a particle; in axisymmetric scenes per metre of circumference
+  // Velocity and transfer_state may be empty after a step that is not observed.
+  double volume = 0, mass = 0;        ///< values of one particle; in axisymmetric scenes per metre of circumference
   std::vector<double> circumference;  ///< n, m: 2 pi r as seeded; empty unless axisymmetric
   double ring(std::size_t p) const { return circumference.empty() ? 1.0 : circumference[p]; }
   std::vector<double> domain;  ///< n*dimension*dimension, m, columns are semi-sides; empty unless Plan::particle_domain
-  /// n*points*dimension, m from the particle: corners of its domain; empty unless Plan::sample_points.
+  /// The corners of each particle's domain, n*points*dimension, m from the particle; empty unless Plan::sample_points.
   std::vector<double> corners;
-  /// n*dimension*dimension, m^2: second moment of the shape at the particle's position; empty unless
+  /// The second moment of the shape at each particle's position, n*dimension*dimension, m^2; empty unless
   /// Plan::second_moment.
   std::vector<double> second_moment;
   std::map<std::string, std::vector<double>> host_state;  ///< by id: saved fields without a member of their own
 
-  /// Where the values of a particle field stand.
+  /// The array that holds the values of a particle field.
   std::vector<double>& of(const Field& field) {
     if (field.origin == Origin::transfer) return transfer_state[field.id];
     if (field.origin == Origin::material) return material_state[field.id];
@@ -119,7 +118,7 @@ struct BodyState {
   }
 };
 
-/// Energy given to the kinetic energy by each cause, J, accumulated over the steps that the ledger takes. Each is
+/// The energy that each cause has given to the kinetic energy, J, summed over the steps that the ledger takes. Each is
 /// computed from its own impulses and velocities, never as what the others leave over (docs/method.md, the ledger).
 struct Ledger {
   double scatter = 0, gather = 0;      ///< exact differences of kinetic energy across the transfers
@@ -132,12 +131,12 @@ struct Ledger {
 
   Ledger plus(const Ledger& other) const;
   Ledger times(double factor) const;
-  /// Change of the total energy that the causes explain. In this order, on which the residual's rounding depends.
+  /// The change of the total energy that the causes explain. The residual's rounding depends on the order of this sum.
   double explained() const { return scatter + gather + filter + boundary + contact + body_force - material; }
 };
 
-/// An entry of a ledger and what it is called. Sums, files and tests go over these lists: a new entry is a member and a
-/// line here, and one without its line does not compile.
+/// An entry of a ledger with its name. Sums, files and tests go over the lists of entries: a new entry is a member and
+/// a line here, and a member without its line does not compile.
 template <class AnyLedger>
 struct LedgerEntry {
   const char* name;
@@ -161,15 +160,15 @@ inline Ledger Ledger::times(double factor) const {
   return product;
 }
 
-/// What the filter did in the last step that it acted in.
+/// A record of what the filter did in the last step in which it acted.
 struct FilterRecord {
   long iterations = 0;
   double first_norm = 0,
-         last_norm = 0;       ///< mass norm of the increment, sqrt(sum m v*.v*), kg^1/2 m/s: at the begin, now
-  double largest_growth = 0;  ///< over the run: largest ratio of a norm to the one before; above 1 a constraint or a
+         last_norm = 0;       ///< mass norm of the increment, sqrt(sum m v*.v*), kg^1/2 m/s: at the start, now
+  double largest_growth = 0;  ///< largest ratio over the run of a norm to the one before; above 1 a constraint or a
                               ///< negative weight has broken the contraction
 
-  /// Takes the norm after one more pass. Growth of what is rounding already (relative to the first norm) says nothing.
+  /// Takes the norm after one more pass. Growth of what is rounding already (relative to the first norm) is ignored.
   void take_norm(double norm, double rounding = 1e-12) {
     if (last_norm > rounding * first_norm) largest_growth = std::max(largest_growth, norm / last_norm);
     last_norm = norm;
@@ -177,7 +176,7 @@ struct FilterRecord {
   }
 };
 
-/// What contact did, last step and in total. Forces act on the pair's first body.
+/// A record of what contact did, in the last step and in total. Forces act on the pair's first body.
 struct ContactRecord {
   std::array<double, 3> force{};  ///< N, normal and tangential impulses after the forces over dt, last step
   long nodes = 0, sticking = 0, slipping = 0;  ///< last step
@@ -185,17 +184,17 @@ struct ContactRecord {
   double momentum_residual = 0;                ///< kg m/s, sum of the pair's impulses: zero to rounding
 };
 
-/// Heat that came and went, J, since the run began. Each row is summed where it is applied; content and latent heat of
-/// the particles change by the sum of all rows.
+/// The heat that came and went since the run began, J. Each row is summed where the heat is applied; content and latent
+/// heat of the particles change by the sum of all rows.
 struct HeatLedger {
   double scatter = 0;      ///< heat of the nodes less that of the particles that gave it
-  double images = 0;       ///< what mirrored heat and held nodes make of it before the step; FLIP takes that back
+  double images = 0;       ///< change by mirrored heat and held nodes before the step, which FLIP takes back
   double gather = 0;       ///< heat of the particles less that of the nodes that they took it from
-  double walls = 0;        ///< from walls that are held at a temperature
-  double flux = 0;         ///< through walls with a heat flux
-  double convection = 0;   ///< through walls with convection
-  double boxes = 0;        ///< heating of boxes of nodes, and what holds their temperature
-  double dissipation = 0;  ///< of the energy that materials dissipate, the share that warms them
+  double walls = 0;        ///< heat from walls that are held at a temperature
+  double flux = 0;         ///< heat through walls with a heat flux
+  double convection = 0;   ///< heat through walls with convection
+  double boxes = 0;        ///< heat into boxes of nodes, and what holds their temperature
+  double dissipation = 0;  ///< share of the energy dissipated by the materials that warms them
   double sum() const;
 };
 inline constexpr LedgerEntry<HeatLedger> heat_ledger_entries[] = {
@@ -211,7 +210,7 @@ inline double HeatLedger::sum() const {
   return sum;
 }
 
-/// J, in the order of the entries.
+/// The entries as rows, J, in the order of the lists.
 inline std::vector<ValueRow> rows_of(const Ledger& ledger) {
   std::vector<ValueRow> rows;
   for (const auto& [name, value] : ledger_entries) rows.push_back({name, "J", ledger.*value});
@@ -222,7 +221,7 @@ inline std::vector<ValueRow> rows_of(const HeatLedger& ledger) {
   for (const auto& [name, value] : heat_ledger_entries) rows.push_back({name, "J", ledger.*value});
   return rows;
 }
-/// The values alone.
+/// The values of the entries without their names.
 template <class AnyLedger>
 std::vector<double> values_of(const AnyLedger& ledger) {
   std::vector<double> values;
@@ -232,7 +231,7 @@ std::vector<double> values_of(const AnyLedger& ledger) {
 
 struct TimeStepLimit {
   double speed = 0;       ///< largest wave speed + particle speed, m/s
-  double wave_speed = 0;  ///< of that particle
+  double wave_speed = 0;  ///< wave speed of that particle, m/s
   int body = 0;
   std::size_t particle = 0;
 };
@@ -241,8 +240,8 @@ struct StepInfo {
   double dt = 0, time = 0;  ///< s; time at the start of the step
   long step = 0;
   bool filtered = false;  ///< the filter acts in this step: gathered velocities replace those of the particles
-  double next_dt = 0;     ///< of the following step, where a gather scatters for it
-  double next_time = 0;   ///< s, when that begins
+  double next_dt = 0;     ///< dt of the following step, s, where a gather scatters for it
+  double next_time = 0;   ///< time at which that step begins, s
   bool observed = true;   ///< the state of the particles is read after this step
 };
 
@@ -251,16 +250,16 @@ class Backend {
   virtual ~Backend() = default;
   virtual std::string_view name() const = 0;
 
-  /// Throws RunFailure for the first particle (comes_before) that is not a number, inverted or outside the domain.
+  /// Throws RunFailure for the first particle (by comes_before) that is not a number, inverted or outside the domain.
   virtual void execute(const Pass& pass, const StepInfo& step) = 0;
 
-  /// Result of the last estimate_time_step pass.
+  /// The result of the last estimate_time_step pass.
   virtual TimeStepLimit time_step_limit() const = 0;
 
   virtual BodyState body_state(int body) const = 0;
-  /// Of the steps with Plan::accounts_at.
+  /// The sums over the steps with Plan::accounts_at.
   virtual const Ledger& ledger() const = 0;
-  /// Of all steps, where Plan::heat_ledger; else nothing.
+  /// The sums over all steps where Plan::heat_ledger is set; else zeros.
   virtual HeatLedger heat_ledger() const { return {}; }
   virtual const ContactRecord& contact_record() const = 0;
   virtual const FilterRecord& filter_record() const = 0;
@@ -269,24 +268,24 @@ class Backend {
   /// next step then scatters as usual.
   virtual bool scattered() const = 0;
 
-  /// Everything that a later step depends on, in the backend's own order and precision: a restored backend goes on bit
-  /// for bit. `restore` is called on a backend made from the same experiment, plan and seeds; throws ArchiveError.
+  /// Saves everything that a later step depends on, in the backend's own order and precision, so that a restored one
+  /// goes on bit for bit. `restore` wants a backend of the same experiment, plan and seeds, and throws ArchiveError.
   virtual void save(ArchiveWriter& archive) const = 0;
   virtual void restore(ArchiveReader& archive) = 0;
 
-  /// Starts (or ends) measuring what the passes over particles spend their time on. Off, it costs nothing.
+  /// Starts (or ends) measuring what the passes over particles spend their time on. It costs nothing while it is off.
   virtual void measure_phases(bool) {}
-  /// Seconds of all threads together by phase ("weights", "gather", "material" ...) since measuring began; empty when
-  /// the backend does not measure.
+  /// The seconds of all threads together by phase ("weights", "gather", "material" ...) since measuring began; empty
+  /// when the backend does not measure.
   virtual std::map<std::string, double> phase_seconds() const { return {}; }
 
-  /// Bytes of particle and grid storage in use.
+  /// The bytes of particle and grid storage in use.
   virtual std::uint64_t particle_bytes() const = 0;
   virtual std::uint64_t grid_bytes() const = 0;
 };
 
-/// Both keep references to the experiment and the plan. `threads` is the number of threads of the cpu
-/// backend; with `find_number` the most that it may use, of which it finds the number that is fastest.
+/// Makers of backends, which keep references to the experiment and the plan. The cpu backend uses `threads` threads, or
+/// with `find_number` as many of them as it finds to be fastest.
 std::unique_ptr<Backend> make_reference_backend(const Experiment&, const Plan&, std::vector<SeededBody>);
 std::unique_ptr<Backend> make_cpu_backend(const Experiment&, const Plan&, std::vector<SeededBody>, int threads,
                                           bool find_number = false);

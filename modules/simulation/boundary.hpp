@@ -1,11 +1,10 @@
 #pragma once
-// The policy at the edges of the domain, one for all shapes, in the terms both backends use.
+// The policy at the edges of the domain: one for all shapes, in terms that all backends use.
 //
 // Nodes run from -padding to cells + padding on each axis; walls stand on nodes 0 and cells. Nodes beyond a wall are
 // ghosts.
 //  stick, slip, prescribed: the material continues beyond the wall as its mirror image. A ghost's mass, momentum and
-//  force
-//    are folded onto its mirror node with the sign of `mirror_sign`; afterwards it takes the mirrored velocity.
+//    force are folded onto its mirror node with the sign of `mirror_sign`; afterwards it takes the mirrored velocity.
 //    Components with sign -1 vanish on the wall itself. Momenta are those relative to the wall's velocity. Gravity is a
 //    force like the others: a ghost of mass m folds m g with the same signs (so the mirror node's weight is (m + sign
 //    m_ghost) g by component, not (m + m_ghost) g). The wall's velocity is taken at the foot of the node on the wall,
@@ -25,9 +24,9 @@
 
 namespace mpm {
 
-/// Nodes beyond a wall that a tensor-product stencil may touch.
+/// The number of nodes beyond a wall that a tensor-product stencil may touch.
 inline constexpr int grid_padding = 3;
-/// The same of a list of nodes, whose particles grow with their deformation; beyond it a run stops with the reason.
+/// The same number for a list of nodes, as domains grow with the deformation; a run whose lists reach farther stops.
 inline constexpr int list_grid_padding = 8;
 inline int grid_padding_of(const mpm_shape& shape) {
   return shape.form == MPM_NODE_LIST ? list_grid_padding : grid_padding;
@@ -44,7 +43,7 @@ static_assert(static_cast<int>(AtWall::none) == rule_none && static_cast<int>(At
               static_cast<int>(AtWall::heat) == rule_heat && static_cast<int>(AtWall::heat_rate) == rule_heat_rate &&
               static_cast<int>(AtWall::slip) == rule_slip);
 
-// The decisions of operators/edges.hpp in the words of an experiment and a plan.
+// These overloads take the types of an experiment and a plan to the decisions of operators/edges.hpp.
 constexpr double mirror_sign(ConditionType type, int axis, int component) {
   return mirror_sign(static_cast<int>(type), axis, component);
 }

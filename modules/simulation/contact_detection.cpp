@@ -7,7 +7,7 @@
 namespace mpm {
 namespace {
 constexpr int samples_per_cell = 256;
-constexpr double reach = 4;  // cells: beyond the support of every shape
+constexpr double reach = 4;  // cells, which is beyond the support of every shape
 }  // namespace
 
 EdgeModel::EdgeModel(const Component& shape, int particles_per_cell_axis)
@@ -30,7 +30,7 @@ EdgeModel::EdgeModel(const Component& shape, int particles_per_cell_axis)
   if (edges_.size() < 2) throw std::invalid_argument("the shape has no support to build an edge model from");
 }
 
-/// A list has no axes: rows of undeformed particles in 2-D, their weights summed over the line of nodes at zero.
+/// Weights of a list, which has no axes: rows of undeformed 2-D particles, summed over the line of nodes at zero.
 std::vector<double> EdgeModel::list_weights(const std::vector<double>& rows) const {
   const mpm_shape& shape = shape_.plugin->shape();
   const std::size_t n = (rows.size() + MPM_LANES - 1) / MPM_LANES * MPM_LANES, capacity = shape.capacity[0];
@@ -70,7 +70,7 @@ std::vector<double> EdgeModel::weights(const std::vector<double>& rows) const {
   std::vector<std::int32_t> base(n);
   std::copy(rows.begin(), rows.end(), position.begin());
   const std::vector<double> half_size(n, 0.5 / rows_per_cell_);
-  const std::vector<double> domain(n, 0.5 / rows_per_cell_);  // 1-D: one semi-side
+  const std::vector<double> domain(n, 0.5 / rows_per_cell_);  // the 1-D domain is one semi-side
   mpm_shape_batch batch{};
   batch.count = batch.stride = static_cast<std::uint32_t>(n);
   batch.dimension = 1;

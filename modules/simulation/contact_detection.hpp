@@ -1,5 +1,5 @@
 #pragma once
-// Where the surface of a body is, seen from a node: inversion of the one-dimensional model of an edge near a node.
+// Finds where the surface of a body is, seen from a node, by inverting a one-dimensional model of an edge near a node.
 
 #include <vector>
 
@@ -7,19 +7,19 @@
 
 namespace mpm {
 
-/// A body occupies x < e on one axis, its particle rows 1/(2n), 3/(2n), ... cells inside the edge (n a cell). A node at
-/// 0 sees the mass-weighted mean position of the rows in its support. That mean grows with e, so it tells e; nothing is
-/// typed in. Positions and edges in cells.
+/// A body occupies x < e on one axis, and its particle rows lie 1/(2n), 3/(2n), ... cells inside the edge (n a cell). A
+/// node at 0 sees the mass-weighted mean position of the rows in its support. That mean grows with e, so that it
+/// determines e without a fitted constant. Positions and edges are in cells.
 class EdgeModel {
  public:
   /// Throws std::invalid_argument for n < 1.
   EdgeModel(const Component& shape, int particles_per_cell_axis);
 
-  /// Mean position of the rows for an edge at `edge`.
+  /// The mean position of the rows for an edge at `edge`.
   double mean_position(double edge) const;
-  /// Inverse: the edge that gives this mean. Means outside the model's range give its ends.
+  /// The inverse: the edge that gives this mean. Means outside the model's range give its ends.
   double edge(double mean_position) const;
-  /// Distance between the means of two bodies that touch with their common edge at `edge`: the contact offset.
+  /// The distance between the means of two bodies that touch with their common edge at `edge`: the contact offset.
   double contact_offset(double edge) const;
 
  private:
@@ -30,8 +30,8 @@ class EdgeModel {
   int rows_per_cell_;
 };
 
-/// One for each velocity field; none without contact. The coarsest body of a field tells its rows: its surface lags the
-/// most.
+/// Makes one model for each velocity field, and none without contact. The rows of a field are those of its coarsest
+/// body, whose surface lags the most.
 std::vector<EdgeModel> edge_models(const Experiment& experiment);
 
 }  // namespace mpm

@@ -1,5 +1,5 @@
 #pragma once
-// Geometry of two velocity fields that meet at a node: shared normal, separation, area. Used by both backends.
+// The geometry of two velocity fields that meet at a node: shared normal, separation, area. All backends use it.
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// What the contact channels hold at one node for one field.
+/// The values of the contact channels at one node for one field.
 struct ContactFieldNode {
   double mass = 0;
   double volume = 0;               ///< sum w V
@@ -32,8 +32,8 @@ inline bool meet(double mass_a, double mass_b, bool weld) {
   return weld || std::min(mass_a, mass_b) >= contact_prescreen * (mass_a + mass_b);
 }
 
-/// Shared average volume-gradient normal (Nairn 2013, CMES 92:271), separation by inverted edge models,
-/// area sqrt(2 V_total min V) / h (Nairn 2013, eq. 26).
+/// Finds the normal by the shared average volume gradient (Nairn 2013, CMES 92:271), the separation by inverted edge
+/// models, and the area as sqrt(2 V_total min V) / h (Nairn 2013, eq. 26).
 inline ContactGeometry contact_geometry(const ContactFieldNode& a, const ContactFieldNode& b, const EdgeModel& edge_a,
                                         const EdgeModel& edge_b, double cell_size, int dimension) {
   ContactGeometry result;

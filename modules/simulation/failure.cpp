@@ -11,7 +11,7 @@
 namespace mpm {
 namespace {
 
-/// What a pass looks at, in this order.
+/// The checks of a pass, in their order.
 enum class Looks { at_domain, at_deformation, at_position, at_speed };
 
 constexpr const char* smaller_step =

@@ -1,5 +1,5 @@
 #pragma once
-// Why a run cannot go on: a record, which backends fill in. Its words are made of it once, for whoever reads them.
+// A record of why a run cannot go on, which backends fill in. Words are made from it once, for all who read them.
 
 #include <cstddef>
 #include <limits>
@@ -19,47 +19,47 @@ enum class Cause {
   domain_outgrew_stencil,    ///< the particle's box is longer than the nodes of its shape hold
   domain_inside_out,         ///< its corners have passed one another
   domain_beyond_grid,        ///< its list has nodes beyond the padding of the domain
-  deformation_not_a_number,  ///< some of the material's state is not
+  deformation_not_a_number,  ///< part of the material's state is not a number
   inverted,                  ///< J <= 0
   position_not_a_number,
-  reached_axis,  ///< r <= 0 of an axisymmetric scene
+  reached_axis,  ///< r <= 0 in an axisymmetric scene
   left_domain,
-  speed_not_a_number  ///< the largest of the waves and particles, from which the time step follows
+  speed_not_a_number  ///< largest speed of waves and particles, from which the time step follows
 };
 std::span<const Cause> all_causes();
 
-/// In two or three words, as summary.json and study.json have it: "left the domain". Causes that one remedy helps
-/// against may share them.
+/// The name of a cause in two or three words, as in summary.json and study.json: "left the domain". Causes that one
+/// remedy helps against may share a name.
 const char* name_of(Cause cause);
 
 struct Failure {
   Cause cause;
   int body = 0;
   std::size_t particle = 0;  ///< index in the order of seeding
-  int axis = -1;             ///< of positions and stencils; -1 for causes without one
-  /// Position along the axis, m; J; speed, m/s. NaN where that is what is wrong, or where there is none.
+  int axis = -1;             ///< axis of a position or stencil; -1 for causes without one
+  /// The position along the axis, m, or J, or the speed, m/s. It is NaN where that is the failure or none applies.
   double value = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Whether `a` is reported of two failures of one pass. A pass looks at domains first, then at deformations, then at
-/// positions; of the particles that fail alike the lowest body, index and axis count.
+/// Whether `a` is the one of two failures of a pass that is reported. A pass checks domains first, then deformations,
+/// then positions; of particles that fail alike the one with the lowest body, index and axis is reported.
 bool comes_before(const Failure& a, const Failure& b);
 
-/// A run that cannot go on. Maps to exit code 3. what() is the cause's name.
+/// Thrown when a run cannot go on. It maps to exit code 3, and what() is the cause's name.
 class RunFailure : public std::runtime_error {
  public:
   explicit RunFailure(const Failure& failure) : std::runtime_error(name_of(failure.cause)), failure(failure) {}
   Failure failure;
 };
 
-/// What a pass reports of all that it comes upon. Threads take turns.
+/// Keeps the failure that a pass reports of all that it finds. Threads that note failures have to take turns.
 class FirstFailure {
  public:
   void note(const Failure& failure) {
     if (!first_ || comes_before(failure, *first_)) first_ = failure;
   }
   bool any() const { return first_.has_value(); }
-  /// Throws RunFailure where anything was noted, and forgets it.
+  /// Throws RunFailure where a failure was noted, and forgets it.
   void raise() {
     if (const std::optional<Failure> first = std::exchange(first_, std::nullopt)) throw RunFailure(*first);
   }
@@ -70,22 +70,22 @@ class FirstFailure {
 
 // ---- words ----------------------------------------------------------------------------------------------------------
 
-/// Where a particle was when its run stopped.
+/// The place and time of a particle when its run stopped.
 struct FailurePlace {
-  long step = 0;                 ///< the one that was not finished, from 1
-  double time = 0;               ///< s, at its start
+  long step = 0;                 ///< number of the unfinished step, from 1
+  double time = 0;               ///< time at the start of that step, s
   std::vector<double> position;  ///< m, dimension
 };
 
-/// "left the domain at x = 2 m"
+/// The cause in words: "left the domain at x = 2 m".
 std::string cause_text(const Failure& failure, const Experiment& experiment);
-/// "(0.1, 0.2) m"
+/// A point in words: "(0.1, 0.2) m".
 std::string point_text(std::span<const double> position);
-/// "step 3, t = 0.1 s: particle 4 of body "b" at (2, 0) m"
+/// The place in words: "step 3, t = 0.1 s: particle 4 of body "b" at (2, 0) m".
 std::string place_text(const Failure& failure, const FailurePlace& place, const Experiment& experiment);
-/// What to change in the experiment: "a larger /grid/domain, or …".
+/// Advice on what to change in the experiment: "a larger /grid/domain, or …".
 std::string remedy_for(const Failure& failure);
-/// What was found and what bounds it.
+/// The value that was measured and its bound, as rows.
 std::vector<ValueRow> values_of(const Failure& failure, const Experiment& experiment);
 
 }  // namespace mpm

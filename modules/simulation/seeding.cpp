@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-/// First and last lattice index that may lie inside [lower, upper] on one axis.
+/// Returns the first and last lattice index that may lie inside [lower, upper] on one axis.
 std::pair<long, long> lattice_range(const Experiment& experiment, int axis, double lower, double upper, int rows) {
   const GridSpecification& grid = experiment.grid;
   if (axis >= experiment.dimension) return {0, 0};
@@ -22,7 +22,7 @@ std::pair<long, long> lattice_range(const Experiment& experiment, int axis, doub
   return {std::max(0L, index(lower) - 1), std::min(last, index(upper) + 1)};
 }
 
-/// Points of the lattice side by side along x that lie in a body.
+/// Lattice points side by side along x that lie in a body.
 struct Run {
   std::array<long, 3> first{};
   long count = 0;
@@ -77,7 +77,7 @@ class Seeder {
     const long at[3] = {run.first[0] + i, run.first[1], run.first[2]};
     Vector3 x{};
     for (int c = 0; c < experiment_.dimension; ++c) x[c] = experiment_.grid.lower[c] + (at[c] + 0.5) * spacing;
-    if (body_.jitter > 0)  // 53 bits of the generator: the same numbers with every standard library
+    if (body_.jitter > 0)  // 53 bits of the generator give the same numbers with every standard library
       for (int c = 0; c < experiment_.dimension; ++c)
         x[c] += body_.jitter * spacing * (2.0 * static_cast<double>(random_() >> 11) / 9007199254740992.0 - 1.0);
     return x;
@@ -99,7 +99,7 @@ class Seeder {
     points_.clear();
   }
 
-  /// What is warmer than the melting temperature is melted.
+  /// Seeds the temperature; a particle warmer than the melting temperature starts melted.
   void seed_temperature() {
     if (!body_.temperature) return;
     std::vector<double>& temperature = fields_["temperature"];
@@ -114,7 +114,7 @@ class Seeder {
     others_.emplace_back("melted_fraction", melted.data());
   }
 
-  /// Central differences: exact for affine fields to rounding.
+  /// Takes the velocity's gradient by central differences, which are exact for affine fields to rounding.
   void differentiate() {
     const std::size_t n = points_.size(), D = static_cast<std::size_t>(experiment_.dimension);
     const double step = 1e-4 * experiment_.grid.cell_size;
@@ -137,7 +137,7 @@ class Seeder {
     }
   }
 
-  /// The antisymmetric part of the gradients.
+  /// Keeps only the antisymmetric part of the gradients.
   void keep_spin() {
     const std::size_t D = static_cast<std::size_t>(experiment_.dimension);
     for (std::size_t first = 0; first < gradient_.size(); first += D * D)

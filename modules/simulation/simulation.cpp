@@ -30,8 +30,8 @@ bool Simulation::ends_at(double time) const {
   return time >= experiment_.solver.end_time * (1 - 1e-12);
 }
 
-/// The fixed step, or what the solver allows; shortened to end at end_time. Nothing else changes it, so that the cadence
-/// of outputs changes no result.
+/// Returns the fixed step, or what the solver allows, shortened to end at end_time. Nothing else changes it, so that
+/// the cadence of outputs changes no result.
 double Simulation::time_step_from(double time) const {
   const double wanted = experiment_.solver.time_step.value_or(estimate_);
   const double left = experiment_.solver.end_time - time;
@@ -39,7 +39,7 @@ double Simulation::time_step_from(double time) const {
   return left <= wanted * (1 + 1e-9) ? left : wanted;
 }
 
-/// A fixed step multiplies instead of summing, so that rounding does not grow with the number of steps.
+/// Multiplies a fixed step instead of summing it, so that rounding does not grow with the number of steps.
 double Simulation::end_of_step() const {
   const bool fixed = experiment_.solver.time_step && dt_ == *experiment_.solver.time_step;
   return fixed ? static_cast<double>(steps_ + 1) * dt_ : time_ + dt_;
@@ -73,7 +73,7 @@ bool Simulation::filter_due() {
   return true;
 }
 
-/// The next step's scatter needs its dt: not before an estimate, and not when there is no next step.
+/// The next step's scatter needs its dt: it may neither precede an estimate nor be done when there is no next step.
 bool Simulation::may_scatter_ahead() const {
   return !ends_at(end_of_step()) && steps_ + 1 < experiment_.solver.max_steps && (steps_ + 1) % estimate_every_ != 0;
 }
@@ -102,7 +102,7 @@ void Simulation::execute(const Step& step, StepInfo& info) {
   }
 }
 
-/// The gather that ends a step, with the next step's scatter where that step's dt is known by now.
+/// Executes the gather that ends a step, and with it the next step's scatter where that step's dt is known by now.
 void Simulation::gather(const Step& step, StepInfo& info) {
   const bool ahead = may_scatter_ahead();
   info.next_time = end_of_step();
@@ -112,7 +112,7 @@ void Simulation::gather(const Step& step, StepInfo& info) {
   scattered_ = ahead && backend_->scattered();
 }
 
-/// dt is chosen, and whether the filter acts, once the limit of the step is known.
+/// Chooses dt, and whether the filter acts, once the limit of the step is known.
 void Simulation::begin(StepInfo& info) {
   if (chosen_) return;
   dt_ = info.dt = time_step_from(time_);

@@ -1,5 +1,5 @@
 #pragma once
-// A run: the plan's passes, step by step, on one backend.
+// A run, which executes the plan's passes step by step on one backend.
 
 #include <functional>
 #include <limits>
@@ -24,11 +24,11 @@ class Simulation {
   Simulation(const Simulation&) = delete;  // the backend refers to the plan
 
   bool finished() const;
-  /// One time step: dt is chosen here, every pass of the plan is executed. Throws RunFailure; the state is then the
-  /// broken one.
+  /// Takes one time step: chooses dt and executes every pass of the plan. Throws RunFailure, which leaves the state as
+  /// it was when the step failed.
   void step();
-  /// Says which steps will be looked at: wanted(time in s, number of steps) of the end of each. After another one,
-  /// velocities and the transfer's state need not be there (see `observed`); results are the same. All are, at first.
+  /// Says by wanted(time in s, number of steps), at the end of each step, which ones will be looked at; at first all
+  /// are. After others, velocities and the transfer's state may be missing (see `observed`); results are the same.
   void observe_when(std::function<bool(double, long)> wanted) { wanted_ = std::move(wanted); }
   /// Whether the state after the last step may be read and saved.
   bool observed() const { return observed_; }
@@ -40,20 +40,20 @@ class Simulation {
   long steps() const { return steps_; }
   std::size_t particle_count() const { return particles_; }
   std::size_t particle_count(int body) const { return body_particles_[static_cast<std::size_t>(body)]; }
-  /// Passes of the filter's loop so far, of all steps.
+  /// The number of passes of the filter's loop so far, over all steps.
   long filter_passes() const { return filter_passes_; }
 
-  /// Of all steps so far: the entries of the first step, and those of each other step that was taken once for each of
-  /// the ledger_every steps around it.
+  /// The sums over all steps so far: the entries of the first step once, and those of each other step that the ledger
+  /// took ledger_every times, as it stands for the steps around it.
   Ledger ledger() const {
     return backend_->ledger().times(plan_.ledger_every).plus(first_entries_.times(1.0 - plan_.ledger_every));
   }
 
-  /// Of the particle that stopped the last step.
+  /// The place of the particle that stopped the last step.
   FailurePlace place_of(const Failure& failure) const;
 
-  /// Everything that later steps depend on. `restore` on a simulation of the same experiment goes on bit for bit,
-  /// whatever the number of threads; throws ArchiveError.
+  /// Saves everything that later steps depend on. `restore` on a simulation of the same experiment goes on bit for bit,
+  /// whatever the number of threads; it throws ArchiveError.
   void save(ArchiveWriter& archive) const;
   void restore(ArchiveReader& archive);
 
@@ -62,10 +62,10 @@ class Simulation {
   Backend& backend() { return *backend_; }
   const Backend& backend() const { return *backend_; }
 
-  /// Particle that limits the automatic time step: "particle 12 of disc (wave 3.1 m/s + speed 0.4 m/s)"; empty when dt
-  /// is fixed.
+  /// The particle that limits the automatic time step: "particle 12 of disc (wave 3.1 m/s + speed 0.4 m/s)"; empty when
+  /// dt is fixed.
   std::string limiting_particle() const;
-  /// Seconds spent in each pass so far, by name.
+  /// The seconds spent in each pass so far, by name.
   const std::map<std::string, double>& seconds_by_pass() const { return seconds_; }
 
  private:
@@ -85,14 +85,14 @@ class Simulation {
   const Solver& solver_;
   std::unique_ptr<Backend> backend_;
   double time_ = 0, dt_ = 0, estimate_ = 0, smallest_ = 0, largest_ = 0;
-  double estimated_speed_ = 0;                              ///< m/s, of the last estimate
+  double estimated_speed_ = 0;                              ///< speed of the last estimate, m/s
   long estimate_every_ = std::numeric_limits<long>::max();  ///< steps from one estimate to the next
   double filter_clock_ = 0;                                 ///< time or cells since the filter last acted
   bool chosen_ = false;                                     ///< dt of this step is known
   std::function<bool(double, long)> wanted_;
   bool observed_ = true;
   bool scattered_ = false;  ///< the grid holds this step's scatter already
-  Ledger first_entries_;    ///< of the first step
+  Ledger first_entries_;    ///< entries of the first step
   long steps_ = 0;
   long filter_passes_ = 0;
   std::size_t particles_ = 0;

@@ -12,12 +12,12 @@ struct ValueRow {
   double value = 0;
 };
 
-/// "total energy (J)": the head of a column.
+/// The head of a column: "total energy (J)".
 inline std::string heading(const ValueRow& row) {
   return row.unit.empty() ? row.name : row.name + " (" + row.unit + ")";
 }
 
-/// "internal_force": the key of a row in a JSON file, whose numbers are in SI units.
+/// The key of a row in a JSON file, whose numbers are in SI units: "internal_force".
 inline std::string key_of(const ValueRow& row) {
   std::string key = row.name;
   for (char& c : key)

@@ -10,8 +10,8 @@ WallWeights wall_weights(const Experiment& experiment) {
   if (shape.form == MPM_NODE_LIST) return {{1.0}, 0};
   constexpr std::size_t n = MPM_LANES;
   const std::size_t width = shape.width;
-  constexpr int wall = 4;         // any node
-  constexpr double point = 1e-6;  // half the size of its domain
+  constexpr int wall = 4;         // node of the wall, which may be any
+  constexpr double point = 1e-6;  // half the size of a domain that is small enough to count as a point
   const std::vector<double> position(n, wall), half_size(n, point), domain(n, point);
   std::vector<std::int32_t> base(n);
   std::vector<double> offset(n), weight(width * n);
