@@ -9,8 +9,8 @@ namespace mpm {
 
 namespace {
 
-/// What the largest diffusivity of any phase allows, courant h^2 / (2 D alpha), and what convection at a wall does, whose
-/// node has the heat capacity of half a cell. Densities are those of the material as seeded.
+/// The step that heat allows: courant h^2 / (2 D alpha) for the largest diffusivity of any phase, and that for
+/// convection at a wall, whose node has the heat capacity of half a cell. Densities are as seeded.
 StepLimit thermal_limit(const Experiment& experiment) {
   StepLimit limit{std::numeric_limits<double>::infinity(), "diffusion"};
   const double h = experiment.grid.cell_size, courant = experiment.solver.courant;

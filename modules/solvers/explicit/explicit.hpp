@@ -1,6 +1,6 @@
 #pragma once
-// Explicit time integration: symplectic Euler, with the stress updated first, last, last from mapped-back velocities, or
-// half first and half last (docs/method.md).
+// The explicit solver takes symplectic Euler steps, with the stress updated first, last, last from mapped-back
+// velocities, or half first and half last (docs/method.md).
 
 #include <vector>
 
