@@ -5,8 +5,8 @@
 namespace mpm {
 namespace {
 
-/// Workers wait for one another several times a step: below this many particles each, one more costs more than it
-/// gives.
+/// Workers wait for one another several times a step: with fewer particles each than this, one more worker costs more
+/// than it gives.
 constexpr std::size_t particles_a_worker = 2000;
 
 int useful_threads(int wanted, const std::vector<SeededBody>& bodies) {

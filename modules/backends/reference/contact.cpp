@@ -1,4 +1,4 @@
-// Contact: the law on every pair of fields that meet at a node.
+// Applies the contact law to every pair of fields that meet at a node.
 
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
       contact_geometry(contact_view(a), contact_view(b), edge_a, edge_b, experiment_.grid.cell_size, D);
   if (!geometry.valid && !weld) return {};
 
-  // One pair, repeated over a full lane so that the plugin may compute whole lanes.
+  // The pair is repeated over a full lane so that the plugin may compute whole lanes.
   constexpr int n = MPM_LANES;
   std::array<double, n> mass_a, mass_b, separation, area, dissipated{};
   std::array<double, 3 * n> p_a, p_b, normal, impulse{};
@@ -66,8 +66,8 @@ void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, 
     const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step.dt);
     if (!pair) return;
     const Vector& J = pair->impulse;
-    // Before the forces v- itself changes, at once; after them the impulse counts between v- and v+
-    // (account_for_impulses).
+    // Before the forces v- itself changes at once; after them account_for_impulses counts the impulse between v- and
+    // v+.
     if (accounted_ && !after_forces && !remap)
       ledger_.contact += J.dot(momentum_[a] + 0.5 * J) / mass_[a] - J.dot(momentum_[b] - 0.5 * J) / mass_[b];
     if (accounted_ && !remap) ledger_.friction += pair->dissipated;

@@ -1,8 +1,8 @@
-// Velocity filters. With S+ the gather (grid to particles to grid: S+ S, mass-weighted) a filter applies a truncated
-// series in I - S+ S to the grid's velocity (Hammerquist & Nairn 2017, CMAME 318:724, XPIC; Nairn & Hammerquist 2021,
-// CPM 8:1205, FMPM). The loop is incremental: v* <- what is left, v <- v + what the plugin takes of it, and conditions
-// and contact correct v, whose net change becomes v*. One-sided laws (contact, separating walls) are given the sum of
-// all increments before they acted, so an impulse that a later increment no longer needs is taken back (Nairn 2026,
+// A velocity filter applies a truncated series in I - S+ S to the grid's velocity, with S+ the gather (grid to
+// particles to grid: S+ S, mass-weighted) (Hammerquist & Nairn 2017, CMAME 318:724, XPIC; Nairn & Hammerquist 2021, CPM
+// 8:1205, FMPM). The loop is incremental: v* <- what is left, v <- v + what the plugin takes of it, and conditions and
+// contact correct v, whose net change becomes v*. One-sided laws (contact, separating walls) are given the sum of all
+// increments before they acted, so an impulse that a later increment no longer needs is taken back (Nairn 2026,
 // arXiv 2604.07307).
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace mpm::reference {
 namespace {
 
-/// Time of the wall's velocity: that of v- before the forces, of v+ after them.
+/// The time of the wall's velocity: that of v- before the forces, of v+ after them.
 double time_of(const Pass& pass, const StepInfo& step) {
   return pass.stage == Stage::after_forces ? step.time + step.dt : step.time;
 }
@@ -31,7 +31,7 @@ void ReferenceBackend::begin_filter(const Pass& pass) {
   kinetic_energy_unfiltered_ = accounted_ ? grid_.kinetic_energy() : 0.0;
 }
 
-/// projection <- S+ S v*, by the transfer's own gather and scatter of particles that were at rest.
+/// Sets projection <- S+ S v*, by the transfer's own gather and scatter of particles that were at rest.
 void ReferenceBackend::project(const Pass& pass, const StepInfo& step) {
   for_each_node([&](std::size_t i) { projection_[i] = Vector::Zero(); });
   for (Particles& body : bodies_) {
@@ -57,7 +57,7 @@ void ReferenceBackend::update_filter(const Pass& pass, const StepInfo& step) {
   grid_.fill_ghosts(increment_, AtWall::vector);
 }
 
-/// The plugin's update at all nodes of a field that hold mass.
+/// Calls the plugin's update at all nodes of a field that hold mass.
 void ReferenceBackend::call_filter(int field) {
   std::vector<std::size_t> nodes;
   for (std::size_t i = grid_.at(field, 0); i < grid_.at(field + 1, 0); ++i)
@@ -67,7 +67,7 @@ void ReferenceBackend::call_filter(int field) {
   const std::size_t n = (nodes.size() + MPM_LANES - 1) / MPM_LANES * MPM_LANES;
   Array projected = Array::Zero(D, static_cast<Eigen::Index>(n)), increment = projected, velocity = projected;
   for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t i = nodes[std::min(k, nodes.size() - 1)];  // the last one pads
+    const std::size_t i = nodes[std::min(k, nodes.size() - 1)];  // the last node fills the pack
     for (int c = 0; c < D; ++c)
       projected(c, k) = projection_[i][c], increment(c, k) = increment_[i][c], velocity(c, k) = velocity_[i][c];
   }
@@ -109,7 +109,7 @@ void ReferenceBackend::restore_velocity(const Pass& pass) {
   });
 }
 
-/// v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
+/// Adds the filter's correction, v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
 void ReferenceBackend::add_correction(const Pass& pass, const StepInfo& step) {
   const double unfiltered = accounted_ ? grid_.kinetic_energy() : 0.0;
   for_each_node([&](std::size_t i) {
@@ -124,11 +124,11 @@ void ReferenceBackend::add_correction(const Pass& pass, const StepInfo& step) {
   ledger_.filter += kinetic_energy_after_ - unfiltered;
 }
 
-/// Conditions and contact on the velocity without what they have added so far.
+/// Applies conditions and contact to the velocity without what they have added so far.
 void ReferenceBackend::constrain_free_velocity(const Pass& pass, const StepInfo& step) {
   if (!keeps_constraints_) return constrain_velocity(pass, step);
   for_each_node([&](std::size_t i) {
-    if (mass_[i] > 0) constrained_[i] = velocity_[i] -= constrained_[i];  // free, until they have acted
+    if (mass_[i] > 0) constrained_[i] = velocity_[i] -= constrained_[i];  // the free velocity, until they have acted
   });
   constrain_velocity(pass, step);
   for_each_node([&](std::size_t i) {
@@ -136,7 +136,7 @@ void ReferenceBackend::constrain_free_velocity(const Pass& pass, const StepInfo&
   });
 }
 
-/// Conditions, contact and conditions again, as after the forces, but on velocities and on no one's record.
+/// Applies conditions, contact and conditions again, as after the forces, but to velocities and without a record.
 void ReferenceBackend::constrain_velocity(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
   impose_on_velocity(time);

@@ -21,7 +21,7 @@ Grid::Grid(const Experiment& experiment, const Plan& plan) : experiment_(experim
       scalar(field.id).allocate(field, size()), bytes_ += size() * sizeof(double);
     else if (field.owner == Owner::node)
       vector(field.id).allocate(field, size()), bytes_ += size() * sizeof(Vector);
-  // In a domain of few cells a ghost's mirror is a ghost of the other wall: it is folded on after what it receives.
+  // In a domain of few cells a ghost's mirror is a ghost of the other wall: it is folded on after all that it receives.
   for (int axis = 0; axis < experiment.dimension; ++axis) {
     auto& order = outermost_first_[axis];
     order.resize(coordinates_.size());
@@ -101,7 +101,7 @@ double Grid::wall_temperature(const Fold& fold, double time) const {
   return experiment_.faces[fold.axis][fold.side].thermal.value({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time);
 }
 
-/// By Fourier's law of the flux through the wall, of the bodies that reach the node there.
+/// Follows Fourier's law from the flux through the wall and the conductivity of the bodies that reach the node there.
 double Grid::gradient_at_wall(const Fold& fold, double time, const WallWeights* divided) const {
   if (fold.side < 0 || !passes_heat(experiment_.faces[fold.axis][fold.side])) return 0;
   const std::size_t i = at(velocity_field_of(fold.ghost), index(foot_node(fold)));
@@ -121,7 +121,7 @@ double Grid::flux_through_wall(std::size_t i, int axis, int side, double time, c
     at_wall += share * temperature_[at(velocity_field_of(i), index(node))];
     node[axis] += side == 0 ? 1 : -1;
   }
-  // The flux q bends the temperature beyond the wall, which the shares have mirrored: at_wall + q beyond / k is there.
+  // The shares mirror the temperature beyond the wall, but the flux q bends it: the wall has at_wall + q beyond / k.
   const double resistance = divided->beyond * experiment_.grid.cell_size * heated_volume_[i] / volume_conductivity_[i];
   return (given - at_wall) / (1 / wall.coefficient + resistance);
 }
@@ -213,13 +213,13 @@ void Grid::fold_node(Fold fold, double time) {
   for_each_field([&](auto& field) {
     if (field.waits_) add_to_mirror(field, fold, field.declared_->at_wall, wall);
   });
-  mass_[fold.ghost] = 0;  // what else a node without mass holds is not read, but for contact after MUSL's remap
+  mass_[fold.ghost] = 0;  // other values of a node without mass are not read, but for contact after MUSL's remap
   momentum_[fold.ghost] = Vector::Zero();
   if (heat_capacity_.declared_) heat_[fold.ghost] = heat_capacity_[fold.ghost] = 0;
   folds_.push_back(fold);
 }
 
-/// On the wall itself: the mirror image takes away what points across it.
+/// Folds a node of the wall, which is its own mirror: the image takes away what points across the wall.
 void Grid::fold_onto_itself(const Fold& fold, double time) {
   const std::size_t i = fold.ghost;
   const int axis = fold.axis;

@@ -1,5 +1,5 @@
 #pragma once
-// The grid of the reference backend: every node of the domain and its padding, and the plan's fields of the nodes.
+// The grid of the reference backend holds every node of the domain and its padding, and the plan's fields of the nodes.
 
 #include <Eigen/Core>
 #include <array>
@@ -28,7 +28,7 @@ inline void set_zero(Vector& value) {
   value.setZero();
 }
 
-/// One field of the nodes, read and written as momentum[i] with the i of Grid::at. A field that the plan does not have
+/// A field of the nodes, read and written as momentum[i] with the i of Grid::at. A field that the plan does not have
 /// may be named, but using it throws std::logic_error.
 template <class Value>
 class NodeField {
@@ -56,12 +56,12 @@ class NodeField {
   std::string id_;
   const Field* declared_ = nullptr;
   std::vector<Value> values_;
-  bool waits_ = false;  ///< until its ghosts are folded with the mass
+  bool waits_ = false;  ///< true until its ghosts are folded with the mass
 };
 using ScalarField = NodeField<double>;
 using VectorField = NodeField<Vector>;
 
-/// Components of a node's velocity that a condition gives.
+/// The components of a node's velocity that a condition gives.
 struct Held {
   bool component[3] = {false, false, false};
   Vector velocity = Vector::Zero();
@@ -76,39 +76,39 @@ class Grid {
   ScalarField& scalar(const std::string& id) { return scalars_.try_emplace(id, id).first->second; }
   VectorField& vector(const std::string& id) { return vectors_.try_emplace(id, id).first->second; }
 
-  /// All fields to zero.
+  /// Sets all fields to zero.
   void reset();
-  /// The same of these only, before particles are summed into them once more in a step (the remap of MUSL).
+  /// Sets these fields to zero, before particles are summed into them once more in a step (the remap of MUSL).
   void reset(const std::vector<std::string>& ids);
 
-  /// Index of a node from its coordinates (periodic axes not wrapped: images are folded).
+  /// The index of a node from its coordinates (periodic axes are not wrapped: images are folded).
   std::size_t index(const Eigen::Vector3i& coordinates) const;
   bool contains(const Eigen::Vector3i& coordinates) const;
-  int padding() const { return padding_[0]; }  ///< nodes beyond a wall
+  int padding() const { return padding_[0]; }  ///< number of nodes beyond a wall
   Vector position(const Eigen::Vector3i& coordinates) const;
   const Eigen::Vector3i& coordinates(std::size_t i) const { return coordinates_[i % node_count()]; }
   int velocity_fields() const { return experiment_.field_count; }
   std::size_t node_count() const { return coordinates_.size(); }
-  /// Where a field of the nodes keeps the value that a node has for a velocity field, and how many values it keeps.
+  /// The index at which a field keeps a node's value for a velocity field, and the number of values that a field keeps.
   std::size_t at(int velocity_field, std::size_t node) const { return velocity_field * node_count() + node; }
   int velocity_field_of(std::size_t i) const { return static_cast<int>(i / node_count()); }
   std::size_t size() const { return velocity_fields() * node_count(); }
   std::uint64_t bytes() const { return bytes_; }
 
   double kinetic_energy() const;
-  /// sqrt(sum m v.v) over all nodes that hold mass: ghosts that were folded have none. kg^1/2 m/s.
+  /// The mass norm sqrt(sum m v.v), kg^1/2 m/s, over all nodes that hold mass, which folded ghosts do not.
   double mass_norm(const VectorField& velocity) const;
   Vector force(std::size_t i) const;  ///< N
 
-  /// Sums periodic images: all fields. Done first, before anything is measured: images are one node.
+  /// Sums periodic images of all fields. As images are one node, this comes before anything is measured.
   void sum_images();
   /// Adds what was summed with the masses into ghosts beyond walls to their mirrors (boundary.hpp). A separating wall
   /// decides by p + dt f.
   void fold_walls(double time, double dt);
-  /// The same for forces, which USF scatters later.
+  /// Does the same for forces, which USF scatters later.
   void fold_forces();
-  /// Folds a field by a rule as momenta and masses were folded in this step. `time`: that of the walls' velocity;
-  /// nothing when the walls are at rest (what is folded is a difference).
+  /// Folds a field by a rule as momenta and masses were folded in this step. `time` is that of the walls' velocity; it
+  /// is absent when the walls are at rest (what is folded is a difference).
   template <class Value>
   void fold_as(NodeField<Value>& field, AtWall rule, std::optional<double> time);
   /// Gives ghosts the mirrored velocities. `time` is that of the wall's velocity.
@@ -116,16 +116,16 @@ class Grid {
   /// Gives ghosts the temperature mirrored about that of walls that have one, at `time`, and bent by the flux through
   /// others.
   void fill_temperature_ghosts(double time, const WallWeights& weights);
-  /// How much more heat the ghosts' own capacities hold at their temperature than at their mirrors', at walls that are
-  /// held at a temperature or at all others. J.
+  /// The heat, J, that the ghosts' own capacities hold more at their temperature than at their mirrors', at walls that
+  /// are held at a temperature or at all others.
   double heat_beyond_walls(bool held) const;
-  /// Flux into the body at a node of a wall that heat comes through, W/m^2. Convection goes by the temperature there: of
-  /// the node's own heat until that is `divided`, then by the weights.
+  /// The flux into the body at a node of a wall that heat comes through, W/m^2. Convection goes by the temperature
+  /// there: by that of the node's own heat until heat is `divided`, then by the weights.
   double flux_through_wall(std::size_t i, int axis, int side, double time, const WallWeights* divided) const;
-  /// Gives ghosts the mirrored values by a rule, walls at rest.
+  /// Gives ghosts the values mirrored by a rule at walls at rest.
   template <class Value>
   void fill_ghosts(NodeField<Value>& field, AtWall rule);
-  /// What conditions hold at a node whose velocity would be `predicted` without them.
+  /// The components that conditions hold at a node whose velocity would be `predicted` without them.
   Held held(std::size_t i, const Vector& predicted, double time) const;
   /// Whether a node lies in the box of a condition, its faces included.
   bool inside(const BoxCondition& box, std::size_t i) const;
@@ -133,15 +133,15 @@ class Grid {
  private:
   struct Fold {
     std::size_t ghost, mirror;
-    int axis, side;            ///< side < 0: a periodic image
-    double mass = 0;           ///< of the ghost when it was folded, kg
-    double heat_capacity = 0;  ///< the same, J/K
+    int axis, side;            ///< side < 0 for a periodic image
+    double mass = 0;           ///< mass of the ghost when it was folded, kg
+    double heat_capacity = 0;  ///< heat capacity of the ghost then, J/K
   };
-  /// What a ghost would hold if it moved with the wall and had the wall's temperature.
+  /// The momentum and heat of a ghost that moves with the wall and has the wall's temperature.
   struct OfWall {
     Vector momentum = Vector::Zero();
     double heat = 0;
-    double heat_beyond = 0;  ///< what the image has more, as the temperature goes on beyond a wall with a flux
+    double heat_beyond = 0;  ///< heat that the image has more, as the temperature goes on beyond a wall with a flux
   };
   template <class Visit>
   void for_each_field(Visit visit) {
@@ -152,13 +152,13 @@ class Grid {
   void fold_node(Fold fold, double time);
   void fold_onto_itself(const Fold& fold, double time);
   bool approaches_wall(const Fold& fold, double dt) const;
-  /// Point of the wall where a ghost's line to its mirror crosses it.
+  /// The point of the wall where a ghost's line to its mirror crosses it.
   Vector foot(const Fold& fold) const;
   Eigen::Vector3i foot_node(const Fold& fold) const;
-  double distance(const Fold& fold) const;  ///< of the ghost from the wall, m
-  /// Rise of the temperature inward at the wall, K/m, where heat comes through it.
+  double distance(const Fold& fold) const;  ///< distance of the ghost from the wall, m
+  /// The rise of the temperature inward at the wall, K/m, where heat comes through it.
   double gradient_at_wall(const Fold& fold, double time, const WallWeights* divided) const;
-  /// sum w C (x_p - x_i) along the inward normal, J m/K, where the transfer scatters no gradients of the particles.
+  /// The sum of w C (x_p - x_i) along the inward normal, J m/K, where the transfer scatters no particle gradients.
   double capacity_inward(std::size_t i, const Fold& fold) const;
   Vector wall_velocity(const Fold& fold, double time) const;
   double wall_temperature(const Fold& fold, double time) const;

@@ -1,4 +1,4 @@
-// Momenta to velocities, conditions, forces, and the work of every impulse.
+// Turns momenta into velocities, applies conditions and forces, and accounts for the work of every impulse.
 
 #include "backends/reference/reference_backend.hpp"
 
@@ -23,7 +23,7 @@ void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& st
   grid_.fill_velocity_ghosts(step.time);
 }
 
-/// `constrained` <- the velocity without what conditions and contact have added in this step.
+/// Sets `constrained` to the velocity without what conditions and contact have added in this step.
 void ReferenceBackend::keep_free_velocity(bool after_forces) {
   if (!keeps_constraints_) return;
   for_each_node([&](std::size_t i) {
@@ -49,7 +49,7 @@ void ReferenceBackend::impose_conditions(double time) {
 }
 
 void ReferenceBackend::apply_forces(const StepInfo& step) {
-  grid_.fold_forces();  // forces that USF scattered after the momenta were folded; nothing is left of the others
+  grid_.fold_forces();  // folds what USF scattered after the momenta were folded; the other forces are folded already
   for_each_node([&](std::size_t i) {
     momentum_[i] += step.dt * grid_.force(i);
     held_[i] = {};  // conditions after the forces decide whose the reaction is
@@ -66,8 +66,8 @@ void ReferenceBackend::apply_forces(const StepInfo& step) {
   grid_.fill_velocity_ghosts(step.time + step.dt);
 }
 
-/// Work of every impulse between v- and v+ at their mean. What the forces do not explain is the reaction of a
-/// condition on held components and of contact on the others.
+/// Accounts for the work of every impulse between v- and v+ at their mean. What the forces do not explain is the
+/// reaction of a condition on held components and of contact on the others.
 void ReferenceBackend::account_for_impulses(std::size_t i, double dt) {
   const Vector mean = 0.5 * (velocity_before_[i] + velocity_[i]);
   const Vector reaction = mass_[i] * (velocity_[i] - velocity_before_[i]) - dt * grid_.force(i);

@@ -148,7 +148,7 @@ void Particles::scatter_coefficients() {
   for (std::size_t p = 0; p < count_; ++p) higher.col(static_cast<Eigen::Index>(p)) *= mass(p);
 }
 
-/// b and A of particles that have this mass, velocity and state.
+/// Computes b and A of particles that have this mass, velocity and state.
 void Particles::scatter_by_transfer(const Array& mass, const Array& of_velocity, const std::vector<void*>& state) {
   const mpm_transfer& transfer = transfer_.plugin->transfer();
   const auto n = static_cast<std::uint32_t>(padded_);
@@ -169,7 +169,7 @@ void Particles::project_coefficients(double dt) {
   velocity.setZero(), advection.setZero();
   for (Stored& stored : fields_)
     if (stored.declared->origin == Origin::transfer) stored.values.setZero();
-  gathered_increment = gathered_velocity;  // they were at rest
+  gathered_increment = gathered_velocity;  // the particles were at rest
   gather(dt);
   scatter_coefficients();
   for (std::size_t k = 0; k < fields_.size(); ++k) fields_[k].values = kept[k].values;
@@ -184,7 +184,7 @@ std::int32_t Particles::update_material(const mpm_material_batch& request) {
   return failed < 0 || (other >= 0 && other < failed) ? other : failed;
 }
 
-/// The same of some particles, with these parameters: their values are taken out and put back.
+/// Updates only some particles, with these parameters: their values are taken out and put back.
 std::int32_t Particles::update_material(const mpm_material_batch& request, const std::vector<double>& parameters,
                                         const std::vector<Eigen::Index>& particles) {
   std::vector<Eigen::Index> which = particles;
@@ -256,7 +256,7 @@ double Particles::strain(double dt) {
   batch.dissipated_energy = dissipated.data();
   refuse_inverted(update_material(batch));
   if (plan_.particle_field(0, "domain") && !frozen_) {
-    Array& domain = values("domain");  // (I + dt L) domain, as F
+    Array& domain = values("domain");  // the domain becomes (I + dt L) domain, like F
     for (std::size_t p = 0; p < padded_; ++p)
       set(domain, p, Matrix((Matrix::Identity() + dt * matrix(velocity_gradient, p)) * matrix(domain, p)));
   }
@@ -286,7 +286,7 @@ void Particles::gather(double dt) {
   if (plan_.basis_functions > 0) values(polynomial_coefficients, Origin::transfer) = gathered_higher;
 }
 
-/// What the transfer makes of the moments for particles of this velocity and state.
+/// Updates velocity and state by what the transfer makes of the moments.
 void Particles::gather_by_transfer(double dt, const Moments& moments, Array& of_velocity,
                                    const std::vector<void*>& state, Array& advected) {
   const mpm_transfer& transfer = transfer_.plugin->transfer();

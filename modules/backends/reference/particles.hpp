@@ -9,7 +9,7 @@
 
 namespace mpm::reference {
 
-/// What a transfer takes of the nodes: sum w v, sum w (v - v-), C = sum v (x) w D^-1 d, L = sum v (x) grad w.
+/// The sums over nodes that a transfer reads: sum w v, sum w (v - v-), C = sum v (x) w D^-1 d, L = sum v (x) grad w.
 struct Moments {
   Array &velocity, &increment, &affine, &gradient;
 };
@@ -27,60 +27,60 @@ class Particles {
   bool frozen() const { return frozen_; }
   std::uint64_t bytes() const;
 
-  /// The plan's field of these particles with this id. Throws std::logic_error where there is none.
+  /// The plan's field of these particles with this id. It throws std::logic_error where there is none.
   Array& values(std::string_view id, Origin origin = Origin::host);
   const Array& values(std::string_view id, Origin origin = Origin::host) const;
   Vector column(const Array& array, std::size_t p) const;
   Matrix matrix(const Array& array, std::size_t p) const;
-  /// Symmetric tensor without its zz in 2-D.
+  /// The symmetric tensor of a particle, stored without its zz in 2-D.
   Matrix symmetric(const Array& array, std::size_t p) const;
-  /// Force that stress around the axis makes on a particle's nodes, each its weight of it: -V tau_zz / r along x, N.
+  /// The force on a particle's nodes of the stress around the axis, to be shared by weight: -V tau_zz / r along x, N.
   Vector hoop_force(std::size_t p) const;
   void set(Array& array, std::size_t p, const Vector& v);
   void set(Array& array, std::size_t p, const Matrix& m);
   /// Copies the last particle into the padding.
   void pad(Array& array) const;
 
-  /// Stencils and second moments at the current positions and domains; they hold until the next call. Throws
+  /// Finds stencils and second moments at the current positions and domains; they hold until the next call. Throws
   /// RunFailure.
   void find_stencils(const Grid& grid);
   const Stencil& stencil(std::size_t p) const { return stencils_[p]; }
-  /// Polynomials beyond affine at the same nodes; there when Plan::basis_functions is not 0.
+  /// The polynomials beyond affine at the same nodes, which exist when Plan::basis_functions is not 0.
   const HigherBasis& higher_basis(std::size_t p) const { return higher_bases_[p]; }
 
   // ---- temperature.cpp
-  /// J/K, of the phase that particle p has.
+  /// The heat capacity of particle p in its phase, J/K.
   double heat_capacity(std::size_t p) const { return mass(p) * thermal(p).heat_capacity; }
-  double share_of_heat() const { return thermal_ ? thermal_->dissipation_to_heat : 0; }  ///< of what it dissipates
+  double share_of_heat() const { return thermal_ ? thermal_->dissipation_to_heat : 0; }  ///< share of dissipation
   double conductivity(std::size_t p) const { return thermal(p).conductivity; }
   double heat() const;  ///< sum of heat capacity times temperature, J
-  /// b and A of all particles by the scene's transfer, of mass times specific heat and the velocity (T, 0, 0): row 0 is
-  /// the heat that a particle gives.
+  /// Computes b and A of all particles by the scene's transfer, for mass times specific heat and the velocity (T, 0,
+  /// 0): row 0 is the heat that a particle gives.
   void heat_coefficients();
   /// Updates temperature and its transfer state from moments whose row 0 is that of the temperature.
   void gather_heat(double dt, const Moments& moments);
-  /// Heat beyond the melting temperature melts, lacking heat freezes. Returns the stored energy that goes with stiffer
-  /// parameters, J, where `accounted`; else 0.
+  /// Melts by the heat beyond the melting temperature and freezes by the heat that lacks. Returns the stored energy
+  /// that goes with stiffer parameters, J, where `accounted`; else 0.
   double change_phase(bool accounted);
 
-  /// Momentum coefficients b and A of all particles.
+  /// Computes the momentum coefficients b and A of all particles.
   void scatter_coefficients();
-  /// The same of the velocity that the transfer makes of the gathered moments alone, particles at rest before: S+ S of
-  /// a filter. Changes no particle.
+  /// Computes those of the velocity that the transfer makes of the gathered moments alone, as if particles had been at
+  /// rest: S+ S of a filter. Changes no particle.
   void project_coefficients(double dt);
-  /// Kirchhoff stress and volume ratio at the current state. Throws RunFailure when a particle is inverted.
+  /// Evaluates Kirchhoff stress and volume ratio at the current state. Throws RunFailure when a particle is inverted.
   void evaluate_stress();
-  /// Advances material and domain by dt with `velocity_gradient`, and is warmed by its share of what that dissipates;
-  /// returns the energy dissipated, J. Throws RunFailure.
+  /// Advances material and domain by dt with `velocity_gradient`, and warms the particle by its share of what that
+  /// dissipates; returns the energy dissipated, J. Throws RunFailure.
   double strain(double dt);
   /// Updates velocity and transfer state from the gathered moments.
   void gather(double dt);
-  /// The gathered velocity moves the particles and replaces theirs: the step was filtered.
+  /// Moves the particles by the gathered velocity, which replaces their own, as the step was filtered.
   void take_gathered_velocity();
-  /// Largest wave speed + particle speed.
+  /// Finds the largest wave speed + particle speed.
   TimeStepLimit time_step_limit();
 
-  /// Kinetic energy, J, with the affine part m/2 tr(C D C^T), D as the stencils were found.
+  /// The kinetic energy, J, with the affine part m/2 tr(C D C^T), D as the stencils were found.
   double kinetic_energy() const;
 
   BodyState state() const;
@@ -96,13 +96,13 @@ class Particles {
   Array& work(int components) { return work_.emplace_back(make(components)); }
   std::deque<Stored> start_fields() const;
   void seed(const SeedBatch& batch);
-  double half_size() const;  ///< of the undeformed particle's box, cells
+  double half_size() const;  ///< half a side of the undeformed particle's box, cells
   /// The state of the transfer or the material, in declared order.
   std::vector<void*> state_of(Origin plugin);
   ShapeArguments shape_arguments() const;
-  /// D as the transfer reads it, cells^2; empty where it does not or where D is a multiple of the identity.
+  /// D as the transfer reads it, cells^2; empty where the transfer does not or where D is a multiple of the identity.
   Array moments_for_transfer() const;
-  /// By the parameters of each particle's phase. Returns the first particle that failed, or -1.
+  /// Updates with the parameters of each particle's phase. Returns the first particle that failed, or -1.
   std::int32_t update_material(const mpm_material_batch& outputs);
   std::int32_t update_material(const mpm_material_batch& outputs, const std::vector<double>& parameters,
                                const std::vector<Eigen::Index>& particles);
@@ -111,9 +111,9 @@ class Particles {
                           Array& advected);
   bool melted(std::size_t p) const;
   const ThermalProperties& thermal(std::size_t p) const;
-  /// The transfer's state as it would be of the velocity (T, 0, 0), in declared order.
+  /// The transfer's state for the velocity (T, 0, 0), in declared order.
   std::vector<Array> state_of_temperature() const;
-  double stored_energy();  ///< J, of all particles
+  double stored_energy();  ///< sum over all particles, J
   double ring(std::size_t p) const { return circumference_ ? (*circumference_)(0, p) : 1.0; }
   void refuse_inverted(std::int32_t particle);
 
@@ -128,10 +128,10 @@ class Particles {
   bool frozen_;
   Shape shape_;
   std::vector<Stencil> stencils_;
-  std::vector<Matrix> second_moments_;  ///< m^2, with the stencils
+  std::vector<Matrix> second_moments_;  ///< m^2, found with the stencils
   std::vector<HigherBasis> higher_bases_;
   std::deque<Stored> fields_ = start_fields();  ///< in the order of the plan
-  std::deque<Array> work_;                      ///< nothing that a later step reads
+  std::deque<Array> work_;                      ///< arrays that no later step reads
   const Array* const circumference_ = axisymmetric() ? &values("circumference") : nullptr;
 
  public:
@@ -141,8 +141,8 @@ class Particles {
   Array &gathered_velocity = work(dimension_), &gathered_increment = work(dimension_);
   Array &gathered_affine = work(dimension_ * dimension_), &gathered_gradient = work(dimension_ * dimension_);
   Array& gathered_higher = work(plan_.basis_functions * dimension_);  ///< [function][D], polynomials beyond affine, m/s
-  Array& higher = work(plan_.basis_functions * dimension_);           ///< the same times the mass, as b and A
-  Array& velocity_gradient = work(dimension_ * dimension_);           ///< what strains the particle
+  Array& higher = work(plan_.basis_functions * dimension_);           ///< the same times the mass, like b and A
+  Array& velocity_gradient = work(dimension_ * dimension_);           ///< velocity gradient that strains the particle
   Array& hoop_rate = work(axisymmetric() ? 1 : 0);                    ///< 1/s, v_r / r
 };
 

@@ -61,7 +61,7 @@ void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
       return restore_velocity(pass);
     case Act::add_correction:
       return add_correction(pass, step);
-    default:  // the others share a visit with one of these
+    default:  // the other acts share a visit with one of these
       throw std::logic_error("the reference backend does not execute pass \"" + pass.name() + "\"");
   }
 }
@@ -105,7 +105,7 @@ void ReferenceBackend::move(const StepInfo& step) {
   }
 }
 
-/// Takes the corners to where the grid's velocity moved them; returns the way to their domain's centroid, m.
+/// Moves the corners to where the grid's velocity takes them; returns the way to their domain's centroid, m.
 template <int D>
 Vector ReferenceBackend::move_corners(Particles& body, int index, std::size_t p) const {
   constexpr int points = 1 << D;
@@ -115,7 +115,7 @@ Vector ReferenceBackend::move_corners(Particles& body, int index, std::size_t p)
   for (int c = 0; c < points; ++c)
     for (int a = 0; a < D; ++a) corner[c][a] = moved(c * D + a, p);
   const CornerDomain<D, double> domain = corner_domain<D, double>(corner);
-  if (!domain.upright && std::isfinite(domain.volume))  // keep_inside names what is not a number
+  if (!domain.upright && std::isfinite(domain.volume))  // keep_inside reports what is not a number
     throw RunFailure({Cause::domain_inside_out, index, p});
   const Vec<D, double> centre = centroid(domain, corner);
   Vector way = Vector::Zero();

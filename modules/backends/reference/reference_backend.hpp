@@ -1,6 +1,6 @@
 #pragma once
-// The textbook: the material point method in plain double precision, one pass after another, every particle and node
-// spelled out. Slow on purpose; every faster backend is tested against it.
+// The reference backend is the material point method of the textbook in plain double precision: one pass after another,
+// every particle and node spelled out. It is slow on purpose, and every faster backend is tested against it.
 //  transfers.cpp: particles to grid and back; grid_step.cpp: momenta, conditions and forces; contact.cpp: pairs of
 //  fields; filter.cpp: velocity filters; temperature.cpp: heat; reference_backend.cpp: the rest.
 
@@ -69,7 +69,7 @@ class ReferenceBackend final : public Backend {
   }
 
   // ---- contact.cpp
-  /// What the law does to one pair of velocity fields at one node.
+  /// The effect of the law on one pair of velocity fields at one node.
   struct PairResult {
     Vector impulse = Vector::Zero();  ///< added to a, taken from b, kg m/s
     double dissipated = 0;            ///< J
@@ -77,11 +77,11 @@ class ReferenceBackend final : public Backend {
     double separation = 0;  ///< m
     bool has_normal = false;
   };
-  /// Nothing when the pair is skipped: a field is absent, too light, or there is no normal (and the law is no weld).
+  /// Returns nothing when a pair is skipped: a field is absent or too light, or has no normal (and the law is no weld).
   std::optional<PairResult> resolve_pair(std::size_t a, std::size_t b, const Vector& momentum_a,
                                          const Vector& momentum_b, double dt) const;
   ContactFieldNode contact_view(std::size_t i) const;
-  /// All pairs of fields, in order; conditions are imposed again and win.
+  /// Applies the law to all pairs of fields in order; conditions are imposed again and win.
   void resolve_contact(const StepInfo& step, bool after_forces, bool remap = false);
 
   // ---- filter.cpp
@@ -109,7 +109,7 @@ class ReferenceBackend final : public Backend {
   void hold_temperature(std::size_t i, double value, double& ledger);
   void gather_heat(Particles& body, const StepInfo& step);
   void change_phase();
-  /// An entry of the heat ledger, where there is one.
+  /// Adds to an entry of the heat ledger, where there is one.
   void account(double& row, double heat) const {
     if (plan_.has_heat_ledger()) row += heat;
   }
@@ -133,7 +133,7 @@ class ReferenceBackend final : public Backend {
   const Experiment& experiment_;
   const Plan& plan_;
   Grid grid_;
-  // Fields of the nodes, as the method's text names them.
+  // These references name fields of the nodes as the text of the method does.
   ScalarField &mass_ = grid_.scalar("mass"), &volume_ = grid_.scalar("volume");
   VectorField& momentum_ = grid_.vector("momentum");
   VectorField& velocity_before_ = grid_.vector("velocity_before");  ///< v-
@@ -143,10 +143,10 @@ class ReferenceBackend final : public Backend {
   VectorField& volume_gradient_ = grid_.vector("volume_gradient");  ///< sum V grad w
   VectorField& mass_position_ = grid_.vector("mass_position");      ///< sum w m (x_p - x_node)
   VectorField& increment_ = grid_.vector("increment");              ///< v* of the filter
-  VectorField& projection_ = grid_.vector("projection");            ///< S+ S v*, a momentum until over_mass
+  VectorField& projection_ = grid_.vector("projection");            ///< S+ S v*, a momentum until over_mass divides it
   VectorField& trial_velocity_ = grid_.vector("trial_velocity");
   VectorField& unfiltered_ = grid_.vector("unfiltered_velocity");
-  /// What conditions and contact have added to the velocity in this step.
+  /// The velocities that conditions and contact have added in this step.
   VectorField& constrained_ = grid_.vector("velocity_of_constraints");
   const bool keeps_constraints_ = plan_.node_field("velocity_of_constraints") != nullptr;
   VectorField& unfiltered_constrained_ = grid_.vector("unfiltered_velocity_of_constraints");
@@ -166,10 +166,10 @@ class ReferenceBackend final : public Backend {
   bool accounted_ = false;  ///< the ledger takes its entries from the step under way
   ContactRecord contact_;
   FilterRecord filter_;
-  double kinetic_energy_after_ = 0;             ///< of the grid when particles gather from it, J
-  double kinetic_energy_unfiltered_ = 0;        ///< of the grid when the filter began, J
-  double held_beyond_ = 0, others_beyond_ = 0;  ///< see Grid::heat_beyond_walls, before the forces
-  double heat_after_ = 0;                       ///< of the grid when particles gather from it, J
+  double kinetic_energy_after_ = 0;             ///< kinetic energy of the grid when particles gather from it, J
+  double kinetic_energy_unfiltered_ = 0;        ///< kinetic energy of the grid when the filter began, J
+  double held_beyond_ = 0, others_beyond_ = 0;  ///< heat of Grid::heat_beyond_walls before the forces
+  double heat_after_ = 0;                       ///< heat of the grid when particles gather from it, J
 };
 
 }  // namespace mpm::reference

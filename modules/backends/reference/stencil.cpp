@@ -51,7 +51,7 @@ void Shape::evaluate_product(const ShapeArguments& at, ShapeValues& values) cons
                               values.gradient.data(),
                               plan_.stencil.second_moment ? diagonal.data() : nullptr};
   shape_.evaluate[MPM_SCALAR_DOUBLE](experiment_.shape.parameters.data(), &batch);
-  // sum w d = 0 along each axis, so that the product's moment is diagonal.
+  // As sum w d = 0 along each axis, the product's moment is diagonal.
   for (int a = 0; plan_.stencil.second_moment && a < D; ++a) values.second_moment.row(a * (D + 1)) = diagonal.row(a);
 }
 
@@ -79,7 +79,7 @@ void Shape::evaluate_list(const ShapeArguments& at, ShapeValues& values) const {
   shape_.evaluate_list[MPM_SCALAR_DOUBLE][D - 2](experiment_.shape.parameters.data(), &batch);
 }
 
-/// w = prod_c w_c, dw/dx_c = w_c' / h prod_(e != c) w_e.
+/// Finds a node of a product: w = prod_c w_c, dw/dx_c = w_c' / h prod_(e != c) w_e.
 StencilNode Shape::product_node(const ShapeValues& values, std::size_t p, const int (&at)[3],
                                 Eigen::Vector3i& coordinates) const {
   const int D = dimension_, K = static_cast<int>(shape_.width);
@@ -160,7 +160,7 @@ Stencil Shape::stencil(const ShapeValues& values, const ShapeArguments& at, std:
                        int body) const {
   const int D = dimension_;
   const bool moment_is_gradient = shape_.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
-  Matrix inverse = Matrix::Zero();  // of D
+  Matrix inverse = Matrix::Zero();  // inverse of D
   if (!moment_is_gradient && (plan_.stencil.second_moment || shape_.second_moment_kind == MPM_MOMENT_CONSTANT))
     inverse.topLeftCorner(D, D) = second_moment(values, at, p).topLeftCorner(D, D).inverse();
   Stencil stencil;

@@ -10,10 +10,10 @@
 
 namespace mpm::reference {
 
-/// [component][particle], padded with copies of the last particle so that a plugin may compute whole lanes.
+/// An array [component][particle], padded with copies of the last particle so that a plugin may compute whole lanes.
 using Array = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// One node of a particle's stencil.
+/// A node of a particle's stencil.
 struct StencilNode {
   std::size_t index = 0;
   double weight = 0;
@@ -29,7 +29,7 @@ struct HigherBasis {
   std::vector<double> norm;  ///< [function] sum w P^2
 };
 
-/// Where the shape of one body is evaluated, in cells.
+/// The points where the shape of one body is evaluated, in cells.
 struct ShapeArguments {
   Array position;   ///< [D], from the grid's lower corner
   Array half_size;  ///< [D]; half the undeformed particle's box
@@ -37,13 +37,13 @@ struct ShapeArguments {
   Array corners;    ///< [points*D], from the position; empty unless Plan::sample_points
 };
 
-/// What the plugin returned for all particles, in cells.
+/// The values that the plugin returned for all particles, in cells.
 struct ShapeValues {
   std::vector<std::int32_t> node;   ///< tensor product: first node [D][n]; list: every node [capacity][D][n]
   std::vector<std::int32_t> count;  ///< list: nodes of each particle
   Array offset;                     ///< tensor product: position - first node
   Array weight, gradient;           ///< [D][width] or [capacity], [D][width] or [capacity][D]
-  Array second_moment;              ///< [D*D] row-major, filled in when it is one a particle and planned
+  Array second_moment;              ///< [D*D] row-major, filled in when the moment is one a particle and planned
 };
 
 class Shape {
@@ -51,11 +51,11 @@ class Shape {
   Shape(const Experiment& experiment, const Plan& plan);
 
   ShapeValues evaluate(const ShapeArguments& at) const;
-  /// Nodes of particle p. Throws RunFailure when its domain reaches beyond the grid's padding.
+  /// Finds the nodes of particle p. Throws RunFailure when its domain reaches beyond the grid's padding.
   Stencil stencil(const ShapeValues& values, const ShapeArguments& at, std::size_t p, const Grid& grid, int body) const;
-  /// D = sum w d d^T of particle p, m^2; zero when it is one a particle and the plan does not want it.
+  /// D = sum w d d^T of particle p, m^2; it is zero when each particle has its own and the plan does not want it.
   Matrix second_moment(const ShapeValues& values, const ShapeArguments& at, std::size_t p) const;
-  /// The polynomials beyond affine of particle p, of a tensor product.
+  /// The polynomials beyond affine of particle p, whose shape is a tensor product.
   HigherBasis higher_basis(const ShapeValues& values, std::size_t p) const;
 
  private:

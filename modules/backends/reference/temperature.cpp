@@ -1,6 +1,6 @@
-// Temperature: particles give nodes their heat, nodes conduct it and exchange it at walls and in boxes, particles take
-// temperatures back, melt and freeze. The scene's transfer acts on T as it would on the velocity (T, 0, 0) of a particle
-// whose mass is its heat capacity.
+// Temperature: particles give nodes their heat, nodes conduct it and exchange it at walls and in boxes, and particles
+// take temperatures back, melt and freeze. The scene's transfer acts on T as it would on the velocity (T, 0, 0) of a
+// particle whose mass is its heat capacity.
 
 #include <cmath>
 #include <numbers>
@@ -33,7 +33,7 @@ double Particles::heat() const {
   return sum;
 }
 
-/// The state that the plan keeps stands in row 0 of a matrix, in component 0 of a vector; the rest is zero.
+/// Puts the state that the plan keeps into row 0 of a matrix and into component 0 of a vector; the rest is zero.
 std::vector<Array> Particles::state_of_temperature() const {
   std::vector<Array> states;
   for (const mpm_state& declared : transfer_.plugin->state()) {
@@ -69,8 +69,8 @@ void Particles::gather_heat(double dt, const Moments& moments) {
   }
 }
 
-/// Recovery: the enthalpy h = c (T - Tm) + L phi stays, and where it lies between 0 and L the temperature is Tm (Voller &
-/// Cross 1981, Int. J. Heat Mass Transf. 24:545).
+/// Keeps the enthalpy h = c (T - Tm) + L phi and recovers T and phi; where h lies between 0 and L the temperature is Tm
+/// (Voller & Cross 1981, Int. J. Heat Mass Transf. 24:545).
 double Particles::change_phase(bool accounted) {
   if (!thermal_ || !thermal_->phase_change) return 0;
   const PhaseChange& change = *thermal_->phase_change;
@@ -116,14 +116,14 @@ double ReferenceBackend::sum(const ScalarField& field) {
   return total;
 }
 
-/// Without ghosts, whose heat capacity was folded.
+/// Ghosts add nothing, as their heat capacity was folded.
 double ReferenceBackend::heat_of_temperature() {
   double total = 0;
   for_each_node([&](std::size_t i) { total += heat_capacity_[i] * temperature_[i]; });
   return total;
 }
 
-/// Node by node: w m c, w (b + A d) of the temperature, and w V of the section where a wall's area counts.
+/// Gives each node w m c, w (b + A d) of the temperature, and w V of the section where a wall's area counts.
 void ReferenceBackend::scatter_heat(Particles& body) {
   const bool affine = experiment_.transfer.plugin->transfer().traits & MPM_SCATTERS_AFFINE;
   const bool measures_walls = plan_.node_field("heated_volume") != nullptr;
@@ -155,7 +155,7 @@ void ReferenceBackend::divide_heat(const StepInfo& step) {
   for_each_node([&](std::size_t i) { temperature_before_[i] = temperature_[i]; });
 }
 
-/// dH_i/dt = -V k grad T . grad w_i, with grad T = sum T- grad w at the particle.
+/// Adds dH_i/dt = -V k grad T . grad w_i, with grad T = sum T- grad w at the particle.
 void ReferenceBackend::conduct() {
   for (Particles& body : bodies_) {
     body.evaluate_stress();
@@ -197,7 +197,7 @@ void ReferenceBackend::heat_through_walls(const StepInfo& step) {
         heat_through_wall(face, axis, side, step);
 }
 
-/// q A is shared among a wall node and the next ones inward by the shape's weights at the wall.
+/// Shares q A among a wall node and the next ones inward by the shape's weights at the wall.
 void ReferenceBackend::heat_through_wall(const FaceCondition& face, int axis, int side, const StepInfo& step) {
   double& row = face.thermal.exchange == HeatExchange::convection ? heat_ledger_.convection : heat_ledger_.flux;
   for_each_node([&](std::size_t i) {
@@ -216,7 +216,7 @@ void ReferenceBackend::heat_through_wall(const FaceCondition& face, int axis, in
   });
 }
 
-/// The power of a box is shared by the masses of its nodes.
+/// Shares the power of a box by the masses of its nodes.
 void ReferenceBackend::heat_boxes(const StepInfo& step) {
   for (const BoxCondition& box : experiment_.boxes) {
     if (box.thermal.exchange != HeatExchange::heating) continue;
@@ -231,7 +231,7 @@ void ReferenceBackend::heat_boxes(const StepInfo& step) {
   }
 }
 
-/// Walls first, then boxes, which win.
+/// Imposes walls first, then boxes, which win.
 void ReferenceBackend::impose_temperatures(double time, double& from_walls, double& from_boxes) {
   for_each_node([&](std::size_t i) {
     if (heat_capacity_[i] <= 0) return;
@@ -257,7 +257,7 @@ void ReferenceBackend::hold_temperature(std::size_t i, double value, double& led
 
 // ---- nodes to particles -------------------------------------------------------------------------------------------
 
-/// sum w T+, sum w (T+ - T-), sum T+ w D^-1 d and sum T+ grad w, in row 0 as of the velocity (T, 0, 0).
+/// Gathers sum w T+, sum w (T+ - T-), sum T+ w D^-1 d and sum T+ grad w in row 0, like those of the velocity (T, 0, 0).
 void ReferenceBackend::gather_heat(Particles& body, const StepInfo& step) {
   const int D = experiment_.dimension;
   Array velocity = Array::Zero(D, body.velocity.cols()), increment = velocity;

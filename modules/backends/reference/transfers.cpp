@@ -1,4 +1,4 @@
-// Particles to grid and back.
+// Moves momentum, mass and forces from particles to grid, and velocities back.
 
 #include <cmath>
 #include <numbers>
@@ -23,7 +23,7 @@ void ReferenceBackend::scatter(const Pass& pass, const StepInfo& step) {
   if (accounted_ && !pass.remap()) ledger_.scatter += grid_.kinetic_energy() - particle_kinetic_energy();
 }
 
-/// Node by node: w m, and its weight; momenta as the transfer gives them.
+/// Gives each node w m, its weight, and the momentum as the transfer gives it.
 void ReferenceBackend::scatter_momentum(Particles& body, bool remap) {
   const Vector gravity = to_eigen(experiment_.gravity);
   body.scatter_coefficients();
@@ -36,7 +36,7 @@ void ReferenceBackend::scatter_momentum(Particles& body, bool remap) {
   scatter_affine(body, momentum_);
 }
 
-/// Node by node: w (b + A d), and sum w c P over the polynomials beyond affine.
+/// Gives each node w (b + A d), and sum w c P over the polynomials beyond affine.
 void ReferenceBackend::scatter_affine(Particles& body, VectorField& momentum) {
   const bool affine = experiment_.transfer.plugin->transfer().traits & MPM_SCATTERS_AFFINE;
   const int D = experiment_.dimension;
@@ -53,7 +53,7 @@ void ReferenceBackend::scatter_affine(Particles& body, VectorField& momentum) {
   }
 }
 
-/// Where the tents' velocity at the corners takes them, and what moves the particle beyond the gathered velocity.
+/// Moves each corner by the multilinear velocity of the nodes, and by what moves the particle beyond the gathered one.
 void ReferenceBackend::gather_corners(Particles& body, const StepInfo& step) {
   const int D = experiment_.dimension;
   const double h = experiment_.grid.cell_size;
@@ -83,7 +83,7 @@ void ReferenceBackend::gather_corners(Particles& body, const StepInfo& step) {
   }
 }
 
-/// The coefficients of the polynomials beyond affine in the given velocity.
+/// Gathers the coefficients of the polynomials beyond affine in the given velocity.
 void ReferenceBackend::gather_higher(Particles& body, const VectorField& velocities) {
   const int D = experiment_.dimension;
   if (plan_.basis_functions > 0) body.gathered_higher.setZero();
@@ -95,8 +95,8 @@ void ReferenceBackend::gather_higher(Particles& body, const VectorField& velocit
                                                 velocities[grid_.at(body.field(), body.stencil(p)[n].index)][c];
 }
 
-/// f = -V0 tau grad w, or -V0 tau (w D^-1 d) when the transfer takes stress by the affine term, and around an axis
-/// -w V0 tau_zz / r e_r; body forces w m b(x, X, t).
+/// Adds f = -V0 tau grad w, or -V0 tau (w D^-1 d) when the transfer takes stress by the affine term, around an axis
+/// also -w V0 tau_zz / r e_r, and the body forces w m b(x, X, t).
 void ReferenceBackend::scatter_force(Particles& body, double time) {
   const bool by_affine = experiment_.transfer.plugin->transfer().traits & MPM_STRESS_BY_AFFINE;
   for (std::size_t p = 0; p < body.count(); ++p) {
@@ -124,7 +124,7 @@ void ReferenceBackend::scatter_contact_fields(Particles& body) {
     for (const StencilNode& s : body.stencil(p)) {
       const std::size_t i = grid_.at(body.field(), s.index);
       volume_[i] += s.weight * volume;
-      volume_gradient_[i] += section * s.gradient;  // of the section: a ring's volume grows away from the axis
+      volume_gradient_[i] += section * s.gradient;  // gradient of the section: a ring's volume grows away from the axis
       mass_position_[i] -= s.weight * body.mass(p) * s.distance;
     }
   }
@@ -146,7 +146,7 @@ void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
   if (pass.has(Act::change_phase)) change_phase();
 }
 
-/// sum w v, sum w (v - v-), C = sum v (x) w D^-1 d and L = sum v (x) grad w of the given velocity, v+ as a rule.
+/// Gathers sum w v, sum w (v - v-), C = sum v (x) w D^-1 d and L = sum v (x) grad w of a velocity, v+ as a rule.
 void ReferenceBackend::gather_moments(Particles& body, const VectorField& velocities) {
   const bool strain_by_affine = experiment_.transfer.plugin->transfer().traits & MPM_STRAIN_BY_AFFINE;
   for (std::size_t p = 0; p < body.count(); ++p) {
