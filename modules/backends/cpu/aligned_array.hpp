@@ -1,5 +1,5 @@
 #pragma once
-// Storage for particles and grid channels: aligned, never initialised twice, in huge pages when it is large.
+// Storage for particles and grid channels is aligned, never initialised twice, and in huge pages when it is large.
 
 #include <sys/mman.h>
 
@@ -11,14 +11,14 @@
 
 namespace mpm::cpu {
 
-/// Bytes. What different threads write lies in different pages: a processor fetches lines ahead of those that it reads,
-/// up to the end of their page, and takes them from the cache of another.
+/// The size of a page, bytes. What different threads write lies in different pages: a processor fetches lines ahead of
+/// those that it reads, up to the end of their page, and takes them from the cache of another.
 inline constexpr std::size_t page = 4096;
 
 template <class T>
 class AlignedArray {
  public:
-  /// At least `count` zeroed elements on growth; growth discards the contents.
+  /// Makes room for at least `count` elements, which are zero after growth; growth discards the contents.
   void require(std::size_t count) {
     if (count <= size_) return;
     constexpr std::size_t huge_page = std::size_t{1} << 21;

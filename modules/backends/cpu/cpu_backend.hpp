@@ -1,5 +1,5 @@
 #pragma once
-// The cpu backend: particles in chunks and blocks, a sparse grid, and the passes over both.
+// The cpu backend keeps particles in chunks and blocks, nodes in a sparse grid, and executes the passes over both.
 
 #include <chrono>
 #include <memory>
@@ -17,7 +17,7 @@ class CpuBackend final : public Backend, NamedChannels {
   using Step = ParticleStep<D, T, Components>;
 
  public:
-  /// `find_number`: up to `threads` threads, as many as are fastest; else exactly so many.
+  /// Uses exactly `threads` threads, or with `find_number` as many of them as are fastest.
   CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds, int threads,
              bool find_number = false);
 
@@ -44,11 +44,11 @@ class CpuBackend final : public Backend, NamedChannels {
   std::uint64_t grid_bytes() const override { return grid_.bytes(); }
 
  private:
-  /// So many particles keep a thread busy for long enough that one more is worth its while on a quiet machine.
+  /// This many particles keep a thread busy for long enough that one more is worth its while on a quiet machine.
   static constexpr std::size_t particles_for_a_thread = 20000;
 
   void execute_pass(const Pass& pass, const StepInfo& step);
-  /// At the end of a step: how many threads the next one has.
+  /// Decides at the end of a step how many threads the next one has.
   void keep_pace(long next_step) {
     if (seconds_of_step_ > 0) pace_->step_took(std::exchange(seconds_of_step_, 0.0));
     scene_.team->use(pace_->threads(), !pace_->disturbed());
@@ -74,18 +74,18 @@ class CpuBackend final : public Backend, NamedChannels {
   std::vector<Particles<D, T>> particles_;
   SortSpace sort_space_;
   bool grid_built_ = false;
-  long looked_at_step_ = -1;  ///< whether the ledger takes entries from it is known
+  long looked_at_step_ = -1;  ///< step for which it is known whether the ledger takes entries
   std::vector<int> field_of_body_;
   Ledger ledger_;
   HeatLedger heat_ledger_;
   ContactRecord contact_;
   FilterRecord filter_;
   TimeStepLimit limit_;
-  std::unique_ptr<support::Pace> pace_;  ///< null: there is one thread
+  std::unique_ptr<support::Pace> pace_;  ///< null where there is one thread
   long paced_step_ = -1;
   double seconds_of_step_ = 0;
   bool scattered_ = false;   ///< the last gather_scatter left the next step's grid
-  Pass gather_alone_;        ///< a fused pass without what it does for the next step, once that was needed
+  Pass gather_alone_;        ///< a fused pass without its acts for the next step; empty until it was needed
   bool motion_kept_ = true;  ///< particles have the velocity and the transfer's state of the last step
   std::unique_ptr<Step> particle_step_;
   std::unique_ptr<GridStep<D, T>> grid_step_;
@@ -147,7 +147,7 @@ std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<Se
   return bodies;
 }
 
-/// 2 pi r of each particle where it was seeded.
+/// Computes 2 pi r of each particle where it was seeded.
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::measure_circumferences(Particles<D, T>& particles) const {
   if (particles.circumference < 0) return;
@@ -185,7 +185,7 @@ void CpuBackend<D, T, Components>::sort_when_moved() {
   if (particle_step_->must_sort()) sort_all();
 }
 
-/// Between scatter and gather, when the move that follows would, by the last one, lead out of the tiles. What the
+/// Sorts between scatter and gather when the next move, if it is like the last, would lead out of the tiles. What the
 /// gather replaces does not travel. Particles are sorted by where they will be in the middle of their way, which makes
 /// the way to the next sort longer.
 template <int D, class T, class Components>
@@ -229,7 +229,7 @@ bool CpuBackend<D, T, Components>::may_pass_motion(const StepInfo& step) const {
          particle_step_->stays_within_tiles(step.dt * grid_step_->largest_component() / scene_.domain.cell_size);
 }
 
-/// Gather, and the scatter of the step that follows, into a second motion channel: that of this step is still read.
+/// Gathers, and scatters for the next step into a second motion channel, as that of this step is still read.
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepInfo& step) {
   scattered_ = false;
@@ -267,7 +267,7 @@ void CpuBackend<D, T, Components>::account_for_strain(const typename Step::Gathe
   heat_ledger_.dissipation += dissipation.heat_of_dissipation;
 }
 
-/// Before the scatter of a step: what only the ledger reads rests in the steps that it leaves out.
+/// Prepares the scatter of a step: what only the ledger reads rests in the steps that the ledger leaves out.
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::wake_for_ledger(long step) {
   grid_.let_ledger_rest(scene_.plan.has_ledger() && !scene_.plan.accounts_at(step));
@@ -289,7 +289,7 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
       return sort_between(step);
     case Act::clear:
       wake_for_ledger(step.step);
-      sort_when_moved();  // a plan without a sort pass
+      sort_when_moved();  // for plans without a sort pass
       if (scene_.list && particle_step_->widen_active_blocks()) grid_.rebuild(particles_, field_of_body_);
       return grid_.clear();
     case Act::scatter_momentum:
@@ -328,7 +328,7 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
       return grid_step_->restore_velocity(pass);
     case Act::add_correction:
       return grid_step_->add_correction(pass, step);
-    default:  // the others share a visit with one of these
+    default:  // the other acts share a visit with one of these
       throw std::logic_error("the cpu backend does not execute pass \"" + pass.name() + "\"");
   }
 }
@@ -342,7 +342,7 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
   BodyState state;
   state.volume = body.volume;
   state.mass = body.mass;
-  // Visits every particle: visit(block, values of its lane, index of seeding).
+  // It visits every particle by visit(block, values of its lane, index of seeding).
   const auto each = [&](auto&& visit) {
     for (const Block<D>& block : particles.blocks)
       for_each_chunk<T>(block, [&](std::uint32_t chunk, int count) {
@@ -374,7 +374,7 @@ BodyState CpuBackend<D, T, Components>::body_state(int index) const {
   return state;
 }
 
-/// What a state is good for: storage differs between dimensions, precisions and layouts.
+/// Names what a saved state fits, as storage differs between dimensions, precisions and layouts.
 template <int D, class T, class Components>
 std::string CpuBackend<D, T, Components>::signature() const {
   return "cpu " + std::to_string(D) + "-D of " + std::to_string(sizeof(T)) + " bytes, chunks of " +
@@ -413,7 +413,7 @@ void CpuBackend<D, T, Components>::save(ArchiveWriter& archive) const {
   }
 }
 
-/// The grid is built for the same blocks in the same order, so that its sums are the same.
+/// Restores all but the grid, which is built for the same blocks in the same order, so that its sums are the same.
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::restore(ArchiveReader& archive) {
   std::string written;

@@ -8,13 +8,13 @@
 
 namespace mpm::cpu {
 
-/// For the thread that makes it, until it goes.
+/// Applies to the thread that makes it, and ends when it is destroyed.
 class FlushDenormals {
  public:
 #if defined(__SSE2__)
   FlushDenormals() : before_(_mm_getcsr()) {
     _mm_setcsr(before_ | 0x8040);
-  }  // results, operands
+  }  // results and operands below it count as zero
   ~FlushDenormals() {
     _mm_setcsr(before_);
   }
@@ -22,7 +22,7 @@ class FlushDenormals {
  private:
   unsigned before_;
 #else
-  FlushDenormals() {}  // other processors handle them at full speed
+  FlushDenormals() {}  // other processors handle such numbers at full speed
 #endif
  public:
   FlushDenormals(const FlushDenormals&) = delete;

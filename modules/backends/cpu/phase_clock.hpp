@@ -1,5 +1,5 @@
 #pragma once
-// What the passes over particles spend their time on. Off, a lap is one branch a chunk of particles.
+// Measures what passes over particles spend their time on. While it is off, a lap is one branch a chunk.
 
 #include <array>
 #include <chrono>
@@ -21,7 +21,7 @@ class PhaseClock {
     on_ = on;
     if (on) ticks = {}, last_ = now();
   }
-  /// What follows belongs to whatever phase the next lap names.
+  /// Starts a lap: what follows belongs to whatever phase the next lap names.
   void start() {
     if (on_) last_ = now();
   }
@@ -33,7 +33,7 @@ class PhaseClock {
   }
   static Ticks now() {
 #if defined(__x86_64__)
-    return __builtin_ia32_rdtsc();  // a tenth of a system clock's cost, which would show in what it measures
+    return __builtin_ia32_rdtsc();  // it costs a tenth of a system clock, which would show in what it measures
 #else
     return static_cast<Ticks>(std::chrono::steady_clock::now().time_since_epoch().count());
 #endif

@@ -1,5 +1,5 @@
 #pragma once
-// What stays the same over a run: entry points, units, and which moments the chosen plugins need.
+// A scene holds what stays the same over a run: entry points, units, and which moments the chosen plugins need.
 
 #include <cmath>
 #include <memory>
@@ -17,10 +17,10 @@ namespace mpm::cpu {
 template <class T>
 inline constexpr int lane_precision = sizeof(T) == 4 ? MPM_LANES_FLOAT : MPM_LANES_DOUBLE;
 
-/// Width of the tile that lists of nodes are scattered to: the widest.
+/// The width of the tile that lists of nodes are scattered to, which is the widest.
 inline constexpr int list_width = MPM_BOX_WIDTH;
 
-/// Domain in cells.
+/// The domain in cells.
 struct Domain {
   Vector3 lower{};       ///< m
   double cell_size = 0;  ///< m
@@ -73,15 +73,15 @@ struct Scene {
     stress_by_affine = has(MPM_STRESS_BY_AFFINE) && !moment_is_gradient;
   }
   bool has(unsigned trait) const { return (traits & trait) != 0; }
-  /// D_a of one axis (m^2) for a particle at `offset` cells from its stencil's first node; not of moments a particle.
+  /// D_a of one axis (m^2) for a particle at `offset` cells from its stencil's first node; not for moments a particle.
   double second_moment(double offset) const {
     return moment_is_gradient ? offset * (1 - offset) * domain.cell_size * domain.cell_size : 1 / inverse_moment;
   }
 
   const Experiment& experiment;
   const Plan& plan;
-  std::unique_ptr<support::Team> team;  ///< that shares the loops
-  int threads = 1;                      ///< of the team
+  std::unique_ptr<support::Team> team;  ///< threads that share the loops
+  int threads = 1;                      ///< number of threads of the team
   Domain domain;
   bool axisymmetric = false;  ///< x is the radius
 
@@ -90,13 +90,13 @@ struct Scene {
   const void* shape_parameters = nullptr;
   bool list = false;  ///< the shape gives lists of nodes
   void (*evaluate_list)(const void*, const mpm_list_batch*) = nullptr;
-  void (*evaluate_box)(const void*, const mpm_box_batch*) = nullptr;  ///< null: lists only
+  void (*evaluate_box)(const void*, const mpm_box_batch*) = nullptr;  ///< null where the shape gives only lists
   int capacity = 0;                                                   ///< most nodes of a list
-  double list_reach = 0;                                              ///< cells, of nodes beyond the particle's domain
+  double list_reach = 0;                                              ///< reach beyond the particle's domain, cells
   int padding = grid_padding;
-  bool half_size = false;  ///< the shape reads it
+  bool half_size = false;  ///< the shape reads half_size
   bool moment_is_gradient = false, moment_of_particle = false;
-  double inverse_moment = 0;  ///< 1 / (second_moment h^2), 1/m^2, of a constant one
+  double inverse_moment = 0;  ///< 1 / (second_moment h^2), 1/m^2, where that is constant
 
   unsigned traits = 0;
   bool stress_by_affine = false;

@@ -1,5 +1,5 @@
 #pragma once
-// Storage of particle chunks, given out and taken back one by one: a sort then needs no second copy of the particles.
+// Storage of particle chunks is given out and taken back one by one: a sort then needs no second copy of the particles.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,11 +11,11 @@ namespace mpm::cpu {
 
 class ChunkPool {
  public:
-  /// Of every chunk; a multiple of 64. Before the first is taken.
+  /// Sets the size of every chunk, a multiple of 64, before the first is taken.
   void set_chunk_bytes(std::size_t bytes) { chunk_bytes_ = bytes; }
   std::size_t unused() const { return unused_.size(); }
 
-  /// At least `count` chunks can be taken before storage must grow.
+  /// Makes sure that at least `count` chunks can be taken before storage must grow.
   void reserve(std::size_t count) {
     if (count > unused_.size()) grow(count - unused_.size());
   }
@@ -25,7 +25,7 @@ class ChunkPool {
     unused_.pop_back();
     return chunk;
   }
-  /// Does not allocate.
+  /// Takes a chunk back; this does not allocate.
   void give(std::byte* chunk) { unused_.push_back(chunk); }
 
   std::size_t bytes() const {
@@ -35,7 +35,7 @@ class ChunkPool {
   }
 
  private:
-  /// By a 64th of what there is, so that growing chunk by chunk stays cheap and wastes little.
+  /// Grows by at least a 64th of what there is, so that growing chunk by chunk stays cheap and wastes little.
   void grow(std::size_t count) {
     const std::size_t chunks = std::max({count, all_ / 64, std::size_t{8}});
     AlignedArray<std::byte>& segment = segments_.emplace_back();

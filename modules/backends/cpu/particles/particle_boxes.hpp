@@ -1,13 +1,13 @@
 #pragma once
-// ParticleStep: boxes of nodes. Particles whose nodes lie in a box within the tile of their block take it; the others
-// keep their lists.
+// This part of ParticleStep works on boxes of nodes: particles whose nodes lie in a box within the tile of their block
+// take it; the others keep their lists.
 
 #include "backends/cpu/particles/particle_chunks.hpp"
 #include "kernel/lanes.hpp"
 
 namespace mpm::cpu {
 
-/// Boxes of a chunk, and the lists of its particles that have none. As evaluate_lists.
+/// Evaluates the boxes of a chunk, and the lists of its particles that have none, as evaluate_lists does.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::evaluate_boxes(const Chunk& chunk, Work& work, bool gradients) {
   BoxWork<D, T>& boxes = work.boxes;
@@ -34,11 +34,11 @@ void ParticleStep<D, T, Components>::evaluate_boxes(const Chunk& chunk, Work& wo
   if (scene_.plan.stencil.second_moment) invert_moments(chunk, work);
 }
 
-/// Widths that the kernels have, places in the tile and what the boxes reach; false when a particle has no box there.
+/// Sets widths that kernels have, places in the tile and the boxes' reach; false when a particle has no box there.
 template <int D, class T, class Components>
 bool ParticleStep<D, T, Components>::place_boxes(const Chunk& chunk, Work& work) const {
   BoxWork<D, T>& boxes = work.boxes;
-  int lowest[D], highest[D];  // nodes that a box may have: of the tile, and not too far beyond the domain
+  int lowest[D], highest[D];  // nodes that a box may have: those of the tile, not too far beyond the domain
   for (int a = 0; a < D; ++a) {
     lowest[a] = -1, highest[a] = kernels_.side - 2;
     if (scene_.domain.periodic(a)) continue;
@@ -76,7 +76,7 @@ bool ParticleStep<D, T, Components>::place_boxes(const Chunk& chunk, Work& work)
   return lists == 0;
 }
 
-/// The lists of those of one batch's particles that have no box; returns the next free entry.
+/// Evaluates the lists of those of one batch's particles that have no box; returns the next free entry.
 template <int D, class T, class Components>
 int ParticleStep<D, T, Components>::evaluate_lists_between_boxes(const Chunk& chunk, Work& work, int first_lane,
                                                                  int entry, bool gradients) {
@@ -97,7 +97,7 @@ int ParticleStep<D, T, Components>::evaluate_lists_between_boxes(const Chunk& ch
   return entry;
 }
 
-/// C <- C D^-1, both full matrices.
+/// Multiplies C <- C D^-1, both full matrices.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::multiply_by_inverse_moments(const Chunk& chunk, Work& work) const {
   using L = Lanes<T>;

@@ -1,5 +1,5 @@
 #pragma once
-// ParticleStep: loops over blocks and chunks, and what scatter and gather share.
+// This part of ParticleStep loops over blocks and chunks, and holds what scatter and gather share.
 
 #include <cmath>
 #include <tuple>
@@ -56,7 +56,7 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
   if (measures_drift_) find_first_places();
 }
 
-/// From the shape itself, to a part of a cell; see drift.
+/// Finds first places from the shape itself, to a part of a cell; see drift.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::find_first_places() {
   Work& work = *work_[0];
@@ -84,8 +84,8 @@ void ParticleStep<D, T, Components>::find_first_places() {
   }
 }
 
-/// Calls visit(block, work) for every block of a body. Coloured: no two blocks in work at once share a node, and the
-/// order of those that do is always the same.
+/// Calls visit(block, work) for every block of a body. Where `coloured`, no two blocks in work at once share a node,
+/// and the order of those that do is always the same.
 template <int D, class T, class Components>
 template <class Visit>
 void ParticleStep<D, T, Components>::for_each_block(int body, bool coloured, Visit&& visit) {
@@ -177,7 +177,7 @@ void ParticleStep<D, T, Components>::measure_phases(bool on) {
   measured_since_ = std::chrono::steady_clock::now();
 }
 
-/// Seconds of all threads together; the length of a tick follows from the time since measuring began.
+/// Adds up the seconds of all threads; the length of a tick follows from the time since measuring began.
 template <int D, class T, class Components>
 std::map<std::string, double> ParticleStep<D, T, Components>::phase_seconds() const {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - measured_since_;
@@ -191,15 +191,15 @@ std::map<std::string, double> ParticleStep<D, T, Components>::phase_seconds() co
   return seconds;
 }
 
-/// Of particle p of a chunk.
+/// Notes a failure of particle p of a chunk.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::note(Cause cause, const Chunk& chunk, int p, int axis, double value) {
   const std::lock_guard lock(mutex_);
   failure_.note({cause, chunk.body.index, static_cast<std::size_t>(chunk.ids[p]), axis, value});
 }
 
-/// Weights (and gradients, and what the second moment needs) of a chunk. Called from several passes that must agree to
-/// the last bit, so it is compiled once.
+/// Evaluates the weights of a chunk (and gradients, and what the second moment needs). Several passes that must agree
+/// to the last bit call it, so it is compiled once.
 template <int D, class T, class Components>
 [[gnu::noinline]] void ParticleStep<D, T, Components>::evaluate_shape(const Chunk& chunk, Work& work, bool gradients) {
   if (scene_.evaluate_box) return evaluate_boxes(chunk, work, gradients);
@@ -228,7 +228,7 @@ T ParticleStep<D, T, Components>::weight_along(const Work& work, int width, int 
   return sum;
 }
 
-/// False when a domain has outgrown its stencil, which then has no weight (mpm_shape_batch); only domains grow.
+/// Returns false when a domain has outgrown its stencil, which then has no weight (mpm_shape_batch); only domains grow.
 template <int D, class T, class Components>
 bool ParticleStep<D, T, Components>::stencils_hold(const Chunk& chunk, const Work& work) const {
   if (scene_.list || chunk.particles.domain < 0) return true;
@@ -245,8 +245,8 @@ void ParticleStep<D, T, Components>::note_too_long(const Chunk& chunk, const Wor
       if (!(weight_along(work, scene_.width, axis, p) > T(0.5))) note(Cause::domain_outgrew_stencil, chunk, p);
 }
 
-/// Where stencils begin in the tile to scatter to; the work space gathers what part of it they reach. False when one
-/// lies outside.
+/// Finds where stencils begin in the tile to scatter to; the work space gathers what part of it they reach. Returns
+/// false when one lies outside.
 template <int D, class T, class Components>
 bool ParticleStep<D, T, Components>::place_to_scatter(const Chunk& chunk, Work& work, bool extend_reach) const {
   if (scene_.list) return place_lists(chunk, work, extend_reach);
@@ -266,7 +266,7 @@ bool ParticleStep<D, T, Components>::place_to_scatter(const Chunk& chunk, Work& 
   return true;
 }
 
-/// Before the first chunk of a block extends its reach.
+/// Prepares the work space before the first chunk of a block extends its reach.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::begin_reach(Block<D>& block, Work& work) const {
   block.reach = {};
@@ -285,7 +285,7 @@ void ParticleStep<D, T, Components>::reach_own_cells(bool ahead) {
         block.reach.lowest[axis] = 1 - beside, block.reach.highest[axis] = block_side<D> + beside;
 }
 
-/// After the last one; that of lists is complete already.
+/// Completes the reach after the last chunk; that of lists is complete already.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::end_reach(Block<D>& block, const Work& work) const {
   for (int axis = 0; !scene_.list && axis < D; ++axis)
@@ -295,14 +295,14 @@ void ParticleStep<D, T, Components>::end_reach(Block<D>& block, const Work& work
     }
 }
 
-/// Where stencils begin in the tile to gather from.
+/// Finds where stencils begin in the tile to gather from.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::place_to_gather(const Chunk& chunk, Work& work) const {
   if (!scene_.list) number_stencils(work, chunk.end);
 }
 
-/// Row of each stencil in a tile, and whether neighbours mostly share one. Neighbours are compared in registers: a load
-/// of what was just stored, one place off, would wait for both stores.
+/// Finds the row of each stencil in a tile, and whether neighbours mostly share one. Neighbours are compared in
+/// registers: a load of what was just stored, one place off, would wait for both stores.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::number_stencils(Work& work, int count) const {
   using Integers = typename Work::Integers;
@@ -324,7 +324,7 @@ void ParticleStep<D, T, Components>::number_stencils(Work& work, int count) cons
   work.shared_stencils = 4 * (count - 1 - shared) <= count;
 }
 
-/// D^-1 of each particle: of a diagonal, or of a symmetric matrix by its adjugate.
+/// Inverts D of each particle: a diagonal, or a symmetric matrix by its adjugate.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::invert_moments(const Chunk& chunk, Work& work) const {
   const T scale = static_cast<T>(1 / (scene_.domain.cell_size * scene_.domain.cell_size));
@@ -365,7 +365,7 @@ void ParticleStep<D, T, Components>::update_material(const Chunk& chunk, mpm_mat
   request.stride = chunk_size<T>;
   request.dimension = D;
   request.state = state.fields;
-  if (scene_.axisymmetric && !request.velocity_gradient) request.velocity_gradient_zz = chunk.values;  // not read
+  if (scene_.axisymmetric && !request.velocity_gradient) request.velocity_gradient_zz = chunk.values;  // it is not read
   const std::int32_t inverted =
       chunk.body.may_melt() ? update_by_phase(chunk, request) : Components::update_material(chunk.body, request);
   if (inverted >= 0) note_inverted(chunk);
@@ -382,15 +382,15 @@ void ParticleStep<D, T, Components>::note_inverted(const Chunk& chunk) {
   request.dimension = D;
   request.state = state.fields;
   request.volume_ratio = ratio;
-  if (scene_.axisymmetric) request.velocity_gradient_zz = chunk.values;  // not read
+  if (scene_.axisymmetric) request.velocity_gradient_zz = chunk.values;  // it is not read
   Components::update_material(chunk.body, request);
   for (int p = 0; p < chunk.count; ++p)
     if (!(ratio[p] > 0))
       note(std::isnan(ratio[p]) ? Cause::deformation_not_a_number : Cause::inverted, chunk, p, -1, ratio[p]);
 }
 
-/// Sum over a chunk's particles, in doubles, of what value_of(first particle) gives for a pack of them. Lanes beyond
-/// the last particle may hold anything.
+/// Sums in doubles over a chunk's particles what value_of(first particle) gives for a pack of them. Lanes beyond the
+/// last particle may hold anything.
 template <class T, class Value>
 inline double sum_of_particles(int count, Value&& value_of) {
   using L = Lanes<T>;
@@ -419,8 +419,8 @@ inline double sum_of_particles(int count, Value&& value_of) {
   return sum;
 }
 
-/// With the affine part where the transfer carries it; offsets and moments are those of the last shape evaluation. What
-/// a particle's own energy loses to rounding in T is the same where it is gathered and where it is scattered next.
+/// Includes the affine part where the transfer carries it; offsets and moments are those of the last shape evaluation.
+/// What a particle's own energy loses to rounding in T is the same where it is gathered and where it is scattered next.
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const Work& work) const {
   using L = Lanes<T>;
@@ -445,7 +445,7 @@ double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const 
 
   const T* const C = chunk.motion_at(chunk.particles.transfer_state[0].first);
   const T cell_area = static_cast<T>(scene_.domain.cell_size * scene_.domain.cell_size);
-  const auto column = [&](int a, int p) {  // squares of one column of C
+  const auto column = [&](int a, int p) {  // sums the squares of one column of C
     L squares = load(C, a, p) * load(C, a, p);
     for (int c = 1; c < D; ++c) squares = squares + load(C, c * D + a, p) * load(C, c * D + a, p);
     return squares;
@@ -457,7 +457,7 @@ double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const 
       return factor * squares;
     });
   };
-  if (scene_.moment_of_particle && scene_.list)  // tr(C D C^T) of a full matrix
+  if (scene_.moment_of_particle && scene_.list)  // tr(C D C^T) with a full matrix
     return energy_with([&](int p) {
       L squares(T(0));
       for (int a = 0; a < D; ++a)

@@ -1,5 +1,5 @@
 #pragma once
-// ParticleStep: grid to particles, strain, movement and the time step's limit.
+// This part of ParticleStep takes the grid to the particles: gather, strain, movement and the time step's limit.
 
 #include <cmath>
 
@@ -28,7 +28,7 @@ void ParticleStep<D, T, Components>::flush(int body, const Block<D>& block, Work
   work.clock.lap(Phase::tiles);
 }
 
-/// Drift as it was measured; else the sum of the largest moves bounds it.
+/// Takes the drift as it was measured; else the sum of the largest moves bounds it.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::account_for_move() {
   Moved largest;
@@ -71,9 +71,9 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
   return sum_gathered(pass.has(Act::move));
 }
 
-/// Every block gathers from the grid and scatters what follows into next_motion and the forces, which nothing reads any
-/// more. The tile's margin may not suffice for the new positions: particles then only gather. Velocities and the
-/// transfer's state are kept where the step is observed; else nothing reads them any more.
+/// Lets every block gather from the grid and scatter for the next step into next_motion and the forces, which nothing
+/// reads any more. The tile's margin may not suffice for the new positions: particles then only gather. Velocities and
+/// the transfer's state are kept where the step is observed; else nothing reads them any more.
 template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::gather_scatter(const Pass& pass,
                                                                                               const StepInfo& step,
@@ -100,7 +100,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
             if (energy_moves) block.scattered_energy += kinetic_energy(chunk, work);
           },
           step.observed ? nullptr : work.passing_motion.data());
-      if (!energy_moves) block.scattered_energy = block.kinetic_energy;  // of the same velocities and moments
+      if (!energy_moves) block.scattered_energy = block.kinetic_energy;  // it has the same velocities and moments
       end_reach(block, work);
       for (const Channel c : channels)
         if (abandoned_)
@@ -118,8 +118,8 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
   return result;
 }
 
-/// What one chunk takes from the tiles; returns how far its particles moved. Called by the gather and by the
-/// fused pass, which must agree to the last bit, so it is compiled once.
+/// Gathers for one chunk from the tiles; returns how far its particles moved. The gather and the fused pass, which must
+/// agree to the last bit, both call it, so it is compiled once.
 template <int D, class T, class Components>
 [[gnu::noinline]] auto ParticleStep<D, T, Components>::gather_one(const Pass& pass, const StepInfo& step,
                                                                   const Chunk& chunk, Work& work) -> Moved {
@@ -235,8 +235,8 @@ void ParticleStep<D, T, Components>::gather_chunk(const Chunk& chunk, Work& work
   }
 }
 
-/// Quads to velocity, C = h (sum k w v - f sum w v) D^-1 about the particle (without the D^-1 of moments a particle),
-/// and L.
+/// Turns quads into velocity, C = h (sum k w v - f sum w v) D^-1 about the particle (without the D^-1 of moments a
+/// particle), and L.
 template <int D, class T, class Components>
 template <bool Moment, bool Gradient>
 void ParticleStep<D, T, Components>::unpack_moments(Work& work, int count) {
@@ -271,7 +271,7 @@ void ParticleStep<D, T, Components>::unpack_moments(Work& work, bool moment, boo
   return gradient ? unpack_moments<false, true>(work, count) : unpack_moments<false, false>(work, count);
 }
 
-/// The gathered coefficients become the particles' own.
+/// Makes the gathered coefficients the particles' own.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::keep_higher(const Chunk& chunk, const Work& work) const {
   const int components = scene_.plan.basis_functions * D;
@@ -279,7 +279,7 @@ void ParticleStep<D, T, Components>::keep_higher(const Chunk& chunk, const Work&
     std::copy_n(work.higher.data() + c * chunk_size<T>, chunk.end, chunk.higher() + c * chunk_size<T>);
 }
 
-/// C <- C D^-1 of moments a particle.
+/// Multiplies C <- C D^-1 where each particle has its own moments.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::apply_inverse_moments(const Chunk& chunk, Work& work) const {
   if (scene_.list) return multiply_by_inverse_moments(chunk, work);
@@ -289,7 +289,7 @@ void ParticleStep<D, T, Components>::apply_inverse_moments(const Chunk& chunk, W
         work.affine[(c * D + a) * chunk_size<T> + p] *= work.inverse_moment[a * chunk_size<T> + p];
 }
 
-/// D of the last shape evaluation as the transfer reads it, cells^2; null where it is a multiple of the identity.
+/// Gives D of the last shape evaluation as the transfer reads it, cells^2; null where it is a multiple of the identity.
 template <int D, class T, class Components>
 const T* ParticleStep<D, T, Components>::moments_for_transfer(const Chunk& chunk, Work& work) const {
   const bool varies = scene_.moment_of_particle || scene_.moment_is_gradient;
@@ -305,7 +305,7 @@ const T* ParticleStep<D, T, Components>::moments_for_transfer(const Chunk& chunk
   return work.transfer_moment;
 }
 
-/// One pass of the filter's loop on the particles: v* is gathered and scattered again by the transfer itself.
+/// Executes one pass of the filter's loop: the transfer itself gathers v* and scatters it again.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::project(const StepInfo& step) {
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
@@ -321,7 +321,7 @@ void ParticleStep<D, T, Components>::project(const StepInfo& step) {
   failure_.raise();
 }
 
-/// The transfer acts on a particle at rest with zero state, so that what it scatters is linear in v*.
+/// Calls the transfer for a particle at rest with zero state, so that what it scatters is linear in v*.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const Chunk& chunk, Work& work) {
   const Wanted wanted{true, false, filter_increment};
@@ -389,8 +389,8 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   chunk.block.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
 }
 
-/// domain <- (I + dt L) domain. USF goes on with the old weights until its gather; `again`: what was strained in this
-/// step already is strained further.
+/// Sets domain <- (I + dt L) domain. USF goes on with the old weights until its gather; with `again` what was strained
+/// in this step already is strained further.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt,
                                                     bool again) const {
@@ -414,14 +414,14 @@ void ParticleStep<D, T, Components>::advance_domain(const Chunk& chunk, const T*
   }
 }
 
-/// Room beyond a face that cannot be folded away, in cells: half a cell at a separating wall, rounding elsewhere.
+/// The room beyond a face that cannot be folded away, in cells: half a cell at a separating wall, rounding elsewhere.
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::margin(int axis, int side) const {
   if (scene_.domain.faces[axis][side] == ConditionType::separate) return 0.5;
   return 1e-9 * scene_.domain.cells[axis] + 8 * static_cast<double>(std::numeric_limits<T>::epsilon());
 }
 
-/// The least position that is beyond the axis, in cells from the block's first node; only along the radius.
+/// The least position with r > 0, in cells from the block's first node; only the radius has this bound.
 template <int D, class T, class Components>
 T ParticleStep<D, T, Components>::least_place(const Block<D>& block, int axis) const {
   if (!scene_.axisymmetric || axis != 0) return std::numeric_limits<T>::lowest();
@@ -429,7 +429,7 @@ T ParticleStep<D, T, Components>::least_place(const Block<D>& block, int axis) c
   return to_axis == T(0) ? std::numeric_limits<T>::min() : std::nextafter(-to_axis, std::numeric_limits<T>::max());
 }
 
-/// x += scale times the advection velocity, in cells.
+/// Moves by x += scale times the advection velocity, in cells.
 template <int D, class T, class Components>
 auto ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, const T* advection, T scale) -> Moved {
   using L = Lanes<T>;

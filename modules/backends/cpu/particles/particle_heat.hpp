@@ -1,6 +1,6 @@
 #pragma once
-// ParticleStep with temperature: the transfer carries it as the first component of a velocity, of a particle whose mass
-// is its heat capacity; conduction, heat of dissipation and phases.
+// This part of ParticleStep treats temperature, which the transfer carries as the first component of the velocity of a
+// particle whose mass is its heat capacity: conduction, heat of dissipation and phases.
 
 #include "backends/cpu/particles/particle_gather.hpp"
 #include "operators/heat.hpp"
@@ -17,21 +17,21 @@ bool ParticleStep<D, T, Components>::melted(const Chunk& chunk, int p) const {
   return chunk.body.may_melt() && is_melted(chunk.at(chunk.particles.melted_fraction)[p]);
 }
 
-/// Value of the phase that each particle is in.
+/// The value of the phase that a particle is in.
 template <int D, class T, class Components>
 T ParticleStep<D, T, Components>::of_phase(const Chunk& chunk, int p, double ThermalProperties::*value) const {
   const Thermal& thermal = *chunk.body.thermal;
   return static_cast<T>((melted(chunk, p) ? thermal.phase_change->melted : thermal.solid).*value);
 }
 
-/// m c, J/K, into the place of the masses.
+/// Fills the place of the masses with m c, J/K.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::fill_heat_capacities(const Chunk& chunk, Work& work) const {
   fill_masses(chunk, work);
   for (int p = 0; p < chunk.end; ++p) work.mass[p] *= of_phase(chunk, p, &ThermalProperties::heat_capacity);
 }
 
-/// Sum of m c T; the capacities have been filled.
+/// Sums m c T, once the capacities have been filled.
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::heat_of(const Chunk& chunk, const Work& work) const {
   const T* const temperature = chunk.at(chunk.particles.temperature);
@@ -40,7 +40,7 @@ double ParticleStep<D, T, Components>::heat_of(const Chunk& chunk, const Work& w
   return sum;
 }
 
-/// The temperature and what the transfer keeps of it, as the velocity and state of a particle that the transfer knows.
+/// Gives the temperature and what the transfer keeps of it as the velocity and state of a particle that it knows.
 template <int D, class T, class Components>
 auto ParticleStep<D, T, Components>::temperature_as_motion(const Chunk& chunk, Work& work) const -> States {
   T* const velocity = work.scratch_velocity.data();
@@ -59,7 +59,7 @@ auto ParticleStep<D, T, Components>::temperature_as_motion(const Chunk& chunk, W
   return state;
 }
 
-/// On stencils that were placed to scatter.
+/// Scatters heat on stencils that were placed to scatter.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_heat(const Chunk& chunk, Work& work) {
   fill_heat_capacities(chunk, work);
@@ -79,8 +79,8 @@ void ParticleStep<D, T, Components>::scatter_heat(const Chunk& chunk, Work& work
   if (grid_.has(heated_volume)) scatter_heated_volume(chunk, work);
 }
 
-/// What walls look at that heat comes through: volumes (of the section of a ring) with the conductivity beside them, and
-/// the places of the capacities from the nodes.
+/// Scatters what walls that heat comes through read: volumes (of the section of a ring) with the conductivity beside
+/// them, and the places of the capacities from the nodes.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_heated_volume(const Chunk& chunk, Work& work) {
   if (grid_.has(capacity_position)) {
@@ -101,7 +101,7 @@ void ParticleStep<D, T, Components>::scatter_heated_volume(const Chunk& chunk, W
   add_to_tile(chunk, work, heated_volume, work.scalar, true, false, false);
 }
 
-/// One visit gathers the gradient of the temperature and scatters the flux that it drives.
+/// Gathers the gradient of the temperature and scatters the flux that it drives in one visit.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::conduct() {
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
@@ -116,7 +116,7 @@ void ParticleStep<D, T, Components>::conduct() {
   failure_.raise();
 }
 
-/// -V k grad T for the gradients of the weights, whatever way the transfer takes stress.
+/// Computes -V k grad T for the gradients of the weights, whatever way the transfer takes stress.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::conduct_chunk(const Chunk& chunk, Work& work) {
   evaluate_shape(chunk, work, true);
@@ -131,14 +131,14 @@ void ParticleStep<D, T, Components>::conduct_chunk(const Chunk& chunk, Work& wor
   for (int p = 0; p < chunk.end; ++p)
     work.scalar[p] = volume * work.volume_ratio[p] * (around ? around[p] : T(1)) *
                      of_phase(chunk, p, &ThermalProperties::conductivity);
-  for (int a = 0; a < D; ++a)  // S has the place of the gradient
+  for (int a = 0; a < D; ++a)  // S takes the place of the gradient
     for (int p = 0; p < chunk.end; ++p) work.S[a * chunk_size<T> + p] *= work.scalar[p];
   std::fill_n(work.S + D * chunk_size<T>, (D - 1) * D * chunk_size<T>, T(0));
   if (!scene_.list) place_to_scatter(chunk, work, false);
   add_to_tile(chunk, work, heat_rate, nullptr, false, false, true);
 }
 
-/// Before the same visit gathers velocities and moves.
+/// Gathers heat before the same visit gathers velocities and moves.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::gather_heat(int body, Block<D>& block, Work& work, const StepInfo& step) {
   const int field = bodies_[body].field;
@@ -178,7 +178,7 @@ void ParticleStep<D, T, Components>::gather_heat(const Chunk& chunk, Work& work,
   chunk.block.heat += heat_of(chunk, work);
 }
 
-/// The share of the dissipated energy (J/m^3, in the work space) that warms the particles.
+/// Warms the particles by the share of the dissipated energy (J/m^3, in the work space) that becomes heat.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::warm_by_dissipation(const Chunk& chunk, Work& work) const {
   const T share = static_cast<T>(chunk.body.thermal->dissipation_to_heat * chunk.body.volume / chunk.body.mass);
@@ -192,8 +192,8 @@ void ParticleStep<D, T, Components>::warm_by_dissipation(const Chunk& chunk, Wor
   }
 }
 
-/// Stored energy changes with the parameters where a particle takes those of the other phase: the ledger calls it
-/// dissipated.
+/// Changes phases. Stored energy changes with the parameters where a particle takes those of the other phase: the
+/// ledger calls it dissipated.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::change_phases(const Chunk& chunk, Work& work) {
   const Thermal& thermal = *chunk.body.thermal;
@@ -220,7 +220,7 @@ void ParticleStep<D, T, Components>::change_phases(const Chunk& chunk, Work& wor
                               (static_cast<double>(before[p]) - static_cast<double>(work.scalar[p]));
 }
 
-/// A pass of its own, where particles move after all else.
+/// Changes phases in a pass of its own, where particles move after all else.
 template <int D, class T, class Components>
 double ParticleStep<D, T, Components>::change_phases(const StepInfo& step) {
   account_for(step);
@@ -236,8 +236,8 @@ double ParticleStep<D, T, Components>::change_phases(const StepInfo& step) {
   return accounted_ ? sum : 0;
 }
 
-/// The material with the parameters of each particle's phase: where a chunk holds both, either phase is evaluated and
-/// each particle keeps its own.
+/// Updates the material with the parameters of each particle's phase: where a chunk holds both, either phase is
+/// evaluated and each particle keeps its own.
 template <int D, class T, class Components>
 std::int32_t ParticleStep<D, T, Components>::update_by_phase(const Chunk& chunk, const mpm_material_batch& request) {
   const auto evaluate = [&](bool as_melted, const mpm_material_batch& batch) {
@@ -256,7 +256,7 @@ std::int32_t ParticleStep<D, T, Components>::update_by_phase(const Chunk& chunk,
   mpm_material_batch other = request;
   States copies{};
   T* next = states.data();
-  std::vector<std::pair<T*, T*>> rows;  ///< of a melted particle, and of one that is not
+  std::vector<std::pair<T*, T*>> rows;  ///< rows of a melted particle, and of one that is not
   const auto add_rows = [&](void* melted_values, int components, T* solid_values) {
     for (int c = 0; c < components; ++c)
       rows.emplace_back(static_cast<T*>(melted_values) + c * chunk_size<T>, solid_values + c * chunk_size<T>);

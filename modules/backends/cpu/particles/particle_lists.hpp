@@ -1,6 +1,6 @@
 #pragma once
-// ParticleStep: lists of nodes. A list whose nodes lie in the tile of its block goes through the tile; the others, of
-// far stretched particles, go to the grid itself, one after another.
+// This part of ParticleStep works on lists of nodes. A list whose nodes lie in the tile of its block goes through the
+// tile; the others, of far stretched particles, go to the grid itself, one after another.
 
 #include "backends/cpu/particles/particle_chunks.hpp"
 #include "kernel/corner_domain.hpp"
@@ -63,7 +63,7 @@ void ParticleStep<D, T, Components>::evaluate_lists(const Chunk& chunk, Work& wo
   if (scene_.plan.stencil.second_moment) invert_moments(chunk, work);
 }
 
-/// The grid's multilinear velocity at a corner, whose nodes the particle's list has made sure of.
+/// The grid's multilinear velocity at a corner. The particle's list has made sure of the nodes there.
 template <int D, class T, class Components>
 Vec<D, T> ParticleStep<D, T, Components>::velocity_at_corner(const Chunk& chunk, const Work& work, int particle,
                                                              const Vec<D, T>& corner) const {
@@ -88,8 +88,8 @@ Vec<D, T> ParticleStep<D, T, Components>::velocity_at_corner(const Chunk& chunk,
   return velocity;
 }
 
-/// Where the corners go, from the particles as they are yet: with the grid, and with what moves the particle beyond the
-/// gathered velocity.
+/// Finds where the corners go, from the particles as they are yet: with the grid, and with what moves the particle
+/// beyond the gathered velocity.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::gather_corners(const Chunk& chunk, Work& work, const T* advection, double dt,
                                                     T* moved) const {
@@ -108,7 +108,7 @@ void ParticleStep<D, T, Components>::gather_corners(const Chunk& chunk, Work& wo
   }
 }
 
-/// Corners and particles to where the corners were moved; returns the largest displacement in cells.
+/// Moves corners and particles to where the corners go; returns the largest displacement in cells.
 template <int D, class T, class Components>
 auto ParticleStep<D, T, Components>::move_with_corners(const Chunk& chunk, Work& work, const T* moved) -> Moved {
   if (chunk.body.frozen) return {};
@@ -206,7 +206,7 @@ bool ParticleStep<D, T, Components>::reaches_too_far(const Chunk& chunk, int p, 
   return true;
 }
 
-/// As place_to_scatter: what the lists in the tile reach, as first nodes of stencils of the tile's width.
+/// Does what place_to_scatter does; what the lists in the tile reach counts as first nodes of the tile's stencils.
 template <int D, class T, class Components>
 bool ParticleStep<D, T, Components>::place_lists(const Chunk& chunk, const Work& work, bool extend_reach) const {
   if (!extend_reach) return true;
@@ -254,7 +254,7 @@ bool ParticleStep<D, T, Components>::widen_active_blocks() {
       block.bounds.known = false;
       const double *const low = block.bounds.low, *const high = block.bounds.high;
       for (int a = 0; a < D; ++a) {
-        // What lies beyond is refused by reaches_too_far; so is what is not a number.
+        // reaches_too_far refuses what lies beyond, and also what is not a number.
         const double origin = block.at[a] * block_side<D>, least = -scene_.padding - 2 - origin,
                      most = scene_.domain.cells[a] + scene_.padding + 2 - origin;
         const int first = static_cast<int>(low[a] > least ? std::floor(low[a]) : least) >> block_bits<D>;
@@ -279,7 +279,7 @@ std::vector<double> ParticleStep<D, T, Components>::second_moments(int body) {
     for_each_chunk_of(body, block, [&](const Chunk& chunk) {
       if (scene_.list)
         for (int first = 0; first < chunk.end; first += ListWork<D, T>::lanes) {
-          evaluate_list_batch(chunk, work, first, false);  // where its nodes are does not matter
+          evaluate_list_batch(chunk, work, first, false);  // the places of its nodes do not matter
           for (int lane = 0; lane < ListWork<D, T>::lanes; ++lane) keep_moment(work, first, lane);
         }
       else

@@ -1,6 +1,6 @@
 #pragma once
-// ParticleStep: particles to grid. Coefficients of a chunk are made as component arrays, then as quads for the tile
-// kernels: what a node gets is w (b + A d) + S grad w, d = node - particle.
+// This part of ParticleStep takes the particles to the grid. Coefficients of a chunk are made as component arrays, then
+// as quads for the tile kernels: what a node gets is w (b + A d) + S grad w, d = node - particle.
 
 #include <numbers>
 
@@ -9,7 +9,7 @@
 
 namespace mpm::cpu {
 
-/// Channels that the operators of a pass add to.
+/// The channels that the operators of a pass add to.
 template <int D, class T, class Components>
 const std::vector<Channel>& ParticleStep<D, T, Components>::scattered_channels(const Pass& pass) {
   const std::uint64_t key = std::uint64_t(pass.acts) << 1 | (grid_.ledger_rests() ? 1 : 0);
@@ -82,16 +82,16 @@ bool ParticleStep<D, T, Components>::wants_volume(const Pass& pass) const {
   return pass.has(Act::scatter_contact) || (pass.has(Act::scatter_heat) && grid_.has(heated_volume));
 }
 
-/// What a pass that scatters wants of the material.
+/// Asks the material for what a pass that scatters wants of it.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const {
   if (pass.has(Act::scatter_force)) request.kirchhoff_stress = work.stress;
   if (wants_volume(pass)) request.volume_ratio = work.volume_ratio;
 }
 
-/// What a chunk gives its tiles; false, and nothing given, when a particle is outside of them or of its stencil.
-/// `evaluated`: what is wanted of the material is at hand. Called by the scatter
-/// and by the fused pass, which must agree to the last bit, so it is compiled once.
+/// Scatters a chunk to its tiles; returns false, and scatters nothing, when a particle is outside of them or of its
+/// stencil. With `evaluated` what is wanted of the material is at hand. The scatter and the fused pass, which must
+/// agree to the last bit, both call it, so it is compiled once.
 template <int D, class T, class Components>
 [[gnu::noinline]] bool ParticleStep<D, T, Components>::scatter_chunk(const Pass& pass, const StepInfo& step,
                                                                      const Chunk& chunk, Work& work, Channel momentum,
@@ -132,7 +132,7 @@ template <int D, class T, class Components>
   return true;
 }
 
-/// Of each particle as seeded; null in plane strain and 3-D.
+/// The circumference of each particle as seeded; null in plane strain and 3-D.
 template <int D, class T, class Components>
 const T* ParticleStep<D, T, Components>::circumferences(const Chunk& chunk) const {
   return chunk.particles.circumference < 0 ? nullptr : chunk.at(chunk.particles.circumference);
@@ -146,20 +146,20 @@ void ParticleStep<D, T, Components>::fill_masses(const Chunk& chunk, Work& work)
     for (int p = 0; p < chunk.end; ++p) work.mass[p] = mass * around[p];
 }
 
-/// Of a block's first node, which positions count from.
+/// The distance of a block's first node from the axis, cells; positions count from that node.
 template <int D, class T, class Components>
 T ParticleStep<D, T, Components>::cells_from_axis(const Scene<D, T>& scene, const Block<D>& block) {
   return static_cast<T>(block.at[0] * block_side<D> + scene.domain.lower[0] / scene.domain.cell_size);
 }
 
-/// Distance of a pack of particles from the axis, m.
+/// The distance of a pack of particles from the axis, m.
 template <int D, class T, class Components>
 Lanes<T> ParticleStep<D, T, Components>::radius(const Chunk& chunk, int p) const {
   const Lanes<T> x = Lanes<T>::load(chunk.at(Particles<D, T>::position) + p);
   return static_cast<T>(scene_.domain.cell_size) * (x + Lanes<T>(cells_from_axis(scene_, chunk.block)));
 }
 
-/// Times the circumference, so that forces are those of rings.
+/// Multiplies the stress by the circumference, so that forces are those of rings.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::weigh_stress(const Chunk& chunk, Work& work) const {
   const T* const around = circumferences(chunk);
@@ -167,7 +167,7 @@ void ParticleStep<D, T, Components>::weigh_stress(const Chunk& chunk, Work& work
     for (int p = 0; p < chunk.end; ++p) work.stress[k * chunk_size<T> + p] *= around[p];
 }
 
-/// b += -factor V0 tau_zz / r along the radius; the stress has been weighed.
+/// Adds b += -factor V0 tau_zz / r along the radius; the stress has been weighed.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::add_hoop_force(const Chunk& chunk, Work& work, double factor) const {
   using L = Lanes<T>;
@@ -194,14 +194,14 @@ void ParticleStep<D, T, Components>::momentum_coefficients(const Chunk& chunk, W
   Components::scatter(scene_, batch);
 }
 
-/// What the stress enters A or S by: -factor V0, with D^-1 where that is one for all particles.
+/// The factor by which the stress enters A or S: -factor V0, with D^-1 where that is one for all particles.
 template <int D, class T, class Components>
 T ParticleStep<D, T, Components>::stress_scale(const Chunk& chunk, double factor) const {
   const bool of_all = scene_.stress_by_affine && !scene_.moment_of_particle;
   return static_cast<T>(-factor * chunk.body.volume * (of_all ? scene_.inverse_moment : 1.0));
 }
 
-/// -factor V0 tau D^-1 into A (added or set), or -factor V0 tau into S.
+/// Puts -factor V0 tau D^-1 into A (added or set), or -factor V0 tau into S.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add) {
   const bool by_affine = scene_.stress_by_affine, of_particle = by_affine && scene_.moment_of_particle;
@@ -227,7 +227,7 @@ void ParticleStep<D, T, Components>::stress_coefficients(const Chunk& chunk, Wor
     }
 }
 
-/// b (when `constant`), A + `stress` tau and S as quads, with `last` as the fourth scalar of the constant one: in
+/// Makes quads of b (when `constant`), A + `stress` tau and S, with `last` as the fourth scalar of the constant one: in
 /// cells, and about the stencil's first node instead of the particle.
 template <int D, class T, class Components>
 template <bool Affine, bool Gradient, bool Stress>
@@ -269,8 +269,8 @@ void ParticleStep<D, T, Components>::pack_coefficients(Work& work, const T* last
                   : pack_coefficients<false, false, false>(work, last, constant, count, stress);
 }
 
-/// Scatters the coefficients of a chunk into the tile of a channel; A with `stress` times its stress, which has no
-/// gradient beside it.
+/// Scatters the coefficients of a chunk into the tile of a channel. A comes with `stress` times its stress, which has
+/// no gradient beside it.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::add_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* last,
                                                  bool constant, bool affine, bool gradient, T stress) {
@@ -291,7 +291,7 @@ void ParticleStep<D, T, Components>::add_to_tile(const Chunk& chunk, Work& work,
   work.clock.lap(Phase::scatter);
 }
 
-/// Momenta of the polynomials beyond affine, on stencils that were placed to scatter.
+/// Scatters momenta of the polynomials beyond affine on stencils that were placed to scatter.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::add_higher_to_tile(const Chunk& chunk, Work& work, Channel channel,
                                                         const T* coefficients) {
@@ -310,7 +310,7 @@ void ParticleStep<D, T, Components>::scatter_stress(const Chunk& chunk, Work& wo
   add_to_tile(chunk, work, force, nullptr, scene_.axisymmetric, scene_.stress_by_affine, !scene_.stress_by_affine);
 }
 
-/// m b(x, X, t): into its own channel, or times dt onto the momentum's b.
+/// Adds m b(x, X, t) into its own channel, or times dt onto the momentum's b.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged,
                                                         double dt) {
@@ -333,8 +333,8 @@ void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work
   if (!merged) add_to_tile(chunk, work, body_force, nullptr, true, false, false);
 }
 
-/// V grad w with w V beside it, and w m (x_p - x_node), V = J V0. Of a ring the gradient is that of its section, as its
-/// volume grows away from the axis.
+/// Scatters V grad w with w V beside it, and w m (x_p - x_node), V = J V0. A ring has the gradient of its section, as
+/// its volume grows away from the axis.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, Work& work) {
   const T volume = static_cast<T>(chunk.body.volume);

@@ -24,19 +24,19 @@ namespace mpm::cpu {
 template <int D, class T>
 struct ListWork {
   static constexpr int lanes = MPM_LANES;
-  // one batch, as the shape takes and gives it
+  // These arrays hold one batch, as the shape takes and gives it.
   alignas(64) T position[D * lanes], half_size[D * lanes], domain[D * D * lanes], second_moment[D * D * lanes];
   alignas(64) T corners[(1 << D) * D * lanes];
   alignas(64) std::int32_t count[lanes];
   AlignedArray<std::int32_t> coordinates;
   AlignedArray<T> weight, gradient;
-  // the chunk: entries of a particle from first[p], in its tile up to near_end[p] or on the grid up to far_end[p]
+  // A particle's entries begin at first[p], and end at near_end[p] in its tile or at far_end[p] on the grid.
   std::int32_t first[chunk_size<T>], near_end[chunk_size<T>], far_end[chunk_size<T>];
   AlignedArray<std::int32_t> node;
   AlignedArray<T> values;  ///< see NodeLists
   int lowest[3], highest[3];
   int far = 0, far_of_chunk = 0;  ///< particles with a node outside the tile, with the tail's lanes and without
-  bool any = false;               ///< else no particle of the chunk has a list, and the above is not filled
+  bool any = false;               ///< false: no particle of the chunk has a list, and the above is not filled
 
   void clear() {
     far = far_of_chunk = 0;
@@ -68,25 +68,25 @@ struct BoxWork {
 
 /// How far particles have moved, in cells.
 struct Moved {
-  double distance = 0;  ///< largest of any particle along an axis
-  double outside = 0;   ///< farthest from its own block, see drift; where that is measured
+  double distance = 0;  ///< largest distance of any particle along an axis
+  double outside = 0;   ///< farthest way from its own block, see drift; where that is measured
   void extend(const Moved& other) {
     distance = std::max(distance, other.distance), outside = std::max(outside, other.outside);
   }
 };
 
-/// What one thread works in. Whatever threads write for each chunk belongs here: a line of the cache that two of them
-/// write costs each chunk a journey from one processor to the other.
+/// The work space of one thread. Whatever threads write for each chunk belongs here: a line of the cache that two of
+/// them write costs each chunk a journey from one processor to the other.
 template <int D, class T>
 struct alignas(page) Workspace {
   static constexpr int symmetric = Sym<D, T>::size;
   alignas(64) std::int32_t base[D * chunk_size<T>];
-  alignas(64) std::int32_t first[chunk_size<T>];  ///< of the stencils: see Stencils
+  alignas(64) std::int32_t first[chunk_size<T>];  ///< row of each stencil, see Stencils
   alignas(64) T offset[D * chunk_size<T>], weight[D * 4 * chunk_size<T>], gradient[D * 4 * chunk_size<T>];
   alignas(64) T mass[chunk_size<T>], b[D * chunk_size<T>];
   alignas(64) T stress[symmetric * chunk_size<T>], volume_ratio[chunk_size<T>], scalar[chunk_size<T>];
   alignas(64) T velocity[D * chunk_size<T>], increment[D * chunk_size<T>];
-  // What is gathered is used up before anything is scattered: one place for both stays in the first-level cache.
+  // What is gathered is used up before anything is scattered: a place for both stays in the first-level cache.
   union {
     alignas(64) T affine[D * D * chunk_size<T>];
     alignas(64) T A[D * D * chunk_size<T>];
@@ -96,47 +96,47 @@ struct alignas(page) Workspace {
     alignas(64) T S[D * D * chunk_size<T>];
   };
   alignas(64) T advection[D * chunk_size<T>];
-  /// Of moments a particle: cells^2, and the inverse in 1/m^2. [D] of a tensor product, [D * D] of a list.
+  /// Moments of particles that have their own, cells^2, and inverses in 1/m^2: [D] of a product, [D * D] of a list.
   alignas(64) T second_moment[D * D * chunk_size<T>], inverse_moment[D * D * chunk_size<T>];
-  alignas(64) T transfer_moment[D * D * chunk_size<T>];  ///< as the transfer reads it, where it is not second_moment
+  alignas(64) T transfer_moment[D * D * chunk_size<T>];  ///< moment that the transfer reads, unless it is second_moment
   using Integers = typename Lanes<float>::Mask;
   static constexpr int integers = Lanes<float>::width;
   Integers lowest[3], highest[3];  ///< first nodes of a block's stencils, lane by lane
   ListWork<D, T> lists;
   BoxWork<D, T> boxes;
   alignas(64) T quads[(1 + 2 * D) * 4 * chunk_size<T>];
-  /// Zero between uses, so that the scatter may add.
-  std::vector<AlignedArray<T>> tile;  ///< [channel], of those that particles add to
-  /// Tiles to gather from; only what the block reaches is valid.
+  /// Tiles are zero between uses, so that the scatter may add.
+  std::vector<AlignedArray<T>> tile;  ///< [channel], for those that particles add to
+  /// From these tiles a block gathers; only what it reaches is valid.
   AlignedArray<T> velocity_tile, increment_tile;
   AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
-  AlignedArray<T> scratch_velocity, scratch_state;  ///< of the filter's projections
+  AlignedArray<T> scratch_velocity, scratch_state;  ///< for the filter's projections
   AlignedArray<T> moved_corners;                    ///< [corner][D][chunk_size] cells, from the particle
   AlignedArray<T> higher;  ///< [function][D][chunk_size], gathered coefficients of polynomials beyond affine, m/s
   Moved moved;
   PhaseClock clock;
   bool shared_stencils = false;  ///< see Stencils
-  bool far_only = false;         ///< what is scattered goes to the grid itself, of particles whose lists leave the tile
+  bool far_only = false;         ///< only particles whose lists leave the tile scatter, to the grid itself
 
   void clear(Channel c, int scalars) { std::memset(tile[c].data(), 0, std::size_t(scalars) * sizeof(T)); }
 };
 
-/// One body with what the plugins need of it.
+/// A body with what the plugins need of it.
 template <int D, class T>
 struct Body {
   int index = 0, field = 0;
-  double mass = 0, volume = 0;  ///< of a particle; in axisymmetric scenes per metre of circumference
+  double mass = 0, volume = 0;  ///< values of a particle; in axisymmetric scenes per metre of circumference
   bool frozen = false;          ///< particles and domains stay as they are
   const Component* material = nullptr;
   std::int32_t (*update_material)(const void*, const mpm_material_batch*) = nullptr;
   bool dissipates = false;
-  const Thermal* thermal = nullptr;  ///< null: particles have no temperature
+  const Thermal* thermal = nullptr;  ///< null where particles have no temperature
   bool warms_itself = false;         ///< a share of what it dissipates becomes heat
   bool may_melt() const;
-  /// Fields that never change, by id; values by index of seeding, particle-major.
+  /// Values of fields that never change, by id; they are particle-major, by index of seeding.
   std::map<std::string, std::vector<double>> seeded;
-  const double* initial_position = nullptr;  ///< m, among them; null: nobody reads it
-  std::array<T, D> first_place{};  ///< where in a block particles begin whose first node is the block's, cells
+  const double* initial_position = nullptr;  ///< m, among them; null where nobody reads it
+  std::array<T, D> first_place{};  ///< lowest place in a block of particles whose first node is the block's, cells
 };
 
 /// Plugins as they were loaded, called through their tables. Another type with these members may call functors that
@@ -164,52 +164,52 @@ class ParticleStep : NamedChannels {
   ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std::vector<Particles<D, T>>& particles,
                std::vector<Body<D, T>> bodies);
 
-  /// Kinetic energy of the particles when momenta are scattered with the ledger on, else zero.
+  /// Returns the kinetic energy of the particles when momenta are scattered with the ledger on, else zero.
   double scatter(const Pass& pass, const StepInfo& step);
   struct Gathered {
     double kinetic_energy = 0, dissipated = 0;  ///< J, with the ledger on
     double heat = 0, heat_of_dissipation = 0;   ///< J, with temperature
   };
-  /// Sum of the heat that the last scatter of momenta took along, J.
+  /// The sum of the heat that the last scatter of momenta took along, J.
   double scattered_heat() const;
   void conduct();
-  /// Energy that the ledger calls dissipated, J.
+  /// Returns the energy that the ledger calls dissipated, J.
   double change_phases(const StepInfo& step);
   Gathered gather(const Pass& pass, const StepInfo& step);
   struct Fused {
     Gathered gathered;
     bool scattered = false;     ///< next_motion and the forces are those of the following step
-    double kinetic_energy = 0;  ///< as `scatter` returns it
+    double kinetic_energy = 0;  ///< kinetic energy as `scatter` returns it
   };
-  /// Gather, strain, move, and the scatter of the following step `next` while the chunk is at hand.
+  /// Gathers, strains, moves, and scatters for the following step `next` while the chunk is at hand.
   Fused gather_scatter(const Pass& pass, const StepInfo& step, const StepInfo& next);
-  /// Momentum of the filter's increment, gathered and scattered again, into filter_projection.
+  /// Gathers the filter's increment and scatters its momentum into filter_projection.
   void project(const StepInfo& step);
-  Gathered strain(const Pass& pass, const StepInfo& step);  ///< what is dissipated alone
+  Gathered strain(const Pass& pass, const StepInfo& step);  ///< returns only what is dissipated
   void move(const StepInfo& step);
   TimeStepLimit time_step_limit();
 
-  /// How far any particle is out of the block that it was sorted into (its stencil's first node, that is), or a bound
+  /// How far any particle is out of the block that it was sorted into (or rather its stencil's first node), or a bound
   /// of that, in cells.
   double drift() const { return drift_; }
   double last_drift() const { return last_drift_; }
   void set_drift(double drift) { drift_ = drift; }
   void set_drift(double drift, double last) { drift_ = drift, last_drift_ = last; }
-  /// The reach of particles that have just been sorted: first nodes lie in their own block, or (`ahead`) up to a cell
-  /// beside it.
+  /// Sets the reach of particles that have just been sorted: first nodes lie in their own block, or (`ahead`) up to a
+  /// cell beside it.
   void reach_own_cells(bool ahead);
   /// How far ahead of their positions particles may be sorted so that several moves like the last stay within tiles, in
   /// cells; 0 where only bounds of their drift are known.
   double foresight() const { return measures_drift_ ? std::clamp(0.95 - 1.25 * last_drift_, 0.0, 0.55) : 0.0; }
-  /// Tiles have a margin of one cell for particles that moved since they were sorted.
+  /// Whether particles, for which tiles have a margin of one cell, have moved too far since they were sorted.
   bool must_sort() const { return drift_ > 0.99; }
-  /// Whether they must be sorted after one more move like the last: what is scattered at once would be scattered again.
+  /// Whether they must be sorted after a move like the last: what is scattered at once would be scattered again.
   bool must_sort_soon() const { return drift_ + last_drift_ > 0.99; }
   /// Whether they need not be after a move of at most `cells`.
   bool stays_within_tiles(double cells) const { return drift_ + cells * (1 + 1e-6) < 0.99; }
-  /// Widens the range of grid blocks that the lists of each block of particles may reach; whether any grew.
+  /// Widens the range of grid blocks that the lists of each block of particles may reach; returns whether any grew.
   bool widen_active_blocks();
-  /// n*D*D, m^2, of every particle at its position, by index of seeding.
+  /// The second moment of every particle at its position, n*D*D, m^2, by index of seeding.
   std::vector<double> second_moments(int body);
   const std::vector<Body<D, T>>& bodies() const { return bodies_; }
 
@@ -218,17 +218,17 @@ class ParticleStep : NamedChannels {
 
  private:
   using Work = Workspace<D, T>;
-  /// One chunk under work.
+  /// A chunk under work.
   struct Chunk {
     Particles<D, T>& particles;
     Body<D, T>& body;
     Block<D>& block;
     T* values;
-    T* motion;  ///< velocity and the transfer's state, of the chunk or (see `passing`) of the work space
+    T* motion;  ///< velocity and the transfer's state, in the chunk or (see `passing`) the work space
     const std::int32_t* ids;
-    int count, end;    ///< end: count padded to whole lanes
+    int count, end;    ///< `end` is `count` padded to whole lanes
     const char* next;  ///< the chunk that follows
-    /// What of it is read arrives in the cache, one half with a gather, the other with a scatter.
+    /// Brings what is read of the next chunk into the cache, one half with a gather, the other with a scatter.
     Ahead ahead(bool gather) const {
       const bool passes = motion != at(Particles<D, T>::velocity);
       const int left_out = passes ? particles.motion_components : 0;
@@ -238,7 +238,7 @@ class ParticleStep : NamedChannels {
               left_out * chunk_size<T> * sizeof(T)};
     }
     T* at(int component) const { return values + component * chunk_size<T>; }
-    /// Coefficients of the polynomials beyond affine: the last field of the transfer's state.
+    /// The coefficients of the polynomials beyond affine, which are the last field of the transfer's state.
     T* higher() const { return motion_at(particles.transfer_state.back().first); }
     T* motion_at(int component) const { return motion + (component - Particles<D, T>::velocity) * chunk_size<T>; }
   };
@@ -326,11 +326,11 @@ class ParticleStep : NamedChannels {
   void flush(int body, const Block<D>& block, Work& work, Channel channel);
   Moved gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
   Gathered sum_gathered(bool moved);
-  /// What gather_chunk reads: velocities for the transfer, for the material, or the filter's increment.
+  /// The sums that gather_chunk makes: velocities for the transfer, for the material, or of the filter's increment.
   struct Wanted {
     bool transfer = false, strain = false;
     Channel channel = -1;
-    Channel increments = -1;  ///< that transfers of increments take
+    Channel increments = -1;  ///< channel that transfers of increments take
   };
   void gather_chunk(const Chunk& chunk, Work& work, const Wanted& wanted);
   void gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment, bool gradient);
@@ -346,7 +346,7 @@ class ParticleStep : NamedChannels {
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
   Moved advance_position(const Chunk& chunk, const T* advection, T scale);
   void account_for_move();
-  /// What the pass that begins sums for the ledger; `follows`: the scatter that it contains wants the energy.
+  /// Sets what the pass that begins sums for the ledger; `follows` says that its scatter wants the energy.
   void account_for(const StepInfo& step, bool follows = false) {
     accounted_ = scene_.plan.accounts_at(step.step);
     sums_energy_ = accounted_ || follows;
@@ -366,14 +366,14 @@ class ParticleStep : NamedChannels {
   TileKernels<D, T> kernels_;
   ListKernels<D, T> list_kernels_;
   HigherKernels<D, T> higher_kernels_;
-  /// Of each pass so far, by its acts and whether the ledger rests.
+  /// The channels of each pass so far, by its acts and whether the ledger rests.
   std::deque<std::pair<std::uint64_t, std::vector<Channel>>> scattered_channels_;
-  std::array<std::array<std::vector<Channel>, act_count>, 2> adds_;  ///< [in a fused pass][act], what each adds to
+  std::array<std::array<std::vector<Channel>, act_count>, 2> adds_;  ///< [in a fused pass][act]: channels to add to
   std::vector<std::unique_ptr<Work>> work_;
-  std::vector<std::atomic<int>> units_;  ///< of a pass: UnitPass::State
+  std::vector<std::atomic<int>> units_;  ///< states of a pass: UnitPass::State
   bool measures_drift_ = false;
   bool accounted_ = false, sums_energy_ = false;  ///< see account_for
-  double drift_ = 0, last_drift_ = 0;             ///< since the last sort, and of the last move, in cells
+  double drift_ = 0, last_drift_ = 0;             ///< drift since the last sort, and by the last move, in cells
   FirstFailure failure_;
   std::exception_ptr exception_;
   std::mutex mutex_;

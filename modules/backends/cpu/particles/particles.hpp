@@ -1,6 +1,6 @@
 #pragma once
-// The particles of one body: chunks of 64, [component][64] contiguous in each, sorted into blocks of cells.
-// Positions are in cells from the first node of the particle's block, which keeps them exact in float.
+// The particles of one body lie in chunks of 64, [component][64] contiguous in each, sorted into blocks of cells. Their
+// positions are in cells from the first node of their block, which keeps them exact in float.
 
 #include <algorithm>
 #include <array>
@@ -31,15 +31,15 @@ template <int D>
 struct Block {
   BlockCoordinates at{};
   std::uint32_t first_chunk = 0, count = 0;
-  Reach reach;                                                  ///< of this step's stencils
+  Reach reach;                                                  ///< reach of this step's stencils
   std::array<std::int32_t, neighbour_count<D>> neighbours{-1};  ///< slots of the grid, see has_neighbours
-  /// Blocks of the grid, from this one, that its particles' lists may reach: always the neighbours.
+  /// The blocks of the grid, from this one, that its particles' lists may reach: always the neighbours.
   std::array<std::int32_t, 3> first_active{-1, -1, -1}, last_active{1, 1, 1};
-  ListBounds bounds;                          ///< of the particles as the last gather moved them
-  std::uint32_t far = 0;                      ///< particles whose lists leave the tile
+  ListBounds bounds;                          ///< bounds of the particles as the last gather moved them
+  std::uint32_t far = 0;                      ///< number of particles whose lists leave the tile
   double kinetic_energy = 0, dissipated = 0;  ///< partial sums of the ledger, J
-  double scattered_energy = 0;                ///< the same of the particles when they scatter, J
-  double heat = 0, heat_of_dissipation = 0;   ///< of the particles when they last scattered or gathered, J
+  double scattered_energy = 0;                ///< kinetic energy of the particles when they scatter, J
+  double heat = 0, heat_of_dissipation = 0;   ///< heat of the particles when they last scattered or gathered, J
 
   /// Whether the grid has been built around it.
   bool has_neighbours() const { return neighbours[0] >= 0; }
@@ -53,27 +53,27 @@ struct StoredField {
 
 template <int D, class T>
 struct Particles {
-  // first components of fields in a chunk; -1: the plan has none
+  // These are first components of fields in a chunk; -1 where the plan has none.
   static constexpr int position = 0, velocity = D;
   int advection = -1;      ///< kept for the move pass of MUSL
   int domain = -1;         ///< semi-side vectors in cells, row-major, columns are vectors
-  int next_domain = -1;    ///< where a step strains before its last use of the weights (Plan::strained_domain)
-  int circumference = -1;  ///< m, 2 pi r as seeded, which mass and volume of the body are times; axisymmetric only
-  int corners = -1;        ///< of a domain that the grid's velocity moves: [corner][D] cells, from the particle
+  int next_domain = -1;    ///< domain that a step strains before its last use of the weights (Plan::strained_domain)
+  int circumference = -1;  ///< m, 2 pi r as seeded, a factor of the body's mass and volume; axisymmetric only
+  int corners = -1;        ///< corners of a domain that the grid's velocity moves: [corner][D] cells, from the particle
   int moved_corners = -1;  ///< where they go in this step, kept for the move pass of MUSL
   int temperature = -1, melted_fraction = -1;
   int components = 0;
-  int motion_components = 0;        ///< from `velocity` on: it and the transfer's state
-  AlignedArray<T> half_size;        ///< [D][chunk_size] cells, of shapes that read it
-  std::vector<StoredField> fields;  ///< all that a chunk holds beside the indices of seeding, in its order
+  int motion_components = 0;        ///< components of velocity and the transfer's state, from `velocity` on
+  AlignedArray<T> half_size;        ///< [D][chunk_size] cells, for shapes that read it
+  std::vector<StoredField> fields;  ///< fields that a chunk holds beside the indices of seeding, in its order
   std::vector<StoredField> transfer_state, material_state;
   std::vector<StoredField> temperature_state;  ///< in the order of transfer_state
 
   ChunkPool pool;
-  std::vector<std::byte*> places;  ///< of the chunks: [components][chunk_size] values, then indices of seeding
+  std::vector<std::byte*> places;  ///< places of chunks: [components][chunk_size] values, then indices of seeding
   std::vector<Block<D>> blocks;
   ColouredUnits<D> units;
-  UnitOrder order;  ///< of these units
+  UnitOrder order;  ///< order of these units
   std::uint32_t chunks = 0;
 
   std::size_t value_bytes() const { return std::size_t(components) * chunk_size<T> * sizeof(T); }
@@ -83,7 +83,7 @@ struct Particles {
 
   T* chunk(std::uint32_t i) { return values_at(places[i]); }
   const T* chunk(std::uint32_t i) const { return values_at(places[i]); }
-  /// Indices in the order of seeding.
+  /// The indices of a chunk's particles in the order of seeding.
   std::int32_t* ids(std::uint32_t i) { return ids_at(places[i]); }
   const std::int32_t* ids(std::uint32_t i) const { return ids_at(places[i]); }
 
@@ -93,7 +93,7 @@ struct Particles {
 
 template <int D, class T>
 void Particles<D, T>::lay_out(const Plan& plan, int body) {
-  const Field* const identity = plan.particle_field(body, "identity");  // the indices of seeding
+  const Field* const identity = plan.particle_field(body, "identity");  // its values are the indices of seeding
   const auto place = [&](std::string_view id) {
     const Field* const field = plan.particle_field(body, id);
     for (const StoredField& stored : fields)
@@ -137,7 +137,7 @@ inline void for_each_chunk(const Block<D>& block, Run&& run) {
         static_cast<int>(std::min<std::uint32_t>(chunk_size<T>, block.count - first)));
 }
 
-/// The lanes after the last of a block's `count` particles hold copies of it.
+/// Fills the lanes after the last of a block's `count` particles with copies of it.
 template <int D, class T>
 void fill_tail(const Particles<D, T>& particles, std::uint32_t count, std::byte* last_chunk) {
   const int used = static_cast<int>((count - 1) % chunk_size<T>) + 1;
@@ -150,7 +150,7 @@ void fill_tail(const Particles<D, T>& particles, std::uint32_t count, std::byte*
   }
 }
 
-/// Position of a particle in cells from the domain's lower corner, wrapped on periodic axes.
+/// The position of a particle in cells from the domain's lower corner, wrapped on periodic axes.
 template <int D, class T>
 inline double cells_from_corner(const Domain& domain, const Block<D>& block, int axis, T relative) {
   double x = block.at[axis] * block_side<D> + static_cast<double>(relative);
@@ -162,14 +162,14 @@ inline double cells_from_corner(const Domain& domain, const Block<D>& block, int
   return x;
 }
 
-/// What a sort works in, kept from one to the next so that its pages are touched once.
+/// The work space of a sort, kept from one to the next so that its pages are touched once.
 struct SortSpace {
-  std::vector<std::uint16_t> key;                ///< of a particle: where it goes among the blocks around, and its cell
-  std::vector<std::uint64_t> leaving;            ///< of a chunk: bit k where particle k leaves its block
+  std::vector<std::uint16_t> key;                ///< where a particle goes among the blocks around, and its cell there
+  std::vector<std::uint64_t> leaving;            ///< for a chunk: bit k where particle k leaves its block
   std::array<AlignedArray<std::byte>, 3> rows;   ///< particles on their way to another block, of three layers of blocks
-  std::vector<std::byte> far_rows;               ///< of those that go farther than to a neighbour
-  std::vector<std::vector<std::byte*>> unused;   ///< chunks at hand, a thread each
-  std::vector<AlignedArray<std::byte>> nowhere;  ///< a chunk a thread that nobody reads
+  std::vector<std::byte> far_rows;               ///< rows of those that go farther than to a neighbour
+  std::vector<std::vector<std::byte*>> unused;   ///< chunks at hand for each thread
+  std::vector<AlignedArray<std::byte>> nowhere;  ///< a chunk for each thread that nobody reads
   std::uint64_t bytes() const {
     std::uint64_t total =
         key.capacity() * sizeof(key[0]) + leaving.capacity() * sizeof(leaving[0]) + far_rows.capacity();
@@ -186,15 +186,15 @@ void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const D
 /// middle of their way while they belong to a block.
 template <class T>
 struct Foresight {
-  const T* velocities = nullptr;  ///< quads of the body's field; null: particles are sorted as they lie
+  const T* velocities = nullptr;  ///< quads of the body's field; null where particles are sorted as they lie
   T cells_a_velocity = 0;         ///< s/m of cells
   T farthest = 0;                 ///< cells along any axis, below 1: particles stay within the tile of their block
 };
 
 /// Sorts into the blocks of stencils' first nodes (of lists: of positions less half a cell), at first and where it will
-/// last by cells within a block too; the same for any number of threads. Whoever stays in its block stays in its place,
-/// unless the block is put in order. Whether the list of blocks has changed. Unless `with_motion`, velocities and the
-/// transfer's state stay behind: they hold anything afterwards.
+/// last by cells within a block too; the same for any number of threads. A particle that stays in its block stays in
+/// its place, unless the block is put in order. Returns whether the list of blocks has changed. Unless `with_motion`,
+/// velocities and the transfer's state stay behind: they hold anything afterwards.
 template <int D, class T>
 bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D, T>& scene, bool with_motion,
                     const Foresight<T>& foresight = {});

@@ -1,5 +1,5 @@
 #pragma once
-// Seeded particles into chunks of provisional blocks.
+// Places seeded particles into chunks of provisional blocks.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace mpm::cpu {
 
-/// Particles as they come, each into the last chunk of its block.
+/// Puts particles, as they come, each into the last chunk of its block.
 template <int D, class T>
 void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const Domain& domain) {
   struct Seeded {
@@ -24,7 +24,7 @@ void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const D
   int known = -1;
   const int affine = seeds.with_gradient ? particles.transfer_state[0].first : -1;
   seeds.for_each_batch([&](const SeedBatch& batch) {
-    std::vector<std::pair<StoredField, const double*>> seeded;  // beside the position
+    std::vector<std::pair<StoredField, const double*>> seeded;  // seeded fields beside the position
     for (const StoredField& stored : particles.fields)
       if (stored.field->first == First::seeded && stored.first != Particles<D, T>::position)
         if (const double* const values = batch.values(stored.field->id)) seeded.push_back({stored, values});

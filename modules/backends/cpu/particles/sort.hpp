@@ -1,7 +1,7 @@
 #pragma once
-// Sorting particles into blocks. Where each goes is found first, from positions alone. Particles that change their
+// A sort puts particles into blocks. Where each goes is found first, from positions alone. Particles that change their
 // block travel in rows and take the places of those that left; the others stay where they are. A block is put in the
-// order of its cells at first, and later where that will last: made anew, layer by layer, into chunks that blocks
+// order of its cells at first, and later where that will last: it is made anew, layer by layer, in chunks that blocks
 // before it have left, so that a sort needs little memory beside the particles. Nothing depends on which thread does
 // what.
 
@@ -17,8 +17,8 @@
 
 namespace mpm::cpu {
 
-/// Where one particle belongs: its stencil's first node and its position, from the old block's first node, after
-/// wrapping.
+/// The place where one particle belongs: its stencil's first node and its position, from the old block's first node,
+/// after wrapping.
 template <int D, class T>
 struct Destination {
   std::array<int, 3> node{};  ///< absolute
@@ -82,18 +82,18 @@ class Sorter {
 
   using Fetching = typename RowFormat<D, T>::Fetching;
 
-  /// An old block.
+  /// A block before the sort.
   struct Source {
     std::array<std::uint32_t, neighbour_count<D>> leavers{}, first_row{};
     std::uint32_t leaving = 0, far = 0;
     std::uint32_t changes = 0;  ///< particles in another cell than the one before
     int rows = 0;               ///< which rows its leavers are among
   };
-  /// A block as it will be: the old ones under their old numbers, then those that only receive.
+  /// A block after the sort: the old ones have their old numbers, then come those that only receive.
   struct Target {
     BlockCoordinates at{};
-    std::array<std::int32_t, neighbour_count<D>> around{};  ///< targets; -1: none
-    std::int32_t number = -1;                               ///< among the blocks; -1: it is empty
+    std::array<std::int32_t, neighbour_count<D>> around{};  ///< targets; -1 where there is none
+    std::int32_t number = -1;                               ///< number among the blocks; -1 where it is empty
     std::uint32_t count = 0, incoming = 0;
     std::uint32_t first_far = 0, last_far = 0;
   };
@@ -104,14 +104,14 @@ class Sorter {
     BlockCoordinates to;
     int shift[D];
   };
-  /// What becomes of a block.
+  /// The change that the sort makes to a block.
   enum class Change { nothing, mended, anew };
-  /// Not before the first sort: the blocks of seeding have no units yet, though their particles may be in order.
+  /// False before the first sort: the blocks of seeding have no units yet, though their particles may be in order.
   bool in_units() const {
     return std::any_of(particles_.units.begin(), particles_.units.end(), [](const auto& u) { return !u.empty(); });
   }
 
-  /// Calls use(component) for what travels with a particle.
+  /// Calls use(component) for each component that travels with a particle.
   template <class Use>
   void for_each_component(Use&& use) const {
     constexpr int gap = Particles<D, T>::velocity;
@@ -179,13 +179,13 @@ class Sorter {
                     [&](int lane) { ++(key[lane] == far_key ? source.far : source.leavers[key[lane] / block_nodes]); });
   }
 
-  /// Calls use(lane) for those of a chunk that leave their block.
+  /// Calls use(lane) for each particle of a chunk that leaves its block.
   template <class Use>
   void for_each_leaver(std::uint32_t chunk, Use&& use) const {
     for (std::uint64_t left = space_.leaving[chunk]; left != 0; left &= left - 1) use(std::countr_zero(left));
   }
 
-  /// Where a chunk's particles will be in the middle of their way; see Foresight. Inside the domain, as they are now.
+  /// Finds where a chunk's particles, inside the domain as now, will be in the middle of their way; see Foresight.
   void look_ahead(const Block<D>& block, const T* position, int count, T* ahead) const {
     using L = Lanes<T>;
     alignas(64) std::int32_t around[chunk_size<T>], node[chunk_size<T>];
@@ -278,7 +278,7 @@ class Sorter {
         targets_[b].around[k] = table_.find(neighbour_at<D>(targets_[b].at, k));
   }
 
-  /// By the slots of the grid, which has been built around the blocks as they are.
+  /// Finds neighbours by the slots of the grid, which has been built around the blocks as they are.
   void look_around_by_slot() {
     const int old = static_cast<int>(sources_.size());
     std::int32_t slots = 0;
@@ -292,7 +292,7 @@ class Sorter {
       }
   }
 
-  /// Before there is a grid. Two neighbours are found at once: each entry is written by one thread.
+  /// Finds neighbours before there is a grid, two at once: each entry is written by one thread.
   void look_around_by_place() {
     for_each(0, sources_.size(), 8, [&](std::size_t b, int) {
       targets_[b].around[here] = b;
@@ -310,7 +310,7 @@ class Sorter {
     return number;
   }
 
-  /// By target, each in the old order.
+  /// Finds particles that go far, by target and each in the old order.
   void find_far() {
     alignas(64) std::int32_t base[D * chunk_size<T>];
     for (std::uint32_t b = 0; b < sources_.size(); ++b) {
@@ -339,14 +339,14 @@ class Sorter {
     }
   }
 
-  /// Columns of two blocks along x (and of two along y in 3-D), one colour in each direction out of two.
+  /// Orders blocks by columns of two along x (and of two along y in 3-D), one colour in each direction out of two.
   static std::array<int, 4> order_key(const BlockCoordinates& at) {
     if constexpr (D == 2) return {(at[0] >> 1) & 1, at[0] >> 1, 0, at[1] * 2 + (at[0] & 1)};
     return {((at[0] >> 1) & 1) | ((at[1] >> 1) & 1) * 2, at[0] >> 1, at[1] >> 1,
             at[2] * 4 + (at[0] & 1) * 2 + (at[1] & 1)};
   }
 
-  /// Numbers the blocks; whether they are the old ones.
+  /// Numbers the blocks; returns whether they are the old ones.
   bool order_targets() {
     const std::size_t old = sources_.size();
     std::vector<std::pair<std::array<int, 4>, std::uint32_t>> order;
@@ -402,7 +402,7 @@ class Sorter {
     return sources_[target].leaving + sources_[target].far + incoming == 0 ? Change::nothing : Change::mended;
   }
 
-  /// Blocks by layers across the axis in which there are most.
+  /// Divides blocks into layers across the axis along which there are most.
   void make_layers() {
     BlockCoordinates low = targets_[0].at, high = low;
     for (const Target& target : targets_)
@@ -414,7 +414,7 @@ class Sorter {
     std::iota(in_layers_.begin(), in_layers_.end(), 0u);
     std::stable_sort(in_layers_.begin(), in_layers_.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return targets_[a].at[axis] < targets_[b].at[axis]; });
-    // Few thick layers: threads meet after each, and rows of three are held at once.
+    // Layers are few and thick, as threads meet after each and rows of three are held at once.
     const std::size_t thick = in_layers_.size() / 16;
     for (std::uint32_t i = 0; i < in_layers_.size(); ++i) {
       const bool begins = i == 0 || targets_[in_layers_[i]].at[axis] != targets_[in_layers_[i - 1]].at[axis];
@@ -423,7 +423,7 @@ class Sorter {
     layers_.push_back(static_cast<std::uint32_t>(in_layers_.size()));
   }
 
-  /// A layer takes what the three layers around it have sent, and leaves its old chunks.
+  /// Moves the particles: a layer takes what the three layers around it have sent, and leaves its old chunks.
   void move() {
     make_layers();
     reserve_chunks();
@@ -438,8 +438,8 @@ class Sorter {
     }
   }
 
-  /// So that no thread allocates: within a layer blocks grow before others have shrunk, and threads keep chunks at
-  /// hand.
+  /// Reserves chunks so that no thread allocates: within a layer blocks grow before others have shrunk, and threads
+  /// keep chunks at hand.
   void reserve_chunks() {
     std::int64_t taken = 0, most = 0;
     std::size_t largest = 0;
@@ -463,7 +463,7 @@ class Sorter {
     for (auto& chunk : space_.nowhere) chunk.require(particles_.chunk_bytes());
   }
 
-  /// Rows of a layer's blocks, those for one neighbour side by side.
+  /// Writes the rows of a layer's blocks, those for one neighbour side by side.
   void send(int layer) {
     AlignedArray<std::byte>& rows = space_.rows[layer % 3];
     std::size_t count = 0;
@@ -484,12 +484,12 @@ class Sorter {
     });
   }
 
-  /// Of the old block at a place among the layers; none: beyond the last chunk.
+  /// The first chunk of the old block at a place among the layers; beyond the last chunk where there is none.
   std::uint32_t first_chunk(int i) const {
     const bool exists = i < static_cast<int>(in_layers_.size()) && in_layers_[i] < sources_.size();
     return exists ? particles_.blocks[in_layers_[i]].first_chunk : particles_.chunks;
   }
-  /// The chunk to fetch along with the work on one of a block, which `next_block` follows.
+  /// The chunk to fetch along with the work on a chunk of a block, after which `next_block` comes.
   Fetching fetch_after(const Block<D>& block, std::uint32_t chunk, std::uint32_t next_block) const {
     const std::uint32_t following = chunk + 1 < block.first_chunk + chunks_of(block.count) ? chunk + 1 : next_block;
     return following < particles_.chunks ? Fetching(row_, following, std::popcount(space_.leaving[chunk])) : Fetching();
@@ -525,7 +525,7 @@ class Sorter {
     const std::byte *first, *last;
   };
   struct Incoming {
-    std::array<Sent, neighbour_count<D>> sent;  ///< in the order of their blocks; of the block itself, no rows
+    std::array<Sent, neighbour_count<D>> sent;  ///< in the order of their blocks; the block itself sends no rows
     int count = 0;
   };
   Incoming incoming(std::uint32_t target) const {
@@ -551,7 +551,7 @@ class Sorter {
     std::vector<std::byte*>& unused = space_.unused[thread];
     const bool existed = number < sources_.size();
     const std::uint32_t had = existed ? chunks_of(particles_.blocks[number].count) : 0;
-    std::uint32_t kept = 0;  // chunks
+    std::uint32_t kept = 0;  // number of chunks
     if (target.number >= 0) {
       const Block<D>& block = blocks_[target.number];
       const std::uint32_t has = chunks_of(block.count);
@@ -613,7 +613,7 @@ class Sorter {
     Fetching following_;
   };
 
-  /// Who comes takes the place of who left; where more leave than come, the last fill up.
+  /// Puts particles that come into the places of those that left; where more leave than come, the last fill up.
   void mend(std::uint32_t number, std::uint32_t next_block) {
     const Target& target = targets_[number];
     const Block<D>&old = particles_.blocks[number], &block = blocks_[target.number];
@@ -645,7 +645,7 @@ class Sorter {
     const Block<D>& block = blocks_[target.number];
     const Incoming from = incoming(number);
     const bool existed = number < sources_.size();
-    std::uint32_t place[block_nodes + 1] = {};  // of the next particle of a cell
+    std::uint32_t place[block_nodes + 1] = {};  // place of the next particle of a cell
     for (int i = 0; i < from.count; ++i)
       for (const std::byte* row = from.sent[i].first; row != from.sent[i].last; row += row_bytes_)
         ++place[row_.tail(row).cell + 1];
@@ -686,7 +686,7 @@ class Sorter {
     row_.read(row, places_[block.first_chunk + to / chunk_size<T>], to % chunk_size<T>);
   }
 
-  /// Component by component, so that the old chunk is read in its own order; what leaves goes to where nobody looks.
+  /// Copies component by component, so that an old chunk is read in its own order; what leaves goes where nobody looks.
   template <class TakeFar>
   void take_stayers(const Block<D>& left, const Block<D>& block, std::uint32_t* place, TakeFar&& take_far_before,
                     int thread) {
@@ -720,7 +720,7 @@ class Sorter {
     fetch(chunk, 0, Particles<D, T>::velocity);
     fetch(chunk, Particles<D, T>::velocity + row_.left_behind(), particles_.components + 1);
   }
-  /// Components of a chunk, after the last of which its indices lie.
+  /// Fetches components of a chunk, after the last of which its indices lie.
   void fetch(std::uint32_t chunk, int first, int last) const {
     constexpr std::size_t component = chunk_size<T> * sizeof(T);
     const std::size_t end = std::min(last * component, particles_.chunk_bytes());
@@ -744,7 +744,7 @@ class Sorter {
   const Foresight<T> foresight_;
   int threads_;
   std::mutex pool_mutex_;
-  bool first_ = false;  ///< sort of these particles
+  bool first_ = false;  ///< this is the first sort of these particles
   const RowFormat<D, T> row_;
   std::size_t row_bytes_, at_hand_ = 0;
   std::vector<Source> sources_;

@@ -1,5 +1,5 @@
 #pragma once
-// Particles on their way to another block: one row each, of what travels with it.
+// Particles on their way to another block take one row each, which holds all that travels with them.
 
 #include <algorithm>
 #include <bit>
@@ -10,13 +10,13 @@
 
 namespace mpm::cpu {
 
-/// What a row holds after the values.
+/// The values that a row ends with.
 struct RowTail {
   std::int32_t id;
   std::uint32_t cell, slot;
 };
 
-/// A row: position, what lies in a chunk after the components that stay behind, tail; whole lines of the cache.
+/// A row holds position, what lies in a chunk after the components left behind, and tail, in whole lines of the cache.
 template <int D, class T>
 class RowFormat {
   static constexpr int line = 64;  ///< bytes of a line of the cache
@@ -30,10 +30,10 @@ class RowFormat {
         bytes_((values_ * sizeof(T) + sizeof(RowTail) + line - 1) / line * line) {}
 
   std::size_t bytes() const { return bytes_; }
-  /// Components of a chunk, from the velocity on.
+  /// The number of components of a chunk that stay behind, from the velocity on.
   int left_behind() const { return left_behind_; }
 
-  /// `shift`: cells from the new block to the old one. Rows of one neighbour are written one after the other.
+  /// Writes a row; `shift` is in cells from the new block to the old one. A neighbour's rows are written in sequence.
   void write(std::byte* row, std::uint32_t chunk, int lane, std::uint32_t cell, const int* shift) const {
     __builtin_prefetch(row + bytes_, 1, 2);
     const T* const from = particles_.chunk(chunk) + lane;

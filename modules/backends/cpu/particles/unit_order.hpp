@@ -1,6 +1,6 @@
 #pragma once
-// In which order threads work on the units of a body: those of one colour after those of another, but a unit waits for
-// its neighbours alone, so that no thread stands idle between two colours.
+// The order in which threads work on the units of a body: those of one colour after those of another, but a unit waits
+// for its neighbours alone, so that no thread stands idle between two colours.
 
 #include <algorithm>
 #include <array>
@@ -14,14 +14,14 @@
 
 namespace mpm::cpu {
 
-/// Blocks of one unit lie side by side: a column of two blocks along x (and of two along y in 3-D).
+/// A unit is blocks that lie side by side: a column of two blocks along x (and of two along y in 3-D).
 struct Unit {
   std::uint32_t first = 0, last = 0;
 };
 template <int D>
 inline constexpr int colour_count = D == 3 ? 4 : 2;
 
-/// Units of one colour touch no common node, of two colours only where they are neighbours.
+/// Units of one colour touch no common node, those of two colours only where they are neighbours.
 template <int D>
 using ColouredUnits = std::array<std::vector<Unit>, colour_count<D>>;
 
@@ -32,8 +32,8 @@ struct UnitTask {
   std::array<std::uint32_t, 8> neighbours{};
 };
 
-/// Of a body: tasks in an order in which whoever waits waits for one that comes before it, and which thread is to take
-/// which of them.
+/// The tasks of a body, in an order in which whoever waits waits for one that comes before it, and which thread is to
+/// take which of them.
 struct UnitOrder {
   std::vector<UnitTask> tasks;
   std::vector<std::vector<std::uint32_t>> of_thread;  ///< numbers of tasks, ascending; a part of space for each thread
@@ -68,7 +68,7 @@ inline void share_out(UnitOrder& order, const std::vector<std::array<int, 2>>& c
   for (auto& tasks : order.of_thread) std::sort(tasks.begin(), tasks.end());
 }
 
-/// The last to be begun are small, so that threads end at about the same time.
+/// Orders the units so that the last to be begun are small, for threads to end at about the same time.
 template <int D, class Blocks>
 UnitOrder ordered_units(const ColouredUnits<D>& units, const Blocks& blocks, int threads) {
   UnitOrder order;
@@ -102,7 +102,7 @@ UnitOrder ordered_units(const ColouredUnits<D>& units, const Blocks& blocks, int
       sizes.push_back(size(unit));
     }
   }
-  // Of units that are all neighbours one is in work at a time: more threads would only hand them to and fro.
+  // Where all units are neighbours one is in work at a time, and more threads would only hand them to and fro.
   const bool one_by_one =
       std::all_of(units.begin(), units.end(), [](const auto& of_colour) { return of_colour.size() < 2; });
   share_out(order, columns, sizes, one_by_one ? 1 : threads);
@@ -112,10 +112,10 @@ UnitOrder ordered_units(const ColouredUnits<D>& units, const Blocks& blocks, int
 /// One pass over the units, which threads share.
 class UnitPass {
  public:
-  /// Of a task.
+  /// The state of a task.
   enum State : int { not_begun, begun, done };
 
-  /// `spin`: how long a thread looks at a unit in work before it sleeps.
+  /// Threads look for `spin` at a unit in work before they sleep.
   UnitPass(const UnitOrder& order, std::vector<std::atomic<int>>& states,
            std::chrono::microseconds spin = std::chrono::microseconds(0))
       : order_(order), states_(states), spin_(spin) {
