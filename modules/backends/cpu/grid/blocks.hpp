@@ -1,5 +1,5 @@
 #pragma once
-// Blocks of cells: 4^3 in 3-D and 8^2 in 2-D, found by hash so that an empty domain costs no memory.
+// Blocks of cells, 4^3 in 3-D and 8^2 in 2-D, are found by hash so that an empty domain costs no memory.
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace mpm::cpu {
 
-/// Particles in a chunk: in double half as many, so that what a step holds of them stays in the first-level cache.
+/// The number of particles in a chunk: half as many in double, so that a step's data stay in the first-level cache.
 template <class T>
 inline constexpr int chunk_size = sizeof(T) == 4 ? MPM_BATCH : MPM_BATCH / 2;
 inline constexpr int block_nodes = 64;  ///< nodes (and cells) in a block, in both dimensions
@@ -24,10 +24,10 @@ inline constexpr int block_side = 1 << block_bits<D>;
 template <int D>
 inline constexpr int neighbour_count = D == 3 ? 27 : 9;
 
-/// Position of a block in the lattice of blocks; its first node is block_side times that. Unused axes are zero.
+/// The position of a block in the lattice of blocks; its first node is block_side times that. Unused axes are zero.
 using BlockCoordinates = std::array<int, 3>;
 
-/// Node within its block, the last axis fastest.
+/// The number of a node within its block, the last axis fastest.
 template <int D>
 constexpr int node_in_block(const std::array<int, 3>& node) {
   constexpr int mask = block_side<D> - 1;
@@ -36,7 +36,7 @@ constexpr int node_in_block(const std::array<int, 3>& node) {
   return index;
 }
 
-/// Lattice position of a node of a block.
+/// The lattice position of a node of a block.
 template <int D>
 constexpr std::array<int, 3> node_at(const BlockCoordinates& block, int local) {
   std::array<int, 3> node{};
@@ -45,26 +45,26 @@ constexpr std::array<int, 3> node_at(const BlockCoordinates& block, int local) {
   return node;
 }
 
-/// The neighbour at `offset` (each -1, 0 or 1).
+/// The number of the neighbour at an offset (each of dx, dy, dz is -1, 0 or 1).
 template <int D>
 constexpr int neighbour_index(int dx, int dy, int dz) {
   return D == 3 ? ((dx + 1) * 3 + dy + 1) * 3 + dz + 1 : (dx + 1) * 3 + dy + 1;
 }
 
-/// Open-addressing map from block coordinates to a number.
+/// An open-addressing map from block coordinates to a number.
 class BlockTable {
  public:
-  /// Room for `expected` blocks before it must grow.
+  /// Has room for `expected` blocks before it must grow.
   explicit BlockTable(std::size_t expected = 32)
       : keys_(std::bit_ceil(2 * std::max<std::size_t>(expected, 32)), empty), values_(keys_.size(), -1) {}
-  void clear() {  // its size stays: it is filled again with about as many
+  void clear() {  // its size stays, as it is filled again with about as many
     std::fill(keys_.begin(), keys_.end(), empty);
     std::fill(values_.begin(), values_.end(), -1);
     count_ = 0;
   }
-  /// -1 when absent.
+  /// The number of a block; -1 when it is absent.
   int find(const BlockCoordinates& at) const { return values_[position(key(at))]; }
-  /// Number of the block, `next` when it is new.
+  /// The number of a block, which becomes `next` when it is new.
   int insert(const BlockCoordinates& at, int next) {
     const std::size_t i = position(key(at));
     if (keys_[i] != empty) return values_[i];

@@ -1,5 +1,5 @@
 #pragma once
-// Channels: the plan's fields of nodes as the grid keeps them, each a group of four scalars a node.
+// Channels are the plan's fields of nodes as the grid keeps them, each a group of four scalars a node.
 
 #include <algorithm>
 #include <string_view>
@@ -9,8 +9,8 @@
 
 namespace mpm::cpu {
 
-/// Number of a field of nodes among those with a group of their own; -1: the scene has none. A scalar beside a vector
-/// is the fourth of its group, and a field in place of another has the other's.
+/// The number of a field of nodes among those with a group of their own; -1 where the scene has none. A scalar beside a
+/// vector is the fourth of its group, and a field in place of another has the other's.
 using Channel = int;
 
 inline std::vector<const Field*> channel_fields(const Plan& plan) {
@@ -29,7 +29,7 @@ inline Channel channel_of(const Plan& plan, std::string_view id) {
   return static_cast<Channel>(std::find(fields.begin(), fields.end(), field) - fields.begin());
 }
 
-/// Of what an operator uses, as "nodes/momentum".
+/// The channels of what an operator uses, as "nodes/momentum".
 inline std::vector<Channel> channels_of(const Plan& plan, const FieldNames& names) {
   constexpr std::string_view nodes = "nodes/";
   std::vector<Channel> channels;
@@ -41,28 +41,28 @@ inline std::vector<Channel> channels_of(const Plan& plan, const FieldNames& name
 /// The channels that passes work on by name, resolved once a scene.
 struct NamedChannels {
   const Plan& plan_;
-  /// Scattered momentum and mass; velocity and mass once it has been divided.
+  /// Holds scattered momentum and mass; velocity and mass once the momentum has been divided.
   const Channel motion = channel_of(plan_, "momentum");
-  /// The same of the following step, scattered by the fused pass.
+  /// Holds the same of the following step, scattered by the fused pass.
   const Channel next_motion = channel_of(plan_, "next_momentum");
-  /// v-, later the increment v+ - v-.
+  /// Holds v-, later the increment v+ - v-.
   const Channel velocity_before = channel_of(plan_, "velocity_before");
   const Channel force = channel_of(plan_, "force"), body_force = channel_of(plan_, "body_force");
-  const Channel volume_gradient = channel_of(plan_, "volume_gradient");  ///< and volume
+  const Channel volume_gradient = channel_of(plan_, "volume_gradient");  ///< with the volume
   const Channel mass_position = channel_of(plan_, "mass_position");
-  /// Heat and its capacity; temperature and capacity once it has been divided.
+  /// Holds heat and its capacity; temperature and capacity once the heat has been divided.
   const Channel heat = channel_of(plan_, "heat"), heat_rate = channel_of(plan_, "heat_rate");
   const Channel temperature_before = channel_of(plan_, "temperature_before");  ///< later the increment
-  const Channel heated_volume = channel_of(plan_, "heated_volume");            ///< and volume times conductivity
+  const Channel heated_volume = channel_of(plan_, "heated_volume");            ///< with volume times conductivity
   const Channel capacity_position = channel_of(plan_, "capacity_position");
   const Channel filter_increment = channel_of(plan_, "increment");  ///< v* of the filter's loop
-  /// Momentum S+ S v* and mass while it is scattered, then velocity; then the velocity before conditions.
+  /// Holds the momentum S+ S v* and mass while scattered, then velocity; then the velocity before conditions.
   const Channel filter_projection = channel_of(plan_, "projection");
-  /// Of the grid before the filter, with the mass.
+  /// Holds the velocity of the grid before the filter, with the mass.
   const Channel kept_velocity = channel_of(plan_, "unfiltered_velocity");
-  /// Velocity that conditions and contact have added in the step; while they act, the one without it.
+  /// Holds the velocity that conditions and contact have added in the step; while they act, the one without it.
   const Channel constrained = channel_of(plan_, "velocity_of_constraints");
-  const Channel kept_constrained = channel_of(plan_, "unfiltered_velocity_of_constraints");  ///< of kept_velocity
+  const Channel kept_constrained = channel_of(plan_, "unfiltered_velocity_of_constraints");  ///< for kept_velocity
 };
 
 }  // namespace mpm::cpu

@@ -1,6 +1,6 @@
 #pragma once
-// The sparse grid: blocks of nodes near particles, planned channels of one quad a node, and the lists of nodes at the
-// edges.
+// The sparse grid holds blocks of nodes near particles, planned channels of one quad a node, and the lists of nodes at
+// the edges.
 
 #include <cstdint>
 #include <vector>
@@ -16,11 +16,11 @@ namespace mpm::cpu {
 struct MirrorPair {
   std::uint32_t ghost, mirror;
   std::uint32_t ghost_edge, mirror_edge;  ///< the same nodes among the edge nodes
-  Vector3 foot;                           ///< of the ghost on the wall, m
-  double distance;                        ///< of the ghost from the wall, m
+  Vector3 foot;                           ///< foot of the ghost on the wall, m
+  double distance;                        ///< distance of the ghost from the wall, m
 };
 
-/// Nodes that one face of the domain concerns.
+/// The nodes that one face of the domain concerns.
 struct FaceNodes {
   int axis = 0, side = 0;
   const FaceCondition* condition = nullptr;
@@ -28,8 +28,8 @@ struct FaceNodes {
   std::vector<std::uint32_t> wall;
   std::vector<std::uint32_t> wall_edge;  ///< the same among the edge nodes, or ~0
   std::vector<Vector3> wall_position;
-  std::vector<std::uint8_t> pair_folds;  ///< decided each step: [field * pairs + i]
-  std::vector<double> folded_capacity;   ///< J/K, of the ghosts when they were folded, likewise; with temperature only
+  std::vector<std::uint8_t> pair_folds;  ///< decided in each step: [field * pairs + i]
+  std::vector<double> folded_capacity;   ///< J/K, of the ghosts when folded, indexed likewise; with temperature only
 
   bool periodic() const { return condition->type == ConditionType::periodic; }
 };
@@ -50,7 +50,7 @@ class Grid {
   Channel channels() const { return static_cast<Channel>(channels_.size()); }
   const Field& field(Channel channel) const { return *channels_[channel].field; }
   bool has(Channel channel) const { return channel >= 0 && !channels_[channel].rests; }
-  /// Whether what only the ledger reads rests: it keeps its memory, but nothing scatters, keeps or reads it.
+  /// Lets what only the ledger reads rest or wake: at rest it keeps its memory, but nothing writes or reads it.
   void let_ledger_rest(bool rests) {
     if (rests == ledger_rests_) return;
     ledger_rests_ = rests;
@@ -66,19 +66,19 @@ class Grid {
     return reinterpret_cast<Quad<T>*>(channel(c, field))[node];
   }
 
-  /// Active blocks are those of particles, their neighbours (and what their lists reach), and what folding needs;
-  /// field_bits of a slot says which velocity fields may have mass there.
+  /// Finds the active blocks: those of particles, their neighbours (and what their lists reach), and what folding
+  /// needs; field_bits of a slot says which velocity fields may have mass there.
   /// With `keeps`, what a gather may read keeps its values where blocks stay, and gets zeros elsewhere; all else holds
   /// anything afterwards.
   void rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body, bool keeps = false);
-  /// Zero for what is scattered in a step.
+  /// Sets to zero what is scattered in a step.
   void clear();
   void clear(Channel c);
-  /// Of all nodes and fields, along any axis.
+  /// The largest component of all nodes and fields, along any axis.
   T largest_component(Channel c) const;
   void swap(Channel a, Channel b) { std::swap(channels_[a].data, channels_[b].data); }
 
-  /// Number of a node from its coordinates; -1 where no block is active.
+  /// The number of a node from its coordinates; -1 where no block is active.
   std::int32_t find(const std::array<int, 3>& node) const {
     BlockCoordinates at{};
     for (int a = 0; a < D; ++a) at[a] = node[a] >> block_bits<D>;
@@ -88,9 +88,9 @@ class Grid {
 
   std::vector<FaceNodes>& faces() { return faces_; }
   const std::vector<BoxNodes>& boxes() const { return boxes_; }
-  /// Ghosts and the nodes they are folded onto.
+  /// The ghosts and the nodes they are folded onto.
   const std::vector<std::uint32_t>& edge_nodes() const { return edge_nodes_; }
-  /// Slots where two fields or more may meet.
+  /// The slots where two fields or more may meet.
   const std::vector<std::uint32_t>& shared_slots() const { return shared_; }
   std::uint64_t bytes() const {
     std::uint64_t total = renumbered_.bytes();
@@ -115,11 +115,11 @@ class Grid {
   int image(int axis, int node) const {
     return image_of(node, scene_.domain.cells[axis], scene_.domain.periodic(axis));
   }
-  /// No node of such a block is on or beyond a wall of this axis.
+  /// Whether no node of such a block is on or beyond a wall of this axis.
   bool inside(int axis, int block) const {
     return block > 0 && (block + 1) * block_side<D> <= scene_.domain.cells[axis];
   }
-  /// Particles are wrapped when they are sorted: until then a list may reach a cell farther.
+  /// On periodic axes lists may reach a cell farther, as particles are wrapped only when they are sorted.
   int padding(int axis) const { return scene_.padding + (scene_.list && scene_.domain.periodic(axis) ? 2 : 0); }
   bool folded_axis(int axis, int side) const { return has_images(scene_.domain.faces[axis][side]); }
 
@@ -128,7 +128,7 @@ class Grid {
   Channel next_motion_;
   bool ledger_rests_ = false;
   std::vector<Stored> channels_;
-  AlignedArray<T> renumbered_;  ///< see renumber
+  AlignedArray<T> renumbered_;  ///< work space of renumber
   BlockTable table_;
   std::vector<BlockCoordinates> found_;
   std::vector<std::uint64_t> field_bits_;
@@ -151,7 +151,7 @@ int Grid<D, T>::activate(const BlockCoordinates& at, std::uint64_t field_bits) {
   return slot;
 }
 
-/// Folding a slot beyond a face needs the slots of its images; images of images follow as the list grows.
+/// Activates the images of slots beyond a face, which folding needs; images of images follow as the list grows.
 template <int D, class T>
 void Grid<D, T>::activate_mirrors() {
   for (bool grew = true; grew;) {  // bits must reach images of images even when those were active already
@@ -253,7 +253,7 @@ void Grid<D, T>::number_edge_nodes() {
     for (const std::uint32_t node : face.wall) face.wall_edge.push_back(number[node]);
 }
 
-/// False where a block is a cell or more away from a box.
+/// Returns false where a block is a cell or more away from a box.
 template <int D, class T>
 bool Grid<D, T>::may_touch(const BoxCondition& box, const BlockCoordinates& at) const {
   const double h = scene_.domain.cell_size;
@@ -301,7 +301,7 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
           visit(BlockCoordinates{at[0] + x, at[1] + y, at[2] + z});
   };
   constexpr std::array<int, 3> below{-1, -1, -1}, above{1, 1, 1};
-  std::vector<std::int32_t> slot_now(before.size(), -1);  // of a slot as it was
+  std::vector<std::int32_t> slot_now(before.size(), -1);  // new slot of each old one
   const auto activate_again = [&](std::int32_t slot, std::uint64_t bits) {
     std::int32_t& now = slot_now[slot];
     if (now < 0) return now = activate(before[slot], bits);

@@ -1,11 +1,11 @@
 #pragma once
-// GridStep where velocity fields meet: pairs of a slot in batches, pair after pair, so that three fields act in order.
+// This part of GridStep lets velocity fields meet: pairs of a slot in batches, pair after pair, so three act in order.
 
 #include "backends/cpu/grid/grid_step.hpp"
 
 namespace mpm::cpu {
 
-/// What the pairs of one slot add to the ledger and the record.
+/// The sums that the pairs of one slot add to the ledger and the record.
 template <int D, class T>
 struct GridStep<D, T>::ContactSums {
   double work = 0, friction = 0, largest_penetration = 0;
@@ -130,8 +130,8 @@ void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
   ContactRecord record;
   double change[3]{}, squared = 0;
   for (const ContactSums& s : sums) {
-    // Before the forces v- itself changes, at once; after them the impulse counts between v- and v+
-    // (account_for_impulses).
+    // Before the forces v- itself changes at once; after them account_for_impulses counts the impulse between v- and
+    // v+.
     if (in_ledger && !after_forces) ledger_.contact += s.work;
     if (in_ledger) ledger_.friction += s.friction;
     for (int c = 0; c < D; ++c) {

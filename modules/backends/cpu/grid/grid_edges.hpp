@@ -1,5 +1,5 @@
 #pragma once
-// GridStep at the edges of the domain: folding, ghosts and conditions (simulation/boundary.hpp is the policy).
+// This part of GridStep treats the edges of the domain: folding, ghosts, conditions (policy: simulation/boundary.hpp).
 
 #include "backends/cpu/grid/grid_step.hpp"
 
@@ -24,7 +24,7 @@ Quad<T> GridStep<D, T>::wall_velocity(const std::optional<VectorExpression>& vel
 
 // ---- folding -----------------------------------------------------------------------------------------------------
 
-/// Predicted speeds of a pair of nodes towards the wall, by momenta as folded so far and forces as scattered.
+/// Whether a pair of nodes approaches the wall, as momenta folded so far and forces as scattered predict.
 template <int D, class T>
 bool GridStep<D, T>::approaches(const FaceNodes& face, int field, const MirrorPair& pair, double dt) {
   const std::size_t edges = grid_.edge_nodes().size();
@@ -51,8 +51,8 @@ void GridStep<D, T>::for_each_folded(const FaceNodes& face, Visit&& visit) {
       if (face.pair_folds[field * face.pairs.size() + i]) visit(field, face.pairs[i]);
 }
 
-/// Momentum with the mass beside it, which moves with the wall. Folded ghosts are cleared, so that folding again does
-/// nothing.
+/// Folds a momentum with the mass beside it, which moves with the wall. Folded ghosts are cleared, so that folding
+/// again does nothing.
 template <int D, class T>
 void GridStep<D, T>::fold_momentum(Channel channel, int field, const MirrorPair& pair, Q signs, Q wall_velocity) {
   Q& ghost = grid_.quad(channel, field, pair.ghost);
@@ -61,7 +61,7 @@ void GridStep<D, T>::fold_momentum(Channel channel, int field, const MirrorPair&
   ghost = Q{};
 }
 
-/// Folded ghosts are cleared here too.
+/// Folds values as they are; folded ghosts are cleared here too.
 template <int D, class T>
 void GridStep<D, T>::fold_as_is(Channel channel, int field, const MirrorPair& pair, Q signs) {
   Q& ghost = grid_.quad(channel, field, pair.ghost);
@@ -72,7 +72,7 @@ void GridStep<D, T>::fold_as_is(Channel channel, int field, const MirrorPair& pa
 template <int D, class T>
 void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bool remap, double time) {
   const MirrorPair& pair = face.pairs[index];
-  if (!remap && has_gravity_ && !face.periodic()) {  // keeps the weight where it was until forces are folded
+  if (!remap && has_gravity_ && !face.periodic()) {  // the weight stays where it was until forces are folded
     double* const correction = gravity_correction_.data() + field * grid_.edge_nodes().size() * 4;
     for (int c = 0; c < D; ++c) {
       const double weight = static_cast<double>(motion_at(field, pair.ghost)[3]) * gravity_[c];
@@ -98,7 +98,7 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
   }
 }
 
-/// On the wall itself: the mirror image takes away what of these channels points across it.
+/// Folds the nodes of a wall, which mirror themselves: the image takes away what of these channels points across it.
 template <int D, class T>
 void GridStep<D, T>::fold_wall_onto_itself(const FaceNodes& face, int field, double dt) {
   for (std::size_t i = 0; i < face.wall.size(); ++i) {
@@ -149,7 +149,7 @@ void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step)
   }
 }
 
-/// Forces follow the decisions of fold_faces.
+/// Folds forces as fold_faces decided.
 template <int D, class T>
 void GridStep<D, T>::fold_forces(bool periodic) {
   for (const FaceNodes& face : grid_.faces()) {
@@ -174,7 +174,7 @@ void GridStep<D, T>::fold_forces(bool periodic) {
   }
 }
 
-/// Ghosts take the mirrored velocity (and increment), the last folded first.
+/// Gives ghosts the mirrored velocity (and increment), the last folded first.
 template <int D, class T>
 void GridStep<D, T>::fill_ghosts(double time, bool increments) {
   auto& faces = grid_.faces();

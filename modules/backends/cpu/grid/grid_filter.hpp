@@ -1,6 +1,6 @@
 #pragma once
-// GridStep: the loop of a filter over the nodes (abi.h, mpm_filter). Ghosts have no mass while their mirrors stand for
-// them, so nodes with mass are the nodes that count.
+// This part of GridStep is the loop of a filter over the nodes (abi.h, mpm_filter). Ghosts have no mass while their
+// mirrors stand for them, so nodes with mass are the nodes that count.
 
 #include <limits>
 
@@ -15,7 +15,7 @@ void GridStep<D, T>::copy_velocity(Channel from, Channel to) {
   });
 }
 
-/// sqrt(sum m v*.v*), block after block whatever the number of threads.
+/// The norm sqrt(sum m v*.v*), summed block after block whatever the number of threads.
 template <int D, class T>
 double GridStep<D, T>::mass_norm_of_increment() {
   for_each_block([&](int field, std::uint32_t first, double* partial) {
@@ -62,7 +62,7 @@ void GridStep<D, T>::project_increment(const Pass& pass, const StepInfo& step) {
   });
 }
 
-/// The plugin on the nodes of one block that have mass.
+/// Calls the plugin on the nodes of one block that have mass.
 template <int D, class T>
 void GridStep<D, T>::update_block(int field, std::uint32_t first, std::uint32_t iteration) {
   alignas(64) T projected[D * block_nodes], increment[D * block_nodes], velocity[D * block_nodes];
@@ -97,11 +97,11 @@ void GridStep<D, T>::update_block(int field, std::uint32_t first, std::uint32_t 
   }
 }
 
-/// `constrained` <- the velocity without what conditions and contact have added in this step.
+/// Sets `constrained` to the velocity without what conditions and contact have added in this step.
 template <int D, class T>
 void GridStep<D, T>::keep_free_velocity(bool after_forces) {
   if (!grid_.has(constrained)) return;
-  visit_blocks([&](int field, std::uint32_t first, double*) {  // leaves the ledger's partial sums alone
+  visit_blocks([&](int field, std::uint32_t first, double*) {  // this leaves the ledger's partial sums alone
     const Q* const nodes = &motion_at(field, first);
     Q* const added = &grid_.quad(constrained, field, first);
     for (int k = 0; k < block_nodes; ++k) added[k] = after_forces ? without(nodes[k], added[k]) : nodes[k];
@@ -114,12 +114,12 @@ void GridStep<D, T>::measure_constraints() {
   visit_blocks([&](int field, std::uint32_t first, double*) {
     const Q* const nodes = &motion_at(field, first);
     Q* const added = &grid_.quad(constrained, field, first);
-    for (int k = 0; k < block_nodes; ++k) added[k] = without(nodes[k], added[k]);  // no mass left in it
+    for (int k = 0; k < block_nodes; ++k) added[k] = without(nodes[k], added[k]);  // this leaves no mass in it
   });
 }
 
-/// Conditions and contact on the velocity without what they have added so far, so that an impulse which the increments
-/// no longer need is taken back.
+/// Applies conditions and contact to the velocity without what they have added so far, so that an impulse which the
+/// increments no longer need is taken back.
 template <int D, class T>
 void GridStep<D, T>::constrain_free(double time, const StepInfo& step) {
   if (!grid_.has(constrained)) return constrain(time, step);
@@ -131,7 +131,7 @@ void GridStep<D, T>::constrain_free(double time, const StepInfo& step) {
   measure_constraints();
 }
 
-/// Conditions and contact on the velocity as it is, without a trace in ledger and records.
+/// Applies conditions and contact to the velocity as it is, without a trace in ledger and records.
 template <int D, class T>
 void GridStep<D, T>::constrain(double time, const StepInfo& step) {
   impose(time, Account::nothing);
@@ -194,7 +194,7 @@ void GridStep<D, T>::restore(Channel channel, Channel kept_channel, bool keeps_c
     for (int k = 0; k < block_nodes; ++k) {
       const Q filtered = nodes[k];
       nodes[k] = kept[k];
-      kept[k] = without(filtered, kept[k]);  // no mass left in it
+      kept[k] = without(filtered, kept[k]);  // this leaves no mass in it
     }
   });
 }
@@ -208,7 +208,7 @@ void GridStep<D, T>::add(Channel correction, Channel channel) {
   });
 }
 
-/// v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
+/// Adds the filter's correction, v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
 template <int D, class T>
 void GridStep<D, T>::add_correction(const Pass& pass, const StepInfo& step) {
   const double unfiltered = ledger_on() ? kinetic_energy() : 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-// GridStep over all nodes: momenta to velocities, forces, and the order of a step.
+// This part of GridStep works on all nodes: it makes velocities of momenta, applies forces, and orders the step.
 
 #include <algorithm>
 
@@ -38,7 +38,7 @@ void GridStep<D, T>::for_each_block(Visit&& visit) {
   visit_blocks(visit);
 }
 
-/// The same, and goes on with the partial sums of the last for_each_block.
+/// Does the same, and goes on with the partial sums of the last for_each_block.
 template <int D, class T>
 template <class Visit>
 void GridStep<D, T>::visit_blocks(Visit&& visit) {
@@ -56,7 +56,7 @@ double GridStep<D, T>::sum_partials(int which) const {
   return sum;
 }
 
-/// Nodes without mass count nothing: folded ghosts have a velocity.
+/// Sums only nodes with mass, as folded ghosts have a velocity too.
 template <int D, class T>
 double GridStep<D, T>::kinetic_energy() {
   for_each_block([&](int field, std::uint32_t first, double* partial) {
@@ -71,7 +71,7 @@ double GridStep<D, T>::kinetic_energy() {
   return sum_partials(0);
 }
 
-/// Of the momenta on the nodes that folding changes.
+/// Sums that of the momenta on the nodes that folding changes.
 template <int D, class T>
 double GridStep<D, T>::kinetic_energy_of_edges() {
   double sum = 0;
@@ -83,8 +83,8 @@ double GridStep<D, T>::kinetic_energy_of_edges() {
   return sum;
 }
 
-/// Velocities of a block's nodes become change(first node of a pack, velocities, masses), zero without mass; whether
-/// any node has some. As many nodes at once as a register holds.
+/// Sets the velocities of a block's nodes to change(first node of a pack, velocities, masses), zero without mass;
+/// returns whether any node has some. It takes as many nodes at once as a register holds.
 template <int D, class T>
 template <class Change>
 bool GridStep<D, T>::for_each_pack(Q* nodes, Change&& change) {
@@ -102,7 +102,7 @@ bool GridStep<D, T>::for_each_pack(Q* nodes, Change&& change) {
   return heavy;
 }
 
-/// Momenta to velocities, also into velocity_before where that is kept; returns their energy where that is asked for.
+/// Makes velocities of momenta, also in velocity_before where that is kept; returns their energy where asked for.
 template <int D, class T>
 double GridStep<D, T>::divide_by_mass(bool keeps_before, bool accounted) {
   for_each_block([&](int field, std::uint32_t first, double* partial) {
@@ -111,7 +111,7 @@ double GridStep<D, T>::divide_by_mass(bool keeps_before, bool accounted) {
     if (keeps_before) std::memcpy(&grid_.quad(velocity_before, field, first), nodes, block_nodes * sizeof(Q));
     if (!accounted || !heavy) return;
     Wide squares{};
-    for (int k = 0; k < block_nodes; ++k) {  // no velocity where there is no mass
+    for (int k = 0; k < block_nodes; ++k) {  // there is no velocity where there is no mass
       const Wide v = widen(nodes[k]);
       squares += twice_kinetic_energy(v, v[3]);
     }
@@ -157,7 +157,7 @@ void GridStep<D, T>::find_constrained_slots() {
   for (const std::uint32_t slot : grid_.shared_slots()) constrained_[slot] = 1;
 }
 
-/// What conditions and contact have changed since divide_by_mass, into velocity_before.
+/// Copies into velocity_before what conditions and contact have changed since divide_by_mass.
 template <int D, class T>
 void GridStep<D, T>::copy_constrained_velocity() {
   find_constrained_slots();
@@ -167,7 +167,7 @@ void GridStep<D, T>::copy_constrained_velocity() {
   });
 }
 
-/// What separates a folded weight from the folded mass's weight, before the forces.
+/// Adds what separates a folded weight from the folded mass's weight, before the forces.
 template <int D, class T>
 void GridStep<D, T>::add_gravity_corrections(double dt) {
   const auto& nodes = grid_.edge_nodes();
@@ -188,7 +188,7 @@ void GridStep<D, T>::add_gravity_corrections(double dt) {
     }
 }
 
-/// The corrections worked as part of the force; they belong to gravity.
+/// Moves the work of the corrections, which was counted as part of the force, to gravity.
 template <int D, class T>
 void GridStep<D, T>::account_gravity_corrections(double dt) {
   const auto& nodes = grid_.edge_nodes();
@@ -205,9 +205,9 @@ void GridStep<D, T>::account_gravity_corrections(double dt) {
     }
 }
 
-/// Work of every impulse between v- and v+ at their mean, and the energy of v+. With `held`, bits of the block's nodes,
-/// what the forces do not explain is the reaction of a condition on held components and of contact on the others.
-/// Without mass there is no velocity, before or after.
+/// Counts the work of every impulse between v- and v+ at their mean, and the energy of v+. With `held`, bits of the
+/// block's nodes, what the forces do not explain is the reaction of a condition on held components and of contact on
+/// the others. Without mass there is no velocity, before or after.
 template <int D, class T>
 void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt, const std::uint8_t* held,
                                        double* partial) {
@@ -238,7 +238,7 @@ void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt
   partial[of_motion] += 0.5 * sum_of_components(squares);
 }
 
-/// After conditions and contact: the blocks that accelerate has left to them, and the sums of all.
+/// After conditions and contact, counts the blocks that accelerate has left to them, and adds up the sums of all.
 template <int D, class T>
 void GridStep<D, T>::account_for_impulses(double dt) {
   visit_blocks([&](int field, std::uint32_t first, double* partial) {
@@ -254,7 +254,7 @@ void GridStep<D, T>::account_for_impulses(double dt) {
   account_gravity_corrections(dt);
 }
 
-/// Accounts for the blocks that neither condition nor contact concerns while they are in the cache.
+/// Applies the forces, and counts the blocks that neither condition nor contact concerns while they are in the cache.
 template <int D, class T>
 void GridStep<D, T>::accelerate(double dt) {
   const T step = static_cast<T>(dt);
@@ -283,7 +283,7 @@ void GridStep<D, T>::accelerate(double dt) {
   });
 }
 
-/// Momenta to velocities and on by gravity, in one pass; forces came with the momenta.
+/// Makes velocities of momenta and applies gravity in one pass; forces came with the momenta.
 template <int D, class T>
 void GridStep<D, T>::divide_and_accelerate(double dt) {
   L change;
@@ -302,7 +302,7 @@ void GridStep<D, T>::divide_and_accelerate(double dt) {
   });
 }
 
-/// What walls, boxes and ghosts have given since; those that stand still give nothing larger than there was.
+/// Includes what walls, boxes and ghosts have given since; those that stand still give nothing larger than there was.
 template <int D, class T>
 void GridStep<D, T>::extend_largest_by_edges() {
   bool moving = false;
@@ -339,7 +339,7 @@ void GridStep<D, T>::apply_forces(const StepInfo& step) {
     fill_ghosts(end, false);
     return extend_largest_by_edges();
   }
-  for (const bool periodic : {true, false}) fold_forces(periodic);  // those that USF scattered after the momenta
+  for (const bool periodic : {true, false}) fold_forces(periodic);  // folds those that USF scattered after the momenta
   add_gravity_corrections(step.dt);
   accelerate(step.dt);
   const Account account = ledger_on() ? Account::mark : Account::nothing;

@@ -1,5 +1,5 @@
 #pragma once
-// GridStep with temperature: heat to temperature, rates of conduction, walls and boxes, and the heat's ledger. Heat and
+// This part of GridStep treats temperature: heat, rates of conduction, walls and boxes, and the heat's ledger. Heat and
 // its capacity lie in the first and the last scalar of a node's group, where the temperature takes the heat's place.
 
 #include <numbers>
@@ -9,7 +9,7 @@
 
 namespace mpm::cpu {
 
-/// Number of the node at a place, or of one that lies `cells` farther along an axis; ~0 where no block is.
+/// The number of the node at a place, or of one that lies `cells` farther along an axis; ~0 where no block is.
 template <int D, class T>
 std::uint32_t GridStep<D, T>::node_at_place(const Vector3& x, int axis, int cells) const {
   std::array<int, 3> node{};
@@ -19,8 +19,8 @@ std::uint32_t GridStep<D, T>::node_at_place(const Vector3& x, int axis, int cell
   return static_cast<std::uint32_t>(grid_.find(node));
 }
 
-/// W/m^2 into a body at a node of the wall; nothing where it does not reach. Before heat is `divided` the node itself
-/// stands for the wall's temperature.
+/// The flux into a body at a node of the wall which it reaches, W/m^2. Before heat is `divided` the node itself stands
+/// for the wall's temperature.
 template <int D, class T>
 double GridStep<D, T>::flux_through(const FaceNodes& face, int field, const Vector3& x, double time, bool divided) {
   const ThermalCondition& condition = face.condition->thermal;
@@ -38,7 +38,7 @@ double GridStep<D, T>::flux_through(const FaceNodes& face, int field, const Vect
                         static_cast<double>(volume[3]) / volume[0]);
 }
 
-/// K/m inward at a node of a wall that heat comes through; else zero.
+/// The gradient inward at a node of a wall that heat comes through, K/m; else zero.
 template <int D, class T>
 double GridStep<D, T>::gradient_at(const FaceNodes& face, int field, const Vector3& x, double time, bool divided) {
   if (!passes_heat(*face.condition)) return 0;
@@ -56,7 +56,7 @@ double GridStep<D, T>::capacity_inward(const FaceNodes& face, int field, std::ui
   return face.side == 0 ? along : -along;
 }
 
-/// With the capacity beside it: relative to what the wall's temperature makes of that, where it has one.
+/// Folds heat with the capacity beside it: relative to what the wall's temperature makes of that, where it has one.
 template <int D, class T>
 void GridStep<D, T>::fold_heat(FaceNodes& face, std::size_t index, int field, double time) {
   const MirrorPair& pair = face.pairs[index];
@@ -75,7 +75,7 @@ void GridStep<D, T>::fold_heat(FaceNodes& face, std::size_t index, int field, do
   ghost = Q{};
 }
 
-/// On the wall itself, which is its own mirror: half of the mirror image's share.
+/// Folds heat on the wall itself, which is its own mirror and gets half of the image's share.
 template <int D, class T>
 void GridStep<D, T>::fold_heat_onto_itself(const FaceNodes& face, int field, double time) {
   for (std::size_t i = 0; i < face.wall.size(); ++i) {
@@ -88,7 +88,7 @@ void GridStep<D, T>::fold_heat_onto_itself(const FaceNodes& face, int field, dou
   }
 }
 
-/// Sum of the nodes' heat in doubles; each T becomes change(T, heat capacity, number of the node among all fields').
+/// Sums the nodes' heat in doubles; each T becomes change(T, heat capacity, number of the node among all fields').
 template <int D, class T>
 template <class Change>
 double GridStep<D, T>::for_each_temperature(Change&& change) {
@@ -117,7 +117,7 @@ void GridStep<D, T>::heat_to_temperature(const StepInfo& step) {
   if (grid_.has(temperature_before)) copy_velocity(heat, temperature_before);
 }
 
-/// Rates of conduction have come from the particles; those of walls and boxes join them.
+/// Adds the rates of walls and boxes to those of conduction, which have come from the particles.
 template <int D, class T>
 void GridStep<D, T>::apply_heat(const StepInfo& step) {
   const double end = step.time + step.dt;
@@ -146,7 +146,7 @@ void GridStep<D, T>::apply_heat(const StepInfo& step) {
   });
 }
 
-/// Through the area that each node on the wall stands for.
+/// Lets heat through the area that each node on the wall stands for.
 template <int D, class T>
 void GridStep<D, T>::heat_through(const FaceNodes& face, double time, double dt) {
   double& entry = face.condition->thermal.exchange == HeatExchange::flux ? heat_ledger_.flux : heat_ledger_.convection;
@@ -170,7 +170,7 @@ void GridStep<D, T>::heat_through(const FaceNodes& face, double time, double dt)
   }
 }
 
-/// The nodes share the power by their mass.
+/// Heats a box, whose nodes share the power by their mass.
 template <int D, class T>
 void GridStep<D, T>::heat_box(const BoxNodes& box, double time, double dt) {
   double mass = 0;
@@ -207,8 +207,8 @@ void GridStep<D, T>::impose_temperatures(double time, double& from_walls, double
       hold_at(box.nodes[i], box.position[i], box.condition->thermal, from_boxes);
 }
 
-/// Ghosts take mirrored temperatures. What was folded belongs to the particles as it was, beyond the wall: how much more
-/// heat that is there than at the mirrors, at walls that are held at a temperature and at others.
+/// Gives ghosts mirrored temperatures. What was folded belongs to the particles as it was, beyond the wall: returns how
+/// much more heat that is there than at the mirrors, at walls that are held at a temperature and at others.
 template <int D, class T>
 auto GridStep<D, T>::fill_temperature_ghosts(double time) -> Beyond {
   Beyond beyond;

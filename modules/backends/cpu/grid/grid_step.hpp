@@ -1,5 +1,5 @@
 #pragma once
-// The passes that work on nodes: folding at the edges of the domain, conditions, forces, contact; and their ledger.
+// GridStep executes the passes on nodes: folding at the domain's edges, conditions, forces, contact; and their ledger.
 
 #include <cstdint>
 #include <vector>
@@ -21,20 +21,20 @@ class GridStep : NamedChannels {
 
   /// Folds what was scattered, divides by mass, imposes conditions and contact before the forces.
   void momentum_to_velocity(bool remap, const StepInfo& step);
-  /// v+ = v- + dt f / m with conditions, contact after the forces, increments, ghosts.
+  /// Computes v+ = v- + dt f / m with conditions, contact after the forces, increments, ghosts.
   void apply_forces(const StepInfo& step);
-  /// Of the velocities after apply_forces, along any axis.
+  /// The largest component of the velocities after apply_forces, along any axis.
   T largest_component() const { return merges() ? largest_ : grid_.largest_component(motion); }
 
-  /// T- = H / C with the temperatures that walls and boxes hold.
+  /// Computes T- = H / C with the temperatures that walls and boxes hold.
   void heat_to_temperature(const StepInfo& step);
-  /// T+ = T- + dt R / C, with what comes through walls and into boxes.
+  /// Computes T+ = T- + dt R / C, with what comes through walls and into boxes.
   void apply_heat(const StepInfo& step);
-  /// Of the particles when they scattered it, and of the nodes when particles take it, J; the ledger's.
+  /// The ledger's heat of the particles when they scattered it, and of the nodes when particles take it, J.
   void set_particle_heat(double sum) { particle_heat_ = sum; }
   double heat_after() const { return heat_after_; }
 
-  /// Passes of the filter's loop: see PassKind. project_increment takes what the particles have scattered.
+  /// These passes make the filter's loop (see PassKind). project_increment takes what the particles have scattered.
   void begin_filter(const Pass& pass);
   void project_increment(const Pass& pass, const StepInfo& step);
   void update_filter(const Pass& pass, const StepInfo& step);
@@ -43,16 +43,16 @@ class GridStep : NamedChannels {
   void add_correction(const Pass& pass, const StepInfo& step);
 
   void set_accounted(bool accounted) { accounted_ = accounted; }
-  /// Of the velocities after the last apply_forces or filter; the ledger's.
+  /// The ledger's kinetic energy of the velocities after the last apply_forces or filter.
   double kinetic_energy_after() const { return kinetic_energy_after_; }
-  /// Of the particles when they scattered; the ledger's.
+  /// The ledger's kinetic energy of the particles when they scattered.
   void set_particle_kinetic_energy(double energy) { particle_kinetic_energy_ = energy; }
 
  private:
   using Q = Quad<T>;
   using L = Lanes<T>;
   using Wide = Quad<double>;  ///< sums of the ledger
-  /// What imposing a condition leaves for the ledger: its change of energy at once, or a mark for account_for_impulses.
+  /// What imposing leaves for the ledger: its change of energy at once, or a mark for account_for_impulses.
   enum class Account { nothing, change_of_energy, mark };
 
   bool ledger_on() const { return accounted_; }
@@ -129,7 +129,7 @@ class GridStep : NamedChannels {
   void constrain(double time, const StepInfo& step);
   void update_block(int field, std::uint32_t first, std::uint32_t iteration);
 
-  /// How far contact is recorded: the filter's loop leaves no trace.
+  /// The occasion for which contact is recorded: the filter's loop leaves no trace.
   enum class Recorded { before_forces, after_forces, remap, filter };
   struct ContactSums;
   struct ContactBatch;
@@ -150,19 +150,19 @@ class GridStep : NamedChannels {
   struct Signs {
     Q of;
   };
-  std::vector<Signs> signs_;       ///< of folded_[with_mass] at the face that is folded now
-  std::vector<Channel> slipping_;  ///< vanish across a wall on its nodes
-  /// Partial sums of account_for_block.
+  std::vector<Signs> signs_;       ///< signs of folded_[with_mass] at the face that is folded now
+  std::vector<Channel> slipping_;  ///< channels that vanish across a wall on its nodes
+  /// The partial sums of account_for_block.
   enum Partial { of_internal_force, of_body_force, of_gravity, at_conditions, at_contact, of_motion, partial_count };
   std::vector<double> partials_;           ///< partial_count a block of a field, summed in order
-  std::vector<std::uint8_t> constrained_;  ///< [slot] find_constrained_slots
+  std::vector<std::uint8_t> constrained_;  ///< [slot], set by find_constrained_slots
   std::vector<std::uint8_t> held_;  ///< [field][node] bit per component that a condition gives now, of constrained
                                     ///< slots; the ledger's
   std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
   double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0, kinetic_energy_unfiltered_ = 0;
   const WallWeights wall_weights_;  ///< empty where no heat comes through a wall
   double particle_heat_ = 0, heat_after_ = 0;
-  Beyond beyond_;                                 ///< of the temperatures before the forces
+  Beyond beyond_;                                 ///< heat of the temperatures before the forces
   double heat_of_folds_ = 0, rate_of_folds_ = 0;  ///< J and W that nodes have since their ghosts were folded
   bool has_gravity_ = false;
   bool may_merge_ = false;  ///< see merges: momentum_to_velocity leaves the division to apply_forces

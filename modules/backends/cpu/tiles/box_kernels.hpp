@@ -1,7 +1,7 @@
 #pragma once
-// Scatter and gather of list shapes: dense boxes of weights in the tile of a block (particles whose nodes fit), and
-// lists of nodes in the tile or on the grid (the others). A node's weight is a broadcast from memory beside one quad:
-// wider stores overlap by a shift from one particle to the next, which stalls the loads that follow.
+// These kernels scatter and gather for list shapes: by dense boxes of weights in the tile of a block (particles whose
+// nodes fit), and by lists of nodes in the tile or on the grid (the others). A node's weight is broadcast from memory
+// beside one quad: wider stores overlap by a shift from one particle to the next, which stalls the loads that follow.
 
 #include <cstdint>
 
@@ -12,25 +12,25 @@
 namespace mpm::cpu {
 
 inline constexpr int box_width = MPM_BOX_WIDTH;
-/// Quads from one group of a particle's to the next.
+/// The number of quads from one group of a particle's to the next.
 template <class T>
 inline constexpr int quad_step = quad_group<T> / 4;
 template <int D>
 inline constexpr int box_nodes = D == 2 ? box_width* box_width : box_width* box_width* box_width;
-/// Nodes an axis of the tile that lists and boxes are scattered to.
+/// The nodes an axis of the tile that lists and boxes are scattered to.
 template <int D>
 inline constexpr int list_tile_side = tile_side<D, box_width>;
 
-/// Boxes of one chunk.
+/// The boxes of one chunk.
 template <class T>
 struct Boxes {
-  const std::int32_t* width;      ///< nodes an axis that are used, 3 or 4; 0: the particle has a list
+  const std::int32_t* width;      ///< nodes an axis that are used, 3 or 4; 0 where the particle has a list
   const std::int32_t* tile_node;  ///< first node in the tile
   const T* weight;                ///< [box_nodes][chunk_size]
   const T* gradient;              ///< [D][box_nodes][chunk_size], per cell
 };
 
-/// Lists of nodes of one chunk, one after another: those of particle p are entries first[p] to last[p].
+/// The lists of nodes of one chunk, one after another: those of particle p are entries first[p] to last[p].
 template <class T>
 struct NodeLists {
   const std::int32_t *first, *last;
@@ -38,7 +38,7 @@ struct NodeLists {
   const T* values;           ///< [entry][8] d (cells, node - particle), w | gradient (per cell), unused
 };
 
-/// Coefficients and moments as quads as in TileKernels; those of a list count from the particle: b' = b. Particles
+/// Coefficients and moments are quads as in TileKernels; those of a list count from the particle: b' = b. Particles
 /// without a box, or without an entry, are left alone.
 template <int D, class T>
 struct ListKernels {
@@ -57,13 +57,13 @@ ListKernels<D, T> list_kernels();
 
 // ---- implementation ----------------------------------------------------------------------------------------------
 
-/// Node (i, j, k) gets  w (b' + i Q_x + j Q_y + k Q_z) + g_x S_x + g_y S_y + g_z S_z.
+/// Gives node (i, j, k)  w (b' + i Q_x + j Q_y + k Q_z) + g_x S_x + g_y S_y + g_z S_z.
 template <int D, class T, int W, bool Affine, bool Gradient>
 inline __attribute__((always_inline)) void scatter_box(Quad<T>* corner, const T* weight, const T* gradient,
                                                        const Quad<T>* coefficients) {
   using Q = Quad<T>;
   constexpr int side = list_tile_side<D>, rows = D == 2 ? 1 : W, first_s = 1 + (Affine ? D : 0);
-  Q c[quad_groups(D, Affine, Gradient)];  // in registers, whatever the stores to the tile may reach
+  Q c[quad_groups(D, Affine, Gradient)];  // it is in registers, whatever the stores to the tile may reach
   for (int k = 0; k < quad_groups(D, Affine, Gradient); ++k) c[k] = coefficients[k * quad_step<T>];
   Q plane = c[0];
   for (int i = 0; i < W; ++i) {
@@ -103,7 +103,7 @@ void scatter_boxes(T* tile, const Boxes<T>& boxes, const T* coefficients, int co
   }
 }
 
-/// Sums of  w v,  k_a w v  and  g_a v  over the nodes.
+/// Sums  w v,  k_a w v  and  g_a v  over the nodes.
 template <int D, class T, int W, bool Moment, bool Gradient>
 inline __attribute__((always_inline)) void gather_box(const Quad<T>* corner, const T* weight, const T* gradient,
                                                       Quad<T>* out) {
@@ -117,7 +117,7 @@ inline __attribute__((always_inline)) void gather_box(const Quad<T>* corner, con
     for (int j = 0; j < rows; ++j) {
       const Q* const nodes = corner + (i * (D == 2 ? 1 : side) + j) * side;
       const int first = (i * (D == 2 ? 1 : box_width) + j) * box_width * chunk_size<T>;
-      Q row{}, row_m{}, row_g[3]{};  // short chains of additions
+      Q row{}, row_m{}, row_g[3]{};  // chains of additions stay short
 #pragma GCC unroll 4
       for (int k = 0; k < W; ++k) {
         const int at = first + k * chunk_size<T>;
@@ -164,7 +164,7 @@ void gather_boxes(const T* tile, const Boxes<T>& boxes, T* moments, int count) {
   }
 }
 
-/// A list's nodes get  w (b + d_x Q_x + d_y Q_y + d_z Q_z) + g_x S_x + g_y S_y + g_z S_z.
+/// Gives a list's nodes  w (b + d_x Q_x + d_y Q_y + d_z Q_z) + g_x S_x + g_y S_y + g_z S_z.
 template <int D, class T, bool Affine, bool Gradient>
 void scatter_lists(T* nodes, const NodeLists<T>& lists, const T* coefficients, int count) {
   using Q = Quad<T>;
@@ -184,7 +184,7 @@ void scatter_lists(T* nodes, const NodeLists<T>& lists, const T* coefficients, i
   }
 }
 
-/// The sums of a list: of w v, d_a w v and g_a v.
+/// Sums w v, d_a w v and g_a v over a list.
 template <int D, class T, bool Moment, bool Gradient>
 void gather_lists(const T* nodes, const NodeLists<T>& lists, T* moments, int count) {
   using Q = Quad<T>;

@@ -1,7 +1,7 @@
 #pragma once
-// Scatter and gather of polynomials beyond affine (kernel/polynomial_basis.hpp) between one chunk and the tile of its
-// block, axis by axis: a product's sums over a stencil are K^D + R K^2 + R^2 K terms and not R^D K^D. Beside the
-// kernels of tile.hpp, in the same tiles, so that scenes without such polynomials run as they did.
+// These kernels scatter and gather polynomials beyond affine (kernel/polynomial_basis.hpp) between one chunk and the
+// tile of its block, axis by axis: a product's sums over a stencil are K^D + R K^2 + R^2 K terms and not R^D K^D. They
+// stand beside the kernels of tile.hpp, in the same tiles, so that scenes without such polynomials run as they did.
 
 #include "backends/cpu/tiles/tile.hpp"
 #include "kernel/polynomial_basis.hpp"
@@ -15,7 +15,7 @@ struct HigherKernels {
   using Scatter = void (*)(T* tile, const Stencils<T>&, const T* offset, const T* coefficients, const T* mass,
                            int count);
   using Gather = void (*)(const T* tile, const Stencils<T>&, const T* offset, T* coefficients, int count);
-  /// sum |c|^2 sum w P^2 over all particles, each times its circumference where there is one.
+  /// Sums |c|^2 sum w P^2 over all particles, each times its circumference where there is one.
   using Squares = double (*)(const Stencils<T>&, const T* offset, const T* coefficients, const T* circumference,
                              int count);
   Scatter scatter = nullptr;
@@ -23,7 +23,7 @@ struct HigherKernels {
   Squares squares = nullptr;
 };
 
-/// For stencils of `width` nodes an axis (2 to 4) and powers up to `order` < width; of order 0 there are none.
+/// Makes kernels for stencils of `width` nodes an axis (2 to 4) and powers up to `order` < width; order 0 has none.
 template <int D, class T>
 HigherKernels<D, T> higher_kernels(int width, int order);
 
@@ -39,7 +39,7 @@ struct ParticleBasis {
   }
 };
 
-/// Coefficients of one particle as quads by powers, zero where b and A have the power; a 2-D one has one plane.
+/// The coefficients of a particle as quads by powers, zero where b and A have the power; a 2-D one has one plane.
 template <int D, int R, class T>
 struct PowerQuads {
   static constexpr int powers_z = D == 3 ? R : 1;
@@ -66,7 +66,7 @@ void scatter_higher(T* tile, const Stencils<T>& stencils, const T* offset, const
         for (int y = 0; y < R; ++y)
           for (int z = 0; z < Z; ++z) plane[y][z] += basis.axis[0].given[x][i] * c.of[x][y][z];
       for (int j = 0; j < (D == 3 ? K : 1); ++j) {
-        Q row[R] = {};  // by powers along the last axis
+        Q row[R] = {};  // it goes by powers along the last axis
         for (int y = 0; y < R; ++y)
           for (int z = 0; z < Z; ++z) {
             if constexpr (D == 3)

@@ -1,5 +1,5 @@
 #pragma once
-// Four scalars of one node or particle as one register, and the transposes between arrays of components and of quads.
+// A quad is four scalars of one node or particle as one register; transposes turn arrays of components into quads.
 
 #include <array>
 #include <cstddef>
@@ -22,11 +22,11 @@ struct QuadOf<double> {
 template <class T>
 using Quad = typename QuadOf<T>::Vector;
 
-/// Block k of four lanes holds the quad of particle 4 k + i.
+/// A register of quads, whose block k of four lanes holds the quad of particle 4 k + i.
 template <class T>
 using QuadLanes = typename Lanes<T>::Vector;
 
-/// Quads that lie `step` scalars from one another as one register.
+/// Joins quads that lie `step` scalars from one another into one register.
 template <class T>
 inline __attribute__((always_inline)) QuadLanes<T> join_quads(const T* first, std::size_t step) {
   constexpr int blocks = Lanes<T>::width / 4;
@@ -49,7 +49,7 @@ inline __attribute__((always_inline)) QuadLanes<T> join_quads(const T* first, st
     return __builtin_shufflevector(quad(0), quad(1), 0, 1, 2, 3, 4, 5, 6, 7);
 #endif
 }
-/// Lanes p0 p1 p2 p3 of each block of four, out of a (0 to 3) or b (4 to 7).
+/// Takes lanes p0 p1 p2 p3 of each block of four, out of a (0 to 3) or b (4 to 7).
 template <int p0, int p1, int p2, int p3, class T>
 inline __attribute__((always_inline)) QuadLanes<T> pick(QuadLanes<T> a, QuadLanes<T> b) {
   constexpr auto source = [](int lane) {
@@ -59,10 +59,10 @@ inline __attribute__((always_inline)) QuadLanes<T> pick(QuadLanes<T> a, QuadLane
   return shuffled<source>(a, b, std::make_index_sequence<Lanes<T>::width>());
 }
 
-/// Quads of a pack of particles <-> their components: the transpose of every block of 4 x 4.
+/// Turns quads of a pack of particles into components, or back, by transposing every block of 4 x 4.
 template <class T>
 inline __attribute__((always_inline)) void transpose_blocks(QuadLanes<T> (&q)[4]) {
-  if constexpr (sizeof(T) == 4) {  // within registers of 128 bits
+  if constexpr (sizeof(T) == 4) {  // shuffles stay within registers of 128 bits
     const QuadLanes<T> ab = pick<0, 4, 1, 5, T>(q[0], q[1]), AB = pick<2, 6, 3, 7, T>(q[0], q[1]);
     const QuadLanes<T> cd = pick<0, 4, 1, 5, T>(q[2], q[3]), CD = pick<2, 6, 3, 7, T>(q[2], q[3]);
     q[0] = pick<0, 1, 4, 5, T>(ab, cd), q[1] = pick<2, 3, 6, 7, T>(ab, cd);
@@ -74,8 +74,8 @@ inline __attribute__((always_inline)) void transpose_blocks(QuadLanes<T> (&q)[4]
     q[1] = pick<0, 1, 4, 5, T>(AB, CD), q[3] = pick<2, 3, 6, 7, T>(AB, CD);
   }
 }
-/// Where a particle's quad lies among those of its pack, as the registers of a transpose have them: particle 4 k + i in
-/// block k of register i.
+/// The place of a particle's quad among those of its pack, as the registers of a transpose have them: particle 4 k + i
+/// is in block k of register i.
 template <class T>
 inline constexpr auto place_in_pack = [] {
   constexpr int width = Lanes<T>::width;
@@ -83,17 +83,17 @@ inline constexpr auto place_in_pack = [] {
   for (int lane = 0; lane < width; ++lane) place[lane] = lane % 4 * width + lane / 4 * 4;
   return place;
 }();
-/// The first of a particle's quads; those of a chunk lie pack by pack, group by group in a pack.
+/// The place of a particle's first quad; those of a chunk lie pack by pack, group by group in a pack.
 template <class T>
 inline __attribute__((always_inline)) std::size_t quad_place(int particle, int groups) {
   constexpr int width = Lanes<T>::width;
   return static_cast<std::size_t>(particle / width * groups * 4 * width + place_in_pack<T>[particle % width]);
 }
-/// Scalars from one group of a pack's quads to the next.
+/// The number of scalars from one group of a pack's quads to the next.
 template <class T>
 inline constexpr int quad_group = 4 * Lanes<T>::width;
 
-/// One group of a pack's quads <-> its components.
+/// These turn one group of a pack's quads into its components, and back.
 template <class T>
 inline __attribute__((always_inline)) void load_quads(const T* group, Lanes<T> (&component)[4]) {
   QuadLanes<T> q[4];

@@ -1,6 +1,6 @@
 #pragma once
-// The nodes of one stencil row as vector registers: 2 (K = 2) or 4 quads side by side. A stencil of 3 nodes leaves the
-// fourth quad of its row unused: scatter gives it weight zero, gather masks it.
+// A row is the nodes of one stencil row as vector registers: 2 (K = 2) or 4 quads side by side. A stencil of 3 nodes
+// leaves the fourth quad of its row unused: scatter gives it weight zero, gather masks it.
 
 #include "backends/cpu/tiles/quad.hpp"
 #include "kernel/lanes.hpp"
@@ -34,7 +34,7 @@ struct Row {
 
 #define MPM_ROW_INLINE inline __attribute__((always_inline))
 
-/// One scalar on all of a register.
+/// Puts one scalar on all of a register.
 template <class T, int K>
 MPM_ROW_INLINE typename Row<T, K>::Vector broadcast(T x) {
   return x - typename Row<T, K>::Vector{};
@@ -46,7 +46,7 @@ MPM_ROW_INLINE Row<T, K> load_row(const T* p) {
   for (int i = 0; i < R::vectors; ++i) row.v[i] = *reinterpret_cast<const typename R::Unaligned*>(p + i * R::width);
   return row;
 }
-/// The compiler would load a row that is used twice two times, as operands: most loads cross a line of the cache.
+/// Keeps a row loaded: the compiler would load one that is used twice two times, and most loads cross a cache line.
 template <class T, int K>
 MPM_ROW_INLINE void stay_loaded([[maybe_unused]] Row<T, K>& row) {
 #if defined(__AVX512F__)
@@ -74,7 +74,7 @@ MPM_ROW_INLINE Row<T, K> times(typename Row<T, K>::Vector a, Row<T, K> b) {
   return b;
 }
 
-/// The same quad at every node.
+/// Puts the same quad at every node.
 template <class T, int K>
 MPM_ROW_INLINE Row<T, K> repeated(const T* quad) {
   using R = Row<T, K>;
@@ -100,8 +100,8 @@ MPM_ROW_INLINE Row<T, K> repeated(const T* quad) {
   return row;
 }
 
-/// A quad in the first lanes of a register, anything in the others. No more than the quad is loaded: it was stored just
-/// so, and a longer load would wait for that store.
+/// Loads a quad into the first lanes of a register, anything into the others. No more than the quad is loaded: it was
+/// stored just so, and a longer load would wait for that store.
 template <class T, int K>
 MPM_ROW_INLINE typename Row<T, K>::Vector load_quad(const T* quad) {
   using R = Row<T, K>;
@@ -118,7 +118,7 @@ MPM_ROW_INLINE typename Row<T, K>::Vector load_quad(const T* quad) {
     return Vector{};
 }
 
-/// Scalar k of a quad on all of node k.
+/// Puts scalar k of a quad on all of node k.
 template <class T, int K>
 MPM_ROW_INLINE Row<T, K> spread(const T* quad) {
   using R = Row<T, K>;
@@ -136,7 +136,7 @@ MPM_ROW_INLINE Row<T, K> spread(const T* quad) {
   return row;
 }
 
-/// Number of a node within the row, on all of it.
+/// Puts the number of a node within the row on all of it.
 template <class T, int K>
 MPM_ROW_INLINE Row<T, K> node_numbers() {
   using R = Row<T, K>;
@@ -149,7 +149,7 @@ MPM_ROW_INLINE Row<T, K> node_numbers() {
   return row;
 }
 
-/// Node k of as many rows as a register has nodes, side by side in their order, for k < 4: a transpose of quads.
+/// Puts node k of as many rows as a register has nodes side by side in their order, for k < 4: a transpose of quads.
 template <class T, int K>
 MPM_ROW_INLINE void nodes_of_rows(const Row<T, K> (&rows)[Row<T, K>::nodes_a_vector], Lanes<T> (&nodes)[4]) {
   using R = Row<T, K>;

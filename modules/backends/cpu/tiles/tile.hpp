@@ -1,6 +1,6 @@
 #pragma once
-// Scatter and gather between one chunk of particles and the tile of nodes around its block, specialised at compile
-// time.
+// These kernels scatter and gather between one chunk of particles and the tile of nodes around its block, specialised
+// at compile time.
 //
 // A tile is the block with one cell of drift on each side and the reach of the stencil: (side + K + 1)^D nodes of one
 // quad. Coefficients of a particle are quads: [b' | Q_a, a < D (affine) | S_a, a < D (gradient)], and a node (i, j, k)
@@ -33,7 +33,7 @@ struct Ahead {
   }
 };
 
-/// Weights of one chunk. Arrays [axis * K + k][chunk_size].
+/// The weights of one chunk, in arrays [axis * K + k][chunk_size].
 template <class T>
 struct Stencils {
   const std::int32_t* first;  ///< row of the stencil in the tile
@@ -43,7 +43,7 @@ struct Stencils {
   Ahead ahead;
 };
 
-/// What part of a tile its particles reach: first nodes of stencils, from the tile's corner.
+/// The part of a tile that its particles reach: first nodes of stencils, from the tile's corner.
 struct Reach {
   int lowest[3] = {1 << 20, 1 << 20, 1 << 20}, highest[3] = {-1, -1, -1};
 };
@@ -53,18 +53,18 @@ struct TileKernels {
   using Scatter = void (*)(T* tile, const Stencils<T>&, const T* coefficients, int count);
   using Gather = void (*)(const T* tile, const Stencils<T>&, T* moments, int count);
   int side = 0;             ///< nodes an axis
-  int first_nodes = 0;      ///< along the last axis: rows of the tile beside one another
-  int scalars = 0;          ///< of a tile
+  int first_nodes = 0;      ///< first nodes along the last axis: rows of the tile beside one another
+  int scalars = 0;          ///< number of scalars of a tile
   Scatter scatter[2][2]{};  ///< [affine][gradient]
   Gather gather[2][2]{};    ///< [moment][gradient]; for whole packs of particles
   void (*load)(T* tile, const T* channel, const std::int32_t* neighbours, const Reach&);
   void (*flush)(T* tile, T* channel, const std::int32_t* neighbours, const Reach&);  ///< adds, and clears the tile
 };
 
-/// Kernels for a stencil of `width` nodes an axis (2, 3 or 4).
+/// Gives the kernels for a stencil of `width` nodes an axis (2, 3 or 4).
 template <int D, class T>
 TileKernels<D, T> tile_kernels(int width);
-/// Tiles for lists of nodes (box_kernels.hpp), which are scattered to nodes and not to rows; no kernels.
+/// Gives tiles without kernels for lists of nodes (box_kernels.hpp), which are scattered to nodes and not to rows.
 template <int D, class T>
 TileKernels<D, T> tile_kernels_of_lists();
 
@@ -76,12 +76,12 @@ constexpr int quad_groups(int dimension, bool affine, bool gradient) {
 
 template <int D, int K>
 inline constexpr int tile_side = block_side<D> + K + 1;
-/// First nodes that stencils in a tile may have, an axis.
+/// The number of first nodes that stencils in a tile may have, an axis.
 template <int D>
 inline constexpr int first_nodes_of_tile = block_side<D> + 2;
 
-/// Weights of one particle along an axis other than the last, each on all of a register: loaded so, before anything is
-/// stored.
+/// The weights of one particle along an axis other than the last, each on all of a register: they are loaded so before
+/// anything is stored.
 template <int K, class T>
 struct AxisWeights {
   typename Row<T, K>::Vector w[K], g[K];
@@ -92,7 +92,7 @@ struct AxisWeights {
   }
 };
 
-/// Weights along the last axis, one quad a particle.
+/// The weights along the last axis, one quad a particle.
 template <int D, int K, class T>
 struct LastWeights {
   alignas(64) T quads[chunk_size<T> * 4];
@@ -107,8 +107,8 @@ struct LastWeights {
   MPM_ROW_INLINE Row<T, K> row(std::ptrdiff_t place) const { return spread<T, K>(quads + place); }
 };
 
-/// The rows of one stencil: where particles share it and registers are enough, these keep them from one particle to the
-/// next. Otherwise each particle loads and stores them: a branch that nobody can foresee costs more.
+/// The rows of one stencil. Where particles share it and registers are enough, these keep the rows from one particle to
+/// the next; otherwise each particle loads and stores them, as a branch that nobody can foresee costs more.
 template <int D, int K, class T, bool Shared, bool Gradient>
 struct StencilRows {
   using R = Row<T, K>;
@@ -118,7 +118,7 @@ struct StencilRows {
 
   R row[kept ? count : 1];
 
-  /// The k-th row, `line` scalars after the one before it.
+  /// The place of the k-th row, where rows lie `line` scalars apart.
   static MPM_ROW_INLINE int place(int k, int line) {
     return D == 2 ? k * line : (k / K * tile_side<D, K> + k % K) * line;
   }
@@ -208,7 +208,7 @@ void scatter_to_tile(T* tile, const Stencils<T>& stencils, const T* coefficients
   scatter_particles<D, T, K, Affine, Gradient, false>(tile, stencils, coefficients, count);
 }
 
-/// Sums over all rows of a stencil that its last axis' weights do not yet enter.
+/// The sums over all rows of a stencil, into which its last axis' weights do not yet enter.
 template <int K, class T>
 struct StencilSums {
   Row<T, K> value{}, moment_x{}, moment_y{}, gradient_x{}, gradient_y{};
@@ -258,14 +258,14 @@ MPM_ROW_INLINE StencilSums<K, T> sum_rows(const StencilRows<D, K, T, Shared, Gra
   return sums;
 }
 
-/// From the sums over the rows of a pack's particles to its quads, for the four registers of a group one by one: those
-/// of register i are of the particles i, i + 4, i + 8 ... (place_in_pack).
+/// Takes the sums over the rows of a pack's particles to its quads, for the four registers of a group one by one:
+/// register i holds the particles i, i + 4, i + 8 ... (place_in_pack).
 template <int D, class T, int K, bool Moment, bool Gradient>
 struct PackSums {
   using R = Row<T, K>;
   static constexpr int width = Lanes<T>::width, blocks = width / 4;
   static constexpr int moments = Moment ? D - 1 : 0, gradients = Gradient ? D - 1 : 0, sums = 1 + moments + gradients;
-  /// A register has as many nodes as particles. One sum alone passes through memory faster.
+  /// Whether the sums stay in registers, which have as many nodes as particles; one sum alone is faster through memory.
   static constexpr bool in_registers = K > 2 && sums > 1;
 
   static MPM_ROW_INLINE void list(const StencilSums<K, T>& from, R (&rows)[sums]) {
@@ -276,7 +276,7 @@ struct PackSums {
     if constexpr (Gradient && D == 3) rows[2 + moments] = from.gradient_y;
   }
 
-  /// Sums over the nodes along the last axis, with its weights and slopes (lanes). node(sum, k): node k of the
+  /// Sums over the nodes along the last axis, with its weights and slopes (lanes). node(sum, k) is node k of the
   /// particles.
   template <int i, class Node>
   static MPM_ROW_INLINE void store(T* quads, const T* weights, const T* slopes, Node&& node) {
@@ -304,7 +304,7 @@ struct PackSums {
   }
 
  private:
-  /// Lane 4 k + i on all of block k.
+  /// Puts lane 4 k + i on all of block k.
   template <int i>
   static MPM_ROW_INLINE Lanes<T> of_block(const T* lanes) {
     const auto loaded = Lanes<T>::load(lanes).v;
@@ -319,8 +319,8 @@ MPM_ROW_INLINE void for_each_register(Run&& run) {
       run.template operator()<3>();
 }
 
-/// One pack, its particles in order: where they share stencils, whose rows stay in registers. The sums pass through
-/// memory.
+/// Gathers one pack with its particles in order, where they share stencils, whose rows stay in registers. The sums pass
+/// through memory.
 template <int D, class T, int K, bool Moment, bool Gradient, bool Shared>
 MPM_ROW_INLINE void gather_pack_in_order(StencilRows<D, K, T, Shared, Gradient>& rows, const T*& corner, const T* tile,
                                          const Stencils<T>& stencils, int first, T* quads, const T* weights,
@@ -343,13 +343,13 @@ MPM_ROW_INLINE void gather_pack_in_order(StencilRows<D, K, T, Shared, Gradient>&
   });
 }
 
-/// One pack, register by register: the sums never leave the registers.
+/// Gathers one pack register by register: the sums never leave the registers.
 template <int D, class T, int K, bool Moment, bool Gradient>
 MPM_ROW_INLINE void gather_pack_by_register(const T* tile, const Stencils<T>& stencils, int first, T* quads,
                                             const T* weights, const T* slopes) {
   using Pack = PackSums<D, T, K, Moment, Gradient>;
   using R = Row<T, K>;
-  const StencilRows<D, K, T, false, Gradient> rows{};  // keeps none
+  const StencilRows<D, K, T, false, Gradient> rows{};  // it keeps none
   for_each_register([&]<int i> {
     R sums[Pack::blocks][Pack::sums];
 #pragma GCC unroll 4

@@ -1,14 +1,14 @@
 #pragma once
-// What a tile takes from the grid and gives back, line by line along the last axis; and the table of its kernels.
+// Tiles take nodes from the grid and give them back, line by line along the last axis; their kernels are listed here.
 
 #include "backends/cpu/tiles/tile.hpp"
 
 namespace mpm::cpu {
 
-/// One row of a tile along the last axis, and the rows of three blocks in a line that it crosses.
+/// A row of a tile along the last axis, and the rows of three blocks in a line that it crosses.
 template <int D>
 struct TileRow {
-  int number = 0;     ///< in the tile
+  int number = 0;     ///< number in the tile
   int neighbour = 0;  ///< first of the three blocks
   int block_row = 0;  ///< first node of the row within a block
 };
@@ -30,8 +30,8 @@ inline void for_each_row(const Reach& reach, Visit&& visit) {
   }
 }
 
-/// Which of the three blocks in a line a tile's rows share nodes with, and the grid's nodes there. A row is the last
-/// node of the first block, all of the second's and the first K of the third's.
+/// Says which of the three blocks in a line a tile's rows share nodes with, and finds the grid's nodes there. A row is
+/// the last node of the first block, all of the second's and the first K of the third's.
 template <int D, int K>
 struct Line {
   bool first, third;
@@ -51,7 +51,7 @@ struct Line {
   }
 };
 
-/// The nodes of three blocks in a line that a tile's rows begin and end at, as registers: four of the first block, all
+/// The nodes of three blocks in a line at which a tile's rows begin and end, as registers: four of the first block, all
 /// of the second's, four of the third.
 template <int D, class T, int K>
 struct LineOfNodes {
@@ -104,7 +104,7 @@ void load_rows(T* tile, const T* channel, const std::int32_t* neighbours, const 
   });
 }
 
-/// Of lists: the nodes themselves.
+/// Loads the nodes themselves, for lists.
 template <int D, class T, int K>
 void load_nodes(T* tile, const T* channel, const std::int32_t* neighbours, const Reach& reach) {
   using Q = Quad<T>;
