@@ -20,7 +20,7 @@ struct Header {
   const char* path;
   const char* text;
 };
-/// Written by the build from modules/kernel, modules/operators and modules/backends/device/kernels.
+/// The build writes this table from modules/kernel, modules/operators and modules/backends/device/kernels.
 constexpr Header headers[] = {
 #include MPM_KERNEL_HEADERS
 };
@@ -65,8 +65,7 @@ class Text {
   std::string str() const { return out_.str(); }
 
  private:
-  /// Includes of kernel headers are replaced by their text; those inside #if MPM_HOST, where only the host looks, are
-  /// dropped.
+  /// Replaces includes of kernel headers by their text, and drops those inside #if MPM_HOST, where only the host looks.
   void add_lines(const char* text, const std::string& name, bool functor) {
     std::istringstream lines(text);
     std::string line;
@@ -103,7 +102,7 @@ std::string yes(bool value) {
   return value ? "true" : "false";
 }
 
-/// What particles are summed into by the scatter itself: the weight follows from the masses, and heat has kernels of
+/// Whether the scatter itself sums particles into a field. The weight follows from the masses, and heat has kernels of
 /// its own, as shared memory has no room for everything at once.
 bool is_scattered(const Field& field) {
   for (const char* other :
@@ -119,7 +118,7 @@ bool melts(const Choice& choice) {
   return number_of(choice.particle_fields, "melted_fraction") >= 0;
 }
 
-/// Where the transfer's state for the temperature stands in its State: of a matrix the first row, else one scalar.
+/// Writes where the transfer's state for the temperature stands in its State: a matrix's first row, else one scalar.
 void write_temperature_state(std::ostream& out, const Choice& choice) {
   out << "  template <class Visit>\n  MPM_HD static void for_each_temperature_state([[maybe_unused]] Visit visit) {\n";
   int scalar = 0;
@@ -133,7 +132,7 @@ void write_temperature_state(std::ostream& out, const Choice& choice) {
   out << "  }\n";
 }
 
-/// The scene's fields by number and by place in a scatter, and the list of those of nodes.
+/// Writes the scene's fields by number and by place in a scatter, and the list of those of nodes.
 void write_fields(std::ostream& out, const Choice& choice) {
   std::ostringstream numbers, places, visits;
   int place = 0;
@@ -176,7 +175,7 @@ bool has_filter_loop(const Choice& choice) {
   return number_of(choice.node_fields, "projection") >= 0;
 }
 
-/// The chosen types and what the tables say of them: functors keep their tables where only the host looks.
+/// Writes the chosen types and what the tables say of them: functors keep their tables where only the host looks.
 std::string scene_text(const Choice& choice) {
   const mpm_shape& shape = choice.shape->shape();
   const unsigned traits = choice.transfer->transfer().traits;
@@ -233,7 +232,7 @@ std::string scene_text(const Choice& choice) {
   return out.str();
 }
 
-/// The entries that the macros of kernels.hpp make: read from there, so that there is one list.
+/// Reads the entries that the macros of kernels.hpp make from that file, so that there is one list.
 std::vector<std::string> entry_names(const Choice& choice) {
   std::vector<std::string> names;
   std::istringstream lines(embedded_header("backends/device/kernels/kernels.hpp"));

@@ -1,6 +1,6 @@
 #pragma once
-// From the plugins that a scene chooses to one self-contained source text for exactly that scene: kernel headers, the
-// functors' embedded text, and the entries. g++ (the host-run device) and NVRTC compile the same text.
+// Makes the plugins that a scene chooses into one self-contained source text for exactly that scene: kernel headers,
+// the functors' embedded text, and the entries. g++ (the host-run device) and NVRTC compile the same text.
 
 #include <stdexcept>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace mpm::device {
 
-/// What a composition holds. `filter` and `contact` may be null; `materials` has at least one.
+/// The parts of a composition. `filter` and `contact` may be null; `materials` has at least one.
 struct Choice {
   int dimension = 2;
   Precision precision = Precision::double_;
@@ -22,31 +22,31 @@ struct Choice {
   const Plugin* contact = nullptr;
   std::vector<const Plugin*> materials;
   int basis_order = 0;                              ///< as in Plan
-  std::vector<Field> node_fields, particle_fields;  ///< numbered (backends/device/fields.hpp); of any one body
+  std::vector<Field> node_fields, particle_fields;  ///< numbered (backends/device/fields.hpp); those of any one body
 
-  /// "2-D double: linear apic coulomb neo_hookean", for messages.
+  /// The choice in words for messages: "2-D double: linear apic coulomb neo_hookean".
   std::string name() const;
 };
 
-/// Everything a run of the experiment needs; its materials in the experiment's order.
+/// The choice that a run of the experiment needs; its materials are in the experiment's order.
 Choice choice_of(const Experiment& experiment, const Plan& plan);
 
-/// A functor's text that cannot be composed; the message names the plugin, the line and the remedy.
+/// Thrown when a functor's text cannot be composed; the message names the plugin, the line and the remedy.
 class ComposeError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 struct Composition {
-  std::string name;                  ///< of the choice
+  std::string name;                  ///< name of the choice
   std::string text;                  ///< C++17 without any #include
   std::string hash;                  ///< SHA-256 of the text, hexadecimal
   std::vector<std::string> entries;  ///< extern "C" names, one a phase
 };
 
-/// Throws ComposeError.
+/// Composes the text of a choice. Throws ComposeError.
 Composition compose(const Choice& choice);
 
-/// Key of compiled code in a cache: text, the compiler's name and version, and its options.
+/// The key of compiled code in a cache: it covers text, the compiler's name and version, and its options.
 std::string cache_key(const Composition& composition, std::string_view compiler,
                       const std::vector<std::string>& options);
 

@@ -1,6 +1,5 @@
 #pragma once
-// What the walls and boxes of an experiment give, as tables of the kernels. Formulas are the host's: it evaluates them
-// at their nodes.
+// These tables tell kernels what the walls and boxes of an experiment give. The host evaluates formulas at their nodes.
 
 #include <optional>
 #include <vector>
@@ -10,7 +9,7 @@
 
 namespace mpm::device {
 
-/// Nodes between two corners, both included.
+/// The nodes between two corners, both included.
 struct NodeRange {
   int lower[3], upper[3];
 
@@ -19,7 +18,7 @@ struct NodeRange {
     for (int c = 0; c < 3; ++c) n *= static_cast<std::size_t>(upper[c] - lower[c] + 1);
     return n;
   }
-  /// x first.
+  /// The positions of the nodes, x first.
   std::vector<Vector3> positions(const Experiment& experiment) const {
     std::vector<Vector3> all;
     for (int k = lower[2]; k <= upper[2]; ++k)
@@ -37,7 +36,7 @@ struct NodeRange {
   }
 };
 
-/// All nodes in the plane of a wall, ghosts too: as the lines of the axis are numbered.
+/// All nodes in the plane of a wall, ghosts too, in the order in which the lines of the axis are numbered.
 template <class T>
 NodeRange nodes_of_wall(const Arguments<T>& scene, int axis, int side) {
   NodeRange range{};
@@ -88,7 +87,7 @@ class Conditions {
     }
   }
 
-  /// Velocities at a time, s, and where they are.
+  /// Evaluates velocities at a time, s, and points the scene to them.
   void evaluate(double time, Arguments<T>& scene) {
     for (Moving& moving : moving_) evaluate(moving, time);
     time_ = time;
@@ -99,7 +98,7 @@ class Conditions {
   }
 
  private:
-  /// Nodes, x first, with the velocities that a formula gives them.
+  /// The nodes, x first, with the velocities that a formula gives them.
   struct Moving {
     const VectorExpression* formula;
     NodeRange nodes;

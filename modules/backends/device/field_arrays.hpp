@@ -1,5 +1,5 @@
 #pragma once
-// Memory of a list of fields: one array [component][index] a field, one behind another.
+// The memory of a list of fields holds one array [component][index] a field, one behind another.
 
 #include <cstdint>
 #include <stdexcept>
@@ -14,7 +14,7 @@ namespace mpm::device {
 template <class T>
 class FieldArrays {
  public:
-  /// Zeros.
+  /// Starts with zeros.
   FieldArrays(std::vector<Field> fields, std::size_t count) : fields_(std::move(fields)), count_(count) {
     if (fields_.size() > most_fields)
       throw std::logic_error("a scene has " + std::to_string(fields_.size()) + " fields and the device's tables hold " +
@@ -48,7 +48,7 @@ class FieldArrays {
     for (int number = 0; number < static_cast<int>(fields_.size()); ++number) table[number] = of(number);
   }
 
-  /// [component][index] to doubles [index][component], times `unit`.
+  /// Turns [component][index] into doubles [index][component], times `unit`.
   std::vector<double> index_major(int number, double unit = 1) const {
     const T* const array = of(number);
     const auto components = static_cast<std::size_t>(fields_[static_cast<std::size_t>(number)].components);
@@ -56,7 +56,7 @@ class FieldArrays {
     for (std::size_t i = 0; i < result.size(); ++i) result[i] = unit * array[i % components * count_ + i / components];
     return result;
   }
-  /// The reverse.
+  /// Takes doubles [index][component] into [component][index].
   void take(int number, const std::vector<double>& values) {
     T* const array = of(number);
     const auto components = static_cast<std::size_t>(fields_[static_cast<std::size_t>(number)].components);

@@ -5,7 +5,7 @@
 namespace mpm::device {
 namespace {
 
-/// A field that holds nothing between steps.
+/// Makes a field that holds nothing between steps.
 Field working_field(const std::string& id, const std::string& unit, int components) {
   Field field;
   field.id = field.name = id, field.unit = unit;
@@ -35,17 +35,17 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   for (const Field& field : plan.fields) {
     if (!field.of_particles_of(body) || field.lifetime == Lifetime::seeded) continue;
     if (field.origin == Origin::host && field.id == "identity") continue;         // particles keep the order of seeding
-    if (field.origin == Origin::host && field.id == "melted_fraction") continue;  // below
+    if (field.origin == Origin::host && field.id == "melted_fraction") continue;  // it comes below
     (field.origin == Origin::material ? material : fields).push_back(field);
   }
   const auto work = [&](const char* id, const char* unit, int components) {
     fields.push_back(working_field(id, unit, components));
     fields.back().body = body;
   };
-  work("stress", "Pa", D == 2 ? 4 : 6);  // symmetric, Kirchhoff
+  work("stress", "Pa", D == 2 ? 4 : 6);  // symmetric Kirchhoff stress
   work("volume_ratio", "", 1);
   work("velocity_gradient", "1/s", D * D);
-  if (experiment.axisymmetric()) work("hoop_rate", "1/s", 1);  // v_r / r
+  if (experiment.axisymmetric()) work("hoop_rate", "1/s", 1);  // hoop_rate is v_r / r
   work("wave_speed", "m/s", 1);
   if (plan.has_ledger()) work("dissipated", "J/m^3", 1);
   if (experiment.body_force) work("body_acceleration", "m/s^2", D);

@@ -1,5 +1,5 @@
 #pragma once
-// What walls and boxes do with heat, as tables of the kernels. Formulas are the host's: it evaluates them at their nodes.
+// These tables tell kernels what walls and boxes do with heat. The host evaluates formulas at their nodes.
 
 #include "backends/device/conditions.hpp"
 #include "simulation/boundary.hpp"
@@ -33,7 +33,7 @@ class HeatConditions {
     }
   }
 
-  /// Temperatures, fluxes and powers at a time, s.
+  /// Evaluates temperatures, fluxes and powers at a time, s, and points the scene to them.
   void evaluate(double time, Arguments<T>& scene) {
     scene.wall_shares = shares_.data(), scene.wall_share_count = static_cast<int>(shares_.size());
     scene.wall_beyond = beyond_;
@@ -53,14 +53,14 @@ class HeatConditions {
   /// Whether a wall's mirror images change the heat of the nodes.
   bool walls_act() const { return !walls_.empty(); }
 
-  /// Numbers of the boxes that are warmed.
+  /// The numbers of the boxes that are warmed.
   std::vector<int> warmed_boxes() const {
     std::vector<int> numbers;
     for (std::size_t k = 0; k < boxes_.size(); ++k)
       if (!values_of_box_[k].holds()) numbers.push_back(static_cast<int>(k));
     return numbers;
   }
-  /// Axes with a wall through which heat comes.
+  /// The axes with a wall through which heat comes.
   std::vector<int> exchanging_axes() const {
     std::vector<int> axes;
     for (const Wall& wall : walls_)
@@ -69,7 +69,7 @@ class HeatConditions {
   }
 
  private:
-  /// Nodes with the values that a formula gives them.
+  /// The nodes with the values that a formula gives them.
   struct Values {
     const ThermalCondition* condition;
     NodeRange nodes;

@@ -25,7 +25,7 @@ namespace {
 template <class T>
 struct Body {
   const Component* material;
-  const Thermal* thermal = nullptr;  ///< of scenes with temperature
+  const Thermal* thermal = nullptr;  ///< null in scenes without temperature
   HeatOfBody<T> heat{};
   int field = 0, material_number = 0, count = 0, dimension = 2;
   bool frozen = false;
@@ -56,7 +56,7 @@ struct Body {
       initial_position = seeded.values(*place);
   }
 
-  /// What seeding gives.
+  /// Takes what seeding gives.
   void take(const SeededBody& seeded) {
     for (int number = 0; number < static_cast<int>(arrays.fields().size()); ++number)
       if (arrays.fields()[number].first == First::seeded) arrays.take(number, seeded.values(arrays.fields()[number]));
@@ -80,12 +80,12 @@ struct Body {
             static_cast<T>(thermal.dissipation_to_heat / density)};
   }
   bool melts() const { return thermal && thermal->phase_change; }
-  /// Of the material's melted particles, and of bodies that cannot melt those of all particles.
+  /// The parameters of the material's melted particles; for bodies that cannot melt, those of all particles.
   const double* melted_parameters() const {
     return melts() ? thermal->phase_change->melted_parameters.data() : material->parameters.data();
   }
 
-  /// Of a vector's array.
+  /// A component of a vector in its array.
   double component(const T* array, int p, int c) const { return array[static_cast<std::size_t>(c) * count + p]; }
   Vector3 vector(const T* array, int p) const {
     Vector3 v{};
@@ -112,8 +112,8 @@ struct Body {
     return table;
   }
 
-  /// Particles into blocks of cells, blocks in order of their cells. A position that is no number goes to block 0,
-  /// where the scatter reports it.
+  /// Sorts particles into blocks of cells, blocks in order of their cells. A position that is no number goes to block
+  /// 0, where the scatter reports it.
   void sort(const Arguments<T>& a) {
     const T* const position = arrays.of("position");
     std::map<std::array<int, 3>, std::vector<int>> blocks;
@@ -224,7 +224,7 @@ class HostRun final : public Backend {
         return for_each_field(pass.has(Act::keep_correction) ? "keep_correction" : "restore_velocity", vectors());
       case Act::add_correction:
         return add_correction(pass, step);
-      default:  // the others share a visit with one of these
+      default:  // the other acts share a visit with one of these
         throw std::logic_error("the host-run device does not execute pass \"" + pass.name() + "\"");
     }
   }
@@ -281,9 +281,9 @@ class HostRun final : public Backend {
   }
 
   BodyState body_state(int index) const override {
-    Body<T> body = bodies_[index];  // a copy, into which the second moments go
+    Body<T> body = bodies_[index];  // this copy takes the second moments
     if (plan_.stencil.second_moment) {
-      // A particle that has no stencil has none; the next pass that needs it says so.
+      // A particle without a stencil has no second moment; the next pass that needs it says so.
       const int moments = body.number("second_moment");
       std::fill_n(body.arrays.of(moments), body.arrays.size(moments), std::numeric_limits<T>::quiet_NaN());
       int failed = INT_MAX;
@@ -346,7 +346,7 @@ class HostRun final : public Backend {
 
   int teams(int indices) const { return (indices + team_.lanes - 1) / team_.lanes; }
 
-  /// What phases over the grid are told beside the scene.
+  /// Settings of phases over the grid beside the scene.
   struct Manner {
     bool remap = false, after_forces = false, walls_at_rest = false;
   };
@@ -357,12 +357,12 @@ class HostRun final : public Backend {
     return a;
   }
 
-  /// One phase over `indices` of every field's grid.
+  /// Runs one phase over `indices` of every field's grid.
   void for_each_field(const std::string& phase, int indices, const Manner& manner = {}) {
     for (VelocityField<T>& field : fields_) device_.run(phase, arguments_of(field, manner), teams(indices), team_);
   }
 
-  /// One phase of folds along the lines of every one of these axes.
+  /// Runs one phase of folds along the lines of every one of these axes.
   void for_each_axis(const std::string& phase, const std::vector<int>& axes, const Manner& manner = {}) {
     for (const int axis : axes)
       for (VelocityField<T>& field : fields_) {
@@ -371,7 +371,7 @@ class HostRun final : public Backend {
         device_.run(phase, a, teams(nodes() / scene_.extent[axis]), team_);
       }
   }
-  /// Periodic images first, then walls; ghosts are filled in the reverse order.
+  /// The axes in the order of folding: periodic images come before walls. Ghosts are filled in the reverse order.
   std::vector<int> folded_axes() const {
     std::vector<int> axes = images_;
     axes.insert(axes.end(), walls_.begin(), walls_.end());
@@ -393,7 +393,7 @@ class HostRun final : public Backend {
     return a;
   }
 
-  /// A phase that sums in teams; what the teams have summed, added up in order.
+  /// Runs a phase that sums in teams, and adds up in order what the teams have summed.
   template <std::size_t count = 1>
   std::array<double, count> sum(const std::string& phase, Arguments<T> a, int indices) {
     std::vector<double> partial(count * static_cast<std::size_t>(teams(indices)));
@@ -412,7 +412,7 @@ class HostRun final : public Backend {
     return sum(phase, arguments_of(body), body.count)[0];
   }
 
-  /// What a phase reports particles for.
+  /// The reasons for which a phase reports particles.
   enum class Checks { stencil, deformation, position };
 
   /// Runs a phase and stops the run where it reports a particle.
@@ -426,7 +426,7 @@ class HostRun final : public Backend {
     throw RunFailure(failure);
   }
 
-  // A phase reports no more than the particle: what is wrong with it stands in its arrays.
+  // A phase reports only the particle: what is wrong with it stands in its arrays.
 
   Failure failure_of(Cause cause, const Body<T>& body, int p) const {
     return {cause, static_cast<int>(&body - bodies_.data()), static_cast<std::size_t>(p)};
@@ -453,7 +453,7 @@ class HostRun final : public Backend {
     const bool list = experiment_.shape.plugin->shape().form == MPM_NODE_LIST;
     return failure_of(list ? Cause::domain_beyond_grid : Cause::domain_outgrew_stencil, body, p);
   }
-  /// Of the axes beyond which the particle is, the first; the test is that of the phase "move".
+  /// Reports the first of the axes beyond which the particle is; the test is that of the phase "move".
   Failure failed_position(const Body<T>& body, int p) const {
     if (const auto failure = position_not_a_number(body, p)) return *failure;
     if (body.turned_inside_out("moved_corners", p)) return failure_of(Cause::domain_inside_out, body, p);
@@ -514,7 +514,7 @@ class HostRun final : public Backend {
     if (heat) scattered_heat_ = 0;
     for (Body<T>& body : bodies_) {
       if (enters) body.sort(scene_);
-      if (force || heat || pass.has(Act::scatter_contact)) run_material("stress", body);  // and the volume ratio
+      if (force || heat || pass.has(Act::scatter_contact)) run_material("stress", body);  // with the volume ratio
       if (force) evaluate_body_force(body, step.time);
       Arguments<T> a = arguments_of(body);
       a.momentum = pass.has(Act::scatter_momentum), a.force = force;
@@ -534,7 +534,7 @@ class HostRun final : public Backend {
     ledger_.scatter += scattered_energy_ - energy;
   }
 
-  /// The experiment's body force at every particle.
+  /// Evaluates the experiment's body force at every particle.
   void evaluate_body_force(Body<T>& body, double time) {
     if (!experiment_.body_force) return;
     const T* const position = body.arrays.of("position");
@@ -576,7 +576,7 @@ class HostRun final : public Backend {
   void apply_forces(const StepInfo& step) {
     const Manner after{false, true};
     conditions_.evaluate(step.time + step.dt, scene_);
-    for_each_axis("fold_forces", folded_axes());  // what USF scattered after the momenta were folded
+    for_each_axis("fold_forces", folded_axes());  // folds what USF scattered after the momenta were folded
     for_each_field("accelerate", nodes());
     keep_free_velocity(after);
     for_each_field("impose_conditions", nodes(), after);
@@ -606,7 +606,7 @@ class HostRun final : public Backend {
       run("gather", a, teams(body.count), body, Checks::stencil);
       if (pass.has(Act::gather_heat)) run("gather_heat", a, teams(body.count), body, Checks::stencil);
       if (pass.has(Act::gather_heat) && plan_.has_heat_ledger()) heat += sum_over_particles("heat_of_particles", body);
-      if (accounted_) energy += sum_over_particles("energy_of_particles", body);  // while weights are those of the step
+      if (accounted_) energy += sum_over_particles("energy_of_particles", body);  // weights are still those of the step
       if (pass.has(Act::strain)) run_strain(pass, body);
     }
     if (accounted_) ledger_.gather += energy - energy_after_;
@@ -628,10 +628,10 @@ class HostRun final : public Backend {
 
   // ---- heat --------------------------------------------------------------------------------------------------------
 
-  /// Heat that a pair of rows of the ledger takes, J.
+  /// The heat that a pair of rows of the ledger takes, J.
   using HeatOfTwo = std::array<double, 2>;
 
-  /// Temperatures before the step's heat, ghosts too.
+  /// Finds temperatures before the step's heat, those of ghosts too.
   void heat_to_temperature() {
     for_each_field("divide_heat", nodes());
     if (plan_.has_heat_ledger())
@@ -642,7 +642,7 @@ class HostRun final : public Backend {
     for_each_field("keep_temperature", nodes());
   }
 
-  /// What walls and boxes hold, as evaluated last, and what heat each gives by it.
+  /// Imposes what walls and boxes hold, as evaluated last; returns the heat that each gives by it.
   HeatOfTwo impose_temperature() {
     HeatOfTwo given{};
     for (VelocityField<T>& field : fields_) {
@@ -652,7 +652,7 @@ class HostRun final : public Backend {
     return given;
   }
 
-  /// Ghosts; how much more heat lies there than at their mirrors, at walls that are held at a temperature and at others.
+  /// Fills ghosts; returns the heat by which they exceed their mirrors, at walls held at a temperature and at others.
   HeatOfTwo fill_temperature() {
     HeatOfTwo beyond{};
     for (const int axis : filled_axes())
@@ -672,7 +672,7 @@ class HostRun final : public Backend {
     for (Body<T>& body : bodies_) run("conduct", arguments_of(body), body.blocks(), body, Checks::stencil);
   }
 
-  /// Temperatures after the step's heat.
+  /// Finds temperatures after the step's heat.
   void warm(const StepInfo& step) {
     const bool records_folds = plan_.has_heat_ledger() && heat_conditions_->walls_act();
     const double rate = records_folds ? sum_over_nodes("heat_rate_of_nodes") : 0.0;
@@ -722,10 +722,10 @@ class HostRun final : public Backend {
 
   // ---- contact -----------------------------------------------------------------------------------------------------
 
-  /// What of contact goes to the ledger, and to the record.
+  /// The part of contact that goes to the ledger and to the record.
   enum class Recorded { nothing, before_forces, after_forces };
 
-  /// The law on every pair of fields.
+  /// Applies the law to every pair of fields.
   void resolve_contact(double dt, Recorded recorded) {
     if (recorded == Recorded::after_forces) contact_ = {};
     std::array<double, 3> unbalanced{};
@@ -744,7 +744,7 @@ class HostRun final : public Backend {
       contact_.momentum_residual = std::hypot(unbalanced[0], unbalanced[1], unbalanced[2]);
   }
 
-  /// Normal, separation and area at every node that two fields share (simulation/contact_pair.hpp).
+  /// Finds normal, separation and area at every node that two fields share (simulation/contact_pair.hpp).
   void find_pairs(std::size_t a, std::size_t b) {
     const bool weld = experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION;
     const int D = experiment_.dimension, n = nodes();
@@ -761,7 +761,7 @@ class HostRun final : public Backend {
       separation_[node] = static_cast<T>(geometry.separation), area_[node] = static_cast<T>(geometry.area);
     }
   }
-  /// What detection reads of one velocity field.
+  /// The fields of one velocity field that detection reads.
   struct ContactFields {
     const T *mass, *volume, *volume_gradient, *mass_position;
     explicit ContactFields(const VelocityField<T>& field)
@@ -778,7 +778,7 @@ class HostRun final : public Backend {
       return view;
     }
   };
-  /// Before the forces v- itself changes, at once; after them the impulse counts between v- and v+ (work_of_forces).
+  /// Before the forces v- itself changes at once; after them work_of_forces counts the impulse between v- and v+.
   void account_for_pairs(Recorded recorded) {
     for (int node = 0; node < nodes(); ++node) {
       if (!active_[node]) continue;
@@ -802,7 +802,7 @@ class HostRun final : public Backend {
 
   // ---- filter ------------------------------------------------------------------------------------------------------
 
-  /// Time of the walls' velocity: that of v- before the forces, of v+ after them.
+  /// The time of the walls' velocity: that of v- before the forces, of v+ after them.
   static double time_of(const Pass& pass, const StepInfo& step) {
     return pass.stage == Stage::after_forces ? step.time + step.dt : step.time;
   }
@@ -842,8 +842,8 @@ class HostRun final : public Backend {
     if (plan_.node_field("velocity_of_constraints")) for_each_field("measure_constraints", vectors());
   }
 
-  /// Conditions, contact and conditions again on the grid's velocity without what they have added so far, and on no
-  /// one's record.
+  /// Applies conditions, contact and conditions again to the grid's velocity without what they have added so far, and
+  /// without a record.
   void constrain_velocity(const Pass& pass, const StepInfo& step) {
     conditions_.evaluate(time_of(pass, step), scene_);
     if (plan_.node_field("velocity_of_constraints")) for_each_field("take_free_velocity", vectors());
@@ -880,10 +880,10 @@ class HostRun final : public Backend {
   TeamShape team_;
   Arguments<T> scene_;
   Conditions<T> conditions_;
-  std::optional<HeatConditions<T>> heat_conditions_;  ///< of scenes with temperature
+  std::optional<HeatConditions<T>> heat_conditions_;  ///< empty in scenes without temperature
   std::vector<Body<T>> bodies_;
   std::vector<VelocityField<T>> fields_;
-  std::vector<int> images_, walls_;  ///< axes
+  std::vector<int> images_, walls_;  ///< axes with periodic images, and those with walls
   std::vector<EdgeModel> edges_;
   std::vector<int> active_, status_;
   std::vector<T> normal_, separation_, area_, impulse_, unbalanced_, work_, dissipated_;
@@ -895,12 +895,12 @@ class HostRun final : public Backend {
   ContactRecord contact_;
   FilterRecord filter_;
   double scattered_energy_ = 0;   ///< kinetic energy of the grid as scattered, images summed, J
-  double energy_after_ = 0;       ///< of the grid when particles gather from it
-  double energy_unfiltered_ = 0;  ///< of the grid when the filter began
-  double scattered_heat_ = 0;     ///< of the particles that the step's scatter began with, J
-  double heat_of_images_ = 0;     ///< that folding has given the grid at walls that do something with heat, J
+  double energy_after_ = 0;       ///< kinetic energy of the grid when particles gather from it, J
+  double energy_unfiltered_ = 0;  ///< kinetic energy of the grid when the filter began, J
+  double scattered_heat_ = 0;     ///< heat of the particles that the step's scatter began with, J
+  double heat_of_images_ = 0;     ///< heat that folding has given the grid at walls that do something with heat, J
   HeatOfTwo beyond_{};            ///< see fill_temperature, before the step's heat
-  double heat_after_ = 0;         ///< of the grid when particles gather from it, J
+  double heat_after_ = 0;         ///< heat of the grid when particles gather from it, J
 };
 
 }  // namespace

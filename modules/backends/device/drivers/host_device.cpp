@@ -17,7 +17,7 @@ extern char** environ;
 namespace mpm::device {
 namespace {
 
-/// A folder of its own under the system's folder for temporary files, removed at the end.
+/// A folder of its own under the system's folder for temporary files, which is removed at the end.
 class ScratchFolder {
  public:
   ScratchFolder() {

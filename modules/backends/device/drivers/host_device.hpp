@@ -1,6 +1,6 @@
 #pragma once
-// The host-run device: a composition compiled by the system's C++ compiler, without system headers, and run on the CPU.
-// It stands in for a GPU in tests: the text is the very same.
+// The host-run device compiles a composition by the system's C++ compiler, without system headers, and runs it on the
+// CPU. It stands in for a GPU in tests, as the text is the very same.
 
 #include <filesystem>
 #include <memory>
@@ -13,24 +13,24 @@
 
 namespace mpm::device {
 
-/// A compiler that is missing or refuses a composition; the message names the composition and holds the compiler's
-/// words.
+/// Thrown when a compiler is missing or refuses a composition; the message names the composition and holds the
+/// compiler's words.
 class CompilerError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 struct HostCompiler {
-  std::string program = "c++";  ///< of GCC or Clang, found on PATH
+  std::string program = "c++";  ///< GCC or Clang, found on PATH
   std::vector<std::string> options{"-O1"};
 
-  /// All that is handed to the program, but for files.
+  /// All options that are handed to the program, but no files.
   std::vector<std::string> all_options() const;
 };
 
-/// How teams run on the host.
+/// The way in which teams run on the host.
 struct TeamShape {
   int lanes = 32;
-  bool backwards = false;  ///< lanes and teams in the reverse order: results must agree to the rounding of sums
+  bool backwards = false;  ///< lanes and teams run in reverse order: results must agree to the rounding of sums
 };
 
 /// The phases of one composition, loaded into this process.

@@ -43,7 +43,7 @@ std::optional<Nvrtc> Nvrtc::find(std::string& why) {
   folders.erase(std::unique(folders.begin(), folders.end()), folders.end());
   for (const std::string& folder : folders)
     for (const char* name : {"libnvrtc.so", "libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so.11.2"}) {
-      // Stays loaded until the process ends: it keeps threads and memory of its own.
+      // The library stays loaded until the process ends, as it keeps threads and memory of its own.
       void* library = dlopen((folder + name).c_str(), RTLD_NOW | RTLD_LOCAL);
       if (!library) continue;
       auto functions = std::make_shared<Functions>();
@@ -85,7 +85,7 @@ Cubin Nvrtc::compile(const Composition& composition, std::string_view architectu
   for (const std::string& word : words) pointers.push_back(word.c_str());
   const int error = functions_->compile(program, static_cast<int>(pointers.size()), pointers.data());
   std::size_t size = 0;
-  if (functions_->log_size(program, &size) == 0 && size > 1) {  // counts the closing zero
+  if (functions_->log_size(program, &size) == 0 && size > 1) {  // the size counts the closing zero
     cubin.log.resize(size);
     functions_->log(program, cubin.log.data());
     cubin.log.resize(size - 1);

@@ -1,5 +1,5 @@
 #pragma once
-// NVIDIA's run-time compiler, found at run time by dlopen: nothing of CUDA is needed to build or to start the program.
+// NVIDIA's compiler is found at run time by dlopen: nothing of CUDA is needed to build or to start the program.
 
 #include <memory>
 #include <optional>
@@ -20,17 +20,17 @@ struct Cubin {
 
 class Nvrtc {
  public:
-  /// Looks through the loader's path, CUDA_PATH and CUDA_HOME, and the usual folders. Nothing when it is not there;
-  /// `why` then says where it was looked for and how to get it.
+  /// Looks through the loader's path, CUDA_PATH and CUDA_HOME, and the usual folders. Returns nothing when it is not
+  /// there; `why` then says where it was looked for and how to get it.
   static std::optional<Nvrtc> find(std::string& why);
 
-  /// "13.0", with the library's file.
+  /// The version, "13.0", with the library's file.
   std::string version() const;
 
-  /// All options for an architecture as "sm_90".
+  /// All options for an architecture that is given as "sm_90".
   static std::vector<std::string> options(std::string_view architecture);
 
-  /// Compiles to machine code of that architecture. Thread-safe.
+  /// Compiles to machine code of that architecture. Several threads may call it at once.
   Cubin compile(const Composition& composition, std::string_view architecture) const;
 
  private:

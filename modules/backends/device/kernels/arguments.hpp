@@ -1,16 +1,16 @@
 #pragma once
-// What a phase is given: plain pointers and numbers, the same struct for the host that launches and the text that runs.
-// Arrays are laid out [component][particle] and [component][node]. No system headers.
+// A phase is given plain pointers and numbers, in the same struct for the host that launches and the text that runs.
+// Arrays are laid out [component][particle] and [component][node]. No system headers are included.
 
 namespace mpm::device {
 
-/// Cells of a block along each axis: the particles of one block are one team's work.
+/// The cells of a block along each axis: the particles of one block are one team's work.
 inline constexpr int block_cells = 4;
 
-/// Arrays that a table has room for; the host checks it.
+/// The number of arrays that a table has room for; the host checks it.
 inline constexpr int most_fields = 32;
 
-/// One velocity field.
+/// The arrays of one velocity field.
 template <class T>
 struct NodeArrays {
   T* field[most_fields];  ///< numbered as Scene::Node
@@ -18,7 +18,7 @@ struct NodeArrays {
   int* held;              ///< bit c: a condition gives component c after the forces; null without a ledger
 };
 
-/// How a body's particles conduct and store heat: [0] as solids, [1] melted, the same where nothing melts.
+/// How a body's particles conduct and store heat: [0] as solids, [1] when melted, the same where nothing melts.
 template <class T>
 struct HeatOfBody {
   T conductivity[2];                   ///< W/(m K)
@@ -31,14 +31,14 @@ struct HeatOfBody {
 template <class T>
 struct ParticleArrays {
   int count, stride;
-  T mass, volume;         ///< of each, kg and m^3; in axisymmetric scenes per metre of circumference
-  T half_size;            ///< cells, of its undeformed box
-  int frozen;             ///< 1: particles and domains stay as they are
+  T mass, volume;         ///< values of a particle, kg and m^3; in axisymmetric scenes per metre of circumference
+  T half_size;            ///< half a side of the undeformed particle's box, cells
+  int frozen;             ///< 1 where particles and domains stay as they are
   T* field[most_fields];  ///< numbered as Scene::Particle; the fields of one plugin's state lie one behind another
-  HeatOfBody<T> heat;     ///< of scenes with temperature
+  HeatOfBody<T> heat;     ///< filled in scenes with temperature
 };
 
-/// Pairs of fields, one a node: geometry in, impulse out.
+/// Pairs of fields, one a node: their geometry comes in, the impulse goes out.
 template <class T>
 struct ContactArrays {
   const int* active;    ///< 1 where the pair is to be resolved
@@ -47,25 +47,25 @@ struct ContactArrays {
   const T* area;        ///< m^2
   T* impulse;           ///< [D], kg m/s
   T* unbalanced;        ///< [D], kg m/s: change of the pair's momentum, zero to rounding
-  T* work;              ///< J, of both impulses at the mean velocities
+  T* work;              ///< work of both impulses at the mean velocities, J
   T* dissipated;        ///< J
   int* status;          ///< mpm_contact_status
 };
 
-/// Nodes under a condition: all between two corners.
+/// The nodes under a condition: all between two corners.
 template <class T>
 struct Box {
   int lower[3], upper[3];  ///< coordinates of nodes, both included
-  int type, axis, side;    ///< Wall; as in box_holds
+  int type, axis, side;    ///< Wall; axis and side as in box_holds
   int given;               ///< bit c: component c is prescribed
-  const T* velocity;       ///< [D][node of the box, x first], m/s; null at rest
+  const T* velocity;       ///< [D][node of the box, x first], m/s; null for rest
 };
 
-/// Heat that comes through a wall: a flux, W/m^2, or with a coefficient what lies beyond the wall gives, K.
+/// Heat through a wall: `value` is a flux, W/m^2, or, with a coefficient, the temperature beyond the wall, K.
 template <class T>
 struct WallHeat {
-  const T* value;  ///< [line of the axis]; null where none comes
-  T coefficient;   ///< of convection, W/(m^2 K), else 0
+  const T* value;  ///< [line of the axis]; null where no heat comes
+  T coefficient;   ///< coefficient of convection, W/(m^2 K), else 0
 };
 
 /// Nodes that are warmed or held at a temperature: all between two corners.
@@ -73,10 +73,10 @@ template <class T>
 struct HeatBox {
   int lower[3], upper[3];  ///< coordinates of nodes, both included
   const T* temperature;    ///< [node of the box, x first], K; null where none is held
-  const T* power;          ///< [node of the box], W, that its nodes share by their mass; null where none comes
+  const T* power;          ///< [node of the box, x first], W, that its nodes share by their mass; null where none comes
 };
 
-/// A scatter's work: the particles of block k are order[block_begin[k] .. block_begin[k + 1]).
+/// The work of a scatter: the particles of block k are order[block_begin[k] .. block_begin[k + 1]).
 struct BlockArrays {
   const int* cell;   ///< [block][3], first cell
   const int* begin;  ///< [blocks + 1]
@@ -85,44 +85,44 @@ struct BlockArrays {
 
 template <class T>
 struct Arguments {
-  // The scene; the same for all phases.
+  // These describe the scene; they are the same for all phases.
   T cell_size, inverse_cell_size, lower[3], gravity[3];
   int cells[3], extent[3], padding[3], node_count;
   int walls[3][2];               ///< Wall
-  const T* wall_velocity[3][2];  ///< [D][line of the axis], m/s, as evaluated last; null at rest
+  const T* wall_velocity[3][2];  ///< [D][line of the axis], m/s, as evaluated last; null for rest
   const Box<T>* boxes;
   int box_count;
   const double *shape_parameters, *transfer_parameters, *filter_parameters, *contact_parameters, *material_parameters;
-  const double* melted_parameters;  ///< the material's for its melted particles
+  const double* melted_parameters;  ///< parameters of the material's melted particles
   const T* wall_temperature[3][2];  ///< [line of the axis], K, as evaluated last; null where none is held
   WallHeat<T> wall_heat[3][2];      ///< as evaluated last
-  const T* wall_shares;             ///< of heat through a wall: of its node, of the next one inward ...
+  const T* wall_shares;             ///< shares of heat through a wall: that of its node, of the next one inward ...
   int wall_share_count;
   T wall_beyond;  ///< m, how far the nodes beyond the wall make the temperature there differ (WallWeights)
   const HeatBox<T>* heat_boxes;
   int heat_box_count;
-  // What this phase works on.
+  // These are what this phase works on.
   ParticleArrays<T> particles;
   NodeArrays<T> grid, other;
   ContactArrays<T> contact;
   BlockArrays blocks;
   double* partial_sums;  ///< [team][sum]
-  int* first_failed;     ///< smallest index of a particle that cannot go on; count if there is none
-  // How.
+  int* first_failed;     ///< smallest index of a particle that cannot go on; count where there is none
+  // These say how it works.
   T dt;
-  int axis;                             ///< of folds and ghosts
-  int iteration;                        ///< of the filter, from 1
+  int axis;                             ///< axis of folds and ghosts
+  int iteration;                        ///< number of the filter's pass, from 1
   int heat_box;                         ///< number of the box that is warmed
-  T mass_of_box;                        ///< kg, of its nodes in all velocity fields
+  T mass_of_box;                        ///< mass of its nodes in all velocity fields, kg
   bool momentum, force, contact_fields; /**< scatter: as in Pass */
-  bool remap;                           ///< clear, fold: of MUSL
+  bool remap;                           ///< clear, fold: the remap of MUSL
   bool after_forces;                    ///< v+ is made, not v-; conditions mark what they hold
   bool walls_at_rest;                   ///< what is folded or filled is a difference of velocities
-  bool update_particles;                ///< gather: velocity and state too, not only the velocity gradient
+  bool update_particles;                ///< gather: velocity and state change too, not only the velocity gradient
   bool filtered;                        ///< gather: the filtered velocity replaces the particle's
 };
 
-/// Beyond a wall by more than this share of the domain a particle has left it; a separating wall lets half a cell
+/// A particle beyond a wall by more than this share of the domain has left it; a separating wall lets half a cell
 /// through.
 template <class T>
 inline constexpr T position_tolerance = sizeof(T) == 4 ? T(1e-6) : T(1e-9);

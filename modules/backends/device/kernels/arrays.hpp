@@ -1,5 +1,5 @@
 #pragma once
-// Reading and writing the columns of arrays, parameter blocks, and where a node lies.
+// These functions read and write the columns of arrays and parameter blocks, and find where a node lies.
 
 #include "backends/device/kernels/arguments.hpp"
 #include "backends/device/kernels/fields.hpp"
@@ -29,7 +29,7 @@ MPM_HD void store_matrix(T* array, int stride, int index, const Mat<D, T>& value
   for (int k = 0; k < D * D; ++k) array[k * stride + index] = value.m[k];
 }
 
-/// The corners of a particle's domain, [corner][D].
+/// Loads the corners of a particle's domain, [corner][D].
 template <int D, class T>
 MPM_HD void load_corners(const T* array, int stride, int index, Vec<D, T>* corners) {
   for (int c = 0; c < 1 << D; ++c)
@@ -41,7 +41,7 @@ MPM_HD void store_corners(T* array, int stride, int index, const Vec<D, T>* corn
     for (int a = 0; a < D; ++a) array[(c * D + a) * stride + index] = corners[c][a];
 }
 
-/// A functor's State: exactly its declared scalars, in order.
+/// The number of scalars of a functor's State, which are exactly those declared, in order.
 template <class State, class T>
 inline constexpr int scalars_of = __is_empty(State) ? 0 : static_cast<int>(sizeof(State) / sizeof(T));
 
@@ -58,7 +58,7 @@ MPM_HD void store_state(T* array, int stride, int index, const State& state) {
   for (int k = 0; k < scalars_of<State, T>; ++k) array[k * stride + index] = flat[k];
 }
 
-/// What a particle keeps of its transfer.
+/// Loads what a particle keeps of its transfer.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD auto transfer_state(const ParticleArrays<T>& particles, int p) {
   using State = typename Scene::Transfer::template State<Scene::dimension, T>;
@@ -73,7 +73,7 @@ MPM_HD void store_transfer_state(const ParticleArrays<T>& particles, int p, cons
     store_state(particles.field[Scene::Particle::transfer_state], particles.stride, p, state);
 }
 
-/// The host's block of doubles as the functor's own struct; the pointer may be null for a functor without parameters.
+/// Reads the host's block of doubles as the functor's struct; the pointer may be null for a functor without parameters.
 template <class F>
 MPM_HD typename F::Parameters parameters_of(const double* block) {
   if constexpr (__is_empty(typename F::Parameters))
@@ -82,7 +82,7 @@ MPM_HD typename F::Parameters parameters_of(const double* block) {
     return *reinterpret_cast<const typename F::Parameters*>(block);
 }
 
-/// Index of the node at these coordinates; ghosts have negative ones.
+/// The index of the node at these coordinates; ghosts have negative ones.
 template <int D, class T>
 MPM_HD int node_index(const Arguments<T>& a, const int* node) {
   int index = node[D - 1] + a.padding[D - 1];

@@ -1,12 +1,12 @@
 #pragma once
-// Two velocity fields that meet at a node, through the contact functor; normal, separation and area are given.
+// Two velocity fields meet at a node through the contact functor; normal, separation and area are given.
 
 #include "backends/device/kernels/arrays.hpp"
 #include "operators/motion.hpp"
 
 namespace mpm::device {
 
-/// Velocities of `grid` and `other` take the law's impulse where the pair is active.
+/// Gives the velocities of `grid` and `other` the law's impulse where the pair is active.
 template <class Scene>
 MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;

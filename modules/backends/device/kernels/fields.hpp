@@ -1,16 +1,16 @@
 #pragma once
-// How kernels name fields. The composer writes Scene::Node, Scene::Particle and Scene::for_each_node_field from the
-// scene's list of fields; what a scene lacks costs nothing.
+// These names stand for fields in kernels. The composer writes Scene::Node, Scene::Particle and
+// Scene::for_each_node_field from the scene's list of fields; what a scene lacks costs nothing.
 
 #include "kernel/config.hpp"
 
 namespace mpm::device {
 
-/// The order of Folded (compose.cpp checks it).
+/// The time at which a field is folded, in the order of Folded (compose.cpp checks it).
 enum FoldTime : int { never_folded = 0, folded_with_mass, folded_with_force };
 
 /// Numbers of the fields of nodes that kernels know by name, -1 where a scene has none; Scene::Node hides those that it
-/// has. Others are cleared and folded all the same.
+/// has. Other fields are cleared and folded all the same.
 struct NoNodeFields {
   static constexpr int mass = -1, momentum = -1, velocity = -1, velocity_before = -1;
   static constexpr int force = -1, weight = -1, body_force = -1;
@@ -23,15 +23,15 @@ struct NoNodeFields {
   static constexpr int temperature = -1, temperature_before = -1;
 };
 
-/// The same of particles. A plugin's state goes by the number of its first field.
+/// The same numbers for particles. A plugin's state goes by the number of its first field.
 struct NoParticleFields {
   static constexpr int position = -1, velocity = -1, advection_velocity = -1;
   static constexpr int transfer_state = -1, polynomial_coefficients = -1, material_state = -1;
   static constexpr int circumference = -1, corners = -1, moved_corners = -1;
-  static constexpr int domain = -1;           ///< that weights are made of
-  static constexpr int strained_domain = -1;  ///< that the rest of the step strains; absent where no weights follow
+  static constexpr int domain = -1;           ///< domain that weights are made of
+  static constexpr int strained_domain = -1;  ///< domain strained in the rest of a step; absent where no weights follow
   static constexpr int stress = -1, volume_ratio = -1, wave_speed = -1, velocity_gradient = -1, hoop_rate = -1;
-  static constexpr int dissipated = -1;         ///< by the last strain
+  static constexpr int dissipated = -1;         ///< energy dissipated by the last strain
   static constexpr int body_acceleration = -1;  ///< body force over mass, as the host evaluated it
   static constexpr int second_moment = -1;      ///< what `second_moments` makes
   static constexpr int temperature = -1, melted_fraction = -1;
@@ -44,8 +44,8 @@ struct TemperatureState {
   static constexpr int number = Number, components = Components, scalar = Scalar;
 };
 
-/// One field of nodes, its properties as constants: at walls a Rule. `place` is that of its first component among the values that a
-/// particle gives to a node in a scatter, -1 where it gives none.
+/// A field of nodes with its properties as constants; at_wall is a Rule. `place` is that of its first component among
+/// the values that a particle gives to a node in a scatter, -1 where it gives none.
 template <int Number, int Components, int AtWall, int Folded, bool Cleared, int Place>
 struct NodeField {
   static constexpr int number = Number, components = Components, at_wall = AtWall, folded = Folded, place = Place;

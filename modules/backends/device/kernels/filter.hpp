@@ -1,6 +1,6 @@
 #pragma once
-// The filter's loop over the grid's velocity: S+ S of the increment by the transfer's own gather and scatter, then the
-// functor's update at every node.
+// The filter's loop over the grid's velocity applies S+ S to the increment by the transfer's own gather and scatter,
+// then the functor's update at every node.
 
 #include "backends/device/kernels/gather.hpp"
 #include "backends/device/kernels/grid.hpp"
@@ -10,7 +10,7 @@
 
 namespace mpm::device {
 
-/// increment <- velocity; ghosts too.
+/// Sets increment <- velocity, at ghosts too.
 template <class Scene>
 MPM_HD void begin_filter(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
@@ -28,8 +28,8 @@ MPM_HD void clear_projection(const Team& team, const Arguments<typename Scene::S
 template <class Scene>
 inline constexpr int project_scalars = Scene::dimension* Tile<Scene::dimension>::nodes;
 
-/// Momentum of S+ S increment: the transfer gathers the increment on scratch and scatters what it made of it. Particles
-/// are not changed.
+/// Computes the momentum of S+ S increment: the transfer gathers the increment on scratch and scatters what it made of
+/// it. Particles are not changed.
 template <class Scene>
 MPM_HD void project(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -79,7 +79,7 @@ MPM_HD void fold_projection(const Team& team, const Arguments<typename Scene::Sc
   });
 }
 
-/// The functor's update at every node with mass. Keeps the velocity before conditions and contact act on it where they
+/// Applies the functor's update at every node with mass. The velocity before conditions and contact is kept where they
 /// act on every increment.
 template <class Scene>
 MPM_HD void update_filter(const Team& team, const Arguments<typename Scene::Scalar>& a) {
@@ -102,7 +102,7 @@ MPM_HD void update_filter(const Team& team, const Arguments<typename Scene::Scal
   });
 }
 
-/// The increment takes what conditions and contact have changed, at nodes with mass.
+/// Adds to the increment what conditions and contact have changed, at nodes with mass.
 template <class Scene>
 MPM_HD void correct_increment(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -115,7 +115,7 @@ MPM_HD void correct_increment(const Team& team, const Arguments<typename Scene::
     });
 }
 
-/// velocity_of_constraints <- velocity without what conditions and contact have added in this step.
+/// Sets velocity_of_constraints to the velocity without what conditions and contact have added in this step.
 template <class Scene>
 MPM_HD void keep_free_velocity(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -128,8 +128,8 @@ MPM_HD void keep_free_velocity(const Team& team, const Arguments<typename Scene:
     });
 }
 
-/// velocity_of_constraints <- velocity <- velocity without what conditions and contact have added, so that an impulse
-/// which the increments no longer need is taken back.
+/// Sets velocity and velocity_of_constraints to the velocity without what conditions and contact have added, so that an
+/// impulse which the increments no longer need is taken back.
 template <class Scene>
 MPM_HD void take_free_velocity(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -141,7 +141,7 @@ MPM_HD void take_free_velocity(const Team& team, const Arguments<typename Scene:
     });
 }
 
-/// velocity_of_constraints <- what they have added since.
+/// Sets velocity_of_constraints to what conditions and contact have added since.
 template <class Scene>
 MPM_HD void measure_constraints(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -179,21 +179,21 @@ MPM_HD void for_each_kept(const Team& team, const Arguments<typename Scene::Scal
     });
 }
 
-/// The velocity before the filter, for a pass that restores it.
+/// Keeps the velocity before the filter for a pass that restores it.
 template <class Scene>
 MPM_HD void keep_unfiltered(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   for_each_kept<Scene>(team, a, [](const T& velocity, T& kept) { kept = velocity; });
 }
 
-/// velocity <- what keep_unfiltered kept.
+/// Restores the velocity that keep_unfiltered kept.
 template <class Scene>
 MPM_HD void restore_velocity(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   for_each_kept<Scene>(team, a, [](T& velocity, const T& kept) { velocity = kept; });
 }
 
-/// The same, and what the filter added takes its place (XPIC).
+/// Restores the velocity, and keeps in its place what the filter added (XPIC).
 template <class Scene>
 MPM_HD void keep_correction(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -204,14 +204,14 @@ MPM_HD void keep_correction(const Team& team, const Arguments<typename Scene::Sc
   });
 }
 
-/// velocity += the kept correction: what the particles take.
+/// Adds the kept correction to the velocity, which gives what the particles take.
 template <class Scene>
 MPM_HD void add_correction(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   for_each_kept<Scene>(team, a, [](T& velocity, const T& kept) { velocity += kept; });
 }
 
-/// sum m increment . increment.
+/// Sums m increment . increment.
 template <class Scene>
 MPM_HD void increment_norm(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;

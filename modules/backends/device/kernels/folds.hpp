@@ -1,6 +1,6 @@
 #pragma once
-// Ghosts and their mirrors along the lines of one axis, a lane a line: nothing is written by two lanes. What walls give
-// there: velocity, temperature, heat.
+// Ghosts fold onto their mirrors along the lines of one axis, a lane a line, so that nothing is written by two lanes.
+// Walls give velocity, temperature and heat there.
 
 #include "backends/device/kernels/arrays.hpp"
 #include "operators/edges.hpp"
@@ -12,11 +12,11 @@ namespace mpm::device {
 struct Fold {
   int ghost, mirror, axis, side;
   int wall, line;
-  int foot, inward;  ///< the line's node on the wall, and how much farther the index of the next one inward is
+  int foot, inward;  ///< line's node on the wall, and how much farther the index of the next one inward is
   int beyond;        ///< cells from there to the ghost
 };
 
-/// Velocity of the wall at the foot of a fold's ghost.
+/// The velocity of the wall at the foot of a fold's ghost.
 template <class T>
 MPM_HD T velocity_of_wall(const Arguments<T>& a, const Fold& fold, int component) {
   const T* const velocity = a.walls_at_rest ? nullptr : a.wall_velocity[fold.axis][fold.side];
@@ -25,7 +25,7 @@ MPM_HD T velocity_of_wall(const Arguments<T>& a, const Fold& fold, int component
 
 /// Calls body(fold) for every node of a line along a.axis that lies beyond an end and has a mirror or image: the
 /// outermost first when folding, since in a domain of few cells its mirror is a ghost too; last when filling. With
-/// `on_walls` also for those on a wall, which are their own mirrors.
+/// `on_walls` it is also called for nodes on a wall, which are their own mirrors.
 template <class T, class Body>
 MPM_HD void for_each_fold_of_line(const Arguments<T>& a, int line, bool outermost_first, bool on_walls, Body body) {
   const int axis = a.axis, extent = a.extent[axis], padding = a.padding[axis], cells = a.cells[axis];
@@ -43,14 +43,14 @@ MPM_HD void for_each_fold_of_line(const Arguments<T>& a, int line, bool outermos
   }
 }
 
-/// The same for all lines, a lane a line.
+/// Does the same for all lines, a lane a line.
 template <class T, class Body>
 MPM_HD void for_each_fold(const Team& team, const Arguments<T>& a, bool outermost_first, bool on_walls, Body body) {
   for_each_index(team, a.node_count / a.extent[a.axis],
                  [&](int line) { for_each_fold_of_line(a, line, outermost_first, on_walls, body); });
 }
 
-/// Calls body(foot) for every wall that a node stands on: for what the wall gives there.
+/// Calls body(foot) for every wall that a node stands on, to find what the wall gives there.
 template <int D, class T, class Body>
 MPM_HD void for_each_wall_of_node(const Arguments<T>& a, int index, const int* node, Body body) {
   for (int axis = 0, stride = 1; axis < D; stride *= a.extent[axis], ++axis)
@@ -66,14 +66,14 @@ template <class T>
 MPM_HD bool holds_temperature(const Arguments<T>& a, const Fold& fold) {
   return fold.wall != wall_periodic && a.wall_temperature[fold.axis][fold.side];
 }
-/// Temperature that the wall is held at, at the foot of a fold's ghost.
+/// The temperature that the wall is held at, at the foot of a fold's ghost.
 template <class T>
 MPM_HD T temperature_of_wall(const Arguments<T>& a, const Fold& fold) {
   return holds_temperature(a, fold) ? a.wall_temperature[fold.axis][fold.side][fold.line] : T(0);
 }
 
-/// Flux into the body at the foot of a fold where heat comes through the wall, W/m^2. Convection goes by the temperature
-/// there: of the foot's own heat until that is `divided`, then by the shape's weights.
+/// The flux into the body at the foot of a fold where heat comes through the wall, W/m^2. Convection goes by the
+/// temperature there: by the foot's own heat until heat is `divided`, then by the shape's weights.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T flux_through_wall(const Arguments<T>& a, const Fold& fold, bool divided) {
   using N = typename Scene::Node;
@@ -90,7 +90,7 @@ MPM_HD T flux_through_wall(const Arguments<T>& a, const Fold& fold, bool divided
   return convected_flux(wall.coefficient, given, at_wall, a.wall_beyond, conductivity);
 }
 
-/// Rise of the temperature inward at a wall that heat comes through, by Fourier's law, K/m; else zero.
+/// The rise of the temperature inward at a wall that heat comes through, by Fourier's law, K/m; else zero.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T gradient_at_wall([[maybe_unused]] const Arguments<T>& a, [[maybe_unused]] const Fold& fold,
                           [[maybe_unused]] bool divided) {
@@ -104,7 +104,7 @@ MPM_HD T gradient_at_wall([[maybe_unused]] const Arguments<T>& a, [[maybe_unused
   }
 }
 
-/// sum w C (x_p - x_i) along the inward normal, J m/K, where the transfer scatters no gradients of the particles.
+/// The sum of w C (x_p - x_i) along the inward normal, J m/K, where the transfer scatters no particle gradients.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T capacity_inward([[maybe_unused]] const Arguments<T>& a, [[maybe_unused]] const Fold& fold) {
   using N = typename Scene::Node;
@@ -116,8 +116,8 @@ MPM_HD T capacity_inward([[maybe_unused]] const Arguments<T>& a, [[maybe_unused]
   }
 }
 
-/// Heat that the mirror gets beyond what the ghost's own and a held temperature make of the image; a node on the wall is
-/// its own mirror and gets half of it.
+/// The heat that the mirror gets beyond what the ghost's own and a held temperature make of the image; a node on the
+/// wall is its own mirror and gets half of it.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T heat_of_image(const Arguments<T>& a, const Fold& fold, T heat_capacity) {
   const T more = heat_beyond_wall(gradient_at_wall<Scene>(a, fold, false), a.cell_size * T(fold.beyond), heat_capacity,

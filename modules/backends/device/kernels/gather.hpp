@@ -1,5 +1,5 @@
 #pragma once
-// Grid to particles: moments of a velocity field, the transfer's gather, and the move. A lane a particle.
+// Takes the grid to the particles, a lane a particle: moments of a velocity field, the transfer's gather, and the move.
 
 #include "backends/device/kernels/higher.hpp"
 #include "kernel/corner_domain.hpp"
@@ -7,7 +7,7 @@
 
 namespace mpm::device {
 
-/// Moments of `velocity` (and of velocity - before, where the transfer reads it) over a stencil.
+/// Sums the moments of `velocity` (and of velocity - before, where the transfer reads it) over a stencil.
 template <class Scene>
 MPM_HD GatheredMoments<Scene::dimension, typename Scene::Scalar> gathered_moments(
     const Arguments<typename Scene::Scalar>& a, const Stencil<Scene>& stencil, const typename Scene::Scalar* velocity,
@@ -32,7 +32,7 @@ MPM_HD GatheredMoments<Scene::dimension, typename Scene::Scalar> gathered_moment
   return moments;
 }
 
-/// Where the grid's multilinear velocity takes a particle's corners, with what moves it beyond the gathered velocity.
+/// Moves a particle's corners by the grid's multilinear velocity and by what moves it beyond the gathered velocity.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD void gather_corners(const Arguments<T>& a, int p, const Vec<Scene::dimension, T>& advection,
                            const Vec<Scene::dimension, T>& gathered) {
@@ -60,7 +60,7 @@ MPM_HD void gather_corners(const Arguments<T>& a, int p, const Vec<Scene::dimens
   store_corners<D>(a.particles.field[P::moved_corners], stride, p, corners);
 }
 
-/// Gather pass; without `update_particles` only the velocity gradient that strains the particle (of USF and MUSL).
+/// Gathers; without `update_particles` only the velocity gradient that strains the particle (for USF and MUSL).
 template <class Scene>
 MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -97,7 +97,7 @@ MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a)
   });
 }
 
-/// The shape's second moment at each particle, cells^2: what metrics read.
+/// Computes the shape's second moment at each particle, cells^2, which metrics read.
 template <class Scene>
 MPM_HD void second_moments(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using P = typename Scene::Particle;
@@ -110,7 +110,7 @@ MPM_HD void second_moments(const Team& team, const Arguments<typename Scene::Sca
   });
 }
 
-/// x += dt advection; periodic axes are wrapped. Frozen particles stay.
+/// Moves by x += dt advection and wraps periodic axes. Frozen particles stay.
 template <class Scene>
 MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -147,7 +147,7 @@ MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
       const auto margin = [&](int side) {
         return a.walls[c][side] == wall_separate ? T(0.5) * a.cell_size : position_tolerance<T> * size;
       };
-      inside = inside && at >= -margin(0) && at <= size + margin(1);  // false for NaN
+      inside = inside && at >= -margin(0) && at <= size + margin(1);  // this is false for NaN
     }
     if constexpr (Scene::axisymmetric) inside = inside && x[0] > T(0);
     store(a.particles.field[P::position], stride, p, x);

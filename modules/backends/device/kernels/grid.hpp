@@ -1,13 +1,13 @@
 #pragma once
-// The grid between scatter and gather: walls and periodic images by the mirror fold of simulation/boundary.hpp, momenta
-// to velocities, forces, conditions. The formulas are those of operators/.
+// The grid's work between scatter and gather: walls and periodic images by the mirror fold of simulation/boundary.hpp,
+// velocities from momenta, forces, conditions. The formulas are those of operators/.
 
 #include "backends/device/kernels/folds.hpp"
 #include "operators/motion.hpp"
 
 namespace mpm::device {
 
-/// What scatters add to, to zero; for the remap of MUSL masses and momenta only.
+/// Sets to zero what scatters add to; for the remap of MUSL masses and momenta only.
 template <class Scene>
 MPM_HD void clear(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -24,7 +24,7 @@ MPM_HD void clear(const Team& team, const Arguments<typename Scene::Scalar>& a) 
   });
 }
 
-/// The weight of what was scattered: m g.
+/// Computes the weight m g of what was scattered.
 template <class Scene>
 MPM_HD void weigh(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
@@ -34,7 +34,7 @@ MPM_HD void weigh(const Team& team, const Arguments<typename Scene::Scalar>& a) 
   });
 }
 
-/// All forces on a node, along one axis; `at` is the place of that component.
+/// The sum of all forces on a node along one axis; `at` is the place of that component.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T total_force(const Arguments<T>& a, int at) {
   using N = typename Scene::Node;
@@ -106,7 +106,7 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
   });
 }
 
-/// The same for forces, along the folds that were made.
+/// Does the same for forces, along the folds that were made.
 template <class Scene>
 MPM_HD void fold_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -140,7 +140,7 @@ MPM_HD void fill_velocities(const Team& team, const Arguments<typename Scene::Sc
 
 // ---- nodes -------------------------------------------------------------------------------------------------------
 
-/// v = p / m. A node without mass is at rest.
+/// Computes v = p / m. A node without mass is at rest.
 template <class Scene>
 MPM_HD void divide(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -151,7 +151,7 @@ MPM_HD void divide(const Team& team, const Arguments<typename Scene::Scalar>& a)
   });
 }
 
-/// v- <- v.
+/// Keeps v- <- v.
 template <class Scene>
 MPM_HD void keep_velocity(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
@@ -160,7 +160,7 @@ MPM_HD void keep_velocity(const Team& team, const Arguments<typename Scene::Scal
                    [&](int at) { a.grid.field[N::velocity_before][at] = a.grid.field[N::velocity][at]; });
 }
 
-/// v += dt f / m; nothing is held any more.
+/// Applies v += dt f / m; nothing is held any more.
 template <class Scene>
 MPM_HD void accelerate(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -175,7 +175,7 @@ MPM_HD void accelerate(const Team& team, const Arguments<typename Scene::Scalar>
   });
 }
 
-/// Coordinates of a node by its index.
+/// The coordinates of a node by its index.
 template <int D, class T>
 MPM_HD void coordinates_of_node(const Arguments<T>& a, int index, int* node) {
   for (int axis = 0; axis < D; index /= a.extent[axis], ++axis) node[axis] = index % a.extent[axis] - a.padding[axis];
@@ -186,7 +186,7 @@ MPM_HD bool is_inside(const AnyBox& box, const int* node) {
   for (int c = 0; c < D; ++c) inside = inside && node[c] >= box.lower[c] && node[c] <= box.upper[c];
   return inside;
 }
-/// Index of a node among those of a box.
+/// The index of a node among those of a box.
 template <int D, class AnyBox>
 MPM_HD int index_in_box(const AnyBox& box, const int* node) {
   int index = 0;
@@ -200,8 +200,8 @@ MPM_HD int nodes_of_box(const Box<T>& box) {
   return count;
 }
 
-/// Sets the velocities that walls and boxes give; where several do, the last of them, boxes after walls. All decide by
-/// the velocity as it was.
+/// Sets the velocities that walls and boxes give. Where several do, the last of them counts, boxes after walls. All
+/// decide by the velocity as it was.
 template <class Scene>
 MPM_HD void impose_conditions(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;

@@ -1,8 +1,8 @@
 #pragma once
 // Temperature: particles give nodes heat and heat capacity as they give momentum and mass, conduct what the gradient of
 // the nodes' temperature drives, and take the temperature back by their transfer, which is called for the first
-// component of a velocity. The formulas are those of operators/heat.hpp and operators/edges.hpp. Compiled for scenes
-// with temperature alone.
+// component of a velocity. The formulas are those of operators/heat.hpp and operators/edges.hpp. This file is compiled
+// only for scenes with temperature.
 
 #include "backends/device/kernels/grid.hpp"
 #include "backends/device/kernels/material.hpp"
@@ -14,25 +14,25 @@ namespace mpm::device {
 
 // ---- particles to nodes ------------------------------------------------------------------------------------------
 
-/// m c of a particle, J/K.
+/// The heat capacity m c of a particle, J/K.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T capacity_of_particle(const ParticleArrays<T>& particles, int p) {
   return of_ring<Scene>(particles, particles.mass, p) * heat_capacity_of<Scene>(particles, p);
 }
 
-/// J V0 of a particle, m^3 (in plane strain a metre of depth).
+/// The volume J V0 of a particle, m^3 (in plane strain for a metre of depth).
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T volume_of_particle(const ParticleArrays<T>& particles, int p) {
   return of_ring<Scene>(particles, particles.volume, p) * particles.field[Scene::Particle::volume_ratio][p];
 }
 
-/// k of a particle, W/(m K).
+/// The conductivity k of a particle, W/(m K).
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T conductivity_of(const ParticleArrays<T>& particles, int p) {
   return particles.heat.conductivity[has_melted<Scene>(particles, p) ? 1 : 0];
 }
 
-/// What a particle keeps of its transfer for the temperature.
+/// Loads what a particle keeps of its transfer for the temperature.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD auto temperature_state(const ParticleArrays<T>& particles, int p) {
   typename Scene::Transfer::template State<Scene::dimension, T> state{};
@@ -52,15 +52,15 @@ MPM_HD void store_temperature_state(const ParticleArrays<T>& particles, int p, c
   });
 }
 
-/// Heat, heat capacity and, where heat comes through walls, volume, the same times conductivity, and places.
+/// The channels: heat, heat capacity and, where heat comes through walls, volume, that times conductivity, and places.
 template <class Scene>
 inline constexpr int heat_channels = (Scene::Node::heated_volume >= 0 ? 4 : 2) +
                                      (Scene::Node::capacity_position >= 0 ? Scene::dimension : 0);
 template <class Scene>
 inline constexpr int scatter_heat_scalars = heat_channels<Scene>* Tile<Scene::dimension>::nodes;
 
-/// w (b + A d) of the temperature and w m c; where heat comes through walls w J V0 of the section, the same times k, and
-/// -w m c d.
+/// Scatters w (b + A d) of the temperature and w m c; where heat comes through walls also w J V0 of the section, that
+/// times k, and -w m c d.
 template <class Scene>
 MPM_HD void scatter_heat(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -107,7 +107,7 @@ MPM_HD void scatter_heat(const Team& team, const Arguments<typename Scene::Scala
 template <class Scene>
 inline constexpr int conduct_scalars = Tile<Scene::dimension>::nodes;
 
-/// -J V0 k g . grad w with g = sum T grad w.
+/// Scatters -J V0 k g . grad w with g = sum T grad w.
 template <class Scene>
 MPM_HD void conduct(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -135,7 +135,7 @@ MPM_HD void conduct(const Team& team, const Arguments<typename Scene::Scalar>& a
 
 // ---- nodes -------------------------------------------------------------------------------------------------------
 
-/// T- = H / C. A node without heat capacity has no temperature, which is 0.
+/// Computes T- = H / C. A node without heat capacity has no temperature, which is 0.
 template <class Scene>
 MPM_HD void divide_heat(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -146,8 +146,8 @@ MPM_HD void divide_heat(const Team& team, const Arguments<typename Scene::Scalar
   });
 }
 
-/// Sets the temperatures that walls and boxes hold; where several do, the last of them, boxes after walls. Sums the heat
-/// that walls, and that boxes, give by it.
+/// Sets the temperatures that walls and boxes hold. Where several do, the last of them counts, boxes after walls. Sums
+/// the heat that walls, and that boxes, give by it.
 template <class Scene>
 MPM_HD void impose_temperature(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -173,9 +173,9 @@ MPM_HD void impose_temperature(const Team& team, const Arguments<typename Scene:
   });
 }
 
-/// Gives ghosts along a.axis the mirrored temperatures, which go on beyond a wall that heat comes through. What was folded
-/// belongs to the particles as it was, beyond the wall: sums how much more heat that is there than at the mirrors, at
-/// walls that are held at a temperature and at others.
+/// Gives ghosts along a.axis the mirrored temperatures, which go on beyond a wall that heat comes through. What was
+/// folded belongs to the particles as it was, beyond the wall: the kernel sums how much more heat that is there than at
+/// the mirrors, at walls that are held at a temperature and at others.
 template <class Scene>
 MPM_HD void fill_temperature(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -196,7 +196,7 @@ MPM_HD void fill_temperature(const Team& team, const Arguments<typename Scene::S
   });
 }
 
-/// T- <- T; ghosts too.
+/// Keeps T- <- T, at ghosts too.
 template <class Scene>
 MPM_HD void keep_temperature(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
@@ -205,8 +205,8 @@ MPM_HD void keep_temperature(const Team& team, const Arguments<typename Scene::S
                    [&](int node) { a.grid.field[N::temperature_before][node] = a.grid.field[N::temperature][node]; });
 }
 
-/// Heat through the walls that a node stands on: it gives what comes through its area to itself and the next nodes inward,
-/// by the shape's shares. One axis at a time, a lane a line. Sums the rates of fluxes and of convection.
+/// Takes heat through the walls that a node stands on, an axis at a time, a lane a line: the node shares what comes
+/// through its area with the next nodes inward, by the shape's shares. Sums the rates of fluxes and of convection.
 template <class Scene>
 MPM_HD void exchange_at_walls(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -239,7 +239,7 @@ MPM_HD void exchange_at_walls(const Team& team, const Arguments<typename Scene::
   });
 }
 
-/// Mass of the nodes of the box that is warmed.
+/// Sums the mass of the nodes of the box that is warmed.
 template <class Scene>
 MPM_HD void mass_of_box(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   constexpr int D = Scene::dimension;
@@ -250,7 +250,7 @@ MPM_HD void mass_of_box(const Team& team, const Arguments<typename Scene::Scalar
   });
 }
 
-/// The power of a box to its nodes, by their share of its mass. Sums what they take.
+/// Gives the power of a box to its nodes by their share of its mass, and sums what they take.
 template <class Scene>
 MPM_HD void warm_box(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -267,7 +267,7 @@ MPM_HD void warm_box(const Team& team, const Arguments<typename Scene::Scalar>& 
   });
 }
 
-/// T+ = T- + dt R / C.
+/// Computes T+ = T- + dt R / C.
 template <class Scene>
 MPM_HD void warm(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -281,7 +281,7 @@ MPM_HD void warm(const Team& team, const Arguments<typename Scene::Scalar>& a) {
 
 // ---- nodes to particles ------------------------------------------------------------------------------------------
 
-/// The transfer's gather of the temperature.
+/// Gathers the temperature by the transfer's gather.
 template <class Scene>
 MPM_HD void gather_heat(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -314,7 +314,7 @@ MPM_HD void gather_heat(const Team& team, const Arguments<typename Scene::Scalar
   });
 }
 
-/// Melting and freezing. Where the material's parameters become those of the other phase, the stored energy that this
+/// Melts and freezes. Where the material's parameters become those of the other phase, the stored energy that this
 /// takes away is left as dissipated.
 template <class Scene>
 MPM_HD void change_phase(const Team& team, const Arguments<typename Scene::Scalar>& a) {
@@ -342,18 +342,18 @@ MPM_HD void change_phase(const Team& team, const Arguments<typename Scene::Scala
 
 // ---- what the heat ledger asks -----------------------------------------------------------------------------------
 
-/// Sum of H.
+/// Sums H.
 template <class Scene>
 MPM_HD void heat_of_nodes(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   sum_over<1>(team, a, a.node_count, [&](int node, double* sum) { sum[0] += a.grid.field[Scene::Node::heat][node]; });
 }
-/// Sum of R.
+/// Sums R.
 template <class Scene>
 MPM_HD void heat_rate_of_nodes(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   sum_over<1>(team, a, a.node_count,
               [&](int node, double* sum) { sum[0] += a.grid.field[Scene::Node::heat_rate][node]; });
 }
-/// Sum of C T.
+/// Sums C T.
 template <class Scene>
 MPM_HD void heat_of_temperatures(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
@@ -361,14 +361,14 @@ MPM_HD void heat_of_temperatures(const Team& team, const Arguments<typename Scen
     sum[0] += double(a.grid.field[N::heat_capacity][node]) * a.grid.field[N::temperature][node];
   });
 }
-/// Sum of m c T.
+/// Sums m c T.
 template <class Scene>
 MPM_HD void heat_of_particles(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   sum_over<1>(team, a, a.particles.count, [&](int p, double* sum) {
     sum[0] += double(capacity_of_particle<Scene>(a.particles, p)) * a.particles.field[Scene::Particle::temperature][p];
   });
 }
-/// Heat that the last strain has made of what it dissipated.
+/// Sums the heat that the last strain has made of what it dissipated.
 template <class Scene>
 MPM_HD void heat_of_dissipation(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   sum_over<1>(team, a, a.particles.count, [&](int p, double* sum) {

@@ -1,13 +1,13 @@
 #pragma once
-// Polynomials beyond affine of one particle (kernel/polynomial_basis.hpp), of shapes that are tensor products.
+// Polynomials beyond affine of one particle (kernel/polynomial_basis.hpp), for shapes that are tensor products.
 
 #include "backends/device/kernels/stencil.hpp"
 #include "kernel/polynomial_basis.hpp"
 
 namespace mpm::device {
 
-/// Coefficients and, at each node of the stencil, the values of the polynomials. A scene without them has no use for
-/// it.
+/// The coefficients and, at each node of the stencil, the values of the polynomials. A scene without them has no use
+/// for it.
 template <class Scene>
 class Higher {
   using T = typename Scene::Scalar;
@@ -23,7 +23,7 @@ class Higher {
     for (int k = 0; k < scalars; ++k) coefficient[k] = T(0);
   }
 
-  /// sum w c P at a node, component i.
+  /// The sum of w c P at a node, component i.
   MPM_HD T given(const int* node, int i) const {
     T sum = 0;
     for_each_product<D>(Scene::basis_order, [&](int function, const int* power) {
@@ -45,7 +45,7 @@ class Higher {
     });
   }
 
-  /// sum over the polynomials of |c|^2 sum w P^2: what they add to the particle's v^2.
+  /// The sum over the polynomials of |c|^2 sum w P^2, which they add to the particle's v^2.
   MPM_HD T squares() const {
     T sum = 0;
     for_each_product<D>(Scene::basis_order, [&](int function, const int* power) {
@@ -70,7 +70,7 @@ class Higher {
   AxisBasis<K, T> axis_[D];
 };
 
-/// The particle's polynomials beyond affine where the scene has them.
+/// Makes the particle's polynomials beyond affine where the scene has them.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD auto higher_of(const Arguments<T>& a, const Stencil<Scene>& stencil, int p) {
   if constexpr (Scene::basis_functions > 0) {

@@ -1,9 +1,9 @@
 #pragma once
-// All kernels, and their entries by name. The composer defines Scene, and Scene0, Scene1 ... with a material each,
-// in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_LEDGER_ENTRIES, MPM_DEVICE_CONTACT_ENTRIES,
-// MPM_DEVICE_FILTER_ENTRIES, MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES and MPM_DEVICE_HEAT_LEDGER_ENTRIES
-// where the scene has these, and for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and, where any melts,
-// MPM_DEVICE_MELTING_ENTRIES(n).
+// This file includes all kernels and makes their entries. The composer defines Scene, and Scene0, Scene1 ... with a
+// material each, in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_LEDGER_ENTRIES,
+// MPM_DEVICE_CONTACT_ENTRIES, MPM_DEVICE_FILTER_ENTRIES, MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES and
+// MPM_DEVICE_HEAT_LEDGER_ENTRIES where the scene has these, and for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and,
+// where any melts, MPM_DEVICE_MELTING_ENTRIES(n).
 
 #include "backends/device/kernels/contact.hpp"
 #include "backends/device/kernels/filter.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// What the energy ledger asks of nodes and particles.
+// These kernels measure what the energy ledger asks of nodes and particles.
 
 #include "backends/device/kernels/grid.hpp"
 #include "backends/device/kernels/scatter.hpp"
@@ -8,7 +8,7 @@
 
 namespace mpm::device {
 
-/// Sum of p.p / 2m.
+/// Sums p.p / 2m.
 template <class Scene>
 MPM_HD void energy_of_momenta(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
@@ -22,7 +22,7 @@ MPM_HD void energy_of_momenta(const Team& team, const Arguments<typename Scene::
   });
 }
 
-/// Sum of m v.v / 2.
+/// Sums m v.v / 2.
 template <class Scene>
 MPM_HD void energy_of_velocities(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
@@ -34,8 +34,8 @@ MPM_HD void energy_of_velocities(const Team& team, const Arguments<typename Scen
   });
 }
 
-/// Work of the internal, body and gravity forces between v- and v+ at their mean, and of what they do not explain: the
-/// reactions of conditions on held components and of contact on the others.
+/// Sums the work of the internal, body and gravity forces between v- and v+ at their mean, and of what they do not
+/// explain: the reactions of conditions on held components and of contact on the others.
 template <class Scene>
 MPM_HD void work_of_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
@@ -60,7 +60,7 @@ MPM_HD void work_of_forces(const Team& team, const Arguments<typename Scene::Sca
   });
 }
 
-/// Kinetic energy of particles, with the affine part m/2 tr(C D C^T) and that of the polynomials beyond it.
+/// Sums the particles' kinetic energy with the affine part m/2 tr(C D C^T) and that of the polynomials beyond it.
 template <class Scene>
 MPM_HD void energy_of_particles(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -76,7 +76,7 @@ MPM_HD void energy_of_particles(const Team& team, const Arguments<typename Scene
     }
     if constexpr (Scene::affine_carries_energy || Scene::basis_functions > 0) {
       const Stencil<Scene> stencil(a, p);
-      if (!stencil.inside()) return;  // the gather has told
+      if (!stencil.inside()) return;  // the gather has reported it
       if constexpr (Scene::affine_carries_energy) {
         const Mat<D, T> C = load_matrix<D>(a.particles.field[P::transfer_state], stride, p);
         const Mat<D, T> moment = stencil.second_moment();
@@ -90,7 +90,7 @@ MPM_HD void energy_of_particles(const Team& team, const Arguments<typename Scene
   });
 }
 
-/// Energy dissipated by the last strain.
+/// Sums the energy dissipated by the last strain.
 template <class Scene>
 MPM_HD void energy_dissipated(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   sum_over<1>(team, a, a.particles.count, [&](int p, double* sum) {

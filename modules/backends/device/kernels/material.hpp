@@ -1,13 +1,13 @@
 #pragma once
-// The material functor on its particles: stress, strain, wave speed. A lane a particle. A particle whose volume ratio
-// is not a positive number is reported as failed.
+// The material functor works on its particles, a lane a particle: stress, strain, wave speed. A particle whose volume
+// ratio is not a positive number is reported as failed.
 
 #include "backends/device/kernels/arrays.hpp"
 #include "operators/heat.hpp"
 
 namespace mpm::device {
 
-/// What a particle keeps of its material.
+/// The part of a particle that its material keeps.
 template <class Scene, bool Axisymmetric>
 struct MaterialState {
   using type = typename Scene::Material::template State<Scene::dimension, typename Scene::Scalar>;
@@ -17,7 +17,7 @@ struct MaterialState<Scene, true> {
   using type = typename Scene::Material::template AxisymmetricState<typename Scene::Scalar>;
 };
 
-/// L of a particle; with its zz in axisymmetric scenes.
+/// The velocity gradient L of a particle, with its zz in axisymmetric scenes.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD auto velocity_gradient_of(const ParticleArrays<T>& particles, int p) {
   using P = typename Scene::Particle;
@@ -38,7 +38,7 @@ MPM_HD bool has_melted(const ParticleArrays<T>& particles, int p) {
     return false;
 }
 
-/// c of a particle, J/(kg K).
+/// The heat capacity c of a particle, J/(kg K).
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T heat_capacity_of(const ParticleArrays<T>& particles, int p) {
   return particles.heat.heat_capacity[has_melted<Scene>(particles, p) ? 1 : 0];
@@ -68,7 +68,7 @@ MPM_HD void for_each_state(const Team& team, const Arguments<typename Scene::Sca
   }
 }
 
-/// Kirchhoff stress and volume ratio at the current state.
+/// Evaluates Kirchhoff stress and volume ratio at the current state.
 template <class Scene>
 MPM_HD void stress(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -104,7 +104,7 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
   });
 }
 
-/// Speed of the fastest wave at the current state.
+/// Finds the speed of the fastest wave at the current state.
 template <class Scene>
 MPM_HD void wave_speed(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using Material = typename Scene::Material;

@@ -1,16 +1,16 @@
 #pragma once
-// Particles to grid. One team sums a block's particles into a tile in shared memory, then adds the tile to the grid.
+// Takes particles to the grid: a team sums a block's particles into a tile in shared memory, then adds it to the grid.
 
 #include "backends/device/kernels/higher.hpp"
 
 namespace mpm::device {
 
-/// Nodes of a block and of the stencils of its particles: one before it, two behind. A list may reach farther.
+/// The nodes of a block and of its particles' stencils: one before it, two behind. A list may reach farther.
 template <int D>
 struct Tile {
   static constexpr int before = 1, side = block_cells + 3, nodes = D == 2 ? side * side : side * side * side;
 
-  /// Index of a node in the tile, or -1.
+  /// The index of a node in the tile, or -1.
   MPM_HD static int index(const int* first_cell, const int* node) {
     int index = 0;
     for (int c = D - 1; c >= 0; --c) {
@@ -59,7 +59,7 @@ MPM_HD void scatter_block(const Team& team, const Arguments<T>& a, T* const* cha
 template <class Scene>
 inline constexpr int scatter_scalars = Scene::scattered* Tile<Scene::dimension>::nodes;
 
-/// The grid's arrays of what particles give, one a component; null where this scatter leaves it alone.
+/// Finds the grid's arrays of what particles give, one a component; null where this scatter leaves one alone.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD void find_channels(const Arguments<T>& a, T** channel) {
   using N = typename Scene::Node;
@@ -74,15 +74,15 @@ MPM_HD void find_channels(const Arguments<T>& a, T** channel) {
   });
 }
 
-/// Mass or volume of a particle, given what the body says.
+/// The mass or volume of a particle, given what the body says.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T of_ring(const ParticleArrays<T>& particles, T of_body, int p) {
   if constexpr (Scene::axisymmetric) return of_body * particles.field[Scene::Particle::circumference][p];
   return of_body;
 }
 
-/// Scatter pass: w m, w (b + A d), -V0 tau grad w (or w D^-1 d) and w m b, and the contact fields, as `a` says. Around
-/// an axis -w V0 tau_zz / r too. The weight follows from the masses (weigh).
+/// Scatters w m, w (b + A d), -V0 tau grad w (or w D^-1 d) and w m b, and the contact fields, as `a` says, around an
+/// axis also -w V0 tau_zz / r. The weight follows from the masses (weigh).
 template <class Scene>
 MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -110,7 +110,7 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
       for (int k = 0; k < Sym<D, T>::size; ++k) tau.s[k] = particles.field[P::stress][k * stride + p];
     [[maybe_unused]] const auto higher = higher_of<Scene>(a, stencil, p);
     stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
-      T values[Scene::scattered] = {};  // nothing of what no formula here knows
+      T values[Scene::scattered] = {};  // values that no formula here knows stay zero
       const T mass = s.weight * mass_of_particle;
       values[Place::mass] = mass;
       for (int i = 0; i < D; ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// The nodes of one particle, from a shape of either form, under one interface.
+// A stencil has the nodes of one particle, from a shape of either form, under one interface.
 
 #include "backends/device/kernels/arrays.hpp"
 
@@ -11,7 +11,7 @@ struct StencilNode {
   T weight;
   Vec<D, T> gradient;  ///< grad w, 1/m
   Vec<D, T> distance;  ///< d = node - particle, m
-  Vec<D, T> affine;    ///< w D^-1 d, 1/m; only where Scene::affine
+  Vec<D, T> affine;    ///< w D^-1 d, 1/m; only where Scene::affine is set
 };
 
 template <class S>
@@ -53,7 +53,7 @@ MPM_HD Vec<Scene::dimension, T> position_in_cells(const Arguments<T>& a, int p) 
 template <class Scene, bool List>
 class StencilOf;
 
-/// A tensor product of weights along the axes.
+/// A stencil that is a tensor product of weights along the axes.
 template <class Scene>
 class StencilOf<Scene, false> {
   using T = typename Scene::Scalar;
@@ -76,10 +76,10 @@ class StencilOf<Scene, false> {
         Shape::evaluate(parameters, x[c], a.particles.half_size, first, weight_[c], gradient_[c]);
       else
         Shape::evaluate(parameters, x[c], first, weight_[c], gradient_[c]);
-      // False for NaN too; only then is the cast to int safe.
+      // The test is false for NaN too; only then is the cast to int safe.
       const bool inside = first >= T(-a.padding[c]) && first <= T(a.cells[c] + a.padding[c] - (width - 1));
       inside_ = inside_ && inside;
-      if constexpr (Scene::deformed) {  // no weight: the domain has outgrown the stencil
+      if constexpr (Scene::deformed) {  // without weight the domain has outgrown the stencil
         T sum = 0;
         for (int k = 0; k < width; ++k) sum += weight_[c][k];
         inside_ = inside_ && sum > T(0.5);
@@ -103,7 +103,7 @@ class StencilOf<Scene, false> {
   /// Whether all nodes are in the grid, the position is a number, and the stencil holds the domain.
   MPM_HD bool inside() const { return inside_; }
 
-  /// D = sum w d d^T, cells^2: diagonal, since sum w d = 0 along each axis.
+  /// The moment D = sum w d d^T, cells^2, which is diagonal, since sum w d = 0 along each axis.
   MPM_HD Mat<D, T> second_moment() const {
     Mat<D, T> moment{};
     for (int c = 0; c < D; ++c)
@@ -141,7 +141,7 @@ class StencilOf<Scene, false> {
   T offset_[D], weight_[D][width], gradient_[D][width], inverse_moment_[D];
 };
 
-/// A list of nodes, made from the particle's domain.
+/// A stencil that is a list of nodes, made from the particle's domain.
 template <class Scene>
 class StencilOf<Scene, true> {
   using T = typename Scene::Scalar;
@@ -150,7 +150,7 @@ class StencilOf<Scene, true> {
 
  public:
   MPM_HD StencilOf(const Arguments<T>& a, int p) : inside_(true), position_(position_in_cells<Scene>(a, p)) {
-    for (int c = 0; c < D; ++c)  // false for NaN
+    for (int c = 0; c < D; ++c)  // the test is false for NaN
       inside_ = inside_ && position_[c] >= T(-a.padding[c]) && position_[c] <= T(a.cells[c] + a.padding[c]);
     list_.count = 0;
     if (!inside_) return;

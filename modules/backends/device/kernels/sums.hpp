@@ -1,19 +1,19 @@
 #pragma once
-// Sums over nodes and particles, in double precision: lanes to a team in shared memory, teams to the whole by the host.
+// Sums over nodes and particles in double precision: a team adds its lanes in shared memory, the host adds the teams.
 
 #include "backends/device/kernels/arrays.hpp"
 
 namespace mpm::device {
 
-/// Lanes of a reduction that shared memory has room for.
+/// The lanes of a reduction that shared memory has room for.
 inline constexpr int largest_team = 256;
 
-/// Room in shared memory for `count` sums a lane.
+/// The room in shared memory for `count` sums a lane.
 template <class Scene, int count>
 inline constexpr int sum_scalars = count* largest_team* static_cast<int>(sizeof(double) /
                                                                          sizeof(typename Scene::Scalar));
 
-/// partial_sums[team][Count] = sums over the team's share of the indices 0 .. count - 1; body(index, sums) adds to them.
+/// Sets partial_sums[team][Count] to sums over the team's share of 0 .. count - 1, to which body(index, sums) adds.
 template <int Count, class T, class Body>
 MPM_HD void sum_over(const Team& team, const Arguments<T>& a, int count, Body body) {
   double* const of_lane = team.template shared<double>();

@@ -1,8 +1,7 @@
 #pragma once
-// A team of lanes that works on one block. A kernel is a sequence of phases: for_each_lane runs one phase over all
-// lanes and ends when all lanes have ended it. On the GPU a lane is a thread and the end a barrier; on the host a lane
-// is one turn of a loop. A kernel keeps nothing in local variables from one phase to the next: what must last is in
-// memory.
+// A team of lanes works on one block. A kernel is a sequence of phases: for_each_lane runs one phase over all lanes and
+// ends when all lanes have ended it. On the GPU a lane is a thread and the end a barrier; on the host a lane is one
+// turn of a loop. A kernel keeps nothing in local variables from one phase to the next: what must last is in memory.
 
 #include "kernel/config.hpp"
 
@@ -24,7 +23,7 @@ class Team {
     phase(static_cast<int>(threadIdx.x));
     __syncthreads();
   }
-  /// Sums of several lanes or teams into one place, in any order.
+  /// Lets several lanes or teams add to one place, in any order.
   template <class T>
   MPM_HD static void add(T* to, T value) {
     atomicAdd(to, value);
@@ -35,7 +34,7 @@ class Team {
   void* shared_;
 };
 
-/// extern "C" entry `name` that runs `kernel` with room for `scalars` values in shared memory.
+/// Makes the extern "C" entry `name` that runs `kernel` with room for `scalars` values in shared memory.
 #define MPM_DEVICE_ENTRY(name, kernel, scalars)                                     \
   extern "C" __global__ void name(const mpm::device::Arguments<Scene::Scalar> a) {  \
     __shared__ alignas(16) unsigned char shared[sizeof(Scene::Scalar) * (scalars)]; \
@@ -72,8 +71,8 @@ class Team {
   bool backwards_;
 };
 
-/// The same on the host: teams one after another, upwards or downwards like the lanes in them. Shared memory starts as
-/// NaN, so that what a kernel reads before it has written it shows.
+/// Makes the entry on the host: teams run one after another, upwards or downwards like the lanes in them. Shared memory
+/// starts as NaN, so that what a kernel reads before it has written it shows.
 #define MPM_DEVICE_ENTRY(name, kernel, scalars)                                                                \
   extern "C" void name(const mpm::device::Arguments<Scene::Scalar>* a, int teams, int lanes, bool backwards) { \
     alignas(16) unsigned char shared[sizeof(Scene::Scalar) * (scalars)];                                       \
@@ -85,7 +84,7 @@ class Team {
 
 #endif
 
-/// One phase over the indices 0 .. count - 1, one a lane of all teams.
+/// Runs one phase over the indices 0 .. count - 1, one a lane of all teams.
 template <class Body>
 MPM_HD void for_each_index(const Team& team, int count, Body body) {
   team.for_each_lane([&](int lane) {
