@@ -27,9 +27,10 @@ struct ContactGeometry {
 inline constexpr double contact_prescreen = 1e-5;
 
 /// Whether a law is asked about two fields with these masses at a node.
-inline bool meet(double mass_a, double mass_b, bool weld) {
+template <class Scalar>
+bool meet(Scalar mass_a, Scalar mass_b, bool weld) {
   if (!(mass_a > 0) || !(mass_b > 0)) return false;
-  return weld || std::min(mass_a, mass_b) >= contact_prescreen * (mass_a + mass_b);
+  return weld || std::min(mass_a, mass_b) >= contact_prescreen * (static_cast<double>(mass_a) + mass_b);
 }
 
 /// Finds the normal by the shared average volume gradient (Nairn 2013, CMES 92:271), the separation by inverted edge

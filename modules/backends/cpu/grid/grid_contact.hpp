@@ -48,11 +48,19 @@ struct GridStep<D, T>::ContactBatch {
   }
 };
 
+/// What contact looks at of one velocity field, from a slot's first node on.
 template <int D, class T>
-ContactFieldNode GridStep<D, T>::contact_node(int field, std::uint32_t node) {
+struct GridStep<D, T>::ContactField {
+  const Q *motion, *gradient, *position;
+
+  ContactFieldNode at(std::uint32_t node) const;
+};
+
+template <int D, class T>
+inline ContactFieldNode GridStep<D, T>::ContactField::at(std::uint32_t node) const {
   ContactFieldNode result;
-  const Q gradient = grid_.quad(volume_gradient, field, node), position = grid_.quad(mass_position, field, node);
-  result.mass = motion_at(field, node)[3];
+  const Q gradient = this->gradient[node], position = this->position[node];
+  result.mass = motion[node][3];
   result.volume = gradient[3];
   for (int c = 0; c < 3; ++c) {
     result.volume_gradient[c] = gradient[c];
@@ -104,15 +112,21 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
 template <int D, class T>
 void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums) {
   const bool weld = (scene_.experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION) != 0;
+  const std::uint32_t first = slot * block_nodes;
+  const auto contact_field = [&](int field) {
+    return ContactField{&motion_at(field, first), &grid_.quad(volume_gradient, field, first),
+                        &grid_.quad(mass_position, field, first)};
+  };
   for (int a = 0; a < grid_.fields(); ++a)
     for (int b = a + 1; b < grid_.fields(); ++b) {
       ContactBatch batch;
-      for (std::uint32_t node = slot * block_nodes; node < (slot + 1) * block_nodes; ++node) {
-        const Q &va = motion_at(a, node), &vb = motion_at(b, node);
+      const ContactField of_a = contact_field(a), of_b = contact_field(b);
+      for (std::uint32_t node = 0; node < block_nodes; ++node) {
+        const Q &va = of_a.motion[node], &vb = of_b.motion[node];
         if (!meet(va[3], vb[3], weld)) continue;
-        const ContactGeometry geometry = contact_geometry(contact_node(a, node), contact_node(b, node), edges_[a],
-                                                          edges_[b], scene_.domain.cell_size, D);
-        if (geometry.valid || weld) batch.add(node, va, vb, geometry);
+        const ContactGeometry geometry =
+            contact_geometry(of_a.at(node), of_b.at(node), edges_[a], edges_[b], scene_.domain.cell_size, D);
+        if (geometry.valid || weld) batch.add(first + node, va, vb, geometry);
       }
       if (batch.count > 0) apply_law(batch, a, b, step, sums);
     }

@@ -133,10 +133,10 @@ class GridStep : NamedChannels {
   enum class Recorded { before_forces, after_forces, remap, filter };
   struct ContactSums;
   struct ContactBatch;
+  struct ContactField;
   void resolve_contact(const StepInfo& step, Recorded recorded);
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
-  ContactFieldNode contact_node(int field, std::uint32_t node);
 
   Q gravity_{};
   const Scene<D, T>& scene_;
