@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "operators/heat.hpp"
+#include "plugin/extension_of.hpp"
 
 namespace mpm {
 namespace {
@@ -94,12 +95,19 @@ void evaluate(const Experiment& experiment, const Plugin& material, const std::v
         field[c * stride + p] = values[particles[std::min(p, n - 1)] * components + c];
   }
   for (auto& field : fields) pointers.push_back(field.data());
+  std::vector<double> temperature;
+  if (const auto kept = state.host_state.find("temperature");
+      kept != state.host_state.end() && extension_of<mpm_material_temperature>(material)) {
+    temperature.resize(stride);
+    for (std::size_t p = 0; p < stride; ++p) temperature[p] = kept->second[particles[std::min(p, n - 1)]];
+  }
 
   std::vector<double> stress(symmetric * stride), stored_energy(stride), wave_speed(stride), volume_ratio(stride);
   mpm_material_batch batch{};
   batch.count = batch.stride = static_cast<std::uint32_t>(stride);
   batch.dimension = static_cast<std::uint32_t>(D);
   batch.state = pointers.data();
+  if (!temperature.empty()) batch.temperature = temperature.data();
   batch.kirchhoff_stress = stress.data();
   batch.stored_energy = stored_energy.data();
   batch.wave_speed = wave_speed.data();

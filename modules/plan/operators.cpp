@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "plan/step_builder.hpp"
+#include "plugin/extension_of.hpp"
 
 namespace mpm {
 namespace {
@@ -198,6 +199,13 @@ void add_what_depends(Uses& uses, Act act, const Pass& pass, const Plan& plan, c
   }
 }
 
+/// Whether a material asks for its particles' temperature.
+bool reads_temperature(const Experiment& experiment) {
+  return std::any_of(experiment.materials.begin(), experiment.materials.end(), [](const auto& material) {
+    return extension_of<mpm_material_temperature>(*material.component.plugin);
+  });
+}
+
 void describe(Operator& operation, const Pass& pass, const Plan& plan, const Experiment& experiment) {
   const auto& declared = *std::find_if(std::begin(declarations), std::end(declarations),
                                        [&](const Declaration& entry) { return entry.act == operation.act; });
@@ -206,6 +214,12 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
   Uses uses(operation, plan);
   uses.reads(declared.reads).writes(declared.writes).adds(declared.adds);
   add_what_depends(uses, operation.act, pass, plan, experiment);
+  const auto reads = [&](const char* name) {
+    return std::find(operation.reads.begin(), operation.reads.end(), name) != operation.reads.end();
+  };
+  // Whoever asks such a material hands it the temperature as it is then.
+  if (reads("particles/material") && !reads("particles/temperature") && reads_temperature(experiment))
+    uses.reads({"particles/temperature"});
 }
 #undef MPM_CONSTRAINED
 #undef MPM_KEPT

@@ -144,7 +144,7 @@ typedef struct mpm_material_projection {
 } mpm_material_projection;
 
 /* ---- mpm.material.temperature ------------------------------------------------------------------------------------
- * The material reads `temperature` of its batches. */
+ * The material reads `temperature` of its batches: that of the particles at the call (docs/method.md, Temperature). */
 #define MPM_MATERIAL_TEMPERATURE_ID "mpm.material.temperature"
 #define MPM_MATERIAL_TEMPERATURE_VERSION 1u
 typedef struct mpm_material_temperature {

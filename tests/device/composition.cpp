@@ -2,7 +2,6 @@
 
 #include "backends/device/drivers/nvrtc.hpp"
 #include "device/device_support.hpp"
-#include "plugin/extensions.h"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -94,19 +93,6 @@ TEST_CASE("a functor that includes what a device cannot see is refused with its 
     choice.shape = &odd.plugin;
     CHECK_NOTHROW(device::HostDevice(device::compose(choice)));
   }
-}
-
-TEST_CASE("a material that reads temperatures is refused by name", "[device]") {
-  mpm_descriptor descriptor = *plugins().find(MPM_MATERIAL, "neo_hookean")->descriptor;
-  descriptor.extension = [](const char* id) -> const void* {
-    static constexpr mpm_material_temperature temperature{MPM_MATERIAL_TEMPERATURE_VERSION, 0, 300};
-    return std::string_view(id) == MPM_MATERIAL_TEMPERATURE_ID ? &temperature : nullptr;
-  };
-  const Plugin plugin{&descriptor, "warm"};
-  device::Choice choice = usual_choice();
-  choice.materials[0] = &plugin;
-  CHECK_THROWS_WITH(device::compose(choice),
-                    ContainsSubstring("material plugin neo_hookean reads the temperature of particles"));
 }
 
 TEST_CASE("the host-run device says what a compiler refuses and where", "[device]") {

@@ -8,6 +8,7 @@
 
 #include "backends/cpu/grid/grid_step.hpp"
 #include "backends/cpu/particles/particle_step.hpp"
+#include "plugin/extension_of.hpp"
 #include "support/pace.hpp"
 
 namespace mpm::cpu {
@@ -128,6 +129,7 @@ std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<Se
     const auto& thermal = experiment.materials[experiment.bodies[i].material].thermal;
     body.thermal = thermal ? &*thermal : nullptr;
     body.warms_itself = body.dissipates && thermal && thermal->dissipation_to_heat > 0;
+    body.reads_temperature = thermal && extension_of<mpm_material_temperature>(*body.material->plugin);
     field_of_body_.push_back(body.field);
     particles_[i].lay_out(scene_.plan, body.index);
     if (std::max(particles_[i].transfer_state.size(), particles_[i].material_state.size()) > Step::max_state_fields)

@@ -215,8 +215,14 @@ std::string scene_text(const Choice& choice) {
   write_fields(out, choice);
   if (has_temperature(choice)) write_temperature_state(out, choice);
   out << "};\n";
-  for (std::size_t k = 0; k < choice.materials.size(); ++k)
-    out << "struct Scene" << k << " : Scene {\n  using Material = " << type(choice.materials[k]) << ";\n};\n";
+  for (std::size_t k = 0; k < choice.materials.size(); ++k) {
+    const auto* temperature = extension_of<mpm_material_temperature>(*choice.materials[k]);
+    out << "struct Scene" << k << " : Scene {\n  using Material = " << type(choice.materials[k])
+        << ";\n  static constexpr bool reads_temperature = " << yes(temperature) << ";\n";
+    if (temperature)
+      out << "  static constexpr double reference_temperature = " << temperature->reference << ";  // K\n";
+    out << "};\n";
+  }
   out << "MPM_DEVICE_ENTRIES\n";
   if (keeps_ledger(choice)) out << "MPM_DEVICE_LEDGER_ENTRIES\n";
   if (choice.contact) out << "MPM_DEVICE_CONTACT_ENTRIES\n";
@@ -301,13 +307,7 @@ Composition compose(const Choice& choice) {
   text.add_header("backends/device/kernels/kernels.hpp", "the composer");
   for (const Plugin* plugin : {choice.shape, choice.transfer, choice.filter, choice.contact})
     if (plugin) text.add_functor(*plugin);
-  for (const Plugin* plugin : choice.materials) {
-    if (extension_of<mpm_material_temperature>(*plugin))
-      throw ComposeError("material plugin " + std::string(plugin->id()) +
-                         " reads the temperature of particles, which kernels do not hand over; run it on backend cpu "
-                         "or reference");
-    text.add_functor(*plugin);
-  }
+  for (const Plugin* plugin : choice.materials) text.add_functor(*plugin);
   text.add(scene_text(choice));
   Composition composition{choice.name(), text.str(), "", entry_names(choice)};
   composition.hash = support::sha256(composition.text);

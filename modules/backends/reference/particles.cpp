@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "plugin/extension_of.hpp"
+
 namespace mpm::reference {
 
 Particles::Particles(const Experiment& experiment, const Plan& plan, int body, const SeededBody& seeded)
@@ -218,6 +220,11 @@ std::int32_t Particles::update_material(const mpm_material_batch& request, const
   batch.state = state.data();
   batch.velocity_gradient = input(request.velocity_gradient, dimension_ * dimension_);
   if (axisymmetric()) batch.velocity_gradient_zz = input(hoop_rate.data(), 1);
+  if (thermal_ && extension_of<mpm_material_temperature>(*material_.plugin)) {
+    Array& temperature = values("temperature");
+    pad(temperature);
+    batch.temperature = input(temperature.data(), 1);
+  }
   batch.kirchhoff_stress = output(request.kirchhoff_stress, dimension_ == 2 ? 4 : 6);
   for (void** scalar : {&batch.stored_energy, &batch.dissipated_energy, &batch.wave_speed, &batch.volume_ratio})
     *scalar = output(*scalar, 1);

@@ -76,6 +76,7 @@ double Particles::change_phase(bool accounted) {
   const PhaseChange& change = *thermal_->phase_change;
   const double stored = accounted ? stored_energy() : 0;
   Array &temperature = values("temperature"), &fraction = values("melted_fraction");
+  Array kept = temperature;
   for (std::size_t p = 0; p < count_; ++p) {
     double& T = temperature(0, p);
     double& phi = fraction(0, p);
@@ -89,7 +90,11 @@ double Particles::change_phase(bool accounted) {
       T = change.temperature + (h - change.latent_heat) / change.melted.heat_capacity;
   }
   pad(temperature), pad(fraction);
-  return accounted ? stored - stored_energy() : 0;
+  if (!accounted) return 0;
+  temperature.swap(kept);  // both energies at one temperature
+  const double relaxed = stored - stored_energy();
+  temperature.swap(kept);
+  return relaxed;
 }
 
 double Particles::stored_energy() {

@@ -361,6 +361,7 @@ void ParticleStep<D, T, Components>::invert_moments(const Chunk& chunk, Work& wo
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::update_material(const Chunk& chunk, mpm_material_batch request) {
   States state = material_states(chunk);
+  if (chunk.body.reads_temperature) request.temperature = chunk.at(chunk.particles.temperature);
   request.count = static_cast<std::uint32_t>(chunk.end);
   request.stride = chunk_size<T>;
   request.dimension = D;
@@ -382,6 +383,7 @@ void ParticleStep<D, T, Components>::note_inverted(const Chunk& chunk) {
   request.dimension = D;
   request.state = state.fields;
   request.volume_ratio = ratio;
+  if (chunk.body.reads_temperature) request.temperature = chunk.at(chunk.particles.temperature);
   if (scene_.axisymmetric) request.velocity_gradient_zz = chunk.values;  // it is not read
   Components::update_material(chunk.body, request);
   for (int p = 0; p < chunk.count; ++p)

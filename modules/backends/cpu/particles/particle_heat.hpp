@@ -205,6 +205,8 @@ void ParticleStep<D, T, Components>::change_phases(const Chunk& chunk, Work& wor
   if (accounted_) update_material(chunk, request);
   T* const before = work.mass;
   if (accounted_) std::copy_n(work.scalar, chunk.end, before);
+  alignas(64) T kept[chunk_size<T>];
+  std::copy_n(temperature, chunk.end, kept);
   bool changed = false;
   for (int p = 0; p < chunk.end; ++p) {
     const bool was = is_melted(fraction[p]);
@@ -213,7 +215,9 @@ void ParticleStep<D, T, Components>::change_phases(const Chunk& chunk, Work& wor
     changed = changed || was != is_melted(fraction[p]);
   }
   if (!accounted_ || !changed) return;
+  std::swap_ranges(kept, kept + chunk.end, temperature);  // both energies at one temperature
   update_material(chunk, request);
+  std::swap_ranges(kept, kept + chunk.end, temperature);
   const T* const around = circumferences(chunk);
   for (int p = 0; p < chunk.count; ++p)
     chunk.block.dissipated += chunk.body.volume * (around ? around[p] : T(1)) *

@@ -132,6 +132,7 @@ struct Body {
   bool dissipates = false;
   const Thermal* thermal = nullptr;  ///< null where particles have no temperature
   bool warms_itself = false;         ///< a share of what it dissipates becomes heat
+  bool reads_temperature = false;    ///< particles have a temperature and the material asks for it
   bool may_melt() const;
   /// Values of fields that never change, by id; they are particle-major, by index of seeding.
   std::map<std::string, std::vector<double>> seeded;

@@ -45,17 +45,17 @@ MPM_HD void store_corners(T* array, int stride, int index, const Vec<D, T>* corn
 template <class State, class T>
 inline constexpr int scalars_of = __is_empty(State) ? 0 : static_cast<int>(sizeof(State) / sizeof(T));
 
-template <class State, class T>
+template <class State, class T, int Count = scalars_of<State, T>>
 MPM_HD State load_state(const T* array, int stride, int index) {
   State state{};
   T* flat = reinterpret_cast<T*>(&state);
-  for (int k = 0; k < scalars_of<State, T>; ++k) flat[k] = array[k * stride + index];
+  for (int k = 0; k < Count; ++k) flat[k] = array[k * stride + index];
   return state;
 }
-template <class State, class T>
+template <class State, class T, int Count = scalars_of<State, T>>
 MPM_HD void store_state(T* array, int stride, int index, const State& state) {
   const T* flat = reinterpret_cast<const T*>(&state);
-  for (int k = 0; k < scalars_of<State, T>; ++k) array[k * stride + index] = flat[k];
+  for (int k = 0; k < Count; ++k) array[k * stride + index] = flat[k];
 }
 
 /// Loads what a particle keeps of its transfer.

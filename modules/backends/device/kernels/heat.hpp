@@ -323,6 +323,7 @@ MPM_HD void change_phase(const Team& team, const Arguments<typename Scene::Scala
   for_each_index(team, a.particles.count, [&](int p) {
     const HeatOfBody<T>& heat = a.particles.heat;
     [[maybe_unused]] const bool was_melted = has_melted<Scene>(a.particles, p);
+    [[maybe_unused]] const auto state = load_material_state<Scene>(a.particles, p);  // at the temperature before
     ::mpm::change_phase(a.particles.field[P::temperature][p], a.particles.field[P::melted_fraction][p],
                         heat.melting_temperature, heat.latent_heat, heat.heat_capacity[0], heat.heat_capacity[1]);
     if constexpr (P::dissipated >= 0) {
@@ -330,9 +331,7 @@ MPM_HD void change_phase(const Team& team, const Arguments<typename Scene::Scala
       dissipated = T(0);
       if (has_melted<Scene>(a.particles, p) == was_melted) return;
       using Material = typename Scene::Material;
-      using State = typename MaterialState<Scene, Scene::axisymmetric>::type;
       using Constants = typename Material::template Constants<T>;
-      const State state = load_state<State>(a.particles.field[P::material_state], a.particles.stride, p);
       const T solid = Material::stored_energy(Constants(parameters_of<Material>(a.material_parameters)), state);
       const T melted = Material::stored_energy(Constants(parameters_of<Material>(a.melted_parameters)), state);
       dissipated = was_melted ? melted - solid : solid - melted;

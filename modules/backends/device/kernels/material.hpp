@@ -17,6 +17,31 @@ struct MaterialState<Scene, true> {
   using type = typename Scene::Material::template AxisymmetricState<typename Scene::Scalar>;
 };
 
+/// How many scalars of the State particles keep: the temperature, which is its last where a material reads it, is the
+/// host's.
+template <class Scene, class State>
+inline constexpr int kept_scalars = scalars_of<State, typename Scene::Scalar> - (Scene::reads_temperature ? 1 : 0);
+
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD auto load_material_state(const ParticleArrays<T>& particles, int p) {
+  using P = typename Scene::Particle;
+  using State = typename MaterialState<Scene, Scene::axisymmetric>::type;
+  State state =
+      load_state<State, T, kept_scalars<Scene, State>>(particles.field[P::material_state], particles.stride, p);
+  if constexpr (Scene::reads_temperature) {
+    if constexpr (P::temperature >= 0)
+      state.temperature = particles.field[P::temperature][p];
+    else
+      state.temperature = T(Scene::reference_temperature);
+  }
+  return state;
+}
+template <class Scene, class State, class T = typename Scene::Scalar>
+MPM_HD void store_material_state(const ParticleArrays<T>& particles, int p, const State& state) {
+  store_state<State, T, kept_scalars<Scene, State>>(particles.field[Scene::Particle::material_state], particles.stride,
+                                                    p, state);
+}
+
 /// The velocity gradient L of a particle, with its zz in axisymmetric scenes.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD auto velocity_gradient_of(const ParticleArrays<T>& particles, int p) {
@@ -49,10 +74,9 @@ template <class Scene, class Body>
 MPM_HD void for_each_state(const Team& team, const Arguments<typename Scene::Scalar>& a, Body body) {
   using T = typename Scene::Scalar;
   using Material = typename Scene::Material;
-  using State = typename MaterialState<Scene, Scene::axisymmetric>::type;
   using Constants = typename Material::template Constants<T>;
   const auto visit = [&](const Constants& constants, int p) {
-    State state = load_state<State>(a.particles.field[Scene::Particle::material_state], a.particles.stride, p);
+    auto state = load_material_state<Scene>(a.particles, p);
     body(constants, p, state);
     const T J = Material::volume_ratio(state);
     a.particles.field[Scene::Particle::volume_ratio][p] = J;
@@ -95,7 +119,7 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
     if constexpr (P::temperature >= 0)
       a.particles.field[P::temperature][p] +=
           a.particles.heat.warming * dissipated / heat_capacity_of<Scene>(a.particles, p);
-    store_state(a.particles.field[P::material_state], stride, p, state);
+    store_material_state<Scene>(a.particles, p, state);
     if constexpr (P::domain >= 0) {
       auto* const domain = a.particles.field[P::strained_domain >= 0 ? P::strained_domain : P::domain];
       if (!a.particles.frozen)
