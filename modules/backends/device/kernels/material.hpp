@@ -112,7 +112,6 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
   using P = typename Scene::Particle;
   constexpr int D = Scene::dimension;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, auto& state) {
-    const int stride = a.particles.stride;
     const auto L = velocity_gradient_of<Scene>(a.particles, p);
     [[maybe_unused]] const auto dissipated = Material::advance(constants, L, a.dt, state);
     if constexpr (P::dissipated >= 0) a.particles.field[P::dissipated][p] = dissipated;
@@ -122,6 +121,7 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
     store_material_state<Scene>(a.particles, p, state);
     if constexpr (P::domain >= 0) {
       auto* const domain = a.particles.field[P::strained_domain >= 0 ? P::strained_domain : P::domain];
+      const int stride = a.particles.stride;
       if (!a.particles.frozen)
         store_matrix(domain, stride, p, advanced(load_matrix<D>(domain, stride, p), in_plane(L), a.dt));
     }
