@@ -74,17 +74,6 @@ void take_numbers(Plan& plan, const Experiment& experiment) {
       shape.second_moment_kind == MPM_MOMENT_PER_PARTICLE && (affine || (transfer.traits & MPM_AFFINE_CARRIES_ENERGY));
 }
 
-Step single(Act act, const std::string& because, int every_steps = 1) {
-  Step step;
-  step.kind = Step::Kind::pass;
-  step.pass.every_steps = every_steps;
-  Operator operation;
-  operation.act = act;
-  operation.because = because;
-  step.pass.add(std::move(operation));
-  return step;
-}
-
 /// Decides on fusion, and adds what the backend and the automatic time step need to the solver's step.
 void surround_step(Plan& plan, const Experiment& experiment) {
   std::vector<Step>& steps = plan.step.children;

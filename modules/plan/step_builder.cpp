@@ -8,16 +8,21 @@ std::string StepBuilder::named(const Component& component) {
   return component.pointer + " \"" + std::string(component.plugin->id()) + "\"";
 }
 
-Pass& StepBuilder::perform(Act act, const std::string& because, Stage stage) {
+Step single(Act act, const std::string& because, int every_steps) {
   Step step;
   step.kind = Step::Kind::pass;
-  step.pass.stage = stage;
+  step.pass.every_steps = every_steps;
   Operator operation;
   operation.act = act;
   operation.because = because;
   step.pass.add(std::move(operation));
-  open_.back()->children.push_back(std::move(step));
-  return open_.back()->children.back().pass;
+  return step;
+}
+
+Pass& StepBuilder::perform(Act act, const std::string& because, Stage stage) {
+  Pass& pass = open_.back()->children.emplace_back(single(act, because)).pass;
+  pass.stage = stage;
+  return pass;
 }
 
 void StepBuilder::nested(Step step, const std::function<void()>& build) {

@@ -7,6 +7,9 @@
 
 namespace mpm {
 
+/// A pass of one operator.
+Step single(Act act, const std::string& because, int every_steps = 1);
+
 class StepBuilder {
  public:
   explicit StepBuilder(const Experiment& experiment) : experiment_(experiment) { root_.kind = Step::Kind::sequence; }
