@@ -1,6 +1,6 @@
 // A velocity filter applies a truncated series in I - S+ S to the grid's velocity, with S+ the gather (grid to
-// particles to grid: S+ S, mass-weighted) (Hammerquist & Nairn 2017, CMAME 318:724, XPIC; Nairn & Hammerquist 2021, CPM
-// 8:1205, FMPM). The loop is incremental: v* <- what is left, v <- v + what the plugin takes of it, and conditions and
+// particles to grid: S+ S, mass-weighted) (Hammerquist & Nairn 2017, CMAME 318:724, XPIC; Nairn & Hammerquist 2021,
+// CMAME 377:113667, FMPM). The loop is incremental: v* <- what is left, v <- v + what the plugin takes of it, and conditions and
 // contact correct v, whose net change becomes v*. One-sided laws (contact, separating walls) are given the sum of all
 // increments before they acted, so an impulse that a later increment no longer needs is taken back (Nairn 2026,
 // arXiv 2604.07307).
