@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "experiment/experiment.hpp"
@@ -32,5 +33,11 @@ void check_temperature(const Node& root, const Experiment& experiment, ReadConte
 /// Why a transfer does not carry temperature as it carries velocity, with what to choose instead; nothing when it does.
 /// `basis_order` is the highest power of the polynomials that its parameters ask for (mpm_transfer::basis_order).
 std::optional<std::string> refusal_of_temperature(const Plugin& transfer, int basis_order);
+
+/// Where a transfer that carries gradients of the temperature would let them grow without bounds, however short the step
+/// is: JSON pointer and reason. With a linear shape the gradient is that between two nodes, of which one may hold almost
+/// nothing at the edge of a moving body; at a wall where convection brings more heat than a cell conducts, a mirror image
+/// that is bent by the carried gradient overshoots (measured: bounded to coefficient x cell size / conductivity = 2).
+std::optional<std::pair<std::string, std::string>> refusal_of_gradients(const Experiment& experiment);
 
 }  // namespace mpm

@@ -97,6 +97,40 @@ TEST_CASE("a scene whose transfer does not carry a temperature has no plan", "[c
   CHECK(refusal({"/solver/passes=\"fused\""}).find("temperature takes two passes") != std::string::npos);
 }
 
+TEST_CASE("transfers that carry gradients are refused where they would grow without bounds", "[config]") {
+  const auto refusal = [](const std::string& shape, const std::string& transfer, double coefficient, bool frozen) {
+    const std::string scene = R"J({ "dimension": 2,
+    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]], "boundaries": {"x_min": {"type": "slip",
+      "convection": {"temperature": 400, "coefficient": )J" +
+                              std::to_string(coefficient) + R"J(}}}},
+    "shape": {"type": ")J" + shape +
+                              R"J("}, "transfer": {"type": ")J" + transfer + R"J("},
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000,
+      "thermal": {"conductivity": 10, "heat_capacity": 100}}},
+    "bodies": [{"name": "b", "material": "m", "temperature": 300, "frozen": )J" +
+                              (frozen ? "true" : "false") + R"J(,
+                "geometry": {"type": "box", "lower": [0, 0.2], "upper": [0.4, 0.4]}}],
+    "solver": {"end_time": 1}})J";
+    try {
+      make_plan(experiment_from(scene));
+    } catch (const InputError& error) {
+      REQUIRE(error.problems().size() == 1);
+      return error.problems()[0].pointer + ": " + error.problems()[0].message;
+    }
+    return std::string("accepted");
+  };
+  for (const char* transfer : {"apic", "mls", "tpic", "aflip", "asflip"}) {
+    CHECK(refusal("gimp", transfer, 200, false) == "accepted");  // coefficient x 0.1 m / 10 W/(m K) = 2
+    CHECK(refusal("gimp", transfer, 201, false).starts_with("/grid/boundaries/x_min/convection: coefficient x cell "));
+    CHECK(refusal("linear", transfer, 1, false).starts_with("/shape: shape \"linear\" with transfer \""));
+    CHECK(refusal("linear", transfer, 1, true) == "accepted");
+  }
+  for (const char* transfer : {"pic", "flip"}) {
+    CHECK(refusal("gimp", transfer, 1e6, false) == "accepted");
+    CHECK(refusal("linear", transfer, 1, false) == "accepted");
+  }
+}
+
 TEST_CASE("nothing is coloured by a temperature that no material has", "[config]") {
   const std::string scene = R"J({ "dimension": 2,
     "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]},

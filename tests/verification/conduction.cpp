@@ -80,6 +80,46 @@ TEST_CASE("flip conducts with second order with every kind of end", "[temperatur
       }
 }
 
+// Where convection brings far more heat than a cell conducts, the wall is all but held at the temperature beyond it.
+TEST_CASE("strong convection is of second order too, and stays between the temperatures that it meets",
+          "[temperature]") {
+  const auto ends = [](double coefficient) {
+    Case strong = cases_of_ends()[2];
+    const SlabOfConvection convection{unit_material, 1, coefficient, 290, 20};
+    strong.exact = [=](double x, double t) { return convection.temperature(x, t); };
+    strong.slab.x_min =
+        R"({"type": "stick", "convection": {"temperature": 290, "coefficient": )" + digits(coefficient) + "}}";
+    strong.slab.start = "290 + 20*cos(" + digits(convection.root()) + "*(1 - x))";
+    return strong;
+  };
+  for (const std::string& backend : heat_backends())
+    for (const char* shape : {"bspline_quadratic", "gimp"})
+      for (const auto& [transfer, coefficient] : {std::pair{"flip", 50.0}, {"apic", 15.0}}) {
+        const Case strong = ends(coefficient);
+        Slab slab = strong.slab;
+        slab.backend = backend, slab.shape = shape, slab.transfer = "\"" + std::string(transfer) + "\"";
+        const auto errors = errors_of(strong, slab, {8, 16, 32});
+        INFO(backend << " " << shape << " " << transfer << ": errors " << errors[0] << " " << errors[1] << " "
+                     << errors[2] << " K");
+        CHECK(errors[0] < 0.3);
+        CHECK(-observed_order({1, 2, 4}, errors) > 1.8);
+      }
+  // The end of the time is that in which the slab all but takes the outer temperature.
+  for (const std::string& backend : heat_backends())
+    for (const char* shape : {"linear", "bspline_quadratic", "gimp", "cpdi"})
+      for (const auto& [transfer, ratio] : {std::pair{"pic", 50.0}, {"flip", 50.0}, {"apic", 2.0}, {"aflip", 2.0}}) {
+        Slab slab = ends(ratio * 8).slab;
+        slab.backend = backend, slab.shape = shape, slab.transfer = "\"" + std::string(transfer) + "\"";
+        slab.cells = 8, slab.end = 2, slab.start = "310";
+        Scene scene(slab.text());
+        const Totals end = scene.run();
+        INFO(backend << " " << shape << " " << transfer);
+        // FLIP keeps what the grid cannot see: here at most a tenth of the 20 K that the slab has cooled by.
+        CHECK(end.lowest_temperature > 290 - (transfer == std::string("flip") ? 2 : 0.1));
+        CHECK(end.highest_temperature < 291);
+      }
+}
+
 TEST_CASE("a bar in 3-D conducts as the strip does", "[temperature]") {
   for (const std::string& backend : heat_backends())
     for (const Case& with_end : cases_of_ends()) {

@@ -114,7 +114,13 @@ double Grid::flux_through_wall(std::size_t i, int axis, int side, double time, c
   const Vector x = position(coordinates(i));
   const double given = wall.value({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time);
   if (wall.exchange == HeatExchange::flux) return given;
-  if (!divided) return wall.coefficient * (given - heat_[i] / heat_capacity_[i]);
+  const double conductivity = volume_conductivity_[i] / heated_volume_[i];
+  if (!divided) {
+    // The node's particles lie farther inward by this than the wall; those that carry gradients have told it.
+    const Fold on_wall{i, i, axis, side};
+    const double inward = capacity_inward(i, on_wall) / heat_capacity_[i];
+    return (given - heat_[i] / heat_capacity_[i]) / (1 / wall.coefficient + inward / conductivity);
+  }
   Eigen::Vector3i node = coordinates(i);
   double at_wall = 0;
   for (const double share : divided->shares) {
@@ -122,7 +128,7 @@ double Grid::flux_through_wall(std::size_t i, int axis, int side, double time, c
     node[axis] += side == 0 ? 1 : -1;
   }
   // The shares mirror the temperature beyond the wall, but the flux q bends it: the wall has at_wall + q beyond / k.
-  const double resistance = divided->beyond * experiment_.grid.cell_size * heated_volume_[i] / volume_conductivity_[i];
+  const double resistance = divided->beyond * experiment_.grid.cell_size / conductivity;
   return (given - at_wall) / (1 / wall.coefficient + resistance);
 }
 

@@ -19,8 +19,8 @@ std::uint32_t GridStep<D, T>::node_at_place(const Vector3& x, int axis, int cell
   return static_cast<std::uint32_t>(grid_.find(node));
 }
 
-/// The flux into a body at a node of the wall which it reaches, W/m^2. Before heat is `divided` the node itself stands
-/// for the wall's temperature.
+/// The flux into a body at a node of the wall which it reaches, W/m^2. Before heat is `divided` the node's temperature
+/// is that of its particles, where these lie: as far inward as the heat capacity's place says.
 template <int D, class T>
 double GridStep<D, T>::flux_through(const FaceNodes& face, int field, const Vector3& x, double time, bool divided) {
   const ThermalCondition& condition = face.condition->thermal;
@@ -28,14 +28,17 @@ double GridStep<D, T>::flux_through(const FaceNodes& face, int field, const Vect
   if (condition.exchange == HeatExchange::flux) return given;
   const std::uint32_t node = node_at_place(x, face.axis, 0);
   const Q of_node = grid_.quad(heat, field, node), volume = grid_.quad(heated_volume, field, node);
-  if (!divided) return condition.coefficient * (given - static_cast<double>(of_node[0]) / of_node[3]);
+  const double conductivity = static_cast<double>(volume[3]) / volume[0];
+  if (!divided)
+    return convected_flux(condition.coefficient, given, static_cast<double>(of_node[0]) / of_node[3],
+                          capacity_inward(face, field, node) / of_node[3], conductivity);
   double at_wall = 0;
   for (std::size_t k = 0; k < wall_weights_.shares.size(); ++k) {
     const std::uint32_t next = node_at_place(x, face.axis, face.side == 0 ? static_cast<int>(k) : -static_cast<int>(k));
     if (next != ~0u) at_wall += wall_weights_.shares[k] * grid_.quad(heat, field, next)[0];
   }
   return convected_flux(condition.coefficient, given, at_wall, wall_weights_.beyond * scene_.domain.cell_size,
-                        static_cast<double>(volume[3]) / volume[0]);
+                        conductivity);
 }
 
 /// The gradient inward at a node of a wall that heat comes through, K/m; else zero.

@@ -72,6 +72,19 @@ MPM_HD T temperature_of_wall(const Arguments<T>& a, const Fold& fold) {
   return holds_temperature(a, fold) ? a.wall_temperature[fold.axis][fold.side][fold.line] : T(0);
 }
 
+/// The sum of w C (x_p - x_i) of a node along the inward normal, J m/K, where the transfer scatters no particle gradients.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD T capacity_inward([[maybe_unused]] const Arguments<T>& a, [[maybe_unused]] const Fold& fold,
+                         [[maybe_unused]] int node) {
+  using N = typename Scene::Node;
+  if constexpr (N::capacity_position >= 0) {
+    const T along = a.grid.field[N::capacity_position][fold.axis * a.node_count + node];
+    return fold.side == 0 ? along : -along;
+  } else {
+    return T(0);
+  }
+}
+
 /// The flux into the body at the foot of a fold where heat comes through the wall, W/m^2. Convection goes by the
 /// temperature there: by the foot's own heat until heat is `divided`, then by the shape's weights.
 template <class Scene, class T = typename Scene::Scalar>
@@ -80,13 +93,15 @@ MPM_HD T flux_through_wall(const Arguments<T>& a, const Fold& fold, bool divided
   const WallHeat<T>& wall = a.wall_heat[fold.axis][fold.side];
   const T given = wall.value[fold.line];
   if (!(wall.coefficient > T(0))) return given;
-  if (!divided)
-    return wall.coefficient *
-           (given - temperature_of(a.grid.field[N::heat][fold.foot], a.grid.field[N::heat_capacity][fold.foot]));
+  const T conductivity = a.grid.field[N::volume_conductivity][fold.foot] / a.grid.field[N::heated_volume][fold.foot];
+  if (!divided) {
+    const T capacity = a.grid.field[N::heat_capacity][fold.foot];
+    return convected_flux(wall.coefficient, given, temperature_of(a.grid.field[N::heat][fold.foot], capacity),
+                          capacity_inward<Scene>(a, fold, fold.foot) / capacity, conductivity);
+  }
   T at_wall = T(0);
   for (int k = 0; k < a.wall_share_count; ++k)
     at_wall += a.wall_shares[k] * a.grid.field[N::temperature][fold.foot + k * fold.inward];
-  const T conductivity = a.grid.field[N::volume_conductivity][fold.foot] / a.grid.field[N::heated_volume][fold.foot];
   return convected_flux(wall.coefficient, given, at_wall, a.wall_beyond, conductivity);
 }
 
@@ -104,24 +119,12 @@ MPM_HD T gradient_at_wall([[maybe_unused]] const Arguments<T>& a, [[maybe_unused
   }
 }
 
-/// The sum of w C (x_p - x_i) along the inward normal, J m/K, where the transfer scatters no particle gradients.
-template <class Scene, class T = typename Scene::Scalar>
-MPM_HD T capacity_inward([[maybe_unused]] const Arguments<T>& a, [[maybe_unused]] const Fold& fold) {
-  using N = typename Scene::Node;
-  if constexpr (N::capacity_position >= 0) {
-    const T along = a.grid.field[N::capacity_position][fold.axis * a.node_count + fold.ghost];
-    return fold.side == 0 ? along : -along;
-  } else {
-    return T(0);
-  }
-}
-
 /// The heat that the mirror gets beyond what the ghost's own and a held temperature make of the image; a node on the
 /// wall is its own mirror and gets half of it.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T heat_of_image(const Arguments<T>& a, const Fold& fold, T heat_capacity) {
   const T more = heat_beyond_wall(gradient_at_wall<Scene>(a, fold, false), a.cell_size * T(fold.beyond), heat_capacity,
-                                  capacity_inward<Scene>(a, fold));
+                                  capacity_inward<Scene>(a, fold, fold.ghost));
   return fold.ghost == fold.mirror ? T(0.5) * more : more;
 }
 
