@@ -166,11 +166,14 @@ Fields Fields::nested(std::string_view name) const {
 }
 
 void Fields::check_keys() {
-  std::vector<std::string> valid;
+  std::vector<std::string> valid, unlisted;
   if (section_.tagged) valid.push_back("type");
-  for (const ParameterSpec& spec : section_.parameters) valid.push_back(spec.name);
+  for (const ParameterSpec& spec : section_.parameters) (spec.unlisted ? unlisted : valid).push_back(spec.name);
+  const auto among = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
   for (const Member& member : object_->members) {
-    if (std::find(valid.begin(), valid.end(), member.key) != valid.end()) continue;
+    if (among(valid, member.key) || among(unlisted, member.key)) continue;
     context_.problem(
         member.at, member.value.pointer,
         "unknown key " + in_quotes(member.key) + suggestion(member.key, valid, "valid keys: " + quoted_list(valid)));

@@ -53,6 +53,7 @@ struct ParameterSpec {
   std::string variables;                             ///< letters that an expression may use
   bool may_leave_free = false;                       ///< components of an expression vector may be null
   bool may_be_null = false;                          ///< null says "none", and is kept
+  bool unlisted = false;                             ///< read to be refused by name: no message offers it
   int components = 0;                                ///< components of a vector; 0: as the dimension of the experiment
   std::size_t least_items = 0, most_items = 100000;  ///< number of points
   std::string definition;                            ///< definition of a nested key
@@ -69,6 +70,7 @@ struct ParameterSpec {
   ParameterSpec& or_word(std::string text) { return word = std::move(text), *this; }
   ParameterSpec& over(std::string letters) { return variables = std::move(letters), *this; }
   ParameterSpec& leave_free() { return may_leave_free = true, *this; }
+  ParameterSpec& not_offered() { return unlisted = true, *this; }
   ParameterSpec& or_null() { return may_be_null = true, *this; }
   ParameterSpec& with_components(int count) { return components = count, *this; }
   ParameterSpec& items(std::size_t least, std::size_t most) { return least_items = least, most_items = most, *this; }

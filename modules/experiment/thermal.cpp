@@ -71,7 +71,7 @@ PhaseChange read_phase_change(const Fields& material, const Fields& thermal, con
 
   const Section section = melted_section(*component.plugin);
   Section with_density = section;
-  with_density.parameters.push_back(parameter("density", Type::number, "any", ""));
+  with_density.parameters.push_back(parameter("density", Type::number, "any", "").not_offered());
   const Fields melted(fields.node("melted"), with_density, context);
   if (melted.given("density"))
     context.problem(*melted.node("density"),
@@ -248,6 +248,12 @@ void check_temperature(const Node& root, const Experiment& experiment, ReadConte
           "{\"conductivity\": …, \"heat_capacity\": …}, or remove this");
     return;
   }
+  if (experiment.output.colour_by == "melted_fraction" &&
+      std::none_of(materials.begin(), materials.end(),
+                   [](auto& material) { return material.thermal && material.thermal->phase_change; }))
+    context.problem(nearest_node(root, "/output/colour_by"),
+                    "nothing melts here, as no material has \"phase_change\" in its \"thermal\"; give one "
+                    "\"phase_change\": {\"temperature\": …, \"latent_heat\": …}, or choose another colour");
   for (const BodySpecification& body : experiment.bodies) check_body(root, experiment, body, context);
   if (experiment.filter)
     context.problem(

@@ -153,3 +153,24 @@ TEST_CASE("nothing is coloured by a temperature that no material has", "[config]
     }
   }
 }
+
+TEST_CASE("nothing is coloured by the melted fraction where nothing melts", "[config]") {
+  const std::string scene = R"J({ "dimension": 2,
+    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]},
+    "shape": {"type": "linear"}, "transfer": {"type": "flip"},
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000,
+                        "thermal": {"conductivity": 1, "heat_capacity": 1}}},
+    "bodies": [{"name": "b", "material": "m", "temperature": 300,
+                "geometry": {"type": "box", "lower": [0, 0.2], "upper": [0.4, 0.4]}}],
+    "solver": {"end_time": 1}, "output": {"colour_by": "melted_fraction"}})J";
+  try {
+    experiment_from(scene);
+    FAIL("accepted");
+  } catch (const InputError& error) {
+    REQUIRE(error.problems().size() == 1);
+    CHECK(error.problems()[0].pointer == "/output/colour_by");
+    CHECK(error.problems()[0].message.starts_with("nothing melts here, as no material has \"phase_change\""));
+  }
+  const std::string melts = R"(/materials/m/thermal/phase_change={"temperature": 300, "latent_heat": 1})";
+  CHECK(experiment_from(scene, {melts}).output.colour_by == "melted_fraction");
+}
