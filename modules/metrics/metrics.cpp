@@ -14,6 +14,14 @@ std::array<double, 3> cross(const double* a, const double* b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+/// The smaller or larger of two numbers, or what is not a number where one is.
+double smallest_of(double a, double b) {
+  return std::isnan(b) || b < a ? b : a;
+}
+double largest_of(double a, double b) {
+  return std::isnan(b) || b > a ? b : a;
+}
+
 /// Entry (a, b) of the shape's second moment at particle p, m^2: the particle's own, or on the diagonal the constant,
 /// or f(1 - f) h^2 for the linear shape.
 double second_moment(const Experiment& experiment, const BodyState& state, std::size_t p, int a, int b) {
@@ -99,11 +107,11 @@ void Metrics::add_body(int body, Totals& totals) const {
     totals.mass += m;
     totals.kinetic += 0.5 * m * speed_squared;
     totals.strain += state.volume * state.ring(p) * material.stored_energy[p];
-    totals.largest_speed = std::max(totals.largest_speed, speed);
+    totals.largest_speed = largest_of(totals.largest_speed, speed);
     totals.momentum_scale += m * speed;
     totals.angular_momentum_scale += m * speed * std::hypot(x[0], x[1], x[2]);
-    totals.smallest_volume_ratio = std::min(totals.smallest_volume_ratio, material.volume_ratio[p]);
-    totals.largest_volume_ratio = std::max(totals.largest_volume_ratio, material.volume_ratio[p]);
+    totals.smallest_volume_ratio = smallest_of(totals.smallest_volume_ratio, material.volume_ratio[p]);
+    totals.largest_volume_ratio = largest_of(totals.largest_volume_ratio, material.volume_ratio[p]);
     const auto L = cross(x, v);
     for (int c = 0; c < 3; ++c) {
       totals.momentum[c] += m * v[c];
@@ -129,8 +137,8 @@ void Metrics::add_heat(int body, const BodyState& state, Totals& totals) const {
     totals.heat_content += m * c * (T - (thermal.phase_change ? thermal.phase_change->temperature : 0));
     if (thermal.phase_change)
       totals.latent_heat += m * thermal.phase_change->latent_heat * state.host_state.at("melted_fraction")[p];
-    totals.lowest_temperature = std::min(totals.lowest_temperature, T);
-    totals.highest_temperature = std::max(totals.highest_temperature, T);
+    totals.lowest_temperature = smallest_of(totals.lowest_temperature, T);
+    totals.highest_temperature = largest_of(totals.highest_temperature, T);
   }
 }
 
@@ -151,8 +159,8 @@ void Metrics::add_errors(int body, const BodyState& state, Totals& totals) const
     }
     totals.position_error_rms += dx;
     totals.velocity_error_rms += dv;
-    totals.position_error_max = std::max(totals.position_error_max, std::sqrt(dx));
-    totals.velocity_error_max = std::max(totals.velocity_error_max, std::sqrt(dv));
+    totals.position_error_max = largest_of(totals.position_error_max, std::sqrt(dx));
+    totals.velocity_error_max = largest_of(totals.velocity_error_max, std::sqrt(dv));
   }
 }
 

@@ -68,3 +68,18 @@ TEST_CASE("melted particles are measured with the parameters of the melt", "[met
     CHECK(energy[p] == Approx(mu / 2 * (J * J - 1) - mu * std::log(J) + lambda / 2 * std::pow(std::log(J), 2)));
   }
 }
+
+TEST_CASE("an extreme of values of which one is not a number is not a number", "[metrics]") {
+  Scene scene(
+      R"J({"dimension": 2, "backend": "reference", "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]},
+    "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "flip"},
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 2,
+                        "thermal": {"conductivity": 1, "heat_capacity": 10}}},
+    "bodies": [{"name": "b", "material": "m", "geometry": {"type": "box", "lower": [0, 0], "upper": [1, 1]},
+                "temperature": "sqrt(x - 0.5)", "velocity": ["sqrt(x - 0.5)", 0]}],
+    "solver": {"time_step": 1e-4, "end_time": 1}})J");
+  const Totals totals = scene.metrics.measure();
+  for (const double extreme : {totals.lowest_temperature, totals.highest_temperature, totals.largest_speed})
+    CHECK(std::isnan(extreme));
+  CHECK(totals.largest_volume_ratio == 1);
+}
