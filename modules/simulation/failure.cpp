@@ -12,13 +12,16 @@ namespace mpm {
 namespace {
 
 /// The checks of a pass, in their order.
-enum class Looks { at_domain, at_deformation, at_position, at_speed };
+enum class Looks { at_domain, at_temperature, at_deformation, at_position, at_speed };
 
 constexpr const char* smaller_step =
     "a smaller /solver/courant or /solver/time_step, a transfer with more damping, or a material that is stiffer when "
     "crushed";
 constexpr const char* finite_expressions =
     "check the expressions of the file (velocities, /body_force, moving walls) at that place and time; where they are "
+    "finite, a smaller /solver/courant or /solver/time_step";
+constexpr const char* finite_heat =
+    "check the expressions that warm or cool (temperatures, fluxes, heating) at that place and time; where they are "
     "finite, a smaller /solver/courant or /solver/time_step";
 
 struct Entry {
@@ -37,6 +40,7 @@ constexpr std::array entries{
           "a larger /grid/domain, more particles a cell (particles_per_cell_axis of the body), so that a domain is "
           "shorter, or a shape whose domain does not follow the deformation (\"gimp\"); a smaller step changes nothing "
           "where the stretch is meant"},
+    Entry{Cause::temperature_not_a_number, Looks::at_temperature, "not a number", finite_heat},
     Entry{Cause::deformation_not_a_number, Looks::at_deformation, "not a number", finite_expressions},
     Entry{Cause::inverted, Looks::at_deformation, "inverted", smaller_step},
     Entry{Cause::position_not_a_number, Looks::at_position, "not a number", finite_expressions},
@@ -103,6 +107,9 @@ std::string cause_text(const Failure& failure, const Experiment& experiment) {
       text << "its domain reaches more than " << grid_padding_of(experiment.shape.plugin->shape())
            << " cells beyond the domain's edge";
       break;
+    case Cause::temperature_not_a_number:
+      text << ": its temperature is no longer finite";
+      break;
     case Cause::deformation_not_a_number:
       text << ": its deformation is no longer finite";
       break;
@@ -154,6 +161,8 @@ std::vector<ValueRow> values_of(const Failure& failure, const Experiment& experi
       return {};
     case Cause::domain_beyond_grid:
       return {{"longest reach", "cells", static_cast<double>(grid_padding_of(experiment.shape.plugin->shape()))}};
+    case Cause::temperature_not_a_number:
+      return {{"temperature", "K", failure.value}};
     case Cause::inverted:
       return {{"volume ratio", "", failure.value}};
     case Cause::position_not_a_number:

@@ -19,6 +19,7 @@ enum class Cause {
   domain_outgrew_stencil,    ///< the particle's box is longer than the nodes of its shape hold
   domain_inside_out,         ///< its corners have passed one another
   domain_beyond_grid,        ///< its list has nodes beyond the padding of the domain
+  temperature_not_a_number,  ///< the temperature that the grid gives it
   deformation_not_a_number,  ///< part of the material's state is not a number
   inverted,                  ///< J <= 0
   position_not_a_number,
@@ -37,12 +38,12 @@ struct Failure {
   int body = 0;
   std::size_t particle = 0;  ///< index in the order of seeding
   int axis = -1;             ///< axis of a position or stencil; -1 for causes without one
-  /// The position along the axis, m, or J, or the speed, m/s. It is NaN where that is the failure or none applies.
+  /// The position along the axis, m, or J, or the speed, m/s, or the temperature, K. It is NaN where that is the failure or none applies.
   double value = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Whether `a` is the one of two failures of a pass that is reported. A pass checks domains first, then deformations,
-/// then positions; of particles that fail alike the one with the lowest body, index and axis is reported.
+/// Whether `a` is the one of two failures of a pass that is reported. A pass checks domains first, then
+/// temperatures, deformations and positions; of particles that fail alike the one with the lowest body, index and axis is reported.
 bool comes_before(const Failure& a, const Failure& b);
 
 /// Thrown when a run cannot go on. It maps to exit code 3, and what() is the cause's name.

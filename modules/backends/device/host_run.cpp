@@ -413,16 +413,17 @@ class HostRun final : public Backend {
   }
 
   /// The reasons for which a phase reports particles.
-  enum class Checks { stencil, deformation, position };
+  enum class Checks { stencil, temperature, deformation, position };
 
   /// Runs a phase and stops the run where it reports a particle.
   void run(const std::string& phase, const Arguments<T>& a, int teams, const Body<T>& body, Checks checks) {
     first_failed_ = INT_MAX;
     device_.run(phase, a, teams, team_);
     if (first_failed_ == INT_MAX) return;
-    const Failure failure = checks == Checks::deformation ? failed_deformation(body, first_failed_)
-                            : checks == Checks::position  ? failed_position(body, first_failed_)
-                                                          : failed_stencil(body, first_failed_);
+    const Failure failure = checks == Checks::temperature   ? failed_temperature(body, first_failed_)
+                            : checks == Checks::deformation ? failed_deformation(body, first_failed_)
+                            : checks == Checks::position    ? failed_position(body, first_failed_)
+                                                            : failed_stencil(body, first_failed_);
     throw RunFailure(failure);
   }
 
@@ -440,6 +441,13 @@ class HostRun final : public Backend {
         return failure;
       }
     return std::nullopt;
+  }
+  Failure failed_temperature(const Body<T>& body, int p) const {
+    const T temperature = body.arrays.of("temperature")[p];
+    if (std::isfinite(temperature)) return failed_stencil(body, p);
+    Failure failure = failure_of(Cause::temperature_not_a_number, body, p);
+    failure.value = temperature;
+    return failure;
   }
   Failure failed_deformation(const Body<T>& body, int p) const {
     const T J = body.arrays.of("volume_ratio")[p];
@@ -604,7 +612,7 @@ class HostRun final : public Backend {
       Arguments<T> a = arguments_of(body);
       a.update_particles = true, a.filtered = step.filtered;
       run("gather", a, teams(body.count), body, Checks::stencil);
-      if (pass.has(Act::gather_heat)) run("gather_heat", a, teams(body.count), body, Checks::stencil);
+      if (pass.has(Act::gather_heat)) run("gather_heat", a, teams(body.count), body, Checks::temperature);
       if (pass.has(Act::gather_heat) && plan_.has_heat_ledger()) heat += sum_over_particles("heat_of_particles", body);
       if (accounted_) energy += sum_over_particles("energy_of_particles", body);  // weights are still those of the step
       if (pass.has(Act::strain)) run_strain(pass, body);

@@ -62,6 +62,9 @@ void Particles::gather_heat(double dt, const Moments& moments) {
   std::vector<void*> pointers;
   for (Array& state : states) pointers.push_back(state.data());
   gather_by_transfer(dt, moments, of_velocity, pointers, advected);
+  for (std::size_t p = 0; p < count_; ++p)
+    if (const double T = of_velocity(0, p); !std::isfinite(T))
+      throw RunFailure({Cause::temperature_not_a_number, body_, p, -1, T});
   values("temperature") = of_velocity.row(0);
   for (std::size_t k = 0; k < states.size(); ++k) {
     Array& kept = values(temperature_state + std::string(transfer_.plugin->state()[k].name));

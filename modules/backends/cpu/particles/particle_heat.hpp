@@ -175,7 +175,17 @@ void ParticleStep<D, T, Components>::gather_heat(const Chunk& chunk, Work& work,
       std::copy_n(static_cast<const T*>(state.fields[f]) + c * chunk_size<T>, chunk.end, chunk.at(kept.first + c));
   }
   fill_heat_capacities(chunk, work);
-  chunk.block.heat += heat_of(chunk, work);
+  const double heat = heat_of(chunk, work);
+  chunk.block.heat += heat;
+  if (!std::isfinite(heat)) note_temperatures(chunk);
+}
+
+/// Notes the particles of a chunk whose temperature is not finite.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::note_temperatures(const Chunk& chunk) {
+  const T* const temperature = chunk.at(chunk.particles.temperature);
+  for (int p = 0; p < chunk.count; ++p)
+    if (!std::isfinite(temperature[p])) note(Cause::temperature_not_a_number, chunk, p, -1, temperature[p]);
 }
 
 /// Warms the particles by the share of the dissipated energy (J/m^3, in the work space) that becomes heat.

@@ -319,6 +319,7 @@ class ParticleStep : NamedChannels {
   void conduct_chunk(const Chunk& chunk, Work& work);
   void gather_heat(int body, Block<D>& block, Work& work, const StepInfo& step);
   void gather_heat(const Chunk& chunk, Work& work, const StepInfo& step);
+  void note_temperatures(const Chunk& chunk);
   void warm_by_dissipation(const Chunk& chunk, Work& work) const;
   void change_phases(const Chunk& chunk, Work& work);
   std::int32_t update_by_phase(const Chunk& chunk, const mpm_material_batch& request);

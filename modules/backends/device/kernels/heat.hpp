@@ -310,6 +310,7 @@ MPM_HD void gather_heat(const Team& team, const Arguments<typename Scene::Scalar
     auto state = temperature_state<Scene>(a.particles, p);
     Transfer::gather(parameters_of<Transfer>(a.transfer_parameters), moments, a.dt, temperature, state, advection);
     a.particles.field[P::temperature][p] = temperature[0];
+    if (!(temperature[0] - temperature[0] == T(0))) Team::lower(a.first_failed, p);  // it is infinite or not a number
     store_temperature_state<Scene>(a.particles, p, state);
   });
 }
