@@ -156,6 +156,14 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints&
       progress.show(true);
       std::cerr << "the run failed: " << outcome.reason << "\nremedy: " << remedy_for(stopped.failure) << "\n";
       return outcome;
+    } catch (const ImposedHeatFailure& stopped) {
+      const long step = simulation.steps() + 1;
+      const Outcome outcome{run_failed, "failed",
+                            "step " + std::to_string(step) + ": " + stopped.imposed.pointer + ": " + stopped.what(),
+                            record_of(stopped.imposed, step)};
+      progress.show(true);
+      std::cerr << "the run failed: " << outcome.reason << "\nremedy: " << impossible_heat_remedy << "\n";
+      return outcome;
     }
     recorder.record();
     checkpoints.write_if_due();
@@ -224,6 +232,33 @@ void refuse_figures_without_numbers(const Experiment& experiment, const Metrics&
     const std::string missing = missing_for(experiment.figures[k], columns);
     if (!missing.empty()) problems.push_back(problem_at(experiment, "/figures/" + std::to_string(k), missing));
   }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+/// What is wrong with a particle's initial temperature; an empty string where nothing is.
+std::string trouble_of_temperature(double temperature) {
+  if (!std::isfinite(temperature)) return "is not a finite number";
+  return temperature < 0 ? "is " + number_text(temperature) + " K, below 0 K," : "";
+}
+
+void refuse_impossible_temperatures(const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  if (!experiment.has_temperature()) return;
+  const std::size_t D = static_cast<std::size_t>(experiment.dimension);
+  std::vector<Problem> problems;
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const BodyState state = simulation.backend().body_state(body);
+    const std::vector<double>& temperature = state.host_state.at("temperature");
+    const auto wrong = std::find_if_not(temperature.begin(), temperature.end(),
+                                        [](double T) { return trouble_of_temperature(T).empty(); });
+    if (wrong == temperature.end()) continue;
+    const std::size_t particle = static_cast<std::size_t>(wrong - temperature.begin());
+    problems.push_back(problem_at(experiment, experiment.bodies[body].pointer + "/temperature",
+                                  trouble_of_temperature(*wrong) + " at particle " + std::to_string(particle) + ", " +
+                                      point_text(std::span(state.position).subspan(particle * D, D))));
+  }
+  if (const auto imposed = impossible_heat(experiment, 0, false))
+    problems.push_back(problem_at(experiment, imposed->pointer, text_of(*imposed)));
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
@@ -348,6 +383,7 @@ int run(const RunOptions& options) {
   const Metrics metrics(simulation);  // metrics are those of step 0, also when the run goes on from a later one
   refuse_figures_without_numbers(experiment, metrics);
   refuse_velocities_that_are_no_numbers(simulation);
+  refuse_impossible_temperatures(simulation);
 
   const StopOnSignal signals;
   const auto folder = options.resume ? open_to_resume(place) : output::RunFolder::create(place);

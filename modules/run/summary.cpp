@@ -111,6 +111,16 @@ Json record_of(const Failure& failure, const FailurePlace& place, const Experime
   return record;
 }
 
+Json record_of(const ImposedHeat& imposed, long step) {
+  Json record{
+      {"cause", impossible_heat_cause},
+      {"where",
+       {{"step", step}, {"time", imposed.time}, {"condition", imposed.pointer}, {"position", imposed.position}}}};
+  record["values"] = Json::array({{{"name", imposed.name}, {"unit", imposed.unit}, {"value", imposed.value}}});
+  record["remedy"] = impossible_heat_remedy;
+  return record;
+}
+
 Json summarise(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder, double wall_seconds,
                const EarlierParts& earlier) {
   const Experiment& experiment = simulation.experiment();

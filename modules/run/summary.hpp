@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "run/recorder.hpp"
+#include "simulation/imposed_heat.hpp"
 
 namespace mpm::app {
 
@@ -21,6 +22,8 @@ struct Outcome {
 /// What summary.json has beside the reason of a run that a particle stopped: {"cause", "where": {step, time, body,
 /// particle, position}, "values": [{name, unit, value}], "remedy"}.
 nlohmann::ordered_json record_of(const Failure& failure, const FailurePlace& place, const Experiment& experiment);
+/// The same where a wall or a box imposed what nothing can have: "where" has the condition in place of the particle.
+nlohmann::ordered_json record_of(const ImposedHeat& imposed, long step);
 
 /// What a resumed run spent before: only the work that led to the result, not what was lost with a process that was
 /// killed.

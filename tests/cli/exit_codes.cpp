@@ -134,6 +134,25 @@ TEST_CASE("2: combinations that cannot run") {
   refused_scene(scene, "/bodies/0/velocity: is not a finite number at particle 0, (0.425, 0.325) m");
 }
 
+TEST_CASE("2: temperatures that nothing can have at the start, in a body, at a wall and in a box") {
+  for (const char* backend : {"cpu", "reference"}) {
+    const Words chosen{"--backend", backend};
+    const std::string first = " at particle 0, (0.425, 0.325) m";
+    refused_scene(warm_ball("sqrt(x - 0.5)*300"), "/bodies/0/temperature: is not a finite number" + first, chosen);
+    refused_scene(warm_ball("-100*x"), "/bodies/0/temperature: is -42.5 K, below 0 K," + first, chosen);
+  }
+  Json scene = warm_ball();
+  scene["grid"]["boundaries"]["x_max"] = {{"type", "slip"}, {"temperature", "300 - 400*y"}};
+  refused_scene(scene, "/grid/boundaries/x_max/temperature: is -20 K, below 0 K, at t = 0 s, (1, 0.8) m");
+  scene = warm_ball();
+  scene["grid"]["boundaries"]["y_min"] = {{"type", "slip"}, {"heat_flux", "log(x)"}};
+  refused_scene(scene, "/grid/boundaries/y_min/heat_flux: is not a finite number at t = 0 s, (0, 0) m");
+  scene = warm_ball();
+  scene["node_conditions"] = {
+      {{"type", "thermal"}, {"lower", {0.2, 0.4}}, {"upper", {0.3, 0.6}}, {"temperature", "200*(x - 0.25)"}}};
+  refused_scene(scene, "/node_conditions/0/temperature: is -10 K, below 0 K, at t = 0 s, (0.2, 0.4) m");
+}
+
 TEST_CASE("2: a figure without its numbers, before the run") {
   const Folder folder;
   std::string text = ball().dump();

@@ -110,6 +110,51 @@ TEST_CASE("3: not a number, in the very first step and later") {
     }
 }
 
+TEST_CASE("3: a temperature that grows beyond all numbers") {
+  Json scene = warm_ball("300 + 10*x");
+  scene["materials"]["m"]["thermal"]["conductivity"] = 1e14;
+  for (const char* backend : {"cpu", "reference"}) {
+    scene["backend"] = backend;
+    fails(scene, {"particle ", "of body \"ball\" at (", ") m not a number: its temperature is no longer finite"});
+  }
+}
+
+TEST_CASE("3: walls and boxes that impose what nothing can have, named with the time") {
+  const std::string zero = ": is -0.1 K, below 0 K, at t = 0.052 s, ",
+                    none = ": is not a finite number at t = 0.052 s, ";
+  const auto wall = [](const char* name, const Json& value) {
+    Json scene = warm_ball();
+    scene["grid"]["boundaries"]["x_min"] = {{"type", "slip"}, {name, value}};
+    return scene;
+  };
+  const auto box = [](const char* name, const char* value) {
+    Json scene = warm_ball();
+    scene["node_conditions"] = {{{"type", "thermal"}, {"lower", {0.4, 0.4}}, {"upper", {0.6, 0.6}}, {name, value}}};
+    return scene;
+  };
+  const Json beyond{{"coefficient", 2}, {"temperature", "50*(0.05-t)"}};
+  const std::vector<std::pair<Json, std::string>> scenes{
+      {wall("temperature", "50*(0.05-t)"), "/grid/boundaries/x_min/temperature" + zero + "(0, 0) m"},
+      {wall("temperature", "sqrt(0.051-t)*300"), "/grid/boundaries/x_min/temperature" + none + "(0, 0) m"},
+      {wall("heat_flux", "log(0.051-t)"), "/grid/boundaries/x_min/heat_flux" + none + "(0, 0) m"},
+      {wall("convection", beyond), "/grid/boundaries/x_min/convection/temperature" + zero + "(0, 0) m"},
+      {box("temperature", "50*(0.05-t)"), "/node_conditions/0/temperature" + zero + "(0.4, 0.4) m"},
+      {box("heating", "log(0.051-t)"), "/node_conditions/0/heating" + none + "(0.4, 0.4) m"}};
+  for (const auto& [scene, reason] : scenes) {
+    const Folder folder;
+    const Result result = run_scene(folder, scene);
+    INFO(reason << "\n" << result.err);
+    CHECK(result.code == 3);
+    CHECK(has(result.err, "the run failed: step 26: " + reason + "\nremedy: check that expression"));
+    const Json outcome = json_in(folder / "run/summary.json")["outcome"];
+    CHECK(outcome["cause"] == "impossible value imposed");
+    CHECK(outcome["where"]["step"] == 26);
+    CHECK(has(reason, outcome["where"]["condition"].get<std::string>() + ": is "));
+    CHECK(mpm::support::read_csv(folder / "run/metrics.csv").find("step")->back() == 25);
+    check_whole(folder / "run");
+  }
+}
+
 TEST_CASE("3: max_steps before the end") {
   const Folder folder;
   Json scene = ball();

@@ -183,6 +183,14 @@ inline Json ball() {
   })");
 }
 
+/// The ball at a temperature, K, which is a number or an expression.
+inline Json warm_ball(const Json& temperature = 300) {
+  Json scene = ball();
+  scene["materials"]["m"]["thermal"] = {{"conductivity", 1}, {"heat_capacity", 10}};
+  scene["bodies"][0]["temperature"] = temperature;
+  return scene;
+}
+
 /// The ball and a second one that it meets.
 inline Json two_balls() {
   Json scene = ball();
