@@ -149,7 +149,7 @@ TEST_CASE("materials that conduct need their numbers", "[config]") {
   CHECK(pond_errors("\"melted\": {", "\"melted\": {\"density\": 1000, \"foo\": 1, ") ==
         "FILE:19:31: /materials/ice/thermal/phase_change/melted/density: a particle keeps its mass and its volume when "
         "it melts, and so its density; remove \"density\"\n"
-        "FILE:19:48: /materials/ice/thermal/phase_change/melted/foo: unknown key \"foo\"; valid keys: "
+        "FILE:19:37: /materials/ice/thermal/phase_change/melted/foo: unknown key \"foo\"; valid keys: "
         "\"conductivity\", \"heat_capacity\", \"youngs_modulus\", \"poisson_ratio\", \"form\"");
   CHECK(
       pond_errors("\"youngs_modulus\": 10,", "\"poisson_ratio\": 0.5,") ==

@@ -85,10 +85,10 @@ TEST_CASE("every backend names what is not a number", "[device][failure]") {
 
 TEST_CASE("every backend names a temperature that is not a number", "[device][failure]") {
   const std::string text = thrown("bspline_quadratic", "pic", R"J(["1", "1"])J");
-  for (const std::string temperature : {"20+sqrt(4.6-x)", "20+10^(500*(x-4))"}) {  // the second one is infinite
+  for (const std::string temperature : {"20+sqrt(9.6-x)", "20+10^(500*(x-9))"}) {  // the second one is infinite
     const Failure failure =
         common_failure(text, {R"(/materials/m/thermal={"conductivity": 1e-3, "heat_capacity": 1})",
-                              "/bodies/0/geometry/upper=[6, 3]", "/bodies/0/temperature=\"" + temperature + "\""});
+                              "/bodies/0/geometry/upper=[12, 3]", "/bodies/0/temperature=\"" + temperature + "\""});
     CHECK(failure.cause == Cause::temperature_not_a_number);
     CHECK(failure.particle > 0);
     CHECK(!std::isfinite(failure.value));
