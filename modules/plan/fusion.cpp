@@ -73,13 +73,41 @@ bool Plan::divides_with_forces() const {
   return step.children.end() - divides > 1 && is_pass(divides[1], Act::accelerate);
 }
 
+namespace {
+
+/// Why the passes of a solver are not of the shape that fusion knows: a scatter and a division of all sums, and at the
+/// end one visit that gathers, strains and moves.
+std::string why_of_another_shape(const Step& step, const Experiment& experiment) {
+  const Pass* const gather = find_pass(step, Act::gather);
+  if (!gather) return "/solver/type \"" + experiment.solver.type + "\": no gather ends its step";
+  if (!gather->has(Act::strain) || gather->share < 1 || !gather->has(Act::move)) {
+    const Pass* const strain = find_pass(step, Act::strain);
+    const Pass& apart = strain && strain != gather ? *strain : *gather;
+    return asker(apart.operators.front().because) + ": strain and move do not share the visit of the gather";
+  }
+  const Step& last = step.children.back();
+  if (!is_pass(last, Act::gather))
+    return asker(last.kind == Step::Kind::pass ? last.pass.operators.front().because : last.because) +
+           ": the step goes on after its gather";
+  const auto divides = std::find_if(step.children.begin(), step.children.end(),
+                                    [](const Step& child) { return is_pass(child, Act::divide); });
+  const bool scatters = std::any_of(step.children.begin(), divides, [](const Step& child) {
+    return is_pass(child, Act::scatter_momentum) && child.pass.has(Act::scatter_force);
+  });
+  if (divides == step.children.end() || !scatters)
+    return asker(gather->operators.front().because) + ": momentum and force are not scattered in one visit";
+  return "";
+}
+
+}  // namespace
+
 std::string why_not_fused(const Step& step, const Experiment& experiment) {
-  const Pass& gather = *find_pass(step, Act::gather);
-  const bool whole_strain = gather.has(Act::strain) && gather.share == 1 && gather.has(Act::move);
+  const std::string of_another_shape = why_of_another_shape(step, experiment);
   if (experiment.solver.stress_update != StressUpdate::last)
     return "/solver/stress_update: only USL strains and scatters at the same particle state";
-  if (find_pass(step, Act::project) || !whole_strain)
+  if (find_pass(step, Act::begin_filter) && (find_pass(step, Act::project) || !of_another_shape.empty()))
     return experiment.filter->pointer + ": the filter reads the grid between gather and scatter";
+  if (!of_another_shape.empty()) return of_another_shape;
   if (find_pass(step, Act::scatter_contact))
     return experiment.contact->pointer + ": several velocity fields take two passes";
   if (const Pass* conducts = find_pass(step, Act::conduct))

@@ -83,7 +83,8 @@ void filter_fields(FieldList& fields) {
 }
 
 void increment_fields(FieldList& fields) {
-  const bool gathered = gathers_increment(fields.experiment);
+  const bool gathered = gathers_increment(fields.experiment) && fields.plan.does(Act::gather);
+  if (!gathered && !fields.plan.does(Act::accelerate)) return;
   if (!gathered && !fields.plan.has_ledger() && !fields.needs.keeps_all_apart) return;
   Field& before =
       fields.of_nodes("velocity_before", "m/s", fields.experiment.dimension,
@@ -100,8 +101,10 @@ std::string why_separate_force(const FieldList& fields) {
   if (fields.plan.resolves_contact())
     return FieldList::named(*experiment.contact) + ": acts before and after the forces";
   if (experiment.body_force) return experiment.body_force_pointer + ": work of the forces";
-  if (fields.plan.pass_of(Act::strain)->stage == Stage::before_forces)
-    return asker(fields.plan.find(Act::scatter_force)->because) + ": stress after the momenta";
+  const Pass* const strain = fields.plan.pass_of(Act::strain);
+  const Operator* const scatters = fields.plan.find(Act::scatter_force);
+  if (strain && scatters && strain->stage == Stage::before_forces)
+    return asker(scatters->because) + ": stress after the momenta";
   if (fields.plan.filters() && fields.plan.pass_of(Act::begin_filter)->stage == Stage::before_forces)
     return FieldList::named(*experiment.filter) + ": filters before the forces";
   if (experiment.separates()) return "/grid/boundaries \"separate\": the wall predicts with the forces";
@@ -109,6 +112,7 @@ std::string why_separate_force(const FieldList& fields) {
 }
 
 void force_fields(FieldList& fields) {
+  if (!fields.plan.does(Act::accelerate)) return;
   const Experiment& experiment = fields.experiment;
   const int D = experiment.dimension;
   const std::string why = why_separate_force(fields);

@@ -152,11 +152,25 @@ const Declaration declarations[] = {
      {}},
     {Act::change_phase,
      Where::particles,
-     {"particles/temperature", "particles/melted_fraction"},
+     {"particles/temperature", "particles/melted_fraction", "particles/material"},
      {"particles/temperature", "particles/melted_fraction"},
      {}},
 };
 static_assert(std::size(declarations) == act_count);
+
+/// Whether a share of what a material dissipates warms its particles.
+bool warms_by_dissipation(const Experiment& experiment) {
+  return std::any_of(experiment.materials.begin(), experiment.materials.end(), [](const auto& material) {
+    return material.thermal && material.thermal->dissipation_to_heat > 0;
+  });
+}
+
+/// Whether a material asks for its particles' temperature.
+bool reads_temperature(const Experiment& experiment) {
+  return std::any_of(experiment.materials.begin(), experiment.materials.end(), [](const auto& material) {
+    return extension_of<mpm_material_temperature>(*material.component.plugin);
+  });
+}
 
 /// What depends on the pass that an operator stands in, and on the scene.
 void add_what_depends(Uses& uses, Act act, const Pass& pass, const Plan& plan, const Experiment& experiment) {
@@ -193,17 +207,11 @@ void add_what_depends(Uses& uses, Act act, const Pass& pass, const Plan& plan, c
       break;
     case Act::strain:
       uses.writes({plan.particle_field(0, "strained_domain") ? "particles/strained_domain" : "particles/domain"});
+      if (warms_by_dissipation(experiment)) uses.reads({"particles/temperature"}).writes({"particles/temperature"});
       break;
     default:
       break;
   }
-}
-
-/// Whether a material asks for its particles' temperature.
-bool reads_temperature(const Experiment& experiment) {
-  return std::any_of(experiment.materials.begin(), experiment.materials.end(), [](const auto& material) {
-    return extension_of<mpm_material_temperature>(*material.component.plugin);
-  });
 }
 
 void describe(Operator& operation, const Pass& pass, const Plan& plan, const Experiment& experiment) {
@@ -217,9 +225,10 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
   const auto reads = [&](const char* name) {
     return std::find(operation.reads.begin(), operation.reads.end(), name) != operation.reads.end();
   };
-  // Whoever asks such a material hands it the temperature as it is then.
-  if (reads("particles/material") && !reads("particles/temperature") && reads_temperature(experiment))
-    uses.reads({"particles/temperature"});
+  if (!reads("particles/material")) return;
+  // Whoever asks a material takes the parameters of the particle's phase, and hands it the temperature as it is then.
+  if (!reads("particles/melted_fraction")) uses.reads({"particles/melted_fraction"});
+  if (!reads("particles/temperature") && reads_temperature(experiment)) uses.reads({"particles/temperature"});
 }
 #undef MPM_CONSTRAINED
 #undef MPM_KEPT
@@ -230,7 +239,11 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
 /// Walks a step as it is executed with the filter on or off.
 class Walk {
  public:
-  Walk(bool filtered, std::set<std::string>& ever_read) : filtered_(filtered), ever_read_(ever_read) {}
+  Walk(bool filtered, const Plan& plan, std::set<std::string>& ever_read) : filtered_(filtered), ever_read_(ever_read) {
+    for (const Field& field : plan.fields)
+      if (field.owner == Owner::particle && (field.lifetime == Lifetime::step || field.lifetime == Lifetime::pass))
+        of_one_step_.insert("particles/" + field.id);
+  }
 
   void go(const Step& step) {
     if (step.kind == Step::Kind::pass) {
@@ -247,7 +260,8 @@ class Walk {
   void use(const Operator& operation, const Pass& pass) {
     for (const std::string& name : operation.reads) {
       ever_read_.insert(name);
-      const bool lasts = name.rfind("particles/", 0) == 0 || name.rfind("nodes/next_", 0) == 0;
+      const bool of_particles = name.rfind("particles/", 0) == 0;
+      const bool lasts = of_particles ? of_one_step_.count(name) == 0 : name.rfind("nodes/next_", 0) == 0;
       if (!lasts && written_.count(name) == 0)
         throw std::logic_error("the step reads what nothing has written: operator \"" + pass.name() + "\" (" +
                                operation.because + ") reads " + name);
@@ -258,6 +272,7 @@ class Walk {
 
   bool filtered_;
   std::set<std::string>& ever_read_;
+  std::set<std::string> of_one_step_;  ///< particle fields that hold nothing when a step begins
   std::set<std::string> written_;
 };
 
@@ -271,7 +286,7 @@ void describe_operators(Plan& plan, const Experiment& experiment) {
 
 void check_step(const Plan& plan) {
   std::set<std::string> read;
-  for (const bool filtered : {false, true}) Walk(filtered, read).go(plan.step);
+  for (const bool filtered : {false, true}) Walk(filtered, plan, read).go(plan.step);
   for (const Field& field : plan.fields) {
     const bool of_host = field.origin == Origin::host;
     if (!of_host || field.id == "identity" || field.lifetime == Lifetime::seeded) continue;  // results read these

@@ -98,15 +98,18 @@ void output_fields(FieldList& fields, int body) {
       Lifetime::seeded;
 }
 
-/// Where a step strains between the gather and the move, what the gather found waits for the move.
+/// Where a step strains between the gather and the move, what the gather found waits for the move. (A move that stands
+/// before the gather waits in vain: check_step refuses it.)
 void waiting_field(FieldList& fields, int body, const std::string& id, const std::string& unit, int components,
                    First first, const std::string& what) {
-  const Operator& move = *fields.plan.find(Act::move);
-  const bool waits = !fields.plan.pass_of(Act::gather)->has(Act::move);
+  const Operator* const move = fields.plan.find(Act::move);
+  if (!move) return;
+  const Pass* const gather = fields.plan.pass_of(Act::gather);
+  const bool waits = !gather || !gather->has(Act::move);
   if (!waits && !fields.needs.keeps_all_apart) return;
   fields
       .of_particles(body, id, unit, components, first,
-                    waits ? asker(move.because) + ": " + what + " wait for the remapped strain" : fields.why_apart())
+                    waits ? asker(move->because) + ": " + what + " wait for the remapped strain" : fields.why_apart())
       .lifetime = Lifetime::step;
 }
 
@@ -126,12 +129,12 @@ void shape_fields(FieldList& fields, int body) {
   fields.of_particles(body, "domain", "cells", D * D, First::half_size_diagonal,
                       shape + ": semi-side vectors of the particle's domain");
   // The reference backend keeps the stencils of a step; the others evaluate them anew in every pass.
-  const Pass& strain = *fields.plan.pass_of(Act::strain);
-  if (!fields.needs.forgets_stencils || strain.remap() || strain.has(Act::gather)) return;
-  const bool by_order = strain.stage == Stage::before_forces;
+  const Pass* const strain = fields.plan.pass_of(Act::strain);
+  if (!strain || !fields.needs.forgets_stencils || strain->remap() || strain->has(Act::gather)) return;
+  const bool by_order = strain->stage == Stage::before_forces || !experiment.filter;
   fields
       .of_particles(body, "strained_domain", "cells", D * D, First::half_size_diagonal,
-                    (by_order ? asker(strain.operators.front().because) : FieldList::named(*experiment.filter)) +
+                    (by_order ? asker(strain->operators.front().because) : FieldList::named(*experiment.filter)) +
                         ": the weights of a step stay those before its strain")
       .lifetime = Lifetime::step;
 }

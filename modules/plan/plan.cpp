@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <stdexcept>
 
 #include "experiment/thermal.hpp"
 #include "kernel/polynomial_basis.hpp"
@@ -75,6 +76,40 @@ void take_numbers(Plan& plan, const Experiment& experiment) {
       shape.second_moment_kind == MPM_MOMENT_PER_PARTICLE && (affine || (transfer.traits & MPM_AFFINE_CARRIES_ENERGY));
 }
 
+/// Throws std::logic_error where a solver performs what only a component can ask for and the scene has none.
+void refuse_work_for_nobody(const Step& step, const Experiment& experiment) {
+  const auto missing = [&](Act act) -> const char* {
+    switch (act) {
+      case Act::begin_filter:
+      case Act::keep_velocity:
+      case Act::project:
+      case Act::update_filter:
+      case Act::end_filter:
+      case Act::restore_velocity:
+      case Act::keep_correction:
+      case Act::add_correction:
+        return experiment.filter ? nullptr : "filter";
+      case Act::scatter_contact:
+        return experiment.contact ? nullptr : "contact";
+      case Act::scatter_heat:
+      case Act::divide_heat:
+      case Act::conduct:
+      case Act::heat:
+      case Act::gather_heat:
+      case Act::change_phase:
+        return experiment.has_temperature() ? nullptr : "temperature";
+      default:
+        return nullptr;
+    }
+  };
+  for_each_pass(step, [&](const Pass& pass) {
+    for (const Operator& operation : pass.operators)
+      if (const char* component = missing(operation.act))
+        throw std::logic_error(std::string("the step does what the scene has no ") + component + " for: operator \"" +
+                               single(operation.act, "").pass.name() + "\" (" + operation.because + ")");
+  });
+}
+
 /// Decides on fusion, and adds what the backend and the automatic time step need to the solver's step.
 void surround_step(Plan& plan, const Experiment& experiment) {
   std::vector<Step>& steps = plan.step.children;
@@ -143,6 +178,7 @@ Plan assemble_plan(const Experiment& experiment, const std::function<void(StepBu
   StepBuilder builder(experiment);
   solver_step(builder);
   plan.step = builder.take();
+  refuse_work_for_nobody(plan.step, experiment);
   join_visits(plan.step);
   surround_step(plan, experiment);
   plan.acts = acts_of(plan.step);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <ostream>
 #include <sstream>
+#include <stdexcept>
 
 #include "plan/plan.hpp"
 
@@ -61,9 +62,19 @@ std::string Pass::name() const {
       return "restore velocity";
     case Act::add_correction:
       return "add correction";
-    default:
-      return "";
+    case Act::scatter_contact:
+      return "scatter contact";
+    case Act::gather_heat:
+      return "gather heat";
+    case Act::keep_velocity:
+      return "keep velocity";
+    case Act::keep_correction:
+      return "keep correction";
+    case Act::gather:
+    case Act::scatter_momentum:
+      break;  // these have their names above
   }
+  throw std::logic_error("operator " + std::to_string(static_cast<int>(operators.front().act)) + " has no name");
 }
 
 std::string Step::name() const {
