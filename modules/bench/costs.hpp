@@ -33,8 +33,9 @@ double nodes_per_particle(const Simulation& simulation);
 /// Facts of a simulation after its last step; materials count as flowing, the ledger's sums do not count.
 RunFacts facts_of(const Simulation& simulation);
 
-/// Operations a particle-step; nothing where a plugin does not say its own (mpm_costs) or the ledger adds its sums.
-/// Nodes count once, whatever the number of velocity fields.
+/// Operations a particle-step; nothing where a plugin does not say its own (mpm_costs), the ledger adds its sums or
+/// the scene has temperature, whose operators nobody has counted. Nodes count once, whatever the number of velocity
+/// fields.
 std::optional<Flops> flops_per_particle(const Experiment& experiment, const Plan& plan, const RunFacts& run);
 
 /// Bytes that must cross memory in a step, a particle: its state is read and written once in a fused pass (read once

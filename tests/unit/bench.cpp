@@ -125,6 +125,15 @@ TEST_CASE("operations and bytes of the standard combination", "[bench]") {
   CHECK_FALSE(flops_per_particle(ledger, make_plan(ledger), {0.5, true, {}, {}, false}));
 }
 
+TEST_CASE("the work of temperature is not known, so a scene that has one has no count of operations", "[bench]") {
+  const std::vector<std::string> warm{R"(/materials/jelly/thermal={"conductivity": 1, "heat_capacity": 1000})",
+                                      "/bodies/0/temperature=300", R"(/transfer/type="apic")"};
+  const Experiment heated = mpm::test::experiment_from(block(2), warm);
+  CHECK_FALSE(flops_per_particle(heated, make_plan(heated), {1, true, {}, {}, false}));
+  const Experiment cold = mpm::test::experiment_from(block(2), {warm.back()});
+  CHECK(flops_per_particle(cold, make_plan(cold), {1, true, {}, {}, false}));
+}
+
 TEST_CASE("each pass over the particles that a scene adds is counted", "[bench]") {
   const auto count = [](const std::vector<std::string>& overrides) {
     const Experiment experiment = mpm::test::experiment_from(block(2), overrides);
