@@ -108,12 +108,15 @@ std::string card(const char* label, const std::string& value, const std::string&
 std::string time_step_card(const Json& summary) {
   const Json* least = find_by_path(summary, {"dt_min", "min_dt", "time_step_min", "time_step.min", "dt.min"});
   const Json* most = find_by_path(summary, {"dt_max", "max_dt", "time_step_max", "time_step.max", "dt.max"});
+  const Json* reason = find_by_path(summary, {"time_step.limited_by"});
   const Json* limiting = find_by_path(summary, {"limiting_particle"});
   if (least == nullptr && most == nullptr) return {};
   std::string range = inline_html({}, least != nullptr ? *least : *most);
   if (least != nullptr && most != nullptr && *least != *most) range += " to " + inline_html({}, *most);
-  const std::string note = limiting == nullptr ? "" : "limited by " + inline_html({}, *limiting);
-  return card("time step", range + "\xC2\xA0s", note);
+  // A particle says by itself that its wave limits the step.
+  std::string limit = reason == nullptr || (limiting != nullptr && *reason == "wave") ? "" : inline_html({}, *reason);
+  if (limiting != nullptr) limit += (limit.empty() ? "" : ", ") + inline_html({}, *limiting);
+  return card("time step", range + "\xC2\xA0s", limit.empty() ? "" : "limited by " + limit);
 }
 
 std::string simple_cards(const Json& summary) {

@@ -135,6 +135,10 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
   Json json{
       {"particles", simulation.particle_count()}, {"steps", simulation.steps()}, {"simulated_time", simulation.time()}};
   json["time_step"] = {{"min", simulation.smallest_time_step()}, {"max", simulation.largest_time_step()}};
+  if (!simulation.limited_by().empty()) {
+    json["time_step"]["limited_by"] = simulation.limited_by();
+    json["time_step"]["smallest_limited_by"] = simulation.smallest_limited_by();
+  }
   if (const std::string limiting = simulation.limiting_particle(); !limiting.empty())
     json["limiting_particle"] = limiting;
   json["energy"] = energy(simulation, metrics, recorder);
@@ -182,7 +186,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
                          {"bytes_per_particle", static_cast<double>(simulation.backend().particle_bytes()) / particles},
                          {"grid_bytes", simulation.backend().grid_bytes()},
                          {"peak_memory", peak_memory()}};
-  // Operations are those of the algorithm, counted: null where a plugin is not known to the counter.
+  // Operations are those of the algorithm, counted: null where the counter does not know a part of them.
   const auto flops = bench::flops_per_particle(experiment, simulation.plan(), bench::facts_of(simulation));
   json["performance"]["flops"] =
       flops ? Json(flops->total() * particles * static_cast<double>(simulation.steps())) : Json();

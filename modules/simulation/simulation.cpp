@@ -51,7 +51,11 @@ void Simulation::take_limit() {
   if (!(limit.speed > 0) || !std::isfinite(limit.speed))
     throw RunFailure({Cause::speed_not_a_number, limit.body, limit.particle, -1, limit.speed});
   estimated_speed_ = limit.speed;
-  estimate_ = solver_.limit(experiment_, {limit.speed}).seconds;
+  const StepLimit allowed = solver_.limit(experiment_, {limit.speed});
+  estimate_ = allowed.seconds;
+  if (experiment_.solver.time_step) return;
+  limited_by_ = allowed.reason;
+  limited_by_speed_ = allowed.by_speed;
 }
 
 FailurePlace Simulation::place_of(const Failure& failure) const {
@@ -137,7 +141,11 @@ void Simulation::step() {
   execute(plan_.step, info);
   time_ = end_of_step();
   if (++steps_ == 1) first_entries_ = backend_->ledger();
-  smallest_ = steps_ == 1 ? dt_ : std::min(smallest_, dt_);
+  if (steps_ == 1 || dt_ < smallest_) {
+    const bool shortened = !limited_by_.empty() && dt_ < estimate_ * (1 - 1e-9);
+    smallest_limited_by_ = shortened ? "end of the run" : limited_by_;
+    smallest_ = dt_;
+  }
   largest_ = std::max(largest_, dt_);
 }
 
@@ -151,6 +159,9 @@ void Simulation::save(ArchiveWriter& archive) const {
   archive.put("filter_passes", filter_passes_);
   archive.put("particles", particles_);
   archive.put("first_entries", first_entries_);
+  archive.put("limited_by", limited_by_);
+  archive.put("limited_by_speed", limited_by_speed_);
+  archive.put("smallest_limited_by", smallest_limited_by_);
   backend_->save(archive);
 }
 
@@ -166,13 +177,16 @@ void Simulation::restore(ArchiveReader& archive) {
   archive.get("particles", particles);
   if (particles != particles_) throw ArchiveError("it holds another number of particles");
   archive.get("first_entries", first_entries_);
+  archive.get("limited_by", limited_by_);
+  archive.get("limited_by_speed", limited_by_speed_);
+  archive.get("smallest_limited_by", smallest_limited_by_);
   backend_->restore(archive);
   scattered_ = false;
   observed_ = true;
 }
 
 std::string Simulation::limiting_particle() const {
-  if (experiment_.solver.time_step) return "";
+  if (!limited_by_speed_) return "";
   const TimeStepLimit limit = backend_->time_step_limit();
   std::ostringstream out;
   out << "particle " << limit.particle << " of " << experiment_.bodies[limit.body].name << " (wave " << limit.wave_speed

@@ -62,8 +62,12 @@ class Simulation {
   Backend& backend() { return *backend_; }
   const Backend& backend() const { return *backend_; }
 
-  /// The particle that limits the automatic time step: "particle 12 of disc (wave 3.1 m/s + speed 0.4 m/s)"; empty when
-  /// dt is fixed.
+  /// Why the last estimate of the automatic time step is not larger, as the solver says it ("wave", "diffusion"); and
+  /// why the smallest step was not, which may be "end of the run". Both are empty when dt is fixed.
+  const std::string& limited_by() const { return limited_by_; }
+  const std::string& smallest_limited_by() const { return smallest_limited_by_; }
+  /// The particle whose speed limits the automatic time step: "particle 12 of disc (wave 3.1 m/s + speed 0.4 m/s)";
+  /// empty when dt is fixed, or limited by something else than speeds.
   std::string limiting_particle() const;
   /// The seconds spent in each pass so far, by name.
   const std::map<std::string, double>& seconds_by_pass() const { return seconds_; }
@@ -85,6 +89,8 @@ class Simulation {
   const Solver& solver_;
   std::unique_ptr<Backend> backend_;
   double time_ = 0, dt_ = 0, estimate_ = 0, smallest_ = 0, largest_ = 0;
+  std::string limited_by_, smallest_limited_by_;
+  bool limited_by_speed_ = false;
   double estimated_speed_ = 0;                              ///< speed of the last estimate, m/s
   long estimate_every_ = std::numeric_limits<long>::max();  ///< steps from one estimate to the next
   double filter_clock_ = 0;                                 ///< time or cells since the filter last acted

@@ -20,6 +20,7 @@ struct TimeStepSpeeds {
 struct StepLimit {
   double seconds = 0;
   std::string_view reason;  ///< "wave", "filter order", "diffusion", "convection"
+  bool by_speed = false;    ///< the measured speeds limit it, so that their particle is the one to name
 };
 
 struct Solver {

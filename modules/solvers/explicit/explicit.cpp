@@ -129,10 +129,12 @@ void explicit_step(StepBuilder& step) {
 }
 
 StepLimit explicit_limit(const Experiment& experiment, const TimeStepSpeeds& speeds) {
-  StepLimit limit{experiment.solver.courant * experiment.grid.cell_size / speeds.speed, "wave"};
+  StepLimit limit{experiment.solver.courant * experiment.grid.cell_size / speeds.speed, "wave", true};
   if (experiment.filter)
     if (const auto* filtered = extension_of<mpm_filter_step_limit>(*experiment.filter->plugin))
-      limit = {filtered->limit(experiment.filter->parameters.data(), limit.seconds), "filter order"};
+      if (const double seconds = filtered->limit(experiment.filter->parameters.data(), limit.seconds);
+          seconds < limit.seconds)
+        limit = {seconds, "filter order", true};
   const StepLimit thermal = thermal_limit(experiment);
   return thermal.seconds < limit.seconds ? thermal : limit;
 }
