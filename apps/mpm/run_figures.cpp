@@ -1,6 +1,7 @@
 #include "mpm/run_figures.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -83,8 +84,15 @@ render::StackedPlot ledger_of(const Table& table, const RunLabel& label, const s
   return plot;
 }
 
-/// Draws the rows of the heat ledger. What transfers take beyond the nodes' heat comes from mirror images at walls of a
-/// fixed temperature.
+double largest_of(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+/// Draws the rows of the heat ledger. What mirror images and held nodes make of the heat before a step reaches the
+/// particles, or is taken back, in the gather: these rows belong together, with what fixed temperatures add. Without
+/// images scatter and gather are rounding.
 void draw_heat(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
   render::StackedPlot plot = ledger_of(table, label, "Where the heat came from", "heat Q",
                                        {{"heat ledger flux", "flux through walls"},
@@ -92,12 +100,13 @@ void draw_heat(const Table& table, const RunLabel& label, const std::filesystem:
                                         {"heat ledger boxes", "boxes of nodes"},
                                         {"heat ledger dissipation", "dissipation"}});
   auto walls = column(table, "heat ledger walls");
-  if (std::any_of(walls.begin(), walls.end(), [](double q) { return q != 0; })) {
+  const bool fixed = largest_of(walls) > 0;
+  if (fixed || largest_of(column(table, "heat ledger images")) > 0) {
     for (const char* name : {"heat ledger images", "heat ledger scatter", "heat ledger gather"}) {
       const auto part = column(table, name);
       for (std::size_t k = 0; k < walls.size(); ++k) walls[k] += part[k];
     }
-    plot.areas.push_back({"walls of fixed temperature", plot.x, walls});
+    plot.areas.push_back({fixed ? "fixed temperatures, mirror images" : "mirror images", plot.x, walls});
   }
   plot.lines.push_back({"residual", plot.x, column(table, "heat ledger residual")});
   render::write_figure(plot, stem);

@@ -301,6 +301,37 @@ TEST_CASE("a run with temperature records the heat, and others say nothing of it
   CHECK_FALSE(has(slurp(folder / "unaccounted/metrics.csv"), "heat ledger"));
 }
 
+TEST_CASE("the areas of the heat figure sum to the heat gained, whatever the walls do with it") {
+  const Folder folder;
+  Json scene = ball();
+  scene["transfer"] = {{"type", "apic"}};
+  scene["materials"]["m"]["thermal"] = {{"conductivity", 100}, {"heat_capacity", 1000}};
+  scene["bodies"][0]["geometry"] = {{"type", "box"}, {"lower", {0, 0}}, {"upper", {1, 0.5}}};
+  scene["bodies"][0]["velocity"] = {0, 0};
+  scene["bodies"][0]["temperature"] = "300 + 10*x";
+  scene["figures"] = {"heat"};
+  const Json convection = {{"coefficient", 1e4}, {"temperature", 400}};
+  for (const auto& [key, value] :
+       {std::pair<const char*, Json>{"convection", convection}, {"heat_flux", 1e5}, {"temperature", 350}}) {
+    INFO(key);
+    scene["grid"]["boundaries"] = {{"all", "slip"}, {"x_min", {{"type", "slip"}, {key, value}}}};
+    run_as(folder, scene, key);
+    const support::Table drawn = support::read_csv(folder / (std::string(key) + "/figures/heat.csv"));
+    const support::Table measured = support::read_csv(folder / (std::string(key) + "/metrics.csv"));
+    const auto& content = *measured.find("heat content");
+    REQUIRE(drawn.rows() == content.size());
+    const double gained = content.back() - content.front();
+    double sum = 0, largest = 0;
+    for (std::size_t k = 1; k < drawn.columns.size(); ++k) {
+      sum += drawn.columns[k].back();
+      largest = std::max(largest, std::abs(drawn.columns[k].back()));
+    }
+    CHECK(std::abs(gained) > 10);
+    CHECK(std::abs(sum - gained) < 1e-6 * largest);
+    CHECK(has(slurp(folder / (std::string(key) + "/figures/heat.csv")), "mirror images"));
+  }
+}
+
 TEST_CASE("a filtered run records what the filter did, and others say nothing of it") {
   const Folder folder;
   Json scene = two_balls();
