@@ -97,11 +97,11 @@ struct BodyState {
   double volume = 0, mass = 0;        ///< values of one particle; in axisymmetric scenes per metre of circumference
   std::vector<double> circumference;  ///< n, m: 2 pi r as seeded; empty unless axisymmetric
   double ring(std::size_t p) const { return circumference.empty() ? 1.0 : circumference[p]; }
-  std::vector<double> domain;  ///< n*dimension*dimension, m, columns are semi-sides; empty unless Plan::particle_domain
+  std::vector<double> domain;  ///< n*dimension*dimension, m, columns are semi-sides; empty unless planned
   /// The corners of each particle's domain, n*points*dimension, m from the particle; empty unless Plan::sample_points.
   std::vector<double> corners;
   /// The second moment of the shape at each particle's position, n*dimension*dimension, m^2; empty unless
-  /// Plan::second_moment.
+  /// StencilNeeds::second_moment.
   std::vector<double> second_moment;
   std::map<std::string, std::vector<double>> host_state;  ///< by id: saved fields without a member of their own
 
@@ -131,33 +131,49 @@ struct Ledger {
 
   Ledger plus(const Ledger& other) const;
   Ledger times(double factor) const;
-  /// The change of the total energy that the causes explain. The residual's rounding depends on the order of this sum.
-  double explained() const { return scatter + gather + filter + boundary + contact + body_force - material; }
+  /// The change of the total energy that the causes explain.
+  double explained() const;
 };
 
-/// An entry of a ledger with its name. Sums, files and tests go over the lists of entries: a new entry is a member and
-/// a line here, and a member without its line does not compile.
+/// An entry of a ledger with its name, and how the sum of all changes by it: of the total energy, +1 where it is given,
+/// -1 where it is lost, 0 where it is a part of another entry or reappears as potential energy. Sums, files and tests go
+/// over the lists of entries: a new entry is a member and a line here, and a member without its line does not compile.
 template <class AnyLedger>
 struct LedgerEntry {
   const char* name;
   double AnyLedger::*value;
+  int sign = 1;
+  int turn = 0;  ///< entries are summed by turns; the rounding of the residual depends on their order
 };
-inline constexpr LedgerEntry<Ledger> ledger_entries[] = {
-    {"scatter", &Ledger::scatter}, {"gather", &Ledger::gather},         {"internal force", &Ledger::internal_force},
-    {"gravity", &Ledger::gravity}, {"body force", &Ledger::body_force}, {"boundary", &Ledger::boundary},
-    {"contact", &Ledger::contact}, {"friction", &Ledger::friction},     {"material dissipation", &Ledger::material},
-    {"filter", &Ledger::filter}};
+inline constexpr LedgerEntry<Ledger> ledger_entries[] = {{"scatter", &Ledger::scatter},
+                                                         {"gather", &Ledger::gather},
+                                                         {"internal force", &Ledger::internal_force, 0},
+                                                         {"gravity", &Ledger::gravity, 0},
+                                                         {"body force", &Ledger::body_force, 1, 3},
+                                                         {"boundary", &Ledger::boundary, 1, 2},
+                                                         {"contact", &Ledger::contact, 1, 2},
+                                                         {"friction", &Ledger::friction, 0},
+                                                         {"material dissipation", &Ledger::material, -1, 4},
+                                                         {"filter", &Ledger::filter, 1, 1}};
 static_assert(sizeof(Ledger) == std::size(ledger_entries) * sizeof(double));
 
 inline Ledger Ledger::plus(const Ledger& other) const {
   Ledger sum;
-  for (const auto& [name, value] : ledger_entries) sum.*value = this->*value + other.*value;
+  for (const auto& [name, value, sign, turn] : ledger_entries) sum.*value = this->*value + other.*value;
   return sum;
 }
 inline Ledger Ledger::times(double factor) const {
   Ledger product;
-  for (const auto& [name, value] : ledger_entries) product.*value = factor * this->*value;
+  for (const auto& [name, value, sign, turn] : ledger_entries) product.*value = factor * this->*value;
   return product;
+}
+
+inline double Ledger::explained() const {
+  double sum = 0;
+  for (int now = 0; now < static_cast<int>(std::size(ledger_entries)); ++now)
+    for (const auto& [name, value, sign, turn] : ledger_entries)
+      if (turn == now) sum += sign * this->*value;
+  return sum;
 }
 
 /// A record of what the filter did in the last step in which it acted.
@@ -206,19 +222,19 @@ static_assert(sizeof(HeatLedger) == std::size(heat_ledger_entries) * sizeof(doub
 
 inline double HeatLedger::sum() const {
   double sum = 0;
-  for (const auto& [name, value] : heat_ledger_entries) sum += this->*value;
+  for (const auto& [name, value, sign, turn] : heat_ledger_entries) sum += this->*value;
   return sum;
 }
 
 /// The entries as rows, J, in the order of the lists.
 inline std::vector<ValueRow> rows_of(const Ledger& ledger) {
   std::vector<ValueRow> rows;
-  for (const auto& [name, value] : ledger_entries) rows.push_back({name, "J", ledger.*value});
+  for (const auto& [name, value, sign, turn] : ledger_entries) rows.push_back({name, "J", ledger.*value});
   return rows;
 }
 inline std::vector<ValueRow> rows_of(const HeatLedger& ledger) {
   std::vector<ValueRow> rows;
-  for (const auto& [name, value] : heat_ledger_entries) rows.push_back({name, "J", ledger.*value});
+  for (const auto& [name, value, sign, turn] : heat_ledger_entries) rows.push_back({name, "J", ledger.*value});
   return rows;
 }
 /// The values of the entries without their names.

@@ -33,7 +33,7 @@ struct HigherBasis {
 struct ShapeArguments {
   Array position;   ///< [D], from the grid's lower corner
   Array half_size;  ///< [D]; half the undeformed particle's box
-  Array domain;     ///< [D*D]; empty unless Plan::particle_domain
+  Array domain;     ///< [D*D]; empty unless planned
   Array corners;    ///< [points*D], from the position; empty unless Plan::sample_points
 };
 

@@ -34,7 +34,7 @@ class GridStep : NamedChannels {
   void set_particle_heat(double sum) { particle_heat_ = sum; }
   double heat_after() const { return heat_after_; }
 
-  /// These passes make the filter's loop (see PassKind). project_increment takes what the particles have scattered.
+  /// These passes make the filter's loop (see Act). project_increment takes what the particles have scattered.
   void begin_filter(const Pass& pass);
   void project_increment(const Pass& pass, const StepInfo& step);
   void update_filter(const Pass& pass, const StepInfo& step);
