@@ -130,7 +130,8 @@ void shape_fields(FieldList& fields, int body) {
                       shape + ": semi-side vectors of the particle's domain");
   // The reference backend keeps the stencils of a step; the others evaluate them anew in every pass.
   const Pass* const strain = fields.plan.pass_of(Act::strain);
-  if (!strain || !fields.needs.forgets_stencils || strain->remap() || strain->has(Act::gather)) return;
+  if (!strain || !fields.plan.does(Act::move)) return;
+  if (!fields.needs.forgets_stencils || strain->remap() || strain->has(Act::gather)) return;
   const bool by_order = strain->stage == Stage::before_forces || !experiment.filter;
   fields
       .of_particles(body, "strained_domain", "cells", D * D, First::half_size_diagonal,

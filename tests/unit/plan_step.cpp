@@ -18,7 +18,7 @@ const char* const block = R"json({
   "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
   "materials": {"a": {"type": "neo_hookean", "density": 1000, "youngs_modulus": 1e4, "poisson_ratio": 0.2}},
   "bodies": [{"name": "b", "material": "a", "geometry": {"type": "box", "lower": [0.25, 0.25], "upper": [0.75, 0.75]}}],
-  "solver": {"end_time": 1}
+  "solver": {"end_time": 1}, "output": {"ledger": false}
 })json";
 
 const char* const slab = R"json({
@@ -30,7 +30,7 @@ const char* const slab = R"json({
       "phase_change": {"temperature": 290, "latent_heat": 1000, "melted": {"youngs_modulus": 1e3}}}}},
   "bodies": [{"name": "b", "material": "a", "temperature": 280,
     "geometry": {"type": "box", "lower": [0.25, 0.25], "upper": [0.75, 0.75]}}],
-  "solver": {"end_time": 1}
+  "solver": {"end_time": 1}, "output": {"ledger": false}
 })json";
 
 /// The plan of a scene whose step a toy solver writes.
@@ -186,8 +186,13 @@ TEST_CASE("whoever evaluates a material that melts reads how far its particles h
     INFO(static_cast<int>(act));
     CHECK(uses(reads, act, melted));
   }
-  CHECK(uses(reads, Act::scatter_contact, melted,
-             {R"(/contact={"type": "coulomb", "friction": 0.3})", R"(/bodies/0/field="one")"}));
+  const std::vector<std::string> pair{
+      R"(/bodies=[{"name": "b", "material": "a", "temperature": 280,
+                   "geometry": {"type": "box", "lower": [0.25, 0.25], "upper": [0.75, 0.75]}},
+                  {"name": "c", "material": "a", "temperature": 280,
+                   "geometry": {"type": "box", "lower": [0.75, 0.25], "upper": [1, 0.75]}}])",
+      R"(/contact={"type": "coulomb", "friction": 0.3})"};
+  CHECK(uses(reads, Act::scatter_contact, melted, pair));
   CHECK(uses(reads, Act::change_phase, "particles/material"));
   CHECK(uses(reads, Act::strain, temperature));
   CHECK(uses(writes, Act::strain, temperature));
