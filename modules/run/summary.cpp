@@ -2,12 +2,15 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "bench/costs.hpp"
 #include "experiment/diagnostics.hpp"
 #include "output/summary_value.hpp"
+#include "simulation/boundary.hpp"
 
 namespace mpm::app {
 namespace {
@@ -75,8 +78,30 @@ void collect_names(const Json& value, const std::string& prefix, std::vector<std
   for (const auto& [key, child] : value.items()) collect_names(child, prefix.empty() ? key : prefix + "." + key, names);
 }
 
+/// What mirror images made of the heat at walls with convection, where the particles keep it; empty where that is
+/// little. No warning is due where walls hold a temperature, as images are a part of the heat through those.
+std::string warning_of_images(const Simulation& simulation) {
+  const auto& faces = simulation.experiment().faces;
+  const auto any = [&](auto is) {
+    return std::any_of(std::begin(faces), std::end(faces), [&](auto& sides) { return is(sides[0]) || is(sides[1]); });
+  };
+  if (!simulation.plan().has_heat_ledger() || any([](auto& face) { return holds_temperature(face); })) return "";
+  if (!any([](auto& face) { return face.thermal.exchange == HeatExchange::convection; })) return "";
+  const HeatLedger& heat = simulation.backend().heat_ledger();
+  const double share = (heat.scatter + heat.images + heat.gather) / std::abs(heat.convection);
+  if (!(std::abs(share) > 0.05)) return "";
+  std::ostringstream warning;
+  warning.precision(2);
+  warning << "mirror images " << (share < 0 ? "took" : "gave") << " heat of " << 100 * std::abs(share)
+          << " % of what convection brought: transfer "
+          << std::quoted(std::string(simulation.experiment().transfer.plugin->id()))
+          << " keeps what they do in every step; take longer steps, or transfer \"flip\" or \"aflip\"";
+  return warning.str();
+}
+
 Json warnings(const Simulation& simulation) {
   Json all = Json::array();
+  if (const std::string images = warning_of_images(simulation); !images.empty()) all.push_back(images);
   if (const double growth = simulation.backend().filter_record().largest_growth; growth > 1 + 1e-9) {
     std::ostringstream warning;
     warning.precision(6);

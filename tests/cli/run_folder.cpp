@@ -258,6 +258,31 @@ TEST_CASE("a ledger of some steps says so, and warns where they are too few") {
   CHECK(!has(slurp(folder / "every/report.html"), "After the first step one in"));
 }
 
+TEST_CASE("a run warns where mirror images make heat at a wall with convection") {
+  const Folder folder;
+  const auto warnings = [&](const std::string& transfer, double step) {
+    const Json scene = Json::parse(R"J({"title": "slab", "dimension": 2,
+      "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 0.3]], "boundaries": {"all": "slip",
+        "x_min": {"type": "slip", "convection": {"coefficient": 10000, "temperature": 400}}}},
+      "shape": {"type": "bspline_quadratic"},
+      "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000,
+        "thermal": {"conductivity": 1000, "heat_capacity": 100}}},
+      "bodies": [{"name": "b", "material": "m", "temperature": 300, "frozen": true,
+                  "geometry": {"type": "box", "lower": [0, 0], "upper": [1, 0.3]}}],
+      "output": {"frames": 0}})J");
+    Json changed = scene;
+    changed["transfer"] = {{"type", transfer}};
+    changed["solver"] = {{"time_step", step}, {"end_time", 4}};
+    const std::string name = transfer + std::to_string(step);
+    run_as(folder, changed, name, {});
+    return json_in(folder / name / "summary.json")["warnings"].dump();
+  };
+  // With the whole step that diffusion allows images are a fiftieth of it; a tenth of that step makes the error grow.
+  CHECK(has(warnings("apic", 0.005), "mirror images took heat of"));
+  CHECK(!has(warnings("apic", 0.05), "mirror images"));
+  CHECK(!has(warnings("flip", 0.005), "mirror images"));
+}
+
 TEST_CASE("a run with temperature records the heat, and others say nothing of it") {
   const Folder folder;
   Json scene = two_balls();
