@@ -6,7 +6,9 @@
 
 namespace mpm::reference {
 
-Grid::Grid(const Experiment& experiment, const Plan& plan) : experiment_(experiment) {
+Grid::Grid(const Experiment& experiment, const Plan& plan)
+    : experiment_(experiment),
+      wall_weights_(plan.node_field("heated_volume") ? wall_weights(experiment) : WallWeights()) {
   padding_ = Eigen::Vector3i::Zero();
   extent_ = Eigen::Vector3i::Ones();
   for (int axis = 0; axis < experiment.dimension; ++axis) {
@@ -102,34 +104,59 @@ double Grid::wall_temperature(const Fold& fold, double time) const {
 }
 
 /// Follows Fourier's law from the flux through the wall and the conductivity of the bodies that reach the node there.
-double Grid::gradient_at_wall(const Fold& fold, double time, const WallWeights* divided) const {
-  if (fold.side < 0 || !passes_heat(experiment_.faces[fold.axis][fold.side])) return 0;
-  const std::size_t i = at(velocity_field_of(fold.ghost), index(foot_node(fold)));
-  if (heated_volume_[i] <= 0) return 0;
-  return -flux_through_wall(i, fold.axis, fold.side, time, divided) * heated_volume_[i] / volume_conductivity_[i];
+double Grid::gradient_from_flux(std::size_t i, int axis, int side, double time, bool heat_is_divided) const {
+  if (!passes_heat(experiment_.faces[axis][side]) || heated_volume_[i] <= 0) return 0;
+  return -flux_through_wall(i, axis, side, time, heat_is_divided) * heated_volume_[i] / volume_conductivity_[i];
 }
 
-double Grid::flux_through_wall(std::size_t i, int axis, int side, double time, const WallWeights* divided) const {
+double Grid::gradient_at_wall(const Fold& fold, double time) const {
+  if (fold.side < 0) return 0;
+  const std::size_t i = at(velocity_field_of(fold.ghost), index(foot_node(fold)));
+  return gradient_from_flux(i, fold.axis, fold.side, time, true);
+}
+
+double Grid::gradient_before_folds(const Fold& fold) const {
+  if (fold.side < 0 || !passes_heat(experiment_.faces[fold.axis][fold.side])) return 0;
+  return gradient_before_folds_[at(velocity_field_of(fold.ghost), index(foot_node(fold)))];
+}
+
+void Grid::find_gradients_before_folds(int axis, double time) {
+  gradient_before_folds_.assign(size(), 0.0);
+  for (std::size_t i = 0; i < size(); ++i)
+    for (const int side : {0, 1})
+      if (coordinates(i)[axis] == (side == 0 ? 0 : experiment_.grid.cells[axis]) && mass_[i] > 0)
+        gradient_before_folds_[i] = gradient_from_flux(i, axis, side, time, false);
+}
+
+double Grid::flux_through_wall(std::size_t i, int axis, int side, double time, bool heat_is_divided) const {
   const ThermalCondition& wall = experiment_.faces[axis][side].thermal;
   const Vector x = position(coordinates(i));
   const double given = wall.value({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time);
   if (wall.exchange == HeatExchange::flux) return given;
-  const double conductivity = volume_conductivity_[i] / heated_volume_[i];
-  if (!divided) {
-    // The node's particles lie farther inward by this than the wall; those that carry gradients have told it.
-    const Fold on_wall{i, i, axis, side};
-    const double inward = capacity_inward(i, on_wall) / heat_capacity_[i];
-    return (given - heat_[i] / heat_capacity_[i]) / (1 / wall.coefficient + inward / conductivity);
+  // The shares mirror the temperature beyond the wall, but the flux q bends it: the wall has at_wall + q colder / k.
+  const double h = experiment_.grid.cell_size, conductivity = volume_conductivity_[i] / heated_volume_[i];
+  double at_wall = 0, colder = wall_weights_.beyond * h;
+  for (std::size_t k = 0; k < wall_weights_.shares.size(); ++k) {
+    Eigen::Vector3i inward = coordinates(i), beyond = coordinates(i);
+    inward[axis] += (side == 0 ? 1 : -1) * static_cast<int>(k);
+    beyond[axis] -= (side == 0 ? 1 : -1) * static_cast<int>(k);
+    const std::size_t node = at(velocity_field_of(i), index(inward)), ghost = at(velocity_field_of(i), index(beyond));
+    if (heat_is_divided) {
+      at_wall += wall_weights_.shares[k] * temperature_[node];
+      continue;
+    }
+    // Folding adds the ghost's heat, and what its image is colder by at a unit gradient; the wall's node has half of that.
+    const Fold fold{ghost, node, axis, side};
+    double heat = heat_[node], capacity = heat_capacity_[node], image = -capacity_inward(node, fold);
+    if (k > 0) {
+      heat += heat_[ghost], capacity += heat_capacity_[ghost];
+      image = 2 * (static_cast<double>(k) * h * heat_capacity_[ghost] - capacity_inward(ghost, fold));
+    }
+    if (capacity <= 0) continue;
+    at_wall += wall_weights_.shares[k] * heat / capacity;
+    colder -= wall_weights_.shares[k] * image / capacity;
   }
-  Eigen::Vector3i node = coordinates(i);
-  double at_wall = 0;
-  for (const double share : divided->shares) {
-    at_wall += share * temperature_[at(velocity_field_of(i), index(node))];
-    node[axis] += side == 0 ? 1 : -1;
-  }
-  // The shares mirror the temperature beyond the wall, but the flux q bends it: the wall has at_wall + q beyond / k.
-  const double resistance = divided->beyond * experiment_.grid.cell_size / conductivity;
-  return (given - at_wall) / (1 / wall.coefficient + resistance);
+  return (given - at_wall) / (1 / wall.coefficient + colder / conductivity);
 }
 
 double Grid::distance(const Fold& fold) const {
@@ -188,6 +215,7 @@ void Grid::fold_walls(double time, double dt) {
 
 void Grid::fold_axis(int axis, double time, double dt) {
   const int cells = experiment_.grid.cells[axis];
+  if (heated_volume_.declared_ && heat_capacity_.waits_) find_gradients_before_folds(axis, time);
   for (int velocity_field = 0; velocity_field < velocity_fields(); ++velocity_field)
     for (const std::size_t node : outermost_first_[axis]) {
       Eigen::Vector3i target = coordinates_[node];
@@ -202,7 +230,7 @@ void Grid::fold_axis(int axis, double time, double dt) {
       if (fold.mirror != fold.ghost)
         fold_node(fold, time);
       else
-        fold_onto_itself(fold, time);
+        fold_onto_itself(fold);
     }
 }
 
@@ -213,8 +241,8 @@ void Grid::fold_node(Fold fold, double time) {
     fold.heat_capacity = heat_capacity_[fold.ghost];
     wall.heat = fold.heat_capacity * wall_temperature(fold, time);
     // Particles at x_p from the wall have images at -x_p that are colder by 2 x_p times the gradient.
-    wall.heat_beyond = 2 * gradient_at_wall(fold, time, nullptr) *
-                       (distance(fold) * fold.heat_capacity - capacity_inward(fold.ghost, fold));
+    wall.heat_beyond =
+        2 * gradient_before_folds(fold) * (distance(fold) * fold.heat_capacity - capacity_inward(fold.ghost, fold));
   }
   for_each_field([&](auto& field) {
     if (field.waits_) add_to_mirror(field, fold, field.declared_->at_wall, wall);
@@ -226,11 +254,11 @@ void Grid::fold_node(Fold fold, double time) {
 }
 
 /// Folds a node of the wall, which is its own mirror: the image takes away what points across the wall.
-void Grid::fold_onto_itself(const Fold& fold, double time) {
+void Grid::fold_onto_itself(const Fold& fold) {
   const std::size_t i = fold.ghost;
   const int axis = fold.axis;
   if (heat_capacity_.declared_ && heat_capacity_.waits_)
-    heat_[i] -= gradient_at_wall(fold, time, nullptr) * capacity_inward(i, fold);
+    heat_[i] -= gradient_before_folds(fold) * capacity_inward(i, fold);
   for (auto& [id, field] : vectors_)
     if (field.waits_ && field.declared_->at_wall == AtWall::slip) field[i][axis] = 0;
 }
@@ -262,11 +290,11 @@ void Grid::fill_velocity_ghosts(double time) {
   }
 }
 
-void Grid::fill_temperature_ghosts(double time, const WallWeights& weights) {
+void Grid::fill_temperature_ghosts(double time) {
   for (auto fold = folds_.rbegin(); fold != folds_.rend(); ++fold) {
     const double wall = wall_temperature(*fold, time);
     temperature_[fold->ghost] = wall + mirrored(temperature_[fold->mirror] - wall, *fold, AtWall::heat);
-    temperature_[fold->ghost] -= 2 * distance(*fold) * gradient_at_wall(*fold, time, &weights);
+    temperature_[fold->ghost] -= 2 * distance(*fold) * gradient_at_wall(*fold, time);
   }
 }
 

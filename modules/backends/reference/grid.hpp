@@ -115,13 +115,13 @@ class Grid {
   void fill_velocity_ghosts(double time);
   /// Gives ghosts the temperature mirrored about that of walls that have one, at `time`, and bent by the flux through
   /// others.
-  void fill_temperature_ghosts(double time, const WallWeights& weights);
+  void fill_temperature_ghosts(double time);
   /// The heat, J, that the ghosts' own capacities hold more at their temperature than at their mirrors', at walls that
   /// are held at a temperature or at all others.
   double heat_beyond_walls(bool held) const;
   /// The flux into the body at a node of a wall that heat comes through, W/m^2. Convection goes by the temperature
-  /// there: by that of the node's own heat until heat is `divided`, then by the weights.
-  double flux_through_wall(std::size_t i, int axis, int side, double time, const WallWeights* divided) const;
+  /// there, which is that of the nodes' `heat_is_divided`, or what it will be when this has been folded and divided.
+  double flux_through_wall(std::size_t i, int axis, int side, double time, bool heat_is_divided) const;
   /// Gives ghosts the values mirrored by a rule at walls at rest.
   template <class Value>
   void fill_ghosts(NodeField<Value>& field, AtWall rule);
@@ -150,14 +150,19 @@ class Grid {
   }
   void fold_axis(int axis, double time, double dt);
   void fold_node(Fold fold, double time);
-  void fold_onto_itself(const Fold& fold, double time);
+  void fold_onto_itself(const Fold& fold);
   bool approaches_wall(const Fold& fold, double dt) const;
   /// The point of the wall where a ghost's line to its mirror crosses it.
   Vector foot(const Fold& fold) const;
   Eigen::Vector3i foot_node(const Fold& fold) const;
   double distance(const Fold& fold) const;  ///< distance of the ghost from the wall, m
   /// The rise of the temperature inward at the wall, K/m, where heat comes through it.
-  double gradient_at_wall(const Fold& fold, double time, const WallWeights* divided) const;
+  /// The gradient inward at the foot of a fold, K/m: of what is divided at `time`, or what it was before the first fold
+  /// along this axis.
+  double gradient_at_wall(const Fold& fold, double time) const;
+  double gradient_before_folds(const Fold& fold) const;
+  void find_gradients_before_folds(int axis, double time);
+  double gradient_from_flux(std::size_t i, int axis, int side, double time, bool heat_is_divided) const;
   /// The sum of w C (x_p - x_i) along the inward normal, J m/K, where the transfer scatters no particle gradients.
   double capacity_inward(std::size_t i, const Fold& fold) const;
   Vector wall_velocity(const Fold& fold, double time) const;
@@ -168,6 +173,7 @@ class Grid {
   Vector mirrored(Vector v, const Fold& fold, AtWall rule) const;
 
   const Experiment& experiment_;
+  const WallWeights wall_weights_;
   Eigen::Vector3i extent_, padding_;
   std::vector<Eigen::Vector3i> coordinates_;
   std::array<std::vector<std::size_t>, 3> outermost_first_;  ///< nodes by distance beyond the walls of an axis
@@ -181,6 +187,7 @@ class Grid {
               &body_force_ = vector("body_force"), &weight_ = vector("weight"),
               &capacity_position_ = vector("capacity_position");
   std::vector<Fold> folds_;
+  std::vector<double> gradient_before_folds_;  ///< K/m, of nodes on walls that heat comes through, for one axis
   std::uint64_t bytes_ = 0;
 };
 

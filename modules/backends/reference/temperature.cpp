@@ -157,7 +157,7 @@ void ReferenceBackend::scatter_heat(Particles& body) {
 void ReferenceBackend::divide_heat(const StepInfo& step) {
   for_each_node([&](std::size_t i) { temperature_[i] = heat_capacity_[i] > 0 ? heat_[i] / heat_capacity_[i] : 0; });
   impose_temperatures(step.time, heat_ledger_.images, heat_ledger_.images);
-  grid_.fill_temperature_ghosts(step.time, wall_weights_);
+  grid_.fill_temperature_ghosts(step.time);
   held_beyond_ = grid_.heat_beyond_walls(true), others_beyond_ = grid_.heat_beyond_walls(false);
   account(heat_ledger_.images, held_beyond_ + others_beyond_);
   for_each_node([&](std::size_t i) { temperature_before_[i] = temperature_[i]; });
@@ -191,7 +191,7 @@ void ReferenceBackend::heat(const StepInfo& step) {
     if (heat_capacity_[i] > 0) temperature_[i] += step.dt * heat_rate_[i] / heat_capacity_[i];
   });
   impose_temperatures(step.time + step.dt, heat_ledger_.walls, heat_ledger_.boxes);
-  grid_.fill_temperature_ghosts(step.time + step.dt, wall_weights_);
+  grid_.fill_temperature_ghosts(step.time + step.dt);
   const double held = grid_.heat_beyond_walls(true), others = grid_.heat_beyond_walls(false);
   account(heat_ledger_.walls, held - held_beyond_);
   account(heat_ledger_.images, others - others_beyond_);
@@ -211,7 +211,7 @@ void ReferenceBackend::heat_through_wall(const FaceCondition& face, int axis, in
   for_each_node([&](std::size_t i) {
     Eigen::Vector3i node = grid_.coordinates(i);
     if (node[axis] != (side == 0 ? 0 : experiment_.grid.cells[axis]) || heated_volume_[i] <= 0) return;
-    const double flux = grid_.flux_through_wall(i, axis, side, step.time, &wall_weights_);
+    const double flux = grid_.flux_through_wall(i, axis, side, step.time, true);
     const double around = experiment_.axisymmetric() ? 2 * std::numbers::pi * grid_.position(node)[0] : 1;
     const double area = heated_volume_[i] / (0.5 * experiment_.grid.cell_size) * around;
     for (const double share : wall_weights_.shares) {

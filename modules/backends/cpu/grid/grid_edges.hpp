@@ -136,14 +136,14 @@ void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step)
     for (const Channel c : folded_[static_cast<int>(Folded::with_mass)])
       signs_.push_back({mirror_signs(face, grid_.field(c).at_wall)});
     for (int field = 0; field < grid_.fields(); ++field) {
+      if (!remap && grid_.has(heat) && passes_heat(*face.condition)) find_gradients(face, field, step.time);
       for (std::size_t i = 0; i < face.pairs.size(); ++i) {
         const MirrorPair& pair = face.pairs[i];
         const bool folds = motion_at(field, pair.ghost)[3] > 0 && (!separate || approaches(face, field, pair, dt));
         face.pair_folds[field * face.pairs.size() + i] = folds;
         if (folds) fold_pair(face, i, field, remap, step.time);
       }
-      if (!remap && grid_.has(capacity_position) && passes_heat(*face.condition))
-        fold_heat_onto_itself(face, field, step.time);
+      if (!remap && grid_.has(capacity_position) && passes_heat(*face.condition)) fold_heat_onto_itself(face, field);
       if (!periodic && !remap && !slipping_.empty()) fold_wall_onto_itself(face, field, dt);
     }
   }

@@ -19,26 +19,40 @@ std::uint32_t GridStep<D, T>::node_at_place(const Vector3& x, int axis, int cell
   return static_cast<std::uint32_t>(grid_.find(node));
 }
 
-/// The flux into a body at a node of the wall which it reaches, W/m^2. Before heat is `divided` the node's temperature
-/// is that of its particles, where these lie: as far inward as the heat capacity's place says.
+/// The flux into a body at a node of the wall which it reaches, W/m^2. Convection goes by the temperature there, which is
+/// that of nodes whose heat is `divided`, or what it will be when this has been folded and divided.
 template <int D, class T>
 double GridStep<D, T>::flux_through(const FaceNodes& face, int field, const Vector3& x, double time, bool divided) {
   const ThermalCondition& condition = face.condition->thermal;
   const double given = condition.value(x, x, time);
   if (condition.exchange == HeatExchange::flux) return given;
-  const std::uint32_t node = node_at_place(x, face.axis, 0);
-  const Q of_node = grid_.quad(heat, field, node), volume = grid_.quad(heated_volume, field, node);
-  const double conductivity = static_cast<double>(volume[3]) / volume[0];
-  if (!divided)
-    return convected_flux(condition.coefficient, given, static_cast<double>(of_node[0]) / of_node[3],
-                          capacity_inward(face, field, node) / of_node[3], conductivity);
-  double at_wall = 0;
+  const Q volume = grid_.quad(heated_volume, field, node_at_place(x, face.axis, 0));
+  const double conductivity = static_cast<double>(volume[3]) / volume[0], h = scene_.domain.cell_size;
+  double at_wall = 0, beyond = wall_weights_.beyond * h;
   for (std::size_t k = 0; k < wall_weights_.shares.size(); ++k) {
-    const std::uint32_t next = node_at_place(x, face.axis, face.side == 0 ? static_cast<int>(k) : -static_cast<int>(k));
-    if (next != ~0u) at_wall += wall_weights_.shares[k] * grid_.quad(heat, field, next)[0];
+    const int inward = face.side == 0 ? static_cast<int>(k) : -static_cast<int>(k);
+    const std::uint32_t next = node_at_place(x, face.axis, inward), ghost = node_at_place(x, face.axis, -inward);
+    if (next == ~0u) continue;
+    const Q of_next = grid_.quad(heat, field, next);
+    if (divided) {
+      at_wall += wall_weights_.shares[k] * of_next[0];
+      continue;
+    }
+    // Folding adds the ghost's heat, and what a gradient makes of its image; the wall's node has half of its own.
+    double sum = of_next[0], capacity = of_next[3], image = 0;
+    if (k == 0) {
+      image = 0.5 * heat_beyond_wall(1.0, 0.0, 0.0, capacity_inward(face, field, next));
+    } else if (ghost != ~0u) {
+      const Q of_ghost = grid_.quad(heat, field, ghost);
+      sum += of_ghost[0], capacity += of_ghost[3];
+      image = heat_beyond_wall(1.0, static_cast<double>(k) * h, static_cast<double>(of_ghost[3]),
+                               capacity_inward(face, field, ghost));
+    }
+    if (!(capacity > 0)) continue;
+    at_wall += wall_weights_.shares[k] * sum / capacity;
+    beyond -= wall_weights_.shares[k] * image / capacity;
   }
-  return convected_flux(condition.coefficient, given, at_wall, wall_weights_.beyond * scene_.domain.cell_size,
-                        conductivity);
+  return convected_flux(condition.coefficient, given, at_wall, beyond, conductivity);
 }
 
 /// The gradient inward at a node of a wall that heat comes through, K/m; else zero.
@@ -50,6 +64,20 @@ double GridStep<D, T>::gradient_at(const FaceNodes& face, int field, const Vecto
   const Q volume = grid_.quad(heated_volume, field, node);
   if (!(volume[0] > T(0))) return 0;
   return -flux_through(face, field, x, time, divided) * volume[0] / volume[3];
+}
+
+/// Finds the gradients at a wall that heat comes through before anything of the field is folded there.
+template <int D, class T>
+void GridStep<D, T>::find_gradients(const FaceNodes& face, int field, double time) {
+  gradients_.clear();
+  for (std::size_t i = 0; i < face.wall.size(); ++i)
+    gradients_[face.wall[i]] = gradient_at(face, field, face.wall_position[i], time, false);
+}
+
+template <int D, class T>
+double GridStep<D, T>::gradient_before_folds(const FaceNodes& face, const Vector3& x) const {
+  const auto found = gradients_.find(node_at_place(x, face.axis, 0));
+  return found == gradients_.end() ? 0.0 : found->second;
 }
 
 template <int D, class T>
@@ -69,7 +97,7 @@ void GridStep<D, T>::fold_heat(FaceNodes& face, std::size_t index, int field, do
                         : T(0);
   T folded = mirrored(ghost[0], mirror_signs(face, AtWall::heat)[0], ghost[3] * of_wall);
   if (passes_heat(*face.condition))
-    folded += static_cast<T>(heat_beyond_wall(gradient_at(face, field, pair.foot, time, false), pair.distance,
+    folded += static_cast<T>(heat_beyond_wall(gradient_before_folds(face, pair.foot), pair.distance,
                                               static_cast<double>(ghost[3]), capacity_inward(face, field, pair.ghost)));
   const double change = static_cast<double>(folded) - ghost[0];
   heat_of_folds_ += change;
@@ -80,11 +108,11 @@ void GridStep<D, T>::fold_heat(FaceNodes& face, std::size_t index, int field, do
 
 /// Folds heat on the wall itself, which is its own mirror and gets half of the image's share.
 template <int D, class T>
-void GridStep<D, T>::fold_heat_onto_itself(const FaceNodes& face, int field, double time) {
+void GridStep<D, T>::fold_heat_onto_itself(const FaceNodes& face, int field) {
   for (std::size_t i = 0; i < face.wall.size(); ++i) {
     Q& of_node = grid_.quad(heat, field, face.wall[i]);
     if (!(of_node[3] > T(0))) continue;
-    const double change = 0.5 * heat_beyond_wall(gradient_at(face, field, face.wall_position[i], time, false), 0.0, 0.0,
+    const double change = 0.5 * heat_beyond_wall(gradient_before_folds(face, face.wall_position[i]), 0.0, 0.0,
                                                  capacity_inward(face, field, face.wall[i]));
     of_node[0] += static_cast<T>(change);
     heat_of_folds_ += change;

@@ -2,6 +2,7 @@
 // GridStep executes the passes on nodes: folding at the domain's edges, conditions, forces, contact; and their ledger.
 
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "backends/cpu/grid/grid.hpp"
@@ -101,7 +102,9 @@ class GridStep : NamedChannels {
   void subtract_velocity_before();
 
   void fold_heat(FaceNodes& face, std::size_t pair, int field, double time);
-  void fold_heat_onto_itself(const FaceNodes& face, int field, double time);
+  void fold_heat_onto_itself(const FaceNodes& face, int field);
+  void find_gradients(const FaceNodes& face, int field, double time);
+  double gradient_before_folds(const FaceNodes& face, const Vector3& x) const;
   std::uint32_t node_at_place(const Vector3& x, int axis, int cells) const;
   double flux_through(const FaceNodes& face, int field, const Vector3& x, double time, bool divided);
   double gradient_at(const FaceNodes& face, int field, const Vector3& x, double time, bool divided);
@@ -162,8 +165,9 @@ class GridStep : NamedChannels {
   double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0, kinetic_energy_unfiltered_ = 0;
   const WallWeights wall_weights_;  ///< empty where no heat comes through a wall
   double particle_heat_ = 0, heat_after_ = 0;
-  Beyond beyond_;                                 ///< heat of the temperatures before the forces
-  double heat_of_folds_ = 0, rate_of_folds_ = 0;  ///< J and W that nodes have since their ghosts were folded
+  std::unordered_map<std::uint32_t, double> gradients_;  ///< K/m, inward at nodes of the wall that is being folded
+  Beyond beyond_;                                        ///< heat of the temperatures before the forces
+  double heat_of_folds_ = 0, rate_of_folds_ = 0;         ///< J and W that nodes have since their ghosts were folded
   bool has_gravity_ = false;
   bool may_merge_ = false;  ///< see merges: momentum_to_velocity leaves the division to apply_forces
   bool accounted_ = false;  ///< the ledger takes its entries from the step under way

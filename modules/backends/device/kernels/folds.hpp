@@ -23,23 +23,32 @@ MPM_HD T velocity_of_wall(const Arguments<T>& a, const Fold& fold, int component
   return velocity ? velocity[component * (a.node_count / a.extent[fold.axis]) + fold.line] : T(0);
 }
 
+/// The node on the wall at one end of a line along a.axis, as a fold onto itself.
+template <class T>
+MPM_HD Fold foot_of_line(const Arguments<T>& a, int line, int side) {
+  int stride = 1;
+  for (int c = 0; c < a.axis; ++c) stride *= a.extent[c];
+  const int first = line / stride * stride * a.extent[a.axis] + line % stride;
+  const int foot = first + (a.padding[a.axis] + (side == 0 ? 0 : a.cells[a.axis])) * stride;
+  return {foot, foot, a.axis, side, a.walls[a.axis][side], line, foot, side == 0 ? stride : -stride, 0};
+}
+
 /// Calls body(fold) for every node of a line along a.axis that lies beyond an end and has a mirror or image: the
 /// outermost first when folding, since in a domain of few cells its mirror is a ghost too; last when filling. With
 /// `on_walls` it is also called for nodes on a wall, which are their own mirrors.
 template <class T, class Body>
 MPM_HD void for_each_fold_of_line(const Arguments<T>& a, int line, bool outermost_first, bool on_walls, Body body) {
-  const int axis = a.axis, extent = a.extent[axis], padding = a.padding[axis], cells = a.cells[axis];
-  int stride = 1;
-  for (int c = 0; c < axis; ++c) stride *= a.extent[c];
-  const int origin = line / stride * stride * extent + line % stride + padding * stride;  // node 0 of the line
+  const int axis = a.axis, padding = a.padding[axis], cells = a.cells[axis];
   for (int k = 0; k < 2 * (padding + 1); ++k) {
     const int at = outermost_first ? k : 2 * padding + 1 - k;
     const int beyond = padding - at / 2, side = at % 2, wall = a.walls[axis][side];
     const int i = side == 0 ? -beyond : cells + beyond;
     const int mirror = has_images(wall) ? image_of(i, cells, wall == wall_periodic) : i;
-    if (mirror != i || (on_walls && beyond == 0 && folds(wall)))
-      body(Fold{origin + i * stride, origin + mirror * stride, axis, side, wall, line,
-                origin + (side == 0 ? 0 : cells) * stride, side == 0 ? stride : -stride, beyond});
+    if (mirror == i && !(on_walls && beyond == 0 && folds(wall))) continue;
+    Fold fold = foot_of_line(a, line, side);
+    const int upward = side == 0 ? fold.inward : -fold.inward, origin = fold.foot - (side == 0 ? 0 : cells) * upward;
+    fold.ghost = origin + i * upward, fold.mirror = origin + mirror * upward, fold.beyond = beyond;
+    body(fold);
   }
 }
 
@@ -86,7 +95,8 @@ MPM_HD T capacity_inward([[maybe_unused]] const Arguments<T>& a, [[maybe_unused]
 }
 
 /// The flux into the body at the foot of a fold where heat comes through the wall, W/m^2. Convection goes by the
-/// temperature there: by the foot's own heat until heat is `divided`, then by the shape's weights.
+/// temperature there, which is that of nodes whose heat is `divided`, or what it will be when this has been folded and
+/// divided.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T flux_through_wall(const Arguments<T>& a, const Fold& fold, bool divided) {
   using N = typename Scene::Node;
@@ -94,15 +104,26 @@ MPM_HD T flux_through_wall(const Arguments<T>& a, const Fold& fold, bool divided
   const T given = wall.value[fold.line];
   if (!(wall.coefficient > T(0))) return given;
   const T conductivity = a.grid.field[N::volume_conductivity][fold.foot] / a.grid.field[N::heated_volume][fold.foot];
-  if (!divided) {
-    const T capacity = a.grid.field[N::heat_capacity][fold.foot];
-    return convected_flux(wall.coefficient, given, temperature_of(a.grid.field[N::heat][fold.foot], capacity),
-                          capacity_inward<Scene>(a, fold, fold.foot) / capacity, conductivity);
+  T at_wall = T(0), beyond = a.wall_beyond;
+  for (int k = 0; k < a.wall_share_count; ++k) {
+    const int node = fold.foot + k * fold.inward, ghost = fold.foot - k * fold.inward;
+    if (divided) {
+      at_wall += a.wall_shares[k] * a.grid.field[N::temperature][node];
+      continue;
+    }
+    // Folding adds the ghost's heat, and what a gradient makes of its image; the wall's node has half of its own.
+    T heat = a.grid.field[N::heat][node], capacity = a.grid.field[N::heat_capacity][node];
+    const T capacity_of_ghost = k == 0 ? T(0) : a.grid.field[N::heat_capacity][ghost];
+    T image = heat_beyond_wall(T(1), a.cell_size * T(k), capacity_of_ghost, capacity_inward<Scene>(a, fold, ghost));
+    if (k == 0)
+      image *= T(0.5);
+    else
+      heat += a.grid.field[N::heat][ghost], capacity += capacity_of_ghost;
+    if (!(capacity > T(0))) continue;
+    at_wall += a.wall_shares[k] * (heat / capacity);
+    beyond -= a.wall_shares[k] * (image / capacity);
   }
-  T at_wall = T(0);
-  for (int k = 0; k < a.wall_share_count; ++k)
-    at_wall += a.wall_shares[k] * a.grid.field[N::temperature][fold.foot + k * fold.inward];
-  return convected_flux(wall.coefficient, given, at_wall, a.wall_beyond, conductivity);
+  return convected_flux(wall.coefficient, given, at_wall, beyond, conductivity);
 }
 
 /// The rise of the temperature inward at a wall that heat comes through, by Fourier's law, K/m; else zero.
@@ -119,11 +140,11 @@ MPM_HD T gradient_at_wall([[maybe_unused]] const Arguments<T>& a, [[maybe_unused
   }
 }
 
-/// The heat that the mirror gets beyond what the ghost's own and a held temperature make of the image; a node on the
-/// wall is its own mirror and gets half of it.
+/// The heat that the mirror gets beyond what the ghost's own and a held temperature make of the image, by the gradient
+/// before anything of the line was folded; a node on the wall is its own mirror and gets half of it.
 template <class Scene, class T = typename Scene::Scalar>
-MPM_HD T heat_of_image(const Arguments<T>& a, const Fold& fold, T heat_capacity) {
-  const T more = heat_beyond_wall(gradient_at_wall<Scene>(a, fold, false), a.cell_size * T(fold.beyond), heat_capacity,
+MPM_HD T heat_of_image(const Arguments<T>& a, const Fold& fold, T heat_capacity, T gradient) {
+  const T more = heat_beyond_wall(gradient, a.cell_size * T(fold.beyond), heat_capacity,
                                   capacity_inward<Scene>(a, fold, fold.ghost));
   return fold.ghost == fold.mirror ? T(0.5) * more : more;
 }

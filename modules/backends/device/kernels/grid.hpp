@@ -68,7 +68,7 @@ template <class Scene>
 MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
-  for_each_fold(team, a, true, !a.remap, [&](const Fold& fold) {
+  const auto fold_node = [&](const Fold& fold, T gradient) {
     T* const masses = a.grid.field[N::mass];
     const T mass = masses[fold.ghost];
     if (!(mass > T(0))) return;
@@ -86,7 +86,7 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
     T heat_capacity = T(0), heat = T(0);
     if constexpr (N::heat_capacity >= 0) {
       heat_capacity = a.grid.field[N::heat_capacity][fold.ghost];
-      if (!a.remap) heat = heat_of_image<Scene>(a, fold, heat_capacity);
+      if (!a.remap) heat = heat_of_image<Scene>(a, fold, heat_capacity, gradient);
       if constexpr (N::folded_capacity >= 0)
         if (!a.remap) a.grid.field[N::folded_capacity][fold.ghost] = heat_capacity;
     }
@@ -103,6 +103,12 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
       }
     });
     if constexpr (N::heat >= 0) a.grid.field[N::heat][fold.mirror] += heat;
+  };
+  for_each_index(team, a.node_count / a.extent[a.axis], [&](int line) {
+    T gradients[2] = {T(0), T(0)};
+    for (int side = 0; side < 2 && !a.remap; ++side)
+      gradients[side] = gradient_at_wall<Scene>(a, foot_of_line(a, line, side), false);
+    for_each_fold_of_line(a, line, true, !a.remap, [&](const Fold& fold) { fold_node(fold, gradients[fold.side]); });
   });
 }
 
