@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "experiment/experiment.hpp"
@@ -34,10 +33,8 @@ void check_temperature(const Node& root, const Experiment& experiment, ReadConte
 /// `basis_order` is the highest power of the polynomials that its parameters ask for (mpm_transfer::basis_order).
 std::optional<std::string> refusal_of_temperature(const Plugin& transfer, int basis_order);
 
-/// Where a transfer that carries gradients of the temperature would let them grow without bounds, however short the step
-/// is: JSON pointer and reason. With a linear shape the gradient is that between two nodes, of which one may hold almost
-/// nothing at the edge of a moving body; at a wall where convection brings more heat than a cell conducts, a mirror image
-/// that is bent by the carried gradient overshoots (measured: bounded to coefficient x cell size / conductivity = 2).
-std::optional<std::pair<std::string, std::string>> refusal_of_gradients(const Experiment& experiment);
+/// Why the shape cannot be had with a transfer that carries gradients of the temperature; nothing where it can. With a
+/// linear shape the gradient is that between two nodes, of which one may hold almost nothing at the edge of a moving body.
+std::optional<std::string> refusal_of_gradients(const Experiment& experiment);
 
 }  // namespace mpm

@@ -40,7 +40,7 @@ void refuse_temperature(const Experiment& experiment) {
   const Component& transfer = experiment.transfer;
   if (const auto refusal = refusal_of_temperature(*transfer.plugin, basis_order_of(transfer)))
     refuse(experiment, transfer.pointer, *refusal);
-  if (const auto refusal = refusal_of_gradients(experiment)) refuse(experiment, refusal->first, refusal->second);
+  if (const auto refusal = refusal_of_gradients(experiment)) refuse(experiment, experiment.shape.pointer, *refusal);
 }
 
 /// A filter and a ledger that skip steps meet always, or never, where their numbers have a common divisor.

@@ -97,12 +97,9 @@ TEST_CASE("a scene whose transfer does not carry a temperature has no plan", "[c
   CHECK(refusal({"/solver/passes=\"fused\""}).find("temperature takes two passes") != std::string::npos);
 }
 
-TEST_CASE("transfers that carry gradients are refused where they would grow without bounds", "[config]") {
-  const auto refusal = [](const std::string& shape, const std::string& transfer, double coefficient, bool frozen) {
-    const std::string scene = R"J({ "dimension": 2,
-    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]], "boundaries": {"x_min": {"type": "slip",
-      "convection": {"temperature": 400, "coefficient": )J" +
-                              std::to_string(coefficient) + R"J(}}}},
+TEST_CASE("transfers that carry gradients are refused with a linear shape where bodies move", "[config]") {
+  const auto refusal = [](const std::string& shape, const std::string& transfer, bool frozen) {
+    const std::string scene = R"J({ "dimension": 2, "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]},
     "shape": {"type": ")J" + shape +
                               R"J("}, "transfer": {"type": ")J" + transfer + R"J("},
     "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000,
@@ -120,15 +117,11 @@ TEST_CASE("transfers that carry gradients are refused where they would grow with
     return std::string("accepted");
   };
   for (const char* transfer : {"apic", "mls", "tpic", "aflip", "asflip"}) {
-    CHECK(refusal("gimp", transfer, 200, false) == "accepted");  // coefficient x 0.1 m / 10 W/(m K) = 2
-    CHECK(refusal("gimp", transfer, 201, false).starts_with("/grid/boundaries/x_min/convection: coefficient x cell "));
-    CHECK(refusal("linear", transfer, 1, false).starts_with("/shape: shape \"linear\" with transfer \""));
-    CHECK(refusal("linear", transfer, 1, true) == "accepted");
+    CHECK(refusal("linear", transfer, false).starts_with("/shape: shape \"linear\" with transfer \""));
+    CHECK(refusal("linear", transfer, true) == "accepted");
+    CHECK(refusal("gimp", transfer, false) == "accepted");
   }
-  for (const char* transfer : {"pic", "flip"}) {
-    CHECK(refusal("gimp", transfer, 1e6, false) == "accepted");
-    CHECK(refusal("linear", transfer, 1, false) == "accepted");
-  }
+  for (const char* transfer : {"pic", "flip"}) CHECK(refusal("linear", transfer, false) == "accepted");
 }
 
 TEST_CASE("nothing is coloured by a temperature that no material has", "[config]") {
