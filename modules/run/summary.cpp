@@ -91,7 +91,7 @@ std::string warning_of_images(const Simulation& simulation) {
   const double share = (heat.scatter + heat.images + heat.gather) / std::abs(heat.convection);
   if (!(std::abs(share) > 0.05)) return "";
   std::ostringstream warning;
-  warning.precision(2);
+  warning << std::fixed << std::setprecision(0);
   warning << "mirror images " << (share < 0 ? "took" : "gave") << " heat of " << 100 * std::abs(share)
           << " % of what convection brought: transfer "
           << std::quoted(std::string(simulation.experiment().transfer.plugin->id()))
