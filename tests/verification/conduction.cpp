@@ -81,6 +81,7 @@ TEST_CASE("flip conducts with second order with every kind of end", "[temperatur
 }
 
 // Where convection brings far more heat than a cell conducts, the wall is all but held at the temperature beyond it.
+// FLIP on cubic splines is left out: its errors are as small, 0.04 K on 8 cells, and fall with order 0.5 only.
 TEST_CASE("strong convection is of second order too, and stays between the temperatures that it meets",
           "[temperature]") {
   const auto ends = [](double coefficient) {
