@@ -156,11 +156,9 @@ TEST_CASE("without a temperature in the scene such a material is at its referenc
 TEST_CASE("backends agree on a material that reads the temperature, melts and moves", "[device]") {
   const std::string melts = R"(, "thermal": {"conductivity": 500, "heat_capacity": 10, "phase_change": {
     "temperature": 312, "latent_heat": 100, "melted": {"heat_capacity": 15, "youngs_modulus": 600, "expansion": 5e-4}}})";
-  const std::vector<std::string> moves{"/gravity=[3, -9.81]", "/bodies/0/temperature=\"306 + 20*x + 5*sin(20*y)\"",
-                                       "/materials/m/heating=0",
-                                       "/grid/boundaries/x_min={\"type\": \"slip\", "
-                                       "\"temperature\": 316}",
-                                       "/solver/time_step=0.005"};
+  const std::vector<std::string> moves{
+      "/gravity=[3, -9.81]", "/bodies/0/temperature=\"306 + 20*x + 5*sin(20*y)\"", "/materials/m/heating=0",
+      R"(/grid/boundaries/x_min={"type": "slip", "temperature": 316})", "/solver/time_step=0.005"};
   Run expected(block(2, melts), machines[0], moves);
   const Totals end = expected.steps(14);
   CHECK(end.latent_heat > expected.metrics.initial().latent_heat);
