@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "lattice.hpp"
@@ -25,10 +26,51 @@ const char* block = R"J({
   "solver": {"time_step": 0.02, "end_time": 10}})J";
 
 struct Energies {
-  double largest, last;    ///< over the first energy
-  double lasting_rise;     ///< relative rise of the mean over a period, kept up for two
-  double largest_kinetic;  ///< over the first energy
+  double largest, last;  ///< over the first energy
+  double lasting_rise;   ///< relative rise of the mean over a period, kept up for two
 };
+
+/// A shape's kernel in one dimension at a distance in cells, for two particles a cell: base kernels, and their means
+/// over a particle's length of half a cell or over its two ends.
+double kernel(const std::string& shape, double x) {
+  const double d = std::abs(x);
+  if (shape == "linear") return std::max(0.0, 1 - d);
+  if (shape == "bspline_quadratic") return d < 0.5 ? 0.75 - d * d : d < 1.5 ? 0.5 * (1.5 - d) * (1.5 - d) : 0;
+  if (shape == "bspline_cubic") return d < 1 ? d * d * d / 2 - d * d + 2.0 / 3 : d < 2 ? std::pow(2 - d, 3) / 6 : 0;
+  if (shape.starts_with("cpdi")) return 0.5 * (kernel("linear", x - 0.25) + kernel("linear", x + 0.25));
+  constexpr int parts = 200;
+  double mean = 0;
+  for (int k = 0; k < parts; ++k)
+    mean += kernel(shape == "b2gimp" ? "bspline_quadratic" : "linear", x + 0.5 * ((k + 0.5) / parts - 0.5)) / parts;
+  return mean;
+}
+
+/// The share of a wave of phase `theta` a cell that nodes get back, in a step, as affine velocities of the particles:
+/// q = sum_p w_p C_p (x_i - x_p) / sum_p w_p with C_p = sum_j w_jp (x_j - x_p) v_j / D_p, particles at 1/4 and 3/4.
+double affine_share(const std::string& shape, double theta) {
+  double share = 0, mass = 0;
+  for (double x = -2.75; x < 3; x += 0.5) {
+    double slope_cos = 0, D = 0;
+    for (int j = -6; j <= 6; ++j) {
+      const double w = kernel(shape, j - x), d = j - x;
+      slope_cos += w * d * std::cos(theta * j), D += w * d * d;
+    }
+    const double w = kernel(shape, x);
+    if (w == 0) continue;
+    mass += w, share += w * slope_cos / D * -x;
+  }
+  return share / mass;
+}
+
+/// What of its first energy a body holds at most, by the lattice. AFLIP gives the nodes more than the velocities v that
+/// it keeps, V = s v / (1 - q) for a wave of symbol s, and moves with V: x' = s^2 v / (1 - q) where FLIP has s^2 v. The
+/// strain energy of a wave that begins with the kinetic energy K then swings up to K / (1 - q), and back.
+double held_at_most(const std::string& shape, const std::string& transfer) {
+  if (transfer != "aflip" && transfer != "asflip") return 1;
+  // The block's waves are pi a metre along x with four fifths of the energy and 2 pi / 0.6 along y with the rest.
+  constexpr double pi = std::numbers::pi, h = 0.1;
+  return 0.8 / (1 - affine_share(shape, pi * h)) + 0.2 / (1 - affine_share(shape, 2 * pi / 0.6 * h));
+}
 
 /// Velocities belong to the middle of steps, strains to their ends (USF: to their starts): kinetic energies on both
 /// sides of a strain are averaged. Added up as they come they would swing by omega dt / 2, 3 % and 10 % of these waves.
@@ -42,7 +84,7 @@ Energies energies_of(Scene& scene, const std::string& update) {
     strain.push_back(now.strain);
   }
   const std::size_t back = update == "first" ? 1 : 0, on = update == "last" || update == "modified_last" ? 1 : 0;
-  Energies found{0, 0, 0, *std::max_element(kinetic.begin(), kinetic.end()) / kinetic.front()};
+  Energies found{0, 0, 0};
   double before = 0, mean = 0, first = 0, rise_before = -1;
   for (std::size_t k = 1; k <= periods * steps_a_period; ++k) {
     const double total = 0.5 * (kinetic[k - back] + kinetic[k + on]) + strain[k];
@@ -62,7 +104,9 @@ Energies energies_of(Scene& scene, const std::string& update) {
 }  // namespace
 
 TEST_CASE("a free elastic block gains no energy", "[energy_gain]") {
-  std::printf("Energy gain: largest and last energy over the first, rise a period that lasts\n");
+  std::printf(
+      "Energy gain: largest energy over the first, by the lattice, last energy over the first, rise a period that "
+      "lasts\n");
   for (const auto& [shape, transfer] :
        pairs_of(shapes_present({"linear", "bspline_quadratic", "bspline_cubic", "gimp", "gimp_contiguous", "b2gimp",
                                 "cpdi", "cpdi2"}),
@@ -72,14 +116,11 @@ TEST_CASE("a free elastic block gains no energy", "[energy_gain]") {
       Scene scene(block,
                   {set("/shape/type", shape), set("/transfer/type", transfer), set("/solver/stress_update", update)});
       const Energies e = energies_of(scene, update);
-      std::printf("  %-17s %-7s %-13s %.4f %.4f %.5f\n", shape.c_str(), transfer.c_str(), update.c_str(), e.largest,
-                  e.last, e.lasting_rise);
+      std::printf("  %-17s %-7s %-13s %.4f %.4f %.4f %.5f\n", shape.c_str(), transfer.c_str(), update.c_str(),
+                  e.largest, held_at_most(shape, transfer), e.last, e.lasting_rise);
       INFO(shape << " " << transfer << " " << update << ": largest " << e.largest << ", last " << e.last << ", rise "
                  << e.lasting_rise);
-      // What AFLIP gives the grid is not what it takes back, and energies swing (below): at zero strain they do not
-      // rise.
-      const bool swings = transfer == "aflip" || transfer == "asflip";
-      CHECK((swings ? e.largest_kinetic : e.largest) <= 1.01);
+      CHECK(e.largest <= 1.01 * held_at_most(shape, transfer));
       CHECK(e.lasting_rise <= 1e-3);
       if (transfer == "pic") CHECK(e.last < 0.01);
       kept[update] = e.last;
