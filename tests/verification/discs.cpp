@@ -32,6 +32,32 @@ const char* oblique = R"J({
     {"name": "upper", "material": "m", "geometry": {"type": "ball", "centre": [0.729289322, 0.870710678], "radius": 0.2}, "velocity": [-0.1, -0.1]}],
   "solver": {"time_step": 0.001, "end_time": 3}})J";
 
+/// The mean place and velocity of a body of equal particles.
+struct Centre {
+  double place[2] = {}, velocity[2] = {};
+};
+
+Centre centre_of(const BodyState& state) {
+  Centre mean;
+  const double count = static_cast<double>(state.position.size() / 2);
+  for (std::size_t k = 0; k < state.position.size(); ++k) {
+    mean.place[k % 2] += state.position[k] / count;
+    mean.velocity[k % 2] += state.velocity[k] / count;
+  }
+  return mean;
+}
+
+/// How far the centres of mass of two bodies are apart, m, and how fast that grows, m/s.
+struct Approach {
+  double distance = 0, rate = 0;
+};
+
+Approach approach_of(const Scene& scene) {
+  const Centre a = centre_of(scene.body(0)), b = centre_of(scene.body(1));
+  const double dx = b.place[0] - a.place[0], dy = b.place[1] - a.place[1], distance = std::hypot(dx, dy);
+  return {distance, ((b.velocity[0] - a.velocity[0]) * dx + (b.velocity[1] - a.velocity[1]) * dy) / distance};
+}
+
 }  // namespace
 
 TEST_CASE("two discs: before the discs meet nothing is lost", "[discs]") {
@@ -52,13 +78,15 @@ TEST_CASE("two discs: collision conserves momentum and symmetry and never gains 
       INFO(transfer << " " << shape);
       Scene scene(discs, {set("/transfer/type", transfer), set("/shape/type", shape)});
       const Totals start = scene.metrics.initial();
-      double largest = 0;
+      const double closing = approach_of(scene).rate;
+      double largest = 0, nearest = 1;
       Totals now;
       while (!scene.simulation.finished()) {
         scene.simulation.step();
         if (scene.simulation.steps() % 50 != 0) continue;
         now = scene.metrics.measure();
         largest = std::max(largest, now.total_energy());
+        nearest = std::min(nearest, approach_of(scene).distance);
       }
       CHECK(largest <= 1.01 * start.total_energy());
       CHECK(std::hypot(now.momentum[0], now.momentum[1]) < 1e-10 * start.mass * 0.14);
@@ -75,8 +103,15 @@ TEST_CASE("two discs: collision conserves momentum and symmetry and never gains 
       } else if (transfer == "flip") {
         CHECK(now.total_energy() > 0.9 * start.total_energy());
       }
-      // The discs have met and separate again.
-      CHECK(scene.body(0).velocity[0] < 0.05);
+      // The discs have met: two radii of 0.2 m no longer fit between their centres. And they separate again, with no
+      // more of their speed than the energy at the end allows.
+      const Approach end = approach_of(scene);
+      CHECK(closing == Approx(-0.2828427125).epsilon(1e-9));
+      CHECK(nearest < 0.39);
+      CHECK(end.distance > nearest + 0.01);
+      CHECK(end.rate > 0);
+      CHECK(std::pow(end.rate / closing, 2) <= now.kinetic / start.kinetic * (1 + 1e-9));
+      if (transfer == "flip") CHECK(end.rate > -0.8 * closing);
     }
 }
 
