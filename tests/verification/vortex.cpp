@@ -228,14 +228,14 @@ TEST_CASE("vortex: a full twist: the volume of splines converges with three part
 }
 
 TEST_CASE("vortex: a full twist at a shear of 5.8", "[vortex][slow]") {
-  std::printf("Vortex, G = 1, t = 0.4: rms error on 16, 32 cells a metre (m), order; NaN: the run stopped\n");
+  std::printf("Vortex, G = 1, t = 0.4: rms error on 16, 32 cells a metre (m), order\n");
   const double domains = errors({16, 32}, "cpdi", "apic", 1, 0.4).place.back();
+  REQUIRE(domains < 0.006);
   for (const std::string shape : {"bspline_quadratic", "bspline_cubic"}) {
     const double points = errors({16, 32}, shape, "apic", 1, 0.4).place.back();
     INFO(shape << ": " << points << ", cpdi " << domains);
-    CHECK((std::isnan(points) || points > 3 * domains));
+    CHECK(points > 3 * domains);  // a run that stops is no comparison: NaN fails
   }
-  CHECK(domains < 0.006);
 }
 
 TEST_CASE("vortex: a full twist there and back", "[vortex][slow]") {
@@ -252,6 +252,11 @@ TEST_CASE("vortex: a full twist there and back", "[vortex][slow]") {
   CHECK(order(domains.place) > 0.5);
   CHECK(domains.place.back() < 0.04);
   CHECK(falls(domains.volume));
-  const double apic = errors({32}, "cpdi", "apic", 1, 1).place.back();
-  CHECK((std::isnan(apic) || apic > domains.place.back()));
+  // APIC does not come through: on the finest grid a particle inverts, after the time to which it was held above.
+  ShippedScene apic(vortex, settings(32, "cpdi", "apic", 1, 1));
+  apic.run();
+  INFO("APIC: " << apic.failure << " after t = " << apic.simulation.time());
+  CHECK(apic.failure.starts_with("inverted: "));
+  CHECK(apic.simulation.time() > 0.4);
+  CHECK(apic.simulation.time() < 1);
 }
