@@ -1,10 +1,11 @@
-// What lesson 6 of docs/lessons claims, on the very file that the page names.
+// What lesson 6 of docs/lessons claims, on the very file that the page names. Most numbers are the
+// program's own, as printed there: they show what has changed, and are no verification.
 
 #include <numeric>
 
-#include "lesson.hpp"
 #include "support/catch.hpp"
 #include "support/heat_solutions.hpp"
+#include "support/lesson.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -1,10 +1,11 @@
-// What lessons 1 and 2 of docs/lessons claim, on the very files the pages name.
+// What lessons 1 and 2 of docs/lessons claim, on the very files the pages name. Most numbers are the
+// program's own, as printed there: they show what has changed, and are no verification.
 
 #include <cmath>
 #include <string>
 
-#include "lesson.hpp"
 #include "support/catch.hpp"
+#include "support/lesson.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

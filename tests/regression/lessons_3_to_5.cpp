@@ -1,12 +1,13 @@
-// What lessons 3 to 5 of docs/lessons claim, on the very files the pages name.
+// What lessons 3 to 5 of docs/lessons claim, on the very files the pages name. Most numbers are the
+// program's own, as printed there: they show what has changed, and are no verification.
 
 #include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
-#include "lesson.hpp"
 #include "support/catch.hpp"
+#include "support/lesson.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
