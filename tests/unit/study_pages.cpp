@@ -1,0 +1,168 @@
+// Tables of docs/studies against the numbers that the studies' figures were drawn from (figures/studies/*.csv): a page
+// that is edited, or a study that is run anew, cannot leave the other behind.
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/csv.hpp"
+#include "support/page.hpp"
+
+using namespace mpm::test;
+
+namespace {
+
+using Cells = std::vector<std::vector<std::string>>;
+
+Cells figure(const std::string& name) {
+  return mpm::support::read_csv_cells(MPM_SOURCE_DIR "/figures/studies/" + name + ".csv");
+}
+
+/// The last cells of the only row of the figure that begins with these cells; the value stands in `column`.
+double value(const Cells& cells, const std::vector<std::string>& first, std::size_t column) {
+  const std::vector<std::string>* found = nullptr;
+  for (const auto& row : cells)
+    if (row.size() > column && std::equal(first.begin(), first.end(), row.begin())) {
+      if (found != nullptr) throw std::runtime_error("two rows begin with " + first.front());
+      found = &row;
+    }
+  if (found == nullptr) throw std::runtime_error("no row begins with " + first.front() + ", " + first.back());
+  return std::stod(found->at(column));
+}
+
+/// Rows of the first table after these words of the page, cells without blanks, stars and marks of code.
+Cells table_after(const std::string& file, const std::string& words) {
+  const std::string page = mpm::support::read_file(MPM_SOURCE_DIR "/docs/studies/" + file);
+  const std::size_t at = page.find(words);
+  if (at == std::string::npos) throw std::runtime_error(file + " does not say: " + words);
+  Cells table;
+  std::size_t line = page.find("\n|", at);
+  while (line != std::string::npos && page.compare(line + 1, 1, "|") == 0) {
+    const std::size_t end = page.find('\n', line + 1);
+    std::vector<std::string> cells;
+    for (std::size_t bar = line + 1, next; (next = page.find('|', bar + 1)) < end; bar = next)
+      cells.push_back(std::regex_replace(page.substr(bar + 1, next - bar - 1), std::regex("^ +| +$|[*`]"), ""));
+    table.push_back(cells);
+    line = end;
+  }
+  return table;
+}
+
+/// Size of the errors' cell: 1/32 m and the like, as the figures write it.
+double error_at(const Cells& cells, const std::string& shape, const std::string& transfer, const std::string& size) {
+  return value(cells, {"shape: " + shape, transfer, "computed", size}, 4);
+}
+
+Approx printed(const std::string& cell) {
+  return printed_number(cell).rounded();
+}
+
+}  // namespace
+
+TEST_CASE("the table of the impact is the figure's", "[docs]") {
+  const Page page("docs/studies/disc_impact.md");
+  const Cells cells = figure("disc_impact");
+  struct Row {
+    std::string text;                  ///< row of the page, a # for each number
+    std::vector<std::string> schemes;  ///< scheme and column of each #, up to those that are published
+    std::vector<std::string> contacts;
+  };
+  const std::string one = "one field", two = "two fields";
+  const std::vector<Row> rows{
+      {"| FLIP | # % | **# %** |", {"FLIP", "FLIP"}, {one, two}},
+      {"| FLIP, USF · USAVG · MUSL | # · # · # % | # · # · # % |",
+       {"FLIP, USF", "FLIP, USAVG", "FLIP, MUSL", "FLIP, USF", "FLIP, USAVG", "FLIP, MUSL"},
+       {one, one, one, two, two, two}},
+      {"| FLIP with 1 % PIC | # % | # % |", {"FLIP, 1 % PIC", "FLIP, 1 % PIC"}, {one, two}},
+      {"| AFLIP, ASFLIP, 1 % PIC | #, # % | #, # % |",
+       {"AFLIP, 1 % PIC", "ASFLIP, 1 % PIC", "AFLIP, 1 % PIC", "ASFLIP, 1 % PIC"},
+       {one, one, two, two}},
+      {"| APIC, MLS, TPIC | #, #, # % | #, #, # % |",
+       {"APIC", "MLS", "TPIC", "APIC", "MLS", "TPIC"},
+       {one, one, one, two, two, two}},
+      {"| RPIC | # % | # % |", {"RPIC", "RPIC"}, {one, two}},
+      {"| PIC = FMPM(1) | # % | **# %** |", {"PIC", "PIC"}, {one, two}},
+      {"| FMPM(2), (3) | #, # % | #, # % |", {"FMPM(2)", "FMPM(3)", "FMPM(2)", "FMPM(3)"}, {one, one, two, two}},
+      {"| FMPM(4) | # % | # % |", {"FMPM(4)", "FMPM(4)"}, {one, two}},
+      {"| FMPM(8) | # % | **# %** |", {"FMPM(8)", "FMPM(8)"}, {one, two}},
+      {"| FMPM(16) | # % | **# %** |", {"FMPM(16)", "FMPM(16)"}, {one, two}},
+      {"| XPIC(2), XPIC(4) | #, # % | #, # % |", {"XPIC(2)", "XPIC(4)", "XPIC(2)", "XPIC(4)"}, {one, one, two, two}}};
+  for (const Row& row : rows) {
+    INFO(row.text);
+    const auto numbers = page.read(row.text);
+    REQUIRE(numbers.size() == row.schemes.size());
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      CHECK(value(cells, {row.schemes[k], row.contacts[k]}, 2) == numbers[k].rounded());
+  }
+  // Against the published numbers stands the column of two fields, for every scheme.
+  for (const std::string scheme : {"FLIP", "PIC", "FMPM(8)", "FMPM(16)"}) {
+    INFO(scheme);
+    const auto numbers = page.read("| " + scheme + " | # % | # % | # |");
+    const double here = value(cells, {scheme, two}, 2);
+    CHECK(here == numbers[0].rounded());
+    CHECK(numbers[0].value - numbers[1].value == numbers[2].rounded());
+  }
+}
+
+TEST_CASE("the table of the stress updates is the figure's", "[docs]") {
+  const Page page("docs/studies/stress_update.md");
+  const Cells cells = figure("stress_update_drift_1");
+  const std::vector<std::string> updates{"USF", "USL", "MUSL", "USAVG"};
+  for (const auto& [written, layout] :
+       {std::pair{"linear, 1 a cell", "linear, 1 a cell"}, std::pair{"linear, 4 a cell", "linear, 4 a cell"},
+        std::pair{"quadratic B-spline, 4 a cell", "quadratic, 4 a cell"}}) {
+    const auto numbers = page.read(std::string("| FLIP, ") + written + " | # % | # % | # % | # % |");
+    for (std::size_t k = 0; k < updates.size(); ++k)
+      CHECK(value(cells, {layout, updates[k]}, 2) == numbers[k].rounded());
+  }
+}
+
+TEST_CASE("the table of particles a cell is the figure's", "[docs]") {
+  const Page page("docs/studies/particles_per_cell.md");
+  const Cells cells = figure("particles_per_cell");
+  const std::map<std::string, std::string> rows{{"linear", "linear"},
+                                                {"GIMP", "gimp"},
+                                                {"quadratic B-spline", "bspline_quadratic"},
+                                                {"cubic B-spline", "bspline_cubic"},
+                                                {"CPDI", "cpdi"}};
+  for (const auto& [written, shape] : rows) {
+    INFO(written);
+    const auto numbers = page.read("| " + written + " | # % | # % | # % | # % | # % |");
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      CHECK(100 * value(cells, {"shape: " + shape, "16 cells", "computed", std::to_string(k + 1)}, 4) ==
+            numbers[k].rounded());
+  }
+}
+
+TEST_CASE("the orders of convergence are the slopes of the figures' lines", "[docs]") {
+  const std::string page = "convergence.md";
+  const std::map<std::string, std::string> tables{{"no particle crosses a cell:\n", "manufactured_order_no_crossing"},
+                                                  {"particles cross up to 1.6 cells:\n", "manufactured_order_crossing"},
+                                                  {"G = 0.1, at t = T/2:\n", "vortex_small_twist"},
+                                                  {"G = 1, at t = T/5:\n", "vortex_large_twist"}};
+  for (const auto& [words, name] : tables) {
+    const Cells table = table_after(page, words), cells = figure(name);
+    REQUIRE(table.size() == 10);  // names, a line, eight shapes
+    for (std::size_t row = 2; row < table.size(); ++row)
+      for (std::size_t column = 1; column <= 4; ++column) {  // the transfers that the figure shows
+        if (table[row][column] == "stops") continue;
+        INFO(name << ", " << table[row][0] << ", " << table[0][column]);
+        const double order = std::log2(error_at(cells, table[row][0], table[0][column], "0.0625") /
+                                       error_at(cells, table[row][0], table[0][column], "0.03125"));
+        CHECK(order == printed(table[row][column]));
+      }
+  }
+  const Cells period = table_after(page, "Observed orders between 16 and 24 cells:\n"),
+              cells = figure("manufactured_period_large");
+  REQUIRE(period.size() == 10);
+  for (std::size_t row = 2; row < period.size(); ++row)
+    for (const auto& [column, transfer] : {std::pair{3, "apic"}, std::pair{4, "aflip"}}) {
+      INFO(period[row][0] << ", " << transfer);
+      const double order = std::log(error_at(cells, period[row][0], transfer, "0.0625") /
+                                    error_at(cells, period[row][0], transfer, "0.041666666666666664")) /
+                           std::log(1.5);
+      CHECK(order == printed(period[row][column]));
+    }
+}
