@@ -185,6 +185,7 @@ std::string sentence(const Results& results, const Question& question, const stu
 
 void print_advice(const Results& results, const Question& question, const study::Advice& advice,
                   const fs::path& folder) {
+  if (!results.study.note.empty()) std::cout << "note: " << results.study.note << "\n";
   if (advice.good.empty()) {
     std::cout << "no combination has " << question.target << "\n";
     for (std::size_t k = 0; k < std::min(advice.near.size(), most_alternatives); ++k)
@@ -213,6 +214,7 @@ Json json_of(const Results& results, const study::ParetoPoint& point, const fs::
 
 void print_json(const Results& results, const Question& question, const study::Advice& advice, const fs::path& folder) {
   Json json{{"target", question.target}, {"error", question.error->name}, {"cost", question.cost->name}};
+  if (!results.study.note.empty()) json["note"] = results.study.note;
   json["good"] = Json::array();
   json["near"] = Json::array();
   for (const auto& point : advice.good) json["good"].push_back(json_of(results, point, folder));

@@ -24,6 +24,8 @@ Section study_section() {
           {
               parameter("title", Type::string, "", "One line that heads report and figures.").standard(""),
               parameter("description", Type::string, "", "What the study shows.").standard(""),
+              parameter("note", Type::string, "", "What must be known before a number is taken; head of advice.")
+                  .standard(""),
               parameter("base", Type::string, "", "Experiment file, relative to the study's folder.").needed(),
               nested("set", "an object of values by JSON pointer"),
               nested("axes", "an object of axes by JSON pointer, or a list of axes").needed(),
@@ -130,6 +132,7 @@ class StudyReader {
     const Fields fields(&root_, study_section(), context_);
     study_.title = fields.text("title").empty() ? study_.file.stem().string() : fields.text("title");
     study_.description = fields.text("description");
+    study_.note = fields.text("note");
     study_.base = study_.file.parent_path() / fields.text("base");
     if (fields.given("axes")) study_.axes = read_axes(*fields.node("axes"), context_);
     read_overrides(fields, more_overrides);

@@ -209,6 +209,7 @@ void write_report(const Results& results, const Json& machine, const std::string
   page += escape_html(results.study.title) + "</title>\n<style>" + output::report::style() +
           "</style>\n</head>\n<body>\n<main>\n<h1>" + escape_html(results.study.title) + "</h1>\n";
   if (!results.study.description.empty()) page += "<p>" + escape_html(results.study.description) + "</p>\n";
+  if (!results.study.note.empty()) page += "<p><strong>" + escape_html(results.study.note) + "</strong></p>\n";
   page += outcome(results, troubles) + output::report::figures(pictures) + orders(results) + fronts(results) +
           all_results(results) + reasons(results) + probes(results) + reproduction(results, machine, version);
   support::write_atomically(folder / "report.html", page + "</main>\n</body>\n</html>\n");

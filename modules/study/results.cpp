@@ -142,6 +142,7 @@ Json json_of(const Results& results, const Json& machine, const std::string& ver
             {"format_version", format_version},
             {"title", study.title},
             {"description", study.description},
+            {"note", study.note},
             {"study_file", study.file.filename().string()},
             {"base", study.base.filename().string()},
             {"command", results.command},
@@ -180,6 +181,7 @@ Results results_from(const Json& json) {
   Results results;
   try {
     results.study.title = json.at("title").get<std::string>();
+    results.study.note = json.value("note", "");  // studies of before there were notes have none
     results.study.error = json.at("error").get<std::string>();
     results.study.cost = json.at("cost").get<std::string>();
     results.interrupted = json.at("status") != "complete";

@@ -81,6 +81,7 @@ struct FigureRequest {
 struct Study {
   std::filesystem::path file, base;
   std::string title, description;
+  std::string note;                    ///< what must be known before a number is taken; head of report and advice
   std::vector<std::string> overrides;  ///< from "limits", from "set", then from the command line
   std::vector<Axis> axes;
   std::optional<Bisection> bisection;

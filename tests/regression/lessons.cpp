@@ -1,5 +1,5 @@
-// What lessons 1 and 2 of docs/lessons claim, on the very files the pages name. The numbers are read from the pages. They
-// are the program's own: they show what has changed, and are no verification.
+// What lessons 1 and 2 of docs/lessons and the pages of the quickstart claim, on the very files the pages name. The
+// numbers are read from the pages. They are the program's own: they show what has changed, and are no verification.
 
 #include <cmath>
 #include <string>
@@ -116,4 +116,27 @@ TEST_CASE("lesson 2: crossing cells makes noise with linear shapes and none with
   CHECK(resting.largest_volume_ratio == stretches[1]);
   CHECK(linear.largest_volume_ratio == stretches[2]);
   CHECK(100 * (resting.largest_energy / resting.metrics.initial().total_energy() - 1) == gain_at_rest[0]);
+}
+
+TEST_CASE("quickstart: the energies that README, getting started and the method name", "[lesson][docs]") {
+  const Page readme("README.md"), method("docs/method.md"), start("docs/getting_started.md");
+  Lesson apic("../quickstart"), pic("../quickstart", {"/transfer/type=pic"});
+  const Totals end = apic.run();
+  for (const char* debian : {"| Debian 12 | g++ 12.2.0 | 2026-11-23 | quickstart # |",
+                             "| Debian 13 | g++ 14.2.0 | 2026-11-23 | quickstart # |"})
+    CHECK(kept_energy(apic, end) == readme.read(debian).front().rounded());
+
+  const auto printed =
+      method.read("the residual ends at # J/m of # J/m, beside # for scatter, # for gather and # for contact");
+  const Ledger& ledger = apic.simulation.backend().ledger();
+  CHECK(apic.metrics.ledger_residual(end) == printed[0].rounded());
+  CHECK(apic.metrics.initial().total_energy() == printed[1].rounded());
+  CHECK(ledger.scatter == printed[2].rounded());
+  CHECK(ledger.gather == printed[3].rounded());
+  CHECK(ledger.contact == printed[4].rounded());
+
+  // "With PIC half of the energy is gone at the end", of which the file expects a share to be left.
+  const double kept = kept_energy(pic, pic.run());
+  CHECK(kept == Approx(0.5).margin(0.05));
+  CHECK(100 * kept > start.read("expects at least # % to be left").front().value);
 }

@@ -282,6 +282,7 @@ TEST_CASE("numbers of a summary by formula and against bounds", "[study]") {
 
 TEST_CASE("study.json keeps what advice needs", "[study]") {
   Results results = measured({{1, 8}, {2, 4}, {3, 4}, {3, 5}, {4, 1}, {6, 2}, {5, 1}, {0.5, 9}});
+  results.study.note = "steps of a tenth";
   results.results[1].flags = {"a flag"};
   results.results[2].outcome = {Status::failed, "step 3: inverted: its volume ratio", false, "inverted"};
   const Json json = json_of(results, Json::object(), "1");
@@ -289,6 +290,7 @@ TEST_CASE("study.json keeps what advice needs", "[study]") {
   const Results read = results_from(Json::parse(json.dump()));
   REQUIRE(read.results.size() == 8);
   CHECK(read.study.error == "e");
+  CHECK(read.study.note == "steps of a tenth");
   CHECK(read.results[1].flags == results.results[1].flags);
   CHECK(read.results[2].outcome.status == Status::failed);
   CHECK(read.results[2].outcome.cause == "inverted");

@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "study/study.hpp"
 #include "support/catch.hpp"
 #include "support/csv.hpp"
 #include "support/page.hpp"
+#include "support/scene.hpp"
 
 using namespace mpm::test;
 
@@ -165,4 +167,32 @@ TEST_CASE("the orders of convergence are the slopes of the figures' lines", "[do
                            std::log(1.5);
       CHECK(order == printed(period[row][column]));
     }
+}
+
+TEST_CASE("the studies that say so take steps of a tenth of the estimate", "[docs]") {
+  for (const std::string name : {"transfer_trade", "manufactured_order", "particles_per_cell"}) {
+    const mpm::study::Study study = mpm::study::read_study(MPM_SOURCE_DIR "/experiments/studies/" + name + ".json");
+    INFO(name << ": " << study.note);
+    CHECK(study.note.find(
+              "steps of a tenth of the estimate h / (wave speed + particle speed), a third of the automatic") !=
+          std::string::npos);
+    const mpm::study::Axis* grids = nullptr;
+    for (const auto& axis : study.axes)
+      for (const std::string& pointer : axis.pointers)
+        if (pointer == "/solver/time_step") grids = &axis;
+    REQUIRE(grids != nullptr);
+    for (const auto& grid : grids->choices) {
+      INFO(grid.label);
+      const auto first_step = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> overrides = grid.overrides;
+        overrides.insert(overrides.end(), more.begin(), more.end());
+        Scene scene(mpm::support::read_file(study.base), overrides);
+        scene.run_steps(1);
+        return scene.simulation.time();
+      };
+      const double taken = first_step({});
+      CHECK(taken / first_step({"/solver/time_step=auto", "/solver/courant=1"}) == Approx(0.11).margin(0.015));
+      CHECK(taken / first_step({"/solver/time_step=auto"}) == Approx(1. / 3).margin(0.05));
+    }
+  }
 }
