@@ -119,12 +119,14 @@ TEST_CASE("lesson 2: crossing cells makes noise with linear shapes and none with
 }
 
 TEST_CASE("quickstart: the energies that README, getting started and the method name", "[lesson][docs]") {
-  const Page readme("README.md"), method("docs/method.md"), start("docs/getting_started.md");
+  const Page method("docs/method.md"), start("docs/getting_started.md");
   Lesson apic("../quickstart"), pic("../quickstart", {"/transfer/type=pic"});
   const Totals end = apic.run();
-  for (const char* debian : {"| Debian 12 | g++ 12.2.0 | 2026-11-23 | quickstart # |",
-                             "| Debian 13 | g++ 14.2.0 | 2026-11-23 | quickstart # |"})
-    CHECK(kept_energy(apic, end) == readme.read(debian).front().rounded());
+  const std::string readme = mpm::support::read_file(MPM_SOURCE_DIR "/README.md");
+  const std::regex ratio("quickstart (0\\.[0-9]+)");  // in a row of each release that was tried
+  const std::sregex_iterator first_row(readme.begin(), readme.end(), ratio), none;
+  CHECK(first_row != none);
+  for (auto row = first_row; row != none; ++row) CHECK(kept_energy(apic, end) == printed_number((*row)[1]).rounded());
 
   const auto printed =
       method.read("the residual ends at # J/m of # J/m, beside # for scatter, # for gather and # for contact");

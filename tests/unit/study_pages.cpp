@@ -196,3 +196,44 @@ TEST_CASE("the studies that say so take steps of a tenth of the estimate", "[doc
     }
   }
 }
+
+TEST_CASE("the short table of the trade names the cheapest runs of its figure", "[docs]") {
+  const Cells points = figure("transfer_trade_pareto_flops");
+  const auto cheapest = [&](double error, bool filtered) {
+    const std::vector<std::string>* best = nullptr;
+    for (const auto& row : points)
+      if (row[1] == "point" && std::stod(row[3]) <= error &&
+          (filtered || row[6].find(", none, ") != std::string::npos) &&
+          (best == nullptr || std::stod(row[2]) < std::stod(best->at(2))))
+        best = &row;
+    return best;
+  };
+  const Cells table = table_after("transfer_trade.md", "## In short");
+  REQUIRE(table.size() == 10);  // names, a line, eight targets
+  const std::regex last_error(".*: ([0-9.]+) %");
+  for (std::size_t row = 2; row < table.size(); ++row) {
+    INFO("target " << table[row][0]);
+    const double target = std::stod(table[row][0]) / 100;
+    for (const std::size_t column : {1, 3}) {
+      const auto* best = cheapest(target, column == 1);
+      if (table[row][column] == "none") {
+        CHECK(best == nullptr);
+        continue;
+      }
+      REQUIRE(best != nullptr);
+      INFO(best->at(6));
+      CHECK(std::stod(best->at(2)) == printed(table[row][column + 1]));
+      std::smatch error;
+      if (std::regex_match(table[row][column], error, last_error))
+        CHECK(100 * std::stod(best->at(3)) == printed(error[1]));
+      else
+        CHECK(table[row][column] == "the same");
+    }
+  }
+  std::size_t runs = 0, front = 0;
+  for (const auto& row : points)
+    if (row[1] == "point") ++runs, front += row[7].empty();
+  const Page page("docs/studies/transfer_trade.md");
+  CHECK(static_cast<double>(runs) == page.read("Fourteen of # runs are on the front").front().rounded());
+  CHECK(front == 14);
+}
