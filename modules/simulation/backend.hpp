@@ -194,7 +194,7 @@ struct FilterRecord {
 
 /// A record of what contact did, in the last step and in total. Forces act on the pair's first body.
 struct ContactRecord {
-  std::array<double, 3> force{};  ///< N, normal and tangential impulses after the forces over dt, last step
+  std::array<double, 3> force{};  ///< N, the momentum that particles took from contact in the last step over dt
   long nodes = 0, sticking = 0, slipping = 0;  ///< last step
   double largest_penetration = 0;              ///< m, last step, of pairs in contact
   double momentum_residual = 0;                ///< kg m/s, sum of the pair's impulses: zero to rounding

@@ -111,17 +111,23 @@ TEST_CASE("the filter's norms on the host-run device are those of the reference 
 TEST_CASE("contact forces on the host-run device are those of the reference backend", "[device]") {
   Mix mix = mix_with(plugin(MPM_CONTACT, "stick"), 2);
   mix.close = true;
-  const std::string text = mix.text();
-  Scene reference(text, {set("/backend", "reference"), set("/precision", "double")});
-  DeviceScene scene(text, "double");
-  reference.run();
-  scene.run();
-  const ContactRecord& expected = reference.simulation.backend().contact_record();
-  const ContactRecord& found = scene.simulation.backend().contact_record();
-  REQUIRE(expected.nodes > 0);
-  CHECK(found.nodes == expected.nodes);
-  CHECK(found.sticking == expected.sticking);
-  for (int c = 0; c < 2; ++c) CHECK(found.force[c] == Approx(expected.force[c]).epsilon(1e-9));
+  for (const std::string transfer : {"apic", "flip"})
+    for (const std::string filter : {"", R"({"type": "fmpm", "order": 4})", R"({"type": "xpic", "order": 2})"}) {
+      mix.transfer = R"({"type": ")" + transfer + R"("})", mix.filter = filter;
+      if (is_refused(mix)) continue;
+      INFO(transfer << " " << filter);
+      const std::string text = mix.text();
+      Scene reference(text, {set("/backend", "reference"), set("/precision", "double")});
+      DeviceScene scene(text, "double");
+      reference.run();
+      scene.run();
+      const ContactRecord& expected = reference.simulation.backend().contact_record();
+      const ContactRecord& found = scene.simulation.backend().contact_record();
+      REQUIRE(expected.nodes > 0);
+      CHECK(found.nodes == expected.nodes);
+      CHECK(found.sticking == expected.sticking);
+      for (int c = 0; c < 2; ++c) CHECK(found.force[c] == Approx(expected.force[c]).epsilon(1e-9));
+    }
 }
 
 TEST_CASE("automatic time steps on the host-run device are those of the reference backend", "[device]") {

@@ -16,6 +16,7 @@
 #include "backends/device/host_arrays.hpp"
 #include "backends/device/kernels/sums.hpp"  // largest_team
 #include "simulation/boundary.hpp"
+#include "simulation/contact_impulse.hpp"
 #include "simulation/contact_pair.hpp"
 
 namespace mpm::device {
@@ -32,7 +33,8 @@ class HostRun final : public Backend {
         team_(team),
         scene_(described(experiment)),
         conditions_(experiment, scene_),
-        edges_(edge_models(experiment)) {
+        edges_(edge_models(experiment)),
+        contact_impulse_(experiment) {
     if (team.lanes < 1 || team.lanes > largest_team)
       throw std::invalid_argument("a team has 1 to " + std::to_string(largest_team) + " lanes");
     scene_.first_failed = &first_failed_;
@@ -91,6 +93,7 @@ class HostRun final : public Backend {
       case Act::change_phase:
         return change_phase();
       case Act::restore_velocity:
+        contact_impulse_.restore(pass.has(Act::keep_correction));
         return for_each_field(pass.has(Act::keep_correction) ? "keep_correction" : "restore_velocity", vectors());
       case Act::add_correction:
         return add_correction(pass, step);
@@ -441,7 +444,7 @@ class HostRun final : public Backend {
     for_each_field("impose_conditions", nodes());
     if (accounted) ledger_.boundary += sum_over_nodes("energy_of_velocities") - scattered_energy_;
     if (plan_.resolves_contact()) {
-      resolve_contact(step.dt, pass.remap() ? Recorded::nothing : Recorded::before_forces);
+      resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::before_forces);
       const double before = accounted ? sum_over_nodes("energy_of_velocities") : 0.0;
       for_each_field("impose_conditions", nodes());
       if (accounted) ledger_.boundary += sum_over_nodes("energy_of_velocities") - before;
@@ -459,7 +462,7 @@ class HostRun final : public Backend {
     keep_free_velocity(after);
     for_each_field("impose_conditions", nodes(), after);
     if (plan_.resolves_contact()) {
-      resolve_contact(step.dt, Recorded::after_forces);
+      resolve_contact(step, Recorded::after_forces);
       for_each_field("impose_conditions", nodes(), after);
     }
     measure_constraints();
@@ -601,12 +604,12 @@ class HostRun final : public Backend {
   // ---- contact -----------------------------------------------------------------------------------------------------
 
   /// The part of contact that goes to the ledger and to the record.
-  enum class Recorded { nothing, before_forces, after_forces };
+  enum class Recorded { nothing, before_forces, after_forces, filter };
 
   /// Applies the law to every pair of fields.
-  void resolve_contact(double dt, Recorded recorded) {
+  void resolve_contact(const StepInfo& step, Recorded recorded) {
     if (recorded == Recorded::after_forces) contact_ = {};
-    std::array<double, 3> unbalanced{};
+    Vector3 unbalanced{}, impulse{};
     for (std::size_t a = 0; a < fields_.size(); ++a)
       for (std::size_t b = a + 1; b < fields_.size(); ++b) {
         find_pairs(a, b);
@@ -615,11 +618,27 @@ class HostRun final : public Backend {
         arguments.contact = {active_.data(),     normal_.data(), separation_.data(), area_.data(),  impulse_.data(),
                              unbalanced_.data(), work_.data(),   dissipated_.data(), status_.data()};
         device_.run("contact", arguments, teams(nodes()), team_);
-        if (recorded != Recorded::nothing && accounted_) account_for_pairs(recorded);
-        if (recorded == Recorded::after_forces) record_pairs(dt, unbalanced);
+        if (recorded == Recorded::before_forces || recorded == Recorded::after_forces) account_for_pairs(recorded);
+        if (recorded == Recorded::after_forces) record_pairs(unbalanced);
+        add_impulses(impulse);
       }
-    if (recorded == Recorded::after_forces)
-      contact_.momentum_residual = std::hypot(unbalanced[0], unbalanced[1], unbalanced[2]);
+    if (recorded == Recorded::before_forces) contact_impulse_.before_forces(impulse);
+    if (recorded == Recorded::filter)
+      contact_impulse_.in_filter(impulse, plan_.node_field("velocity_of_constraints") != nullptr);
+    if (recorded != Recorded::after_forces) return;
+    contact_impulse_.after_forces(impulse);
+    record_force(step);
+    contact_.momentum_residual = std::hypot(unbalanced[0], unbalanced[1], unbalanced[2]);
+  }
+  void add_impulses(Vector3& sum) const {
+    for (int node = 0; node < nodes(); ++node)
+      for (int c = 0; c < experiment_.dimension && active_[node]; ++c)
+        sum[c] += impulse_[static_cast<std::size_t>(c) * nodes() + node];
+  }
+  /// Records the force that particles take when they gather the velocity as it is now.
+  void record_force(const StepInfo& step) {
+    const Vector3 impulse = contact_impulse_.handed_over(step.filtered);
+    for (std::size_t c = 0; c < 3; ++c) contact_.force[c] = impulse[c] / step.dt;
   }
 
   /// Finds normal, separation and area at every node that two fields share (simulation/contact_pair.hpp).
@@ -658,20 +677,19 @@ class HostRun final : public Backend {
   };
   /// Before the forces v- itself changes at once; after them work_of_forces counts the impulse between v- and v+.
   void account_for_pairs(Recorded recorded) {
+    if (!accounted_) return;
     for (int node = 0; node < nodes(); ++node) {
       if (!active_[node]) continue;
       if (recorded == Recorded::before_forces) ledger_.contact += work_[node];
       ledger_.friction += dissipated_[node];
     }
   }
-  void record_pairs(double dt, std::array<double, 3>& unbalanced) {
+  void record_pairs(Vector3& unbalanced) {
     for (int node = 0; node < nodes(); ++node) {
       if (!active_[node]) continue;
       for (int c = 0; c < experiment_.dimension; ++c)
         unbalanced[c] += unbalanced_[static_cast<std::size_t>(c) * nodes() + node];
       if (status_[node] == MPM_APART) continue;
-      for (int c = 0; c < experiment_.dimension; ++c)
-        contact_.force[c] += impulse_[static_cast<std::size_t>(c) * nodes() + node] / dt;
       ++contact_.nodes;
       ++(status_[node] == MPM_STICKS ? contact_.sticking : contact_.slipping);
       contact_.largest_penetration = std::max(contact_.largest_penetration, -static_cast<double>(separation_[node]));
@@ -689,7 +707,7 @@ class HostRun final : public Backend {
 
   void begin_filter(const Pass& pass) {
     for_each_field("begin_filter", vectors());
-    if (pass.has(Act::keep_velocity)) for_each_field("keep_unfiltered", vectors());
+    if (pass.has(Act::keep_velocity)) for_each_field("keep_unfiltered", vectors()), contact_impulse_.keep();
     filter_.iterations = 0;
     filter_.first_norm = filter_.last_norm = increment_norm();
     if (accounted_) energy_unfiltered_ = sum_over_nodes("energy_of_velocities");
@@ -720,14 +738,15 @@ class HostRun final : public Backend {
     if (plan_.node_field("velocity_of_constraints")) for_each_field("measure_constraints", vectors());
   }
 
-  /// Applies conditions, contact and conditions again to the grid's velocity without what they have added so far, and
-  /// without a record.
+  /// Applies conditions, contact and conditions again to the grid's velocity without what they have added so far; of
+  /// ledger and records the contact force alone changes.
   void constrain_velocity(const Pass& pass, const StepInfo& step) {
     conditions_.evaluate(time_of(pass, step), scene_);
     if (plan_.node_field("velocity_of_constraints")) for_each_field("take_free_velocity", vectors());
     for_each_field("impose_conditions", nodes());
     if (plan_.resolves_contact()) {
-      resolve_contact(step.dt, Recorded::nothing);
+      resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::filter);
+      if (pass.stage == Stage::after_forces) record_force(step);
       for_each_field("impose_conditions", nodes());
     }
     measure_constraints();
@@ -745,6 +764,7 @@ class HostRun final : public Backend {
   void add_correction(const Pass& pass, const StepInfo& step) {
     const double unfiltered = accounted_ ? sum_over_nodes("energy_of_velocities") : 0.0;
     for_each_field("add_correction", vectors());
+    contact_impulse_.add_correction();
     constrain_velocity(pass, step);
     for_each_axis("fill_velocities", filled_axes());
     if (!accounted_) return;
@@ -771,6 +791,7 @@ class HostRun final : public Backend {
   HeatLedger heat_ledger_;
   bool accounted_ = false;  ///< the ledger takes its entries from the step under way
   ContactRecord contact_;
+  ContactImpulse contact_impulse_;
   FilterRecord filter_;
   double scattered_energy_ = 0;   ///< kinetic energy of the grid as scattered, images summed, J
   double energy_after_ = 0;       ///< kinetic energy of the grid when particles gather from it, J

@@ -61,7 +61,7 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
 
 void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, bool remap) {
   if (after_forces) contact_ = {};
-  Vector total_force = Vector::Zero(), total_change = Vector::Zero();
+  Vector total_impulse = Vector::Zero(), total_change = Vector::Zero();
   for_each_pair([&](std::size_t a, std::size_t b) {
     const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step.dt);
     if (!pair) return;
@@ -75,19 +75,27 @@ void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, 
     momentum_[a] += J;
     momentum_[b] -= J;
     total_change += momentum_[a] + momentum_[b] - sum;
+    total_impulse += J;
     if (!after_forces || pair->status == MPM_APART) return;
-    total_force += J / step.dt;
     ++contact_.nodes;
     ++(pair->status == MPM_STICKS ? contact_.sticking : contact_.slipping);
     if (pair->has_normal) contact_.largest_penetration = std::max(contact_.largest_penetration, -pair->separation);
   });
   if (after_forces) {
-    for (int c = 0; c < 3; ++c) contact_.force[c] = total_force[c];
+    impulse_.after_forces(as_array(total_impulse));
+    record_force(step);
     contact_.momentum_residual = total_change.norm();
+  } else if (!remap) {
+    impulse_.before_forces(as_array(total_impulse));
   }
   const double before = accounted_ ? grid_.kinetic_energy() : 0.0;
   impose_conditions(after_forces ? step.time + step.dt : step.time);
   if (accounted_ && !after_forces && !remap) ledger_.boundary += grid_.kinetic_energy() - before;
+}
+
+void ReferenceBackend::record_force(const StepInfo& step) {
+  const Vector3 impulse = impulse_.handed_over(step.filtered);
+  for (std::size_t c = 0; c < 3; ++c) contact_.force[c] = impulse[c] / step.dt;
 }
 
 }  // namespace mpm::reference

@@ -26,6 +26,7 @@ void ReferenceBackend::begin_filter(const Pass& pass) {
     if (pass.stage == Stage::before_forces) unfiltered_[i] = velocity_[i];
     if (pass.stage == Stage::before_forces && keeps_constraints_) unfiltered_constrained_[i] = constrained_[i];
   });
+  if (pass.stage == Stage::before_forces) impulse_.keep();
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = grid_.mass_norm(increment_);
   kinetic_energy_unfiltered_ = accounted_ ? grid_.kinetic_energy() : 0.0;
@@ -103,6 +104,7 @@ void ReferenceBackend::restore_velocity(const Pass& pass) {
     std::swap(value, unfiltered);
     if (pass.has(Act::keep_correction)) unfiltered -= value;
   };
+  impulse_.restore(pass.has(Act::keep_correction));
   for_each_node([&](std::size_t i) {
     restore(velocity_[i], unfiltered_[i]);
     if (keeps_constraints_) restore(constrained_[i], unfiltered_constrained_[i]);
@@ -116,6 +118,7 @@ void ReferenceBackend::add_correction(const Pass& pass, const StepInfo& step) {
     velocity_[i] += unfiltered_[i];
     if (keeps_constraints_) constrained_[i] += unfiltered_constrained_[i];
   });
+  impulse_.add_correction();
   constrain_free_velocity(pass, step);
   grid_.fill_velocity_ghosts(time_of(pass, step));
   for_each_node([&](std::size_t i) { momentum_[i] = mass_[i] * velocity_[i]; });
@@ -136,12 +139,14 @@ void ReferenceBackend::constrain_free_velocity(const Pass& pass, const StepInfo&
   });
 }
 
-/// Applies conditions, contact and conditions again, as after the forces, but to velocities and without a record.
+/// Applies conditions, contact and conditions again, as after the forces, but to velocities; of the record, the force alone changes.
 void ReferenceBackend::constrain_velocity(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
   impose_on_velocity(time);
   if (!plan_.resolves_contact()) return;
-  resolve_contact_of_velocity(step.dt);
+  const Vector impulse = resolve_contact_of_velocity(step.dt);
+  if (!pass.remap()) impulse_.in_filter(as_array(impulse), keeps_constraints_);
+  if (pass.stage == Stage::after_forces) record_force(step);
   impose_on_velocity(time);
 }
 
@@ -154,13 +159,17 @@ void ReferenceBackend::impose_on_velocity(double time) {
   });
 }
 
-void ReferenceBackend::resolve_contact_of_velocity(double dt) {
+/// Returns the impulse on the first fields of all pairs, kg m/s.
+Vector ReferenceBackend::resolve_contact_of_velocity(double dt) {
+  Vector total = Vector::Zero();
   for_each_pair([&](std::size_t a, std::size_t b) {
     const auto pair = resolve_pair(a, b, mass_[a] * velocity_[a], mass_[b] * velocity_[b], dt);
     if (!pair) return;
     velocity_[a] += pair->impulse / mass_[a];
     velocity_[b] -= pair->impulse / mass_[b];
+    total += pair->impulse;
   });
+  return total;
 }
 
 }  // namespace mpm::reference

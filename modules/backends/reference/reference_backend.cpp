@@ -13,7 +13,8 @@ ReferenceBackend::ReferenceBackend(const Experiment& experiment, const Plan& pla
       plan_(plan),
       grid_(experiment, plan),
       held_(grid_.size()),
-      edges_(edge_models(experiment)) {
+      edges_(edge_models(experiment)),
+      impulse_(experiment) {
   for (std::size_t body = 0; body < seeded.size(); ++body)
     bodies_.emplace_back(experiment, plan, static_cast<int>(body), seeded[body]);
 }

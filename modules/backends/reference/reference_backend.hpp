@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "backends/reference/particles.hpp"
+#include "simulation/contact_impulse.hpp"
 #include "simulation/contact_pair.hpp"
 
 namespace mpm::reference {
@@ -83,6 +84,9 @@ class ReferenceBackend final : public Backend {
   ContactFieldNode contact_view(std::size_t i) const;
   /// Applies the law to all pairs of fields in order; conditions are imposed again and win.
   void resolve_contact(const StepInfo& step, bool after_forces, bool remap = false);
+  /// Records the force that particles take when they gather the velocity as it is now.
+  void record_force(const StepInfo& step);
+  static Vector3 as_array(const Vector& v) { return {v[0], v[1], v[2]}; }
 
   // ---- filter.cpp
   void begin_filter(const Pass& pass);
@@ -95,7 +99,7 @@ class ReferenceBackend final : public Backend {
   void constrain_free_velocity(const Pass& pass, const StepInfo& step);
   void constrain_velocity(const Pass& pass, const StepInfo& step);
   void impose_on_velocity(double time);
-  void resolve_contact_of_velocity(double dt);
+  Vector resolve_contact_of_velocity(double dt);
 
   // ---- temperature.cpp
   void scatter_heat(Particles& body);
@@ -165,6 +169,7 @@ class ReferenceBackend final : public Backend {
   HeatLedger heat_ledger_;
   bool accounted_ = false;  ///< the ledger takes its entries from the step under way
   ContactRecord contact_;
+  ContactImpulse impulse_;
   FilterRecord filter_;
   double kinetic_energy_after_ = 0;             ///< kinetic energy of the grid when particles gather from it, J
   double kinetic_energy_unfiltered_ = 0;        ///< kinetic energy of the grid when the filter began, J

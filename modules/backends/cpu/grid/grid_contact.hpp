@@ -99,7 +99,7 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
       sums.work +=
           work_of_impulse(double(impulse), a0, double(va[c])) - work_of_impulse(double(impulse), b0, double(vb[c]));
       sums.change[c] += va[3] * (va[c] - a0) + vb[3] * (vb[c] - b0);
-      if (batch.status[i] != MPM_APART) sums.impulse[c] += impulse;
+      sums.impulse[c] += impulse;
     }
     sums.friction += batch.dissipated[i];
     sums.sticking += batch.status[i] == MPM_STICKS;
@@ -140,7 +140,14 @@ void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
   std::vector<ContactSums> sums(slots.size());
   scene_.team->for_each(slots.size(), 4, [&](std::size_t i, int) { resolve_slot(slots[i], step, sums[i]); });
 
-  if (recorded == Recorded::filter) return;
+  Vector3 impulse{};
+  for (const ContactSums& s : sums)
+    for (int c = 0; c < D; ++c) impulse[c] += s.impulse[c];
+  if (recorded == Recorded::before_forces) impulse_.before_forces(impulse);
+  if (after_forces) impulse_.after_forces(impulse);
+  if (recorded == Recorded::filter) return impulse_.in_filter(impulse, grid_.has(constrained));
+  if (recorded == Recorded::remap) return;
+
   ContactRecord record;
   double change[3]{}, squared = 0;
   for (const ContactSums& s : sums) {
@@ -148,10 +155,7 @@ void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
     // v+.
     if (in_ledger && !after_forces) ledger_.contact += s.work;
     if (in_ledger) ledger_.friction += s.friction;
-    for (int c = 0; c < D; ++c) {
-      record.force[c] += s.impulse[c] / step.dt;
-      change[c] += s.change[c];
-    }
+    for (int c = 0; c < D; ++c) change[c] += s.change[c];
     record.sticking += s.sticking;
     record.slipping += s.slipping;
     record.largest_penetration = std::max(record.largest_penetration, s.largest_penetration);
@@ -161,6 +165,13 @@ void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
   for (int c = 0; c < D; ++c) squared += change[c] * change[c];
   record.momentum_residual = std::sqrt(squared);
   record_ = record;
+  record_force(step);
+}
+
+template <int D, class T>
+void GridStep<D, T>::record_force(const StepInfo& step) {
+  const Vector3 impulse = impulse_.handed_over(step.filtered);
+  for (int c = 0; c < D; ++c) record_.force[c] = impulse[c] / step.dt;
 }
 
 }  // namespace mpm::cpu

@@ -34,6 +34,7 @@ void GridStep<D, T>::begin_filter(const Pass& pass) {
   copy_velocity(motion, filter_increment);
   if (pass.stage == Stage::before_forces) copy_velocity(motion, kept_velocity);
   if (pass.stage == Stage::before_forces && grid_.has(constrained)) copy_velocity(constrained, kept_constrained);
+  if (pass.stage == Stage::before_forces) impulse_.keep();
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = mass_norm_of_increment();
   if (ledger_on()) kinetic_energy_unfiltered_ = kinetic_energy();
@@ -121,22 +122,24 @@ void GridStep<D, T>::measure_constraints() {
 /// Applies conditions and contact to the velocity without what they have added so far, so that an impulse which the
 /// increments no longer need is taken back.
 template <int D, class T>
-void GridStep<D, T>::constrain_free(double time, const StepInfo& step) {
-  if (!grid_.has(constrained)) return constrain(time, step);
+void GridStep<D, T>::constrain_free(const Pass& pass, const StepInfo& step) {
+  if (!grid_.has(constrained)) return constrain(pass, step);
   for_each_block([&](int field, std::uint32_t first, double*) {
     Q *const nodes = &motion_at(field, first), *const added = &grid_.quad(constrained, field, first);
     for (int k = 0; k < block_nodes; ++k) added[k] = nodes[k] = without(nodes[k], added[k]);
   });
-  constrain(time, step);
+  constrain(pass, step);
   measure_constraints();
 }
 
-/// Applies conditions and contact to the velocity as it is, without a trace in ledger and records.
+/// Applies conditions and contact to the velocity as it is; of ledger and records the contact force alone changes.
 template <int D, class T>
-void GridStep<D, T>::constrain(double time, const StepInfo& step) {
+void GridStep<D, T>::constrain(const Pass& pass, const StepInfo& step) {
+  const double time = time_of(pass, step);
   impose(time, Account::nothing);
   if (!scene_.plan.resolves_contact()) return;
-  resolve_contact(step, Recorded::filter);
+  resolve_contact(step, pass.remap() ? Recorded::remap : Recorded::filter);
+  if (pass.stage == Stage::after_forces) record_force(step);
   impose(time, Account::nothing);
 }
 
@@ -146,7 +149,7 @@ void GridStep<D, T>::update_filter(const Pass& pass, const StepInfo& step) {
   for_each_block([&](int field, std::uint32_t first, double*) { update_block(field, first, iteration); });
   if (scene_.experiment.filter_schedule.constrain_always) {
     copy_velocity(motion, filter_projection);
-    constrain_free(time_of(pass, step), step);
+    constrain_free(pass, step);
     for_each_block([&](int field, std::uint32_t first, double*) {
       for (std::uint32_t node = first; node < first + block_nodes; ++node)
         if (motion_at(field, node)[3] > 0)
@@ -170,7 +173,7 @@ void GridStep<D, T>::update_filter(const Pass& pass, const StepInfo& step) {
 template <int D, class T>
 void GridStep<D, T>::end_filter(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
-  if (!scene_.experiment.filter_schedule.constrain_always) constrain_free(time, step);
+  if (!scene_.experiment.filter_schedule.constrain_always) constrain_free(pass, step);
   fill_ghosts(time, false);
   if (pass.remap() || pass.stage == Stage::before_forces) return;
   if (ledger_on()) {
@@ -182,6 +185,7 @@ void GridStep<D, T>::end_filter(const Pass& pass, const StepInfo& step) {
 
 template <int D, class T>
 void GridStep<D, T>::restore_velocity(const Pass& pass) {
+  impulse_.restore(pass.has(Act::keep_correction));
   restore(motion, kept_velocity, pass.has(Act::keep_correction));
   if (grid_.has(constrained)) restore(constrained, kept_constrained, pass.has(Act::keep_correction));
 }
@@ -214,7 +218,8 @@ void GridStep<D, T>::add_correction(const Pass& pass, const StepInfo& step) {
   const double unfiltered = ledger_on() ? kinetic_energy() : 0.0;
   add(kept_velocity, motion);
   if (grid_.has(constrained)) add(kept_constrained, constrained);
-  constrain_free(time_of(pass, step), step);
+  impulse_.add_correction();
+  constrain_free(pass, step);
   fill_ghosts(time_of(pass, step), false);
   if (!ledger_on()) return;
   kinetic_energy_after_ = kinetic_energy();

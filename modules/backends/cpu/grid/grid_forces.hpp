@@ -16,6 +16,7 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
       ledger_(ledger),
       heat_ledger_(heat_ledger),
       record_(record),
+      impulse_(scene.experiment),
       filter_(filter),
       edges_(edge_models(scene.experiment)),
       wall_weights_(scene.plan.node_field("heated_volume") ? wall_weights(scene.experiment) : WallWeights()) {

@@ -9,6 +9,7 @@
 #include "operators/edges.hpp"
 #include "operators/filter.hpp"
 #include "operators/motion.hpp"
+#include "simulation/contact_impulse.hpp"
 #include "simulation/contact_pair.hpp"
 #include "simulation/wall_heat.hpp"
 
@@ -128,16 +129,18 @@ class GridStep : NamedChannels {
   double mass_norm_of_increment();
   void keep_free_velocity(bool after_forces);
   void measure_constraints();
-  void constrain_free(double time, const StepInfo& step);
-  void constrain(double time, const StepInfo& step);
+  void constrain_free(const Pass& pass, const StepInfo& step);
+  void constrain(const Pass& pass, const StepInfo& step);
   void update_block(int field, std::uint32_t first, std::uint32_t iteration);
 
-  /// The occasion for which contact is recorded: the filter's loop leaves no trace.
+  /// The occasion for which contact is recorded: in a filter's loop the force alone is.
   enum class Recorded { before_forces, after_forces, remap, filter };
   struct ContactSums;
   struct ContactBatch;
   struct ContactField;
   void resolve_contact(const StepInfo& step, Recorded recorded);
+  /// Records the force that particles take when they gather the velocity as it is now.
+  void record_force(const StepInfo& step);
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
 
@@ -147,6 +150,7 @@ class GridStep : NamedChannels {
   Ledger& ledger_;
   HeatLedger& heat_ledger_;
   ContactRecord& record_;
+  ContactImpulse impulse_;
   FilterRecord& filter_;
   const std::vector<EdgeModel> edges_;
   std::array<std::vector<Channel>, 3> folded_;  ///< [when]
