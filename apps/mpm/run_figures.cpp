@@ -130,7 +130,8 @@ void draw_ledger(const Table& table, const RunLabel& label, const std::filesyste
                                         {"ledger filter", "filter"},
                                         {"ledger boundary", "boundary"},
                                         {"ledger contact", "contact"},
-                                        {"ledger body force", "body force"}});
+                                        {"ledger body force", "body force"},
+                                        {"ledger periodic gravity", "gravity along periodic axes"}});
   auto dissipated = column(table, "ledger material dissipation", -1);
   if (std::any_of(dissipated.begin(), dissipated.end(), [](double e) { return e != 0; }))
     plot.areas.push_back({"material", plot.x, dissipated});
@@ -154,7 +155,8 @@ void draw_dissipation(const Table& table, const RunLabel& label, const std::file
   add_if_any("ledger filter", "filter", -1);
   add_if_any("ledger boundary", "boundary", -1);
   add_if_any("ledger contact", "contact", -1);
-  add_if_any("ledger friction", "of it friction", 1);
+  const bool takes_back = table.find("ledger friction taken back") != nullptr;
+  add_if_any("ledger friction", takes_back ? "friction that particles keep" : "of it friction", 1);
   add_if_any("ledger material dissipation", "material", 1);
   render::write_figure(plot, stem);
 }

@@ -215,6 +215,8 @@ struct Experiment {
   /// Whether particles carry a temperature: then every body's material conducts, and every body has one.
   bool has_temperature() const;
   bool axisymmetric() const { return grid.symmetry == Symmetry::axisymmetric; }
+  /// A particle that leaves along a periodic axis has its height again: gravity along it does work without a potential.
+  bool gravity_has_potential(int axis) const { return faces[axis][0].type != ConditionType::periodic; }
   /// Whether a wall of the domain is of this type.
   bool any_face(ConditionType type) const;
   /// Whether material may leave a wall or a box.

@@ -6,6 +6,7 @@
 
 #include "metrics/particle_quantities.hpp"
 #include "metrics/polynomial_energy.hpp"
+#include "simulation/contact_impulse.hpp"
 
 namespace mpm {
 namespace {
@@ -117,7 +118,7 @@ void Metrics::add_body(int body, Totals& totals) const {
       totals.momentum[c] += m * v[c];
       totals.angular_momentum[c] += m * L[c];
       totals.centre_of_mass[c] += m * x[c];
-      totals.gravitational -= m * experiment.gravity[c] * x[c];
+      if (experiment.gravity_has_potential(c)) totals.gravitational -= m * experiment.gravity[c] * x[c];
     }
     if (C) add_affine(experiment, state, &C[p * D * D], p, totals);
     if (!polynomials.empty()) totals.kinetic += m * polynomials[p];
@@ -179,7 +180,15 @@ std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
   const Plan& plan = simulation_.plan();
   if (!plan.has_ledger()) return {};
   std::vector<ValueRow> rows = rows_of(simulation_.ledger());
-  if (!plan.filters()) std::erase_if(rows, [](const ValueRow& row) { return row.name == "filter"; });
+  const bool takes_back = plan.resolves_contact() && gather_shares(simulation_.experiment()).of_velocity < 1;
+  bool periodic_gravity = false;
+  for (int axis = 0; axis < simulation_.experiment().dimension; ++axis)
+    periodic_gravity |=
+        simulation_.experiment().gravity[axis] != 0 && !simulation_.experiment().gravity_has_potential(axis);
+  std::erase_if(rows, [&](const ValueRow& row) {
+    return (!plan.filters() && row.name == "filter") || (!periodic_gravity && row.name == "periodic gravity") ||
+           (!takes_back && row.name == "friction taken back");
+  });
   rows.push_back({"residual", "J", ledger_residual(now)});
   return rows;
 }

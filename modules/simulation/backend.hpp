@@ -118,16 +118,18 @@ struct BodyState {
   }
 };
 
-/// The energy that each cause has given to the kinetic energy, J, summed over the steps that the ledger takes. Each is
-/// computed from its own impulses and velocities, never as what the others leave over (docs/method.md, the ledger).
+/// The energy that each cause has given to the kinetic energy, J, summed over the steps that the ledger takes. What
+/// is computed from impulses of its own, and what as a difference: docs/method.md, the ledger.
 struct Ledger {
   double scatter = 0, gather = 0;      ///< exact differences of kinetic energy across the transfers
   double internal_force = 0;           ///< dt f.(v- + v+)/2 of the stresses
   double gravity = 0, body_force = 0;  ///< the same of the external forces
+  double periodic_gravity = 0;         ///< the same of gravity along periodic axes, where it has no potential
   double boundary = 0, contact = 0;    ///< J.(v- + v+)/2 of impulses
-  double friction = 0;                 ///< share of contact that the law turned to heat (positive)
-  double material = 0;                 ///< dissipated by the materials (positive)
-  double filter = 0;                   ///< change of the grid's kinetic energy over the filter's loops
+  double friction = 0;             ///< share of contact that the law turned to heat (positive), as particles keep it
+  double friction_taken_back = 0;  ///< more of it, before the forces, that gathering increments undoes (FLIP)
+  double material = 0;             ///< dissipated by the materials (positive)
+  double filter = 0;               ///< change of the grid's kinetic energy over the filter's loops
 
   Ledger plus(const Ledger& other) const;
   Ledger times(double factor) const;
@@ -150,9 +152,11 @@ inline constexpr LedgerEntry<Ledger> ledger_entries[] = {{"scatter", &Ledger::sc
                                                          {"internal force", &Ledger::internal_force, 0},
                                                          {"gravity", &Ledger::gravity, 0},
                                                          {"body force", &Ledger::body_force, 1, 3},
+                                                         {"periodic gravity", &Ledger::periodic_gravity, 1, 3},
                                                          {"boundary", &Ledger::boundary, 1, 2},
                                                          {"contact", &Ledger::contact, 1, 2},
                                                          {"friction", &Ledger::friction, 0},
+                                                         {"friction taken back", &Ledger::friction_taken_back, 0},
                                                          {"material dissipation", &Ledger::material, -1, 4},
                                                          {"filter", &Ledger::filter, 1, 1}};
 static_assert(sizeof(Ledger) == std::size(ledger_entries) * sizeof(double));

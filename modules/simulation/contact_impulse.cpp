@@ -56,6 +56,12 @@ void ContactImpulse::restore(bool keeps_correction) {
   for (std::size_t c = 0; c < 3; ++c) kept_[c] = filtered[c] - kept_[c];
 }
 
+void ContactImpulse::account_before_forces(double dissipated, bool filtered, Ledger& ledger) const {
+  const double kept = filtered ? 1.0 : shares_.of_velocity;
+  ledger.friction += kept * dissipated;
+  ledger.friction_taken_back += (1 - kept) * dissipated;
+}
+
 Vector3 ContactImpulse::handed_over(bool filtered) const {
   const GatherShares shares = filtered ? GatherShares() : shares_;
   Vector3 sum{};

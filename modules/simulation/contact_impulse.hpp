@@ -2,6 +2,7 @@
 // Counts the momentum that contact hands over in a step, so that the recorded force is that which particles feel.
 
 #include "experiment/experiment.hpp"
+#include "simulation/backend.hpp"
 
 namespace mpm {
 
@@ -30,6 +31,10 @@ class ContactImpulse {
   void keep() { kept_ = now_; }
   void restore(bool keeps_correction);
   void add_correction() { add(kept_); }
+
+  /// Books the heat of friction before the forces: the share of it that particles keep, and that which their gather
+  /// takes back, since they add increments alone to velocities of their own.
+  void account_before_forces(double dissipated, bool filtered, Ledger& ledger) const;
 
   /// The momentum that particles take from contact when they gather now.
   Vector3 handed_over(bool filtered) const;

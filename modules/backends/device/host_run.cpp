@@ -472,9 +472,9 @@ class HostRun final : public Backend {
 
   void account_for_impulses() {
     for (VelocityField<T>& field : fields_) {
-      const auto work = sum<5>("work_of_forces", arguments_of(field, {}), nodes());
+      const auto work = sum<6>("work_of_forces", arguments_of(field, {}), nodes());
       ledger_.internal_force += work[0], ledger_.body_force += work[1], ledger_.gravity += work[2];
-      ledger_.boundary += work[3], ledger_.contact += work[4];
+      ledger_.boundary += work[3], ledger_.contact += work[4], ledger_.periodic_gravity += work[5];
     }
     energy_after_ = sum_over_nodes("energy_of_velocities");
   }
@@ -618,7 +618,8 @@ class HostRun final : public Backend {
         arguments.contact = {active_.data(),     normal_.data(), separation_.data(), area_.data(),  impulse_.data(),
                              unbalanced_.data(), work_.data(),   dissipated_.data(), status_.data()};
         device_.run("contact", arguments, teams(nodes()), team_);
-        if (recorded == Recorded::before_forces || recorded == Recorded::after_forces) account_for_pairs(recorded);
+        if (recorded == Recorded::before_forces || recorded == Recorded::after_forces)
+          account_for_pairs(recorded, step.filtered);
         if (recorded == Recorded::after_forces) record_pairs(unbalanced);
         add_impulses(impulse);
       }
@@ -676,12 +677,16 @@ class HostRun final : public Backend {
     }
   };
   /// Before the forces v- itself changes at once; after them work_of_forces counts the impulse between v- and v+.
-  void account_for_pairs(Recorded recorded) {
+  void account_for_pairs(Recorded recorded, bool filtered) {
     if (!accounted_) return;
     for (int node = 0; node < nodes(); ++node) {
       if (!active_[node]) continue;
-      if (recorded == Recorded::before_forces) ledger_.contact += work_[node];
-      ledger_.friction += dissipated_[node];
+      if (recorded == Recorded::after_forces) {
+        ledger_.friction += dissipated_[node];
+        continue;
+      }
+      ledger_.contact += work_[node];
+      contact_impulse_.account_before_forces(dissipated_[node], filtered, ledger_);
     }
   }
   void record_pairs(Vector3& unbalanced) {

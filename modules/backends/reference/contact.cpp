@@ -70,7 +70,8 @@ void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, 
     // v+.
     if (accounted_ && !after_forces && !remap)
       ledger_.contact += J.dot(momentum_[a] + 0.5 * J) / mass_[a] - J.dot(momentum_[b] - 0.5 * J) / mass_[b];
-    if (accounted_ && !remap) ledger_.friction += pair->dissipated;
+    if (accounted_ && after_forces) ledger_.friction += pair->dissipated;
+    if (accounted_ && !after_forces && !remap) impulse_.account_before_forces(pair->dissipated, step.filtered, ledger_);
     const Vector sum = momentum_[a] + momentum_[b];
     momentum_[a] += J;
     momentum_[b] -= J;

@@ -73,7 +73,8 @@ void ReferenceBackend::account_for_impulses(std::size_t i, double dt) {
   const Vector reaction = mass_[i] * (velocity_[i] - velocity_before_[i]) - dt * grid_.force(i);
   ledger_.internal_force += dt * internal_force_[i].dot(mean);
   if (experiment_.body_force) ledger_.body_force += dt * body_force_[i].dot(mean);
-  ledger_.gravity += dt * weight_[i].dot(mean);
+  for (int c = 0; c < 3; ++c)
+    (experiment_.gravity_has_potential(c) ? ledger_.gravity : ledger_.periodic_gravity) += dt * weight_[i][c] * mean[c];
   for (int c = 0; c < 3; ++c) (held_[i][c] ? ledger_.boundary : ledger_.contact) += reaction[c] * mean[c];
 }
 

@@ -154,7 +154,8 @@ void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
     // Before the forces v- itself changes at once; after them account_for_impulses counts the impulse between v- and
     // v+.
     if (in_ledger && !after_forces) ledger_.contact += s.work;
-    if (in_ledger) ledger_.friction += s.friction;
+    if (in_ledger && !after_forces) impulse_.account_before_forces(s.friction, step.filtered, ledger_);
+    if (in_ledger && after_forces) ledger_.friction += s.friction;
     for (int c = 0; c < D; ++c) change[c] += s.change[c];
     record.sticking += s.sticking;
     record.slipping += s.slipping;

@@ -22,6 +22,7 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
       wall_weights_(scene.plan.node_field("heated_volume") ? wall_weights(scene.experiment) : WallWeights()) {
   for (int c = 0; c < D; ++c) {
     gravity_[c] = static_cast<T>(scene.experiment.gravity[c]);
+    if (!scene.experiment.gravity_has_potential(c)) periodic_gravity_[c] = gravity_[c];
     has_gravity_ = has_gravity_ || gravity_[c] != 0;
   }
   for (Channel c = 0; c < grid.channels(); ++c) {
@@ -201,7 +202,7 @@ void GridStep<D, T>::account_gravity_corrections(double dt) {
         const double correction = static_cast<T>(gravity_correction_[(field * nodes.size() + i) * 4 + c]);
         const double work = 0.5 * dt * correction * (static_cast<double>(before[c]) + v[c]);
         ledger_.internal_force -= work;
-        ledger_.gravity += work;
+        (scene_.experiment.gravity_has_potential(c) ? ledger_.gravity : ledger_.periodic_gravity) += work;
       }
     }
 }
@@ -234,7 +235,9 @@ void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt
   }
   partial[of_internal_force] += dt * sum_of_components(internal);
   partial[of_body_force] += dt * sum_of_components(external);
-  partial[of_gravity] += dt * sum_of_components(momentum * gravity);
+  const Wide periodic = widen(periodic_gravity_);
+  partial[of_gravity] += dt * sum_of_components(momentum * (gravity - periodic));
+  partial[of_periodic_gravity] += dt * sum_of_components(momentum * periodic);
   if (scene_.plan.resolves_contact()) partial[at_contact] += sum_of_components(contact);
   partial[of_motion] += 0.5 * sum_of_components(squares);
 }
@@ -249,6 +252,7 @@ void GridStep<D, T>::account_for_impulses(double dt) {
   ledger_.internal_force += sum_partials(of_internal_force);
   ledger_.body_force += sum_partials(of_body_force);
   ledger_.gravity += sum_partials(of_gravity);
+  ledger_.periodic_gravity += sum_partials(of_periodic_gravity);
   ledger_.boundary += sum_partials(at_conditions);
   if (scene_.plan.resolves_contact()) ledger_.contact += sum_partials(at_contact);
   kinetic_energy_after_ = sum_partials(of_motion);

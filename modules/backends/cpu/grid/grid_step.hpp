@@ -144,7 +144,7 @@ class GridStep : NamedChannels {
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
 
-  Q gravity_{};
+  Q gravity_{}, periodic_gravity_{};  ///< all of it, and the part along periodic axes, m/s^2
   const Scene<D, T>& scene_;
   Grid<D, T>& grid_;
   Ledger& ledger_;
@@ -160,7 +160,16 @@ class GridStep : NamedChannels {
   std::vector<Signs> signs_;       ///< signs of folded_[with_mass] at the face that is folded now
   std::vector<Channel> slipping_;  ///< channels that vanish across a wall on its nodes
   /// The partial sums of account_for_block.
-  enum Partial { of_internal_force, of_body_force, of_gravity, at_conditions, at_contact, of_motion, partial_count };
+  enum Partial {
+    of_internal_force,
+    of_body_force,
+    of_gravity,
+    of_periodic_gravity,
+    at_conditions,
+    at_contact,
+    of_motion,
+    partial_count
+  };
   std::vector<double> partials_;           ///< partial_count a block of a field, summed in order
   std::vector<std::uint8_t> constrained_;  ///< [slot], set by find_constrained_slots
   std::vector<std::uint8_t> held_;  ///< [field][node] bit per component that a condition gives now, of constrained

@@ -32,7 +32,7 @@
 #define MPM_DEVICE_LEDGER_ENTRIES                                                                               \
   MPM_DEVICE_ENTRY(mpm_energy_of_momenta, energy_of_momenta<Scene>, (mpm::device::sum_scalars<Scene, 1>))       \
   MPM_DEVICE_ENTRY(mpm_energy_of_velocities, energy_of_velocities<Scene>, (mpm::device::sum_scalars<Scene, 1>)) \
-  MPM_DEVICE_ENTRY(mpm_work_of_forces, work_of_forces<Scene>, (mpm::device::sum_scalars<Scene, 5>))             \
+  MPM_DEVICE_ENTRY(mpm_work_of_forces, work_of_forces<Scene>, (mpm::device::sum_scalars<Scene, 6>))             \
   MPM_DEVICE_ENTRY(mpm_energy_of_particles, energy_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 1>))   \
   MPM_DEVICE_ENTRY(mpm_energy_dissipated, energy_dissipated<Scene>, (mpm::device::sum_scalars<Scene, 1>))
 

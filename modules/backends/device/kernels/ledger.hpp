@@ -39,7 +39,7 @@ MPM_HD void energy_of_velocities(const Team& team, const Arguments<typename Scen
 template <class Scene>
 MPM_HD void work_of_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<5>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over<6>(team, a, a.node_count, [&](int node, double* sum) {
     if constexpr (Scene::ledger) {
       const double mass = a.grid.field[N::mass][node], dt = a.dt;
       if (!(mass > 0)) return;
@@ -52,7 +52,7 @@ MPM_HD void work_of_forces(const Team& team, const Arguments<typename Scene::Sca
         const double internal = a.grid.field[N::force][at], weight = a.grid.field[N::weight][at];
         sum[0] += dt * internal * mean;
         sum[1] += dt * body * mean;
-        sum[2] += dt * weight * mean;
+        sum[a.walls[c][0] == wall_periodic ? 5 : 2] += dt * weight * mean;
         sum[a.grid.held[node] >> c & 1 ? 3 : 4] +=
             work_of_reaction(before, after, mass, internal + body + weight, mean, dt);
       }
