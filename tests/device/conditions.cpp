@@ -108,8 +108,11 @@ TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]"
     }
   // The bodies must all be there, so that none is compared with zero.
   Mix mix = close_mix(2);
-  mix.material = von_mises, mix.contact = coulomb, mix.filter = R"({"type": "xpic", "order": 2})";
+  mix.material = von_mises, mix.contact = coulomb;
+  mix.transfer = R"({"type": "flip"})", mix.filter = R"({"type": "xpic", "order": 2, "every_steps": 2})";
   mix.more = R"J(, "body_force": ["2*sin(3*X)+t", "x-Y*y"])J";
+  mix.boundaries = R"({"all": "slip", "x_min": "periodic", "x_max": "periodic"})";
+  check_on_device(mix);
   DeviceScene scene(mix.text(), "double");
   scene.run();
   for (const double entry : ledger_values(scene)) CHECK(std::abs(entry) > 1e-6 * scene.metrics.initial().kinetic);
