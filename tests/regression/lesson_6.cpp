@@ -51,11 +51,10 @@ const std::vector<std::pair<std::string, Claim>> rows{{"pic", {page, "| PIC | # 
 
 TEST_CASE("lesson 6: every number of the page is read by a test or given by the scene", "[lesson][docs]") {
   page.add_given({"A block of wax, 160 mm wide and high",
-                  "the plate is at 420 K, above the melting temperature of 330 K; then "
-                  "it is at 220 K. The block starts at 300 K",
-                  "falls from 20 kPa to 50 Pa", "The wax conducts 3000 W/(m K)",
-                  "stays at 330 K until it has taken its latent heat, 20 kJ/kg", "(Carslaw & Jaeger 1959, sec. 11.2)",
-                  "| cells of 10 mm | cells of 5 mm |"});
+                  "the plate is at 420 K, above the melting temperature of 330 K; then",
+                  "it is at 220 K. The block starts at 300 K", "falls from 20 kPa to 50 Pa",
+                  "The wax conducts 3000 W/(m K)", "stays at 330 K until it has taken its latent heat, 20 kJ/kg",
+                  "(Carslaw & Jaeger 1959, sec. 11.2)", "| cells of 10 mm | cells of 5 mm |"});
   CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
 }
 

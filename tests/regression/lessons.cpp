@@ -47,11 +47,10 @@ const Claim wave_energy(second, "between zero and # J/m, twice a period"),
 
 TEST_CASE("lessons 1 and 2: every number of the pages is read by a test or given by the scene", "[lesson][docs]") {
   second.add_given(
-      {"start with 0.5 m/s plus a standing wave of 0.5 m/s. The wave speed is 10 m/s, so the wave strains the "
-       "bar by 5 % and has a period of 0.1 s. The wave alone moves a particle by 8 mm; the nearest cell face "
-       "is 12.5 mm away",
-       "every particle crosses a face every 0.1 s", "jumps from +1/h to −1/h", "stretched to 1.05 at most",
-       ", and then 5. Slow flight"});
+      {"start with 0.5 m/s plus a standing wave of 0.5 m/s. The wave speed is 10 m/s, so the wave strains the",
+       "bar by 5 % and has a period of 0.1 s. The wave alone moves a particle by 8 mm; the nearest cell face",
+       "is 12.5 mm away", "every particle crosses a face every 0.1 s", "jumps from +1/h to −1/h",
+       "stretched to 1.05 at most", ", and then 5. Slow flight"});
   CHECK(first.numbers_of_nobody() == std::vector<std::string>{});
   CHECK(second.numbers_of_nobody() == std::vector<std::string>{});
 }

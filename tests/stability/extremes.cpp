@@ -67,7 +67,7 @@ Outcome common_failure(std::vector<std::string> overrides, bool in_float = true)
 /// Mass and mean velocity along x of a body.
 std::pair<double, double> mass_and_velocity(const Scene& scene, int body) {
   const BodyState state = scene.body(body);
-  const double count = static_cast<double>(state.velocity.size() / 2);
+  const double count = static_cast<double>(state.velocity.size()) / 2;
   double sum = 0;
   for (std::size_t k = 0; k < state.velocity.size(); k += 2) sum += state.velocity[k];
   return {state.mass * count, sum / count};

@@ -225,8 +225,9 @@ TEST_CASE("an axisymmetric impact is that of 3-D", "[axisymmetric]") {
   CHECK(flat.kinetic == Approx(space.kinetic).epsilon(0.05));
 }
 
-// The largest equivalent plastic strain lies between 2.47 and 3.25 by the same codes: Kamoulakos (1990) 2.47 to 3.24, Zhu
-// & Cescotto (1995) 2.75 to 3.03, Camacho & Ortiz (1997) 2.97 to 3.25, Li et al. (2010) 3.0.
+// The largest equivalent plastic strain lies between 2.47 and 3.25 by the same codes: Kamoulakos (1990) 2.47 to 3.24, Zhu &
+// Cescotto (1995) 2.75 to 3.03, Camacho & Ortiz (1997) 2.97 to 3.25, Li et al. (2010) 3.0. The papers were not at hand: the
+// numbers are those of a table that is often copied.
 TEST_CASE("a Taylor bar of copper keeps its length, foot and plastic strain", "[axisymmetric][taylor_bar]") {
   ReadOptions options;
   options.solvers = solver_descriptions();

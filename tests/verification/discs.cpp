@@ -39,7 +39,7 @@ struct Centre {
 
 Centre centre_of(const BodyState& state) {
   Centre mean;
-  const double count = static_cast<double>(state.position.size() / 2);
+  const double count = static_cast<double>(state.position.size()) / 2;
   for (std::size_t k = 0; k < state.position.size(); ++k) {
     mean.place[k % 2] += state.position[k] / count;
     mean.velocity[k % 2] += state.velocity[k] / count;

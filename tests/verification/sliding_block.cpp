@@ -37,7 +37,7 @@ Slide slide(const std::string& friction, const std::vector<std::string>& setting
   const BodyState start = scene.body(1);
   scene.run();
   const BodyState block = scene.body(1);
-  const double count = static_cast<double>(block.velocity.size() / 2), length = 0.5;
+  const double count = static_cast<double>(block.velocity.size()) / 2, length = 0.5;
   Slide found{.time = scene.simulation.time()};
   for (std::size_t k = 0; k < block.velocity.size(); k += 2) {
     const double moved = block.position[k] - start.position[k];
