@@ -1,0 +1,182 @@
+// Elastic bodies with curved surfaces in frictionless contact: the line contact of two cylinders and the impact of two
+// spheres (Hertz 1882; Johnson, Contact Mechanics, 1985, chapters 4 and 11). `ctest -V` shows the tables.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "metrics/particle_quantities.hpp"
+#include "support/catch.hpp"
+#include "support/files.hpp"
+#include "support/scene.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Two cylinders of R = 8 m, E = 200 Pa, nu = 0.3; half of each, cut off at six half-widths of the contact. Walls press them
+/// together from above and below, by `close` m each.
+const char* cylinders = R"J({
+  "dimension": 2, "constants": {"close": 0.18},
+  "grid": {"cell_size": 0.136, "domain": [[0, -4.08], [4.76, 4.08]],
+           "boundaries": {"x_min": "slip", "x_max": "free",
+                          "y_min": {"type": "prescribed", "velocity": [0, "close*pi/10*sin(pi*t/5)"]},
+                          "y_max": {"type": "prescribed", "velocity": [0, "-close*pi/10*sin(pi*t/5)"]}}},
+  "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"}, "contact": {"type": "coulomb", "friction": 0},
+  "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 200, "poisson_ratio": 0.3, "density": 1}},
+  "bodies": [
+    {"name": "lower", "material": "m", "particles_per_cell_axis": 4, "geometry": {"type": "intersection", "of": [
+      {"type": "ball", "centre": [0, -8], "radius": 8}, {"type": "box", "lower": [0, -4.08], "upper": [4.08, 4.08]}]}},
+    {"name": "upper", "material": "m", "particles_per_cell_axis": 4, "geometry": {"type": "intersection", "of": [
+      {"type": "ball", "centre": [0, 8], "radius": 8}, {"type": "box", "lower": [0, -4.08], "upper": [4.08, 4.08]}]}}],
+  "solver": {"end_time": 5}, "output": {"ledger": false}})J";
+
+constexpr double modulus = 200 / (2 * (1 - 0.3 * 0.3));  ///< Pa, of the contact of two alike
+
+struct LineContact {
+  double force = 0;  ///< N/m
+  double half_width() const { return std::sqrt(4 * force * 4 / (pi * modulus)); }
+  double pressure() const { return 2 * force / (pi * half_width()); }
+  /// Stress across the surface at x beside the middle and z below the surface (McEwen), Pa.
+  double stress(double x, double z) const {
+    const double b = half_width(), s = b * b - x * x + z * z, root = std::sqrt(s * s + 4 * x * x * z * z);
+    const double m = std::sqrt(0.5 * (root + s)), n = std::sqrt(std::max(0.0, 0.5 * (root - s)));
+    return -pressure() / b * m * (1 - (z * z + n * n) / (m * m + n * n));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the closed form of Hertz has the numbers of the case", "[hertz]") {
+  const LineContact contact{10};
+  CHECK(modulus == Approx(109.8901).epsilon(1e-6));
+  CHECK(contact.half_width() == Approx(0.68077837).epsilon(1e-7));
+  CHECK(contact.pressure() == Approx(9.35135129).epsilon(1e-7));
+  CHECK(contact.stress(0, 0) == Approx(-contact.pressure()).epsilon(1e-12));
+  CHECK(contact.stress(0.5, 0) == Approx(-9.35135129 * std::sqrt(1 - std::pow(0.5 / 0.68077837, 2))).epsilon(1e-7));
+  CHECK(contact.stress(0, 0.6) == Approx(-9.35135129 / std::sqrt(1 + std::pow(0.6 / 0.68077837, 2))).epsilon(1e-7));
+}
+
+namespace {
+
+/// Pressed from rest to rest: the force (N/m) at the end, mean over the last tenth of the time, and the errors of the stress
+/// across the surface up to two half-widths from the middle against that of Hertz for this force.
+struct Pressed {
+  LineContact contact;
+  double rms = 0;    ///< over the largest pressure
+  double scale = 0;  ///< what the exact stress is multiplied with to fit best
+};
+
+Pressed press(const std::vector<std::string>& settings) {
+  Scene scene(cylinders, settings);
+  double force = 0, count = 0;
+  while (!scene.simulation.finished()) {
+    scene.simulation.step();
+    if (scene.simulation.time() < 4.5) continue;
+    force += std::abs(scene.simulation.backend().contact_record().force[1]), count += 1;
+  }
+  Pressed found{{2 * force / count}};  // half of each cylinder is there
+  const double b = found.contact.half_width();
+  double squares = 0, product = 0, exact_squares = 0;
+  count = 0;
+  for (const int body : {0, 1}) {
+    const BodyState state = scene.body(body);
+    const MaterialQuantities of = material_quantities(scene.experiment, body, state);
+    for (std::size_t p = 0; p < of.volume_ratio.size(); ++p) {
+      const double x = state.position[2 * p], z = std::abs(state.position[2 * p + 1]);
+      if (x > 2 * b || z > 2 * b) continue;
+      const double exact = found.contact.stress(x, z), stress = of.stress[4 * p + 1] / of.volume_ratio[p];
+      squares += (stress - exact) * (stress - exact), count += 1;
+      product += stress * exact, exact_squares += exact * exact;
+    }
+  }
+  found.rms = std::sqrt(squares / count) / found.contact.pressure(), found.scale = product / exact_squares;
+  std::printf("  F' %.3f N/m, b %.4f m, p0 %.3f Pa: stress off by %.4f of p0 (rms), %.4f as large\n",
+              found.contact.force, b, found.contact.pressure(), found.rms, found.scale);
+  return found;
+}
+
+}  // namespace
+
+// Steps of the rim, one particle's spacing high, are felt: the middle lies on a flat.
+TEST_CASE("the stress under two cylinders is that of Hertz", "[hertz][contact]") {
+  std::printf("Cylinders pressed together, 6 cells a half-width\n");
+  const Pressed found = press({});
+  CHECK(found.contact.half_width() > 5 * 0.136);
+  CHECK(found.rms < 0.08);
+  CHECK(found.scale == Approx(1).epsilon(0.04));
+}
+
+TEST_CASE("the stress under two cylinders at the load of the case is that of Hertz", "[hertz][contact][slow]") {
+  std::printf("Cylinders pressed together, 10 cells a half-width\n");
+  const Pressed found = press({set("/constants/close", "0.1"), set("/grid/cell_size", "0.068")});
+  CHECK(found.contact.force == Approx(10).epsilon(0.05));
+  CHECK(found.rms < 0.09);
+  CHECK(found.scale == Approx(1).epsilon(0.02));
+}
+
+namespace {
+
+/// Forces over the time of an impact of two alike spheres by the law of Hertz, from their first touch.
+struct Impact {
+  double force = 0;     ///< largest, N
+  double duration = 0;  ///< for which the force is above half of that, s
+};
+
+/// Newton's law for the approach d of two spheres of radius R and mass m at a closing speed v, F = K d^(3/2) with
+/// K = 4/3 E* sqrt(R / 2).
+Impact exact_impact(double R, double mass, double speed, double youngs_modulus, double nu) {
+  const double K = 4.0 / 3 * youngs_modulus / (2 * (1 - nu * nu)) * std::sqrt(R / 2);
+  const double deepest = std::pow(5 * (mass / 2) * speed * speed / (4 * K), 0.4);
+  Impact result{K * std::pow(deepest, 1.5)};
+  // Energy gives the closing speed at each approach; d = deepest (1 - s^2) takes the root's pole out of dt = dd / v.
+  constexpr int n = 20000;
+  const double end = std::sqrt(1 - std::pow(0.5, 2.0 / 3));  // half the force
+  for (int k = 0; k < n; ++k) {
+    const double s = end * (k + 0.5) / n, share = 1 - s * s;
+    result.duration += 2 * deepest * 2 * s / (speed * std::sqrt(1 - std::pow(share, 2.5))) * end / n;
+  }
+  return result;
+}
+
+Impact meet(const std::vector<std::string>& settings) {
+  Scene scene(mpm::support::read_file(MPM_SOURCE_DIR "/experiments/studies/hertz_spheres.json"), settings);
+  std::vector<double> times, forces;
+  while (!scene.simulation.finished()) {
+    scene.simulation.step();
+    times.push_back(scene.simulation.last_time_step());
+    forces.push_back(std::abs(scene.simulation.backend().contact_record().force[1]));
+  }
+  Impact found{*std::max_element(forces.begin(), forces.end())};
+  for (std::size_t k = 0; k < times.size(); ++k)
+    if (forces[k] > 0.5 * found.force) found.duration += times[k];
+  return found;
+}
+
+}  // namespace
+
+// The rim's place between the rows of particles decides over the force, so four places are taken; docs/contact.md says
+// more.
+TEST_CASE("the impact of two spheres is that of Hertz", "[hertz][contact][impact]") {
+  const double mass = 4.0 / 3 * pi * 1000;
+  const Impact exact = exact_impact(1, mass, 1, 1e7, 0.3);
+  CHECK(exact.force == Approx(54515.77).epsilon(1e-6));
+  std::printf(
+      "Spheres in impact, 20 cells a radius, 4 particles a cell and axis: peak force (N), time above half (s)\n");
+  std::printf("  exact %.0f %.4f\n", exact.force, exact.duration);
+  double force = 0, duration = 0;
+  for (const double distance : {0.025, 0.0284375, 0.031875, 0.0353125}) {
+    const Impact found =
+        meet({set("/bodies/0/geometry/of/0/centre/1", digits(-1 - distance)),
+              set("/bodies/1/geometry/of/0/centre/1", digits(1 + distance)),
+              set("/bodies/0/particles_per_cell_axis", "4"), set("/bodies/1/particles_per_cell_axis", "4")});
+    std::printf("  %.7f m: %.0f %.4f\n", distance, found.force, found.duration);
+    force += 0.25 * found.force, duration += 0.25 * found.duration;
+  }
+  std::printf("  mean %.0f %.4f\n", force, duration);
+  CHECK(force == Approx(exact.force).epsilon(0.08));
+  CHECK(duration == Approx(exact.duration).epsilon(0.08));
+}
