@@ -178,6 +178,14 @@ struct Question {
   std::string target;  ///< target in words
 };
 
+/// What the run of this point warned of; nothing where its folder is gone.
+std::vector<std::string> warnings_of(const study::ParetoPoint& point, const fs::path& folder) {
+  const fs::path file = folder / point.result->folder / "summary.json";
+  if (!fs::exists(file)) return {};
+  const Json summary = Json::parse(support::read_file(file), nullptr, false);
+  return summary.is_object() ? summary.value("warnings", std::vector<std::string>()) : std::vector<std::string>();
+}
+
 std::string sentence(const Results& results, const Question& question, const study::ParetoPoint& point) {
   return study::label_of(results.study, point.result->combination) + ": " + amount(*question.error, point.error) +
          ", " + amount(*question.cost, point.cost);
@@ -197,6 +205,7 @@ void print_advice(const Results& results, const Question& question, const study:
             << "because it has " << question.target << "; " << advice.good.size() << " of " << advice.near.size()
             << " measured combinations have\n"
             << "evidence: " << (folder / best.result->folder).string() << "\n";
+  for (const std::string& warning : warnings_of(best, folder)) std::cout << "warning: " << warning << "\n";
   for (std::size_t k = 1; k < std::min(advice.good.size(), most_alternatives); ++k)
     std::cout << (k == 1 ? "next: " : "      ") << sentence(results, question, advice.good[k]) << "\n";
 }
@@ -205,7 +214,8 @@ Json json_of(const Results& results, const study::ParetoPoint& point, const fs::
   Json json{{"name", point.result->combination.name},
             {"error", point.error},
             {"cost", point.cost},
-            {"folder", (folder / point.result->folder).string()}};
+            {"folder", (folder / point.result->folder).string()},
+            {"warnings", warnings_of(point, folder)}};
   for (std::size_t k = 0; k < results.study.axes.size(); ++k)
     json["axes"][results.study.axes[k].name] =
         results.study.axes[k].choices[point.result->combination.choices[k]].label;

@@ -33,6 +33,7 @@ class Ball final : public Geometry {
   std::pair<Vector3, Vector3> bounds() const override {
     return box_around(dimension_, centre_, {radius_, radius_, radius_});
   }
+  double smallest_radius() const override { return radius_; }
 
  private:
   int dimension_;
@@ -79,6 +80,7 @@ class Ring final : public Geometry {
     half[axis_] = length_ / 2;
     return box_around(dimension_, centre_, half);
   }
+  double smallest_radius() const override { return inner_ > 0 ? inner_ : outer_; }
 
  private:
   int dimension_, axis_;
@@ -176,6 +178,11 @@ class Combined final : public Geometry {
       }
     }
     return box;
+  }
+  double smallest_radius() const override {
+    double radius = infinity;
+    for (const GeometryPointer& part : parts_) radius = std::min(radius, part->smallest_radius());
+    return radius;
   }
 
  private:

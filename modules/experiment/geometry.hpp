@@ -1,6 +1,7 @@
 #pragma once
 // Regions that bodies fill. Lengths in m; in 2-D the z component is ignored.
 
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -17,6 +18,8 @@ class Geometry {
   /// Lower and upper corner of a box around the region; infinite where it has no bound (a half space: the caller
   /// clips).
   virtual std::pair<Vector3, Vector3> bounds() const = 0;
+  /// The smallest radius of the surfaces that are curved, m; infinite where none is.
+  virtual double smallest_radius() const { return std::numeric_limits<double>::infinity(); }
 };
 
 using GeometryPointer = std::shared_ptr<const Geometry>;

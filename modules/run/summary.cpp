@@ -10,6 +10,7 @@
 #include "bench/costs.hpp"
 #include "experiment/diagnostics.hpp"
 #include "output/summary_value.hpp"
+#include "run/rim_steps.hpp"
 #include "simulation/boundary.hpp"
 
 namespace mpm::app {
@@ -99,8 +100,10 @@ std::string warning_of_images(const Simulation& simulation) {
   return warning.str();
 }
 
-Json warnings(const Simulation& simulation) {
+Json warnings(const Simulation& simulation, const Recorder& recorder) {
   Json all = Json::array();
+  if (recorder.most_contact_nodes() > 0)
+    if (const std::string steps = warning_of_rim_steps(simulation.experiment()); !steps.empty()) all.push_back(steps);
   if (const std::string images = warning_of_images(simulation); !images.empty()) all.push_back(images);
   if (const double growth = simulation.backend().filter_record().largest_growth; growth > 1 + 1e-9) {
     std::ostringstream warning;
@@ -217,7 +220,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
       flops ? Json(flops->total() * particles * static_cast<double>(simulation.steps())) : Json();
   for (const auto& [name, seconds] : seconds_by_pass) json["performance"]["seconds_by_pass"][name] = seconds;
   if (!earlier.resumed_from_steps.empty()) json["performance"]["resumed_from_step"] = earlier.resumed_from_steps;
-  json["warnings"] = warnings(simulation);
+  json["warnings"] = warnings(simulation, recorder);
   return json;
 }
 
