@@ -404,12 +404,31 @@ TEST_CASE("the program warns when friction stops a filter's loop from contractin
       const double growth = summary["stability"]["filter"]["largest_growth"];
       if (friction > 0) CHECK(growth > 1.1);
       CHECK(growth <= std::sqrt(1 + friction * friction) + 1e-12);
-      const std::size_t warnings = friction > 0 ? 1 : 0;
+      const std::size_t warnings = friction > 0 ? 2 : 1;
       REQUIRE(summary["warnings"].size() == warnings);
-      if (warnings == 1) CHECK(has(summary["warnings"][0], words));
+      CHECK(has(summary["warnings"][0], "the curved surface of body"));
+      if (warnings == 2) CHECK(has(summary["warnings"][1], words));
       CHECK(has(result.err, "warning: the filter's increment grew") == (friction > 0));
       CHECK(has(slurp(folder / "run/report.html"), words) == (friction > 0));
     }
+}
+
+TEST_CASE("the program warns of curved bodies that met with coarse rims, and only of those") {
+  const Folder folder;
+  Json scene = two_balls();
+  const std::string words = "is built of steps of 0.025 m, one particle's spacing";
+  const Result met = run_scene(folder, scene);
+  INFO(met.err);
+  CHECK(met.code == 0);
+  REQUIRE(json_in(folder / "run/summary.json")["contact"]["most_nodes"] > 0);
+  CHECK(has(met.err, "warning: the curved surface of body"));
+  CHECK(has(met.err, words));
+  CHECK(has(slurp(folder / "run/report.html"), "is built of steps of 0.025 m"));
+  for (const int body : {0, 1}) scene["bodies"][body]["velocity"] = {body - 0.5, body - 0.5};  // the balls fly apart
+  const Result apart = run_scene(folder, scene);
+  CHECK(apart.code == 0);
+  REQUIRE(json_in(folder / "run/summary.json")["contact"]["most_nodes"] == 0);
+  CHECK(!has(apart.err, "warning:"));
 }
 
 TEST_CASE("a second run moves the first aside, and runs/<name> is the standard place") {

@@ -133,6 +133,25 @@ TEST_CASE("a study runs every combination once, and only what changed again; adv
   CHECK(call(folder, {"advise", "nowhere", "--error", "1"}).code == 2);
 }
 
+TEST_CASE("advice repeats what the run that it names warned of") {
+  const Folder folder;
+  Json study = small_study();
+  study["axes"] = {{"/transfer/type", {"apic", "flip"}}};
+  write_inputs(folder, two_balls(), study);
+  REQUIRE(run_study(folder).code == 0);
+  const std::string words = "the curved surface of body";
+  const Result advice = call(folder, {"advise", "out", "--error", "90%", "--by", "particle_steps"});
+  INFO(advice.out << advice.err);
+  CHECK(advice.code == 0);
+  CHECK(has(advice.out, "\nwarning: " + words));
+  const Json ranked = Json::parse(call(folder, {"advise", "out", "--error", "90%", "--json"}).out);
+  REQUIRE(ranked["good"].size() == 2);
+  for (const Json& good : ranked["good"]) CHECK(has(good["warnings"].dump(), words));
+  fs::remove(folder / "out/runs/apic/summary.json");  // and says nothing where the run's folder has gone
+  fs::remove(folder / "out/runs/flip/summary.json");
+  CHECK(!has(call(folder, {"advise", "out", "--error", "90%"}).out, "warning:"));
+}
+
 TEST_CASE("refused, unstable and flagged combinations are recorded by name") {
   const Folder folder;
   Json study = small_study();

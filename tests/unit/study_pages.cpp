@@ -108,6 +108,28 @@ TEST_CASE("the table of the impact is the figure's", "[docs]") {
   }
 }
 
+TEST_CASE("the table of curved bodies in contact is the figure's", "[docs]") {
+  const Page page("docs/contact.md");
+  const Cells cells = figure("curved_contact");
+  for (const std::string grid :
+       {"10 cells, 4 a cell", "20 cells, 2 a cell", "10 cells, 8 a cell", "20 cells, 4 a cell", "40 cells, 2 a cell"}) {
+    INFO(grid);
+    double least = 10, largest = 0, mean = 0;
+    int count = 0;
+    for (const auto& row : cells)
+      if (row.size() > 4 && row[0] == "grid: " + grid && row[2] == "computed") {
+        const double force = std::stod(row[4]);
+        least = std::min(least, force), largest = std::max(largest, force), mean += force / 8, ++count;
+      }
+    REQUIRE(count == 8);
+    const bool coarse = grid == "10 cells, 4 a cell" || grid == "20 cells, 2 a cell";
+    const auto numbers = page.read("| " + grid + (coarse ? " | 25 mm" : " | 12.5 mm") + " | # | # | # |");
+    CHECK(least == numbers[0].rounded());
+    CHECK(largest == numbers[1].rounded());
+    CHECK(mean == numbers[2].rounded());
+  }
+}
+
 TEST_CASE("the table of the stress updates is the figure's", "[docs]") {
   const Page page("docs/studies/stress_update.md");
   const Cells cells = figure("stress_update_drift_1");
@@ -166,6 +188,38 @@ TEST_CASE("the orders of convergence are the slopes of the figures' lines", "[do
                                     error_at(cells, period[row][0], transfer, "0.041666666666666664")) /
                            std::log(1.5);
       CHECK(order == printed(period[row][column]));
+    }
+}
+
+TEST_CASE("the orders to 128 cells are the slopes of the figure's lines", "[docs]") {
+  const Cells table = table_after("convergence.md", "### To 128 cells"), cells = figure("manufactured_fine");
+  const std::vector<std::string> sizes{"0.0625", "0.03125", "0.015625", "0.0078125"};
+  REQUIRE(table.size() == 8);  // names, a line, three schemes in two ways
+  for (std::size_t row = 2; row < table.size(); ++row) {
+    INFO(table[row][0] << ", " << table[row][1]);
+    const std::string places =
+        table[row][1] == "lattice" ? "on a lattice" : "shifted at random by up to a quarter of their spacing";
+    std::vector<double> errors;
+    for (const std::string& size : sizes)
+      errors.push_back(value(cells, {"particles: " + places, table[row][0], "computed", size}, 4));
+    for (std::size_t k = 0; k < 3; ++k) CHECK(std::log2(errors[k] / errors[k + 1]) == printed(table[row][2 + k]));
+    CHECK(100 * errors.back() / 0.05 == printed(table[row][5]));  // of the amplitude
+  }
+}
+
+TEST_CASE("what limits the convergence is read from the figure", "[docs]") {
+  const Cells table = table_after("convergence.md", "### What limits it"), cells = figure("manufactured_limits");
+  REQUIRE(table.size() == 5);
+  for (std::size_t row = 2; row < table.size(); ++row)
+    for (const auto& [column, refined] :
+         {std::pair{1, "nothing"}, std::pair{2, "particles: 4 a cell and axis"}, std::pair{3, "step: a quarter"}}) {
+      INFO(table[row][0] << ", " << refined);
+      const std::string panel = "shape and transfer: " + table[row][0];
+      const double coarse = value(cells, {panel, refined, "computed", "0.03125"}, 4),
+                   fine = value(cells, {panel, refined, "computed", "0.015625"}, 4);
+      const std::size_t blank = table[row][column].find(' ');
+      CHECK(100 * fine / 0.05 == printed(table[row][column].substr(0, blank)));
+      CHECK(std::log2(coarse / fine) == printed(table[row][column + 3]));
     }
 }
 

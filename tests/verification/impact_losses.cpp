@@ -1,0 +1,42 @@
+// What two discs lose in an impact, and to which cause of the ledger: the numbers of docs/contact.md.
+
+#include <cmath>
+
+#include "support/catch.hpp"
+#include "support/files.hpp"
+#include "support/page.hpp"
+#include "support/scene.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+TEST_CASE("what two discs lose in an impact goes in the transfers, as the page on contact says",
+          "[impact][ledger][docs]") {
+  const Page page("docs/contact.md");
+  const auto lost = page.read(
+      "with APIC lose # % of their energy on 10 cells a diameter, # % on 20 and # % on 40. The ledger's rows scatter "
+      "and gather "
+      "have");
+  const auto shares = page.read("The ledger's rows scatter and gather have #, # and # % of that");
+  const auto of_law = page.read("the law of contact itself takes # % of it on the coarsest grid");
+  const std::string scene_text = mpm::support::read_file(MPM_SOURCE_DIR "/experiments/studies/impacting_discs.json");
+  std::printf("Discs in impact, APIC: cells a diameter, energy lost; scatter and gather, contact, residual (%%)\n");
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double cell = 2e-3 / std::pow(2, static_cast<double>(k));
+    Scene scene(scene_text, {set("/grid/cell_size", digits(cell)), set("/shape/type", "bspline_quadratic"),
+                             set("/transfer/type", "apic"), R"(/contact={"type": "coulomb", "friction": 0})",
+                             set("/solver/time_step", "auto"), set("/output/ledger", "true")});
+    const double start = scene.metrics.initial().total_energy();
+    const Totals end = scene.run();
+    const Ledger& ledger = scene.simulation.ledger();
+    const double loss = start - end.total_energy(), transfers = -(ledger.scatter + ledger.gather);
+    std::printf("  %.0f  %.2f; %.2f %.2f %.2f\n", 0.02 / cell, 100 * loss / start, 100 * transfers / start,
+                -100 * ledger.contact / start, -100 * scene.metrics.ledger_residual(end) / start);
+    CHECK(100 * loss / start == lost[k].rounded());
+    CHECK(100 * transfers / loss == shares[k].rounded());
+    if (k == 0)
+      CHECK(-100 * ledger.contact / loss == of_law[0].rounded());
+    else
+      CHECK(ledger.contact > 0);
+  }
+}
