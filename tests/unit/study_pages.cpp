@@ -204,6 +204,13 @@ TEST_CASE("the orders to 128 cells are the slopes of the figure's lines", "[docs
       errors.push_back(value(cells, {"particles: " + places, table[row][0], "computed", size}, 4));
     for (std::size_t k = 0; k < 3; ++k) CHECK(std::log2(errors[k] / errors[k + 1]) == printed(table[row][2 + k]));
     CHECK(100 * errors.back() / 0.05 == printed(table[row][5]));  // of the amplitude
+    if (table[row][1] != "lattice" || table[row][0].starts_with("quadratic")) continue;
+    const Page page("docs/studies/convergence.md");
+    const auto spread = page.read("over the last three grids at orders of # ± # and # ± #");
+    const std::size_t first = table[row][0].starts_with("cpdi") ? 0 : 2;
+    const double before = std::log2(errors[1] / errors[2]), last = std::log2(errors[2] / errors[3]);
+    CHECK(0.5 * (before + last) == spread[first].rounded());
+    CHECK(0.5 * std::abs(before - last) == spread[first + 1].rounded());
   }
 }
 
@@ -224,7 +231,7 @@ TEST_CASE("what limits the convergence is read from the figure", "[docs]") {
 }
 
 TEST_CASE("the studies that say so take steps of a tenth of the estimate", "[docs]") {
-  for (const std::string name : {"transfer_trade", "manufactured_order", "particles_per_cell"}) {
+  for (const std::string name : {"transfer_trade", "manufactured_order", "manufactured_fine", "particles_per_cell"}) {
     const mpm::study::Study study = mpm::study::read_study(MPM_SOURCE_DIR "/experiments/studies/" + name + ".json");
     INFO(name << ": " << study.note);
     CHECK(study.note.find(
