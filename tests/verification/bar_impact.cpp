@@ -111,12 +111,13 @@ TEST_CASE("two equal bars exchange their velocities", "[impact]") {
 // Contact is not what the bars lose by: as one body, whose halves run into one another, they lose as much. A
 // front that is a jump has no cell size that resolves it. What damps a wave number k by D h^(n - 1) k^n a unit of time
 // spreads the front over a width w with w^n = D h^(n - 1) t, and takes the energy of that width: order (n - 1) / n. PIC has
-// n = 2 (1 - theta^2 / 4 a step), APIC on splines n = 4 (1 - 3 theta^4 / 64).
+// n = 2 (1 - theta^2 / 4 a step), APIC on splines n = 4 (1 - 3 theta^4 / 64). FLIP disperses, n = 3.
 TEST_CASE("the energy that bars in impact lose converges as the width of the front", "[impact][order]") {
   std::printf("Bar impact, energy lost on cells of 0.02, 0.01, 0.005 m: transfer, fields, order\n");
-  for (const auto& [transfer, order] : {std::pair{"pic", 0.5}, std::pair{"apic", 0.75}}) {
+  for (const auto& [transfer, order] : {std::pair{"pic", 0.5}, std::pair{"apic", 0.75}, std::pair{"flip", 2.0 / 3}}) {
     std::vector<double> of_two;
     for (const bool two : {true, false}) {
+      if (two && transfer == std::string("flip")) continue;  // its impulses before the forces are taken back, and cost
       std::vector<double> sizes, lost;
       for (const char* cell : {"0.02", "0.01", "0.005"}) {
         std::vector<std::string> settings{set("/transfer/type", transfer),
@@ -139,7 +140,7 @@ TEST_CASE("the energy that bars in impact lose converges as the width of the fro
                   observed_order(sizes, lost));
       INFO(transfer << ", fields " << (two ? 2 : 1));
       CHECK(observed_order(sizes, lost) == Approx(order).margin(0.04));
-      if (!two) CHECK(lost.back() == Approx(of_two.back()).epsilon(0.01));
+      if (!two && !of_two.empty()) CHECK(lost.back() == Approx(of_two.back()).epsilon(0.01));
     }
   }
 }
