@@ -131,7 +131,10 @@ void draw_ledger(const Table& table, const RunLabel& label, const std::filesyste
                                         {"ledger boundary", "boundary"},
                                         {"ledger contact", "contact"},
                                         {"ledger body force", "body force"},
-                                        {"ledger periodic gravity", "gravity along periodic axes"}});
+                                        {"ledger periodic gravity", "gravity along periodic axes"},
+                                        {"ledger filtered strain", "strain by filtered velocity"},
+                                        {"ledger remapped strain", "strain by remapped velocity"},
+                                        {"ledger second moment", "change of the second moment D"}});
   auto dissipated = column(table, "ledger material dissipation", -1);
   if (std::any_of(dissipated.begin(), dissipated.end(), [](double e) { return e != 0; }))
     plot.areas.push_back({"material", plot.x, dissipated});
@@ -153,6 +156,8 @@ void draw_dissipation(const Table& table, const RunLabel& label, const std::file
       add(plot, table, name, text, factor);
   };
   add_if_any("ledger filter", "filter", -1);
+  add_if_any("ledger filtered strain", "strain by filtered velocity", -1);
+  add_if_any("ledger remapped strain", "strain by remapped velocity", -1);
   add_if_any("ledger boundary", "boundary", -1);
   add_if_any("ledger contact", "contact", -1);
   const bool takes_back = table.find("ledger friction taken back") != nullptr;

@@ -36,6 +36,18 @@ double second_moment(const Experiment& experiment, const BodyState& state, std::
   return f * (1 - f) * h * h;
 }
 
+constexpr std::string_view book_suffix = " book";
+bool is_book(const ValueRow& row) {
+  return row.name.ends_with(book_suffix);
+}
+
+/// Whether the kinetic energy of a particle depends on its place in a cell.
+bool moves_second_moment(const Experiment& experiment, const Plan& plan) {
+  const bool carries = experiment.transfer.plugin->transfer().traits & MPM_AFFINE_CARRIES_ENERGY;
+  const bool varies = experiment.shape.plugin->shape().second_moment_kind != MPM_MOMENT_CONSTANT;
+  return (carries && varies) || plan.basis_functions > 0;
+}
+
 /// Adds the affine part C of a velocity over the nodes of a particle: m sum w |C d|^2 / 2 and m sum w d x (C d).
 void add_affine(const Experiment& experiment, const BodyState& state, const double* C, std::size_t p, Totals& totals) {
   const int D = experiment.dimension;
@@ -185,11 +197,24 @@ std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
   for (int axis = 0; axis < simulation_.experiment().dimension; ++axis)
     periodic_gravity |=
         simulation_.experiment().gravity[axis] != 0 && !simulation_.experiment().gravity_has_potential(axis);
+  const bool remaps = simulation_.experiment().solver.stress_update == StressUpdate::modified_last;
   std::erase_if(rows, [&](const ValueRow& row) {
-    return (!plan.filters() && row.name == "filter") || (!periodic_gravity && row.name == "periodic gravity") ||
-           (!takes_back && row.name == "friction taken back");
+    return is_book(row) || (!plan.filters() && (row.name == "filter" || row.name == "filtered strain")) ||
+           (!remaps && row.name == "remapped strain") ||
+           (!moves_second_moment(simulation_.experiment(), plan) && row.name == "second moment") ||
+           (!periodic_gravity && row.name == "periodic gravity") || (!takes_back && row.name == "friction taken back");
   });
   rows.push_back({"residual", "J", ledger_residual(now)});
+  return rows;
+}
+
+std::vector<ValueRow> Metrics::book_rows() const {
+  if (!simulation_.plan().has_ledger()) return {};
+  std::vector<ValueRow> rows = rows_of(simulation_.ledger());
+  std::erase_if(rows, [&](const ValueRow& row) {
+    return !is_book(row) || (!simulation_.plan().filters() && row.name == "filter book");
+  });
+  for (ValueRow& row : rows) row.name.resize(row.name.size() - book_suffix.size());
   return rows;
 }
 
@@ -217,7 +242,13 @@ std::vector<ValueRow> Metrics::rows(const Totals& t) const {
     for (int c = begin; c < end; ++c) add(name + " " + "xyz"[c], unit, values[static_cast<std::size_t>(c)]);
   };
   const auto add_ledger = [&](const std::string& ledger, const std::vector<ValueRow>& entries) {
-    for (const ValueRow& entry : entries) add(ledger + " " + entry.name, energy, entry.value);
+    for (const auto& [entry, unit, value] : entries)
+      add(ledger + " " + entry,
+          unit == "J"            ? energy
+          : unit == "kg" && flat ? "kg/m"
+          : unit == "kg"         ? unit
+                                 : momentum,
+          value);
   };
   add("time", "s", t.time);
   add("step", "", static_cast<double>(t.step));
@@ -227,6 +258,7 @@ std::vector<ValueRow> Metrics::rows(const Totals& t) const {
   add("gravitational energy", energy, t.gravitational);
   add("total energy", energy, t.total_energy());
   add_ledger("ledger", ledger_rows(t));
+  add_ledger("book", book_rows());
   add_components("momentum", momentum, t.momentum, first, experiment.dimension);
   add_components("angular momentum", spin, t.angular_momentum, first_spin, 3);
   add_components("centre of mass", "m", t.centre_of_mass, first, experiment.dimension);

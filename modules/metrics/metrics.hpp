@@ -60,6 +60,9 @@ class Metrics {
   /// The ledgers' entries and residuals that files have; empty without the ledger. J.
   std::vector<ValueRow> ledger_rows(const Totals& now) const;
   std::vector<ValueRow> heat_ledger_rows(const Totals& now) const;
+  /// The books of the energy ledger, each what measured and recorded values differ by ("grid", "filter", "material", "mass",
+  /// "momentum"); empty without the ledger. J, kg, kg m/s.
+  std::vector<ValueRow> book_rows() const;
 
   /// All that metrics.csv has of one time, in order: which and with what units is decided here alone.
   std::vector<ValueRow> rows(const Totals& totals) const;

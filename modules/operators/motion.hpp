@@ -36,16 +36,4 @@ MPM_HD V mean_velocity(V before, V after) {
   return 0.5 * (before + after);
 }
 
-/// The work of the reactions of conditions and contact: of the change of velocity that the forces do not explain.
-template <class V, class M, class S>
-MPM_HD V work_of_reaction(V before, V after, M mass, V force, V mean, S dt) {
-  return (mass * (after - before) - dt * force) * mean;
-}
-
-/// The work of an impulse that changes a velocity at once.
-template <class V, class S>
-MPM_HD V work_of_impulse(S impulse, V before, V after) {
-  return 0.5 * impulse * (before + after);
-}
-
 }  // namespace mpm

@@ -259,6 +259,18 @@ std::string ledger(const Json& energy) {
          remainder_html(*causes);
 }
 
+/// What the books of the ledger are off by.
+std::string books(const Json& energy) {
+  const Json* found = member(energy, {"books"});
+  if (found == nullptr) return {};
+  return "<h3>Books of the ledger</h3><p class=\"soft\">What recorded and measured values differ by: kinetic energy of "
+         "the grid against the works of all impulses (J) and mass and momentum of the nodes against those of the "
+         "particles (kg, kg m/s) by rounding, stress power against stored and dissipated energy (J) the less the "
+         "shorter "
+         "the step.</p>" +
+         table_html(*found);
+}
+
 std::string passes(const Json& performance) {
   const Json* seconds = member(performance, {"seconds_by_pass"});
   if (seconds == nullptr) return {};
@@ -283,7 +295,7 @@ std::string energy_section(const Run& run) {
   const Json* energy = member(run.summary, {"energy"});
   if (energy == nullptr) return {};
   return section("Energy", "<p class=\"soft\">In J; this page keeps to SI units throughout.</p>" +
-                               group(run, "energy", {"ledger"}) + ledger(*energy));
+                               group(run, "energy", {"ledger", "books"}) + ledger(*energy) + books(*energy));
 }
 
 std::string performance_section(const Run& run) {

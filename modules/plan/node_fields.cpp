@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "experiment/thermal.hpp"
+#include "operators/edges.hpp"
 #include "plan/field_list.hpp"
 
 namespace mpm {
@@ -131,6 +132,37 @@ void force_fields(FieldList& fields) {
     fields.summed("weight", "N", D, AtWall::vector, Folded::with_force, "/gravity: its work is accounted for apart");
 }
 
+/// Whether walls or boxes give any node its velocity.
+bool holds_velocities(const Experiment& experiment) {
+  bool holds = !experiment.boxes.empty();
+  for (const auto& faces : experiment.faces)
+    for (const FaceCondition& face : faces) holds = holds || folds(static_cast<int>(face.type));
+  return holds;
+}
+
+/// The impulses of a stage of the step (before the forces, after them, in a filter), which the ledger makes works of;
+/// and of what conditions and contact have given in all stages, where a filter's loop may take it back.
+void impulse_fields(FieldList& fields) {
+  if (!fields.plan.has_ledger() || !fields.plan.does(Act::accelerate)) return;
+  const Experiment& experiment = fields.experiment;
+  const auto add = [&](const char* id, const std::string& because) {
+    Field& field = fields.of_nodes(id, "kg m/s", experiment.dimension, because);
+    field.cleared = true, field.for_ledger = true;
+  };
+  const bool takes_back = fields.plan.node_field("velocity_of_constraints") != nullptr;
+  const std::string works = "/output/ledger: work of what it gives";
+  const std::string total = "/output/ledger: a filter's loop may take it back";
+  if (holds_velocities(experiment)) {
+    add("boundary_impulse", works);
+    if (takes_back) add("standing_boundary_impulse", total);
+  }
+  if (fields.plan.resolves_contact()) {
+    add("contact_impulse", works);
+    if (takes_back) add("standing_contact_impulse", total);
+  }
+  if (fields.plan.filters()) add("filter_impulse", works);
+}
+
 void contact_fields(FieldList& fields) {
   if (!fields.plan.resolves_contact()) return;
   const int D = fields.experiment.dimension;
@@ -178,7 +210,7 @@ void temperature_fields(FieldList& fields) {
 
 void declare_node_fields(FieldList& fields) {
   for (const auto declare : {transfer_fields, fused_fields, filter_fields, increment_fields, force_fields,
-                             contact_fields, temperature_fields})
+                             impulse_fields, contact_fields, temperature_fields})
     declare(fields);
   for (Field& field : fields.plan.fields)
     if (field.name == field.id) std::replace(field.name.begin(), field.name.end(), '_', ' ');

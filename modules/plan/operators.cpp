@@ -58,6 +58,11 @@ class Uses {
 // What walls that heat comes through look at.
 #define MPM_HEATED_WALL "nodes/heated_volume", "nodes/volume_conductivity", "nodes/capacity_position"
 
+// What the ledger makes works of.
+#define MPM_IMPULSES                                                                                            \
+  "nodes/boundary_impulse", "nodes/contact_impulse", "nodes/filter_impulse", "nodes/standing_boundary_impulse", \
+      "nodes/standing_contact_impulse"
+
 // A velocity that conditions and contact have changed, and the one that a filter keeps aside.
 #define MPM_CONSTRAINED "nodes/velocity", "nodes/velocity_of_constraints"
 #define MPM_KEPT "nodes/unfiltered_velocity", "nodes/unfiltered_velocity_of_constraints"
@@ -97,14 +102,14 @@ const Declaration declarations[] = {
      {"nodes/heat", "nodes/heat_capacity", MPM_HEATED_WALL}},
     {Act::divide,
      Where::nodes,
-     {"nodes/momentum", "nodes/mass", "nodes/next_momentum", "nodes/next_mass", MPM_PAIRS},
-     {MPM_CONSTRAINED},
+     {"nodes/momentum", "nodes/mass", "nodes/next_momentum", "nodes/next_mass", MPM_PAIRS, MPM_IMPULSES},
+     {MPM_CONSTRAINED, MPM_IMPULSES},
      {}},
     {Act::accelerate,
      Where::nodes,
      {MPM_CONSTRAINED, "nodes/mass", "nodes/force", "nodes/body_force", "nodes/weight", "nodes/velocity_before",
-      MPM_PAIRS},
-     {MPM_CONSTRAINED, "nodes/velocity_before"},
+      MPM_PAIRS, MPM_IMPULSES},
+     {MPM_CONSTRAINED, "nodes/velocity_before", MPM_IMPULSES},
      {}},
     {Act::divide_heat,
      Where::nodes,
@@ -122,18 +127,26 @@ const Declaration declarations[] = {
       "nodes/mass"},
      {"nodes/temperature"},
      {}},
-    {Act::begin_filter, Where::nodes, {"nodes/velocity"}, {"nodes/increment"}, {}},
+    {Act::begin_filter, Where::nodes, {"nodes/velocity"}, {"nodes/increment", MPM_IMPULSES}, {}},
     {Act::keep_velocity, Where::nodes, {MPM_CONSTRAINED}, {MPM_KEPT}, {}},
     {Act::project, Where::particles, {MPM_STENCIL, "nodes/increment", "nodes/mass"}, {}, {"nodes/projection"}},
     {Act::update_filter,
      Where::nodes,
-     {"nodes/projection", "nodes/increment", MPM_CONSTRAINED, MPM_PAIRS},
-     {MPM_CONSTRAINED, "nodes/trial_velocity", "nodes/increment"},
+     {"nodes/projection", "nodes/increment", MPM_CONSTRAINED, MPM_PAIRS, MPM_IMPULSES},
+     {MPM_CONSTRAINED, "nodes/trial_velocity", "nodes/increment", MPM_IMPULSES},
      {}},
-    {Act::end_filter, Where::nodes, {MPM_CONSTRAINED, "nodes/increment", MPM_PAIRS}, {MPM_CONSTRAINED}, {}},
+    {Act::end_filter,
+     Where::nodes,
+     {MPM_CONSTRAINED, "nodes/increment", MPM_PAIRS, MPM_IMPULSES},
+     {MPM_CONSTRAINED, MPM_IMPULSES},
+     {}},
     {Act::restore_velocity, Where::nodes, {MPM_KEPT}, {MPM_CONSTRAINED}, {}},
     {Act::keep_correction, Where::nodes, {MPM_CONSTRAINED}, {MPM_KEPT}, {}},
-    {Act::add_correction, Where::nodes, {MPM_CONSTRAINED, MPM_KEPT, MPM_PAIRS}, {MPM_CONSTRAINED}, {}},
+    {Act::add_correction,
+     Where::nodes,
+     {MPM_CONSTRAINED, MPM_KEPT, MPM_PAIRS, MPM_IMPULSES},
+     {MPM_CONSTRAINED, MPM_IMPULSES},
+     {}},
     {Act::gather,
      Where::particles,
      {MPM_STENCIL, "particles/velocity", "particles/transfer", "nodes/velocity"},
@@ -230,6 +243,7 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
   if (!reads("particles/melted_fraction")) uses.reads({"particles/melted_fraction"});
   if (!reads("particles/temperature") && reads_temperature(experiment)) uses.reads({"particles/temperature"});
 }
+#undef MPM_IMPULSES
 #undef MPM_CONSTRAINED
 #undef MPM_KEPT
 #undef MPM_STENCIL

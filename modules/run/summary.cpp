@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 #include "bench/costs.hpp"
@@ -59,6 +60,7 @@ Json energy(const Simulation& simulation, const Metrics& metrics, const Recorder
     json["total"]["gain"] = (recorder.largest_total_energy() - start.total_energy()) / scale;
   if (!simulation.plan().has_ledger()) return json;
   for (const ValueRow& row : metrics.ledger_rows(end)) json["ledger"][key_of(row)] = row.value;
+  for (const ValueRow& row : metrics.book_rows()) json["books"][key_of(row)] = row.value;
   if (const int every = simulation.plan().ledger_every; every > 1) json["ledger_every"] = every;
   return json;
 }
@@ -100,10 +102,34 @@ std::string warning_of_images(const Simulation& simulation) {
   return warning.str();
 }
 
-Json warnings(const Simulation& simulation, const Recorder& recorder) {
+/// What a book of the ledger is off by beyond rounding; empty where it agrees. Rounding adds up over the steps, each of
+/// which sums thousands of values.
+std::string warning_of_books(const Simulation& simulation, const Totals& start, double largest_energy) {
+  if (!simulation.plan().has_ledger()) return "";
+  const bool single = simulation.experiment().precision == Precision::single;
+  const double epsilon = single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon();
+  const double rounding = 1e3 * epsilon * static_cast<double>(simulation.steps());
+  const Ledger ledger = simulation.ledger();
+  double scale = std::max(std::abs(start.total_energy()), std::abs(largest_energy));
+  for (const ValueRow& row : rows_of(ledger))
+    if (row.unit == "J" && row.name != "grid book" && row.name != "filter book")
+      scale = std::max(scale, std::abs(row.value));
+  std::ostringstream warning;
+  if (const double off = std::abs(ledger.grid_book) + std::abs(ledger.filter_book); off > rounding * scale)
+    warning << "the grid's kinetic energy changed by " << off << " J more than the recorded impulses explain";
+  else if (std::abs(ledger.mass_book) > rounding * start.mass)
+    warning << "the nodes were given " << ledger.mass_book << " kg less than the particles have";
+  else
+    return "";
+  return warning.str() + ": a fault of the program or of a plugin; report it with this experiment";
+}
+
+Json warnings(const Simulation& simulation, const Recorder& recorder, const Totals& start) {
   Json all = Json::array();
   if (recorder.most_contact_nodes() > 0)
     if (const std::string steps = warning_of_rim_steps(simulation.experiment()); !steps.empty()) all.push_back(steps);
+  if (const std::string books = warning_of_books(simulation, start, recorder.largest_total_energy()); !books.empty())
+    all.push_back(books);
   if (const std::string images = warning_of_images(simulation); !images.empty()) all.push_back(images);
   if (const double growth = simulation.backend().filter_record().largest_growth; growth > 1 + 1e-9) {
     std::ostringstream warning;
@@ -220,7 +246,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
       flops ? Json(flops->total() * particles * static_cast<double>(simulation.steps())) : Json();
   for (const auto& [name, seconds] : seconds_by_pass) json["performance"]["seconds_by_pass"][name] = seconds;
   if (!earlier.resumed_from_steps.empty()) json["performance"]["resumed_from_step"] = earlier.resumed_from_steps;
-  json["warnings"] = warnings(simulation, recorder);
+  json["warnings"] = warnings(simulation, recorder, start);
   return json;
 }
 

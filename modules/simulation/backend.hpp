@@ -118,8 +118,9 @@ struct BodyState {
   }
 };
 
-/// The energy that each cause has given to the kinetic energy, J, summed over the steps that the ledger takes. What
-/// is computed from impulses of its own, and what as a difference: docs/method.md, the ledger.
+/// The energy that each cause has given, J, summed over the steps that the ledger takes. Each cause records what it
+/// applies where it applies it; the last entries say whether these records explain what was measured (docs/method.md, the
+/// ledger).
 struct Ledger {
   double scatter = 0, gather = 0;      ///< exact differences of kinetic energy across the transfers
   double internal_force = 0;           ///< dt f.(v- + v+)/2 of the stresses
@@ -129,7 +130,18 @@ struct Ledger {
   double friction = 0;             ///< share of contact that the law turned to heat (positive), as particles keep it
   double friction_taken_back = 0;  ///< more of it, before the forces, that gathering increments undoes (FLIP)
   double material = 0;             ///< dissipated by the materials (positive)
-  double filter = 0;               ///< change of the grid's kinetic energy over the filter's loops
+  double filter = 0;               ///< J.(v + v_filtered)/2 of the filter's impulses
+  double filtered_strain = 0;      ///< what strain by the filtered velocity stores less than by the unfiltered one
+  double remapped_strain = 0;      ///< what strain by the remapped velocity (MUSL) stores less than by v+
+  double second_moment = 0;  ///< change of the affine part's kinetic energy, as D changes with the place of a particle
+  double stress_power = 0;   ///< work of the stresses on the strain of the particles
+  double stored = 0;         ///< stored by the materials while they strain
+  // These books are zero to rounding, or as the step goes to zero, in a program without a fault.
+  double grid_book = 0;      ///< change of the grid's kinetic energy before and by the forces, less the works above
+  double filter_book = 0;    ///< the same over the filter's loops
+  double material_book = 0;  ///< stress power less what the materials stored and dissipated
+  double mass_book = 0;      ///< kg, mass of the particles less that of the nodes after the scatter
+  double momentum_book = 0;  ///< kg m/s, size of the momentum that the scatter loses, summed over steps
 
   Ledger plus(const Ledger& other) const;
   Ledger times(double factor) const;
@@ -146,6 +158,7 @@ struct LedgerEntry {
   double AnyLedger::*value;
   int sign = 1;
   int turn = 0;  ///< entries are summed by turns; the rounding of the residual depends on their order
+  const char* unit = "J";
 };
 inline constexpr LedgerEntry<Ledger> ledger_entries[] = {{"scatter", &Ledger::scatter},
                                                          {"gather", &Ledger::gather},
@@ -158,24 +171,34 @@ inline constexpr LedgerEntry<Ledger> ledger_entries[] = {{"scatter", &Ledger::sc
                                                          {"friction", &Ledger::friction, 0},
                                                          {"friction taken back", &Ledger::friction_taken_back, 0},
                                                          {"material dissipation", &Ledger::material, -1, 4},
-                                                         {"filter", &Ledger::filter, 1, 1}};
+                                                         {"filter", &Ledger::filter, 1, 1},
+                                                         {"filtered strain", &Ledger::filtered_strain, 1, 5},
+                                                         {"remapped strain", &Ledger::remapped_strain, 1, 5},
+                                                         {"second moment", &Ledger::second_moment, 1, 5},
+                                                         {"stress power", &Ledger::stress_power, 0},
+                                                         {"stored", &Ledger::stored, 0},
+                                                         {"grid book", &Ledger::grid_book, 0},
+                                                         {"filter book", &Ledger::filter_book, 0},
+                                                         {"material book", &Ledger::material_book, 0},
+                                                         {"mass book", &Ledger::mass_book, 0, 0, "kg"},
+                                                         {"momentum book", &Ledger::momentum_book, 0, 0, "kg m/s"}};
 static_assert(sizeof(Ledger) == std::size(ledger_entries) * sizeof(double));
 
 inline Ledger Ledger::plus(const Ledger& other) const {
   Ledger sum;
-  for (const auto& [name, value, sign, turn] : ledger_entries) sum.*value = this->*value + other.*value;
+  for (const auto& [name, value, sign, turn, unit] : ledger_entries) sum.*value = this->*value + other.*value;
   return sum;
 }
 inline Ledger Ledger::times(double factor) const {
   Ledger product;
-  for (const auto& [name, value, sign, turn] : ledger_entries) product.*value = factor * this->*value;
+  for (const auto& [name, value, sign, turn, unit] : ledger_entries) product.*value = factor * this->*value;
   return product;
 }
 
 inline double Ledger::explained() const {
   double sum = 0;
   for (int now = 0; now < static_cast<int>(std::size(ledger_entries)); ++now)
-    for (const auto& [name, value, sign, turn] : ledger_entries)
+    for (const auto& [name, value, sign, turn, unit] : ledger_entries)
       if (turn == now) sum += sign * this->*value;
   return sum;
 }
@@ -226,19 +249,19 @@ static_assert(sizeof(HeatLedger) == std::size(heat_ledger_entries) * sizeof(doub
 
 inline double HeatLedger::sum() const {
   double sum = 0;
-  for (const auto& [name, value, sign, turn] : heat_ledger_entries) sum += this->*value;
+  for (const auto& [name, value, sign, turn, unit] : heat_ledger_entries) sum += this->*value;
   return sum;
 }
 
-/// The entries as rows, J, in the order of the lists.
+/// The entries as rows in the order of the lists.
 inline std::vector<ValueRow> rows_of(const Ledger& ledger) {
   std::vector<ValueRow> rows;
-  for (const auto& [name, value, sign, turn] : ledger_entries) rows.push_back({name, "J", ledger.*value});
+  for (const auto& [name, value, sign, turn, unit] : ledger_entries) rows.push_back({name, unit, ledger.*value});
   return rows;
 }
 inline std::vector<ValueRow> rows_of(const HeatLedger& ledger) {
   std::vector<ValueRow> rows;
-  for (const auto& [name, value, sign, turn] : heat_ledger_entries) rows.push_back({name, "J", ledger.*value});
+  for (const auto& [name, value, sign, turn, unit] : heat_ledger_entries) rows.push_back({name, "J", ledger.*value});
   return rows;
 }
 /// The values of the entries without their names.

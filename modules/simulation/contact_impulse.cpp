@@ -49,17 +49,33 @@ void ContactImpulse::add(const Vector3& impulse) {
   for (std::size_t c = 0; c < 3; ++c) now_[c] += impulse[c];
 }
 
+void ContactImpulse::before_forces(const ContactGiven& given, bool filtered, Ledger* ledger) {
+  before_ = now_ = given.impulse;
+  friction_ = given.dissipated;
+  if (!ledger) return;
+  const double kept = filtered ? 1.0 : shares_.of_velocity;
+  ledger->friction += kept * given.dissipated;
+  ledger->friction_taken_back += (1 - kept) * given.dissipated;
+}
+
+void ContactImpulse::after_forces(const ContactGiven& given, Ledger* ledger) {
+  add(given.impulse);
+  friction_ += given.dissipated;
+  if (ledger) ledger->friction += given.dissipated;
+}
+
+void ContactImpulse::in_filter(const ContactGiven& given, bool replaces, Ledger* ledger) {
+  if (replaces && ledger) ledger->friction -= friction_;
+  if (replaces) now_ = {}, friction_ = 0;
+  after_forces(given, ledger);
+}
+
 void ContactImpulse::restore(bool keeps_correction) {
+  friction_ = kept_friction_;
   const Vector3 filtered = now_;
   now_ = kept_;
   if (!keeps_correction) return;
   for (std::size_t c = 0; c < 3; ++c) kept_[c] = filtered[c] - kept_[c];
-}
-
-void ContactImpulse::account_before_forces(double dissipated, bool filtered, Ledger& ledger) const {
-  const double kept = filtered ? 1.0 : shares_.of_velocity;
-  ledger.friction += kept * dissipated;
-  ledger.friction_taken_back += (1 - kept) * dissipated;
 }
 
 Vector3 ContactImpulse::handed_over(bool filtered) const {

@@ -46,3 +46,22 @@ TEST_CASE("every file of verification is in the catalogue of cases", "[docs]") {
     CHECK(names.count(name) == 1);
   }
 }
+
+TEST_CASE("the page of what is verified has a line for every case that it runs", "[docs]") {
+  const std::string page = mpm::support::read_file(source / "docs/verified.md");
+  const std::regex begins(R"re(TEST_CASE\(\s*"([^"]*)",\s*"([^"]*)"\))re");
+  int cases = 0;
+  for (const std::string suite : {"conformance", "verification", "faults", "stability"})
+    for (const auto& entry : fs::directory_iterator(source / "tests" / suite)) {
+      if (entry.path().extension() != ".cpp") continue;
+      const std::string text = mpm::support::read_file(entry.path());
+      for (std::sregex_iterator match(text.begin(), text.end(), begins), end; match != end; ++match) {
+        if ((*match)[2].str().find("[slow]") != std::string::npos) continue;
+        const std::string name = std::regex_replace((*match)[1].str(), std::regex(R"(\|)"), R"(\|)");
+        INFO(suite << ": " << name << " (docs/generate_verified.sh writes the page anew)");
+        CHECK(page.find("| " + name + " |") != std::string::npos);
+        ++cases;
+      }
+    }
+  CHECK(cases > 150);
+}

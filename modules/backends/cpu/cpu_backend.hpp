@@ -66,6 +66,11 @@ class CpuBackend final : public Backend, NamedChannels {
   bool may_pass_motion(const StepInfo& step) const;
   void account_for_gather(const Pass& pass, const typename Step::Gathered& gathered, const StepInfo& step);
   void account_for_strain(const typename Step::Gathered& dissipation, const StepInfo& step);
+  bool filters_strain(const StepInfo& step) const;
+  void account_for_move(const StepInfo& step);
+  void book_material(const typename Step::Gathered& strained);
+  /// Books the stored energy that goes with a phase.
+  void account_for_phases(double lost) { ledger_.material += lost, ledger_.stored -= lost; }
   void wake_for_ledger(long step);
   std::string signature() const;
   void restore_particles(ArchiveReader& archive, Particles<D, T>& particles);
@@ -85,9 +90,10 @@ class CpuBackend final : public Backend, NamedChannels {
   std::unique_ptr<support::Pace> pace_;  ///< null where there is one thread
   long paced_step_ = -1;
   double seconds_of_step_ = 0;
-  bool scattered_ = false;   ///< the last gather_scatter left the next step's grid
-  Pass gather_alone_;        ///< a fused pass without its acts for the next step; empty until it was needed
-  bool motion_kept_ = true;  ///< particles have the velocity and the transfer's state of the last step
+  bool scattered_ = false;      ///< the last gather_scatter left the next step's grid
+  Pass gather_alone_;           ///< a fused pass without its acts for the next step; empty until it was needed
+  double gathered_energy_ = 0;  ///< kinetic energy of the particles after the last gather, J
+  bool motion_kept_ = true;     ///< particles have the velocity and the transfer's state of the last step
   std::unique_ptr<Step> particle_step_;
   std::unique_ptr<GridStep<D, T>> grid_step_;
 };
@@ -212,15 +218,18 @@ void CpuBackend<D, T, Components>::sort_between(const StepInfo& step) {
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
   if (pass.remap()) grid_.clear(motion);
-  const double energy = particle_step_->scatter(pass, step);
-  if (pass.has(Act::scatter_momentum) && !pass.remap()) grid_step_->set_particle_kinetic_energy(energy);
+  const Scattered particles = particle_step_->scatter(pass, step);
+  if (pass.has(Act::scatter_momentum) && !pass.remap()) grid_step_->set_scattered(particles);
   if (pass.has(Act::scatter_heat)) grid_step_->set_particle_heat(particle_step_->scattered_heat());
 }
 
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step) {
   motion_kept_ = true;
+  if (pass.has(Act::strain) && filters_strain(step))
+    grid_step_->book_strain(&Ledger::filtered_strain, pass.share, step.dt);
   account_for_gather(pass, particle_step_->gather(pass, step), step);
+  if (pass.has(Act::move)) account_for_move(step);
 }
 
 /// Whether a fused pass may leave velocities and the transfer's state behind: nobody reads them, and no particle can
@@ -246,10 +255,12 @@ void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepIn
   motion_kept_ = now.observed;
   const auto fused = particle_step_->gather_scatter(pass, now, next);
   account_for_gather(pass, fused.gathered, step);
+  if (scene_.plan.accounts_at(step.step) && particle_step_->energy_moves())
+    ledger_.second_moment += fused.particles.kinetic_energy - gathered_energy_;
   scattered_ = fused.scattered;
   if (!scattered_) return;
   grid_.swap(motion, next_motion);
-  grid_step_->set_particle_kinetic_energy(fused.kinetic_energy);
+  grid_step_->set_scattered(fused.particles);
 }
 
 template <int D, class T, class Components>
@@ -258,14 +269,36 @@ void CpuBackend<D, T, Components>::account_for_gather(const Pass& pass, const ty
   if (pass.has(Act::gather_heat)) heat_ledger_.gather += gathered.heat - grid_step_->heat_after();
   heat_ledger_.dissipation += gathered.heat_of_dissipation;
   if (!scene_.plan.accounts_at(step.step)) return;
-  ledger_.gather += gathered.kinetic_energy - grid_step_->kinetic_energy_after();
-  ledger_.material += gathered.dissipated;
+  grid_step_->book_gather(gathered.kinetic_energy);
+  gathered_energy_ = gathered.kinetic_energy;
+  book_material(gathered);
+}
+
+/// Whether the filter changes the velocity by which particles strain in this step, and the ledger books it.
+template <int D, class T, class Components>
+bool CpuBackend<D, T, Components>::filters_strain(const StepInfo& step) const {
+  return scene_.plan.accounts_at(step.step) && step.filtered;
+}
+
+/// Books what the kinetic energy of the particles changes by as their places in the cells do.
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::account_for_move(const StepInfo& step) {
+  if (!scene_.plan.accounts_at(step.step) || !particle_step_->energy_moves()) return;
+  ledger_.second_moment += particle_step_->kinetic_energy_now() - gathered_energy_;
+}
+
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::book_material(const typename Step::Gathered& strained) {
+  ledger_.material += strained.dissipated;
+  ledger_.stress_power += strained.stress_power;
+  ledger_.stored += strained.stored;
+  ledger_.material_book += strained.stress_power - strained.stored - strained.dissipated;
 }
 
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::account_for_strain(const typename Step::Gathered& dissipation,
                                                       const StepInfo& step) {
-  if (scene_.plan.accounts_at(step.step)) ledger_.material += dissipation.dissipated;
+  if (scene_.plan.accounts_at(step.step)) book_material(dissipation);
   heat_ledger_.dissipation += dissipation.heat_of_dissipation;
 }
 
@@ -304,6 +337,8 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
     case Act::gather:
       return pass.fused() ? gather_scatter(pass, step) : gather(pass, step);
     case Act::strain:
+      if (pass.remap() && scene_.plan.accounts_at(step.step))
+        grid_step_->book_strain(&Ledger::remapped_strain, pass.share, step.dt);
       return account_for_strain(particle_step_->strain(pass, step), step);
     case Act::divide_heat:
       return grid_step_->heat_to_temperature(step);
@@ -312,10 +347,10 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
     case Act::heat:
       return grid_step_->apply_heat(step);
     case Act::change_phase:
-      ledger_.material += particle_step_->change_phases(step);
-      return;
+      return account_for_phases(particle_step_->change_phases(step));
     case Act::move:
-      return particle_step_->move(step);
+      particle_step_->move(step);
+      return account_for_move(step);
     case Act::begin_filter:
       return grid_step_->begin_filter(pass);
     case Act::project:
@@ -327,7 +362,7 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
     case Act::end_filter:
       return grid_step_->end_filter(pass, step);
     case Act::restore_velocity:
-      return grid_step_->restore_velocity(pass);
+      return grid_step_->restore_velocity(pass, step);
     case Act::add_correction:
       return grid_step_->add_correction(pass, step);
     default:  // the other acts share a visit with one of these

@@ -24,6 +24,12 @@ std::vector<Field> node_fields(const Experiment&, const Plan& plan) {
   // A projection is folded as the masses were, which are no longer there.
   if (plan.node_field("projection"))
     fields.push_back(working_field("folded_mass", "kg", 1)), fields.back().owner = Owner::node;
+  if (plan.has_ledger()) {
+    for (const char* id : {"work_of_folds", "work_beyond_walls"}) {
+      fields.push_back(working_field(id, "J", 1)), fields.back().owner = Owner::node;
+      fields.back().cleared = true;
+    }
+  }
   if (plan.has_heat_ledger())
     fields.push_back(working_field("folded_capacity", "J/K", 1)), fields.back().owner = Owner::node;
   return fields;
@@ -47,7 +53,8 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   work("velocity_gradient", "1/s", D * D);
   if (experiment.axisymmetric()) work("hoop_rate", "1/s", 1);  // hoop_rate is v_r / r
   work("wave_speed", "m/s", 1);
-  if (plan.has_ledger()) work("dissipated", "J/m^3", 1);
+  if (plan.has_ledger())
+    for (const char* id : {"dissipated", "stress_power", "stored"}) work(id, "J/m^3", 1);
   if (experiment.body_force) work("body_acceleration", "m/s^2", D);
   if (plan.stencil.second_moment) work("second_moment", "cells^2", D * D);
   // Bodies that cannot melt are solid all along, so that all bodies have the same numbers.

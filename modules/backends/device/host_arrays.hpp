@@ -133,16 +133,16 @@ struct Body {
 template <class T>
 struct VelocityField {
   FieldArrays<T> arrays;
-  std::vector<int> folded, held;
+  std::vector<int> folded;
 
   VelocityField(const Experiment& experiment, const Plan& plan, std::size_t nodes)
-      : arrays(node_fields(experiment, plan), nodes), folded(nodes), held(plan.has_ledger() ? nodes : 0) {}
+      : arrays(node_fields(experiment, plan), nodes), folded(nodes) {}
   NodeArrays<T> table() {
-    NodeArrays<T> table{{}, folded.data(), held.empty() ? nullptr : held.data()};
+    NodeArrays<T> table{{}, folded.data()};
     arrays.point(table.field);
     return table;
   }
-  std::uint64_t bytes() const { return arrays.bytes() + (folded.size() + held.size()) * sizeof(int); }
+  std::uint64_t bytes() const { return arrays.bytes() + folded.size() * sizeof(int); }
 };
 
 }  // namespace mpm::device

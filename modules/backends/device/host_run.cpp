@@ -47,7 +47,7 @@ class HostRun final : public Backend {
     if (!plan.resolves_contact()) return;
     active_.resize(nodes), status_.resize(nodes);
     normal_.resize(D * nodes), impulse_.resize(D * nodes), unbalanced_.resize(D * nodes);
-    separation_.resize(nodes), area_.resize(nodes), work_.resize(nodes), dissipated_.resize(nodes);
+    separation_.resize(nodes), area_.resize(nodes), dissipated_.resize(nodes);
   }
 
   std::string_view name() const override { return "host-run device"; }
@@ -93,6 +93,7 @@ class HostRun final : public Backend {
       case Act::change_phase:
         return change_phase();
       case Act::restore_velocity:
+        if (accounted_ && !pass.has(Act::keep_correction)) ledger_.filtered_strain -= early_share_ * power_of_filter();
         contact_impulse_.restore(pass.has(Act::keep_correction));
         return for_each_field(pass.has(Act::keep_correction) ? "keep_correction" : "restore_velocity", vectors());
       case Act::add_correction:
@@ -365,7 +366,7 @@ class HostRun final : public Backend {
     Arguments<T> a = arguments_of(body);
     a.dt *= static_cast<T>(pass.share);
     run_material("strain", a, body);
-    if (accounted_) ledger_.material += sum_over_particles("energy_dissipated", body);
+    if (accounted_) book_material(body);
     if (plan_.has_heat_ledger() && body.heat.warming > 0)
       heat_ledger_.dissipation += sum_over_particles("heat_of_dissipation", body);
   }
@@ -392,6 +393,7 @@ class HostRun final : public Backend {
     if (pass.remap()) for_each_field("clear", nodes(), {true});
     const bool heat = pass.has(Act::scatter_heat);
     double energy = 0;
+    std::array<double, 4> unbalanced{};  // momentum and mass
     if (heat) scattered_heat_ = 0;
     for (Body<T>& body : bodies_) {
       if (enters) body.sort(scene_);
@@ -404,8 +406,11 @@ class HostRun final : public Backend {
       if (heat) run("scatter_heat", a, body.blocks(), body, Checks::stencil);
       if (heat && plan_.has_heat_ledger()) scattered_heat_ += sum_over_particles("heat_of_particles", body);
       if (accounted_ && enters) energy += sum_over_particles("energy_of_particles", body);
+      if (accounted_ && enters) add(unbalanced, 1, sum<4>("momentum_of_particles", arguments_of(body), body.count));
     }
     if (!pass.has(Act::scatter_momentum)) return;
+    for (VelocityField<T>& field : fields_)
+      if (accounted_ && enters) add(unbalanced, -1, sum<4>("momentum_of_nodes", arguments_of(field, {}), nodes()));
     if (enters) for_each_field("weigh", nodes());
     for_each_axis("fold_masses", images_, {pass.remap()});
     if (!enters) return;
@@ -413,6 +418,12 @@ class HostRun final : public Backend {
     if (!accounted_) return;
     scattered_energy_ = sum_over_nodes("energy_of_momenta");
     ledger_.scatter += scattered_energy_ - energy;
+    ledger_.mass_book += unbalanced[3];
+    ledger_.momentum_book += std::hypot(unbalanced[0], unbalanced[1], unbalanced[2]);
+    works_ = 0;
+  }
+  static void add(std::array<double, 4>& sum, double sign, const std::array<double, 4>& values) {
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += sign * values[k];
   }
 
   /// Evaluates the experiment's body force at every particle.
@@ -431,7 +442,7 @@ class HostRun final : public Backend {
   }
 
   void momentum_to_velocity(const Pass& pass, const StepInfo& step) {
-    const bool accounted = accounted_ && !pass.remap();
+    begin_stage(accounted_ && !pass.remap());
     conditions_.evaluate(step.time, scene_);
     if (heat_conditions_) heat_conditions_->evaluate(step.time, scene_);
     const bool records_heat = plan_.has_heat_ledger() && !pass.remap() && heat_conditions_->walls_act();
@@ -442,14 +453,12 @@ class HostRun final : public Backend {
     for_each_field("divide", vectors());
     keep_free_velocity({});
     for_each_field("impose_conditions", nodes());
-    if (accounted) ledger_.boundary += sum_over_nodes("energy_of_velocities") - scattered_energy_;
     if (plan_.resolves_contact()) {
       resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::before_forces);
-      const double before = accounted ? sum_over_nodes("energy_of_velocities") : 0.0;
       for_each_field("impose_conditions", nodes());
-      if (accounted) ledger_.boundary += sum_over_nodes("energy_of_velocities") - before;
     }
     measure_constraints();
+    if (scene_.records) book_folds(), book_impulses();
     if (!pass.remap()) for_each_field("keep_velocity", vectors());
     for_each_axis("fill_velocities", filled_axes());
   }
@@ -457,8 +466,12 @@ class HostRun final : public Backend {
   void apply_forces(const StepInfo& step) {
     const Manner after{false, true};
     conditions_.evaluate(step.time + step.dt, scene_);
+    scene_.records = accounted_;
+    if (accounted_) for_each_field("clear_work_of_folds", nodes());
     for_each_axis("fold_forces", folded_axes());  // folds what USF scattered after the momenta were folded
+    if (accounted_) book_folds();
     for_each_field("accelerate", nodes());
+    begin_stage(accounted_);
     keep_free_velocity(after);
     for_each_field("impose_conditions", nodes(), after);
     if (plan_.resolves_contact()) {
@@ -473,14 +486,66 @@ class HostRun final : public Backend {
   void account_for_impulses() {
     for (VelocityField<T>& field : fields_) {
       const auto work = sum<6>("work_of_forces", arguments_of(field, {}), nodes());
-      ledger_.internal_force += work[0], ledger_.body_force += work[1], ledger_.gravity += work[2];
-      ledger_.boundary += work[3], ledger_.contact += work[4], ledger_.periodic_gravity += work[5];
+      book(&Ledger::internal_force, work[0]), book(&Ledger::body_force, work[1]), book(&Ledger::gravity, work[2]);
+      book(&Ledger::boundary, work[3]), book(&Ledger::contact, work[4]), book(&Ledger::periodic_gravity, work[5]);
     }
     energy_after_ = sum_over_nodes("energy_of_velocities");
+    lumped_power_ = sum_over_nodes("power_of_forces");
+  }
+
+  // ---- the ledger: whoever gives a node an impulse notes it; works are booked when a stage of the step ends ---------
+
+  void begin_stage(bool records) {
+    scene_.records = records;
+    if (records) for_each_field("clear_impulses", vectors());
+  }
+  /// Books a work on the nodes.
+  void book(double Ledger::*row, double work) {
+    ledger_.*row += work;
+    works_ += work;
+  }
+  /// Books what folding at walls gave the nodes, and the work of walls on what lies beyond them.
+  void book_folds() {
+    for (VelocityField<T>& field : fields_) {
+      const auto work = sum<2>("work_of_folds", arguments_of(field, {}), nodes());
+      book(&Ledger::boundary, work[0]);
+      ledger_.boundary += work[1];
+    }
+  }
+  void book_impulses() {
+    for (VelocityField<T>& field : fields_) {
+      const auto work = sum<3>("work_of_impulses", arguments_of(field, {}), nodes());
+      book(&Ledger::boundary, work[0]), book(&Ledger::contact, work[1]), book(&Ledger::filter, work[2]);
+    }
+  }
+  /// Books the works of a filter's loop, and what they do not explain of the kinetic energy.
+  void book_filter() {
+    const double works = works_, before = energy_after_;
+    book_impulses();
+    energy_after_ = sum_over_nodes("energy_of_velocities");
+    ledger_.filter_book += energy_after_ - before - (works_ - works);
+    works_ = works + energy_after_ - before;
+  }
+  /// Books what strain by the velocity of now stores less than by v+ before any filter.
+  void book_strain(double Ledger::*row, double share) {
+    ledger_.*row -= share * (sum_over_nodes("power_of_forces") - lumped_power_);
+  }
+  double power_of_filter() { return sum_over_nodes("power_of_filter"); }
+  void book_material(Body<T>& body) {
+    const auto [dissipated, power, stored] = sum<3>("energy_dissipated", arguments_of(body), body.count);
+    ledger_.material += dissipated, ledger_.stress_power += power, ledger_.stored += stored;
+    ledger_.material_book += power - stored - dissipated;
+  }
+  double energy_of_particles() {
+    double energy = 0;
+    for (Body<T>& body : bodies_) energy += sum_over_particles("energy_of_particles", body);
+    return energy;
   }
 
   void gather(const Pass& pass, const StepInfo& step) {
     double energy = 0, heat = 0;
+    if (accounted_ && step.filtered && pass.has(Act::strain)) book_strain(&Ledger::filtered_strain, pass.share);
+    scene_.records = accounted_;
     for (Body<T>& body : bodies_) {
       Arguments<T> a = arguments_of(body);
       a.update_particles = true, a.filtered = step.filtered;
@@ -490,13 +555,20 @@ class HostRun final : public Backend {
       if (accounted_) energy += sum_over_particles("energy_of_particles", body);  // weights are still those of the step
       if (pass.has(Act::strain)) run_strain(pass, body);
     }
-    if (accounted_) ledger_.gather += energy - energy_after_;
+    if (accounted_) {
+      ledger_.gather += energy - energy_after_;
+      ledger_.grid_book += energy_after_ - scattered_energy_ - works_;
+      energy_before_move_ = energy;
+    }
     if (pass.has(Act::gather_heat) && plan_.has_heat_ledger()) heat_ledger_.gather += heat - heat_after_;
     if (pass.has(Act::move)) move();
     if (pass.has(Act::change_phase)) change_phase();
   }
 
   void strain(const Pass& pass) {
+    if (accounted_ && pass.remap()) book_strain(&Ledger::remapped_strain, pass.share);
+    if (pass.stage == Stage::before_forces) early_share_ = pass.share;
+    scene_.records = accounted_;
     for (Body<T>& body : bodies_) {
       run("gather", arguments_of(body), teams(body.count), body, Checks::stencil);
       run_strain(pass, body);
@@ -505,6 +577,7 @@ class HostRun final : public Backend {
 
   void move() {
     for (Body<T>& body : bodies_) run("move", arguments_of(body), teams(body.count), body, Checks::position);
+    if (accounted_) ledger_.second_moment += energy_of_particles() - energy_before_move_;
   }
 
   // ---- heat --------------------------------------------------------------------------------------------------------
@@ -597,7 +670,9 @@ class HostRun final : public Backend {
     for (Body<T>& body : bodies_) {
       if (!body.melts()) continue;
       run_material("change_phase", body);
-      if (accounted_) ledger_.material += sum_over_particles("energy_dissipated", body);
+      if (!accounted_) continue;
+      const double lost = sum<3>("energy_dissipated", arguments_of(body), body.count)[0];
+      ledger_.material += lost, ledger_.stored -= lost;
     }
   }
 
@@ -609,32 +684,35 @@ class HostRun final : public Backend {
   /// Applies the law to every pair of fields.
   void resolve_contact(const StepInfo& step, Recorded recorded) {
     if (recorded == Recorded::after_forces) contact_ = {};
-    Vector3 unbalanced{}, impulse{};
+    Vector3 unbalanced{};
+    ContactGiven given;
     for (std::size_t a = 0; a < fields_.size(); ++a)
       for (std::size_t b = a + 1; b < fields_.size(); ++b) {
         find_pairs(a, b);
         Arguments<T> arguments = scene_;
         arguments.grid = fields_[a].table(), arguments.other = fields_[b].table();
-        arguments.contact = {active_.data(),     normal_.data(), separation_.data(), area_.data(),  impulse_.data(),
-                             unbalanced_.data(), work_.data(),   dissipated_.data(), status_.data()};
+        arguments.contact = {active_.data(),  normal_.data(),     separation_.data(), area_.data(),
+                             impulse_.data(), unbalanced_.data(), dissipated_.data(), status_.data()};
         device_.run("contact", arguments, teams(nodes()), team_);
-        if (recorded == Recorded::before_forces || recorded == Recorded::after_forces)
-          account_for_pairs(recorded, step.filtered);
         if (recorded == Recorded::after_forces) record_pairs(unbalanced);
-        add_impulses(impulse);
+        add_given(given);
       }
-    if (recorded == Recorded::before_forces) contact_impulse_.before_forces(impulse);
+    Ledger* const ledger = scene_.records ? &ledger_ : nullptr;
+    if (recorded == Recorded::before_forces) contact_impulse_.before_forces(given, step.filtered, ledger);
     if (recorded == Recorded::filter)
-      contact_impulse_.in_filter(impulse, plan_.node_field("velocity_of_constraints") != nullptr);
+      contact_impulse_.in_filter(given, plan_.node_field("velocity_of_constraints") != nullptr, ledger);
     if (recorded != Recorded::after_forces) return;
-    contact_impulse_.after_forces(impulse);
+    contact_impulse_.after_forces(given, ledger);
     record_force(step);
     contact_.momentum_residual = std::hypot(unbalanced[0], unbalanced[1], unbalanced[2]);
   }
-  void add_impulses(Vector3& sum) const {
-    for (int node = 0; node < nodes(); ++node)
-      for (int c = 0; c < experiment_.dimension && active_[node]; ++c)
-        sum[c] += impulse_[static_cast<std::size_t>(c) * nodes() + node];
+  void add_given(ContactGiven& sum) const {
+    for (int node = 0; node < nodes(); ++node) {
+      if (!active_[node]) continue;
+      sum.dissipated += dissipated_[node];
+      for (int c = 0; c < experiment_.dimension; ++c)
+        sum.impulse[c] += impulse_[static_cast<std::size_t>(c) * nodes() + node];
+    }
   }
   /// Records the force that particles take when they gather the velocity as it is now.
   void record_force(const StepInfo& step) {
@@ -676,19 +754,6 @@ class HostRun final : public Backend {
       return view;
     }
   };
-  /// Before the forces v- itself changes at once; after them work_of_forces counts the impulse between v- and v+.
-  void account_for_pairs(Recorded recorded, bool filtered) {
-    if (!accounted_) return;
-    for (int node = 0; node < nodes(); ++node) {
-      if (!active_[node]) continue;
-      if (recorded == Recorded::after_forces) {
-        ledger_.friction += dissipated_[node];
-        continue;
-      }
-      ledger_.contact += work_[node];
-      contact_impulse_.account_before_forces(dissipated_[node], filtered, ledger_);
-    }
-  }
   void record_pairs(Vector3& unbalanced) {
     for (int node = 0; node < nodes(); ++node) {
       if (!active_[node]) continue;
@@ -715,7 +780,7 @@ class HostRun final : public Backend {
     if (pass.has(Act::keep_velocity)) for_each_field("keep_unfiltered", vectors()), contact_impulse_.keep();
     filter_.iterations = 0;
     filter_.first_norm = filter_.last_norm = increment_norm();
-    if (accounted_) energy_unfiltered_ = sum_over_nodes("energy_of_velocities");
+    begin_stage(accounted_ && pass.stage == Stage::after_forces);
   }
 
   /// The first increment is a velocity, which a moving wall mirrors about its own; later ones are differences.
@@ -761,20 +826,18 @@ class HostRun final : public Backend {
     conditions_.evaluate(time_of(pass, step), scene_);
     if (!experiment_.filter_schedule.constrain_always) constrain_velocity(pass, step);
     for_each_axis("fill_velocities", filled_axes());
-    if (pass.stage != Stage::after_forces || !accounted_) return;
-    energy_after_ = sum_over_nodes("energy_of_velocities");
-    ledger_.filter += energy_after_ - energy_unfiltered_;
+    if (!scene_.records) return;
+    book_filter();
   }
 
   void add_correction(const Pass& pass, const StepInfo& step) {
-    const double unfiltered = accounted_ ? sum_over_nodes("energy_of_velocities") : 0.0;
+    begin_stage(accounted_);
     for_each_field("add_correction", vectors());
     contact_impulse_.add_correction();
     constrain_velocity(pass, step);
     for_each_axis("fill_velocities", filled_axes());
     if (!accounted_) return;
-    energy_after_ = sum_over_nodes("energy_of_velocities");
-    ledger_.filter += energy_after_ - unfiltered;
+    book_filter();
   }
 
   const Experiment& experiment_;
@@ -789,7 +852,7 @@ class HostRun final : public Backend {
   std::vector<int> images_, walls_;  ///< axes with periodic images, and those with walls
   std::vector<EdgeModel> edges_;
   std::vector<int> active_, status_;
-  std::vector<T> normal_, separation_, area_, impulse_, unbalanced_, work_, dissipated_;
+  std::vector<T> normal_, separation_, area_, impulse_, unbalanced_, dissipated_;
   int first_failed_ = INT_MAX;
   TimeStepLimit limit_;
   Ledger ledger_;
@@ -798,13 +861,16 @@ class HostRun final : public Backend {
   ContactRecord contact_;
   ContactImpulse contact_impulse_;
   FilterRecord filter_;
-  double scattered_energy_ = 0;   ///< kinetic energy of the grid as scattered, images summed, J
-  double energy_after_ = 0;       ///< kinetic energy of the grid when particles gather from it, J
-  double energy_unfiltered_ = 0;  ///< kinetic energy of the grid when the filter began, J
-  double scattered_heat_ = 0;     ///< heat of the particles that the step's scatter began with, J
-  double heat_of_images_ = 0;     ///< heat that folding has given the grid at walls that do something with heat, J
-  HeatOfTwo beyond_{};            ///< see fill_temperature, before the step's heat
-  double heat_after_ = 0;         ///< heat of the grid when particles gather from it, J
+  double scattered_energy_ = 0;    ///< kinetic energy of the grid as scattered, images summed, J
+  double energy_after_ = 0;        ///< kinetic energy of the grid when particles gather from it, J
+  double works_ = 0;               ///< works on the grid since the scatter, J
+  double lumped_power_ = 0;        ///< work of the stresses' forces at v+ before any filter, J
+  double early_share_ = 0;         ///< share of the step's strain that came before the forces
+  double energy_before_move_ = 0;  ///< kinetic energy of the particles after the gather, J
+  double scattered_heat_ = 0;      ///< heat of the particles that the step's scatter began with, J
+  double heat_of_images_ = 0;      ///< heat that folding has given the grid at walls that do something with heat, J
+  HeatOfTwo beyond_{};             ///< see fill_temperature, before the step's heat
+  double heat_after_ = 0;          ///< heat of the grid when particles gather from it, J
 };
 
 }  // namespace

@@ -62,16 +62,14 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
 void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, bool remap) {
   if (after_forces) contact_ = {};
   Vector total_impulse = Vector::Zero(), total_change = Vector::Zero();
+  double dissipated = 0;
   for_each_pair([&](std::size_t a, std::size_t b) {
     const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step.dt);
     if (!pair) return;
     const Vector& J = pair->impulse;
-    // Before the forces v- itself changes at once; after them account_for_impulses counts the impulse between v- and
-    // v+.
-    if (accounted_ && !after_forces && !remap)
-      ledger_.contact += J.dot(momentum_[a] + 0.5 * J) / mass_[a] - J.dot(momentum_[b] - 0.5 * J) / mass_[b];
-    if (accounted_ && after_forces) ledger_.friction += pair->dissipated;
-    if (accounted_ && !after_forces && !remap) impulse_.account_before_forces(pair->dissipated, step.filtered, ledger_);
+    record(contact_impulse_, standing_contact_impulse_, a, J);
+    record(contact_impulse_, standing_contact_impulse_, b, -J);
+    dissipated += pair->dissipated;
     const Vector sum = momentum_[a] + momentum_[b];
     momentum_[a] += J;
     momentum_[b] -= J;
@@ -83,15 +81,13 @@ void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, 
     if (pair->has_normal) contact_.largest_penetration = std::max(contact_.largest_penetration, -pair->separation);
   });
   if (after_forces) {
-    impulse_.after_forces(as_array(total_impulse));
+    impulse_.after_forces({as_array(total_impulse), dissipated}, ledger_to_book());
     record_force(step);
     contact_.momentum_residual = total_change.norm();
   } else if (!remap) {
-    impulse_.before_forces(as_array(total_impulse));
+    impulse_.before_forces({as_array(total_impulse), dissipated}, step.filtered, ledger_to_book());
   }
-  const double before = accounted_ ? grid_.kinetic_energy() : 0.0;
   impose_conditions(after_forces ? step.time + step.dt : step.time);
-  if (accounted_ && !after_forces && !remap) ledger_.boundary += grid_.kinetic_energy() - before;
 }
 
 void ReferenceBackend::record_force(const StepInfo& step) {

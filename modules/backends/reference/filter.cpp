@@ -29,7 +29,6 @@ void ReferenceBackend::begin_filter(const Pass& pass) {
   if (pass.stage == Stage::before_forces) impulse_.keep();
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = grid_.mass_norm(increment_);
-  kinetic_energy_unfiltered_ = accounted_ ? grid_.kinetic_energy() : 0.0;
 }
 
 /// Sets projection <- S+ S v*, by the transfer's own gather and scatter of particles that were at rest.
@@ -81,11 +80,15 @@ void ReferenceBackend::call_filter(int field) {
                                velocity.data()};
   const Component& filter = *experiment_.filter;
   filter.plugin->filter().update[MPM_SCALAR_DOUBLE][D - 2](filter.parameters.data(), &batch);
-  for (std::size_t k = 0; k < nodes.size(); ++k)
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    Vector taken = Vector::Zero();
     for (int c = 0; c < D; ++c) {
       increment_[nodes[k]][c] = increment(c, k);
-      velocity_[nodes[k]][c] = velocity(c, k);
+      taken[c] = velocity(c, k) - velocity_[nodes[k]][c];
     }
+    velocity_[nodes[k]] += taken;
+    if (records_) filter_impulse_[nodes[k]] += mass_[nodes[k]] * taken;
+  }
 }
 
 void ReferenceBackend::end_filter(const Pass& pass, const StepInfo& step) {
@@ -93,13 +96,11 @@ void ReferenceBackend::end_filter(const Pass& pass, const StepInfo& step) {
   grid_.fill_velocity_ghosts(time_of(pass, step));
   if (pass.stage == Stage::before_forces) return;  // the momentum stays that of the velocity kept aside
   for_each_node([&](std::size_t i) { momentum_[i] = mass_[i] * velocity_[i]; });
-  if (pass.remap()) return;
-  const double filtered = accounted_ ? grid_.kinetic_energy() : 0.0;
-  ledger_.filter += filtered - kinetic_energy_unfiltered_;
-  kinetic_energy_after_ = filtered;
+  if (records_) book_filter();
 }
 
-void ReferenceBackend::restore_velocity(const Pass& pass) {
+void ReferenceBackend::restore_velocity(const Pass& pass, const StepInfo& step) {
+  if (accounted_ && !pass.has(Act::keep_correction)) book_filtered_strain(step.dt);
   const auto restore = [&](Vector& value, Vector& unfiltered) {
     std::swap(value, unfiltered);
     if (pass.has(Act::keep_correction)) unfiltered -= value;
@@ -113,25 +114,25 @@ void ReferenceBackend::restore_velocity(const Pass& pass) {
 
 /// Adds the filter's correction, v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
 void ReferenceBackend::add_correction(const Pass& pass, const StepInfo& step) {
-  const double unfiltered = accounted_ ? grid_.kinetic_energy() : 0.0;
   for_each_node([&](std::size_t i) {
     velocity_[i] += unfiltered_[i];
+    if (records_ && mass_[i] > 0) filter_impulse_[i] += mass_[i] * unfiltered_[i];
     if (keeps_constraints_) constrained_[i] += unfiltered_constrained_[i];
   });
   impulse_.add_correction();
   constrain_free_velocity(pass, step);
   grid_.fill_velocity_ghosts(time_of(pass, step));
   for_each_node([&](std::size_t i) { momentum_[i] = mass_[i] * velocity_[i]; });
-  if (!accounted_) return;
-  kinetic_energy_after_ = grid_.kinetic_energy();
-  ledger_.filter += kinetic_energy_after_ - unfiltered;
+  if (records_) book_filter();
 }
 
 /// Applies conditions and contact to the velocity without what they have added so far.
 void ReferenceBackend::constrain_free_velocity(const Pass& pass, const StepInfo& step) {
   if (!keeps_constraints_) return constrain_velocity(pass, step);
   for_each_node([&](std::size_t i) {
-    if (mass_[i] > 0) constrained_[i] = velocity_[i] -= constrained_[i];  // the free velocity, until they have acted
+    if (mass_[i] <= 0) return;
+    if (records_) take_back(i);
+    constrained_[i] = velocity_[i] -= constrained_[i];  // the free velocity, until they have acted
   });
   constrain_velocity(pass, step);
   for_each_node([&](std::size_t i) {
@@ -144,8 +145,8 @@ void ReferenceBackend::constrain_velocity(const Pass& pass, const StepInfo& step
   const double time = time_of(pass, step);
   impose_on_velocity(time);
   if (!plan_.resolves_contact()) return;
-  const Vector impulse = resolve_contact_of_velocity(step.dt);
-  if (!pass.remap()) impulse_.in_filter(as_array(impulse), keeps_constraints_);
+  const ContactGiven given = resolve_contact_of_velocity(step.dt);
+  if (!pass.remap()) impulse_.in_filter(given, keeps_constraints_, ledger_to_book());
   if (pass.stage == Stage::after_forces) record_force(step);
   impose_on_velocity(time);
 }
@@ -154,22 +155,27 @@ void ReferenceBackend::impose_on_velocity(double time) {
   for_each_node([&](std::size_t i) {
     if (mass_[i] <= 0) return;
     const Held held = grid_.held(i, velocity_[i], time);
+    const Vector before = velocity_[i];
     for (int c = 0; c < 3; ++c)
       if (held.component[c]) velocity_[i][c] = held.velocity[c];
+    if (held.any()) record(boundary_impulse_, standing_boundary_impulse_, i, mass_[i] * (velocity_[i] - before));
   });
 }
 
-/// Returns the impulse on the first fields of all pairs, kg m/s.
-Vector ReferenceBackend::resolve_contact_of_velocity(double dt) {
+ContactGiven ReferenceBackend::resolve_contact_of_velocity(double dt) {
   Vector total = Vector::Zero();
+  double dissipated = 0;
   for_each_pair([&](std::size_t a, std::size_t b) {
     const auto pair = resolve_pair(a, b, mass_[a] * velocity_[a], mass_[b] * velocity_[b], dt);
     if (!pair) return;
     velocity_[a] += pair->impulse / mass_[a];
     velocity_[b] -= pair->impulse / mass_[b];
+    record(contact_impulse_, standing_contact_impulse_, a, pair->impulse);
+    record(contact_impulse_, standing_contact_impulse_, b, -pair->impulse);
     total += pair->impulse;
+    dissipated += pair->dissipated;
   });
-  return total;
+  return {as_array(total), dissipated};
 }
 
 }  // namespace mpm::reference

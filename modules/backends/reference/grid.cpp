@@ -204,13 +204,15 @@ bool Grid::approaches_wall(const Fold& fold, double dt) const {
 void Grid::sum_images() {
   for (int axis = 0; axis < experiment_.dimension; ++axis)
     if (experiment_.faces[axis][0].type == ConditionType::periodic) fold_axis(axis, 0, 0);
-  fold_forces();
+  fold_forces(0);
 }
 
-void Grid::fold_walls(double time, double dt) {
+double Grid::fold_walls(double time, double dt) {
+  work_of_folds_ = 0;
   for (int axis = 0; axis < experiment_.dimension; ++axis)
     if (experiment_.faces[axis][0].type != ConditionType::periodic) fold_axis(axis, time, dt);
   for_each_field([](auto& field) { field.waits_ = false; });
+  return work_of_folds_;
 }
 
 void Grid::fold_axis(int axis, double time, double dt) {
@@ -244,6 +246,7 @@ void Grid::fold_node(Fold fold, double time) {
     wall.heat_beyond =
         2 * gradient_before_folds(fold) * (distance(fold) * fold.heat_capacity - capacity_inward(fold.ghost, fold));
   }
+  work_of_folds_ += work_of_fold(fold, wall);
   for_each_field([&](auto& field) {
     if (field.waits_) add_to_mirror(field, fold, field.declared_->at_wall, wall);
   });
@@ -251,6 +254,17 @@ void Grid::fold_node(Fold fold, double time) {
   momentum_[fold.ghost] = Vector::Zero();
   if (heat_capacity_.declared_) heat_[fold.ghost] = heat_capacity_[fold.ghost] = 0;
   folds_.push_back(fold);
+}
+
+/// Returns what the image of a ghost's momentum gains of energy, and what is lost as its mass joins the mirror's: that
+/// of their relative velocity, with the reduced mass.
+double Grid::work_of_fold(const Fold& fold, const OfWall& wall) const {
+  const Vector before = momentum_[fold.ghost],
+               image = wall.momentum + mirrored(before - wall.momentum, fold, AtWall::momentum);
+  const double own = fold.mass, mirror = mass_[fold.mirror];
+  const double gained = (image - before).dot(image + before) / (2 * own);
+  if (mirror <= 0) return gained;
+  return gained - own * mirror / (2 * (own + mirror)) * (image / own - momentum_[fold.mirror] / mirror).squaredNorm();
 }
 
 /// Folds a node of the wall, which is its own mirror: the image takes away what points across the wall.
@@ -263,10 +277,26 @@ void Grid::fold_onto_itself(const Fold& fold) {
     if (field.waits_ && field.declared_->at_wall == AtWall::slip) field[i][axis] = 0;
 }
 
-void Grid::fold_forces() {
+/// The power that walls which move have on the ghosts of a field of forces, which is folded on the way as it will be.
+double Grid::power_beyond_walls(VectorField force, double time) const {
+  double power = 0;
+  for (const Fold& fold : folds_) {
+    const Vector wall = wall_velocity(fold, time), beside_mirror = wall - mirrored(wall, fold, AtWall::vector);
+    for (int c = 0; c < 3; ++c)
+      if (&force.declared_->id != &weight_.declared_->id || experiment_.gravity_has_potential(c))
+        power -= force[fold.ghost][c] * beside_mirror[c];
+    add_to_mirror(force, fold, AtWall::vector, {});
+    set_zero(force[fold.ghost]);
+  }
+  return power;
+}
+
+double Grid::fold_forces(double time) {
+  const double power = power_beyond_walls(internal_force_, time) + power_beyond_walls(weight_, time);
   for_each_field([&](auto& field) {
     if (field.folded(Folded::with_force)) fold_as(field, field.declared_->at_wall, {});
   });
+  return power;
 }
 
 template <class Value>

@@ -65,6 +65,7 @@ using VectorField = NodeField<Vector>;
 struct Held {
   bool component[3] = {false, false, false};
   Vector velocity = Vector::Zero();
+  bool any() const { return component[0] || component[1] || component[2]; }
 };
 
 class Grid {
@@ -103,10 +104,12 @@ class Grid {
   /// Sums periodic images of all fields. As images are one node, this comes before anything is measured.
   void sum_images();
   /// Adds what was summed with the masses into ghosts beyond walls to their mirrors (boundary.hpp). A separating wall
-  /// decides by p + dt f.
-  void fold_walls(double time, double dt);
-  /// Does the same for forces, which USF scatters later.
-  void fold_forces();
+  /// decides by p + dt f. Returns the energy that this gives the nodes, J.
+  double fold_walls(double time, double dt);
+  /// Does the same for forces, which USF scatters later. Returns the power, W, of walls that move by what lies beyond
+  /// them: a ghost's velocity is its mirror's and (1 - sign) times the wall's, and particles are strained and lifted by
+  /// that too.
+  double fold_forces(double time);
   /// Folds a field by a rule as momenta and masses were folded in this step. `time` is that of the walls' velocity; it
   /// is absent when the walls are at rest (what is folded is a difference).
   template <class Value>
@@ -150,6 +153,8 @@ class Grid {
   }
   void fold_axis(int axis, double time, double dt);
   void fold_node(Fold fold, double time);
+  double work_of_fold(const Fold& fold, const OfWall& wall) const;
+  double power_beyond_walls(VectorField force, double time) const;
   void fold_onto_itself(const Fold& fold);
   bool approaches_wall(const Fold& fold, double dt) const;
   /// The point of the wall where a ghost's line to its mirror crosses it.
@@ -187,6 +192,7 @@ class Grid {
               &body_force_ = vector("body_force"), &weight_ = vector("weight"),
               &capacity_position_ = vector("capacity_position");
   std::vector<Fold> folds_;
+  double work_of_folds_ = 0;                   ///< J, of this step
   std::vector<double> gradient_before_folds_;  ///< K/m, of nodes on walls that heat comes through, for one axis
   std::uint64_t bytes_ = 0;
 };

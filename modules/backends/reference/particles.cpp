@@ -140,6 +140,16 @@ void Particles::find_stencils(const Grid& grid) {
   }
 }
 
+void Particles::find_second_moments() {
+  const ShapeArguments at = shape_arguments();
+  const ShapeValues values = shape_.evaluate(at);
+  second_moments_.clear(), higher_bases_.clear();
+  for (std::size_t p = 0; p < count_; ++p) {
+    second_moments_.push_back(shape_.second_moment(values, at, p));
+    if (plan_.basis_functions > 0) higher_bases_.push_back(shape_.higher_basis(values, p));
+  }
+}
+
 void Particles::scatter_coefficients() {
   Array mass = make(1);
   mass.setConstant(mass_);
@@ -253,15 +263,30 @@ void Particles::evaluate_stress() {
   refuse_inverted(update_material(batch));
 }
 
-double Particles::strain(double dt) {
+double Particles::work_of_stress(double dt, bool after) {
+  evaluate_stress();
+  double sum = 0;
+  for (std::size_t p = 0; p < count_; ++p) {
+    Matrix L = matrix(velocity_gradient, p), tau = symmetric(stress, p);
+    if (axisymmetric()) L(2, 2) = hoop_rate(0, p), tau(2, 2) = stress(2, p);
+    if (after) L -= dt * L * L;
+    sum += dt * volume(p) * tau.cwiseProduct(L).sum();
+  }
+  return sum;
+}
+
+StrainEnergies Particles::strain(double dt, bool booked) {
   pad(velocity_gradient);
   if (axisymmetric()) hoop_rate = gathered_velocity.row(0).array() / position.row(0).array(), pad(hoop_rate);
+  StrainEnergies energies;
+  if (booked) energies.power = 0.5 * work_of_stress(dt, false), energies.stored = -stored_energy();
   Array dissipated = make(1);
   mpm_material_batch batch{};
   batch.dt = dt;
   batch.velocity_gradient = velocity_gradient.data();
   batch.dissipated_energy = dissipated.data();
   refuse_inverted(update_material(batch));
+  if (booked) energies.power += 0.5 * work_of_stress(dt, true), energies.stored += stored_energy();
   if (plan_.particle_field(0, "domain") && !frozen_) {
     Array& domain = values("domain");  // the domain becomes (I + dt L) domain, like F
     for (std::size_t p = 0; p < padded_; ++p)
@@ -272,7 +297,8 @@ double Particles::strain(double dt) {
       values("temperature")(0, p) += thermal_->dissipation_to_heat * dissipated(0, p) /
                                      (material_.parameter("density") * thermal(p).heat_capacity);
   if (axisymmetric()) dissipated.array() *= circumference_->array();
-  return volume_ * dissipated.leftCols(count_).sum();
+  energies.dissipated = volume_ * dissipated.leftCols(count_).sum();
+  return energies;
 }
 
 Array Particles::moments_for_transfer() const {

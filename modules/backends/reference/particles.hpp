@@ -14,6 +14,12 @@ struct Moments {
   Array &velocity, &increment, &affine, &gradient;
 };
 
+/// Energies of one strain of all particles of a body, J.
+struct StrainEnergies {
+  double dissipated = 0;
+  double power = 0, stored = 0;  ///< work of the stresses on the strain, and change of the stored energy
+};
+
 class Particles {
  public:
   Particles(const Experiment& experiment, const Plan& plan, int body, const SeededBody& seeded);
@@ -44,6 +50,8 @@ class Particles {
   /// Finds stencils and second moments at the current positions and domains; they hold until the next call. Throws
   /// RunFailure.
   void find_stencils(const Grid& grid);
+  /// Finds second moments and polynomials alone, whether or not the grid holds the stencils.
+  void find_second_moments();
   const Stencil& stencil(std::size_t p) const { return stencils_[p]; }
   /// The polynomials beyond affine at the same nodes, which exist when Plan::basis_functions is not 0.
   const HigherBasis& higher_basis(std::size_t p) const { return higher_bases_[p]; }
@@ -71,8 +79,8 @@ class Particles {
   /// Evaluates Kirchhoff stress and volume ratio at the current state. Throws RunFailure when a particle is inverted.
   void evaluate_stress();
   /// Advances material and domain by dt with `velocity_gradient`, and warms the particle by its share of what that
-  /// dissipates; returns the energy dissipated, J. Throws RunFailure.
-  double strain(double dt);
+  /// dissipates. What the ledger's book of the materials asks is found where `booked`. Throws RunFailure.
+  StrainEnergies strain(double dt, bool booked);
   /// Updates velocity and transfer state from the gathered moments.
   void gather(double dt);
   /// Moves the particles by the gathered velocity, which replaces their own, as the step was filtered.
@@ -116,6 +124,9 @@ class Particles {
   double stored_energy();  ///< sum over all particles, J
   double ring(std::size_t p) const { return circumference_ ? (*circumference_)(0, p) : 1.0; }
   void refuse_inverted(std::int32_t particle);
+  /// The work of the current stress on dt L, or where `after` on what that is of the strained body, dt L (I + dt L)^-1
+  /// to second order, J.
+  double work_of_stress(double dt, bool after);
 
   const Experiment& experiment_;
   const Plan& plan_;

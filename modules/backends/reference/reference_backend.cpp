@@ -12,7 +12,6 @@ ReferenceBackend::ReferenceBackend(const Experiment& experiment, const Plan& pla
     : experiment_(experiment),
       plan_(plan),
       grid_(experiment, plan),
-      held_(grid_.size()),
       edges_(edge_models(experiment)),
       impulse_(experiment) {
   for (std::size_t body = 0; body < seeded.size(); ++body)
@@ -20,8 +19,11 @@ ReferenceBackend::ReferenceBackend(const Experiment& experiment, const Plan& pla
 }
 
 void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
+  const Act act = pass.operators.front().act;
   accounted_ = plan_.accounts_at(step.step);
-  switch (pass.operators.front().act) {
+  // What a filter does before the forces is undone again.
+  records_ = accounted_ && (pass.stage == Stage::after_forces || (act == Act::divide && !pass.remap()));
+  switch (act) {
     case Act::estimate_time_step:
       return estimate_time_step();
     case Act::sort:
@@ -59,7 +61,7 @@ void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
     case Act::end_filter:
       return end_filter(pass, step);
     case Act::restore_velocity:
-      return restore_velocity(pass);
+      return restore_velocity(pass, step);
     case Act::add_correction:
       return add_correction(pass, step);
     default:  // the other acts share a visit with one of these
@@ -73,12 +75,6 @@ std::uint64_t ReferenceBackend::particle_bytes() const {
   return sum;
 }
 
-double ReferenceBackend::particle_kinetic_energy() const {
-  double sum = 0;
-  for (const Particles& body : bodies_) sum += body.kinetic_energy();
-  return sum;
-}
-
 void ReferenceBackend::estimate_time_step() {
   limit_ = {};
   for (Particles& body : bodies_) {
@@ -88,6 +84,7 @@ void ReferenceBackend::estimate_time_step() {
 }
 
 void ReferenceBackend::move(const StepInfo& step) {
+  const double energy = accounted_ ? particle_kinetic_energy() : 0.0;
   for (std::size_t index = 0; index < bodies_.size(); ++index) {
     Particles& body = bodies_[index];
     if (body.frozen()) continue;
@@ -104,6 +101,9 @@ void ReferenceBackend::move(const StepInfo& step) {
     body.pad(body.position);
     if (plan_.sample_points > 0) body.pad(body.values("corners"));
   }
+  if (!accounted_) return;
+  for (Particles& body : bodies_) body.find_second_moments();
+  ledger_.second_moment += particle_kinetic_energy() - energy;
 }
 
 /// Moves the corners to where the grid's velocity takes them; returns the way to their domain's centroid, m.

@@ -41,8 +41,6 @@ class ReferenceBackend final : public Backend {
   Vector move_corners(Particles& body, int index, std::size_t p) const;
   /// Wraps periodic axes; throws RunFailure where a particle is not a number or beyond a wall.
   void keep_inside(Vector& x, int body, std::size_t p) const;
-  double particle_kinetic_energy() const;
-
   // ---- transfers.cpp
   void scatter(const Pass& pass, const StepInfo& step);
   void scatter_momentum(Particles& body, bool remap);
@@ -63,7 +61,6 @@ class ReferenceBackend final : public Backend {
   void keep_free_velocity(bool after_forces);
   void measure_constraints();
   void apply_forces(const StepInfo& step);
-  void account_for_impulses(std::size_t i, double dt);
   /// A node without mass has no velocity.
   Vector over_mass(const Vector& momentum, std::size_t i) const {
     return mass_[i] > 0 ? Vector(momentum / mass_[i]) : Vector(Vector::Zero());
@@ -94,12 +91,29 @@ class ReferenceBackend final : public Backend {
   void update_filter(const Pass& pass, const StepInfo& step);
   void call_filter(int field);
   void end_filter(const Pass& pass, const StepInfo& step);
-  void restore_velocity(const Pass& pass);
+  void restore_velocity(const Pass& pass, const StepInfo& step);
   void add_correction(const Pass& pass, const StepInfo& step);
   void constrain_free_velocity(const Pass& pass, const StepInfo& step);
   void constrain_velocity(const Pass& pass, const StepInfo& step);
   void impose_on_velocity(double time);
-  Vector resolve_contact_of_velocity(double dt);
+  ContactGiven resolve_contact_of_velocity(double dt);
+
+  // ---- ledger.cpp
+  /// Notes an impulse on a node where conditions or contact apply it.
+  void record(VectorField& impulse, VectorField& standing, std::size_t i, const Vector& given);
+  void take_back(std::size_t i);
+  void book(double Ledger::*row, double work);
+  void book_scattered_sums();
+  void book_scatter();
+  void book_impulses();
+  void book_filter();
+  void book_forces(double dt);
+  void book_gather(const Pass& pass, double dt);
+  void book_strain(const StrainEnergies& energies);
+  void book_filtered_strain(double dt);
+  double power_of_forces(double dt);
+  double particle_kinetic_energy() const;
+  Ledger* ledger_to_book() { return records_ ? &ledger_ : nullptr; }
 
   // ---- temperature.cpp
   void scatter_heat(Particles& body);
@@ -154,6 +168,11 @@ class ReferenceBackend final : public Backend {
   VectorField& constrained_ = grid_.vector("velocity_of_constraints");
   const bool keeps_constraints_ = plan_.node_field("velocity_of_constraints") != nullptr;
   VectorField& unfiltered_constrained_ = grid_.vector("unfiltered_velocity_of_constraints");
+  // Impulses of the stage under way, and of all stages where a filter's loop may take them back.
+  VectorField &boundary_impulse_ = grid_.vector("boundary_impulse"),
+              &contact_impulse_ = grid_.vector("contact_impulse"), &filter_impulse_ = grid_.vector("filter_impulse"),
+              &standing_boundary_impulse_ = grid_.vector("standing_boundary_impulse"),
+              &standing_contact_impulse_ = grid_.vector("standing_contact_impulse");
   ScalarField &heat_ = grid_.scalar("heat"), &heat_capacity_ = grid_.scalar("heat_capacity");
   ScalarField& temperature_before_ = grid_.scalar("temperature_before");  ///< T-
   ScalarField& temperature_ = grid_.scalar("temperature");                ///< T+ (or T- until it is heated)
@@ -161,18 +180,21 @@ class ReferenceBackend final : public Backend {
   ScalarField& volume_conductivity_ = grid_.scalar("volume_conductivity");
   VectorField& capacity_position_ = grid_.vector("capacity_position");
   const WallWeights wall_weights_ = plan_.node_field("heated_volume") ? wall_weights(experiment_) : WallWeights();
-  std::vector<std::array<bool, 3>> held_;  ///< components that a condition gives now
   std::deque<Particles> bodies_;
   std::vector<EdgeModel> edges_;
   TimeStepLimit limit_;
   Ledger ledger_;
   HeatLedger heat_ledger_;
-  bool accounted_ = false;  ///< the ledger takes its entries from the step under way
+  bool accounted_ = false;       ///< the ledger takes its entries from the step under way
+  bool records_ = false;         ///< the pass under way notes its impulses
+  double scattered_energy_ = 0;  ///< kinetic energy of the grid as it was scattered, J
+  double works_ = 0;             ///< works on the grid since the scatter, J
+  double energy_after_ = 0;      ///< kinetic energy of the grid after the forces or the last filter, J
+  double lumped_power_ = 0;      ///< work of the stresses' forces at v+ before any filter, J
+  double early_share_ = 0;       ///< share of the step's strain that came before the forces
   ContactRecord contact_;
   ContactImpulse impulse_;
   FilterRecord filter_;
-  double kinetic_energy_after_ = 0;             ///< kinetic energy of the grid when particles gather from it, J
-  double kinetic_energy_unfiltered_ = 0;        ///< kinetic energy of the grid when the filter began, J
   double held_beyond_ = 0, others_beyond_ = 0;  ///< heat of Grid::heat_beyond_walls before the forces
   double heat_after_ = 0;                       ///< heat of the grid when particles gather from it, J
 };

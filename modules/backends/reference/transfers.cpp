@@ -18,9 +18,10 @@ void ReferenceBackend::scatter(const Pass& pass, const StepInfo& step) {
     if (pass.has(Act::scatter_heat)) scatter_heat(body);
   }
   if (!pass.has(Act::scatter_momentum)) return;
+  if (accounted_ && !pass.remap()) book_scattered_sums();
   grid_.sum_images();
   if (pass.has(Act::scatter_heat)) account(heat_ledger_.scatter, sum(heat_) - heat_of_particles());
-  if (accounted_ && !pass.remap()) ledger_.scatter += grid_.kinetic_energy() - particle_kinetic_energy();
+  if (accounted_ && !pass.remap()) book_scatter();
 }
 
 /// Gives each node w m, its weight, and the momentum as the transfer gives it.
@@ -140,7 +141,7 @@ void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
     if (pass.has(Act::gather_heat)) gather_heat(body, step), heat += body.heat();
     if (pass.has(Act::strain)) strain(body, pass.share * step.dt);
   }
-  if (accounted_) ledger_.gather += particle_kinetic_energy() - kinetic_energy_after_;
+  if (accounted_) book_gather(pass, step.dt);
   if (pass.has(Act::gather_heat)) account(heat_ledger_.gather, heat - heat_after_);
   if (pass.has(Act::move)) move(step);
   if (pass.has(Act::change_phase)) change_phase();
@@ -170,6 +171,8 @@ void ReferenceBackend::gather_moments(Particles& body, const VectorField& veloci
 }
 
 void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {
+  if (accounted_ && pass.remap()) ledger_.remapped_strain -= pass.share * (power_of_forces(step.dt) - lumped_power_);
+  if (accounted_ && pass.stage == Stage::before_forces) early_share_ = pass.share;
   for (Particles& body : bodies_) {
     gather_moments(body, velocity_);
     strain(body, pass.share * step.dt);
@@ -177,9 +180,9 @@ void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {
 }
 
 void ReferenceBackend::strain(Particles& body, double dt) {
-  const double dissipated = body.strain(dt);
-  if (accounted_) ledger_.material += dissipated;
-  account(heat_ledger_.dissipation, body.share_of_heat() * dissipated);
+  const StrainEnergies energies = body.strain(dt, accounted_);
+  if (accounted_) book_strain(energies);
+  account(heat_ledger_.dissipation, body.share_of_heat() * energies.dissipated);
 }
 
 }  // namespace mpm::reference

@@ -63,6 +63,12 @@ struct NamedChannels {
   /// Holds the velocity that conditions and contact have added in the step; while they act, the one without it.
   const Channel constrained = channel_of(plan_, "velocity_of_constraints");
   const Channel kept_constrained = channel_of(plan_, "unfiltered_velocity_of_constraints");  ///< for kept_velocity
+  // Impulses of the stage under way, and of all stages where a filter's loop may take them back; the ledger's.
+  const Channel boundary_impulse = channel_of(plan_, "boundary_impulse");
+  const Channel contact_impulse = channel_of(plan_, "contact_impulse");
+  const Channel filter_impulse = channel_of(plan_, "filter_impulse");
+  const Channel standing_boundary = channel_of(plan_, "standing_boundary_impulse");
+  const Channel standing_contact = channel_of(plan_, "standing_contact_impulse");
 };
 
 }  // namespace mpm::cpu

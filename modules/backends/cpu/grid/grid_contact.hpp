@@ -8,7 +8,7 @@ namespace mpm::cpu {
 /// The sums that the pairs of one slot add to the ledger and the record.
 template <int D, class T>
 struct GridStep<D, T>::ContactSums {
-  double work = 0, friction = 0, largest_penetration = 0;
+  double friction = 0, largest_penetration = 0;
   double impulse[3]{}, change[3]{};
   long sticking = 0, slipping = 0;
 };
@@ -96,8 +96,10 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
       const double a0 = va[c], b0 = vb[c];
       va[c] = struck(T(va[c]), impulse, T(va[3]));
       vb[c] = struck(T(vb[c]), -impulse, T(vb[3]));
-      sums.work +=
-          work_of_impulse(double(impulse), a0, double(va[c])) - work_of_impulse(double(impulse), b0, double(vb[c]));
+      if (records_) {
+        record(contact_impulse, standing_contact, a, batch.node[i], c, impulse);
+        record(contact_impulse, standing_contact, b, batch.node[i], c, -impulse);
+      }
       sums.change[c] += va[3] * (va[c] - a0) + vb[3] * (vb[c] - b0);
       sums.impulse[c] += impulse;
     }
@@ -134,34 +136,29 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
 
 template <int D, class T>
 void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
-  const bool after_forces = recorded == Recorded::after_forces;
-  const bool in_ledger = ledger_on() && (after_forces || recorded == Recorded::before_forces);
   const auto& slots = grid_.shared_slots();
   std::vector<ContactSums> sums(slots.size());
   scene_.team->for_each(slots.size(), 4, [&](std::size_t i, int) { resolve_slot(slots[i], step, sums[i]); });
 
-  Vector3 impulse{};
-  for (const ContactSums& s : sums)
-    for (int c = 0; c < D; ++c) impulse[c] += s.impulse[c];
-  if (recorded == Recorded::before_forces) impulse_.before_forces(impulse);
-  if (after_forces) impulse_.after_forces(impulse);
-  if (recorded == Recorded::filter) return impulse_.in_filter(impulse, grid_.has(constrained));
+  ContactGiven given;
+  for (const ContactSums& s : sums) {
+    for (int c = 0; c < D; ++c) given.impulse[c] += s.impulse[c];
+    given.dissipated += s.friction;
+  }
+  Ledger* const ledger = records_ ? &ledger_ : nullptr;
+  if (recorded == Recorded::before_forces) return impulse_.before_forces(given, step.filtered, ledger);
+  if (recorded == Recorded::filter) return impulse_.in_filter(given, grid_.has(constrained), ledger);
   if (recorded == Recorded::remap) return;
+  impulse_.after_forces(given, ledger);
 
   ContactRecord record;
   double change[3]{}, squared = 0;
   for (const ContactSums& s : sums) {
-    // Before the forces v- itself changes at once; after them account_for_impulses counts the impulse between v- and
-    // v+.
-    if (in_ledger && !after_forces) ledger_.contact += s.work;
-    if (in_ledger && !after_forces) impulse_.account_before_forces(s.friction, step.filtered, ledger_);
-    if (in_ledger && after_forces) ledger_.friction += s.friction;
     for (int c = 0; c < D; ++c) change[c] += s.change[c];
     record.sticking += s.sticking;
     record.slipping += s.slipping;
     record.largest_penetration = std::max(record.largest_penetration, s.largest_penetration);
   }
-  if (!after_forces) return;
   record.nodes = record.sticking + record.slipping;
   for (int c = 0; c < D; ++c) squared += change[c] * change[c];
   record.momentum_residual = std::sqrt(squared);

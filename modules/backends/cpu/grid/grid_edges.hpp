@@ -61,6 +61,18 @@ void GridStep<D, T>::fold_momentum(Channel channel, int field, const MirrorPair&
   ghost = Q{};
 }
 
+/// Returns what the image of a ghost's momentum gains of energy, and what is lost as its mass joins the mirror's: that
+/// of their relative velocity, with the reduced mass.
+template <int D, class T>
+double GridStep<D, T>::work_of_fold(int field, const MirrorPair& pair, Q signs, Q wall_velocity) {
+  const Wide ghost = widen(motion_at(field, pair.ghost)), mirror = widen(motion_at(field, pair.mirror));
+  const Wide image = mirrored(ghost, widen(signs), Wide(ghost[3] * widen(wall_velocity)));
+  const double gained = 0.5 * sum_of_components((image - ghost) * (image + ghost)) / ghost[3];
+  if (!(mirror[3] > 0)) return gained;
+  const Wide apart = image / ghost[3] - mirror / mirror[3];
+  return gained - 0.5 * ghost[3] * mirror[3] / (ghost[3] + mirror[3]) * sum_of_components(apart * apart);
+}
+
 /// Folds values as they are; folded ghosts are cleared here too.
 template <int D, class T>
 void GridStep<D, T>::fold_as_is(Channel channel, int field, const MirrorPair& pair, Q signs) {
@@ -85,9 +97,11 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
     const Channel c = channels[k];
     if (!grid_.has(c) || (remap && c != motion)) continue;
     const AtWall rule = grid_.field(c).at_wall;
-    if (rule == AtWall::momentum)
-      fold_momentum(c, field, pair, signs_[k].of, wall_velocity(face.condition->velocity, pair.foot, time));
-    else if (rule == AtWall::heat)
+    if (rule == AtWall::momentum) {
+      const Q wall = wall_velocity(face.condition->velocity, pair.foot, time);
+      if (records_ && !face.periodic()) work_of_folds_ += work_of_fold(field, pair, signs_[k].of, wall);
+      fold_momentum(c, field, pair, signs_[k].of, wall);
+    } else if (rule == AtWall::heat)
       fold_heat(face, index, field, time);
     else if (c == heated_volume)  // the ghost keeps its own: the corners' temperatures are made of it
       grid_.quad(c, field, pair.mirror) += grid_.quad(c, field, pair.ghost);
@@ -116,14 +130,14 @@ void GridStep<D, T>::fold_images(bool remap, const StepInfo& step) {
   if (!remap) heat_of_folds_ = 0;
   if (!remap) gravity_correction_.assign(has_gravity_ ? grid_.edge_nodes().size() * 4 * grid_.fields() : 0, 0.0);
   fold_faces(true, remap, step);
-  if (!remap) fold_forces(true);
+  if (!remap) fold_forces(true, step.time, step.dt);
 }
 
 /// Folds what lies beyond walls onto the material before them.
 template <int D, class T>
 void GridStep<D, T>::fold_walls(bool remap, const StepInfo& step) {
   fold_faces(false, remap, step);
-  if (!remap) fold_forces(false);
+  if (!remap) fold_forces(false, step.time, step.dt);
 }
 
 template <int D, class T>
@@ -149,9 +163,16 @@ void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step)
   }
 }
 
+/// Returns the work a second of a moving wall on what lies beyond it: a ghost moves at (1 - sign) times the wall's
+/// velocity beside its mirror's, and particles are strained and lifted by that too.
+template <int D, class T>
+double GridStep<D, T>::work_beyond_wall(Q force_of_ghost, Q signs, Q wall_velocity) {
+  return -sum_of_components(widen(force_of_ghost) * (1.0 - widen(signs)) * widen(wall_velocity));
+}
+
 /// Folds forces as fold_faces decided.
 template <int D, class T>
-void GridStep<D, T>::fold_forces(bool periodic) {
+void GridStep<D, T>::fold_forces(bool periodic, double time, double dt) {
   for (const FaceNodes& face : grid_.faces()) {
     if (face.periodic() != periodic) continue;
     for (const Channel c : folded_[static_cast<int>(Folded::with_force)]) {
@@ -159,6 +180,9 @@ void GridStep<D, T>::fold_forces(bool periodic) {
       const Q signs = mirror_signs(face, grid_.field(c).at_wall);
       for_each_folded(face, [&](int field, const MirrorPair& pair) {
         if (c == heat_rate) rate_of_folds_ += (signs[0] - 1) * static_cast<double>(grid_.quad(c, field, pair.ghost)[0]);
+        if (ledger_on() && c == force && face.condition->velocity)
+          ledger_.boundary += dt * work_beyond_wall(grid_.quad(c, field, pair.ghost), signs,
+                                                    wall_velocity(face.condition->velocity, pair.foot, time));
         fold_as_is(c, field, pair, signs);
       });
     }
@@ -166,6 +190,14 @@ void GridStep<D, T>::fold_forces(bool periodic) {
     const Q signs = mirror_signs(face, AtWall::vector);
     for_each_folded(face, [&](int field, const MirrorPair& pair) {
       double* const correction = gravity_correction_.data() + field * grid_.edge_nodes().size() * 4;
+      if (ledger_on() && face.condition->velocity) {
+        Q weight{};
+        for (int c = 0; c < D; ++c)
+          if (scene_.experiment.gravity_has_potential(c))
+            weight[c] = static_cast<T>(correction[pair.ghost_edge * 4 + c]);
+        ledger_.boundary +=
+            dt * work_beyond_wall(weight, signs, wall_velocity(face.condition->velocity, pair.foot, time));
+      }
       for (int c = 0; c < D; ++c) {
         correction[pair.mirror_edge * 4 + c] += signs[c] * correction[pair.ghost_edge * 4 + c];
         correction[pair.ghost_edge * 4 + c] = 0;
@@ -196,7 +228,7 @@ void GridStep<D, T>::fill_ghosts(double time, bool increments) {
 
 /// Sets the velocities that walls and boxes give.
 template <int D, class T>
-void GridStep<D, T>::impose(double time, Account account) {
+void GridStep<D, T>::impose(double time) {
   for (const FaceNodes& face : grid_.faces()) {
     const int type = static_cast<int>(face.condition->type);
     for (std::size_t i = 0; i < face.wall.size(); ++i) {
@@ -204,7 +236,7 @@ void GridStep<D, T>::impose(double time, Account account) {
       for (int field = 0; field < grid_.fields(); ++field) {
         const T across = motion_at(field, face.wall[i])[face.axis];
         for (int c = 0; c < D; ++c)
-          if (wall_holds(type, face.axis, face.side, c, across)) hold(field, face.wall[i], c, velocity[c], account);
+          if (wall_holds(type, face.axis, face.side, c, across)) hold(field, face.wall[i], c, velocity[c]);
       }
     }
   }
@@ -218,19 +250,18 @@ void GridStep<D, T>::impose(double time, Account account) {
         for (int c = 0; c < D; ++c)
           if (box_holds(static_cast<int>(condition.type), condition.axis, condition.side, given, c,
                         motion_at(field, box.nodes[i])[c]))
-            hold(field, box.nodes[i], c, velocity[c], account);
+            hold(field, box.nodes[i], c, velocity[c]);
     }
   }
 }
 
 template <int D, class T>
-void GridStep<D, T>::hold(int field, std::uint32_t node, int c, T velocity, Account account) {
+void GridStep<D, T>::hold(int field, std::uint32_t node, int c, T velocity) {
   Q& v = motion_at(field, node);
-  const double mass = v[3], old = v[c], now = velocity;
-  if (!(mass > 0)) return;
+  if (!(v[3] > 0)) return;
+  if (records_)
+    record(boundary_impulse, standing_boundary, field, node, c, double(v[3]) * (double(velocity) - double(v[c])));
   v[c] = velocity;
-  if (account == Account::change_of_energy) ledger_.boundary += 0.5 * mass * (now * now - old * old);
-  if (account == Account::mark) held_[std::size_t(field) * grid_.nodes() + node] |= std::uint8_t(1u << c);
 }
 
 }  // namespace mpm::cpu

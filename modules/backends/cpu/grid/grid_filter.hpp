@@ -31,13 +31,13 @@ double GridStep<D, T>::mass_norm_of_increment() {
 
 template <int D, class T>
 void GridStep<D, T>::begin_filter(const Pass& pass) {
+  begin_stage(ledger_on() && pass.stage == Stage::after_forces);
   copy_velocity(motion, filter_increment);
   if (pass.stage == Stage::before_forces) copy_velocity(motion, kept_velocity);
   if (pass.stage == Stage::before_forces && grid_.has(constrained)) copy_velocity(constrained, kept_constrained);
   if (pass.stage == Stage::before_forces) impulse_.keep();
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = mass_norm_of_increment();
-  if (ledger_on()) kinetic_energy_unfiltered_ = kinetic_energy();
 }
 
 /// Folds and divides the momenta that the particles scattered. The first increment is a velocity, which walls mirror
@@ -92,7 +92,9 @@ void GridStep<D, T>::update_block(int field, std::uint32_t first, std::uint32_t 
   for (int i = 0; i < count; ++i) {
     Q &v = motion_at(field, node[i]), &star = grid_.quad(filter_increment, field, node[i]);
     for (int c = 0; c < D; ++c) {
-      v[c] = velocity[c * block_nodes + i];
+      const T now = velocity[c * block_nodes + i];
+      if (records_) grid_.quad(filter_impulse, field, node[i])[c] += v[3] * (now - v[c]);
+      v[c] = now;
       star[c] = increment[c * block_nodes + i];
     }
   }
@@ -126,21 +128,22 @@ void GridStep<D, T>::constrain_free(const Pass& pass, const StepInfo& step) {
   if (!grid_.has(constrained)) return constrain(pass, step);
   for_each_block([&](int field, std::uint32_t first, double*) {
     Q *const nodes = &motion_at(field, first), *const added = &grid_.quad(constrained, field, first);
+    if (records_) take_back(field, first);
     for (int k = 0; k < block_nodes; ++k) added[k] = nodes[k] = without(nodes[k], added[k]);
   });
   constrain(pass, step);
   measure_constraints();
 }
 
-/// Applies conditions and contact to the velocity as it is; of ledger and records the contact force alone changes.
+/// Applies conditions and contact to the velocity as it is; of the records the contact force alone changes.
 template <int D, class T>
 void GridStep<D, T>::constrain(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
-  impose(time, Account::nothing);
+  impose(time);
   if (!scene_.plan.resolves_contact()) return;
   resolve_contact(step, pass.remap() ? Recorded::remap : Recorded::filter);
   if (pass.stage == Stage::after_forces) record_force(step);
-  impose(time, Account::nothing);
+  impose(time);
 }
 
 template <int D, class T>
@@ -175,16 +178,12 @@ void GridStep<D, T>::end_filter(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
   if (!scene_.experiment.filter_schedule.constrain_always) constrain_free(pass, step);
   fill_ghosts(time, false);
-  if (pass.remap() || pass.stage == Stage::before_forces) return;
-  if (ledger_on()) {
-    const double energy = kinetic_energy();
-    ledger_.filter += energy - kinetic_energy_unfiltered_;
-    kinetic_energy_after_ = energy;
-  }
+  if (records_) book_filter();
 }
 
 template <int D, class T>
-void GridStep<D, T>::restore_velocity(const Pass& pass) {
+void GridStep<D, T>::restore_velocity(const Pass& pass, const StepInfo& step) {
+  if (ledger_on() && !pass.has(Act::keep_correction)) book_filtered_strain(step.dt);
   impulse_.restore(pass.has(Act::keep_correction));
   restore(motion, kept_velocity, pass.has(Act::keep_correction));
   if (grid_.has(constrained)) restore(constrained, kept_constrained, pass.has(Act::keep_correction));
@@ -215,15 +214,18 @@ void GridStep<D, T>::add(Channel correction, Channel channel) {
 /// Adds the filter's correction, v+ <- v+ + (filtered v- minus v-), under the conditions and contact of v+.
 template <int D, class T>
 void GridStep<D, T>::add_correction(const Pass& pass, const StepInfo& step) {
-  const double unfiltered = ledger_on() ? kinetic_energy() : 0.0;
+  begin_stage(ledger_on());
+  if (records_)
+    for_each_block([&](int field, std::uint32_t first, double*) {
+      const Q *const nodes = &motion_at(field, first), *const added = &grid_.quad(kept_velocity, field, first);
+      for (int k = 0; k < block_nodes; ++k) grid_.quad(filter_impulse, field, first + k) += nodes[k][3] * added[k];
+    });
   add(kept_velocity, motion);
   if (grid_.has(constrained)) add(kept_constrained, constrained);
   impulse_.add_correction();
   constrain_free(pass, step);
   fill_ghosts(time_of(pass, step), false);
-  if (!ledger_on()) return;
-  kinetic_energy_after_ = kinetic_energy();
-  ledger_.filter += kinetic_energy_after_ - unfiltered;
+  if (records_) book_filter();
 }
 
 }  // namespace mpm::cpu

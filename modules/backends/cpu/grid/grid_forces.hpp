@@ -30,6 +30,8 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
     if (grid.field(c).at_wall == AtWall::slip) slipping_.push_back(c);
   }
   may_merge_ = scene.plan.divides_with_forces();
+  if (const Pass* const strain = scene.plan.pass_of(Act::strain); strain && strain->stage == Stage::before_forces)
+    early_share_ = strain->share;
 }
 
 /// Calls visit(field, first node, partial sums) for every block of nodes of every field.
@@ -125,6 +127,8 @@ double GridStep<D, T>::divide_by_mass(bool keeps_before, bool accounted) {
 template <int D, class T>
 void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   const bool accounted = ledger_on() && !remap, keeps_before = !remap && grid_.has(velocity_before);
+  begin_stage(accounted);
+  if (accounted) book_scattered_sums();
   fold_images(remap, step);
   const double edges_raw = accounted ? kinetic_energy_of_edges() : 0.0;
   fold_walls(remap, step);
@@ -132,18 +136,20 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   const double folded = accounted ? kinetic_energy_of_edges() - edges_raw : 0.0;
   const double energy = divide_by_mass(keeps_before, accounted);
   if (accounted) {
-    ledger_.scatter += energy - folded - particle_kinetic_energy_;
-    ledger_.boundary += folded;
+    scattered_energy_ = energy - folded;
+    ledger_.scatter += scattered_energy_ - particles_.kinetic_energy;
+    works_ = 0;
+    book(&Ledger::boundary, work_of_folds_);
   }
-  const Account account = accounted ? Account::change_of_energy : Account::nothing;
   keep_free_velocity(false);
-  impose(step.time, account);
+  impose(step.time);
   if (scene_.plan.resolves_contact()) {
     resolve_contact(step, remap ? Recorded::remap : Recorded::before_forces);
-    impose(step.time, account);
+    impose(step.time);
   }
   measure_constraints();
   if (keeps_before) copy_constrained_velocity();
+  if (accounted) book_impulses();
   fill_ghosts(step.time, false);
 }
 
@@ -190,6 +196,12 @@ void GridStep<D, T>::add_gravity_corrections(double dt) {
     }
 }
 
+/// A correction as it was added to a force, N.
+template <int D, class T>
+double GridStep<D, T>::gravity_corrections_at(int field, std::size_t edge, int component) const {
+  return static_cast<T>(gravity_correction_[(field * grid_.edge_nodes().size() + edge) * 4 + component]);
+}
+
 /// Moves the work of the corrections, which was counted as part of the force, to gravity.
 template <int D, class T>
 void GridStep<D, T>::account_gravity_corrections(double dt) {
@@ -199,25 +211,26 @@ void GridStep<D, T>::account_gravity_corrections(double dt) {
       const Q v = motion_at(field, nodes[i]), before = grid_.quad(velocity_before, field, nodes[i]);
       if (!(v[3] > 0)) continue;
       for (int c = 0; c < D; ++c) {
-        const double correction = static_cast<T>(gravity_correction_[(field * nodes.size() + i) * 4 + c]);
-        const double work = 0.5 * dt * correction * (static_cast<double>(before[c]) + v[c]);
+        const double work = 0.5 * dt * gravity_corrections_at(field, i, c) * (static_cast<double>(before[c]) + v[c]);
         ledger_.internal_force -= work;
         (scene_.experiment.gravity_has_potential(c) ? ledger_.gravity : ledger_.periodic_gravity) += work;
       }
     }
 }
 
-/// Counts the work of every impulse between v- and v+ at their mean, and the energy of v+. With `held`, bits of the
-/// block's nodes, what the forces do not explain is the reaction of a condition on held components and of contact on
-/// the others. Without mass there is no velocity, before or after.
+/// Counts the work of the forces, and of the impulses of conditions and contact where there are any, between v- and v+
+/// at their mean, and the energy of v+. Without mass there is no velocity, before or after.
 template <int D, class T>
-void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt, const std::uint8_t* held,
-                                       double* partial) {
+void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt, bool with_impulses, double* partial) {
   const Q *const after = &motion_at(field, first), *const before = &grid_.quad(velocity_before, field, first),
                  *const forces = &grid_.quad(force, field, first);
   const Q* const bodies = grid_.has(body_force) ? &grid_.quad(body_force, field, first) : nullptr;
   const Wide gravity = widen(gravity_);
-  Wide internal{}, external{}, momentum{}, squares{}, contact{};
+  const Q* const walls =
+      with_impulses && grid_.has(boundary_impulse) ? &grid_.quad(boundary_impulse, field, first) : nullptr;
+  const Q* const pairs =
+      with_impulses && grid_.has(contact_impulse) ? &grid_.quad(contact_impulse, field, first) : nullptr;
+  Wide internal{}, external{}, momentum{}, squares{}, boundary{}, contact{};
   for (int k = 0; k < block_nodes; ++k) {
     const Wide v = widen(after[k]), old = widen(before[k]), f = widen(forces[k]), mean = mean_velocity(old, v);
     const Wide body = bodies ? widen(bodies[k]) : Wide{};
@@ -226,19 +239,16 @@ void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt
     external += body * mean;
     momentum += mass * mean;
     squares += twice_kinetic_energy(v, mass);
-    if (!held || (held[k] == 0 && !scene_.plan.resolves_contact())) continue;
-    const Wide work = work_of_reaction(old, v, mass, f + body + mass * gravity, mean, dt);
-    if (held[k] == 0)
-      contact += work;
-    else
-      for (int c = 0; c < D; ++c) partial[held[k] & (1u << c) ? at_conditions : at_contact] += work[c];
+    if (walls) boundary += widen(walls[k]) * mean;
+    if (pairs) contact += widen(pairs[k]) * mean;
   }
   partial[of_internal_force] += dt * sum_of_components(internal);
   partial[of_body_force] += dt * sum_of_components(external);
   const Wide periodic = widen(periodic_gravity_);
   partial[of_gravity] += dt * sum_of_components(momentum * (gravity - periodic));
   partial[of_periodic_gravity] += dt * sum_of_components(momentum * periodic);
-  if (scene_.plan.resolves_contact()) partial[at_contact] += sum_of_components(contact);
+  partial[of_boundary] += sum_of_components(boundary);
+  partial[of_contact] += sum_of_components(contact);
   partial[of_motion] += 0.5 * sum_of_components(squares);
 }
 
@@ -246,27 +256,25 @@ void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt
 template <int D, class T>
 void GridStep<D, T>::account_for_impulses(double dt) {
   visit_blocks([&](int field, std::uint32_t first, double* partial) {
-    if (constrained_[first / block_nodes])
-      account_for_block(field, first, dt, held_.data() + std::size_t(field) * grid_.nodes() + first, partial);
+    if (constrained_[first / block_nodes]) account_for_block(field, first, dt, true, partial);
   });
-  ledger_.internal_force += sum_partials(of_internal_force);
-  ledger_.body_force += sum_partials(of_body_force);
-  ledger_.gravity += sum_partials(of_gravity);
-  ledger_.periodic_gravity += sum_partials(of_periodic_gravity);
-  ledger_.boundary += sum_partials(at_conditions);
-  if (scene_.plan.resolves_contact()) ledger_.contact += sum_partials(at_contact);
+  book(&Ledger::internal_force, sum_partials(of_internal_force));
+  book(&Ledger::body_force, sum_partials(of_body_force));
+  book(&Ledger::gravity, sum_partials(of_gravity));
+  book(&Ledger::periodic_gravity, sum_partials(of_periodic_gravity));
+  book(&Ledger::boundary, sum_partials(of_boundary));
+  book(&Ledger::contact, sum_partials(of_contact));
   kinetic_energy_after_ = sum_partials(of_motion);
   account_gravity_corrections(dt);
+  if (scene_.plan.filters() || scene_.experiment.solver.stress_update == StressUpdate::modified_last)
+    lumped_power_ = power_of_forces(dt);
 }
 
 /// Applies the forces, and counts the blocks that neither condition nor contact concerns while they are in the cache.
 template <int D, class T>
 void GridStep<D, T>::accelerate(double dt) {
   const T step = static_cast<T>(dt);
-  if (ledger_on()) {
-    find_constrained_slots();
-    held_.resize(std::size_t(grid_.fields()) * grid_.nodes());
-  }
+  if (ledger_on()) find_constrained_slots();
   L gravity;
   for (int lane = 0; lane < L::width; ++lane) gravity.v[lane] = gravity_[lane % 4];
   for_each_block([&](int field, std::uint32_t first, double* partial) {
@@ -280,11 +288,7 @@ void GridStep<D, T>::accelerate(double dt) {
       if (body) total = total + pack_of(body + node);
       return accelerated(velocity, total, mass, gravity, step);
     });
-    if (!ledger_on()) return;
-    if (constrained_[first / block_nodes])
-      std::memset(held_.data() + std::size_t(field) * grid_.nodes() + first, 0, block_nodes);
-    else if (heavy)
-      account_for_block(field, first, dt, nullptr, partial);
+    if (ledger_on() && heavy && !constrained_[first / block_nodes]) account_for_block(field, first, dt, false, partial);
   });
 }
 
@@ -340,19 +344,20 @@ void GridStep<D, T>::apply_forces(const StepInfo& step) {
   if (merges()) {
     divide_and_accelerate(step.dt);
     add_gravity_corrections(step.dt);
-    impose(end, Account::nothing);
+    impose(end);
     fill_ghosts(end, false);
     return extend_largest_by_edges();
   }
-  for (const bool periodic : {true, false}) fold_forces(periodic);  // folds those that USF scattered after the momenta
+  for (const bool periodic : {true, false})
+    fold_forces(periodic, end, step.dt);  // folds those that USF scattered after the momenta
   add_gravity_corrections(step.dt);
   accelerate(step.dt);
-  const Account account = ledger_on() ? Account::mark : Account::nothing;
+  begin_stage(ledger_on());
   keep_free_velocity(true);
-  impose(end, account);
+  impose(end);
   if (scene_.plan.resolves_contact()) {
     resolve_contact(step, Recorded::after_forces);
-    impose(end, account);
+    impose(end);
   }
   measure_constraints();
   if (ledger_on()) account_for_impulses(step.dt);

@@ -41,22 +41,21 @@ class GridStep : NamedChannels {
   void project_increment(const Pass& pass, const StepInfo& step);
   void update_filter(const Pass& pass, const StepInfo& step);
   void end_filter(const Pass& pass, const StepInfo& step);
-  void restore_velocity(const Pass& pass);
+  void restore_velocity(const Pass& pass, const StepInfo& step);
   void add_correction(const Pass& pass, const StepInfo& step);
 
   void set_accounted(bool accounted) { accounted_ = accounted; }
-  /// The ledger's kinetic energy of the velocities after the last apply_forces or filter.
-  double kinetic_energy_after() const { return kinetic_energy_after_; }
-  /// The ledger's kinetic energy of the particles when they scattered.
-  void set_particle_kinetic_energy(double energy) { particle_kinetic_energy_ = energy; }
+  /// Sets what the ledger knows of the particles when they scattered.
+  void set_scattered(const Scattered& scattered) { particles_ = scattered; }
+  /// Books the gather: the particles' kinetic energy after it, and what the nodes did since the scatter.
+  void book_gather(double kinetic_energy);
+  /// Books what strain by the velocity of now stores less than by v+ before any filter: by a share of the step.
+  void book_strain(double Ledger::*row, double share, double dt);
 
  private:
   using Q = Quad<T>;
   using L = Lanes<T>;
   using Wide = Quad<double>;  ///< sums of the ledger
-  /// What imposing leaves for the ledger: its change of energy at once, or a mark for account_for_impulses.
-  enum class Account { nothing, change_of_energy, mark };
-
   bool ledger_on() const { return accounted_; }
   bool merges() const { return may_merge_ && !grid_.has(force); }
   Q& motion_at(int field, std::uint32_t node) { return grid_.quad(motion, field, node); }
@@ -85,21 +84,33 @@ class GridStep : NamedChannels {
   void fold_pair(FaceNodes& face, std::size_t pair, int field, bool remap, double time);
   void fold_wall_onto_itself(const FaceNodes& face, int field, double dt);
   bool approaches(const FaceNodes& face, int field, const MirrorPair& pair, double dt);
-  void fold_forces(bool periodic);
+  void fold_forces(bool periodic, double time, double dt);
+  double work_beyond_wall(Q ghost, Q signs, Q wall_velocity);
   void fill_ghosts(double time, bool increments);
 
-  void impose(double time, Account account);
-  void hold(int field, std::uint32_t node, int component, T velocity, Account account);
+  void impose(double time);
+  void hold(int field, std::uint32_t node, int component, T velocity);
+  double work_of_fold(int field, const MirrorPair& pair, Q signs, Q wall_velocity);
   double divide_by_mass(bool keeps_before, bool accounted);
+  void book_scattered_sums();
+  void begin_stage(bool records);
+  void record(Channel impulse, Channel standing, int field, std::uint32_t node, int component, double given);
+  void take_back(int field, std::uint32_t first);
+  void book(double Ledger::*row, double work);
+  void book_impulses();
+  void book_filter();
+  double power_of_forces(double dt);
+  void book_filtered_strain(double dt);
   void find_constrained_slots();
   void copy_constrained_velocity();
   void add_gravity_corrections(double dt);
+  double gravity_corrections_at(int field, std::size_t edge, int component) const;
   void account_gravity_corrections(double dt);
   void accelerate(double dt);
   void divide_and_accelerate(double dt);
   void extend_largest_by_edges();
   void account_for_impulses(double dt);
-  void account_for_block(int field, std::uint32_t first, double dt, const std::uint8_t* held, double* partial);
+  void account_for_block(int field, std::uint32_t first, double dt, bool with_impulses, double* partial);
   void subtract_velocity_before();
 
   void fold_heat(FaceNodes& face, std::size_t pair, int field, double time);
@@ -165,18 +176,23 @@ class GridStep : NamedChannels {
     of_body_force,
     of_gravity,
     of_periodic_gravity,
-    at_conditions,
-    at_contact,
+    of_boundary,
+    of_contact,
+    of_filter,
     of_motion,
     partial_count
   };
-  std::vector<double> partials_;           ///< partial_count a block of a field, summed in order
-  std::vector<std::uint8_t> constrained_;  ///< [slot], set by find_constrained_slots
-  std::vector<std::uint8_t> held_;  ///< [field][node] bit per component that a condition gives now, of constrained
-                                    ///< slots; the ledger's
+  std::vector<double> partials_;            ///< partial_count a block of a field, summed in order
+  std::vector<std::uint8_t> constrained_;   ///< [slot], set by find_constrained_slots
   std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
-  double particle_kinetic_energy_ = 0, kinetic_energy_after_ = 0, kinetic_energy_unfiltered_ = 0;
-  const WallWeights wall_weights_;  ///< empty where no heat comes through a wall
+  Scattered particles_;
+  double scattered_energy_ = 0;      ///< kinetic energy of the grid as it was scattered, J
+  double works_ = 0;                 ///< works on the grid since the scatter, J
+  double kinetic_energy_after_ = 0;  ///< kinetic energy of the velocities after the last apply_forces or filter, J
+  double lumped_power_ = 0;          ///< work of the stresses' forces at v+ before any filter, J
+  double work_of_folds_ = 0;         ///< energy that folding at walls gives the nodes in this step, J
+  double early_share_ = 0;           ///< share of a step's strain that comes before the forces
+  const WallWeights wall_weights_;   ///< empty where no heat comes through a wall
   double particle_heat_ = 0, heat_after_ = 0;
   std::unordered_map<std::uint32_t, double> gradients_;  ///< K/m, inward at nodes of the wall that is being folded
   Beyond beyond_;                                        ///< heat of the temperatures before the forces
@@ -184,6 +200,7 @@ class GridStep : NamedChannels {
   bool has_gravity_ = false;
   bool may_merge_ = false;  ///< see merges: momentum_to_velocity leaves the division to apply_forces
   bool accounted_ = false;  ///< the ledger takes its entries from the step under way
+  bool records_ = false;    ///< the stage under way notes its impulses
   T largest_ = 0;           ///< see largest_component
 };
 

@@ -47,6 +47,8 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
     for (const Block<D>& block : particles.blocks) {
       sum.kinetic_energy += block.kinetic_energy;
       sum.dissipated += block.dissipated;
+      sum.stress_power += block.stress_power;
+      sum.stored += block.stored;
       sum.heat += block.heat;
       sum.heat_of_dissipation += block.heat_of_dissipation;
     }
@@ -61,6 +63,7 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       block.kinetic_energy = block.dissipated = block.heat_of_dissipation = 0;
+      block.stress_power = block.stored = 0;
       if (pass.has(Act::gather_heat)) gather_heat(body, block, work, step);
       load_velocities(body, block, work);
       block.bounds.clear();
@@ -84,23 +87,24 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
   abandoned_ = false;
   const bool follows = scene_.plan.accounts_at(next.step);
   account_for(step, follows);
-  const bool energy_moves = follows && scene_.has(MPM_AFFINE_CARRIES_ENERGY) &&
-                            (scene_.moment_of_particle || scene_.moment_is_gradient || scene_.plan.basis_functions > 0);
+  const bool moves = (follows || accounted_) && energy_moves();
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
       load_velocities(body, block, work);
       begin_reach(block, work);
-      block.kinetic_energy = block.dissipated = block.scattered_energy = 0;
+      block.kinetic_energy = block.dissipated = block.scattered_energy = block.scattered_mass = 0;
+      block.stress_power = block.stored = 0, block.scattered_momentum = {};
       for_each_chunk_of(
           body, block,
           [&](const Chunk& chunk) {
             work.moved.extend(gather_one(pass, step, chunk, work));
             if (abandoned_) return;
             if (!scatter_chunk(pass, next, chunk, work, next_motion, evaluates_for_scatter(pass))) abandoned_ = true;
-            if (energy_moves) block.scattered_energy += kinetic_energy(chunk, work);
+            if (moves) block.scattered_energy += kinetic_energy(chunk, work);
+            if (follows) add_scattered(chunk);
           },
           step.observed ? nullptr : work.passing_motion.data());
-      if (!energy_moves) block.scattered_energy = block.kinetic_energy;  // it has the same velocities and moments
+      if (!moves) block.scattered_energy = block.kinetic_energy;  // it has the same velocities and moments
       end_reach(block, work);
       for (const Channel c : channels)
         if (abandoned_)
@@ -113,8 +117,8 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
   result.scattered = !abandoned_ && !must_sort();
   if (!result.scattered && !step.observed)
     throw std::logic_error("particles moved farther than the nodes around them, and their velocities were not kept");
-  for (std::size_t body = 0; follows && body < particles_.size(); ++body)
-    for (const Block<D>& block : particles_[body].blocks) result.kinetic_energy += block.scattered_energy;
+  if (follows || moves) result.particles = sum_scattered();
+  if (moves && abandoned_) result.particles.kinetic_energy = kinetic_energy_now();
   return result;
 }
 
@@ -176,7 +180,7 @@ auto ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& st
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       kernels_.load(work.velocity_tile.data(), grid_.channel(motion, bodies_[body].field), block.neighbours.data(),
                     block.reach);
-      block.dissipated = block.heat_of_dissipation = 0;
+      block.dissipated = block.heat_of_dissipation = block.stress_power = block.stored = 0;
       block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         gather_chunk(chunk, work, wanted);
@@ -376,7 +380,16 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   }
   if (dissipation) request.dissipated_energy = work.scalar;
   if (evaluates_for_scatter(pass)) want_of_material(pass, work, request);
+  alignas(64) T stored_energy[chunk_size<T>];
+  if (accounted_) {
+    mpm_material_batch now{};
+    now.kirchhoff_stress = work.stress, now.stored_energy = stored_energy;
+    update_material(chunk, now);
+    book_stress(chunk, now, request, false);
+    request.kirchhoff_stress = work.stress, request.stored_energy = stored_energy;
+  }
   update_material(chunk, request);
+  if (accounted_) book_stress(chunk, request, request, true);
   if (chunk.particles.domain >= 0 && !chunk.body.frozen)
     advance_domain(chunk, velocity_gradient, request.dt, pass.second_half());
   if (chunk.body.warms_itself) warm_by_dissipation(chunk, work);
@@ -387,6 +400,51 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
     return around ? energy * Lanes<T>::load(around + p) : energy;
   };
   chunk.block.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
+}
+
+/// Adds half of the work of the stresses `now` on a strain, and the stored energy: before the strain with the other sign,
+/// `after` it of what dt L is of the strained body, dt L (I + dt L)^-1 to second order.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::book_stress(const Chunk& chunk, const mpm_material_batch& now,
+                                                 const mpm_material_batch& strain, bool after) {
+  const T *const stress = static_cast<const T*>(now.kirchhoff_stress), *const energy =
+                                                                           static_cast<const T*>(now.stored_energy);
+  const T* const L = static_cast<const T*>(strain.velocity_gradient);
+  const T* const hoop = static_cast<const T*>(strain.velocity_gradient_zz);
+  const T* const around = circumferences(chunk);
+  const auto of_strained = [&](double rate, double squared) { return after ? rate - strain.dt * squared : rate; };
+  double power = 0, stored = 0;
+  for (int p = 0; p < chunk.count; ++p) {
+    const auto at = [&](const T* values, int component) { return double(values[component * chunk_size<T> + p]); };
+    double sum = hoop ? at(stress, 2) * of_strained(hoop[p], double(hoop[p]) * hoop[p]) : 0.0;
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j) {
+        double squared = 0;
+        for (int k = 0; k < D; ++k) squared += at(L, i * D + k) * at(L, k * D + j);
+        sum += at(stress, Sym<D, T>::index(i, j)) * of_strained(at(L, i * D + j), squared);
+      }
+    const double ring = around ? double(around[p]) : 1.0;
+    power += ring * sum;
+    stored += ring * at(energy, 0);
+  }
+  chunk.block.stress_power += 0.5 * strain.dt * chunk.body.volume * power;
+  chunk.block.stored += (after ? 1 : -1) * chunk.body.volume * stored;
+}
+
+template <int D, class T, class Components>
+double ParticleStep<D, T, Components>::kinetic_energy_now() {
+  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
+    for_each_block(body, false, [&](Block<D>& block, Work& work) {
+      block.kinetic_energy = 0;
+      for_each_chunk_of(body, block, [&](const Chunk& chunk) {
+        evaluate_moments(chunk, work);
+        block.kinetic_energy += kinetic_energy(chunk, work);
+      });
+    });
+  double sum = 0;
+  for (const auto& particles : particles_)
+    for (const Block<D>& block : particles.blocks) sum += block.kinetic_energy;
+  return sum;
 }
 
 /// Sets domain <- (I + dt L) domain. USF goes on with the old weights until its gather; with `again` what was strained

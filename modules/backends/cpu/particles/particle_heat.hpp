@@ -229,9 +229,12 @@ void ParticleStep<D, T, Components>::change_phases(const Chunk& chunk, Work& wor
   update_material(chunk, request);
   std::swap_ranges(kept, kept + chunk.end, temperature);
   const T* const around = circumferences(chunk);
-  for (int p = 0; p < chunk.count; ++p)
-    chunk.block.dissipated += chunk.body.volume * (around ? around[p] : T(1)) *
-                              (static_cast<double>(before[p]) - static_cast<double>(work.scalar[p]));
+  for (int p = 0; p < chunk.count; ++p) {
+    const double lost = chunk.body.volume * (around ? around[p] : T(1)) *
+                        (static_cast<double>(before[p]) - static_cast<double>(work.scalar[p]));
+    chunk.block.dissipated += lost;
+    chunk.block.stored -= lost;
+  }
 }
 
 /// Changes phases in a pass of its own, where particles move after all else.

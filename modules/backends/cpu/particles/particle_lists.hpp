@@ -268,6 +268,16 @@ bool ParticleStep<D, T, Components>::widen_active_blocks() {
   return grew;
 }
 
+/// Evaluates the shape for what its moments are. The places of the nodes do not matter, so none is refused.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::evaluate_moments(const Chunk& chunk, Work& work) {
+  if (!scene_.list) return evaluate_shape(chunk, work, false);
+  for (int first = 0; first < chunk.end; first += ListWork<D, T>::lanes) {
+    evaluate_list_batch(chunk, work, first, false);
+    for (int lane = 0; lane < ListWork<D, T>::lanes; ++lane) keep_moment(work, first, lane);
+  }
+}
+
 template <int D, class T, class Components>
 std::vector<double> ParticleStep<D, T, Components>::second_moments(int body) {
   std::size_t n = 0;
@@ -277,13 +287,7 @@ std::vector<double> ParticleStep<D, T, Components>::second_moments(int body) {
   Work& work = *work_[0];
   for (Block<D>& block : particles_[body].blocks)
     for_each_chunk_of(body, block, [&](const Chunk& chunk) {
-      if (scene_.list)
-        for (int first = 0; first < chunk.end; first += ListWork<D, T>::lanes) {
-          evaluate_list_batch(chunk, work, first, false);  // the places of its nodes do not matter
-          for (int lane = 0; lane < ListWork<D, T>::lanes; ++lane) keep_moment(work, first, lane);
-        }
-      else
-        evaluate_shape(chunk, work, false);
+      evaluate_moments(chunk, work);
       for (int p = 0; p < chunk.count; ++p)
         for (int a = 0; a < D; ++a)
           for (int b = 0; b < D; ++b) {

@@ -36,14 +36,14 @@ void ParticleStep<D, T, Components>::scatter_far(int body, Visit&& visit) {
 }
 
 template <int D, class T, class Components>
-double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
+Scattered ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo& step) {
   const std::vector<Channel>& channels = scattered_channels(pass);
   const bool energies = scene_.plan.accounts_at(step.step) && pass.has(Act::scatter_momentum) && !pass.remap();
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
       const bool extends = pass.has(Act::scatter_momentum) && !pass.remap();
       if (extends) begin_reach(block, work);
-      block.scattered_energy = 0;
+      block.scattered_energy = block.scattered_mass = 0, block.scattered_momentum = {};
       if (pass.has(Act::scatter_heat)) block.heat = 0;
       block.far = 0;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
@@ -51,7 +51,7 @@ double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo&
           if (stencils_hold(chunk, work)) throw std::logic_error("a particle left the tile of its block");
           return note_too_long(chunk, work);
         }
-        if (energies) block.scattered_energy += kinetic_energy(chunk, work);
+        if (energies) block.scattered_energy += kinetic_energy(chunk, work), add_scattered(chunk);
         if (pass.has(Act::scatter_heat)) block.heat += heat_of(chunk, work);
         if (scene_.list) block.far += static_cast<std::uint32_t>(work.lists.far_of_chunk);
       });
@@ -61,10 +61,29 @@ double ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepInfo&
     scatter_far(body, [&](const Chunk& chunk, Work& work) { scatter_chunk(pass, step, chunk, work, motion, false); });
   }
   failure_.raise();
-  double sum = 0;
-  if (energies)
-    for (const auto& particles : particles_)
-      for (const Block<D>& block : particles.blocks) sum += block.scattered_energy;
+  return energies ? sum_scattered() : Scattered();
+}
+
+/// Adds mass and momentum of a chunk's particles to its block's sums.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::add_scattered(const Chunk& chunk) const {
+  const T* const around = circumferences(chunk);
+  for (int p = 0; p < chunk.count; ++p) {
+    const double mass = chunk.body.mass * (around ? double(around[p]) : 1.0);
+    chunk.block.scattered_mass += mass;
+    for (int c = 0; c < D; ++c) chunk.block.scattered_momentum[c] += mass * chunk.motion[c * chunk_size<T> + p];
+  }
+}
+
+template <int D, class T, class Components>
+Scattered ParticleStep<D, T, Components>::sum_scattered() const {
+  Scattered sum;
+  for (const auto& particles : particles_)
+    for (const Block<D>& block : particles.blocks) {
+      sum.kinetic_energy += block.scattered_energy;
+      sum.mass += block.scattered_mass;
+      for (int c = 0; c < D; ++c) sum.momentum[c] += block.scattered_momentum[c];
+    }
   return sum;
 }
 

@@ -165,10 +165,11 @@ class ParticleStep : NamedChannels {
   ParticleStep(const Scene<D, T>& scene, Grid<D, T>& grid, std::vector<Particles<D, T>>& particles,
                std::vector<Body<D, T>> bodies);
 
-  /// Returns the kinetic energy of the particles when momenta are scattered with the ledger on, else zero.
-  double scatter(const Pass& pass, const StepInfo& step);
+  /// Returns the sums of the particles when momenta are scattered with the ledger on, else zeros.
+  Scattered scatter(const Pass& pass, const StepInfo& step);
   struct Gathered {
     double kinetic_energy = 0, dissipated = 0;  ///< J, with the ledger on
+    double stress_power = 0, stored = 0;        ///< J, with the ledger on
     double heat = 0, heat_of_dissipation = 0;   ///< J, with temperature
   };
   /// The sum of the heat that the last scatter of momenta took along, J.
@@ -179,14 +180,20 @@ class ParticleStep : NamedChannels {
   Gathered gather(const Pass& pass, const StepInfo& step);
   struct Fused {
     Gathered gathered;
-    bool scattered = false;     ///< next_motion and the forces are those of the following step
-    double kinetic_energy = 0;  ///< kinetic energy as `scatter` returns it
+    bool scattered = false;  ///< next_motion and the forces are those of the following step
+    Scattered particles;     ///< as `scatter` returns it
   };
   /// Gathers, strains, moves, and scatters for the following step `next` while the chunk is at hand.
   Fused gather_scatter(const Pass& pass, const StepInfo& step, const StepInfo& next);
   /// Gathers the filter's increment and scatters its momentum into filter_projection.
   void project(const StepInfo& step);
-  Gathered strain(const Pass& pass, const StepInfo& step);  ///< returns only what is dissipated
+  Gathered strain(const Pass& pass, const StepInfo& step);  ///< returns only the material's energies
+  /// Whether the kinetic energy of a particle depends on its place; that of all of them where they are now, J.
+  bool energy_moves() const {
+    const bool varies = scene_.moment_of_particle || scene_.moment_is_gradient;
+    return (scene_.has(MPM_AFFINE_CARRIES_ENERGY) && varies) || scene_.plan.basis_functions > 0;
+  }
+  double kinetic_energy_now();
   void move(const StepInfo& step);
   TimeStepLimit time_step_limit();
 
@@ -345,6 +352,10 @@ class ParticleStep : NamedChannels {
   const T* moments_for_transfer(const Chunk& chunk, Work& work) const;
   void project_chunk(const StepInfo& step, const Chunk& chunk, Work& work);
   void advance_material(const Chunk& chunk, Work& work, double dt, const Pass& pass);
+  void add_scattered(const Chunk& chunk) const;
+  Scattered sum_scattered() const;
+  void evaluate_moments(const Chunk& chunk, Work& work);
+  void book_stress(const Chunk& chunk, const mpm_material_batch& now, const mpm_material_batch& strain, bool after);
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
   Moved advance_position(const Chunk& chunk, const T* advection, T scale);
   void account_for_move();

@@ -35,14 +35,24 @@ struct Block {
   std::array<std::int32_t, neighbour_count<D>> neighbours{-1};  ///< slots of the grid, see has_neighbours
   /// The blocks of the grid, from this one, that its particles' lists may reach: always the neighbours.
   std::array<std::int32_t, 3> first_active{-1, -1, -1}, last_active{1, 1, 1};
-  ListBounds bounds;                          ///< bounds of the particles as the last gather moved them
-  std::uint32_t far = 0;                      ///< number of particles whose lists leave the tile
-  double kinetic_energy = 0, dissipated = 0;  ///< partial sums of the ledger, J
-  double scattered_energy = 0;                ///< kinetic energy of the particles when they scatter, J
-  double heat = 0, heat_of_dissipation = 0;   ///< heat of the particles when they last scattered or gathered, J
+  ListBounds bounds;                           ///< bounds of the particles as the last gather moved them
+  std::uint32_t far = 0;                       ///< number of particles whose lists leave the tile
+  double kinetic_energy = 0, dissipated = 0;   ///< partial sums of the ledger, J
+  double stress_power = 0, stored = 0;         ///< the same: work of the stresses, change of the stored energy, J
+  double scattered_energy = 0;                 ///< kinetic energy of the particles when they scatter, J
+  double scattered_mass = 0;                   ///< their mass, kg
+  std::array<double, D> scattered_momentum{};  ///< their momentum, kg m/s
+  double heat = 0, heat_of_dissipation = 0;    ///< heat of the particles when they last scattered or gathered, J
 
   /// Whether the grid has been built around it.
   bool has_neighbours() const { return neighbours[0] >= 0; }
+};
+
+/// The sums over the particles that have been scattered, for the ledger.
+struct Scattered {
+  double kinetic_energy = 0;  ///< J
+  double mass = 0;            ///< kg
+  Vector3 momentum{};         ///< kg m/s
 };
 
 /// A field of the plan and its first component within a chunk.

@@ -15,7 +15,6 @@ template <class T>
 struct NodeArrays {
   T* field[most_fields];  ///< numbered as Scene::Node
   int* folded;            ///< bit a: this ghost was folded along axis a in this step
-  int* held;              ///< bit c: a condition gives component c after the forces; null without a ledger
 };
 
 /// How a body's particles conduct and store heat: [0] as solids, [1] when melted, the same where nothing melts.
@@ -47,7 +46,6 @@ struct ContactArrays {
   const T* area;        ///< m^2
   T* impulse;           ///< [D], kg m/s
   T* unbalanced;        ///< [D], kg m/s: change of the pair's momentum, zero to rounding
-  T* work;              ///< work of both impulses at the mean velocities, J
   T* dissipated;        ///< J
   int* status;          ///< mpm_contact_status
 };
@@ -116,7 +114,8 @@ struct Arguments {
   T mass_of_box;                        ///< mass of its nodes in all velocity fields, kg
   bool momentum, force, contact_fields; /**< scatter: as in Pass */
   bool remap;                           ///< clear, fold: the remap of MUSL
-  bool after_forces;                    ///< v+ is made, not v-; conditions mark what they hold
+  bool after_forces;                    ///< v+ is made, not v-
+  bool records;                         ///< impulses are noted for the ledger
   bool walls_at_rest;                   ///< what is folded or filled is a difference of velocities
   bool update_particles;                ///< gather: velocity and state change too, not only the velocity gradient
   bool filtered;                        ///< gather: the filtered velocity replaces the particle's

@@ -1,7 +1,7 @@
 #pragma once
 // Two velocity fields meet at a node through the contact functor; normal, separation and area are given.
 
-#include "backends/device/kernels/arrays.hpp"
+#include "backends/device/kernels/grid.hpp"
 #include "operators/motion.hpp"
 
 namespace mpm::device {
@@ -27,17 +27,16 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
     pair.dt = a.dt;
     ContactResult<D, T> result;
     Law::apply(parameters_of<Law>(a.contact_parameters), pair, result);
-    T work = 0;
     for (int c = 0; c < D; ++c) {
       T &va = a.grid.field[N::velocity][c * nodes + node], &vb = a.other.field[N::velocity][c * nodes + node];
       const T before_a = va, before_b = vb, impulse = result.impulse[c];
       va = struck(va, impulse, pair.mass_a);
       vb = struck(vb, -impulse, pair.mass_b);
-      work += work_of_impulse(impulse, before_a, va) - work_of_impulse(impulse, before_b, vb);
+      note_impulse<N::contact_impulse, N::standing_contact_impulse>(a, a.grid, c * nodes + node, impulse);
+      note_impulse<N::contact_impulse, N::standing_contact_impulse>(a, a.other, c * nodes + node, -impulse);
       a.contact.unbalanced[c * nodes + node] = pair.mass_a * (va - before_a) + pair.mass_b * (vb - before_b);
     }
     store(a.contact.impulse, nodes, node, result.impulse);
-    a.contact.work[node] = work;
     a.contact.dissipated[node] = result.dissipated;
     a.contact.status[node] = static_cast<int>(result.status);
   });

@@ -18,6 +18,10 @@ struct NoNodeFields {
   static constexpr int increment = -1, projection = -1, trial_velocity = -1, folded_mass = -1;
   static constexpr int unfiltered_velocity = -1;
   static constexpr int velocity_of_constraints = -1, unfiltered_velocity_of_constraints = -1;
+  static constexpr int boundary_impulse = -1, contact_impulse = -1, filter_impulse = -1;
+  static constexpr int standing_boundary_impulse = -1, standing_contact_impulse = -1;
+  static constexpr int work_beyond_walls = -1;  ///< work of walls that move on a ghost beyond them
+  static constexpr int work_of_folds = -1;      ///< energy that folding a ghost at walls gives the nodes
   static constexpr int heat = -1, heat_capacity = -1, heat_rate = -1, folded_capacity = -1;
   static constexpr int heated_volume = -1, volume_conductivity = -1, capacity_position = -1;
   static constexpr int temperature = -1, temperature_before = -1;
@@ -31,7 +35,9 @@ struct NoParticleFields {
   static constexpr int domain = -1;           ///< domain that weights are made of
   static constexpr int strained_domain = -1;  ///< domain strained in the rest of a step; absent where no weights follow
   static constexpr int stress = -1, volume_ratio = -1, wave_speed = -1, velocity_gradient = -1, hoop_rate = -1;
-  static constexpr int dissipated = -1;         ///< energy dissipated by the last strain
+  static constexpr int dissipated = -1;  ///< energy dissipated by the last strain
+  static constexpr int stress_power = -1,
+                       stored = -1;             ///< work of the stress, and change of the energy, of that strain
   static constexpr int body_acceleration = -1;  ///< body force over mass, as the host evaluated it
   static constexpr int second_moment = -1;      ///< what `second_moments` makes
   static constexpr int temperature = -1, melted_fraction = -1;

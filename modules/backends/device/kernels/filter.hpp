@@ -97,6 +97,10 @@ MPM_HD void update_filter(const Team& team, const Arguments<typename Scene::Scal
     Vec<D, T> velocity = load<D>(a.grid.field[N::velocity], nodes, node);
     Filter::update(parameters_of<Filter>(a.filter_parameters), a.iteration, projected, increment, velocity);
     store(a.grid.field[N::increment], nodes, node, increment);
+    if constexpr (N::filter_impulse >= 0)
+      for (int c = 0; c < D && a.records; ++c)
+        a.grid.field[N::filter_impulse][c * nodes + node] +=
+            mass * (velocity[c] - a.grid.field[N::velocity][c * nodes + node]);
     store(a.grid.field[N::velocity], nodes, node, velocity);
     if constexpr (N::trial_velocity >= 0) store(a.grid.field[N::trial_velocity], nodes, node, velocity);
   });
@@ -128,6 +132,28 @@ MPM_HD void keep_free_velocity(const Team& team, const Arguments<typename Scene:
     });
 }
 
+/// Notes that the filter's loop takes back what conditions and contact have given this component so far; the rest of
+/// what they have added came with the filter's correction.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD void note_taken_back(const Arguments<T>& a, int at) {
+  using N = typename Scene::Node;
+  if constexpr (N::filter_impulse >= 0) {
+    if (!a.records) return;
+    T of_filter = a.grid.field[N::mass][at % a.node_count] * a.grid.field[N::velocity_of_constraints][at];
+    if constexpr (N::standing_boundary_impulse >= 0) {
+      T& standing = a.grid.field[N::standing_boundary_impulse][at];
+      a.grid.field[N::boundary_impulse][at] -= standing;
+      of_filter -= standing, standing = T(0);
+    }
+    if constexpr (N::standing_contact_impulse >= 0) {
+      T& standing = a.grid.field[N::standing_contact_impulse][at];
+      a.grid.field[N::contact_impulse][at] -= standing;
+      of_filter -= standing, standing = T(0);
+    }
+    a.grid.field[N::filter_impulse][at] -= of_filter;
+  }
+}
+
 /// Sets velocity and velocity_of_constraints to the velocity without what conditions and contact have added, so that an
 /// impulse which the increments no longer need is taken back.
 template <class Scene>
@@ -137,7 +163,9 @@ MPM_HD void take_free_velocity(const Team& team, const Arguments<typename Scene:
   if constexpr (N::velocity_of_constraints >= 0)
     for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
       T &added = a.grid.field[N::velocity_of_constraints][at], &velocity = a.grid.field[N::velocity][at];
-      if (a.grid.field[N::mass][at % a.node_count] > T(0)) added = velocity = without(velocity, added);
+      if (!(a.grid.field[N::mass][at % a.node_count] > T(0))) return;
+      note_taken_back<Scene>(a, at);
+      added = velocity = without(velocity, added);
     });
 }
 
@@ -208,6 +236,12 @@ MPM_HD void keep_correction(const Team& team, const Arguments<typename Scene::Sc
 template <class Scene>
 MPM_HD void add_correction(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
+  using N = typename Scene::Node;
+  if constexpr (N::filter_impulse >= 0 && N::unfiltered_velocity >= 0)
+    for_each_index(team, a.records ? Scene::dimension * a.node_count : 0, [&](int at) {
+      a.grid.field[N::filter_impulse][at] +=
+          a.grid.field[N::mass][at % a.node_count] * a.grid.field[N::unfiltered_velocity][at];
+    });
   for_each_kept<Scene>(team, a, [](T& velocity, const T& kept) { velocity += kept; });
 }
 

@@ -62,6 +62,28 @@ MPM_HD void fold_field(const Arguments<T>& a, const Fold& fold, T mass, T heat_c
   }
 }
 
+/// Notes what the image of a ghost's momentum gains of energy, and what is lost as its mass joins the mirror's: that of
+/// their relative velocity, with the reduced mass.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD void note_work_of_fold(const Arguments<T>& a, const Fold& fold) {
+  using N = typename Scene::Node;
+  if constexpr (N::work_of_folds >= 0) {
+    if (!a.records || fold.wall == wall_periodic) return;
+    const double own = a.grid.field[N::mass][fold.ghost], mirror = a.grid.field[N::mass][fold.mirror];
+    double gained = 0, apart = 0;
+    for (int c = 0; c < Scene::dimension; ++c) {
+      const T* const momentum = a.grid.field[N::momentum] + c * a.node_count;
+      const T sign = T(mirror_sign(fold.wall, fold.axis, c)), wall = T(own) * velocity_of_wall(a, fold, c);
+      const double before = momentum[fold.ghost], image = mirrored(momentum[fold.ghost], sign, wall);
+      gained += 0.5 * (image - before) * (image + before) / own;
+      if (!(mirror > 0)) continue;
+      const double difference = image / own - momentum[fold.mirror] / mirror;
+      apart += difference * difference;
+    }
+    a.grid.field[N::work_of_folds][fold.ghost] += T(gained - 0.5 * own * mirror / (own + mirror) * apart);
+  }
+}
+
 /// Adds what is folded with the masses along a.axis to the mirrors, and marks the ghosts. A separating wall folds while
 /// the pair approaches it, by p + dt f.
 template <class Scene>
@@ -82,6 +104,7 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
       if (!approaches(fold.side, speed(fold.ghost) + speed(fold.mirror))) return;
     }
     if (fold.ghost != fold.mirror) a.grid.folded[fold.ghost] |= 1 << fold.axis;
+    if (fold.ghost != fold.mirror) note_work_of_fold<Scene>(a, fold);
     if constexpr (N::folded_mass >= 0) a.grid.field[N::folded_mass][fold.ghost] = mass;
     T heat_capacity = T(0), heat = T(0);
     if constexpr (N::heat_capacity >= 0) {
@@ -112,12 +135,30 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
   });
 }
 
+/// Notes the work of a moving wall on what lies beyond it: a ghost moves at (1 - sign) times the wall's velocity beside
+/// its mirror's, and particles are strained and lifted by that too.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD void note_work_beyond_wall(const Arguments<T>& a, const Fold& fold) {
+  using N = typename Scene::Node;
+  if constexpr (N::work_beyond_walls >= 0) {
+    if (!a.records || fold.wall == wall_periodic) return;
+    for (int c = 0; c < Scene::dimension; ++c) {
+      const int at = c * a.node_count + fold.ghost;
+      T force = a.grid.field[N::force][at];
+      if (a.walls[c][0] != wall_periodic) force += a.grid.field[N::weight][at];
+      const T sign = T(mirror_sign(fold.wall, fold.axis, c));
+      a.grid.field[N::work_beyond_walls][fold.ghost] -= a.dt * force * (T(1) - sign) * velocity_of_wall(a, fold, c);
+    }
+  }
+}
+
 /// Does the same for forces, along the folds that were made.
 template <class Scene>
 MPM_HD void fold_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   for_each_fold(team, a, true, false, [&](const Fold& fold) {
     if (!(a.grid.folded[fold.ghost] >> fold.axis & 1)) return;
+    note_work_beyond_wall<Scene>(a, fold);
     Scene::for_each_node_field([&](auto field) {
       using F = decltype(field);
       if constexpr (F::folded == folded_with_force) fold_field<F>(a, fold, T(0));
@@ -166,14 +207,13 @@ MPM_HD void keep_velocity(const Team& team, const Arguments<typename Scene::Scal
                    [&](int at) { a.grid.field[N::velocity_before][at] = a.grid.field[N::velocity][at]; });
 }
 
-/// Applies v += dt f / m; nothing is held any more.
+/// Applies v += dt f / m.
 template <class Scene>
 MPM_HD void accelerate(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   for_each_index(team, a.node_count, [&](int node) {
     const T mass = a.grid.field[N::mass][node];
-    if (a.grid.held) a.grid.held[node] = 0;
     for (int at = node; at < Scene::dimension * a.node_count; at += a.node_count) {
       T& velocity = a.grid.field[N::velocity][at];
       velocity = mass > T(0) ? accelerated(velocity, total_force<Scene>(a, at), mass, T(0), a.dt) : T(0);
@@ -206,6 +246,17 @@ MPM_HD int nodes_of_box(const Box<T>& box) {
   return count;
 }
 
+/// Notes an impulse on one component of a node where conditions or contact apply it; `standing` is -1 where no filter
+/// may take it back.
+template <int impulse, int standing, class T>
+MPM_HD void note_impulse(const Arguments<T>& a, const NodeArrays<T>& grid, int at, T given) {
+  if constexpr (impulse >= 0) {
+    if (!a.records) return;
+    grid.field[impulse][at] += given;
+    if constexpr (standing >= 0) grid.field[standing][at] += given;
+  }
+}
+
 /// Sets the velocities that walls and boxes give. Where several do, the last of them counts, boxes after walls. All
 /// decide by the velocity as it was.
 template <class Scene>
@@ -235,7 +286,9 @@ MPM_HD void impose_conditions(const Team& team, const Arguments<typename Scene::
     }
     if (held == 0) return;
     store(a.grid.field[N::velocity], a.node_count, node, velocity);
-    if (a.after_forces && a.grid.held) a.grid.held[node] |= held;
+    for (int c = 0; c < D; ++c)
+      note_impulse<N::boundary_impulse, N::standing_boundary_impulse>(
+          a, a.grid, c * a.node_count + node, a.grid.field[N::mass][node] * (velocity[c] - now[c]));
   });
 }
 

@@ -34,8 +34,113 @@ MPM_HD void energy_of_velocities(const Team& team, const Arguments<typename Scen
   });
 }
 
-/// Sums the work of the internal, body and gravity forces between v- and v+ at their mean, and of what they do not
-/// explain: the reactions of conditions on held components and of contact on the others.
+/// Clears the works of folds that are booked.
+template <class Scene>
+MPM_HD void clear_work_of_folds(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  using N = typename Scene::Node;
+  if constexpr (N::work_of_folds >= 0)
+    for_each_index(team, a.node_count, [&](int node) {
+      a.grid.field[N::work_of_folds][node] = a.grid.field[N::work_beyond_walls][node] = T(0);
+    });
+}
+
+/// Clears the impulses of the stage before.
+template <class Scene>
+MPM_HD void clear_impulses(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  using N = typename Scene::Node;
+  for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    if constexpr (N::boundary_impulse >= 0) a.grid.field[N::boundary_impulse][at] = T(0);
+    if constexpr (N::contact_impulse >= 0) a.grid.field[N::contact_impulse][at] = T(0);
+    if constexpr (N::filter_impulse >= 0) a.grid.field[N::filter_impulse][at] = T(0);
+  });
+}
+
+/// The impulse of one kind on a component of a node; none where the scene has no field for it.
+template <int impulse, class T>
+MPM_HD double impulse_at(const Arguments<T>& a, int at) {
+  if constexpr (impulse >= 0) return a.grid.field[impulse][at];
+  return 0;
+}
+
+/// Sums the works of the stage's impulses of boundary, contact and filter at the mean of the velocities before and
+/// after them.
+template <class Scene>
+MPM_HD void work_of_impulses(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using N = typename Scene::Node;
+  sum_over<3>(team, a, a.node_count, [&](int node, double* sum) {
+    const double mass = a.grid.field[N::mass][node];
+    if (!(mass > 0)) return;
+    for (int at = node; at < Scene::dimension * a.node_count; at += a.node_count) {
+      const double boundary = impulse_at<N::boundary_impulse>(a, at), contact = impulse_at<N::contact_impulse>(a, at),
+                   filter = impulse_at<N::filter_impulse>(a, at);
+      const double mean = a.grid.field[N::velocity][at] - (boundary + contact + filter) / (2 * mass);
+      sum[0] += boundary * mean;
+      sum[1] += contact * mean;
+      sum[2] += filter * mean;
+    }
+  });
+}
+
+/// Sums dt f.v of the stresses' forces.
+template <class Scene>
+MPM_HD void power_of_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using N = typename Scene::Node;
+  sum_over<1>(team, a, a.node_count, [&](int node, double* sum) {
+    if constexpr (Scene::ledger)
+      for (int at = node; at < Scene::dimension * a.node_count && a.grid.field[N::mass][node] > 0; at += a.node_count)
+        sum[0] += double(a.dt) * a.grid.field[N::force][at] * a.grid.field[N::velocity][at];
+  });
+}
+
+/// Sums dt f.(v_filtered - v) before the forces. Neither is folded yet, so that ghosts count.
+template <class Scene>
+MPM_HD void power_of_filter(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using N = typename Scene::Node;
+  sum_over<1>(team, a, a.node_count, [&](int node, double* sum) {
+    if constexpr (Scene::ledger && N::unfiltered_velocity >= 0)
+      for (int at = node; at < Scene::dimension * a.node_count; at += a.node_count)
+        sum[0] += double(a.dt) * a.grid.field[N::force][at] *
+                  (double(a.grid.field[N::velocity][at]) - a.grid.field[N::unfiltered_velocity][at]);
+  });
+}
+
+/// Sums what folding at walls gave the nodes, and the work of walls on what lies beyond them.
+template <class Scene>
+MPM_HD void work_of_folds(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using N = typename Scene::Node;
+  sum_over<2>(team, a, a.node_count, [&](int node, double* sum) {
+    if constexpr (N::work_of_folds >= 0) {
+      sum[0] += a.grid.field[N::work_of_folds][node];
+      sum[1] += a.grid.field[N::work_beyond_walls][node];
+    }
+  });
+}
+
+/// Sums mass and momentum of the nodes.
+template <class Scene>
+MPM_HD void momentum_of_nodes(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using N = typename Scene::Node;
+  sum_over<4>(team, a, a.node_count, [&](int node, double* sum) {
+    for (int c = 0; c < Scene::dimension; ++c) sum[c] += a.grid.field[N::momentum][c * a.node_count + node];
+    sum[3] += a.grid.field[N::mass][node];
+  });
+}
+
+/// Sums mass and momentum of the particles.
+template <class Scene>
+MPM_HD void momentum_of_particles(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  sum_over<4>(team, a, a.particles.count, [&](int p, double* sum) {
+    const double mass = of_ring<Scene>(a.particles, a.particles.mass, p);
+    for (int c = 0; c < Scene::dimension; ++c)
+      sum[c] += mass * a.particles.field[Scene::Particle::velocity][c * a.particles.stride + p];
+    sum[3] += mass;
+  });
+}
+
+/// Sums the work of the internal, body and gravity forces, and of the impulses of conditions and contact, between v- and
+/// v+ at their mean.
 template <class Scene>
 MPM_HD void work_of_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
@@ -53,8 +158,8 @@ MPM_HD void work_of_forces(const Team& team, const Arguments<typename Scene::Sca
         sum[0] += dt * internal * mean;
         sum[1] += dt * body * mean;
         sum[a.walls[c][0] == wall_periodic ? 5 : 2] += dt * weight * mean;
-        sum[a.grid.held[node] >> c & 1 ? 3 : 4] +=
-            work_of_reaction(before, after, mass, internal + body + weight, mean, dt);
+        sum[3] += impulse_at<N::boundary_impulse>(a, at) * mean;
+        sum[4] += impulse_at<N::contact_impulse>(a, at) * mean;
       }
     }
   });
@@ -90,13 +195,17 @@ MPM_HD void energy_of_particles(const Team& team, const Arguments<typename Scene
   });
 }
 
-/// Sums the energy dissipated by the last strain.
+/// Sums the energy dissipated by the last strain, the work of the stresses on it, and what it stored.
 template <class Scene>
 MPM_HD void energy_dissipated(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  sum_over<1>(team, a, a.particles.count, [&](int p, double* sum) {
-    if constexpr (Scene::ledger)
-      sum[0] += double(of_ring<Scene>(a.particles, a.particles.volume, p)) *
-                a.particles.field[Scene::Particle::dissipated][p];
+  using P = typename Scene::Particle;
+  sum_over<3>(team, a, a.particles.count, [&](int p, double* sum) {
+    if constexpr (Scene::ledger) {
+      const double volume = of_ring<Scene>(a.particles, a.particles.volume, p);
+      sum[0] += volume * a.particles.field[P::dissipated][p];
+      sum[1] += volume * a.particles.field[P::stress_power][p];
+      sum[2] += volume * a.particles.field[P::stored][p];
+    }
   });
 }
 

@@ -1,0 +1,128 @@
+# This suite's program has backends of its own: those of the program, with faults written into copies of their texts.
+# A text that a fault no longer finds stops the configuration, so that no fault is lost unseen.
+set(faulty ${CMAKE_CURRENT_BINARY_DIR}/faulty)
+set(faulty_files)
+
+# mpm_fault(FILE FROM TO): in the copy of modules/FILE, puts TO in place of FROM, which stands there once.
+macro(mpm_fault file from to)
+  if(NOT ${file} IN_LIST faulty_files)
+    list(APPEND faulty_files ${file})
+    file(READ ${PROJECT_SOURCE_DIR}/modules/${file} text_of_${file})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/modules/${file})
+  endif()
+  mpm_count(found "${text_of_${file}}" "${from}")
+  if(NOT found EQUAL 1)
+    message(FATAL_ERROR "tests/faults: modules/${file} holds ${found} times, not once: ${from}")
+  endif()
+  string(REPLACE "${from}" "${to}" text_of_${file} "${text_of_${file}}")
+endmacro()
+
+set(now "test::injected == test::Fault")
+
+# The reference backend
+set(reference backends/reference)
+mpm_fault(${reference}/grid_step.cpp
+          "i, momentum_[i] - before);"
+          "i, momentum_[i] - before);
+    if (${now}::wall) momentum_[i] -= 0.01 * (momentum_[i] - before);")
+mpm_fault(${reference}/contact.cpp
+          "record(contact_impulse_, standing_contact_impulse_, a, J);"
+          "record(contact_impulse_, standing_contact_impulse_, a, (${now}::contact ? 0.5 : 1.0) * J);")
+mpm_fault(${reference}/contact.cpp
+          "record(contact_impulse_, standing_contact_impulse_, b, -J);"
+          "record(contact_impulse_, standing_contact_impulse_, b, (${now}::contact ? -0.5 : -1.0) * J);")
+mpm_fault(${reference}/transfers.cpp
+          "  scatter_affine(body, momentum_);\n}"
+          "  scatter_affine(body, momentum_);
+  for (std::size_t i = 0; ${now}::scatter && !remap && i < grid_.size(); ++i)
+    if (mass_[i] > 0) return (void)(mass_[i] = 0, momentum_[i].setZero());\n}")
+mpm_fault(${reference}/filter.cpp
+          "// the momentum stays that of the velocity kept aside"
+          "\n  for_each_node([&](std::size_t i) { velocity_[i] *= ${now}::filter ? 1 + 1e-3 : 1; });")
+
+# The cpu backend
+set(cpu backends/cpu)
+mpm_fault(${cpu}/grid/grid_edges.hpp
+          "  v[c] = velocity;\n}"
+          "  v[c] = ${now}::wall ? static_cast<T>(v[c] + 0.99 * (velocity - v[c])) : velocity;\n}")
+foreach(impulse IN ITEMS "a, batch.node[i], c, impulse" "b, batch.node[i], c, -impulse")
+  mpm_fault(${cpu}/grid/grid_contact.hpp
+            "record(contact_impulse, standing_contact, ${impulse});"
+            "record(contact_impulse, standing_contact, ${impulse} * (${now}::contact ? 0.5 : 1.0));")
+endforeach()
+mpm_fault(${cpu}/cpu_backend.hpp
+          "  const Scattered particles = particle_step_->scatter(pass, step);\n"
+          "  const Scattered particles = particle_step_->scatter(pass, step);
+  for (std::uint32_t node = 0; ${now}::scatter && !pass.remap() && node < grid_.nodes(); ++node)
+    if (grid_.quad(motion, 0, node)[3] > 0) {
+      grid_.quad(motion, 0, node) = Quad<T>{};
+      break;
+    }\n")
+mpm_fault(${cpu}/grid/grid_filter.hpp
+          "  fill_ghosts(time, false);\n  if (records_) book_filter();"
+          "  for_each_block([&](int field, std::uint32_t first, double*) {
+    for (int k = 0; k < block_nodes; ++k)
+      for (int c = 0; c < D; ++c) motion_at(field, first + k)[c] *= records_ && ${now}::filter ? T(1 + 1e-3) : T(1);
+  });
+  fill_ghosts(time, false);\n  if (records_) book_filter();")
+
+# The device's kernels
+set(kernels backends/device/kernels)
+mpm_fault(${kernels}/grid.hpp
+          "(velocity[c] - now[c]));\n  });"
+          "(velocity[c] - now[c]));
+    for (int c = 0; c < D && MPM_FAULT == 1; ++c)
+      a.grid.field[N::velocity][c * a.node_count + node] = now[c] + T(0.99) * (velocity[c] - now[c]);\n  });")
+foreach(impulse IN ITEMS "a.grid, c * nodes + node, impulse" "a.other, c * nodes + node, -impulse")
+  mpm_fault(${kernels}/contact.hpp
+            "(a, ${impulse});"
+            "(a, ${impulse} * (MPM_FAULT == 2 ? T(0.5) : T(1)));")
+endforeach()
+mpm_fault(${kernels}/scatter.hpp
+          "      add(s.node, values);\n    });\n  });\n}\n\n}  // namespace"
+          "      if (MPM_FAULT != 3 || p != 0 || s.weight > T(0.2)) add(s.node, values);\n    });\n  });\n}\n\n}  // namespace")
+mpm_fault(${kernels}/filter.hpp
+          "    store(a.grid.field[N::velocity], nodes, node, velocity);\n    if constexpr (N::trial"
+          "    for (int c = 0; c < D && MPM_FAULT == 4; ++c) velocity[c] *= T(1 + 1e-3);
+    store(a.grid.field[N::velocity], nodes, node, velocity);\n    if constexpr (N::trial")
+
+foreach(file ${faulty_files})
+  set(text "${text_of_${file}}")
+  if(NOT file MATCHES "/kernels/")
+    string(REPLACE "\nnamespace mpm" "\n#include \"faults/injected.hpp\"\n\nnamespace mpm" text "${text}")
+  endif()
+  file(GENERATE OUTPUT ${faulty}/${file} CONTENT "${text}")
+endforeach()
+
+# Faulty headers are found before the program's. Objects of this program come before those of its libraries.
+file(GLOB reference_sources RELATIVE ${PROJECT_SOURCE_DIR}/modules ${PROJECT_SOURCE_DIR}/modules/${reference}/*.cpp)
+foreach(source ${reference_sources})
+  if(source IN_LIST faulty_files)
+    target_sources(${program} PRIVATE ${faulty}/${source})
+  else()
+    target_sources(${program} PRIVATE ${PROJECT_SOURCE_DIR}/modules/${source})
+  endif()
+endforeach()
+foreach(template grid particle)
+  target_sources(${program} PRIVATE ${PROJECT_BINARY_DIR}/modules/${cpu}/${template}_2_double.cpp)
+endforeach()
+target_sources(${program} PRIVATE ${PROJECT_SOURCE_DIR}/modules/${cpu}/cpu_backend.cpp)
+
+# The table of the device's headers, as modules/backends/device/CMakeLists.txt makes it.
+file(GLOB kernel_headers RELATIVE ${PROJECT_SOURCE_DIR}/modules
+     ${PROJECT_SOURCE_DIR}/modules/kernel/*.hpp ${PROJECT_SOURCE_DIR}/modules/operators/*.hpp
+     ${PROJECT_SOURCE_DIR}/modules/${kernels}/*.hpp)
+set(table)
+foreach(header ${kernel_headers})
+  if(header IN_LIST faulty_files)
+    set(text "${text_of_${header}}")
+  else()
+    file(READ ${PROJECT_SOURCE_DIR}/modules/${header} text)
+  endif()
+  string(APPEND table "{\"${header}\", R\"MPM_SOURCE(${text})MPM_SOURCE\"},\n")
+endforeach()
+file(GENERATE OUTPUT ${faulty}/kernel_headers.inc CONTENT "${table}")
+target_sources(${program} PRIVATE ${PROJECT_SOURCE_DIR}/modules/backends/device/compose.cpp)
+set_source_files_properties(${PROJECT_SOURCE_DIR}/modules/backends/device/compose.cpp PROPERTIES
+                            COMPILE_DEFINITIONS "MPM_KERNEL_HEADERS=\"${faulty}/kernel_headers.inc\"")
+target_include_directories(${program} BEFORE PRIVATE ${faulty})
