@@ -25,6 +25,11 @@ std::vector<ParameterSpec> filter_schedule() {
       parameter("constraints", Type::choice, "", "Whether conditions and contact act on every increment or at the end.")
           .of({"every_increment", "at_end"})
           .standard("every_increment"),
+      parameter("position_update", Type::choice, "",
+                "What moves particles in a filtered step: the filtered velocity that they take, or the mean of the one "
+                "that they had and that one.")
+          .of({"new_velocity", "mean_velocity"})
+          .standard("new_velocity"),
       parameter("tolerance", Type::number, "",
                 "The loop ends when the increment's mass norm has fallen to this share of the first; 0: never.")
           .from(0)

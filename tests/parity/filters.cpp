@@ -74,3 +74,19 @@ TEST_CASE("parity of filters with walls and orders of a step", "[parity]") {
             check_parity(mix);
           }
 }
+
+TEST_CASE("parity of particles that move by their mean velocity", "[parity]") {
+  for (const int dimension : {2, 3})
+    for (const std::string& shape : variants(MPM_SHAPE))
+      for (const std::string transfer : {R"({"type": "pic"})", R"({"type": "flip"})", R"({"type": "asflip"})"})
+        for (const std::string order : {"last", "modified_last"})
+          for (const std::string& filter : filters(transfer)) {
+            Mix mix;
+            mix.dimension = dimension, mix.shape = shape, mix.transfer = transfer, mix.stress_update = order;
+            mix.filter = filter.substr(0, filter.size() - 1) + R"(, "position_update": "mean_velocity"})";
+            const std::size_t third = mix.filter.find("\"order\": 3");
+            if (dimension == 3 && shape.find("linear") != shape.npos && third != mix.filter.npos)
+              mix.filter.replace(third, 10, "\"order\": 2");
+            if (!is_refused(mix)) check_parity(mix);
+          }
+}

@@ -130,6 +130,34 @@ TEST_CASE("the table of curved bodies in contact is the figure's", "[docs]") {
   }
 }
 
+TEST_CASE("the table of the position updates is the figures'", "[docs]") {
+  const Cells one = figure("position_update_one_field"), two = figure("position_update");
+  const Cells table = table_after("position_update.md", "lost in %:");
+  REQUIRE(table.size() == 8);
+  for (std::size_t row = 2; row < table.size(); ++row) {
+    INFO(table[row][0]);
+    std::size_t column = 0;
+    for (const Cells* cells : {&one, &two})
+      for (const std::string update : {"new_velocity", "mean_velocity"})
+        CHECK(value(*cells, {table[row][0], update}, 2) == printed(table[row][++column]));
+  }
+  // The order that the figure's line has.
+  const Cells wave = figure("position_update_wave");
+  const auto slope = [&](const std::string& update) {
+    const std::vector<std::string> line{"filter: FMPM(4)", update, "computed"};
+    double x[2], y[2];
+    int k = 0;
+    for (const std::string step : {"0.0001", "6.2500000000000003e-06"}) {
+      std::vector<std::string> first = line;
+      first.push_back(step);
+      x[k] = std::log(std::stod(step)), y[k++] = std::log(value(wave, first, 4));
+    }
+    return (y[0] - y[1]) / (x[0] - x[1]);
+  };
+  CHECK(std::abs(slope("new_velocity") - 2) < 0.1);
+  CHECK(std::abs(slope("mean_velocity") - 1) < 0.02);
+}
+
 TEST_CASE("the table of the stress updates is the figure's", "[docs]") {
   const Page page("docs/studies/stress_update.md");
   const Cells cells = figure("stress_update_drift_1");

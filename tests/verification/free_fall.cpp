@@ -70,3 +70,35 @@ TEST_CASE("free flight in 3-D crosses 25 cells exactly", "[free_flight]") {
       check_flight(flight_3d, {set("/backend", "cpu"), set("/shape/type", shape), set("/transfer/type", transfer)}, 10);
     }
 }
+
+// After n steps of dt a particle that falls from rest relative to v0 has x = x0 + v0 t + g t^2/2 by the mean of its
+// velocities, the parabola itself, and x0 + v0 t + g t (t + dt)/2 by the new one.
+TEST_CASE("filtered particles that move by their mean velocity follow the parabola", "[free_flight]") {
+  for (const std::string backend : {"reference", "cpu"})
+    for (const std::string precision : {"double", "float"})
+      for (const std::string filter : {"fmpm", "xpic"})
+        for (const std::string shape : {"bspline_quadratic", "cpdi2"})
+          for (const std::string order : {"last", "modified_last", "averaged"})
+            for (const bool mean : {false, true}) {
+              if (backend == "reference" && precision == "float") continue;
+              INFO(backend << " " << precision << " " << filter << " " << shape << " " << order << " " << mean);
+              const std::string update = mean ? "mean_velocity" : "new_velocity";
+              Scene scene(flight_2d, {set("/backend", backend), set("/precision", precision), set("/shape/type", shape),
+                                      set("/transfer/type", "pic"), set("/solver/stress_update", order),
+                                      set("/filter", R"({"type": ")" + filter +
+                                                         R"(", "order": 2, "position_update": ")" + update + "\"}"),
+                                      set("/compare", "null")});
+              const std::vector<double> start = scene.body().position;
+              scene.run_steps(100);
+              const std::vector<double> end = scene.body().position;
+              const double dt = 0.002, t = 100 * dt, g = -9.81, extra = mean ? 0 : 0.5 * g * t * dt;
+              const double margin = precision == "float" ? 2e-5 : 1e-12;
+              REQUIRE(start.size() > 40);
+              double worst = 0;
+              for (std::size_t k = 0; k < start.size(); k += 2) {
+                worst = std::max(worst, std::abs(end[k] - start[k] - 8 * t));
+                worst = std::max(worst, std::abs(end[k + 1] - start[k + 1] - 2 * t - 0.5 * g * t * t - extra));
+              }
+              CHECK(worst < margin);
+            }
+}

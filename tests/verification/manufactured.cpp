@@ -2,6 +2,8 @@
 // given by expressions of the initial position; observed orders are asserted.
 
 #include <cmath>
+#include <map>
+#include <numbers>
 
 #include "support/catch.hpp"
 #include "support/scene.hpp"
@@ -67,4 +69,31 @@ TEST_CASE("manufactured wave: large deformation: B-splines converge, linear func
     CHECK(tent[2] > 3 * smooth[2]);
     CHECK(observed_order(sizes, tent) < observed_order(sizes, smooth) - 0.5);
   }
+}
+
+// The wave begins without stress, so velocities are those of the middle of steps, and moving by the new one is of second
+// order. The mean with the old one belongs to the beginning of the step: moving by it leaves dt (v(t) - v(0)) / 2 behind.
+// At a quarter of a period v = 0, and the rest is v(0) dt / 2 = A c pi sin(pi X) dt / 2 in each of two directions, whose
+// root mean square is A c pi dt / 2.
+TEST_CASE("filtered particles that move by their new velocity are of second order in time, by the mean of first",
+          "[wave]") {
+  const double amplitude = 1e-4;
+  const auto error_by = [&](const std::string& update, double step) {
+    const std::string A = digits(amplitude),
+                      filter = R"({"type": "fmpm", "order": 4, "position_update": ")" + update + "\"}";
+    Scene scene(square, {set("/grid/cell_size", digits(1.0 / 32)), set("/shape/type", "bspline_cubic"),
+                         set("/transfer/type", "pic"), set("/filter", filter), set("/constants/A", A),
+                         set("/compare/exact/amplitude", A), set("/solver/time_step", digits(step))});
+    return scene.run().position_error_rms;
+  };
+  const std::vector<double> steps{1e-4, 5e-5};
+  std::map<std::string, std::vector<double>> errors_of;
+  for (const std::string update : {"new_velocity", "mean_velocity"})
+    for (const double step : steps) errors_of[update].push_back(error_by(update, step));
+  const std::vector<double>&by_new = errors_of["new_velocity"], &by_mean = errors_of["mean_velocity"];
+  INFO("new: " << by_new[0] << " " << by_new[1] << ", mean: " << by_mean[0] << " " << by_mean[1]);
+  CHECK(std::abs(observed_order(steps, by_new) - 2) < 0.05);
+  CHECK(std::abs(observed_order(steps, by_mean) - 1) < 0.02);
+  const double left_behind = amplitude * 100 * std::numbers::pi * steps[1] / 2;
+  CHECK(by_mean[1] == Approx(left_behind).epsilon(0.02));
 }

@@ -549,6 +549,7 @@ class HostRun final : public Backend {
     for (Body<T>& body : bodies_) {
       Arguments<T> a = arguments_of(body);
       a.update_particles = true, a.filtered = step.filtered;
+      a.moves_by_mean = experiment_.filter_schedule.moves_by_mean;
       run("gather", a, teams(body.count), body, Checks::stencil);
       if (pass.has(Act::gather_heat)) run("gather_heat", a, teams(body.count), body, Checks::temperature);
       if (pass.has(Act::gather_heat) && plan_.has_heat_ledger()) heat += sum_over_particles("heat_of_particles", body);

@@ -342,8 +342,9 @@ void Particles::gather_by_transfer(double dt, const Moments& moments, Array& of_
   transfer.gather[MPM_SCALAR_DOUBLE][dimension_ - 2](transfer_.parameters.data(), &batch);
 }
 
-void Particles::take_gathered_velocity() {
+void Particles::take_gathered_velocity(const Array& before, bool moves_by_mean) {
   velocity = advection = gathered_velocity;
+  if (moves_by_mean) advection = (before + gathered_velocity) / 2;
 }
 
 TimeStepLimit Particles::time_step_limit() {

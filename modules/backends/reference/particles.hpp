@@ -83,8 +83,9 @@ class Particles {
   StrainEnergies strain(double dt, bool booked);
   /// Updates velocity and transfer state from the gathered moments.
   void gather(double dt);
-  /// Moves the particles by the gathered velocity, which replaces their own, as the step was filtered.
-  void take_gathered_velocity();
+  /// Replaces the particles' velocity by the gathered one, as the step was filtered, and moves them by it, or by the
+  /// mean of it and of `before`, the velocity that they had before the gather.
+  void take_gathered_velocity(const Array& before, bool moves_by_mean);
   /// Finds the largest wave speed + particle speed.
   TimeStepLimit time_step_limit();
 

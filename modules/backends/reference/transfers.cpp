@@ -135,8 +135,9 @@ void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
   double heat = 0;
   for (Particles& body : bodies_) {
     gather_moments(body, velocity_);
+    const Array before = body.velocity;
     body.gather(step.dt);
-    if (step.filtered) body.take_gathered_velocity();
+    if (step.filtered) body.take_gathered_velocity(before, experiment_.filter_schedule.moves_by_mean);
     if (plan_.sample_points > 0) gather_corners(body, step);
     if (pass.has(Act::gather_heat)) gather_heat(body, step), heat += body.heat();
     if (pass.has(Act::strain)) strain(body, pass.share * step.dt);

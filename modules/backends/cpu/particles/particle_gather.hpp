@@ -5,6 +5,7 @@
 
 #include "backends/cpu/particles/particle_lists.hpp"
 #include "kernel/lanes.hpp"
+#include "operators/motion.hpp"
 
 namespace mpm::cpu {
 
@@ -146,12 +147,17 @@ template <int D, class T, class Components>
                                state.fields,
                                advection,
                                moments_for_transfer(chunk, work)};
+  const bool by_mean = step.filtered && scene_.experiment.filter_schedule.moves_by_mean;
+  T before[D * chunk_size<T>];
+  if (by_mean) std::copy_n(velocity, D * chunk_size<T>, before);
   Components::gather(scene_, batch);
   if (higher_kernels_.gather) keep_higher(chunk, work);
   if (step.filtered)  // the filtered velocity replaces the particle's
     for (int c = 0; c < D; ++c)
       for (T* const target : {velocity, advection})
         std::copy_n(work.velocity + c * chunk_size<T>, chunk.end, target + c * chunk_size<T>);
+  if (by_mean)
+    for (int k = 0; k < D * chunk_size<T>; ++k) advection[k] = mean_velocity(before[k], velocity[k]);
   const bool corners = chunk.particles.corners >= 0;
   T* const moved = !corners              ? nullptr
                    : pass.has(Act::move) ? work.moved_corners.data()

@@ -119,6 +119,7 @@ struct Arguments {
   bool walls_at_rest;                   ///< what is folded or filled is a difference of velocities
   bool update_particles;                ///< gather: velocity and state change too, not only the velocity gradient
   bool filtered;                        ///< gather: the filtered velocity replaces the particle's
+  bool moves_by_mean;                   ///< gather: the mean of both moves the particle then
 };
 
 /// A particle beyond a wall by more than this share of the domain has left it; a separating wall lets half a cell

@@ -4,6 +4,7 @@
 #include "backends/device/kernels/higher.hpp"
 #include "kernel/corner_domain.hpp"
 #include "operators/edges.hpp"
+#include "operators/motion.hpp"
 
 namespace mpm::device {
 
@@ -82,9 +83,12 @@ MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a)
       particles.field[P::hoop_rate][p] = moments.velocity[0] / particles.field[P::position][p];
     if (!a.update_particles) return;
     Vec<D, T> v = load<D>(particles.field[P::velocity], stride, p), advection;
+    const Vec<D, T> v_before = v;
     auto state = transfer_state<Scene>(particles, p);
     Transfer::gather(parameters_of<Transfer>(a.transfer_parameters), moments, a.dt, v, state, advection);
     if (a.filtered) v = advection = moments.velocity;
+    if (a.filtered && a.moves_by_mean)
+      for (int c = 0; c < D; ++c) advection[c] = mean_velocity(v_before[c], v[c]);
     store(particles.field[P::velocity], stride, p, v);
     store(particles.field[P::advection_velocity], stride, p, advection);
     if constexpr (Scene::sampled) gather_corners<Scene>(a, p, advection, moments.velocity);
