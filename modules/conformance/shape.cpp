@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "conformance/support.hpp"
+#include "plugin/extension_of.hpp"
 
 namespace mpm::conformance {
 namespace {
@@ -352,16 +356,70 @@ void check_domains(const Plugin& plugin, const Variant& v, const ParameterSample
                    "the same first node for every domain" + where);
 }
 
+/// The largest frequency, in wave speeds over cells, of a line that is evenly filled with two particles a cell whose
+/// strains are kept: the nodes' masses are those of a cell, and a wave of phase theta a cell has the stiffness
+/// mean_p |sum_i (dN_i/dx)(x_p) exp(i theta i)|^2. Any wave along one axis of a filled body is such a line.
+double largest_frequency(const Plugin& plugin, const ParameterSample& parameters) {
+  constexpr int phases = 64;
+  constexpr double places[] = {0.25, 0.75};
+  ShapeInput input;
+  for (int lane = 0; lane < full; ++lane)
+    for (int a = 0; a < 2; ++a) {
+      input.position[lane][a] = places[lane % 2];
+      input.half_size[lane][a] = 0.25;
+      input.domain[lane](a, a) = 0.25;
+    }
+  const ShapeBatch batch = evaluated(plugin, {MPM_SCALAR_DOUBLE, 2}, parameters, input);
+  double largest = 0;
+  for (int n = 1; n <= phases; ++n) {
+    const double theta = std::numbers::pi * n / phases;
+    double stiffness = 0;
+    for (int lane = 0; lane < 2; ++lane) {
+      std::complex<double> symbol;
+      for (int k = 0; k < batch.width; ++k) symbol += batch.g(0, k, lane) * std::polar(1.0, theta * k);
+      stiffness += 0.5 * std::norm(symbol);
+    }
+    largest = std::max(largest, std::sqrt(stiffness));
+  }
+  return largest;
+}
+
+/// Checks that the Courant number that the shape says it stands is one, and that it is none that an explicit step
+/// cannot stand: 2 over the frequency.
+void check_courant_limit(const Plugin& plugin, const ParameterSample& parameters, const std::string& where,
+                         Findings& findings) {
+  const auto* table = extension_of<mpm_shape_courant_limit>(plugin);
+  if (!table) return;
+  findings.running("largest Courant number" + where);
+  const bool scalar = plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1;
+  for (std::uint32_t dimension = 2; dimension <= 3; ++dimension) {
+    if (!(plugin.descriptor->dimensions & (dimension == 2 ? MPM_2D : MPM_3D))) continue;
+    for (const double limit : table->limit[dimension - 2]) {
+      const std::string of = " in " + std::to_string(dimension) + "-D" + where;
+      findings.require("courant_limit_positive", std::isfinite(limit) && limit > 0, "a number above 0" + of);
+      if (plugin.shape().form == MPM_TENSOR_PRODUCT && scalar)
+        findings.at_most("courant_limit_below_leapfrog", limit * largest_frequency(plugin, parameters), 2,
+                         "times the largest frequency of a filled line" + of);
+    }
+  }
+}
+
 }  // namespace
 
 void check_shape(const Plugin& plugin, Findings& findings) {
   const mpm_shape& shape = plugin.shape();
   findings.require("form", shape.form == MPM_TENSOR_PRODUCT || shape.form == MPM_NODE_LIST, "of mpm_shape_form");
-  if (shape.form == MPM_NODE_LIST) return check_list_shape(plugin, findings);
+  if (shape.form == MPM_NODE_LIST) {
+    Random random(20240611);
+    for (const ParameterSample& parameters : sample_parameters(plugin, random))
+      check_courant_limit(plugin, parameters, parameters.text.empty() ? "" : "; " + parameters.text, findings);
+    return check_list_shape(plugin, findings);
+  }
   findings.require("width", shape.width >= 2 && shape.width <= 4, "2 to 4 nodes an axis");
   if (shape.form != MPM_TENSOR_PRODUCT || shape.width < 2 || shape.width > 4) return;
   Random random(20240601);
-  for (const ParameterSample& parameters : sample_parameters(plugin, random))
+  for (const ParameterSample& parameters : sample_parameters(plugin, random)) {
+    check_courant_limit(plugin, parameters, parameters.text.empty() ? "" : "; " + parameters.text, findings);
     for (const Variant& v : variants_of(*plugin.descriptor)) {
       const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
       const ShapeInput input = shape_input(random, v.dimension);
@@ -383,6 +441,7 @@ void check_shape(const Plugin& plugin, Findings& findings) {
       else
         check_agreement(b, evaluated(plugin, oracle, parameters, input), where, findings);
     }
+  }
 }
 
 }  // namespace mpm::conformance

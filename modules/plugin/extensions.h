@@ -62,6 +62,23 @@ typedef struct mpm_shape_boxes {
   void (*evaluate[MPM_PRECISIONS][2])(const void* parameters, const mpm_box_batch* batch);
 } mpm_shape_boxes;
 
+/* ---- mpm.shape.courant_limit -------------------------------------------------------------------------------------
+ * The largest Courant number dt (c + |v|) / h that a body which flies, collides and vibrates stands on this shape: c is
+ * the wave speed, v the particle's velocity, h the cell size. It depends on which velocity strains the particles. Of a
+ * shape without this table the host knows no limit: `courant` of the scene counts alone. */
+#define MPM_SHAPE_COURANT_LIMIT_ID "mpm.shape.courant_limit"
+#define MPM_SHAPE_COURANT_LIMIT_VERSION 1u
+enum mpm_strain_velocity {
+  MPM_GRID_VELOCITY = 0,    /* that of the grid after the forces, which replaces the particles' (PIC, APIC) */
+  MPM_KEPT_VELOCITY = 1,    /* the same, while particles keep what the grid cannot see from step to step (FLIP) */
+  MPM_CARRIED_VELOCITY = 2, /* that of the grid before the forces: only what particles carry strains (USF, MUSL) */
+  MPM_STRAIN_VELOCITIES = 3
+};
+typedef struct mpm_shape_courant_limit {
+  uint32_t version, reserved;
+  double limit[2][MPM_STRAIN_VELOCITIES]; /* [dimension - 2][mpm_strain_velocity] */
+} mpm_shape_courant_limit;
+
 /* ---- mpm.transfer.polynomials -----------------------------------------------------------------------------------
  * The highest power along an axis, 0 to 3, of the polynomials that a particle carries beyond b and A: products over
  * the axes of polynomials orthogonal under the shape's weights (kernel/polynomial_basis.hpp), as many an axis as the

@@ -223,6 +223,7 @@ std::span<const KnownExtension> known_extensions() {
   static constexpr KnownExtension all[] = {
       extension_info<mpm_costs>,
       extension_info<mpm_shape_boxes>,
+      extension_info<mpm_shape_courant_limit>,
       extension_info<mpm_transfer_polynomials>,
       extension_info<mpm_filter_step_limit>,
       extension_info<mpm_material_trial>,

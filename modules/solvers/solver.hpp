@@ -19,7 +19,7 @@ struct TimeStepSpeeds {
 /// The largest step that a solver takes.
 struct StepLimit {
   double seconds = 0;
-  std::string_view reason;  ///< "wave", "filter order", "diffusion", "convection"
+  std::string_view reason;  ///< "wave", "shape", "stress update", "filter order", "diffusion", "convection"
   bool by_speed = false;    ///< the measured speeds limit it, so that their particle is the one to name
 };
 

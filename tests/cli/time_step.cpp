@@ -76,6 +76,26 @@ TEST_CASE("a step that a filter shortens is named so, with the particle, and the
   CHECK(run_of(scene).first["time_step"]["limited_by"] == "wave");
 }
 
+TEST_CASE("a step that the shape does not stand is shortened and named so, with the particle") {
+  Json scene = bar(1);
+  scene["materials"]["a"].erase("thermal"), scene["bodies"][0].erase("temperature");
+  scene["solver"]["end_time"] = 0.2;
+  const double asked = run_of(scene).first["time_step"]["max"].get<double>();
+  scene["shape"]["type"] = "linear";
+  const auto [summary, report] = run_of(scene);
+  CHECK(summary["time_step"]["limited_by"] == "shape");
+  CHECK(std::abs(summary["time_step"]["max"].get<double>() / asked - 0.1 / 0.3) < 0.01);
+  CHECK(summary["limiting_particle"].get<std::string>().starts_with("particle "));
+  CHECK(has(report, "<small>limited by shape, particle "));
+  scene["solver"]["courant"] = 0.05;
+  CHECK(run_of(scene).first["time_step"]["limited_by"] == "wave");
+  // With the largest courant that may be asked for, the step is the longest that the combination stands.
+  scene["solver"]["courant"] = 2, scene["shape"]["type"] = "bspline_quadratic";
+  const auto longest = run_of(scene).first["time_step"];
+  CHECK(longest["limited_by"] == "shape");
+  CHECK(std::abs(longest["max"].get<double>() / asked - 0.9 / 0.3) < 0.05);
+}
+
 TEST_CASE("nothing limits a fixed step") {
   Json scene = bar(1e5);
   scene["solver"] = {{"end_time", 0.01}, {"time_step", 1e-3}};

@@ -8,6 +8,7 @@
 #include "filters/xpic/xpic.hpp"
 #include "materials/drucker_prager/drucker_prager.hpp"
 #include "plugin/extension_of.hpp"
+#include "shapes/bspline_quadratic/bspline_quadratic.hpp"
 #include "support/catch.hpp"
 #include "support/fixture_materials.hpp"
 
@@ -165,6 +166,14 @@ struct FixedStep : Fmpm {
 struct LongerStep : Fmpm {
   static double step_limit(const Parameters&, double unfiltered) { return 2 * unfiltered; }
 };
+struct BoldShape : BsplineQuadratic {  // no explicit step stands what it promises
+  static constexpr double courant_limits[2][3] = {{0.9, 0.58, 2.5}, {0.6, 0.3, 1}};
+};
+struct StuckShape : BsplineQuadratic {
+  static constexpr double courant_limits[2][3] = {{0.9, 0.58, 1.4}, {0.6, 0, 1}};
+};
+template <class F>
+constexpr mpm_descriptor shape_of = sdk::shape<F>(test::fixture_manual, source);
 template <class F>
 constexpr mpm_descriptor filter_of = sdk::filter<F>(test::fixture_manual, source);
 
@@ -233,6 +242,16 @@ TEST_CASE("a filter's limit of the step covers what it amplifies") {
   mpm_descriptor without = filter_of<Fmpm>;
   without.extension = nullptr;
   check_caught(without, "step_limit_covers_gain");
+}
+
+TEST_CASE("a shape's limit of the step is a number that an explicit step can stand") {
+  CHECK(failures(shape_of<BsplineQuadratic>).empty());
+  CHECK(was_checked(shape_of<BsplineQuadratic>, "courant_limit_below_leapfrog"));
+  check_caught(shape_of<BoldShape>, "courant_limit_below_leapfrog");
+  check_caught(shape_of<StuckShape>, "courant_limit_positive");
+  mpm_descriptor without = shape_of<BsplineQuadratic>;
+  without.extension = nullptr;
+  CHECK(failures(without).empty());
 }
 
 TEST_CASE("the tangent of a tension test is Young's modulus where it is small, and less where metal flows") {

@@ -1,7 +1,7 @@
 #pragma once
 // The extensions of extensions.h as the SDK makes them from a functor. Some every functor gets for nothing (costs, a
 // material's trial and tangent); others come with a member of the functor: `box` and its fellows, `basis_order`,
-// `step_limit`, `projects`, a `temperature` at the end of State, a `cell_size` at the end of Parameters.
+// `courant_limits`, `step_limit`, `projects`, a `temperature` at the end of State, a `cell_size` at the end of Parameters.
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +33,13 @@ concept CellSizeFunctor = requires(const typename F::Parameters& p) {
 template <class F>
 concept PolynomialFunctor = requires(const typename F::Parameters& p) {
   { F::basis_order(p) } -> std::convertible_to<int>;
+};
+
+/// The largest Courant numbers that a scene stands on the shape, by dimension and by what strains (see
+/// mpm_shape_courant_limit): `static constexpr double courant_limits[2][3]`.
+template <class F>
+concept CourantLimitFunctor = requires {
+  F::courant_limits[1][MPM_STRAIN_VELOCITIES - 1];
 };
 
 /// The longest stable step with the filter, s, from the longest without.
@@ -349,6 +356,18 @@ inline constexpr mpm_transfer_polynomials polynomials_table{
     MPM_TRANSFER_POLYNOMIALS_VERSION, 0,
     [](const void* parameters) { return static_cast<std::int32_t>(F::basis_order(parameters_of<F>(parameters))); }};
 
+template <CourantLimitFunctor F>
+struct CourantLimitTable {
+  static constexpr mpm_shape_courant_limit make() {
+    mpm_shape_courant_limit table{MPM_SHAPE_COURANT_LIMIT_VERSION, 0, {}};
+    for (int dimension = 0; dimension < 2; ++dimension)
+      for (int velocity = 0; velocity < MPM_STRAIN_VELOCITIES; ++velocity)
+        table.limit[dimension][velocity] = F::courant_limits[dimension][velocity];
+    return table;
+  }
+  static constexpr mpm_shape_courant_limit value = make();
+};
+
 template <StepLimitFunctor F>
 inline constexpr mpm_filter_step_limit step_limit_table{
     MPM_FILTER_STEP_LIMIT_VERSION, 0, [](const void* parameters, double unfiltered) {
@@ -375,6 +394,8 @@ template <class F>
 const void* shape_extension(const char* id) {
   if constexpr (BoxShapeFunctor<F>)
     if (std::string_view(id) == MPM_SHAPE_BOXES_ID) return &boxes_table<F>;
+  if constexpr (CourantLimitFunctor<F>)
+    if (std::string_view(id) == MPM_SHAPE_COURANT_LIMIT_ID) return &CourantLimitTable<F>::value;
   return costs_extension<F>(id);
 }
 template <class F>

@@ -31,6 +31,9 @@ struct Linear {
 
 #if MPM_HOST
   static constexpr mpm_second_moment second_moment_kind = MPM_MOMENT_IS_GRADIENT;
+  /// Measured: docs/studies/extremes.md, "How long a step". Where the grid's velocity strains, no step is
+  /// safe: a particle without neighbours that passes a node is stable to sqrt(2 f (1 - f)), f its place in the cell.
+  static constexpr double courant_limits[2][3] = {{0.1, 0.1, 0.55}, {0.1, 0.1, 0.55}};
 #endif
 };
 
