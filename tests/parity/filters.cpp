@@ -78,7 +78,7 @@ TEST_CASE("parity of filters with walls and orders of a step", "[parity]") {
 TEST_CASE("parity of particles that move by their mean velocity", "[parity]") {
   for (const int dimension : {2, 3})
     for (const std::string& shape : variants(MPM_SHAPE))
-      for (const std::string transfer : {R"({"type": "pic"})", R"({"type": "flip"})", R"({"type": "asflip"})"})
+      for (const std::string transfer : {R"({"type": "pic"})", R"({"type": "flip"})", R"({"type": "apic"})"})
         for (const std::string order : {"last", "modified_last"})
           for (const std::string& filter : filters(transfer)) {
             Mix mix;
