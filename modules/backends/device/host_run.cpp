@@ -467,7 +467,6 @@ class HostRun final : public Backend {
     const Manner after{false, true};
     conditions_.evaluate(step.time + step.dt, scene_);
     scene_.records = accounted_;
-    if (accounted_) for_each_field("clear_work_of_folds", nodes());
     for_each_axis("fold_forces", folded_axes());  // folds what USF scattered after the momenta were folded
     if (accounted_) book_folds();
     for_each_field("accelerate", nodes());
@@ -511,6 +510,7 @@ class HostRun final : public Backend {
       book(&Ledger::boundary, work[0]);
       ledger_.boundary += work[1];
     }
+    for_each_field("clear_work_of_folds", nodes());
   }
   void book_impulses() {
     for (VelocityField<T>& field : fields_) {

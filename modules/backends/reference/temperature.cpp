@@ -183,7 +183,8 @@ void ReferenceBackend::conduct() {
 
 void ReferenceBackend::heat(const StepInfo& step) {
   const double rate = sum(heat_rate_);
-  grid_.fold_forces();
+  const double power_of_walls = grid_.fold_forces(step.time);
+  if (accounted_) ledger_.boundary += step.dt * power_of_walls;
   account(heat_ledger_.walls, step.dt * (sum(heat_rate_) - rate));
   heat_through_walls(step);
   heat_boxes(step);

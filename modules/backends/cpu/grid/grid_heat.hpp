@@ -153,7 +153,7 @@ template <int D, class T>
 void GridStep<D, T>::apply_heat(const StepInfo& step) {
   const double end = step.time + step.dt;
   rate_of_folds_ = 0;
-  for (const bool periodic : {true, false}) fold_forces(periodic);
+  for (const bool periodic : {true, false}) fold_forces(periodic, step.time, step.dt);
   heat_ledger_.walls += step.dt * rate_of_folds_;
   for (const FaceNodes& face : grid_.faces())
     if (passes_heat(*face.condition)) heat_through(face, step.time, step.dt);
