@@ -212,7 +212,8 @@ TEST_CASE("vortex: a full twist: GIMP and linear functions fail, splines and CPD
   for (const std::string shape : {"gimp", "linear"}) {
     const Errors failing = errors({8, 16, 32}, shape, "apic", 1, 0.2);
     INFO(shape);
-    CHECK(order(failing.place) < (shape == "gimp" ? 1 : 0));
+    // At the step that they stand, a tenth, the places of linear functions converge, but in less than the second order.
+    CHECK(order(failing.place) < (shape == "gimp" ? 1 : 1.5));
     CHECK(order(failing.volume) < 0);  // the error grows
   }
 }
