@@ -192,7 +192,7 @@ TEST_CASE("what is switched on adds its own rows, and each names the line that a
   const Json ledger = plan_of(ball());
   CHECK(attributes(ledger) == attributes(bare));
   CHECK(fields(ledger) == Words{"momentum 32", "mass 0", "velocity 0", "next_momentum 32", "next_mass 0",
-                                "velocity_before 32", "force 32"});
+                                "velocity_before 32", "force 32", "boundary_impulse 32"});
   CHECK(because(ledger, "fields", "force") == "/output/ledger: work of the forces");
 
   Json scene = without_ledger(ball());

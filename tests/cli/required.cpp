@@ -102,11 +102,13 @@ TEST_CASE("a choice adds what it declares and nothing else") {
   const RequiredRow base = counted("base");
   const long gathers = base.calls.at("transfer: gather");  // one a chunk and step
 
-  // neo_hookean dissipates nothing, so the ledger does not ask it; it needs v- beside v+, and forces of their own.
+  // The ledger asks for stress and stored energy before the strain and after it, when the pass asks for the stress anyway.
+  // It needs v- beside v+, forces of their own, and the impulses of the walls.
   const RequiredRow ledger = counted("+ ledger");
-  CHECK(more_than_base(ledger) == Calls{});
+  CHECK(more_than_base(ledger) ==
+        Calls{{"material", gathers}, {"material: stress", gathers}, {"material: stored energy", 2 * gathers}});
   CHECK(ledger.bytes_per_particle == base.bytes_per_particle);
-  CHECK(ledger.bytes_per_node == base.bytes_per_node + 2 * quad);
+  CHECK(ledger.bytes_per_node == base.bytes_per_node + 3 * quad);
   CHECK(ledger.passes == base.passes);
 
   // FLIP has no affine velocity to keep, scatter and gather; it needs gradients of the weights for stress and strain,

@@ -35,7 +35,8 @@ Json final_numbers(const fs::path& run) {
   Json numbers;
   for (const char* key : {"particles", "steps", "simulated_time", "time_step", "momentum", "centre_of_mass"})
     numbers[key] = summary[key];
-  for (const auto& [kind, value] : summary["energy"].items()) numbers[kind] = kind == "ledger" ? value : value["final"];
+  for (const auto& [kind, value] : summary["energy"].items())
+    numbers[kind] = kind == "ledger" || kind == "books" ? value : value["final"];
   return numbers;
 }
 

@@ -59,7 +59,9 @@ TEST_CASE("shipped experiments begin on the host-run device as on the reference 
     const Totals expected = reference.metrics.measure(), found = scene.metrics.measure();
     const double margin = 1e3 * epsilon * speed * std::sqrt(expected.mass * expected.kinetic);
     CHECK(std::abs(found.kinetic - expected.kinetic) < margin);
-    CHECK(difference(ledger_values(reference), ledger_values(scene), expected.kinetic + expected.strain) < 1e-11);
+    // Stored energies are differences of terms as large as the stiffness, at most m speed^2, and round as these do.
+    const double energy = expected.kinetic + expected.strain, stiff = expected.mass * speed * speed;
+    CHECK(ledger_difference(ledger_values(reference), ledger_values(scene), energy + 1e11 * epsilon * stiff) < 1e-11);
   }
   CHECK(count >= 10);
 }

@@ -64,10 +64,10 @@ class CpuBackend final : public Backend, NamedChannels {
   void gather(const Pass& pass, const StepInfo& step);
   void gather_scatter(const Pass& pass, const StepInfo& step);
   bool may_pass_motion(const StepInfo& step) const;
-  void account_for_gather(const Pass& pass, const typename Step::Gathered& gathered, const StepInfo& step);
-  void account_for_strain(const typename Step::Gathered& dissipation, const StepInfo& step);
+  void account_for_gather(const Pass& pass, const typename Step::Gathered& gathered);
+  void account_for_strain(const typename Step::Gathered& dissipation);
   bool filters_strain(const StepInfo& step) const;
-  void account_for_move(const StepInfo& step);
+  void account_for_move();
   void book_material(const typename Step::Gathered& strained);
   /// Books the stored energy that goes with a phase.
   void account_for_phases(double lost) { ledger_.material += lost, ledger_.stored -= lost; }
@@ -81,6 +81,7 @@ class CpuBackend final : public Backend, NamedChannels {
   SortSpace sort_space_;
   bool grid_built_ = false;
   long looked_at_step_ = -1;  ///< step for which it is known whether the ledger takes entries
+  bool accounted_ = false;    ///< whether it does
   std::vector<int> field_of_body_;
   Ledger ledger_;
   HeatLedger heat_ledger_;
@@ -228,8 +229,8 @@ void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step
   motion_kept_ = true;
   if (pass.has(Act::strain) && filters_strain(step))
     grid_step_->book_strain(&Ledger::filtered_strain, pass.share, step.dt);
-  account_for_gather(pass, particle_step_->gather(pass, step), step);
-  if (pass.has(Act::move)) account_for_move(step);
+  account_for_gather(pass, particle_step_->gather(pass, step));
+  if (pass.has(Act::move)) account_for_move();
 }
 
 /// Whether a fused pass may leave velocities and the transfer's state behind: nobody reads them, and no particle can
@@ -254,8 +255,8 @@ void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepIn
   const StepInfo next{step.next_dt, step.next_time, step.step + 1};
   motion_kept_ = now.observed;
   const auto fused = particle_step_->gather_scatter(pass, now, next);
-  account_for_gather(pass, fused.gathered, step);
-  if (scene_.plan.accounts_at(step.step) && particle_step_->energy_moves())
+  account_for_gather(pass, fused.gathered);
+  if (accounted_ && particle_step_->energy_moves())
     ledger_.second_moment += fused.particles.kinetic_energy - gathered_energy_;
   scattered_ = fused.scattered;
   if (!scattered_) return;
@@ -264,11 +265,10 @@ void CpuBackend<D, T, Components>::gather_scatter(const Pass& pass, const StepIn
 }
 
 template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::account_for_gather(const Pass& pass, const typename Step::Gathered& gathered,
-                                                      const StepInfo& step) {
+void CpuBackend<D, T, Components>::account_for_gather(const Pass& pass, const typename Step::Gathered& gathered) {
   if (pass.has(Act::gather_heat)) heat_ledger_.gather += gathered.heat - grid_step_->heat_after();
   heat_ledger_.dissipation += gathered.heat_of_dissipation;
-  if (!scene_.plan.accounts_at(step.step)) return;
+  if (!accounted_) return;
   grid_step_->book_gather(gathered.kinetic_energy);
   gathered_energy_ = gathered.kinetic_energy;
   book_material(gathered);
@@ -277,13 +277,13 @@ void CpuBackend<D, T, Components>::account_for_gather(const Pass& pass, const ty
 /// Whether the filter changes the velocity by which particles strain in this step, and the ledger books it.
 template <int D, class T, class Components>
 bool CpuBackend<D, T, Components>::filters_strain(const StepInfo& step) const {
-  return scene_.plan.accounts_at(step.step) && step.filtered;
+  return accounted_ && step.filtered;
 }
 
 /// Books what the kinetic energy of the particles changes by as their places in the cells do.
 template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::account_for_move(const StepInfo& step) {
-  if (!scene_.plan.accounts_at(step.step) || !particle_step_->energy_moves()) return;
+void CpuBackend<D, T, Components>::account_for_move() {
+  if (!accounted_ || !particle_step_->energy_moves()) return;
   ledger_.second_moment += particle_step_->kinetic_energy_now() - gathered_energy_;
 }
 
@@ -296,9 +296,8 @@ void CpuBackend<D, T, Components>::book_material(const typename Step::Gathered& 
 }
 
 template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::account_for_strain(const typename Step::Gathered& dissipation,
-                                                      const StepInfo& step) {
-  if (scene_.plan.accounts_at(step.step)) book_material(dissipation);
+void CpuBackend<D, T, Components>::account_for_strain(const typename Step::Gathered& dissipation) {
+  if (accounted_) book_material(dissipation);
   heat_ledger_.dissipation += dissipation.heat_of_dissipation;
 }
 
@@ -312,7 +311,8 @@ template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo& step) {
   if (step.step != looked_at_step_) {
     looked_at_step_ = step.step;
-    grid_step_->set_accounted(scene_.plan.accounts_at(step.step));
+    accounted_ = scene_.plan.accounts_at(step.step);
+    grid_step_->set_accounted(accounted_);
   }
   switch (pass.operators.front().act) {
     case Act::estimate_time_step:
@@ -337,9 +337,8 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
     case Act::gather:
       return pass.fused() ? gather_scatter(pass, step) : gather(pass, step);
     case Act::strain:
-      if (pass.remap() && scene_.plan.accounts_at(step.step))
-        grid_step_->book_strain(&Ledger::remapped_strain, pass.share, step.dt);
-      return account_for_strain(particle_step_->strain(pass, step), step);
+      if (pass.remap() && accounted_) grid_step_->book_strain(&Ledger::remapped_strain, pass.share, step.dt);
+      return account_for_strain(particle_step_->strain(pass, step));
     case Act::divide_heat:
       return grid_step_->heat_to_temperature(step);
     case Act::conduct:
@@ -350,7 +349,7 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
       return account_for_phases(particle_step_->change_phases(step));
     case Act::move:
       particle_step_->move(step);
-      return account_for_move(step);
+      return account_for_move();
     case Act::begin_filter:
       return grid_step_->begin_filter(pass);
     case Act::project:
