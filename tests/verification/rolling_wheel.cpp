@@ -3,7 +3,6 @@
 // grid. `ctest -V` shows the tables.
 
 #include <cmath>
-#include <numbers>
 
 #include "support/catch.hpp"
 #include "support/scene.hpp"
@@ -13,7 +12,7 @@ using namespace mpm::test;
 
 namespace {
 
-constexpr double g = 9.81, radius = 0.5, pi = std::numbers::pi;
+constexpr double g = 9.81, radius = 0.5;
 const double sine = 0.5, cosine = std::sqrt(3.0) / 2;
 
 /// The weight grows over many periods in which the wheel swings on its contact; let go of at once it bounces.
