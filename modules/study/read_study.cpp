@@ -60,7 +60,8 @@ Section bisection_section() {
            parameter("scale", Type::number, "any", "Numbers are multiplied by it before they are set.").standard(1),
            parameter("label", Type::string, "", "Quantity on figures and in tables."),
            parameter("unit", Type::string, "", "Unit of the numbers as figures show them."),
-           nested("stable_while", "a list of conditions on summary.json")}};
+           nested("stable_while", "a list of conditions on summary.json"),
+           nested("set", "an object of values by JSON pointer")}};
 }
 
 Section bound_section() {
@@ -192,7 +193,18 @@ class StudyReader {
         context_.problem(fields.place("from"), "\"from\" and \"to\" must have the same sign and not be 0");
     }
     if (const Node* bounds = fields.node("stable_while")) read_bounds(*bounds, bisection.stable_while);
+    if (fields.given("set")) bisection.overrides = read_set_of_search(*fields.node("set"), bisection.pointer);
     study_.bisection = std::move(bisection);
+  }
+
+  std::vector<std::string> read_set_of_search(const Node& node, const std::string& bisected) {
+    std::vector<std::string> pointers, overrides = read_set(node, context_, pointers);
+    for (const std::string& pointer : pointers) {
+      refuse_overwritten(pointer, node, "");
+      if (overwrites(bisected, pointer) || overwrites(pointer, bisected))
+        context_.problem(node, pointer + " is what is bisected");
+    }
+    return overrides;
   }
 
   void read_bounds(const Node& list, std::vector<Bound>& bounds) {

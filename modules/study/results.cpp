@@ -155,9 +155,9 @@ Json json_of(const Results& results, const Json& machine, const std::string& ver
   for (const Axis& axis : study.axes) json["axes"].push_back(json_of_axis(axis));
   if (study.bisection) {
     const Bisection& b = *study.bisection;
-    json["bisect"] = {{"pointer", b.pointer}, {"label", b.label}, {"unit", b.unit},
-                      {"from", b.from},       {"to", b.to},       {"relative_tolerance", b.relative_tolerance},
-                      {"scale", b.scale}};
+    json["bisect"] = {{"pointer", b.pointer}, {"label", b.label},  {"unit", b.unit},
+                      {"from", b.from},       {"to", b.to},        {"relative_tolerance", b.relative_tolerance},
+                      {"scale", b.scale},     {"set", b.overrides}};
   }
   json["measures"] = Json::array();
   for (const Measure& m : study.measures)

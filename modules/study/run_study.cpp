@@ -25,24 +25,30 @@ class Task {
 
   Result& result() { return result_; }
   /// Nothing is left to run.
-  bool is_over() const { return over_ || (search_ && !search_->next()); }
+  bool is_over() const { return over_; }
 
   std::string run_name() const {
-    return search_ ? result_.combination.name + "@" + number_text(*search_->next()) : result_.combination.name;
+    return searches() ? result_.combination.name + "@" + number_text(*search_->next()) : result_.combination.name;
   }
   std::vector<std::string> overrides() const {
     std::vector<std::string> all = result_.combination.overrides;
-    if (search_)
-      all.push_back(study_.bisection->pointer + "=" + Json(*search_->next() * study_.bisection->scale).dump());
+    if (!search_) return all;
+    const Bisection& bisection = *study_.bisection;
+    const double value = searches() ? *search_->next() : *search_->stable();
+    if (searches()) all.insert(all.end(), bisection.overrides.begin(), bisection.overrides.end());
+    all.push_back(bisection.pointer + "=" + Json(value * bisection.scale).dump());
     return all;
   }
 
   void finish(const Outcome& outcome, const Json& summary) {
-    if (!search_) {
+    if (!searches()) {
       over_ = true;
+      const Outcome found = result_.outcome;
       result_.outcome = outcome;
+      if (search_) result_.outcome.reused = found.reused && outcome.reused;
       if (outcome.status != Status::refused) result_.folder = "runs/" + result_.combination.name;
       if (is_finished(outcome.status)) measure(summary);
+      if (outcome.reason.empty()) result_.outcome.reason = found.reason;
       return;
     }
     const Status status = outcome.status;
@@ -56,6 +62,8 @@ class Task {
   }
 
  private:
+  bool searches() const { return search_ && search_->next(); }
+
   void probe(const Outcome& outcome, const Json& summary) {
     std::vector<std::string> broken;
     if (outcome.status != Status::done)
@@ -73,6 +81,7 @@ class Task {
     result_.unstable = search_->unstable();
     if (result_.stable) result_.measures[critical_measure] = *result_.stable;
     if (search_->next()) return;
+    over_ = !result_.stable || study_.bisection->overrides.empty();
     if (!result_.stable) {
       result_.outcome.status = Status::failed;
       result_.outcome.reason = "unstable already at " + number_text(study_.bisection->from) + ": " + broken.front();
@@ -87,6 +96,7 @@ class Task {
     result_.measures.clear();
     for (const Measure& measure : study_.measures)
       if (const double value = evaluate(measure, summary); std::isfinite(value)) result_.measures[measure.name] = value;
+    if (result_.stable) result_.measures[critical_measure] = *result_.stable;
     result_.flags = flags_in(summary);
   }
 

@@ -51,6 +51,7 @@ struct Bisection {
   double relative_tolerance = 0.02;
   double scale = 1;  ///< the experiment gets value * scale
   std::vector<Bound> stable_while;
+  std::vector<std::string> overrides;  ///< set in the runs of the search alone; the measures are then of one run more
 
   std::string title() const;
 };

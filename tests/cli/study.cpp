@@ -230,6 +230,32 @@ TEST_CASE("bisection finds the largest stable step") {
   CHECK(has(again.out, "1 reused"));
 }
 
+TEST_CASE("a bisection that sets something for its search measures the scene without it") {
+  const Folder folder;
+  Json study = small_study();
+  study["axes"] = {{"/transfer/type", {"flip"}}};
+  study["measure"] = {{"end", "/simulated_time"}};
+  study["bisect"] = {{"pointer", "/solver/time_step"},
+                     {"from", 0.02},
+                     {"to", 2},
+                     {"relative_tolerance", 0.2},
+                     {"set", {{"/solver/end_time", 4}}},
+                     {"stable_while", {{{"value", "/simulated_time"}, {"at_least", 3.9}}}}};
+  study.erase("error");
+  study.erase("figures");
+  write_inputs(folder, breathing(), study);
+  const Result result = run_study(folder, {"--set", "/solver/end_time=1"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const Json run = run_named(json_in(folder / "out/study.json"), "flip");
+  CHECK(run["folder"] == "runs/flip");
+  CHECK(run["measures"]["critical"] == run["bisection"]["stable"]);
+  CHECK(run["measures"]["end"].get<double>() == Approx(1));  // the search ran to 4 s, or it would have found no step
+  const Json made = json_in(folder / "out/runs/flip/experiment.json");
+  CHECK(made["solver"]["time_step"] == run["bisection"]["stable"]);
+  CHECK(has(run_study(folder, {"--set", "/solver/end_time=1"}).out, "1 reused"));
+}
+
 TEST_CASE("a run that is killed is recorded, and run again by the next call") {
   const Folder folder;
   Json study = small_study();

@@ -142,6 +142,13 @@ TEST_CASE("mistakes in a study, with place and remedy", "[study]") {
       "\"error\": \"e\", \"bisect\": {\"pointer\": \"/a\", \"from\": 1, \"to\": 0, \"stable_while\": [{\"value\": "
       "\"/b\"}]},",
       "demands nothing: give \"at_least\" or \"at_most\"");
+  check_mistake("\"error\": \"e\",",
+                "\"error\": \"e\", \"bisect\": {\"pointer\": \"/a/b\", \"from\": 1, \"to\": 2, \"set\": {\"/a\": 1}},",
+                "/a is what is bisected");
+  check_mistake(
+      "\"error\": \"e\",",
+      "\"error\": \"e\", \"bisect\": {\"pointer\": \"/a\", \"from\": 1, \"to\": 2, \"set\": {\"/filter\": null}},",
+      "/filter is overwritten by the axis \"/filter\"");
   CHECK(mistakes(small, {"/grid/cell_size=1"}).find("--set: /grid/cell_size: /grid/cell_size is overwritten") == 0);
 }
 
