@@ -97,6 +97,42 @@ class AxisAlignedWave final : public ExactSolution {
   int dimension_;
 };
 
+/// A manufactured wave with free faces: u_i = A cos(pi X_i)^2 sin(c pi t + phi_i), phi = (0, pi, 0), along the axes of the
+/// unit square or cube about the origin, which are turned about z. Displacement and stretch vanish at the faces, so that a
+/// material of Poisson's ratio 0 leaves them without stress, whatever their direction.
+class TurnedWave final : public ExactSolution {
+ public:
+  TurnedWave(const ExactChoice& choice, int dimension)
+      : amplitude_(value(choice, "amplitude")),
+        speed_(value(choice, "wave_speed")),
+        cosine_(std::cos(value(choice, "angle"))),
+        sine_(std::sin(value(choice, "angle"))),
+        dimension_(dimension) {}
+  Vector3 position(const Vector3& X, const Vector3&, double t) const override {
+    Vector3 place = to_axes(X);
+    for (int c = 0; c < dimension_; ++c) place[c] += profile(place[c]) * std::sin(speed_ * pi * t + phase(c));
+    return from_axes(place);
+  }
+  Vector3 velocity(const Vector3& X, const Vector3&, double t) const override {
+    const Vector3 place = to_axes(X);
+    Vector3 v{};
+    for (int c = 0; c < dimension_; ++c) v[c] = speed_ * pi * profile(place[c]) * std::cos(speed_ * pi * t + phase(c));
+    return from_axes(v);
+  }
+
+ private:
+  static double phase(int component) { return component == 1 ? pi : 0; }
+  double profile(double x) const { return amplitude_ * std::cos(pi * x) * std::cos(pi * x); }
+  Vector3 to_axes(const Vector3& x) const {
+    return {cosine_ * x[0] + sine_ * x[1], -sine_ * x[0] + cosine_ * x[1], x[2]};
+  }
+  Vector3 from_axes(const Vector3& x) const {
+    return {cosine_ * x[0] - sine_ * x[1], sine_ * x[0] + cosine_ * x[1], x[2]};
+  }
+  double amplitude_, speed_, cosine_, sine_;
+  int dimension_;
+};
+
 /// The generalised vortex (Brannon, Kamojjala & Sadeghirad 2011): the ring 0.75 <= R <= 1.25 m about the origin, each
 /// circle turned by G sin(pi t / T) h(R), h = (1 - 16 (R - 1)^2)^2; h and h' vanish at both edges. h = 0 beyond them.
 class GeneralisedVortex final : public ExactSolution {
@@ -153,6 +189,13 @@ const std::vector<Entry>& entries() {
         {number("amplitude", "m", "amplitude A").needed(),
          number("wave_speed", "m/s", "c = sqrt(E / density)").above(0).needed()}},
        [](const Experiment& e, double) { return std::make_unique<AxisAlignedWave>(*e.exact, e.dimension); }},
+      {{"turned_wave",
+        "manufactured solution u_i = A cos(pi X_i)^2 sin(c pi t + phi_i) on the unit square or cube about the origin, "
+        "turned about z, with free faces where Poisson's ratio is 0",
+        {number("amplitude", "m", "amplitude A").needed(),
+         number("wave_speed", "m/s", "c = sqrt(E / density)").above(0).needed(),
+         number("angle", "", "angle of the axes X_i about z, rad").needed()}},
+       [](const Experiment& e, double) { return std::make_unique<TurnedWave>(*e.exact, e.dimension); }},
       {{"generalised_vortex",
         "manufactured solution on the ring 0.75 <= R <= 1.25 m about the origin: circles turn by G sin(pi t / T) (1 - "
         "16 (R - 1)^2)^2",

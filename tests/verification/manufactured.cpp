@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "shipped.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 
@@ -96,4 +97,45 @@ TEST_CASE("filtered particles that move by their new velocity are of second orde
   CHECK(std::abs(observed_order(steps, by_mean) - 1) < 0.02);
   const double left_behind = amplitude * 100 * std::numbers::pi * steps[1] / 2;
   CHECK(by_mean[1] == Approx(left_behind).epsilon(0.02));
+}
+
+// The wave with free faces, its axes along the grid and turned about z by 30 degrees: the same convergence, but for the
+// rim, which is stepped where it is turned.
+TEST_CASE("a manufactured wave converges along the grid and turned against it, in 2-D and 3-D", "[wave]") {
+  const double angle = std::numbers::pi / 6, cosine = std::cos(angle), sine = std::sin(angle);
+  const auto half_space = [](const std::string& normal, const std::string& point) {
+    return R"({"type": "half_space", "normal": )" + normal + R"(, "point": )" + point + "}";
+  };
+  const auto turned_body = [&](bool solid) {
+    const std::string z = solid ? ",0]" : "]";
+    std::string all;
+    for (const auto& [x, y] : {std::pair{cosine, sine}, {-cosine, -sine}, {-sine, cosine}, {sine, -cosine}})
+      all += (all.empty() ? "" : ",") +
+             half_space("[" + digits(x) + "," + digits(y) + z, "[" + digits(x / 2) + "," + digits(y / 2) + z);
+    if (solid) all += "," + half_space("[0,0,1]", "[0,0,0.5]") + "," + half_space("[0,0,-1]", "[0,0,-0.5]");
+    return R"({"type": "intersection", "of": [)" + all + "]}";
+  };
+  for (const int dimension : {2, 3})
+    for (const bool is_turned : {false, true})
+      for (const auto& [shape, transfer] : {std::pair{"bspline_cubic", "apic"}, std::pair{"cpdi", "flip"}}) {
+        std::vector<double> sizes, errors;
+        for (const int cells : dimension == 2 ? std::vector{16, 32} : std::vector{8, 16}) {
+          std::vector<std::string> overrides{set("/grid/cell_size", digits(1.0 / cells)), set("/shape/type", shape),
+                                             set("/transfer/type", transfer)};
+          if (is_turned)
+            overrides.insert(overrides.end(), {set("/compare/exact/angle", digits(angle)),
+                                               set("/constants/ca", digits(cosine)), set("/constants/sa", digits(sine)),
+                                               set("/bodies/0/geometry", turned_body(dimension == 3))});
+          ShippedScene scene(dimension == 2 ? "studies/turned_wave.json" : "studies/turned_wave_3d.json", overrides);
+          sizes.push_back(1.0 / cells);
+          errors.push_back(scene.run().position_error_rms / 0.05);
+          REQUIRE(scene.failure.empty());
+        }
+        INFO(dimension << "-D " << shape << " " << transfer << (is_turned ? " turned: " : ": ") << errors[0] << " "
+                       << errors[1]);
+        std::printf("  %d-D %s %s%s: %.3g %.3g, order %.2f\n", dimension, shape, transfer, is_turned ? " turned" : "",
+                    errors[0], errors[1], observed_order(sizes, errors));
+        CHECK(observed_order(sizes, errors) > 1);
+        CHECK(errors.back() < 0.02);
+      }
 }
