@@ -20,7 +20,7 @@ Written by `docs/generate_verified.sh` from a run of the tests: a line for each 
 cases](verification.md) says where the expected values come from. **Apart** is the largest distance of a found from an
 expected value, relative to that value, in the assertions of the form *found equals expected*; **bound used** the largest
 share of its bound that an assertion of the form *value below bound* used. A field is empty where a case has no such
-assertion: it compares bits, words or counts.
+assertion: it compares bits, words or counts, or asks several things at once. Cases with the tag `[slow]` are not run here.
 
 To run the cases of a file: `ctest --test-dir build -R verification.bar` for `tests/verification/bar.cpp`.
 

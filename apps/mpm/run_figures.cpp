@@ -133,6 +133,7 @@ void draw_ledger(const Table& table, const RunLabel& label, const std::filesyste
                                         {"ledger body force", "body force"},
                                         {"ledger periodic gravity", "gravity along periodic axes"},
                                         {"ledger filtered strain", "strain by filtered velocity"},
+                                        {"ledger filtered gravity", "rise by filtered velocity"},
                                         {"ledger remapped strain", "strain by remapped velocity"},
                                         {"ledger second moment", "change of the second moment D"}});
   auto dissipated = column(table, "ledger material dissipation", -1);
@@ -157,6 +158,7 @@ void draw_dissipation(const Table& table, const RunLabel& label, const std::file
   };
   add_if_any("ledger filter", "filter", -1);
   add_if_any("ledger filtered strain", "strain by filtered velocity", -1);
+  add_if_any("ledger filtered gravity", "rise by filtered velocity", -1);
   add_if_any("ledger remapped strain", "strain by remapped velocity", -1);
   add_if_any("ledger boundary", "boundary", -1);
   add_if_any("ledger contact", "contact", -1);

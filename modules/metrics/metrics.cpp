@@ -193,13 +193,14 @@ std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
   if (!plan.has_ledger()) return {};
   std::vector<ValueRow> rows = rows_of(simulation_.ledger());
   const bool takes_back = plan.resolves_contact() && gather_shares(simulation_.experiment()).of_velocity < 1;
-  bool periodic_gravity = false;
+  bool periodic_gravity = false, falls = false;
   for (int axis = 0; axis < simulation_.experiment().dimension; ++axis)
-    periodic_gravity |=
-        simulation_.experiment().gravity[axis] != 0 && !simulation_.experiment().gravity_has_potential(axis);
+    if (simulation_.experiment().gravity[axis] != 0)
+      (simulation_.experiment().gravity_has_potential(axis) ? falls : periodic_gravity) = true;
   const bool remaps = simulation_.experiment().solver.stress_update == StressUpdate::modified_last;
   std::erase_if(rows, [&](const ValueRow& row) {
     return is_book(row) || (!plan.filters() && (row.name == "filter" || row.name == "filtered strain")) ||
+           (!(plan.filters() && falls) && row.name == "filtered gravity") ||
            (!remaps && row.name == "remapped strain") ||
            (!moves_second_moment(simulation_.experiment(), plan) && row.name == "second moment") ||
            (!periodic_gravity && row.name == "periodic gravity") || (!takes_back && row.name == "friction taken back");

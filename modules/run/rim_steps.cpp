@@ -26,7 +26,8 @@ std::string warning_of_rim_steps(const Experiment& experiment) {
   if (coarsest == nullptr || fewest >= enough_rows_a_radius) return "";
   const double radius = coarsest->geometry->smallest_radius(), step = radius / fewest;
   return "the curved surface of body \"" + coarsest->name + "\" (radius " + three_digits(radius) +
-         " m) is built of steps of " + three_digits(step) + " m, one particle's spacing: a contact less than " +
+         " m) is built of steps of " + three_digits(step) +
+         " m, one particle's spacing: where it touches, a contact less than " +
          three_digits(2 * std::sqrt(2 * radius * step)) +
          " m wide feels single steps, which change its peak force by up to a third and the rolling of a wheel by some "
          "per cent; take particles " +

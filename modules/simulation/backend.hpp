@@ -132,6 +132,7 @@ struct Ledger {
   double material = 0;             ///< dissipated by the materials (positive)
   double filter = 0;               ///< J.(v + v_filtered)/2 of the filter's impulses
   double filtered_strain = 0;      ///< what strain by the filtered velocity stores less than by the unfiltered one
+  double filtered_gravity = 0;     ///< potential energy that particles gain less as the filtered velocity moves them
   double remapped_strain = 0;      ///< what strain by the remapped velocity (MUSL) stores less than by v+
   double second_moment = 0;  ///< change of the affine part's kinetic energy, as D changes with the place of a particle
   double stress_power = 0;   ///< work of the stresses on the strain of the particles
@@ -173,6 +174,7 @@ inline constexpr LedgerEntry<Ledger> ledger_entries[] = {{"scatter", &Ledger::sc
                                                          {"material dissipation", &Ledger::material, -1, 4},
                                                          {"filter", &Ledger::filter, 1, 1},
                                                          {"filtered strain", &Ledger::filtered_strain, 1, 5},
+                                                         {"filtered gravity", &Ledger::filtered_gravity, 1, 5},
                                                          {"remapped strain", &Ledger::remapped_strain, 1, 5},
                                                          {"second moment", &Ledger::second_moment, 1, 5},
                                                          {"stress power", &Ledger::stress_power, 0},

@@ -46,6 +46,7 @@ class Distances : public Listener {
 
   void testCaseStarting(const Catch::TestCaseInfo& info) override {
     Listener::testCaseStarting(info);
+    Catch::StringMaker<double>::precision = Catch::StringMaker<float>::precision = 30;  // decimals: rounding shows too
     assertions_ = 0;
     distance_.reset(), share_.reset();
   }
@@ -99,7 +100,8 @@ class Distances : public Listener {
     return std::abs(found - expected) / (expected != 0 ? std::abs(expected) : 1);
   }
   static void keep(std::optional<double>& largest, double value) {
-    largest = std::max(largest.value_or(0), value);
+    if (!largest) largest = 0;
+    if (!std::isnan(*largest) && !(value <= *largest)) largest = value;  // one that is no number stays
   }
 
   long assertions_ = 0;

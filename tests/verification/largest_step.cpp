@@ -65,6 +65,7 @@ Outcome outcome(const std::string& path, const std::vector<std::string>& overrid
   scene.run([&] {
     const Totals now = scene.metrics.measure();
     kinetic.push_back(now.kinetic), strain.push_back(now.strain);
+    REQUIRE(std::isfinite(now.kinetic + now.strain));
   });
   const double first = kinetic[0] + strain[0];
   const std::size_t back = update == "first" ? 1 : 0, on = update == "last" || update == "modified_last" ? 1 : 0;

@@ -69,13 +69,13 @@ TEST_CASE("the works of recorded impulses explain the kinetic energy of the node
         const Totals start = scene.metrics.initial(), end = scene.run();
         const Ledger ledger = scene.simulation.ledger();
         const double steps = static_cast<double>(end.step);
-        const double rounding = steps * 64 *
+        const double rounding = 64 * std::sqrt(steps) *
                                 (std::string(precision) == "float" ? std::numeric_limits<float>::epsilon()
                                                                    : std::numeric_limits<double>::epsilon());
         CHECK(std::abs(ledger.grid_book) < rounding * start.kinetic);
         CHECK(std::abs(ledger.filter_book) < rounding * start.kinetic);
         CHECK(std::abs(ledger.mass_book) < rounding * start.mass);
-        CHECK(ledger.momentum_book < rounding * start.momentum_scale);
+        CHECK(ledger.momentum_book < rounding * std::sqrt(steps) * start.momentum_scale);
         CHECK(std::abs(ledger.boundary) + std::abs(ledger.contact) > 1e-4 * start.kinetic);  // there are impulses
         ++tried;
       }
@@ -105,8 +105,11 @@ Largest largest(const std::vector<std::string>& overrides) {
   Largest found;
   while (!scene.simulation.finished()) {
     const Totals now = scene.run_steps(1);
-    found.residual = std::max(found.residual, std::abs(scene.metrics.ledger_residual(now)));
-    found.material_book = std::max(found.material_book, std::abs(scene.simulation.ledger().material_book));
+    const double residual = std::abs(scene.metrics.ledger_residual(now)),
+                 book = std::abs(scene.simulation.ledger().material_book);
+    REQUIRE(std::isfinite(residual + book));
+    found.residual = std::max(found.residual, residual);
+    found.material_book = std::max(found.material_book, book);
   }
   found.residual /= scene.metrics.initial().total_energy();
   found.material_book /= scene.metrics.initial().total_energy();
@@ -177,5 +180,46 @@ TEST_CASE("the work of a wall that moves is the energy that it stores", "[ledger
         CHECK(stored == Approx(0.5 * 1000 * 0.2 * 0.01 * 0.01).epsilon(0.02));  // e = v t = 0.01 m of L = 1 m
         CHECK(scene.simulation.ledger().boundary == Approx(stored).epsilon(0.02));
         CHECK(std::abs(scene.metrics.ledger_residual(end)) < 0.02 * stored);
+      }
+}
+
+// A block that is dropped on a floor, and one that rests on it. The filter's loop meets the floor in every step, so that
+// the filtered velocity lifts particles otherwise than the nodes' own: a row of the ledger of its own.
+TEST_CASE("the residual of a filtered block that gravity presses on a floor falls with the step",
+          "[ledger][ledger_books]") {
+  const auto lost = [](const std::string& backend, bool drops, const std::string& transfer, const std::string& filter,
+                       double step) {
+    Scene scene(R"J({
+      "dimension": 2, "precision": "double",
+      "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]],
+               "boundaries": {"x_min": "slip", "x_max": "free", "y_min": "slip", "y_max": "free"}},
+      "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "pic"},
+      "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e4, "poisson_ratio": 0.3, "density": 1000}},
+      "bodies": [{"name": "block", "material": "m", "geometry": {"type": "box", "lower": [0, 0], "upper": [0.5, 0.5]}}],
+      "gravity": [0, -4], "solver": {"time_step": 1e-3, "end_time": 0.3}})J",
+                {set("/backend", backend), set("/transfer/type", transfer), set("/filter", filter),
+                 set("/solver/time_step", digits(step)),
+                 set("/bodies/0/geometry", drops ? R"({"type": "box", "lower": [0, 0.2], "upper": [0.5, 0.7]})"
+                                                 : R"({"type": "box", "lower": [0, 0], "upper": [0.5, 0.5]})")});
+    const Totals end = scene.run();
+    const double lifted = std::abs(scene.simulation.ledger().filtered_gravity),
+                 residual = std::abs(scene.metrics.ledger_residual(end));
+    CHECK(lifted > 0.2);  // J; the residual would hold it
+    CHECK(residual < 0.3 * lifted);
+    return residual;
+  };
+  for (const auto& [transfer, filter] :
+       {std::pair{"pic", R"({"type": "fmpm", "order": 4})"}, std::pair{"pic", R"({"type": "xpic", "order": 3})"},
+        std::pair{"flip", R"({"type": "fmpm", "order": 4, "every_steps": 5})"}})
+    for (const bool drops : {false, true})
+      for (const std::string backend : {"cpu", "reference"}) {
+        if (backend == "reference" && (!drops || std::string(transfer) == "flip")) continue;
+        const double coarse = lost(backend, drops, transfer, filter, 1e-3),
+                     fine = lost(backend, drops, transfer, filter, 2.5e-4);
+        INFO(backend << " " << transfer << " " << filter << (drops ? " dropped: " : " resting: ") << coarse << " "
+                     << fine);
+        std::printf("  %s %s %s %s: %.4g %.4g J\n", backend.c_str(), transfer, filter, drops ? "dropped" : "resting",
+                    coarse, fine);
+        CHECK(fine < 0.8 * coarse);  // the waves that the floor starts are smooth in much shorter steps alone
       }
 }

@@ -66,7 +66,6 @@ class CpuBackend final : public Backend, NamedChannels {
   bool may_pass_motion(const StepInfo& step) const;
   void account_for_gather(const Pass& pass, const typename Step::Gathered& gathered);
   void account_for_strain(const typename Step::Gathered& dissipation);
-  bool filters_strain(const StepInfo& step) const;
   void account_for_move();
   void book_material(const typename Step::Gathered& strained);
   /// Books the stored energy that goes with a phase.
@@ -227,8 +226,10 @@ void CpuBackend<D, T, Components>::scatter(const Pass& pass, const StepInfo& ste
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step) {
   motion_kept_ = true;
-  if (pass.has(Act::strain) && filters_strain(step))
-    grid_step_->book_strain(&Ledger::filtered_strain, pass.share, step.dt);
+  if (accounted_ && step.filtered) {
+    if (pass.has(Act::strain)) grid_step_->book_strain(&Ledger::filtered_strain, pass.share, step.dt);
+    grid_step_->book_filtered_gravity(step.dt);
+  }
   account_for_gather(pass, particle_step_->gather(pass, step));
   if (pass.has(Act::move)) account_for_move();
 }
@@ -272,12 +273,6 @@ void CpuBackend<D, T, Components>::account_for_gather(const Pass& pass, const ty
   grid_step_->book_gather(gathered.kinetic_energy);
   gathered_energy_ = gathered.kinetic_energy;
   book_material(gathered);
-}
-
-/// Whether the filter changes the velocity by which particles strain in this step, and the ledger books it.
-template <int D, class T, class Components>
-bool CpuBackend<D, T, Components>::filters_strain(const StepInfo& step) const {
-  return accounted_ && step.filtered;
 }
 
 /// Books what the kinetic energy of the particles changes by as their places in the cells do.

@@ -489,7 +489,7 @@ class HostRun final : public Backend {
       book(&Ledger::boundary, work[3]), book(&Ledger::contact, work[4]), book(&Ledger::periodic_gravity, work[5]);
     }
     energy_after_ = sum_over_nodes("energy_of_velocities");
-    lumped_power_ = sum_over_nodes("power_of_forces");
+    lumped_power_ = power_of_forces();
   }
 
   // ---- the ledger: whoever gives a node an impulse notes it; works are booked when a stage of the step ends ---------
@@ -526,9 +526,18 @@ class HostRun final : public Backend {
     ledger_.filter_book += energy_after_ - before - (works_ - works);
     works_ = works + energy_after_ - before;
   }
+  /// The works of the stresses' forces and of gravity at the velocity of now, J.
+  std::array<double, 2> power_of_forces() {
+    std::array<double, 2> power{};
+    for (VelocityField<T>& field : fields_) {
+      const auto of_field = sum<2>("power_of_forces", arguments_of(field, {}), nodes());
+      for (std::size_t k = 0; k < power.size(); ++k) power[k] += of_field[k];
+    }
+    return power;
+  }
   /// Books what strain by the velocity of now stores less than by v+ before any filter.
   void book_strain(double Ledger::*row, double share) {
-    ledger_.*row -= share * (sum_over_nodes("power_of_forces") - lumped_power_);
+    ledger_.*row -= share * (power_of_forces()[0] - lumped_power_[0]);
   }
   double power_of_filter() { return sum_over_nodes("power_of_filter"); }
   void book_material(Body<T>& body) {
@@ -544,7 +553,10 @@ class HostRun final : public Backend {
 
   void gather(const Pass& pass, const StepInfo& step) {
     double energy = 0, heat = 0;
-    if (accounted_ && step.filtered && pass.has(Act::strain)) book_strain(&Ledger::filtered_strain, pass.share);
+    if (accounted_ && step.filtered) {
+      if (pass.has(Act::strain)) book_strain(&Ledger::filtered_strain, pass.share);
+      ledger_.filtered_gravity -= power_of_forces()[1] - lumped_power_[1];
+    }
     scene_.records = accounted_;
     for (Body<T>& body : bodies_) {
       Arguments<T> a = arguments_of(body);
@@ -862,16 +874,16 @@ class HostRun final : public Backend {
   ContactRecord contact_;
   ContactImpulse contact_impulse_;
   FilterRecord filter_;
-  double scattered_energy_ = 0;    ///< kinetic energy of the grid as scattered, images summed, J
-  double energy_after_ = 0;        ///< kinetic energy of the grid when particles gather from it, J
-  double works_ = 0;               ///< works on the grid since the scatter, J
-  double lumped_power_ = 0;        ///< work of the stresses' forces at v+ before any filter, J
-  double early_share_ = 0;         ///< share of the step's strain that came before the forces
-  double energy_before_move_ = 0;  ///< kinetic energy of the particles after the gather, J
-  double scattered_heat_ = 0;      ///< heat of the particles that the step's scatter began with, J
-  double heat_of_images_ = 0;      ///< heat that folding has given the grid at walls that do something with heat, J
-  HeatOfTwo beyond_{};             ///< see fill_temperature, before the step's heat
-  double heat_after_ = 0;          ///< heat of the grid when particles gather from it, J
+  double scattered_energy_ = 0;           ///< kinetic energy of the grid as scattered, images summed, J
+  double energy_after_ = 0;               ///< kinetic energy of the grid when particles gather from it, J
+  double works_ = 0;                      ///< works on the grid since the scatter, J
+  std::array<double, 2> lumped_power_{};  ///< works of the stresses' forces and of gravity at v+ before any filter, J
+  double early_share_ = 0;                ///< share of the step's strain that came before the forces
+  double energy_before_move_ = 0;         ///< kinetic energy of the particles after the gather, J
+  double scattered_heat_ = 0;             ///< heat of the particles that the step's scatter began with, J
+  double heat_of_images_ = 0;  ///< heat that folding has given the grid at walls that do something with heat, J
+  HeatOfTwo beyond_{};         ///< see fill_temperature, before the step's heat
+  double heat_after_ = 0;      ///< heat of the grid when particles gather from it, J
 };
 
 }  // namespace

@@ -109,6 +109,7 @@ void ReferenceBackend::book_forces(double dt) {
     if (meets) book(&Ledger::contact, contact_impulse_[i].dot(mean)), contact_impulse_[i].setZero();
   });
   lumped_power_ = power_of_forces(dt);
+  lumped_lift_ = power_of_weight(dt);
   energy_after_ = grid_.kinetic_energy();
 }
 
@@ -117,6 +118,17 @@ double ReferenceBackend::power_of_forces(double dt) {
   double sum = 0;
   for_each_node([&](std::size_t i) {
     if (mass_[i] > 0) sum += dt * internal_force_[i].dot(velocity_[i]);
+  });
+  return sum;
+}
+
+/// The work of gravity, where it has a potential, at the velocity of the nodes as it is now, J.
+double ReferenceBackend::power_of_weight(double dt) {
+  double sum = 0;
+  for_each_node([&](std::size_t i) {
+    if (mass_[i] <= 0) return;
+    for (int c = 0; c < 3; ++c)
+      if (experiment_.gravity_has_potential(c)) sum += dt * weight_[i][c] * velocity_[i][c];
   });
   return sum;
 }
@@ -133,6 +145,7 @@ void ReferenceBackend::book_gather(const Pass& pass, double dt) {
   const double gathered = grid_.kinetic_energy();
   ledger_.gather += particle_kinetic_energy() - gathered;
   ledger_.grid_book += gathered - scattered_energy_ - works_;
+  ledger_.filtered_gravity -= power_of_weight(dt) - lumped_lift_;
   if (pass.has(Act::strain)) ledger_.filtered_strain -= pass.share * (power_of_forces(dt) - lumped_power_);
 }
 

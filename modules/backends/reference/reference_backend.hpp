@@ -112,6 +112,7 @@ class ReferenceBackend final : public Backend {
   void book_strain(const StrainEnergies& energies);
   void book_filtered_strain(double dt);
   double power_of_forces(double dt);
+  double power_of_weight(double dt);
   double particle_kinetic_energy() const;
   Ledger* ledger_to_book() { return records_ ? &ledger_ : nullptr; }
 
@@ -191,6 +192,7 @@ class ReferenceBackend final : public Backend {
   double works_ = 0;             ///< works on the grid since the scatter, J
   double energy_after_ = 0;      ///< kinetic energy of the grid after the forces or the last filter, J
   double lumped_power_ = 0;      ///< work of the stresses' forces at v+ before any filter, J
+  double lumped_lift_ = 0;       ///< the same of gravity, J
   double early_share_ = 0;       ///< share of the step's strain that came before the forces
   ContactRecord contact_;
   ContactImpulse impulse_;

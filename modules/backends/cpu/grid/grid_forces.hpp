@@ -268,6 +268,7 @@ void GridStep<D, T>::account_for_impulses(double dt) {
   account_gravity_corrections(dt);
   if (scene_.plan.filters() || scene_.experiment.solver.stress_update == StressUpdate::modified_last)
     lumped_power_ = power_of_forces(dt);
+  if (scene_.plan.filters() && has_gravity_) lumped_lift_ = power_of_weight(dt);
 }
 
 /// Applies the forces, and counts the blocks that neither condition nor contact concerns while they are in the cache.

@@ -125,6 +125,36 @@ double GridStep<D, T>::power_of_forces(double dt) {
   return power;
 }
 
+/// The work of gravity, where it has a potential, at the velocity of the nodes as it is now, J.
+template <int D, class T>
+double GridStep<D, T>::power_of_weight(double dt) {
+  const Wide gravity = widen(gravity_) - widen(periodic_gravity_);
+  for_each_block([&](int field, std::uint32_t first, double* partial) {
+    Wide sum{};
+    for (std::uint32_t node = first; node < first + block_nodes; ++node) {
+      const Wide v = widen(motion_at(field, node));
+      sum += v[3] * v;
+    }
+    partial[0] = dt * sum_of_components(sum * gravity);
+  });
+  double power = sum_partials(0);
+  const auto& nodes = grid_.edge_nodes();
+  for (int field = 0; has_gravity_ && field < grid_.fields(); ++field)
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const Q v = motion_at(field, nodes[i]);
+      for (int c = 0; c < D && v[3] > 0; ++c)
+        if (scene_.experiment.gravity_has_potential(c))
+          power += dt * gravity_corrections_at(field, i, c) * double(v[c]);
+    }
+  return power;
+}
+
+/// Books what particles that the filtered velocity moves gain less of potential energy than v+ would give them.
+template <int D, class T>
+void GridStep<D, T>::book_filtered_gravity(double dt) {
+  if (has_gravity_) ledger_.filtered_gravity -= power_of_weight(dt) - lumped_lift_;
+}
+
 template <int D, class T>
 void GridStep<D, T>::book_gather(double kinetic_energy) {
   ledger_.gather += kinetic_energy - kinetic_energy_after_;

@@ -49,6 +49,7 @@ class GridStep : NamedChannels {
   void set_scattered(const Scattered& scattered) { particles_ = scattered; }
   /// Books the gather: the particles' kinetic energy after it, and what the nodes did since the scatter.
   void book_gather(double kinetic_energy);
+  void book_filtered_gravity(double dt);
   /// Books what strain by the velocity of now stores less than by v+ before any filter: by a share of the step.
   void book_strain(double Ledger::*row, double share, double dt);
 
@@ -100,6 +101,7 @@ class GridStep : NamedChannels {
   void book_impulses();
   void book_filter();
   double power_of_forces(double dt);
+  double power_of_weight(double dt);
   void book_filtered_strain(double dt);
   void find_constrained_slots();
   void copy_constrained_velocity();
@@ -190,6 +192,7 @@ class GridStep : NamedChannels {
   double works_ = 0;                 ///< works on the grid since the scatter, J
   double kinetic_energy_after_ = 0;  ///< kinetic energy of the velocities after the last apply_forces or filter, J
   double lumped_power_ = 0;          ///< work of the stresses' forces at v+ before any filter, J
+  double lumped_lift_ = 0;           ///< the same of gravity, J
   double work_of_folds_ = 0;         ///< energy that folding at walls gives the nodes in this step, J
   double early_share_ = 0;           ///< share of a step's strain that comes before the forces
   const WallWeights wall_weights_;   ///< empty where no heat comes through a wall

@@ -38,7 +38,7 @@
   MPM_DEVICE_ENTRY(mpm_clear_work_of_folds, clear_work_of_folds<Scene>, 1)                                      \
   MPM_DEVICE_ENTRY(mpm_clear_impulses, clear_impulses<Scene>, 1)                                                \
   MPM_DEVICE_ENTRY(mpm_work_of_impulses, work_of_impulses<Scene>, (mpm::device::sum_scalars<Scene, 3>))         \
-  MPM_DEVICE_ENTRY(mpm_power_of_forces, power_of_forces<Scene>, (mpm::device::sum_scalars<Scene, 1>))           \
+  MPM_DEVICE_ENTRY(mpm_power_of_forces, power_of_forces<Scene>, (mpm::device::sum_scalars<Scene, 2>))           \
   MPM_DEVICE_ENTRY(mpm_power_of_filter, power_of_filter<Scene>, (mpm::device::sum_scalars<Scene, 1>))           \
   MPM_DEVICE_ENTRY(mpm_work_of_folds, work_of_folds<Scene>, (mpm::device::sum_scalars<Scene, 2>))               \
   MPM_DEVICE_ENTRY(mpm_momentum_of_nodes, momentum_of_nodes<Scene>, (mpm::device::sum_scalars<Scene, 4>))       \

@@ -83,14 +83,18 @@ MPM_HD void work_of_impulses(const Team& team, const Arguments<typename Scene::S
   });
 }
 
-/// Sums dt f.v of the stresses' forces.
+/// Sums dt f.v of the stresses' forces, and of gravity where it has a potential.
 template <class Scene>
 MPM_HD void power_of_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<1>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over<2>(team, a, a.node_count, [&](int node, double* sum) {
     if constexpr (Scene::ledger)
-      for (int at = node; at < Scene::dimension * a.node_count && a.grid.field[N::mass][node] > 0; at += a.node_count)
-        sum[0] += double(a.dt) * a.grid.field[N::force][at] * a.grid.field[N::velocity][at];
+      for (int c = 0; c < Scene::dimension && a.grid.field[N::mass][node] > 0; ++c) {
+        const int at = c * a.node_count + node;
+        const double way = double(a.dt) * a.grid.field[N::velocity][at];
+        sum[0] += a.grid.field[N::force][at] * way;
+        if (a.walls[c][0] != wall_periodic) sum[1] += a.grid.field[N::weight][at] * way;
+      }
   });
 }
 
