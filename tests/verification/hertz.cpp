@@ -177,7 +177,7 @@ TEST_CASE("the impact of two spheres is that of Hertz", "[hertz][contact][impact
     force += 0.25 * found.force, duration += 0.25 * found.duration;
   }
   std::printf("  mean %.0f %.4f\n", force, duration);
-  // The place of the rim between the rows of particles moves the peak by -3 to 8 % here (docs/contact.md).
-  CHECK(force == Approx(exact.force).epsilon(0.08));
-  CHECK(duration == Approx(exact.duration).epsilon(0.08));
+  // Steps of the rim leave a mean of 3 % on these cells (docs/contact.md), and move single runs by -3 to 8 %.
+  CHECK(force == Approx(exact.force).epsilon(0.04));
+  CHECK(duration == Approx(exact.duration).epsilon(0.04));
 }
