@@ -11,6 +11,7 @@
 #include "bench/costs.hpp"
 #include "experiment/diagnostics.hpp"
 #include "output/summary_value.hpp"
+#include "run/books.hpp"
 #include "run/rim_steps.hpp"
 #include "simulation/boundary.hpp"
 
@@ -102,41 +103,21 @@ std::string warning_of_images(const Simulation& simulation) {
   return warning.str();
 }
 
-/// What a book of the ledger is off by beyond rounding; empty where it agrees. Rounding goes up and down from step to
-/// step, so that it adds up as the root of their number; the book of momentum adds up sizes
-/// (tests/verification/ledger_books.cpp holds the same bounds).
-std::string warning_of_books(const Simulation& simulation, const Totals& start, double largest_energy,
-                             double largest_momentum) {
+std::string warning_of_ledger(const Simulation& simulation, const Recorder& recorder, const Totals& start) {
   if (!simulation.plan().has_ledger()) return "";
   const bool single = simulation.experiment().precision == Precision::single;
-  const double epsilon = single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon();
-  const double steps = static_cast<double>(simulation.steps()), rounding = 64 * epsilon * std::sqrt(steps);
-  const Ledger ledger = simulation.ledger();
-  double scale = std::max(std::abs(start.total_energy()), std::abs(largest_energy));
-  for (const ValueRow& row : rows_of(ledger))
-    if (row.unit == "J" && !row.name.ends_with(" book")) scale = std::max(scale, std::abs(row.value));
-  std::ostringstream warning;
-  const auto exceeds = [&](double off, double whole) { return !(std::abs(off) <= rounding * whole); };  // so does NaN
-  if (const double off = std::abs(ledger.grid_book) + std::abs(ledger.filter_book); exceeds(off, scale))
-    warning << "the grid's kinetic energy changed by " << off << " J more than the recorded impulses explain";
-  else if (exceeds(ledger.mass_book, start.mass))
-    warning << "the nodes were given " << ledger.mass_book << " kg less than the particles have";
-  else if (exceeds(ledger.momentum_book, std::sqrt(steps) * largest_momentum))
-    warning << "the nodes were given a momentum that is " << ledger.momentum_book
-            << " kg m/s, summed over the steps, beside that of the particles";
-  else
-    return "";
-  return warning.str() + ": a fault of the program or of a plugin; report it with this experiment";
+  return warning_of_books(simulation.ledger(),
+                          {single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon(),
+                           static_cast<double>(simulation.steps()),
+                           std::max(std::abs(start.total_energy()), std::abs(recorder.largest_total_energy())),
+                           start.mass, recorder.momentum_scale()});
 }
 
 Json warnings(const Simulation& simulation, const Recorder& recorder, const Totals& start) {
   Json all = Json::array();
   if (recorder.most_contact_nodes() > 0)
     if (const std::string steps = warning_of_rim_steps(simulation.experiment()); !steps.empty()) all.push_back(steps);
-  if (const std::string books =
-          warning_of_books(simulation, start, recorder.largest_total_energy(), recorder.momentum_scale());
-      !books.empty())
-    all.push_back(books);
+  if (const std::string books = warning_of_ledger(simulation, recorder, start); !books.empty()) all.push_back(books);
   if (const std::string images = warning_of_images(simulation); !images.empty()) all.push_back(images);
   if (const double growth = simulation.backend().filter_record().largest_growth; growth > 1 + 1e-9) {
     std::ostringstream warning;
