@@ -243,6 +243,31 @@ TEST_CASE("the orders to 128 cells are the slopes of the figure's lines", "[docs
   }
 }
 
+TEST_CASE("what random places add to the error is read from the figure", "[docs]") {
+  const Cells table = table_after("convergence.md", "### Particles in random places"),
+              cells = figure("manufactured_random");
+  REQUIRE(table.size() == 6);
+  const std::map<std::string, std::string> labels{
+      {"none", "on a lattice"}, {"1/16", "shifted by up to 1/16 of their spacing"}, {"1/8", "1/8"}, {"1/4", "1/4"}};
+  const auto error = [&](const std::string& particles, const std::string& shift) {
+    return 100 * value(cells, {"particles a cell and axis: " + particles, labels.at(shift), "computed", "0.015625"}, 4);
+  };
+  for (std::size_t row = 2; row < table.size(); ++row) {
+    INFO(table[row][0]);
+    CHECK(error("2", table[row][0]) == printed(table[row][1]));
+    CHECK(error("4", table[row][0]) == printed(table[row][2]));
+  }
+  const auto added = [&](const std::string& particles, const std::string& shift) {
+    return std::sqrt(std::pow(error(particles, shift), 2) - std::pow(error(particles, "none"), 2));
+  };
+  const Page page("docs/studies/convergence.md");
+  const auto by_two = page.read("is #, # and # % with 2 particles an axis");
+  CHECK(added("2", "1/16") == by_two[0].rounded());
+  CHECK(added("2", "1/8") == by_two[1].rounded());
+  CHECK(added("2", "1/4") == by_two[2].rounded());
+  CHECK(added("4", "1/4") == page.read("an axis it is # % for the largest").front().rounded());
+}
+
 TEST_CASE("what limits the convergence is read from the figure", "[docs]") {
   const Cells table = table_after("convergence.md", "### What limits it"), cells = figure("manufactured_limits");
   REQUIRE(table.size() == 5);
@@ -369,4 +394,87 @@ TEST_CASE("the short table of the trade names the cheapest runs of its figure", 
   const Page page("docs/studies/transfer_trade.md");
   CHECK(static_cast<double>(runs) == page.read("Fourteen of # runs are on the front").front().rounded());
   CHECK(front == 14);
+}
+
+TEST_CASE("the table of what a spinning disc loses is the figures'", "[docs]") {
+  const Cells table = table_after("spin.md", "Lost in three turns"), curves = figure("spin"),
+              energies = figure("spin_energy");
+  const auto lost = [&](const std::string& cells, const std::string& scheme) {
+    double first = std::nan(""), last = first;
+    for (const auto& row : curves)
+      if (row.size() > 4 && row[0] == "cell size h: " + cells + " cells across" && row[1] == scheme) {
+        if (std::isnan(first)) first = std::stod(row[4]);
+        last = std::stod(row[4]);
+      }
+    return 100 * (1 - last / first);
+  };
+  int compared = 0;
+  for (const auto& row : table)
+    for (const auto& [name, scheme] : {std::pair<std::string, std::string>{"FLIP", "FLIP"},
+                                       {"FLIP with 1 % PIC", "FLIP, 1 % PIC"},
+                                       {"FMPM(4)", "FMPM(4)"},
+                                       {"FMPM(2)", "FMPM(2)"},
+                                       {"XPIC(2)", "XPIC(2)"},
+                                       {"PIC", "PIC"}}) {
+      if (row[0] != name) continue;
+      INFO(scheme);
+      const auto number = [](const std::string& cell) { return printed(cell.substr(0, cell.find(' '))); };
+      CHECK(lost("10", scheme) == number(row[1]));
+      CHECK(lost("20", scheme) == number(row[2]));
+      CHECK(value(energies, {scheme, "bspline_quadratic"}, 2) == number(row[3]));
+      ++compared;
+    }
+  CHECK(compared == 6);
+}
+
+TEST_CASE("the table of the precisions is the figure's", "[docs]") {
+  const Cells table = table_after("precision.md", "By how much float changes the error"),
+              cells = figure("precision_long");
+  REQUIRE(table.size() == 6);
+  const std::map<std::string, std::string> shapes{{"quadratic B-spline", "bspline_quadratic"}, {"CPDI", "cpdi"}};
+  const std::regex name("(.*), (\\d+ cells), .*"), number("[0-9]·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+");
+  for (std::size_t row = 2; row < table.size(); ++row) {
+    INFO(table[row][0]);
+    std::smatch parts;
+    REQUIRE(std::regex_match(table[row][0], parts, name));
+    const std::string panel = "shape: " + shapes.at(parts[1]), grid = parts[2];
+    const std::string& changes = table[row][1];
+    std::sregex_iterator change(changes.begin(), changes.end(), number);
+    for (const char* periods : {"0.5", "5", "50"}) {
+      INFO(periods << " periods");
+      const double full = value(cells, {panel, "double, " + grid, "computed", periods}, 4),
+                   half = value(cells, {panel, "float, " + grid, "computed", periods}, 4);
+      REQUIRE(change != std::sregex_iterator());
+      CHECK(std::abs(half / full - 1) == printed((*change++)[0]));
+    }
+  }
+}
+
+TEST_CASE("what is said of noise that no node sees is read from the figures", "[docs]") {
+  const Page page("docs/studies/null_space.md");
+  const Cells wave = figure("null_space"), shapes = figure("null_space_shapes");
+  const auto noisy = [&](const std::string& scheme) { return value(wave, {scheme, "wave with noise"}, 2); };
+  const auto clean = [&](const std::string& scheme) { return value(wave, {scheme, "wave without noise"}, 2); };
+  const auto compare = [&](const std::string& words, const std::vector<double>& found) {
+    INFO(words);
+    const auto numbers = page.read(words);
+    REQUIRE(numbers.size() == found.size());
+    for (std::size_t k = 0; k < found.size(); ++k) CHECK(found[k] == numbers[k].rounded());
+  };
+  compare("FLIP ends with the noise it was given (# %), and makes noise of its own: # %",
+          {noisy("FLIP"), clean("FLIP")});
+  compare("halves the harm (# against # %) but 5 % of PIC damps the wave more than the noise did (# %)",
+          {noisy("FLIP, 1 % PIC"), clean("FLIP, 1 % PIC"), noisy("FLIP, 5 % PIC")});
+  compare("forget it at once and err by # to # %. PIC and RPIC forget the wave too (# %:",
+          {noisy("MLS"), noisy("TPIC"), noisy("PIC")});
+  compare("and makes # % by itself; FMPM(4) at every step makes # %, and # % on CPDI",
+          {clean("FLIP, FMPM(4) every 10 steps"), clean("FMPM(4)"), value(shapes, {"FMPM(4)", "cpdi"}, 2)});
+  compare("errs more than XPIC(2) on B-splines (# and # %)", {noisy("XPIC(5)"), noisy("XPIC(2)")});
+  compare("FMPM(4) on CPDI errs by # % where APIC errs by # %",
+          {value(shapes, {"FMPM(4)", "cpdi"}, 2), value(shapes, {"APIC", "cpdi"}, 2)});
+  for (const char* scheme : {"APIC", "PolyPIC"}) {
+    INFO(scheme);
+    CHECK(noisy(scheme) > noisy("MLS"));
+    CHECK(noisy(scheme) < noisy("TPIC"));
+  }
 }
