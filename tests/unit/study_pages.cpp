@@ -243,6 +243,43 @@ TEST_CASE("the orders to 128 cells are the slopes of the figure's lines", "[docs
   }
 }
 
+TEST_CASE("the orders along the grid and turned against it are the slopes of the figures' lines", "[docs]") {
+  struct Table {
+    std::string words, figure;
+    std::vector<std::string> sizes;
+    std::size_t rows;
+  };
+  for (const Table& now : {Table{"### Turned against the grid",
+                                 "manufactured_turned",
+                                 {"0.0625", "0.03125", "0.015625", "0.0078125", "0.00390625"},
+                                 8},
+                           Table{"In 3-D, on 12, 24 and 48 cells",
+                                 "manufactured_turned_3d",
+                                 {"0.08333333333", "0.04166666667", "0.02083333333"},
+                                 6}}) {
+    const Cells table = table_after("convergence.md", now.words), cells = figure(now.figure);
+    REQUIRE(table.size() == now.rows);
+    for (std::size_t row = 2; row < table.size(); ++row) {
+      INFO(now.words << ": " << table[row][0] << ", " << table[row][1]);
+      const std::string axes = table[row][1] == "turned" ? "turned by 30 degrees" : table[row][1];
+      std::vector<double> errors, orders;
+      for (const std::string& size : now.sizes)
+        errors.push_back(value(cells, {"axes of the wave: " + axes, table[row][0], "computed", size}, 4));
+      for (std::size_t k = 0; k + 1 < errors.size(); ++k) {
+        orders.push_back(std::log2(errors[k] / errors[k + 1]));
+        CHECK(orders.back() == printed(table[row][2 + k]));
+      }
+      CHECK(100 * errors.back() / 0.05 == printed(table[row].back()));
+      if (orders.size() < 4) continue;
+      const std::string& spread = table[row][6];  // of the last three grids
+      const std::size_t sign = spread.find(" ± ");
+      REQUIRE(sign != std::string::npos);
+      CHECK(0.5 * (orders[2] + orders[3]) == printed(spread.substr(0, sign)));
+      CHECK(0.5 * std::abs(orders[2] - orders[3]) == printed(spread.substr(sign + 4)));
+    }
+  }
+}
+
 TEST_CASE("what random places add to the error is read from the figure", "[docs]") {
   const Cells table = table_after("convergence.md", "### Particles in random places"),
               cells = figure("manufactured_random");
