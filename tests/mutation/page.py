@@ -1,0 +1,73 @@
+"""The table of results, and the page of docs/design that holds it."""
+
+from collections import Counter
+from pathlib import Path
+
+from results import Result
+
+BEGIN, END = "<!-- written by tests/mutation/run --page: begin -->", "<!-- end -->"
+
+
+def folder_of(mutant):
+    return "/".join(Path(mutant.file).parts[:2])
+
+
+def what_became(mutant, results, equivalents):
+    result = results.of(mutant)
+    if result is None:
+        return "not tried"
+    if result.status == Result.SURVIVED and equivalents.reason(mutant):
+        return "equivalent"
+    if result.status in (Result.KILLED, Result.TIMED_OUT):
+        return result.by.split(".")[0]
+    return result.status
+
+
+def table(mutants, results, equivalents):
+    """One row a folder."""
+    killers = ["test-plugin", "conformance", "config", "unit", "parity", "verification"]
+    columns = [*killers, "same code", "uncompiled", "equivalent", "survived", "not tried"]
+    rows = {}
+    for mutant in mutants:
+        rows.setdefault(folder_of(mutant), Counter())[what_became(mutant, results, equivalents)] += 1
+    columns = [c for c in columns if c in ("survived", "equivalent") or any(row[c] for row in rows.values())]
+    title = ["folder", "mutants", *(f"killed by {c}" if c in killers else c for c in columns)]
+    lines = ["| " + " | ".join(title) + " |", "|" + "---|" + "--:|" * (len(title) - 1)]
+    for folder, row in rows.items():
+        lines.append("| " + " | ".join([f"`{folder}`", str(sum(row.values())), *(str(row[c]) for c in columns)]) + " |")
+    return "\n".join(lines)
+
+
+def with_reasons(mutants, results, equivalents):
+    """The survivors, those without a reason first; equal reasons of one file stand together."""
+    unexplained = [m for m in mutants if what_became(m, results, equivalents) == Result.SURVIVED]
+    lines = ["No mutant survived without a reason."] if not unexplained else ["Survived without a reason:", ""]
+    lines += [f"- `{m.name}`: `{m.code}`" for m in unexplained]
+    groups = {}
+    for m in mutants:
+        if what_became(m, results, equivalents) == "equivalent":
+            groups.setdefault((m.file, equivalents.reason(m)), []).append(m)
+    if groups:
+        lines += ["", "| file | line | changes | why no test can see them |", "|---|---|---|---|"]
+    for (file, reason), group in groups.items():
+        code = "<br>".join(dict.fromkeys(f"`{escaped(m.code)}`" for m in group))
+        changes = "<br>".join(f"`{escaped(m.what)}`" for m in group)
+        lines.append(f"| `{Path(file).name}` | {code} | {changes} | {reason} |")
+    return "\n".join(lines)
+
+
+def escaped(code):
+    return code.replace("|", "\\|")
+
+
+def write(path, mutants, results, equivalents):
+    text = path.read_text()
+    head, _, rest = text.partition(BEGIN)
+    _, _, tail = rest.partition(END)
+    total = len(mutants)
+    by_hand = [
+        f"Run of {results.date}, {total} mutants.",
+        table(mutants, results, equivalents),
+        with_reasons(mutants, results, equivalents),
+    ]
+    path.write_text(head + BEGIN + "\n\n" + "\n\n".join(by_hand) + "\n\n" + END + tail)

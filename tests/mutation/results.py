@@ -1,0 +1,101 @@
+"""What became of each mutant, kept in a file, and the list of mutants that compute the same as the program."""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True)
+class Result:
+    """`by` is the test that failed; `check` says more, where the test does."""
+
+    KILLED = "killed"
+    TIMED_OUT = "timed out"
+    SAME_CODE = "same code"
+    UNCOMPILED = "uncompiled"
+    SURVIVED = "survived"
+
+    status: str
+    by: str = ""
+    check: str = ""
+
+    def text(self):
+        words = self.status + (f" by {self.by}" if self.by else "")
+        return words + (f" ({self.check})" if self.check else "")
+
+
+def fingerprint(mutant):
+    words = "\n".join([mutant.file, str(mutant.line), mutant.what, mutant.code, mutant.replacement])
+    return hashlib.sha256(words.encode()).hexdigest()[:16]
+
+
+class Results:
+    """Results by mutant. A changed line makes other mutants, whose results are unknown."""
+
+    def __init__(self, path):
+        self.path = path
+        kept = json.loads(path.read_text()) if path.is_file() else {}
+        self.date = kept.get("date", "")
+        self.known = {key: Result(**value) for key, value in kept.get("results", {}).items()}
+
+    def clear(self):
+        self.known = {}
+
+    def of(self, mutant):
+        return self.known.get(fingerprint(mutant))
+
+    def put(self, mutant, result):
+        self.known[fingerprint(mutant)] = result
+        self.save()
+
+    def save(self):
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        kept = {"date": self.date, "results": {key: asdict(value) for key, value in self.known.items()}}
+        self.path.with_suffix(".new").write_text(json.dumps(kept, indent=1))
+        self.path.with_suffix(".new").replace(self.path)
+
+
+class Equivalents:
+    """The list of equivalent mutants: blocks of lines `file`, `line`, `change` (one or more), `reason`, each a word and
+    a colon before its text. A mutant is in it by the text of its line, wherever that stands in the file."""
+
+    def __init__(self, path):
+        self.reasons = {}
+        block, reason_of = {"change": []}, None
+        for text in [*path.read_text().split("\n"), ""] if path.is_file() else []:
+            if text.startswith("#"):
+                continue
+            word, colon, rest = text.partition(": ")
+            if colon and word in ("file", "line", "reason"):
+                block[word] = rest
+            elif colon and word == "change":
+                block["change"].append(rest)
+            elif text.startswith("  ") and "reason" in block:
+                block["reason"] += " " + text.strip()
+            elif not text.strip():
+                if block["change"]:
+                    for change in block["change"]:
+                        self.reasons[block["file"], change, block["line"]] = block["reason"]
+                block = {"change": []}
+            else:
+                raise SystemExit(f"{path}: a line that begins with no known word: {text}")
+
+    def reason(self, mutant):
+        return self.reasons.get(mutant.key)
+
+    def stale(self, mutants, results):
+        """What the list says of mutants tried here that is not so any more."""
+        by_key = {mutant.key: mutant for mutant in mutants}
+        files = {mutant.file for mutant in mutants}
+        for key in self.reasons:
+            if key[0] not in files:
+                continue
+            if key in by_key:
+                result = results.of(by_key[key])
+                if result.status not in (Result.SURVIVED, Result.SAME_CODE):
+                    yield f"{by_key[key].name} is {result.text()}"
+
+    def unknown(self, mutants):
+        """The entries of these mutants' files that match none of them."""
+        keys, files = {mutant.key for mutant in mutants}, {mutant.file for mutant in mutants}
+        return [key for key in self.reasons if key[0] in files and key not in keys]
