@@ -46,11 +46,6 @@ class Build:
     def __init__(self, tree, folder, work, longest, say):
         self.tree, self.folder, self.work, self.longest, self.say = tree, folder, work, longest, say
 
-    def bench(self, number):
-        from trial import Bench
-
-        return Bench(self, self.work / f"bench-{number}")
-
     # ---- what cmake and ninja know -----------------------------------------------------------------------------
 
     def make(self):

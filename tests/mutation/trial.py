@@ -14,14 +14,15 @@ from results import Result
 from together import Together
 
 FIRST_LOOK = "-O1"  # checks of the plugin alone run on a build that is made faster
-NOT_LOOKED = Result(Result.SURVIVED, check="no test but test-plugin was tried")
+# What test-plugin has done already; what tests the checks themselves; what compares a plugin with its own text.
+NOT_OF_PLUGINS = ("conformance.every_plugin", "conformance.wrong_plugins", "conformance.device_pass")
 SLACK = 10  # times the processor time of a test on the unchanged program, after which it hangs
 
 
 class Bench:
     """A folder with programs and plugins of its own, as a build folder has them, and processes that can be stopped."""
 
-    running, lock = set(), threading.Lock()
+    running, lock, stopped = set(), threading.Lock(), False
 
     def __init__(self, build, folder):
         self.build, self.folder = build, folder
@@ -44,6 +45,8 @@ class Bench:
 
     def run(self, words, seconds, **variables):
         """Exit code and output; no code where it took more processor time. All that it started ends with it."""
+        if Bench.stopped:
+            raise KeyboardInterrupt
         process = subprocess.Popen([str(w) for w in words], cwd=self.build.folder, text=True, errors="replace",
                                    env={**environment(), **variables}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                    start_new_session=True, preexec_fn=limited_to(seconds))  # fmt: skip
@@ -63,39 +66,37 @@ class Bench:
     @classmethod
     def stop_all(cls):
         with cls.lock:
+            cls.stopped = True
             for pid in cls.running:
                 os.killpg(pid, signal.SIGKILL)
 
 
 class Trial:
-    """`together` is a plugin that holds the mutant as one of many, and its number there; none where it does not."""
+    """A mutant that is compiled alone. `tried` are tests that it is known to pass."""
 
-    def __init__(self, build, bench, mutant, together=None):
-        self.build, self.bench, self.mutant, self.together = build, bench, mutant, together
+    def __init__(self, build, bench, mutant, tried=()):
+        self.build, self.bench, self.mutant, self.tried = build, bench, mutant, tried
         self.objects = build.objects_of.get(mutant.file, set())
         self.plugins = sorted(name for name in self.objects if build.plugin_of(name))
         self.libraries = sorted(n for n in self.objects if not build.plugin_of(n) and not build.test_of(n))
         self.tests = {build.test_of(name): name for name in self.objects if build.test_of(name)}
 
-    def result(self, first_look=False):
-        if self.together and (verdict := self.look_at_plugins()):
-            return verdict
+    def result(self):
         self.bench.clear([self.build.plugin_of(name) for name in self.plugins])
         mutated = self.bench.folder / "overlay/modules" / Path(self.mutant.file).relative_to("modules")
         # Its neighbours come along: sources beside a header include it by its name alone.
         shutil.copytree((self.build.tree / self.mutant.file).parent, mutated.parent)
         mutated.write_text(self.mutant.applied((self.build.tree / self.mutant.file).read_text()))
         try:
-            looked = None if self.together else self.look_at_plugins()
-            return looked or (NOT_LOOKED if first_look else self.look_for_same_code() or self.look_at_tests())
+            return self.look_for_same_code() or self.look_at_plugins() or self.look_at_tests()
         except Refused:
             return Result(Result.UNCOMPILED)
 
     # ---- compiling ---------------------------------------------------------------------------------------------
 
-    def compiled(self, name, *flags, text=None):
-        """The object made with the changed file; `text` is what the plugin carries of its functor."""
-        out = self.bench.folder / "objects" / (name.replace("/", "_") + "".join(flags) + (".carries" if text else ""))
+    def compiled(self, name, *flags):
+        """The object made with the changed file."""
+        out = self.bench.folder / "objects" / (name.replace("/", "_") + "".join(flags))
         if out.exists():
             return out
         words = [word for word in self.build.compile_of[name] if word != "-Werror"]
@@ -104,23 +105,15 @@ class Trial:
         words[words.index("-o") + 1] = str(out)
         words[words.index("-c") + 1] = str(own) if own.is_file() else source
         words.insert(1, f"-I{self.bench.folder / 'overlay/modules'}")
-        if text:
-            words = [w if "MPM_EMBEDDED_SOURCE" not in w else f'-DMPM_EMBEDDED_SOURCE="{text}"' for w in words]
         code, output = self.bench.run([*words, "-w", *flags], 600)
         if code != 0:
             raise Refused(output)
         return out
 
     def plugin_made(self, name, *flags):
-        """Puts the changed plugin, which carries the changed text, in the place of the unchanged one."""
-        plugin = self.build.plugin_of(name)
-        text = None
-        if self.mutant.file.endswith(f"/{plugin.partition('_')[2]}.hpp"):
-            text = self.bench.folder / "objects" / f"{plugin}.inc"
-            changed = self.mutant.applied((self.build.tree / self.mutant.file).read_text())
-            text.write_text(f'R"MPM_SOURCE({changed})MPM_SOURCE"\n')
-        out = self.bench.folder / "plugins" / f"{plugin}.so"
-        return self.linked(out, self.compiled(name, *flags, text=text))
+        """Puts the changed plugin in the place of the unchanged one."""
+        plugin = self.bench.folder / "plugins" / f"{self.build.plugin_of(name)}.so"
+        return self.linked(plugin, self.compiled(name, *flags))
 
     def linked(self, plugin, made):
         plugin.unlink(missing_ok=True)
@@ -163,8 +156,8 @@ class Trial:
         return Result(kind, "test-plugin", failed[1] if failed else output.strip().split("\n")[0][:60])
 
     def look_at_plugins(self):
-        if self.together:
-            return self.verdict_on(self.together[0], self.bench.folder / "bin/mpm", self.together[1])
+        if self.tried:
+            return None
         for name in self.plugins:
             plugin = self.plugin_made(name, FIRST_LOOK)
             verdict = self.verdict_on(plugin, self.program_with("mpm", self.libraries))
@@ -173,7 +166,7 @@ class Trial:
         return None
 
     def look_for_same_code(self):
-        """The same instructions from both, with the same text of the functor in the plugin."""
+        """The same instructions from both. (The plugin carries the unchanged text of its functor in either case.)"""
         for name in self.objects:
             if self.build.test_of(name) and self.plugins:
                 continue
@@ -182,9 +175,10 @@ class Trial:
         return Result(Result.SAME_CODE)
 
     def look_at_tests(self):
-        for name in self.plugins:
+        tests = self.ordered_tests()
+        for name in self.plugins if tests else []:
             self.plugin_made(name)
-        for test in self.ordered_tests():
+        for test in tests:
             first = self.libraries + ([self.tests[test.suite, test.file]] if (test.suite, test.file) in self.tests else [])
             program = self.program_with(test.program, first)
             code, output = self.bench.run([program, *test.call], SLACK * test.seconds + 5)
@@ -193,47 +187,95 @@ class Trial:
         return Result(Result.SURVIVED)
 
     def ordered_tests(self):
-        """Tests that know the changed file first, then those that name the plugin, then all others; short ones first."""
+        """Tests that know the changed file first, then those that name the plugin, then all others; short ones first.
+        Of the others only those that take less than a quarter of --longest."""
         ids = [self.build.plugin_of(name).partition("_")[2] for name in self.plugins]
 
         def place(test):
-            knows = (test.suite, test.file) in self.tests
-            named = any(f'"{id}' in test.text for id in ids)
-            return (not knows, not named, test.seconds)
+            named = not ids or any(f'"{id}' in test.text for id in ids)
+            return ((test.suite, test.file) not in self.tests, not named, test.seconds)
 
-        useful = self.build.tests
-        if self.plugins and not self.libraries:
-            # What `mpm test-plugin` has done, what tests the checks themselves, and what knows no plugin.
-            useful = [t for t in useful if t.name not in ("conformance.every_plugin", "conformance.wrong_plugins")]
+        useful = [test for test in self.build.tests if test not in self.tried]
+        useful = [t for t in useful if place(t)[:2] != (True, True) or t.seconds <= self.build.longest / 4]
+        if self.plugins and not self.libraries:  # the suite unit knows no plugin but those that it includes
             useful = [t for t in useful if t.suite != "unit" or (t.suite, t.file) in self.tests]
+        if self.plugins:
+            useful = [t for t in useful if t.name not in NOT_OF_PLUGINS]
         return sorted(useful, key=place)
 
 
-def plugin_together(build, bench, file, mutants):
-    """(plugin, numbers of the mutants that it holds by mutant) of a functor's file; none where that cannot be made."""
-    objects = [name for name in build.objects_of.get(file, ()) if not build.test_of(name)]
-    if len(objects) != 1 or not build.plugin_of(objects[0]):
-        return None
-    text = (build.tree / file).read_text()
-    together = Together(text, mutants)
-    trial = Trial(build, bench, mutants[0])
-    for _ in range(6):
-        bench.clear([])
-        changed = bench.folder / "overlay" / file
+class Shared:
+    """Plugin and test programs of one functor's file that hold most of its mutants, made once."""
+
+    def __init__(self, build, folder, file, mutants):
+        self.build, self.file, self.bench = build, file, Bench(build, folder)
+        self.text = Together((build.tree / file).read_text(), mutants)
+        self.trial = Trial(build, self.bench, mutants[0])
+        self.plugin, self.programs, self.tests, self.number_of = None, {}, [], {}
+        if len(self.trial.plugins) == 1 and self.make_plugin():
+            self.make_programs()
+            self.number_of = {mutants[number - 1]: number for number in self.text.numbers()}
+
+    def write_text(self):
+        self.bench.clear([])
+        changed = self.bench.folder / "overlay" / self.file
         changed.parent.parent.mkdir(parents=True)
-        shutil.copytree((build.tree / file).parent, changed.parent)
-        changed.write_text(together.written())
-        try:
-            out = bench.folder / f"{build.plugin_of(objects[0])}_together.so"
-            trial.linked(out, trial.compiled(objects[0], FIRST_LOOK))
-        except Refused as refusal:
-            if together.refuse(str(refusal)):
-                continue
-            return None
-        if trial.verdict_on(out, bench.folder / "bin/mpm"):
-            return None
-        return out, {mutants[number - 1]: number for number in together.numbers()}
-    return None
+        shutil.copytree((self.build.tree / self.file).parent, changed.parent)
+        changed.write_text(self.text.written())
+
+    def make_plugin(self):
+        """Makes the plugin without the mutants that the compiler refuses here; whether it then does as the program."""
+        name = self.trial.plugins[0]
+        plugin = self.bench.folder / "plugins" / f"{self.build.plugin_of(name)}.so"
+        for _ in range(6):
+            self.write_text()
+            try:
+                self.plugin = self.trial.linked(plugin, self.trial.compiled(name, FIRST_LOOK))
+                return self.trial.verdict_on(plugin, self.bench.folder / "bin/mpm") is None
+            except Refused as refusal:
+                if not self.text.refuse(str(refusal)):
+                    return False
+        return False
+
+    def make_programs(self):
+        """Makes the programs of the tests that know the file, and all programs where a library knows it."""
+        known = {}
+        for test in self.build.tests:
+            name = self.trial.tests.get((test.suite, test.file))
+            if name and test.name not in NOT_OF_PLUGINS:
+                try:
+                    self.trial.compiled(name)
+                    known.setdefault(test.suite, []).append((test, name))
+                except Refused:
+                    continue
+        for suite in self.build.suites:
+            first = self.trial.libraries + [name for _, name in known.get(suite, [])]
+            if first:
+                self.programs[suite] = self.trial.program_with(f"test_{suite}", first)
+        self.tests = [test for test in self.trial.ordered_tests() if self.holds(test, known) and self.passes(test)]
+
+    def holds(self, test, known):
+        return (test.suite, test.file) not in self.trial.tests or test in [held for held, _ in known.get(test.suite, [])]
+
+    def passes(self, test, number=0):
+        """Whether a test passes with one of the mutants, 0 for none."""
+        return self.outcome(test, number) == 0
+
+    def outcome(self, test, number):
+        program = self.programs.get(test.suite, self.bench.folder / "bin" / test.program)
+        return self.bench.run([program, *test.call], SLACK * test.seconds + 5, MPM_MUTANT=str(number))[0]
+
+    def result(self, mutant):
+        """The first failure with a mutant; none where nothing here fails."""
+        number = self.number_of[mutant]
+        verdict = self.trial.verdict_on(self.plugin, self.bench.folder / "bin/mpm", number)
+        if verdict:
+            return verdict
+        for test in self.tests:
+            code = self.outcome(test, number)
+            if code != 0:
+                return Result(Result.TIMED_OUT if code is None else Result.KILLED, test.name)
+        return None
 
 
 class Refused(Exception):
