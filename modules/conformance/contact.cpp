@@ -168,23 +168,29 @@ void check_pairs(const Plugin& plugin, const ContactBatch& b, const Pairs& pairs
   findings.require("status [" + v.name() + "]", status, "apart exactly where the impulse is zero; 0, 1 or 2" + where);
 }
 
-/// Checks |J_t| <= mu J_n with mu the largest coefficient of friction among the parameters.
+/// Checks |J_t| <= mu J_n with mu the largest coefficient of friction among the parameters, and that what a sliding pair
+/// turns to heat is the work of its friction: J_t times the mean of the velocities before and after.
 void check_friction(const Plugin& plugin, const ContactBatch& b, const ParameterSample& parameters, const Pairs& pairs,
                     const std::string& where, Findings& findings) {
   double mu = -1;
   for (const mpm_parameter& p : plugin.parameters())
     if (std::strstr(p.name, "friction")) mu = std::max(mu, parameter_value(plugin, parameters, p.name, 0));
   if (mu < 0) return;
-  Worst excess;
+  Worst excess, work;
   for (int lane = 0; lane < full; ++lane) {
     const Vector3 n = b.vector(b.normal, lane), J = b.vector(b.impulse, lane);
     const double normal = -dot(J, n);
     Vector3 tangential;
     for (int i = 0; i < 3; ++i) tangential[i] = J[i] + normal * n[i];
     excess.add((magnitude(tangential) - mu * normal) / pairs[lane].reduced_mass(), lane);
+    if (static_cast<int>(b.status(0, lane)) != MPM_SLIPS) continue;
+    const double done = (dot(tangential, b.jump(lane, 0)) + dot(tangential, b.jump(lane, 1))) / 2;
+    work.add(std::abs(b.dissipated(0, lane) - done) / pairs[lane].reduced_mass(), lane);
   }
   findings.at_most("friction_bound", b.variant, excess, 256 * b.variant.epsilon(),
                    "|J_t| - mu J_n over reduced mass" + where);
+  findings.at_most("heat_is_work_of_friction", b.variant, work, 256 * b.variant.epsilon(),
+                   "|heat - J_t . mean velocity| over reduced mass of pairs that slide" + where);
 }
 
 /// Checks that swapping the bodies flips the impulse, that turning the frame turns it, and that a moving frame changes

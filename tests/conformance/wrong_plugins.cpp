@@ -432,6 +432,14 @@ struct Pulls : Coulomb {
   }
 };
 
+struct HeatsTooLittle : Coulomb {
+  template <int D, class S>
+  MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
+    Coulomb::apply(p, pair, result);
+    result.dissipated = real<S>(0.5) * result.dissipated;
+  }
+};
+
 struct PullsOpenly : Pulls {  // is the same law, declared
   static constexpr unsigned traits = MPM_PULLS;
 };
@@ -577,6 +585,7 @@ TEST_CASE("wrong contact laws are caught") {
   check_caught(wrong_contact<GainsEnergy>, "energy_never_grows");
   check_caught(wrong_contact<OneSided>, "pair_symmetry");
   check_caught(wrong_contact<OneSided>, "no_approach_after");
+  check_caught(wrong_contact<HeatsTooLittle>, "heat_is_work_of_friction");
   check_caught(wrong_contact<Pulls>, "no_pull");
   CHECK(failures(wrong_contact<PullsOpenly>).count("no_pull") == 0);
 }

@@ -131,6 +131,8 @@ class Build:
         taken = round(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, 2)
         if ended.returncode < 0 and taken > 0.9 * self.longest:
             return 1e9
+        if "No tests ran" in ended.stdout:
+            raise BuildFailed(f"{test.program} has no case of {test.file}: it is older than the tree")
         if ended.returncode != 0:
             raise BuildFailed(f"{test.name} fails on the unchanged program:\n{ended.stdout[-4000:]}")
         return taken
