@@ -143,7 +143,7 @@ void check_pairs(const Plugin& plugin, const ContactBatch& b, const Pairs& pairs
                  Findings& findings) {
   const Variant& v = b.variant;
   Worst apart, approach, dissipated, energy, lost, sticking;
-  bool status = true;
+  bool status = true, slips = true;
   for (int lane = 0; lane < full; ++lane) {
     const Vector3 n = b.vector(b.normal, lane), after = b.jump(lane, 1), J = b.vector(b.impulse, lane);
     const double m = pairs[lane].reduced_mass(), heat = b.dissipated(0, lane);
@@ -156,6 +156,7 @@ void check_pairs(const Plugin& plugin, const ContactBatch& b, const Pairs& pairs
     const int state = static_cast<int>(b.status(0, lane));
     status &= (state == MPM_APART) == (magnitude(J) == 0) && state >= MPM_APART && state <= MPM_SLIPS;
     if (state == MPM_STICKS) sticking.add(magnitude(after), lane);
+    if (state == MPM_SLIPS) slips &= magnitude(after) > 4 * v.epsilon();
   }
   const double bound = 256 * v.epsilon();
   if (!is_weld(plugin) && !(plugin.contact().traits & MPM_PULLS))
@@ -165,6 +166,8 @@ void check_pairs(const Plugin& plugin, const ContactBatch& b, const Pairs& pairs
   findings.at_most("energy_never_grows", v, energy, bound, "relative gain of kinetic energy" + where);
   findings.at_most("heat_below_loss", v, lost, bound, "heat reported beyond the kinetic energy lost, relative" + where);
   findings.at_most("sticking_pair_moves_as_one", v, sticking, bound, "relative velocity of pairs that stick" + where);
+  findings.require("sliding_pair_slides [" + v.name() + "]", slips,
+                   "pairs that slip are left with a relative velocity" + where);
   findings.require("status [" + v.name() + "]", status, "apart exactly where the impulse is zero; 0, 1 or 2" + where);
 }
 

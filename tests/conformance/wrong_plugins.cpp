@@ -5,6 +5,7 @@
 
 #include "conformance/conformance.hpp"
 #include "contacts/coulomb/coulomb.hpp"
+#include "contacts/stick/stick.hpp"
 #include "filters/fmpm/fmpm.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
 #include "plugin/extension_of.hpp"
@@ -440,6 +441,14 @@ struct HeatsTooLittle : Coulomb {
   }
 };
 
+struct SlipsInPlace : Stick {  // says that a weld slips
+  template <int D, class S>
+  MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
+    Stick::apply(p, pair, result);
+    result.status = S(real<S>(2));
+  }
+};
+
 struct PullsOpenly : Pulls {  // is the same law, declared
   static constexpr unsigned traits = MPM_PULLS;
 };
@@ -516,6 +525,7 @@ TEST_CASE("the plugins that the wrong ones are made from pass") {
   CHECK(failures(wrong_transfer<Asflip>).empty());
   CHECK(failures(wrong_transfer<Flip>).empty());
   CHECK(failures(wrong_contact<Coulomb>).empty());
+  CHECK(failures(wrong_contact<Stick>).empty());
   CHECK(failures(wrong_material<NeoHookean>).empty());
 }
 
@@ -586,6 +596,7 @@ TEST_CASE("wrong contact laws are caught") {
   check_caught(wrong_contact<OneSided>, "pair_symmetry");
   check_caught(wrong_contact<OneSided>, "no_approach_after");
   check_caught(wrong_contact<HeatsTooLittle>, "heat_is_work_of_friction");
+  check_caught(wrong_contact<SlipsInPlace>, "sliding_pair_slides");
   check_caught(wrong_contact<Pulls>, "no_pull");
   CHECK(failures(wrong_contact<PullsOpenly>).count("no_pull") == 0);
 }

@@ -1,0 +1,106 @@
+// What transfers make of one particle's gathered moments, by the formulas of their papers, and what they promise.
+
+#include <cmath>
+
+#include "kernel/lanes.hpp"
+#include "support/catch.hpp"
+#include "transfers/aflip/aflip.hpp"
+#include "transfers/apic/apic.hpp"
+#include "transfers/asflip/asflip.hpp"
+#include "transfers/flip/flip.hpp"
+#include "transfers/mls/mls.hpp"
+#include "transfers/pic/pic.hpp"
+#include "transfers/polypic/polypic.hpp"
+#include "transfers/rpic/rpic.hpp"
+#include "transfers/tpic/tpic.hpp"
+
+namespace {
+
+using namespace mpm;
+
+/// The spin that RPIC makes of an affine field and a second moment.
+template <int D, class T>
+Mat<D, T> spin_of(const Mat<D, T>& affine, const Mat<D, T>& moment) {
+  GatheredMoments<D, T> moments{};
+  moments.affine = affine, moments.second_moment = moment;
+  Vec<D, T> v{}, advection{};
+  Rpic::State<D, T> state{};
+  Rpic::gather<D, T>({}, moments, T(0), v, state, advection);
+  return state.spin;
+}
+
+template <int D, class T>
+Mat<D, T> multiple_of_identity(T value) {
+  Mat<D, T> m{};
+  for (int i = 0; i < D; ++i) m(i, i) = value;
+  return m;
+}
+
+/// Largest entry of W M + M W - (C M - (C M)^T), which vanishes for the spin W of Jiang et al. 2015, section 5.2.
+template <int D>
+double spin_error(const Mat<D, double>& C, const Mat<D, double>& M) {
+  const Mat<D, double> W = spin_of(C, M);
+  double worst = 0;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) {
+      double left = 0, right = 0;
+      for (int k = 0; k < D; ++k) {
+        left += W(i, k) * M(k, j) + M(i, k) * W(k, j);
+        right += C(i, k) * M(k, j) - C(j, k) * M(k, i);
+      }
+      worst = std::max({worst, std::abs(left - right), std::abs(W(i, j) + W(j, i))});
+    }
+  return worst;
+}
+
+/// Largest W / w over moments from 1 down to nothing, W the spin that comes back of a spin w; a NaN counts as 2.
+template <int D, class T>
+double largest_returned_spin() {
+  double largest = 0;
+  for (int halvings = 0; halvings <= 140; ++halvings) {
+    const T moment = halvings == 140 ? T(0) : static_cast<T>(std::ldexp(1.0, -halvings));
+    Mat<D, T> C{};
+    C(1, 0) = T(3), C(0, 1) = T(-3);
+    const double back = spin_of(C, multiple_of_identity<D>(moment))(1, 0) / 3;
+    largest = std::max(largest, std::isfinite(back) && back >= 0 ? back : 2.0);
+  }
+  return largest;
+}
+
+template <class Transfer>
+bool replaces_motion() {
+  return (Transfer::traits & MPM_REPLACES_MOTION) != 0;
+}
+
+}  // namespace
+
+TEST_CASE("RPIC's spin has the angular momentum of the gathered field, whatever the second moment") {
+  CHECK(spin_error<2>({{1, 2, -3, 5}}, {{0.25, 0.1, 0.1, 0.75}}) <= 1e-14);
+  CHECK(spin_error<2>({{-4, 1, 6, 2}}, {{1.5, -0.3, -0.3, 0.2}}) <= 1e-14);
+  CHECK(spin_error<3>({{1, 2, -3, 5, 4, 0.5, -2, 7, 3}}, {{0.5, 0.1, -0.2, 0.1, 0.75, 0.05, -0.2, 0.05, 1.25}}) <=
+        1e-14);
+  CHECK(spin_error<3>({{0, -2, 4, 1, 3, -6, 8, 0.25, 1}}, {{2, -0.4, 0.3, -0.4, 1, 0.6, 0.3, 0.6, 0.7}}) <= 1e-14);
+}
+
+TEST_CASE("RPIC's spin fades where the second moment vanishes, and is never more than the field's") {
+  CHECK(largest_returned_spin<2, double>() <= 1 + 1e-15);
+  CHECK(largest_returned_spin<3, double>() <= 1 + 1e-15);
+  CHECK(largest_returned_spin<2, float>() <= 1 + 3e-7);
+  CHECK(largest_returned_spin<3, float>() <= 1 + 3e-7);
+  // A particle at 1e-9 cells from a node of tents, with f (1 - f) = 1e-9, keeps its spin in double precision.
+  Mat<2, double> C{};
+  C(1, 0) = 3, C(0, 1) = -3;
+  CHECK(std::abs(spin_of(C, multiple_of_identity<2>(1e-9))(1, 0) - 3) <= 1e-14);
+}
+
+TEST_CASE("transfers say whether velocity and state follow from what is gathered alone") {
+  CHECK(replaces_motion<Pic>());
+  CHECK(replaces_motion<Apic>());
+  CHECK(replaces_motion<Mls>());
+  CHECK(replaces_motion<Tpic>());
+  CHECK(replaces_motion<Rpic>());
+  CHECK(replaces_motion<Polypic>());
+  CHECK_FALSE(replaces_motion<Flip>());
+  CHECK_FALSE(replaces_motion<Aflip>());
+  CHECK_FALSE(replaces_motion<Asflip>());
+}
