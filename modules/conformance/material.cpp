@@ -41,6 +41,46 @@ void check_rest(const Context& c) {
                      "a null gradient at rest" + c.where);
 }
 
+/// The parameters with those of one unit multiplied.
+ParameterSample multiplied(const Context& c, const char* unit, double factor) {
+  ParameterSample changed = c.parameters;
+  for (const mpm_parameter& p : c.plugin.parameters())
+    if (std::strcmp(p.unit, unit) == 0) changed.block[p.offset / sizeof(double)] *= factor;
+  return changed;
+}
+
+/// Checks what follows from the units alone where parameters are moduli, densities and pure numbers: with moduli of
+/// four times the size stresses and energies have four times the size and waves twice the speed, and with four times the
+/// density waves have half the speed.
+void check_units(const Context& c, const std::vector<Increments>& path) {
+  for (const mpm_parameter& p : c.plugin.parameters())
+    for (const char* known : {"", "rad", "Pa", "kg/m^3"}) {
+      if (std::strcmp(p.unit, known) == 0) break;
+      if (std::strcmp(known, "kg/m^3") == 0) return;
+    }
+  const ParameterSample stiff = multiplied(c, "Pa", 4), dense = multiplied(c, "kg/m^3", 4);
+  const MaterialBatch batch = after_path(c.plugin, c.variant, c.parameters, path),
+                      stiffer = after_path(c.plugin, c.variant, stiff, path),
+                      denser = after_path(c.plugin, c.variant, dense, path);
+  Worst moduli, density;
+  for (int lane = 0; lane < full; ++lane) {
+    const double energy = batch.energy(0, lane), heat = batch.dissipated(0, lane), speed = batch.wave(0, lane);
+    moduli.add(largest_difference(stiffer.tau(lane), scaled(batch.tau(lane), 4)) / c.modulus, lane);
+    moduli.add(std::abs(stiffer.energy(0, lane) - 4 * energy) / c.modulus, lane);
+    moduli.add(std::abs(stiffer.dissipated(0, lane) - 4 * heat) / c.modulus, lane);
+    moduli.add(std::abs(stiffer.wave(0, lane) / (2 * speed) - 1), lane);
+    density.add(largest_difference(denser.tau(lane), batch.tau(lane)) / c.modulus, lane);
+    density.add(std::abs(denser.energy(0, lane) - energy) / c.modulus, lane);
+    density.add(std::abs(denser.dissipated(0, lane) - heat) / c.modulus, lane);
+    density.add(std::abs(2 * denser.wave(0, lane) / speed - 1), lane);
+  }
+  const double bound = 64 * c.variant.epsilon();
+  c.findings.at_most("scales_with_moduli", c.variant, moduli, bound,
+                     "stress, energy and heat of four times the moduli over rho c^2, and wave speed" + c.where);
+  c.findings.at_most("scales_with_density", c.variant, density, bound,
+                     "stress, energy and heat of four times the density over rho c^2, and wave speed" + c.where);
+}
+
 /// Checks along a path of large strains: signs, volume, and that looking at a state does not change it.
 void check_path(const Context& c, const std::vector<Increments>& path) {
   MaterialBatch batch = c.batch();
@@ -458,6 +498,7 @@ void check_material(const Plugin& plugin, Findings& findings) {
       check_rest(c);
       findings.running("path of large strain", v, c.where);
       check_path(c, path);
+      check_units(c, path);
       findings.running("stress from energy and objectivity", v, c.where);
       if (traits & MPM_HYPERELASTIC) check_hyperelastic(c, path);
       if (traits & MPM_OBJECTIVE) check_objective(c, path, random);

@@ -199,3 +199,21 @@ TEST_CASE("sand that does not yield keeps the elastic deformation gradient to th
     for (int k = 0; k < 9; ++k) CHECK(sand.state.elastic_deformation_gradient.plane.m[k] == F.m[k]);
   }
 }
+
+TEST_CASE("sand: the wave speed at rest is the fastest that yielding on the cone allows") {
+  const double shear = young / (2 * (1 + poisson)), most = std::sqrt(2.0 / 3);
+  for (double angle : {10.0, 30.0, 44.0, 50.0, 60.0, 75.0}) {  // with k below, between and above 2 sqrt(2/3) and 2
+    CAPTURE(angle);
+    const double sine = std::sin(angle * degree), k = most * 2 * sine / (3 - sine) * 3 * bulk / (2 * shear);
+    double largest = 0;  // of u (k - u) over the components -u of unit deviators
+    for (int n = 0; n <= 100000; ++n) largest = std::max(largest, n * 1e-5 * most * (k - n * 1e-5 * most));
+    const double modulus = bulk + 4 * shear / 3 + 2 * shear * largest;
+    const Particle sand(angle * degree, 0);
+    const double speed = DruckerPrager::wave_speed(sand.constants, sand.state);
+    CHECK(std::abs(1600 * speed * speed / modulus - 1) < 1e-9);
+  }
+}
+
+TEST_CASE("sand: the sine by its series is the sine") {
+  for (int n = 0; n <= 90; ++n) CHECK(std::abs(DruckerPrager::sin_of(n * degree) - std::sin(n * degree)) <= 1e-15);
+}

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "materials/drucker_prager/drucker_prager.hpp"
+#include "materials/fixed_corotated/fixed_corotated.hpp"
 #include "materials/linear_elastic/linear_elastic.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
 #include "materials/von_mises/von_mises.hpp"
@@ -72,4 +74,17 @@ TEST_CASE("linear elasticity makes the false stress 2 (lambda + mu) (cos theta -
     CHECK(std::abs(tau(0, 1)) < 1e-12);
     CHECK(tau.s[2] == Approx(2 * constants.lambda * (std::cos(angle) - 1)).epsilon(1e-12));
   }
+}
+
+TEST_CASE("laws whose stress turns with the particle say so, and linear elasticity does not") {
+  CHECK((NeoHookean::traits & MPM_OBJECTIVE) != 0);
+  CHECK((FixedCorotated::traits & MPM_OBJECTIVE) != 0);
+  CHECK((VonMises::traits & MPM_OBJECTIVE) != 0);
+  CHECK((DruckerPrager::traits & MPM_OBJECTIVE) != 0);
+  CHECK((LinearElastic::traits & MPM_OBJECTIVE) == 0);
+  // Those whose stress follows from a stored energy say that too.
+  CHECK((NeoHookean::traits & MPM_HYPERELASTIC) != 0);
+  CHECK((FixedCorotated::traits & MPM_HYPERELASTIC) != 0);
+  CHECK((VonMises::traits & MPM_HYPERELASTIC) == 0);
+  CHECK((DruckerPrager::traits & MPM_HYPERELASTIC) == 0);
 }

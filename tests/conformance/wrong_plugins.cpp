@@ -469,6 +469,22 @@ struct SlowWave : NeoHookean {
   }
 };
 
+struct SpeedWithoutDensity : NeoHookean {
+  template <int D, class S>
+  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+    return NeoHookean::wave_speed(c, state) / sqrt(c.inverse_density);
+  }
+};
+
+struct SquaredPascals : NeoHookean {  // multiplies by a modulus too often
+  template <int D, class S>
+  MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+    Sym<D, S> tau = NeoHookean::kirchhoff_stress(c, state);
+    for (S& component : tau.s) component = component * c.mu;
+    return tau;
+  }
+};
+
 struct NotObjective : NeoHookean {  // takes the right instead of the left Cauchy-Green tensor
   template <int D, class S>
   MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
@@ -604,6 +620,8 @@ TEST_CASE("wrong contact laws are caught") {
 TEST_CASE("wrong materials are caught") {
   check_caught(wrong_material<StressOffEnergy>, "stress_from_energy");
   check_caught(wrong_material<SlowWave>, "wave_speed_bounds_tangent");
+  check_caught(wrong_material<SpeedWithoutDensity>, "scales_with_density");
+  check_caught(wrong_material<SquaredPascals>, "scales_with_moduli");
   check_caught(wrong_material<NotObjective>, "objective_stress");
   check_caught(wrong_material<CreatesHeat>, "no_dissipation");
   check_caught(wrong_material<HidesInversion>, "inadmissible_index");
