@@ -148,3 +148,20 @@ TEST_CASE("Neo-Hookean: simple shear") {
       CHECK(std::abs(sigma(2, 2)) < 1e-10);
     }
 }
+
+TEST_CASE("Neo-Hookean: the fastest wave in closed form, longitudinal or shear") {
+  const auto modulus = [](int volumetric, const F3& F) {  // rho0 c^2; the density is 1000
+    const double speed = NeoHookean::wave_speed(constants(volumetric), NeoHookean::State<3, double>{F});
+    return 1000 * speed * speed;
+  };
+  // Along the stretch: mu (1 + s^2) + lambda J^2 u'' with J = s.
+  for (double s : {1.1, 1.7, 2.5}) {
+    CHECK(modulus(0, diagonal(s, 1, 1)) == near(mu * (1 + s * s) + lambda * (1 - std::log(s))));
+    CHECK(modulus(1, diagonal(s, 1, 1)) == near(mu * (1 + s * s) + lambda * s * s));
+    CHECK(modulus(2, diagonal(s, 1, 1)) == near(mu * (1 + s * s) + lambda * (s * s + 1) / 2));
+  }
+  // Stretched by e in all directions (ln J)^2/2 has softened so far that the shear wave, mu e^2, is the fastest.
+  const double e = std::exp(1.0);
+  CHECK(mu * (1 + e * e) - 2 * lambda < mu * e * e);
+  CHECK(modulus(0, diagonal(e, e, e)) == near(mu * e * e));
+}

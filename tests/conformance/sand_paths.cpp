@@ -217,3 +217,16 @@ TEST_CASE("sand: the wave speed at rest is the fastest that yielding on the cone
 TEST_CASE("sand: the sine by its series is the sine") {
   for (int n = 0; n <= 90; ++n) CHECK(std::abs(DruckerPrager::sin_of(n * degree) - std::sin(n * degree)) <= 1e-15);
 }
+
+TEST_CASE("sand: shear waves between any two principal stretches are not faster than reported") {
+  const double nu = -0.8, shear = young / (2 * (1 + nu));  // a small bulk modulus: shear waves are the fastest
+  const DruckerPrager::Constants<double> c({young, nu, 1600, 30 * degree, 0, 1});
+  double e[3] = {-0.7, 0.1, 0.5};
+  do {
+    CAPTURE(e[0], e[1], e[2]);
+    const DruckerPrager::Principal<3, double> state{Mat3::identity(), {{e[0], e[1], e[2]}}};
+    const double speed = DruckerPrager::wave_speed(c, state), modulus = 1600 * speed * speed, x = 1.2;
+    CHECK(modulus >= 2 * shear * x / (1 - std::exp(-2 * x)));  // Hencky's law between stretches apart by exp(x)
+    CHECK(std::abs(modulus / (shear * (1 + 2 * x)) - 1) < 1e-12);
+  } while (std::next_permutation(e, e + 3));
+}
