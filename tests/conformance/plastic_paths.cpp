@@ -164,3 +164,9 @@ TEST_CASE("single precision does not gain energy over a long elastic rotation") 
   CHECK(std::abs(determinant(state.elastic_left_cauchy_green) - 1) < 1e-6f);
   CHECK(VonMises::stored_energy(constants, state) == Approx(before).epsilon(3e-3));
 }
+
+TEST_CASE("von Mises: at rest the fastest wave is the elastic longitudinal one") {
+  const Particle particle(0);
+  const double speed = VonMises::wave_speed(particle.constants, particle.state);
+  CHECK(1000 * speed * speed == Approx(bulk + 4 * shear / 3).epsilon(1e-12));  // the density is 1000
+}
