@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import threading
+from collections import Counter
 from pathlib import Path
 
 from build import environment, limited_to
@@ -15,6 +16,7 @@ from together import Together
 
 FIRST_LOOK = "-O1"  # checks of the plugin alone run on a build that is made faster
 # What test-plugin has done already; what tests the checks themselves; what compares a plugin with its own text.
+NOT_OF_THE_PROGRAM = ("unit.verification_page",)  # compares pages with the texts of tests
 NOT_OF_PLUGINS = ("conformance.every_plugin", "conformance.wrong_plugins", "conformance.device_pass")
 SLACK = 10  # times the processor time of a test on the unchanged program, after which it hangs
 
@@ -195,7 +197,7 @@ class Trial:
             named = not ids or any(f'"{id}' in test.text for id in ids)
             return ((test.suite, test.file) not in self.tests, not named, test.seconds)
 
-        useful = [test for test in self.build.tests if test not in self.tried]
+        useful = [t for t in self.build.tests if t not in self.tried and t.name not in NOT_OF_THE_PROGRAM]
         useful = [t for t in useful if place(t)[:2] != (True, True) or t.seconds <= self.build.longest / 4]
         if self.plugins and not self.libraries:  # the suite unit knows no plugin but those that it includes
             useful = [t for t in useful if t.suite != "unit" or (t.suite, t.file) in self.tests]
@@ -205,14 +207,18 @@ class Trial:
 
 
 class Shared:
-    """Plugin and test programs of one functor's file that hold most of its mutants, made once."""
+    """Plugin and test programs of one file that hold most of its mutants, made once. Of a header that more than one
+    plugin is made from only the tests that include it are made."""
 
     def __init__(self, build, folder, file, mutants):
         self.build, self.file, self.bench = build, file, Bench(build, folder)
         self.text = Together((build.tree / file).read_text(), mutants)
         self.trial = Trial(build, self.bench, mutants[0])
-        self.plugin, self.programs, self.tests, self.number_of = None, {}, [], {}
-        if len(self.trial.plugins) == 1 and self.make_plugin():
+        self.plugin, self.programs, self.tests, self.number_of, self.kills = None, {}, [], {}, Counter()
+        self.everywhere = len(self.trial.plugins) > 1
+        if self.everywhere:
+            self.trial.plugins, self.trial.libraries = [], []
+        if self.make_plugin() if self.trial.plugins else self.make_libraries():
             self.make_programs()
             self.number_of = {mutants[number - 1]: number for number in self.text.numbers()}
 
@@ -237,6 +243,19 @@ class Shared:
                     return False
         return False
 
+    def make_libraries(self):
+        """Compiles what is no plugin, without the mutants that the compiler refuses here; whether that went well."""
+        for _ in range(6):
+            self.write_text()
+            try:
+                for name in self.trial.libraries or list(self.trial.tests.values()):
+                    self.trial.compiled(name)
+                return True
+            except Refused as refusal:
+                if not self.text.refuse(str(refusal)):
+                    return False
+        return False
+
     def make_programs(self):
         """Makes the programs of the tests that know the file, and all programs where a library knows it."""
         known = {}
@@ -253,6 +272,8 @@ class Shared:
             if first:
                 self.programs[suite] = self.trial.program_with(f"test_{suite}", first)
         self.tests = [test for test in self.trial.ordered_tests() if self.holds(test, known) and self.passes(test)]
+        if self.everywhere:
+            self.tests = [test for test in self.tests if (test.suite, test.file) in self.trial.tests]
 
     def holds(self, test, known):
         return (test.suite, test.file) not in self.trial.tests or test in [held for held, _ in known.get(test.suite, [])]
@@ -268,14 +289,15 @@ class Shared:
     def result(self, mutant):
         """The first failure with a mutant; none where nothing here fails."""
         number = self.number_of[mutant]
-        verdict = self.trial.verdict_on(self.plugin, self.bench.folder / "bin/mpm", number)
+        verdict = self.plugin and self.trial.verdict_on(self.plugin, self.bench.folder / "bin/mpm", number)
         if verdict:
             return verdict
-        for test in self.tests:
+        for test in sorted(self.tests, key=lambda test: -self.kills[test.name]):  # what killed most comes first
             code = self.outcome(test, number)
             if code != 0:
+                self.kills[test.name] += 1
                 return Result(Result.TIMED_OUT if code is None else Result.KILLED, test.name)
-        return None
+        return Result(Result.SURVIVED) if self.everywhere else None
 
 
 class Refused(Exception):
