@@ -1,11 +1,13 @@
 // Values of the kernels, at a node and elsewhere, and their second moments.
 
+#include <array>
 #include <cmath>
 
 #include "kernel/lanes.hpp"
 #include "shapes/bspline_cubic/bspline_cubic.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
 #include "shapes/cpdi/cpdi.hpp"
+#include "shapes/cpdi2/cpdi2.hpp"
 #include "shapes/gimp/gimp.hpp"
 #include "shapes/linear/linear.hpp"
 #include "support/catch.hpp"
@@ -254,4 +256,44 @@ TEST_CASE("a collapsed CPDI domain gives the mean of the tents' gradients") {
   const auto point = cpdi<2>({{0.25, 0.5}}, mpm::Mat<2, double>{});  // a point gives the tent itself
   CHECK(point.count == 4);
   CHECK(point.weight[0] == 0.375);
+}
+
+namespace {
+
+/// The nodes of a cube of half length l about (0.3, ...), which CPDI and CPDI2 list alike.
+template <int D>
+std::array<int, 2> counts(double l) {
+  mpm::Vec<D, double> x{}, corner[1 << D];
+  mpm::Mat<D, double> R{};
+  for (int a = 0; a < D; ++a) {
+    x[a] = 0.3, R(a, a) = l;
+    for (int c = 0; c < 1 << D; ++c) corner[c][a] = c >> a & 1 ? l : -l;
+  }
+  mpm::NodeList<D, double, mpm::Cpdi2::capacity<D>> list;
+  mpm::Cpdi2::evaluate({}, x, corner, list);
+  return {cpdi<D>(x, R).count, list.count};
+}
+
+/// The farthest node from a corner of a tiny domain, along an axis, cells.
+template <class List>
+double farthest(const List& list, double x) {
+  double most = 0;
+  for (int n = 0; n < list.count; ++n) most = std::max(most, std::abs(list.node[n][0] - x));
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("CPDI and CPDI2 hold as many nodes as corners in cells apart have, and reach as far as tents") {
+  const std::array<int, 2> flat{4 * 4, 4 * 4}, solid{8 * 8, 8 * 8};  // corners times the nodes of a cell
+  CHECK(counts<2>(1.2) == flat);
+  CHECK(counts<3>(1.2) == solid);
+  CHECK(mpm::Cpdi::capacity<2> == flat[0]);
+  CHECK(mpm::Cpdi2::capacity<2> == flat[0]);
+  CHECK(mpm::Cpdi::capacity<3> == solid[0]);
+  CHECK(mpm::Cpdi2::capacity<3> == solid[0]);
+  // A corner just behind a node reaches the next one, a cell away.
+  const double l = 1e-3, x = 2 * l;
+  CHECK(mpm::Cpdi::reach - farthest(cpdi<2>({{x, x}}, {{l, 0, 0, l}}), x) <= 2 * l + 1e-15);
+  CHECK(mpm::Cpdi2::reach == mpm::Cpdi::reach);
 }
