@@ -1,6 +1,7 @@
 // Kernel values of shapes of 4 nodes that average over a box: B2GIMP over the box at the start, cpGIMP over one that
 // follows the deformation. The oracle is the mean itself, integrated piece by piece.
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -175,6 +176,18 @@ TEST_CASE("a stretch along the axes is the same by diag F and by diag U") {
     CHECK(std::abs(flat[1] - 0.1) <= 1e-15);
     CHECK(std::abs(solid[0] - 0.75) <= 1e-15);
     CHECK(std::abs(solid[2] - 0.1) <= 1e-15);
+  }
+}
+
+TEST_CASE("a box that was turned inside out has the lengths of its mirror image") {
+  for (const auto& parameters : {by_F, by_U}) {
+    const auto flat = GimpContiguous::half_lengths<2>(parameters, mpm::Mat<2, double>{{0.75, 0, 0, -0.1}});
+    const auto solid =
+        GimpContiguous::half_lengths<3>(parameters, mpm::Mat<3, double>{{0.75, 0, 0, 0, 0.5, 0, 0, 0, -0.1}});
+    for (const auto& found : {std::array{flat[0], flat[1]}, std::array{solid[0], solid[2]}}) {
+      CHECK(std::abs(found[0] - 0.75) <= 1e-15);
+      CHECK(std::abs(found[1] - 0.1) <= 1e-15);
+    }
   }
 }
 
