@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "kernel/lanes.hpp"
 #include "shapes/bspline_cubic/bspline_cubic.hpp"
@@ -296,4 +297,41 @@ TEST_CASE("CPDI and CPDI2 hold as many nodes as corners in cells apart have, and
   const double l = 1e-3, x = 2 * l;
   CHECK(mpm::Cpdi::reach - farthest(cpdi<2>({{x, x}}, {{l, 0, 0, l}}), x) <= 2 * l + 1e-15);
   CHECK(mpm::Cpdi2::reach == mpm::Cpdi::reach);
+}
+
+namespace {
+
+/// Whether CPDI has a box, with gradients, for a domain with sides of these lengths whose last one lies by an angle of
+/// `sine` out of the others. The first lies along axis `first`, the second of three along the next axis.
+template <int D, class T>
+bool has_box(const double* lengths, int first, double sine) {
+  mpm::Mat<D, T> R{};
+  for (int side = 0; side < D - 1; ++side) R((first + side) % D, side) = T(lengths[side]);
+  R(first, D - 1) = T(lengths[D - 1]);
+  R((first + D - 1) % D, D - 1) = T(lengths[D - 1] * sine);
+  mpm::Vec<D, T> x{}, base{};
+  for (int a = 0; a < D; ++a) x[a] = T(0.3 + 0.2 * a);
+  return mpm::Cpdi::box<D, T>({}, x, R, true, base) > 0;
+}
+
+template <int D, class T>
+void check_collapse() {
+  const double epsilon = std::numeric_limits<T>::epsilon();
+  for (const auto& lengths :
+       {std::array{0.5, 0.5, 0.5}, std::array{0.6, 0.05, 0.3}, std::array{0.03, 0.7, 0.2}, std::array{0.04, 0.02, 0.6}})
+    for (int first = 0; first < D; ++first)
+      for (const double sign : {1.0, -1.0}) {
+        CAPTURE(D, sizeof(T), lengths[0], lengths[1], lengths[2], first, sign);
+        CHECK_FALSE(has_box<D, T>(lengths.data(), first, sign * 62 * epsilon));
+        CHECK(has_box<D, T>(lengths.data(), first, sign * 66 * epsilon));
+      }
+}
+
+}  // namespace
+
+TEST_CASE("a CPDI domain has collapsed when its volume is 64 roundings of the product of its sides") {
+  check_collapse<2, double>();
+  check_collapse<3, double>();
+  check_collapse<2, float>();
+  check_collapse<3, float>();
 }
