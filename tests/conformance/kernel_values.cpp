@@ -239,21 +239,23 @@ TEST_CASE("CPDI takes the mean over the domain of the corners' multilinear field
 }
 
 TEST_CASE("a collapsed CPDI domain gives the mean of the tents' gradients") {
-  for (const mpm::Mat<3, double>& R :
-       {mpm::Mat<3, double>{}, mpm::Mat<3, double>{{0.3, 0.3, 0, 0.1, 0.1, 0, 0, 0, 0.25}}}) {
-    const mpm::Vec<3, double> x{{4.3, -2.6, 0.45}};
-    const auto list = cpdi<3>(x, R);
-    double sum = 0;
-    mpm::Mat<3, double> affine{};
-    for (int n = 0; n < list.count; ++n) {
-      sum += list.weight[n];
+  const mpm::Mat<3, double> flat{{0.3, 0.3, 0, 0.1, 0.1, 0, 0, 0, 0.25}};
+  for (const mpm::Mat<3, double>& R : {mpm::Mat<3, double>{}, flat})
+    // On grid lines a node without weight may have a gradient.
+    for (const mpm::Vec<3, double>& x :
+         {mpm::Vec<3, double>{{4.3, -2.6, 0.45}}, mpm::Vec<3, double>{{4, -2.6, 2}}, mpm::Vec<3, double>{{4, -3, 2}}}) {
+      const auto list = cpdi<3>(x, R);
+      double sum = 0;
+      mpm::Mat<3, double> affine{};
+      for (int n = 0; n < list.count; ++n) {
+        sum += list.weight[n];
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) affine(i, j) += (list.node[n][i] - x[i]) * list.gradient[n][j];
+      }
+      CHECK(std::abs(sum - 1) <= 1e-14);
       for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) affine(i, j) += (list.node[n][i] - x[i]) * list.gradient[n][j];
+        for (int j = 0; j < 3; ++j) CHECK(std::abs(affine(i, j) - (i == j)) <= 1e-14);
     }
-    CHECK(std::abs(sum - 1) <= 1e-14);
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) CHECK(std::abs(affine(i, j) - (i == j)) <= 1e-14);
-  }
   const auto point = cpdi<2>({{0.25, 0.5}}, mpm::Mat<2, double>{});  // a point gives the tent itself
   CHECK(point.count == 4);
   CHECK(point.weight[0] == 0.375);
