@@ -337,3 +337,23 @@ TEST_CASE("a CPDI domain has collapsed when its volume is 64 roundings of the pr
   check_collapse<2, float>();
   check_collapse<3, float>();
 }
+
+TEST_CASE("CPDI: a domain is the same in whatever order its sides are counted, and however small it is") {
+  const mpm::Mat<2, double> R{{0.7, -0.4, 0.2, 0.9}}, exchanged{{-0.4, 0.7, 0.9, 0.2}};
+  const mpm::Vec<2, double> x{{4.3, -2.6}};
+  const auto one = cpdi<2>(x, R), other = cpdi<2>(x, exchanged);
+  REQUIRE(one.count == other.count);
+  for (int n = 0; n < one.count; ++n)
+    for (int m = 0; m < other.count; ++m) {
+      if (one.node[n][0] != other.node[m][0] || one.node[n][1] != other.node[m][1]) continue;
+      CHECK(std::abs(one.weight[n] - other.weight[m]) <= 1e-15);
+      for (int a = 0; a < 2; ++a) CHECK(std::abs(one.gradient[n][a] - other.gradient[m][a]) <= 1e-14);
+    }
+  // Half as far behind a grid line as the domain reaches: its left corners give -l/2 to the node at 3, over 2 l.
+  const double l = 0x1p-28;
+  const auto tiny = cpdi<2>({{4 + l / 2, 0.25}}, {{l, 0, 0, l}});
+  double slope = 0;
+  for (int n = 0; n < tiny.count; ++n)
+    if (tiny.node[n][0] == 3) slope += tiny.gradient[n][0];
+  CHECK(std::abs(slope + 0.25) <= 1e-7);
+}

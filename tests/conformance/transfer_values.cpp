@@ -53,16 +53,20 @@ double spin_error(const Mat<D, double>& C, const Mat<D, double>& M) {
   return worst;
 }
 
-/// Largest W / w over moments from 1 down to nothing, W the spin that comes back of a spin w; a NaN counts as 2.
+/// Largest W / w over moments from 1 down to nothing, W the spin that comes back of a spin w in any plane of two axes; a
+/// NaN counts as 2.
 template <int D, class T>
 double largest_returned_spin() {
   double largest = 0;
   for (int halvings = 0; halvings <= 140; ++halvings) {
     const T moment = halvings == 140 ? T(0) : static_cast<T>(std::ldexp(1.0, -halvings));
-    Mat<D, T> C{};
-    C(1, 0) = T(3), C(0, 1) = T(-3);
-    const double back = spin_of(C, multiple_of_identity<D>(moment))(1, 0) / 3;
-    largest = std::max(largest, std::isfinite(back) && back >= 0 ? back : 2.0);
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < i; ++j) {
+        Mat<D, T> C{};
+        C(i, j) = T(3), C(j, i) = T(-3);
+        const double back = spin_of(C, multiple_of_identity<D>(moment))(i, j) / 3;
+        largest = std::max(largest, std::isfinite(back) && back >= 0 ? back : 2.0);
+      }
   }
   return largest;
 }

@@ -23,7 +23,9 @@ def expression_around(tokens, mutant):
             and any(t.text == "=" and mutant.begin < t.begin < mutant.end for t in tokens):  # fmt: skip
         return mutant.begin, mutant.end
     inside = [place for place, token in enumerate(tokens) if mutant.begin <= token.begin < mutant.end]
-    delimiters = (",", ";", "?", ":", "return", *ASSIGNMENTS)
+    delimiters = (",", ";", "return", *ASSIGNMENTS)
+    if mutant.replacement not in ASSIGNMENTS:  # a ? b : c binds closer than an assignment
+        delimiters = (*delimiters, "?", ":")
     first, last, depth = inside[0], inside[-1], 0
     while True:
         text = tokens[first - 1].text
