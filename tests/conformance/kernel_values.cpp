@@ -357,3 +357,22 @@ TEST_CASE("CPDI: a domain is the same in whatever order its sides are counted, a
     if (tiny.node[n][0] == 3) slope += tiny.gradient[n][0];
   CHECK(std::abs(slope + 0.25) <= 1e-7);
 }
+
+TEST_CASE("CPDI's box begins at the quadratic spline's first node, and at none where there is no box") {
+  const mpm::Mat<2, double> small{{0.01, 0, 0, 0.01}};
+  mpm::Vec<2, double> base{};
+  for (int n = 0; n < 50; ++n) {
+    const double x = 6 + (n + 0.5) / 50, y = -2 + (n + 0.5) / 50;
+    CAPTURE(x, y);
+    CHECK(mpm::Cpdi::box<2, double>({}, {{x, y}}, small, true, base) >= 2);
+    CHECK(base[0] == std::floor(x - 0.5));
+    CHECK(base[1] == std::floor(y - 0.5));
+  }
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [x, l] : {std::array{6.3, 2.5}, std::array{nan, 0.25}, std::array{6.3, nan}}) {
+    base = {{1, 1}};
+    CHECK(mpm::Cpdi::box<2, double>({}, {{x, 7.1}}, {{l, 0, 0, l}}, true, base) == 0);
+    CHECK(base[0] == 0);
+    CHECK(base[1] == 0);
+  }
+}
