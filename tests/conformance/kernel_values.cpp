@@ -376,3 +376,16 @@ TEST_CASE("CPDI's box begins at the quadratic spline's first node, and at none w
     CHECK(base[1] == 0);
   }
 }
+
+TEST_CASE("CPDI lists a node whose weight and slopes add up to nothing") {
+  // A node that the corner s = (-1, 1) alone reaches has grad w = w R^-T s = w (-2, 1).
+  const auto list = cpdi<2>({{4.3, -2.6}}, {{0.5, 0, 0, 1}});
+  double sum = 0;
+  int cancelling = 0;
+  for (int n = 0; n < list.count; ++n) {
+    sum += list.weight[n];
+    cancelling += list.weight[n] + list.gradient[n][0] + list.gradient[n][1] == 0;
+  }
+  CHECK(std::abs(sum - 1) <= 1e-15);
+  CHECK(cancelling > 0);
+}
