@@ -378,14 +378,17 @@ TEST_CASE("CPDI's box begins at the quadratic spline's first node, and at none w
 }
 
 TEST_CASE("CPDI lists a node whose weight and slopes add up to nothing") {
-  // A node that the corner s = (-1, 1) alone reaches has grad w = w R^-T s = w (-2, 1).
-  const auto list = cpdi<2>({{4.3, -2.6}}, {{0.5, 0, 0, 1}});
-  double sum = 0;
-  int cancelling = 0;
-  for (int n = 0; n < list.count; ++n) {
-    sum += list.weight[n];
-    cancelling += list.weight[n] + list.gradient[n][0] + list.gradient[n][1] == 0;
+  // A node that the corner s = (-1, 1) alone reaches has grad w = w R^-T s: w (-2, 1), and w (-1/2, 1/2) of the larger.
+  for (const mpm::Mat<2, double>& R : {mpm::Mat<2, double>{{0.5, 0, 0, 1}}, mpm::Mat<2, double>{{2, 0, 0, 2}}}) {
+    const auto list = cpdi<2>({{4.3, -2.6}}, R);
+    double sum = 0;
+    int cancelling = 0;
+    for (int n = 0; n < list.count; ++n) {
+      const double w = list.weight[n], x = list.gradient[n][0], y = list.gradient[n][1];
+      sum += w;
+      cancelling += w + x + y == 0 || w - std::abs(x) - std::abs(y) == 0;
+    }
+    CHECK(std::abs(sum - 1) <= 1e-15);
+    CHECK(cancelling > 0);
   }
-  CHECK(std::abs(sum - 1) <= 1e-15);
-  CHECK(cancelling > 0);
 }
