@@ -181,6 +181,7 @@ TEST_CASE("slabs that press on each other touch at every node between them", "[m
         CHECK((record.nodes == 0 || record.nodes == 10));
         CHECK(record.sticking == (slides ? 0 : record.nodes));
         CHECK(record.slipping == (slides ? record.nodes : 0));
+        CHECK(record.momentum_residual < 1e-12);  // kg m/s, of slabs that press on each other with 500 N
         touching += record.nodes > 0;
       }
       CHECK(touching > 50);
