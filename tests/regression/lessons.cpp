@@ -136,7 +136,8 @@ TEST_CASE("quickstart: the energies that README, getting started and the method 
   CHECK(ledger.gather == printed[3].rounded());
   CHECK(ledger.contact == printed[4].rounded());
 
-  const auto of_steps = method.read("of the quickstart's energy it is # % with steps of 4 ms and # % with steps of 1 ms");
+  const auto of_steps =
+      method.read("of the quickstart's energy it is # % with steps of 4 ms and # % with steps of 1 ms");
   for (const auto& [step, share] : {std::pair{"0.004", of_steps[0]}, std::pair{"0.001", of_steps[1]}}) {
     INFO("steps of " << step << " s");
     Lesson fixed("../quickstart", {"/solver/time_step=" + std::string(step)});
