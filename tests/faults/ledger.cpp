@@ -98,9 +98,10 @@ TEST_CASE("without a fault all books agree", "[ledger][faults]") {
   for (const std::string& backend : backends) {
     INFO(backend);
     const Books books = run(backend, Fault::none);
-    CHECK(grid_agrees(books));
-    CHECK(filter_agrees(books));
-    CHECK(scatter_agrees(books));
+    CHECK(std::abs(books.ledger.grid_book) < rounding * books.start.kinetic);
+    CHECK(std::abs(books.ledger.filter_book) < rounding * books.start.kinetic);
+    CHECK(std::abs(books.ledger.mass_book) < rounding * books.start.mass);
+    CHECK(books.ledger.momentum_book < rounding * books.start.momentum_scale);
   }
 }
 

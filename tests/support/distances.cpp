@@ -8,6 +8,7 @@
 #endif
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -84,7 +85,8 @@ class Distances : public Listener {
   void take(const Catch::AssertionResult& result) {
     ++assertions_;
     if (!result.hasExpandedExpression()) return;
-    const std::string text = result.getExpandedExpression();
+    std::string text = result.getExpandedExpression();
+    std::replace(text.begin(), text.end(), '\n', ' ');  // long numbers stand on lines of their own
     for (const std::string sign : {" == ", " <= ", " >= ", " < ", " > "}) {
       const std::size_t at = text.find(sign);
       if (at == text.npos || text.find(sign, at + 1) != text.npos) continue;
