@@ -18,6 +18,7 @@
 #include "output/summary_value.hpp"
 #include "run/checkpoint.hpp"
 #include "run/limits.hpp"
+#include "run/start_checks.hpp"
 #include "run/summary.hpp"
 #include "support/files.hpp"
 #include "support/hash.hpp"
@@ -119,8 +120,7 @@ std::string resume_command(const RunOptions& options) {
 Outcome outcome_of(const Failure& failure, const Simulation& simulation) {
   const Experiment& experiment = simulation.experiment();
   const FailurePlace place = simulation.place_of(failure);
-  return {run_failed, "failed", place_text(failure, place, experiment) + " " + cause_text(failure, experiment),
-          record_of(failure, place, experiment)};
+  return {run_failed, "failed", failure_text(failure, simulation), record_of(failure, place, experiment)};
 }
 
 /// The outcome of a run that something keeps from its end; the run can be resumed from there.
@@ -158,8 +158,7 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints&
       return outcome;
     } catch (const ImposedHeatFailure& stopped) {
       const long step = simulation.steps() + 1;
-      const Outcome outcome{run_failed, "failed",
-                            "step " + std::to_string(step) + ": " + stopped.imposed.pointer + ": " + stopped.what(),
+      const Outcome outcome{run_failed, "failed", failure_text(stopped.imposed, simulation),
                             record_of(stopped.imposed, step)};
       progress.show(true);
       std::cerr << "the run failed: " << outcome.reason << "\nremedy: " << impossible_heat_remedy << "\n";
@@ -216,13 +215,6 @@ std::string trouble_of_drawing(const Experiment& experiment, Recorder& recorder,
   }
 }
 
-Problem problem_at(const Experiment& experiment, const std::string& pointer, const std::string& message) {
-  for (const auto& [known, place] : experiment.positions)
-    if (known == pointer && place.first > 0)
-      return {experiment.file.string(), place.first, place.second, pointer, message};
-  return {experiment.where(pointer), 0, 0, pointer, message};
-}
-
 void refuse_figures_without_numbers(const Experiment& experiment, const Metrics& metrics) {
   support::Table columns;
   columns.header = metrics.columns();
@@ -231,50 +223,6 @@ void refuse_figures_without_numbers(const Experiment& experiment, const Metrics&
   for (std::size_t k = 0; k < experiment.figures.size(); ++k) {
     const std::string missing = missing_for(experiment.figures[k], columns);
     if (!missing.empty()) problems.push_back(problem_at(experiment, "/figures/" + std::to_string(k), missing));
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
-}
-
-/// What is wrong with a particle's initial temperature; an empty string where nothing is.
-std::string trouble_of_temperature(double temperature) {
-  if (!std::isfinite(temperature)) return "is not a finite number";
-  return temperature < 0 ? "is " + number_text(temperature) + " K, below 0 K," : "";
-}
-
-void refuse_impossible_temperatures(const Simulation& simulation) {
-  const Experiment& experiment = simulation.experiment();
-  if (!experiment.has_temperature()) return;
-  const std::size_t D = static_cast<std::size_t>(experiment.dimension);
-  std::vector<Problem> problems;
-  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
-    const BodyState state = simulation.backend().body_state(body);
-    const std::vector<double>& temperature = state.host_state.at("temperature");
-    const auto wrong = std::find_if_not(temperature.begin(), temperature.end(),
-                                        [](double T) { return trouble_of_temperature(T).empty(); });
-    if (wrong == temperature.end()) continue;
-    const std::size_t particle = static_cast<std::size_t>(wrong - temperature.begin());
-    problems.push_back(problem_at(experiment, experiment.bodies[body].pointer + "/temperature",
-                                  trouble_of_temperature(*wrong) + " at particle " + std::to_string(particle) + ", " +
-                                      point_text(std::span(state.position).subspan(particle * D, D))));
-  }
-  if (const auto imposed = impossible_heat(experiment, 0, false))
-    problems.push_back(problem_at(experiment, imposed->pointer, text_of(*imposed)));
-  if (!problems.empty()) throw InputError(std::move(problems));
-}
-
-void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
-  const Experiment& experiment = simulation.experiment();
-  const std::size_t D = static_cast<std::size_t>(experiment.dimension);
-  std::vector<Problem> problems;
-  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
-    const BodyState state = simulation.backend().body_state(body);
-    const auto wrong = std::find_if_not(state.velocity.begin(), state.velocity.end(),
-                                        [](double component) { return std::isfinite(component); });
-    if (wrong == state.velocity.end()) continue;
-    const std::size_t particle = static_cast<std::size_t>(wrong - state.velocity.begin()) / D;
-    problems.push_back(problem_at(experiment, experiment.bodies[body].pointer + "/velocity",
-                                  "is not a finite number at particle " + std::to_string(particle) + ", " +
-                                      point_text(std::span(state.position).subspan(particle * D, D))));
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }
@@ -382,8 +330,7 @@ int run(const RunOptions& options) {
   Simulation simulation(experiment, backend_factory(threads, find_number));
   const Metrics metrics(simulation);  // metrics are those of step 0, also when the run goes on from a later one
   refuse_figures_without_numbers(experiment, metrics);
-  refuse_velocities_that_are_no_numbers(simulation);
-  refuse_impossible_temperatures(simulation);
+  refuse_impossible_starts(simulation);
 
   const StopOnSignal signals;
   const auto folder = options.resume ? open_to_resume(place) : output::RunFolder::create(place);

@@ -1,0 +1,77 @@
+#include "run/start_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace mpm::app {
+namespace {
+
+/// What is wrong with a particle's initial temperature; an empty string where nothing is.
+std::string trouble_of_temperature(double temperature) {
+  if (!std::isfinite(temperature)) return "is not a finite number";
+  return temperature < 0 ? "is " + number_text(temperature) + " K, below 0 K," : "";
+}
+
+void refuse_impossible_temperatures(const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  if (!experiment.has_temperature()) return;
+  const std::size_t D = static_cast<std::size_t>(experiment.dimension);
+  std::vector<Problem> problems;
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const BodyState state = simulation.backend().body_state(body);
+    const std::vector<double>& temperature = state.host_state.at("temperature");
+    const auto wrong = std::find_if_not(temperature.begin(), temperature.end(),
+                                        [](double T) { return trouble_of_temperature(T).empty(); });
+    if (wrong == temperature.end()) continue;
+    const std::size_t particle = static_cast<std::size_t>(wrong - temperature.begin());
+    problems.push_back(problem_at(experiment, experiment.bodies[body].pointer + "/temperature",
+                                  trouble_of_temperature(*wrong) + " at particle " + std::to_string(particle) + ", " +
+                                      point_text(std::span(state.position).subspan(particle * D, D))));
+  }
+  if (const auto imposed = impossible_heat(experiment, 0, false))
+    problems.push_back(problem_at(experiment, imposed->pointer, text_of(*imposed)));
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  const std::size_t D = static_cast<std::size_t>(experiment.dimension);
+  std::vector<Problem> problems;
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const BodyState state = simulation.backend().body_state(body);
+    const auto wrong = std::find_if_not(state.velocity.begin(), state.velocity.end(),
+                                        [](double component) { return std::isfinite(component); });
+    if (wrong == state.velocity.end()) continue;
+    const std::size_t particle = static_cast<std::size_t>(wrong - state.velocity.begin()) / D;
+    problems.push_back(problem_at(experiment, experiment.bodies[body].pointer + "/velocity",
+                                  "is not a finite number at particle " + std::to_string(particle) + ", " +
+                                      point_text(std::span(state.position).subspan(particle * D, D))));
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+}  // namespace
+
+Problem problem_at(const Experiment& experiment, const std::string& pointer, const std::string& message) {
+  for (const auto& [known, place] : experiment.positions)
+    if (known == pointer && place.first > 0)
+      return {experiment.file.string(), place.first, place.second, pointer, message};
+  return {experiment.where(pointer), 0, 0, pointer, message};
+}
+
+void refuse_impossible_starts(const Simulation& simulation) {
+  refuse_velocities_that_are_no_numbers(simulation);
+  refuse_impossible_temperatures(simulation);
+}
+
+std::string failure_text(const Failure& failure, const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  return place_text(failure, simulation.place_of(failure), experiment) + " " + cause_text(failure, experiment);
+}
+
+std::string failure_text(const ImposedHeat& imposed, const Simulation& simulation) {
+  return "step " + std::to_string(simulation.steps() + 1) + ": " + imposed.pointer + ": " + text_of(imposed);
+}
+
+}  // namespace mpm::app
