@@ -13,6 +13,7 @@
 #include "output/summary_value.hpp"
 #include "run/books.hpp"
 #include "run/rim_steps.hpp"
+#include "run/tent_steps.hpp"
 #include "simulation/boundary.hpp"
 
 namespace mpm::app {
@@ -117,6 +118,7 @@ Json warnings(const Simulation& simulation, const Recorder& recorder, const Tota
   Json all = Json::array();
   if (recorder.most_contact_nodes() > 0)
     if (const std::string steps = warning_of_rim_steps(simulation.experiment()); !steps.empty()) all.push_back(steps);
+  if (const std::string tents = warning_of_tent_steps(simulation.experiment()); !tents.empty()) all.push_back(tents);
   if (const std::string books = warning_of_ledger(simulation, recorder, start); !books.empty()) all.push_back(books);
   if (const std::string images = warning_of_images(simulation); !images.empty()) all.push_back(images);
   if (const double growth = simulation.backend().filter_record().largest_growth; growth > 1 + 1e-9) {

@@ -1,6 +1,6 @@
 // Says how closely tests hold. With the environment variable MPM_DISTANCES a suite's program writes a line for each test
 // case to the file of that name: its file, its name, the number of its assertions, the largest relative distance of a
-// found from an expected value (a == Approx(b)), and the largest share of a bound that was used (a < b). A field is empty
+// found from an expected value (a == Approx(b), but for values near zero that a margin holds), and the largest share of a bound that was used (a < b). A field is empty
 // where a case has no such assertion. docs/generate_verified.sh makes a page of these lines.
 
 #if !__has_include(<catch2/catch_all.hpp>)
@@ -92,7 +92,12 @@ class Distances : public Listener {
       if (at == text.npos || text.find(sign, at + 1) != text.npos) continue;
       const auto left = number(text.substr(0, at)), right = number(text.substr(at + sign.size()));
       if (!left || !right) return;
-      if (sign == " == ") return text.find("Approx") == text.npos ? void() : keep(distance_, apart(*left, *right));
+      if (sign == " == ") {
+        const double distance = apart(*left, *right);
+        // What holds although it is half of its value away is a value near zero, which a margin holds.
+        const bool by_margin = result.succeeded() && distance >= 0.5;
+        return text.find("Approx") == text.npos || by_margin ? void() : keep(distance_, distance);
+      }
       const bool below = sign[1] == '<';
       const double found = below ? *left : *right, bound = below ? *right : *left;
       return found >= 0 && bound > 0 ? keep(share_, found / bound) : void();

@@ -57,7 +57,26 @@ inline PrintedNumber printed_number(std::string text) {
 class Page {
  public:
   explicit Page(const std::string& file)
-      : file_(file), text_(in_one_line(mpm::support::read_file(std::string(MPM_SOURCE_DIR "/") + file))) {}
+      : file_(file),
+        lines_(mpm::support::read_file(std::string(MPM_SOURCE_DIR "/") + file)),
+        text_(in_one_line(lines_)) {}
+
+  /// Leaves the first table after these words out: another test compares it.
+  void leave_out_table_after(const std::string& words) {
+    const std::size_t at = lines_.find(words), first = at == std::string::npos ? at : lines_.find("\n|", at);
+    if (first == std::string::npos) throw std::runtime_error(file_ + " has no table after: " + words);
+    std::size_t end = first;
+    while (lines_.compare(end + 1, 1, "|") == 0) end = lines_.find('\n', end + 1);
+    lines_.replace(first, end - first, "\n~\n");
+    text_ = in_one_line(lines_);
+  }
+  /// Keeps only what stands from one of these words up to the other.
+  void keep_from_to(const std::string& from, const std::string& to) {
+    const std::size_t first = lines_.find(from), last = first == std::string::npos ? first : lines_.find(to, first);
+    if (last == std::string::npos) throw std::runtime_error(file_ + " does not say: " + from + " ... " + to);
+    lines_ = lines_.substr(first, last - first);
+    text_ = in_one_line(lines_);
+  }
 
   /// The numbers at the # of the sentence, which the page must hold once.
   std::vector<PrintedNumber> read(const std::string& sentence) const {
@@ -73,7 +92,11 @@ class Page {
 
   void add_measured(const std::string& sentence) { measured_.push_back(sentence); }
   /// Sentences whose numbers the reader gives, or that follow by arithmetic from those: nothing that a run decides.
-  void add_given(const std::vector<std::string>& sentences) { given_ = sentences; }
+  void add_given(const std::vector<std::string>& sentences) {
+    given_.insert(given_.end(), sentences.begin(), sentences.end());
+  }
+  /// Patterns of names that have digits in them ("FMPM(4)").
+  void add_names(const std::vector<std::string>& patterns) { names_ = patterns; }
 
   /// What is left of the page around numbers that no test has read and that are not given.
   std::vector<std::string> numbers_of_nobody() const {
@@ -86,6 +109,7 @@ class Page {
     for (const char* typed : {"```.*?```", "`[^`]*`", "!\\[[^\\]]*\\]\\([^)]*\\)", "\\]\\([^)]*\\)",
                               "[Ll]essons? [0-9]( to [0-9])?", "exit code [0-9]"})
       left = std::regex_replace(left, std::regex(typed), " ");
+    for (const std::string& name : names_) left = std::regex_replace(left, std::regex(name), " ");
     std::vector<std::string> found;
     const std::regex number("[^\n]{0,40}(?:[0-9]|½|¾|¼)[^\n]{0,20}");
     for (std::sregex_iterator match(left.begin(), left.end(), number), end; match != end; ++match)
@@ -101,8 +125,8 @@ class Page {
     return std::regex(std::regex_replace(quoted, std::regex("#"), number));
   }
 
-  std::string file_, text_;
-  std::vector<std::string> measured_, given_;
+  std::string file_, lines_, text_;
+  std::vector<std::string> measured_, given_, names_;
 };
 
 /// A sentence of a page with a # in place of each number that a run decides.

@@ -9,6 +9,7 @@
 
 #include "lattice.hpp"
 #include "support/catch.hpp"
+#include "support/energies.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -72,9 +73,8 @@ double held_at_most(const std::string& shape, const std::string& transfer) {
   return 0.8 / (1 - affine_share(shape, pi * h)) + 0.2 / (1 - affine_share(shape, 2 * pi / 0.6 * h));
 }
 
-/// Velocities belong to the middle of steps, strains to their ends (USF: to their starts): kinetic energies on both
-/// sides of a strain are averaged. Added up as they come they would swing by omega dt / 2, 3 % and 10 % of these waves.
-/// With USAVG both belong to the ends.
+/// Energies at one time. Added up as they come, half a step apart, they would swing by omega dt / 2, 3 % and 10 % of these
+/// waves.
 Energies energies_of(Scene& scene, const std::string& update) {
   constexpr int steps_a_period = 100, periods = 5;
   std::vector<double> kinetic, strain;
@@ -83,13 +83,12 @@ Energies energies_of(Scene& scene, const std::string& update) {
     kinetic.push_back(now.kinetic);
     strain.push_back(now.strain);
   }
-  const std::size_t back = update == "first" ? 1 : 0, on = update == "last" || update == "modified_last" ? 1 : 0;
+  const std::vector<double> totals = energies_at_one_time(kinetic, strain, update);
   Energies found{0, 0, 0};
-  double before = 0, mean = 0, first = 0, rise_before = -1;
-  for (std::size_t k = 1; k <= periods * steps_a_period; ++k) {
-    const double total = 0.5 * (kinetic[k - back] + kinetic[k + on]) + strain[k];
-    if (k == 1) first = total;
-    found.last = total / first;
+  double before = 0, mean = 0, rise_before = -1;
+  for (std::size_t k = 1; k <= totals.size(); ++k) {
+    const double total = totals[k - 1];
+    found.last = total / totals.front();
     found.largest = std::max(found.largest, found.last);
     mean += total / steps_a_period;
     if (k % steps_a_period != 0) continue;

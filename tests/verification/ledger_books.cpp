@@ -150,7 +150,8 @@ TEST_CASE("the residual of a body that is filtered in every step falls with the 
 
 TEST_CASE("the residual of every transfer and shape falls with the step", "[ledger][ledger_books]") {
   for (const std::string shape : {"linear", "bspline_quadratic", "gimp", "cpdi"})
-    for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic", "aflip"}) {
+    for (const std::string transfer : {"pic", "flip", "apic", "mls", "tpic", "rpic", "aflip", "asflip", "polypic"}) {
+      if (transfer == "polypic" && shape == "cpdi") continue;  // refused: its nodes have no axes
       INFO(shape << " " << transfer);
       check_orders({set("/shape/type", shape), set("/transfer/type", transfer)});
     }

@@ -1,0 +1,24 @@
+#pragma once
+// What the study of largest steps says of a run on tents: no limit of the step is sure for them.
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "experiment/experiment.hpp"
+
+namespace mpm::app {
+
+/// A scheme with the stress last that stood less on the shape "linear" than that shape's limit of the step
+/// (figures/studies/largest_step.csv and largest_step_3d.csv, which tests/unit/tent_steps.cpp compares).
+struct TentStep {
+  int dimension;
+  std::string_view transfer, filter;  ///< ids; filter "" where there is none
+  double largest;                     ///< Courant number that it stood; 0: not the smallest that was tried
+};
+std::span<const TentStep> tent_steps();
+
+/// What to say of a run on tents whose automatic step is longer than what its scheme stood in the study; "" of all others.
+std::string warning_of_tent_steps(const Experiment& experiment);
+
+}  // namespace mpm::app
