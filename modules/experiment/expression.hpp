@@ -52,7 +52,7 @@ struct NotFinite {
 ///
 /// Many points are evaluated by one compiled program of all components: constants are folded, equal terms are found
 /// once, terms of t alone once a call, the rest in lanes. It is much faster than single points and agrees with them to
-/// rounding (sin, cos, exp and log are within 1 ulp, small whole powers are products). A point has the same bits
+/// rounding (sin and cos are within 1.5 ulp, exp and log within 1, small whole powers are products). A point has the same bits
 /// wherever it stands among others, on any thread. All evaluate() return the number of points before the first one
 /// where a value is not finite; values are written for all points nevertheless.
 class VectorExpression {

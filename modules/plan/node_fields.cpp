@@ -101,7 +101,6 @@ std::string why_separate_force(const FieldList& fields) {
   if (gathers_increment(experiment)) return FieldList::named(experiment.transfer) + ": gathers the change of velocity";
   if (fields.plan.resolves_contact())
     return FieldList::named(*experiment.contact) + ": acts before and after the forces";
-  if (experiment.body_force) return experiment.body_force_pointer + ": work of the forces";
   const Pass* const strain = fields.plan.pass_of(Act::strain);
   const Operator* const scatters = fields.plan.find(Act::scatter_force);
   if (strain && scatters && strain->stage == Stage::before_forces)
@@ -125,9 +124,11 @@ void force_fields(FieldList& fields) {
                 : for_ledger ? why_for_ledger(fields.plan)
                              : fields.why_apart())
         .for_ledger = for_ledger;
-  if (experiment.body_force)
-    fields.summed("body_force", "N", D, AtWall::vector, Folded::with_force,
-                  experiment.body_force_pointer + ": its work is accounted for apart");
+  if (experiment.body_force && (fields.plan.has_ledger() || fields.needs.keeps_all_apart))
+    fields
+        .summed("body_force", "N", D, AtWall::vector, Folded::with_force,
+                experiment.body_force_pointer + ": its work is accounted for apart")
+        .for_ledger = !fields.needs.keeps_all_apart;
   if (fields.needs.keeps_weight_apart)
     fields.summed("weight", "N", D, AtWall::vector, Folded::with_force, "/gravity: its work is accounted for apart");
 }

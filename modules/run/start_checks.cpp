@@ -44,9 +44,13 @@ void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
                                         [](double component) { return std::isfinite(component); });
     if (wrong == state.velocity.end()) continue;
     const std::size_t particle = static_cast<std::size_t>(wrong - state.velocity.begin()) / D;
+    Vector3 x{};
+    std::copy_n(&state.position[particle * D], D, x.begin());
+    const std::optional<NotFinite> found = experiment.bodies[body].velocity.not_finite(x, x, 0);
+    const std::string why = found ? ": " + found->why : "";
     problems.push_back(problem_at(experiment, experiment.bodies[body].pointer + "/velocity",
                                   "is not a finite number at particle " + std::to_string(particle) + ", " +
-                                      point_text(std::span(state.position).subspan(particle * D, D))));
+                                      point_text(std::span(state.position).subspan(particle * D, D)) + why));
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }

@@ -85,11 +85,11 @@ class Seeder {
 
   void give(const std::function<void(const SeedBatch&)>& visit) {
     const std::size_t n = points_.size(), D = static_cast<std::size_t>(experiment_.dimension);
-    position_.resize(n * D), velocity_.resize(n * D), values_.resize(n);
-    for (std::size_t p = 0; p < n; ++p) std::copy_n(points_[p].begin(), D, &position_[p * D]);
-    for (std::size_t c = 0; c < D; ++c) {
-      body_.velocity.evaluate(static_cast<int>(c), points_, 0, values_.data());
-      for (std::size_t p = 0; p < n; ++p) velocity_[p * D + c] = values_[p];
+    position_.resize(n * D), velocity_.resize(n * D), values_.resize(n), velocities_.resize(n);
+    body_.velocity.evaluate(points_, points_, 0, velocities_);
+    for (std::size_t p = 0; p < n; ++p) {
+      std::copy_n(points_[p].begin(), D, &position_[p * D]);
+      std::copy_n(velocities_[p].begin(), D, &velocity_[p * D]);
     }
     if (affine_) differentiate();
     if (affine_ && (experiment_.transfer.plugin->transfer().traits & MPM_KEEPS_SPIN_ONLY)) keep_spin();
@@ -103,8 +103,8 @@ class Seeder {
   void seed_temperature() {
     if (!body_.temperature) return;
     std::vector<double>& temperature = fields_["temperature"];
-    temperature.clear();
-    for (const Vector3& x : points_) temperature.push_back((*body_.temperature)(x, x, 0));
+    temperature.resize(points_.size());
+    body_.temperature->evaluate(points_, 0, temperature.data());
     others_ = {{"temperature", temperature.data()}};
     const auto& thermal = experiment_.materials[body_.material].thermal;
     if (!thermal || !thermal->phase_change) return;
@@ -153,7 +153,7 @@ class Seeder {
   bool affine_;
   std::mt19937_64 random_;
   std::size_t given_ = 0;
-  std::vector<Vector3> points_, ahead_, behind_;
+  std::vector<Vector3> points_, velocities_, ahead_, behind_;
   std::vector<double> position_, velocity_, gradient_, values_, behind_values_;
   std::map<std::string, std::vector<double>> fields_;
   std::vector<std::pair<std::string, const double*>> others_;

@@ -426,19 +426,24 @@ class HostRun final : public Backend {
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += sign * values[k];
   }
 
-  /// Evaluates the experiment's body force at every particle.
+  /// Evaluates the experiment's body force at every particle. Stops the run where it is not finite.
   void evaluate_body_force(Body<T>& body, double time) {
     if (!experiment_.body_force) return;
     const T* const position = body.arrays.of("position");
     T* const acceleration = body.arrays.of("body_acceleration");
-    const std::size_t D = experiment_.dimension;
-    for (int p = 0; p < body.count; ++p) {
-      const Vector3 x = body.vector(position, p);
-      Vector3 X = x;
-      for (std::size_t c = 0; c < D && !body.initial_position.empty(); ++c) X[c] = body.initial_position[p * D + c];
-      const Vector3 value = (*experiment_.body_force)(x, X, time);
-      for (std::size_t c = 0; c < D; ++c) acceleration[c * body.count + p] = static_cast<T>(value[c]);
+    const std::size_t D = experiment_.dimension, count = static_cast<std::size_t>(body.count);
+    places_.resize(count), initial_places_.resize(count), accelerations_.resize(count);
+    for (std::size_t p = 0; p < count; ++p) {
+      places_[p] = initial_places_[p] = body.vector(position, static_cast<int>(p));
+      for (std::size_t c = 0; c < D && !body.initial_position.empty(); ++c)
+        initial_places_[p][c] = body.initial_position[p * D + c];
     }
+    const std::size_t p = experiment_.body_force->evaluate(places_, initial_places_, time, accelerations_);
+    if (p < count)
+      throw RunFailure(body_force_failure(experiment_, static_cast<int>(&body - bodies_.data()), p, places_[p],
+                                          initial_places_[p], time));
+    for (std::size_t c = 0; c < D; ++c)
+      for (std::size_t k = 0; k < count; ++k) acceleration[c * count + k] = static_cast<T>(accelerations_[k][c]);
   }
 
   void momentum_to_velocity(const Pass& pass, const StepInfo& step) {
@@ -861,6 +866,7 @@ class HostRun final : public Backend {
   Conditions<T> conditions_;
   std::optional<HeatConditions<T>> heat_conditions_;  ///< empty in scenes without temperature
   std::vector<Body<T>> bodies_;
+  std::vector<Vector3> places_, initial_places_, accelerations_;  ///< where and what forces are, m and m/s^2
   std::vector<VelocityField<T>> fields_;
   std::vector<int> images_, walls_;  ///< axes with periodic images, and those with walls
   std::vector<EdgeModel> edges_;

@@ -47,6 +47,8 @@ class Particles {
   /// Copies the last particle into the padding.
   void pad(Array& array) const;
 
+  int index() const { return body_; }  ///< of the body in the experiment
+
   /// Finds stencils and second moments at the current positions and domains; they hold until the next call. Throws
   /// RunFailure.
   void find_stencils(const Grid& grid);

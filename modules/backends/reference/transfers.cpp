@@ -108,7 +108,11 @@ void ReferenceBackend::scatter_force(Particles& body, double time) {
       const Vector x = body.column(body.position, p);
       const Vector X =
           plan_.particle_field(0, "initial_position") ? body.column(body.values("initial_position"), p) : x;
-      force = body.mass(p) * to_eigen((*experiment_.body_force)({x[0], x[1], x[2]}, {X[0], X[1], X[2]}, time));
+      const Vector3 place{x[0], x[1], x[2]}, initial{X[0], X[1], X[2]};
+      const Vector acceleration = to_eigen((*experiment_.body_force)(place, initial, time));
+      if (!acceleration.allFinite())
+        throw RunFailure(body_force_failure(experiment_, body.index(), p, place, initial, time));
+      force = body.mass(p) * acceleration;
     }
     for (const StencilNode& s : body.stencil(p)) {
       const std::size_t i = grid_.at(body.field(), s.index);

@@ -47,10 +47,10 @@ void GridStep<D, T>::project_increment(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
   for (const FaceNodes& face : grid_.faces()) {  // images first, then walls, as fold_faces decided
     const Q signs = mirror_signs(face, AtWall::momentum);
+    const bool first = filter_.iterations == 0;
+    if (first) find_wall_velocities(face, time);
     for_each_folded(face, [&](int field, const MirrorPair& pair) {
-      const bool first = filter_.iterations == 0;
-      fold_momentum(filter_projection, field, pair, signs,
-                    first ? wall_velocity(face.condition->velocity, pair.foot, time) : Q{});
+      fold_momentum(filter_projection, field, pair, signs, first ? wall_velocity(face, pair) : Q{});
     });
   }
   for_each_block([&](int field, std::uint32_t first, double*) {

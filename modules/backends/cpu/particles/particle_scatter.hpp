@@ -116,6 +116,7 @@ template <int D, class T, class Components>
                                                                      const Chunk& chunk, Work& work, Channel momentum,
                                                                      bool evaluated) {
   const bool separate = grid_.has(force), merged = pass.has(Act::scatter_force) && !separate;
+  if (pass.has(Act::scatter_force)) fetch_initial_positions(chunk);
   const bool by_gradient = pass.has(Act::scatter_force) && !scene_.stress_by_affine;
   evaluate_shape(chunk, work, by_gradient || pass.has(Act::scatter_contact));
   if (!stencils_hold(chunk, work)) return false;
@@ -135,7 +136,7 @@ template <int D, class T, class Components>
     if (merged) {
       if (!in_packing) stress_coefficients(chunk, work, step.dt, adds_to_A);
       if (scene_.axisymmetric) add_hoop_force(chunk, work, step.dt);
-      if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, true, step.dt);
+      if (scene_.experiment.body_force) add_body_force(chunk, work, step.time, step.dt);
     }
     const bool affine = scene_.has(MPM_SCATTERS_AFFINE) || (merged && scene_.stress_by_affine);
     const T stress = in_packing ? stress_scale(chunk, step.dt) : T(0);
@@ -143,8 +144,13 @@ template <int D, class T, class Components>
     if (higher_kernels_.scatter) add_higher_to_tile(chunk, work, momentum, chunk.higher());
   }
   if (pass.has(Act::scatter_force) && separate) {
-    scatter_stress(chunk, work);
-    if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, false, step.dt);
+    const bool apart = scene_.experiment.body_force && grid_.has(body_force);
+    scatter_forces(chunk, work, step.time, scene_.experiment.body_force && !apart);
+    if (apart) {
+      std::fill(work.b, work.b + D * chunk_size<T>, T(0));
+      add_body_force(chunk, work, step.time, 1.0);
+      add_to_tile(chunk, work, body_force, nullptr, true, false, false);
+    }
   }
   if (pass.has(Act::scatter_contact)) scatter_contact_fields(chunk, work);
   if (pass.has(Act::scatter_heat)) scatter_heat(chunk, work);
@@ -319,37 +325,71 @@ void ParticleStep<D, T, Components>::add_higher_to_tile(const Chunk& chunk, Work
   work.clock.lap(Phase::scatter);
 }
 
+/// Scatters the forces of the stress, and with them the body force where it has no channel of its own.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::scatter_stress(const Chunk& chunk, Work& work) {
+void ParticleStep<D, T, Components>::scatter_forces(const Chunk& chunk, Work& work, double time, bool with_body_force) {
   stress_coefficients(chunk, work, 1.0, false);
-  if (scene_.axisymmetric) {
-    std::fill(work.b, work.b + D * chunk_size<T>, T(0));
-    add_hoop_force(chunk, work, 1.0);
-  }
-  add_to_tile(chunk, work, force, nullptr, scene_.axisymmetric, scene_.stress_by_affine, !scene_.stress_by_affine);
+  const bool constant = scene_.axisymmetric || with_body_force;
+  if (constant) std::fill(work.b, work.b + D * chunk_size<T>, T(0));
+  if (scene_.axisymmetric) add_hoop_force(chunk, work, 1.0);
+  if (with_body_force) add_body_force(chunk, work, time, 1.0);
+  add_to_tile(chunk, work, force, nullptr, constant, scene_.stress_by_affine, !scene_.stress_by_affine);
 }
 
-/// Adds m b(x, X, t) into its own channel, or times dt onto the momentum's b.
+/// Asks for what add_body_force reads of the particles' first places, which lie far apart, while other work is done.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged,
-                                                        double dt) {
+void ParticleStep<D, T, Components>::fetch_initial_positions(const Chunk& chunk) const {
+  if (!scene_.experiment.body_force || !scene_.experiment.body_force->uses_initial_position()) return;
+  for (int p = 0; p < chunk.count; ++p) __builtin_prefetch(chunk.body.initial_position + std::size_t(chunk.ids[p]) * D);
+}
+
+/// Adds `factor` m b(x, X, t) to the coefficients b.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::add_body_force(const Chunk& chunk, Work& work, double time, double factor) {
   const VectorExpression& expression = *scene_.experiment.body_force;
-  if (!merged) std::fill(work.b, work.b + D * chunk_size<T>, T(0));
-  const double factor = chunk.body.mass * (merged ? dt : 1.0);
+  double x[D][chunk_size<T>], X[D][chunk_size<T>], f[D][chunk_size<T>];
+  PointArrays places;
+  std::array<double*, 3> forces{};
+  for (int a = 0; a < D; ++a) {
+    places.x[a] = x[a], places.X[a] = X[a], forces[a] = f[a];
+    const T* const position = chunk.at(Particles<D, T>::position + a);
+    for (int p = 0; expression.uses_position() && p < chunk.count; ++p)
+      x[a][p] = scene_.domain.lower[a] +
+                scene_.domain.cell_size * cells_from_corner(scene_.domain, chunk.block, a, position[p]);
+    for (int p = 0; expression.uses_initial_position() && p < chunk.count; ++p)
+      X[a][p] = chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
+  }
+  const std::size_t count = static_cast<std::size_t>(chunk.count);
+  if (expression.evaluate(count, places, time, forces) < count) note_force(chunk, places, forces, time);
+  const double mass = factor * chunk.body.mass;
   const T* const around = circumferences(chunk);
-  const T* const position = chunk.at(Particles<D, T>::position);
+  for (int c = 0; c < D; ++c) {
+    T* const b = work.b + c * chunk_size<T>;
+    if (around)
+      for (int p = 0; p < chunk.count; ++p) b[p] += static_cast<T>(mass * around[p] * f[c][p]);
+    else
+      for (int p = 0; p < chunk.count; ++p) b[p] += static_cast<T>(mass * f[c][p]);
+  }
+}
+
+/// Notes the particles of a chunk whose force is not finite.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::note_force(const Chunk& chunk, const PointArrays& places,
+                                                const std::array<double*, 3>& forces, double time) {
   for (int p = 0; p < chunk.count; ++p) {
     Vector3 x{}, X{};
-    for (int a = 0; a < D; ++a) {
-      x[a] = scene_.domain.lower[a] + scene_.domain.cell_size * cells_from_corner(scene_.domain, chunk.block, a,
-                                                                                  position[a * chunk_size<T> + p]);
-      X[a] = chunk.body.initial_position ? chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a] : x[a];
+    bool finite = true;
+    for (int c = 0; c < D; ++c) {
+      finite = finite && std::isfinite(forces[c][p]);
+      if (scene_.experiment.body_force->uses_position()) x[c] = places.x[c][p];
+      if (scene_.experiment.body_force->uses_initial_position()) X[c] = places.X[c][p];
     }
-    const Vector3 f = expression(x, X, time);
-    for (int c = 0; c < D; ++c)
-      work.b[c * chunk_size<T> + p] += static_cast<T>(factor * (around ? around[p] : T(1)) * f[c]);
+    if (finite) continue;
+    const Failure failure =
+        body_force_failure(scene_.experiment, chunk.body.index, static_cast<std::size_t>(chunk.ids[p]), x, X, time);
+    const std::lock_guard lock(mutex_);
+    failure_.note(failure);
   }
-  if (!merged) add_to_tile(chunk, work, body_force, nullptr, true, false, false);
 }
 
 /// Scatters V grad w with w V beside it, and w m (x_p - x_node), V = J V0. A ring has the gradient of its section, as

@@ -312,8 +312,10 @@ class ParticleStep : NamedChannels {
   void pack_coefficients(Work& work, const T* last, bool constant, int count, T stress);
   void pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient, int count, T stress);
   void add_higher_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* coefficients);
-  void scatter_stress(const Chunk& chunk, Work& work);
-  void scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt);
+  void scatter_forces(const Chunk& chunk, Work& work, double time, bool with_body_force);
+  void fetch_initial_positions(const Chunk& chunk) const;
+  void add_body_force(const Chunk& chunk, Work& work, double time, double factor);
+  void note_force(const Chunk& chunk, const PointArrays& places, const std::array<double*, 3>& forces, double time);
   void scatter_contact_fields(const Chunk& chunk, Work& work);
 
   bool melted(const Chunk& chunk, int p) const;
