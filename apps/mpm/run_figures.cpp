@@ -392,8 +392,12 @@ Specification read_specification(const std::filesystem::path& file, const std::v
     if (fields.valid(key) && (key[0] == 'x' || fields.given(key))) check(fields.place(key), fields.text(key));
   for (std::size_t k = 0; k < fields.names("columns").size(); ++k)
     check(fields.node("columns")->items[k], fields.names("columns")[k]);
-  if (fields.given("y") == fields.given("columns"))
-    context.problem(root, "expected one of \"y\", a column, and \"columns\", a list of them");
+  if (!fields.given("y") && !fields.given("columns"))
+    context.problem(root.at, "/y", "missing key; or give \"columns\", a list of them");
+  if (fields.given("y") && fields.given("columns"))
+    context.problem(*fields.node("columns"), "give \"y\", one column, or \"columns\", a list of them");
+  if (fields.given("columns") && fields.valid("columns") && fields.names("columns").empty())
+    context.problem(*fields.node("columns"), "the list is empty");
   const std::size_t labels = fields.names("labels").size();
   if (fields.valid("labels") && labels > 0 && labels != runs.size())
     context.problem(fields.place("labels"),

@@ -196,7 +196,8 @@ Json definitions(const ComponentLookup& components, const ReadOptions& options) 
   all["expectation"] = section_schema(expectation_section());
   all["expectation"]["anyOf"] =
       Json::array({{{"required", {"at_least"}}}, {{"required", {"at_most"}}}, {{"required", {"equals"}}}});
-  for (const auto& [name, schema] : particle_output_schemas().items()) all[name] = schema;
+  const auto particle_outputs = particle_output_schemas();
+  for (const auto& [name, schema] : particle_outputs.items()) all[name] = schema;
   all["expectations"] = list_of(reference("expectation"));
   all["recorded_bodies"] = {{"anyOf", Json::array({{{"type", "boolean"}}, list_of({{"type", "string"}})})}};
   all["groups"] = list_of(section_schema(group_section()));
