@@ -22,7 +22,8 @@ constexpr const char* footer =
     R"(Exit codes: 0 done and every expectation held; 2 bad input, nothing was run; 3 the run became unstable or
 invalid (what, where and when is printed; results so far are kept), or test-plugin found a plugin that fails, crashes
 or hangs; 4 an expectation in "compare" failed, or the run broke a limit: it gained more than 1 % of energy out of
-nothing, or a volume ratio J left 0.1 to 10 (flagged by name; other limits under "limits"); 5 the machine failed (disk, memory); 130 stopped by Ctrl-C at a step
+nothing, or a volume ratio J left 0.1 to 10 (flagged by name; other limits under "limits"), or compare found numbers
+that differ; 5 the machine failed (disk, memory); 130 stopped by Ctrl-C at a step
 boundary, everything written.
 A run that was stopped, killed or had no room on the disk goes on from its last checkpoint with --resume.
 Plugins are found in the build tree and in the folders of MPM_PLUGIN_PATH.)";
@@ -76,6 +77,21 @@ void add_advise(CLI::App& verb, AdviseOptions& options) {
   verb.add_option("--by", options.by, "with --error: measure that is to be small, such as particle_steps");
   verb.add_flag("--json", options.json, "as JSON");
   verb.footer("Exit code 4 when no combination reaches the target; the nearest are then listed.");
+}
+
+void add_compare(CLI::App& verb, CompareOptions& options) {
+  verb.add_option("RUN", options.first, "run folder")->required();
+  verb.add_option("OTHER", options.second, "run folder that is held against it")->required();
+  verb.add_option("--tolerance", options.tolerance,
+                  "largest relative difference of numbers that are taken as equal; default 0: the same bits")
+      ->check(CLI::Range(0.0, 1.0));
+  verb.add_flag("--json", options.json, "as JSON");
+  verb.footer(
+      "Judged are the numbers and words of summary.json, without those under \"performance\", and the columns of "
+      "metrics.csv. A column is held against its largest number, a component against its vector's, an energy or a heat "
+      "against the largest of its kind. Keys of the experiment and files that differ are told and not judged; above a "
+      "tolerance of 0 neither are the ledger's books and warnings, which tell of rounding.\n"
+      "Exit codes: 0 all agree within the tolerance; 2 bad input; 4 something does not agree.");
 }
 
 std::string quoted_for_a_shell(const std::string& word) {
@@ -204,9 +220,16 @@ int run_command_line(int argc, char** argv) {
   run_verb->add_flag("--resume", options.resume,
                      "goes on with the unfinished run in the run folder, from its last checkpoint, bit for bit; with "
                      "the same FILE, --set and --backend");
+  auto* replace = run_verb->add_flag(
+      "--replace", options.replace,
+      "replaces whatever run the run folder holds. Without it a finished run of the same experiment is replaced, "
+      "which is said, and one of another experiment, or one that --resume could go on with, is refused (code 2). Files "
+      "that no run writes stay");
+  run_verb->get_option("--resume")->excludes(replace);
   run_verb->callback([&] { code = guarded([&] { return run(options); }); });
 
-  auto* check_verb = app.add_subcommand("check", "validate an experiment; every mistake is listed with its place");
+  auto* check_verb =
+      app.add_subcommand("check", "validate an experiment or a study; every mistake is listed with its place");
   add_experiment(*check_verb, options);
   check_verb->callback([&] { code = guarded([&] { return check(options); }); });
 
@@ -254,6 +277,11 @@ int run_command_line(int argc, char** argv) {
       app.add_subcommand("advise", "the best combination that a study measured, for an error or a time");
   add_advise(*advise_verb, advise_options);
   advise_verb->callback([&] { code = guarded([&] { return advise(advise_options); }, "no advice was given"); });
+
+  CompareOptions compare_options;
+  auto* compare_verb = app.add_subcommand("compare", "print what differs between two runs, and by how much");
+  add_compare(*compare_verb, compare_options);
+  compare_verb->callback([&] { code = guarded([&] { return compare(compare_options); }, "nothing was compared"); });
 
   BenchOptions bench_options;
   bench_options.command = options.command;

@@ -28,6 +28,7 @@ struct RunOptions {
   std::filesystem::path out;  ///< empty: runs/<name of the file>
   int threads = 0;            ///< 0: all processors
   bool resume = false;        ///< goes on with the unfinished run in `out`
+  bool replace = false;       ///< whatever run `out` holds is replaced
   std::string command;        ///< as typed, for the manifest
 };
 
@@ -59,6 +60,12 @@ struct AdviseOptions {
   bool json = false;
 };
 
+struct CompareOptions {
+  std::filesystem::path first, second;  ///< run folders
+  double tolerance = 0;                 ///< of numbers, relative
+  bool json = false;
+};
+
 int run_command_line(int argc, char** argv);
 
 /// What the program offers to the reader: names of exact solutions, figures, quantities.
@@ -67,7 +74,10 @@ ReadOptions read_options(const Registry& registry, const RunOptions& options);
 Registry load_registry();
 
 int run(const RunOptions& options);
+/// Validates an experiment, or a study with all its combinations.
 int check(const RunOptions& options);
+/// Throws InputError where the file is a study, with the verb that takes it in place of `verb`.
+void refuse_study(const std::filesystem::path& file, const std::string& verb);
 int plan(const RunOptions& options, bool json, const std::string& graph);
 int list(bool json);
 /// Prints which components run together and which are refused, generated from the same function that refuses.
@@ -88,6 +98,8 @@ int bench_point(const std::string& description);
 int study(const StudyOptions& options);
 /// Prints the best measured combination for an error or a time; exit code 4 when there is none. Throws InputError.
 int advise(const AdviseOptions& options);
+/// Prints what differs between two runs; exit code 4 when their numbers do. Throws InputError and FolderRefused.
+int compare(const CompareOptions& options);
 int figure(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& specification,
            const std::filesystem::path& out);
 

@@ -7,11 +7,15 @@
 #include <sstream>
 
 #include "experiment/diagnostics.hpp"
+#include "experiment/located_json.hpp"
 #include "experiment/schema.hpp"
 #include "mpm/cli.hpp"
+#include "mpm/run_figures.hpp"
 #include "plan/compatibility.hpp"
 #include "plugin/extension_of.hpp"
 #include "solvers/solver.hpp"
+#include "study/run_study.hpp"
+#include "study/study.hpp"
 #include "support/files.hpp"
 
 namespace mpm::app {
@@ -129,12 +133,53 @@ std::vector<const Plugin*> matching(const Registry& registry, const std::string&
   return found;
 }
 
+/// Validates a study and the experiment of each of its combinations. One that is refused is no mistake, as in a run of
+/// the study, unless all are.
+int check_study(const RunOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.backend) overrides.push_back("/backend=" + *options.backend);
+  const study::Study plan = study::read_study(options.file, overrides);
+  const Registry registry = load_registry();
+  read_located(plan.base);  // a base that is no JSON is one mistake, not one a combination
+  const std::vector<study::Combination> combinations = study::expand(plan);
+  std::vector<Problem> refused;
+  ReadOptions read = read_options(registry, {});
+  for (const study::Combination& combination : combinations) {
+    read.overrides = combination.overrides;
+    if (plan.bisection)
+      read.overrides.push_back(plan.bisection->pointer + "=" +
+                               Json(plan.bisection->from * plan.bisection->scale).dump());
+    try {
+      make_plan(read_experiment(plan.base, registry, read));
+    } catch (const InputError& error) {
+      refused.push_back({plan.base.string(), 0, 0, "", combination.name + ": " + study::reason_of(error)});
+    }
+  }
+  if (refused.size() == combinations.size()) throw InputError(std::move(refused));
+  std::cout << options.file.string() << ": ok, a study of " << combinations.size() << " combinations of "
+            << plan.base.string();
+  if (!refused.empty()) std::cout << ", of which " << refused.size() << " will be refused:";
+  std::cout << "\n";
+  for (const Problem& problem : refused) std::cout << "  " << problem.message << "\n";
+  return done;
+}
+
 }  // namespace
 
+void refuse_study(const std::filesystem::path& file, const std::string& verb) {
+  if (!study::is_study(read_located(file))) return;
+  throw InputError(
+      {Problem{file.string(), 1, 1, "",
+               "this is a study (it has \"base\" and \"axes\"), and mpm " + verb +
+                   " takes an experiment: use `mpm study " + file.string() + "`, or `mpm check` to validate it"}});
+}
+
 int check(const RunOptions& options) {
+  if (study::is_study(read_located(options.file))) return check_study(options);
   const Registry registry = load_registry();
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const Plan plan = make_plan(experiment);
+  refuse_unknown_records(experiment);
   std::cout << options.file.string() << ": ok, " << experiment.dimension << "-D, " << experiment.bodies.size()
             << (experiment.bodies.size() == 1 ? " body" : " bodies") << ", about " << plan.particles << " particles, "
             << experiment.shape.plugin->id() << " + " << experiment.transfer.plugin->id() << "\n";
@@ -142,6 +187,7 @@ int check(const RunOptions& options) {
 }
 
 int plan(const RunOptions& options, bool json, const std::string& graph) {
+  refuse_study(options.file, "plan");
   const Registry registry = load_registry();
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const Plan plan = make_plan(experiment);

@@ -17,6 +17,7 @@
 #include "output/report.hpp"
 #include "output/summary_value.hpp"
 #include "run/checkpoint.hpp"
+#include "run/earlier_run.hpp"
 #include "run/limits.hpp"
 #include "run/start_checks.hpp"
 #include "run/summary.hpp"
@@ -85,6 +86,7 @@ nlohmann::ordered_json manifest(const Experiment& experiment, const RunOptions& 
                               {"experiment_file", experiment.file.filename().string()}};
   if (const std::string text = support::read_file(experiment.file); true)
     json["experiment_sha256"] = support::sha256(text);
+  if (!experiment.inputs.empty()) json["inputs"] = inputs_of(experiment);
   json["seed"] = experiment.seed;
   json["threads"] = threads;
   json["processors"] = support::available_processors();
@@ -108,7 +110,7 @@ nlohmann::ordered_json resumed_manifest(const output::RunFolder& folder, const R
   auto json = nlohmann::ordered_json::parse(support::read_file(folder.root() / "manifest.json"), nullptr, false);
   if (!json.is_object())
     throw output::FolderRefused((folder.root() / "manifest.json").string() +
-                                " is damaged; start anew without --resume (the unfinished run is then moved aside)");
+                                " is damaged; start anew with --replace in place of --resume");
   json["resumed"].push_back({{"resumed_from_step", step}, {"command", options.command}, {"threads", threads}});
   return json;
 }
@@ -154,14 +156,15 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints&
     } catch (const RunFailure& stopped) {
       const Outcome outcome = outcome_of(stopped.failure, simulation);
       progress.show(true);
-      std::cerr << "the run failed: " << outcome.reason << "\nremedy: " << remedy_for(stopped.failure) << "\n";
+      std::cerr << "the run failed: " << outcome.reason
+                << "\nremedy: " << remedy_for(stopped.failure, simulation.experiment()) << "\n";
       return outcome;
-    } catch (const ImposedHeatFailure& stopped) {
+    } catch (const ImposedValueFailure& stopped) {
       const long step = simulation.steps() + 1;
       const Outcome outcome{run_failed, "failed", failure_text(stopped.imposed, simulation),
                             record_of(stopped.imposed, step)};
       progress.show(true);
-      std::cerr << "the run failed: " << outcome.reason << "\nremedy: " << impossible_heat_remedy << "\n";
+      std::cerr << "the run failed: " << outcome.reason << "\nremedy: " << impossible_value_remedy << "\n";
       return outcome;
     }
     recorder.record();
@@ -201,7 +204,9 @@ void draw(const Experiment& experiment, Recorder& recorder, const output::RunFol
   const std::string run = folder.root().filename().string();
   const RunLabel label{experiment.title.empty() ? experiment.file.stem().string() : experiment.title,
                        experiment.file.filename().string() + " · run " + run};
-  draw_figures(experiment.figures, support::read_csv(folder.root() / "metrics.csv"), label, folder.figures());
+  const support::Table metrics = support::read_csv(folder.root() / "metrics.csv");
+  draw_figures(experiment.figures, metrics, label, folder.figures());
+  draw_figures(experiment.column_figures, metrics, label, folder.figures());
 }
 
 /// Draws frames and figures. Returns what prevented that, or an empty string. The numbers are on disk by then.
@@ -213,18 +218,6 @@ std::string trouble_of_drawing(const Experiment& experiment, Recorder& recorder,
     return std::string("pictures are missing: ") + error.what() + "; the numbers are whole, and `mpm figure " +
            folder.root().string() + "` draws figures from them again";
   }
-}
-
-void refuse_figures_without_numbers(const Experiment& experiment, const Metrics& metrics) {
-  support::Table columns;
-  columns.header = metrics.columns();
-  columns.columns.resize(columns.header.size());
-  std::vector<Problem> problems;
-  for (std::size_t k = 0; k < experiment.figures.size(); ++k) {
-    const std::string missing = missing_for(experiment.figures[k], columns);
-    if (!missing.empty()) problems.push_back(problem_at(experiment, "/figures/" + std::to_string(k), missing));
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
 }
 
 void print_result(const nlohmann::ordered_json& summary, const output::RunFolder& folder) {
@@ -288,12 +281,15 @@ Outcome finish(Outcome outcome, nlohmann::ordered_json summary, const Experiment
     folder.write_json("summary.json", summary);
   };
   write_summary();
-  if (const std::string trouble = trouble_of_drawing(experiment, recorder, folder); !trouble.empty()) {
+  const auto drawing = Clock::now();
+  const std::string trouble = trouble_of_drawing(experiment, recorder, folder);
+  summary["performance"]["drawing_seconds"] = std::chrono::duration<double>(Clock::now() - drawing).count();
+  if (!trouble.empty()) {
     std::cerr << trouble << "\n";
     summary["warnings"].push_back(trouble);
     if (outcome.exit_code == done) outcome = {machine_failed, "failed", trouble};
-    write_summary();
   }
+  write_summary();
   output::write_report(folder.root());
   print_result(summary, folder);
   return outcome;
@@ -321,26 +317,31 @@ Threads threads_for(const Experiment& experiment, const RunOptions& options) {
 
 int run(const RunOptions& options) {
   const auto start = Clock::now();
+  refuse_study(options.file, "run");
   const Registry registry = load_registry();
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const auto place = options.out.empty() ? std::filesystem::path("runs") / options.file.stem() : options.out;
+  refuse_unknown_records(experiment);
   if (options.resume)
     if (const auto code = already_finished(experiment, open_to_resume(place))) return *code;
   const auto [threads, find_number] = threads_for(experiment, options);
   Simulation simulation(experiment, backend_factory(threads, find_number));
   const Metrics metrics(simulation);  // metrics are those of step 0, also when the run goes on from a later one
-  refuse_figures_without_numbers(experiment, metrics);
   refuse_impossible_starts(simulation);
 
   const StopOnSignal signals;
-  const auto folder = options.resume ? open_to_resume(place) : output::RunFolder::create(place);
+  // The file may lie in the folder that is replaced.
+  const auto description = options.resume ? nlohmann::ordered_json() : manifest(experiment, options, threads);
+  const auto folder = options.resume ? open_to_resume(place) : folder_for_new_run(place, experiment, options.replace);
   const output::FolderLock lock(folder.root());
   Recorder recorder(simulation, metrics, folder);
+  recorder.use_threads(options.threads > 0 ? std::min(options.threads, support::available_processors())
+                                           : support::available_processors());
   EarlierParts earlier;
   if (options.resume)
     earlier = resume(simulation, recorder, folder, options, threads);
   else
-    folder.write_json("manifest.json", manifest(experiment, options, threads));
+    folder.write_json("manifest.json", description);
   folder.remove_temporary_files();
   folder.write_json("experiment.json", experiment.resolved);
   folder.write_json("plan.json", simulation.plan().to_json());
@@ -351,7 +352,8 @@ int run(const RunOptions& options) {
   Checkpoints checkpoints(simulation, recorder, folder, identity_of(experiment), earlier, start);
   const Outcome stepped = step_or_say_why(simulation, recorder, checkpoints, options);
   const double wall = std::chrono::duration<double>(Clock::now() - start).count();
-  nlohmann::ordered_json summary = summarise(simulation, metrics, recorder, wall, earlier);
+  nlohmann::ordered_json summary = summarise(simulation, metrics, recorder.rows(), wall, earlier);
+  summary["performance"]["particle_file_seconds"] = recorder.particle_file_seconds();
   if (!checkpoints.trouble().empty()) summary["warnings"].push_back(checkpoints.trouble());
   const Outcome outcome = finish(stepped, std::move(summary), experiment, recorder, folder);
   if (outcome.exit_code == done || outcome.exit_code == expectation_failed) checkpoints.remove();

@@ -9,12 +9,15 @@
 #include <optional>
 #include <stdexcept>
 
+#include "backends/make_backend.hpp"
 #include "experiment/diagnostics.hpp"
 #include "experiment/parameter.hpp"
 #include "mpm/cli.hpp"
 #include "output/report.hpp"
 #include "output/run_folder.hpp"
 #include "render/plot.hpp"
+#include "run/record_names.hpp"
+#include "run/start_checks.hpp"
 #include "support/files.hpp"
 
 namespace mpm::app {
@@ -37,6 +40,12 @@ std::vector<double> column(const Table& table, const std::string& name, double f
   std::vector<double> scaled(*values);
   for (double& value : scaled) value *= factor;
   return scaled;
+}
+
+std::vector<std::string> names_without_units(const Table& table) {
+  std::vector<std::string> names = table.header;
+  for (std::string& name : names) name = name.substr(0, name.find(" ("));
+  return names;
 }
 
 void add(Plot& plot, const Table& table, const std::string& name, const std::string& label, double factor = 1) {
@@ -131,7 +140,12 @@ void draw_ledger(const Table& table, const RunLabel& label, const std::filesyste
                                         {"ledger boundary", "boundary"},
                                         {"ledger contact", "contact"},
                                         {"ledger body force", "body force"},
-                                        {"ledger periodic gravity", "gravity along periodic axes"},
+                                        {"ledger gravity without potential", "gravity without potential"},
+                                        {"ledger damping", "damping"},
+                                        {"ledger surface load", "loads on surfaces"},
+                                        {"ledger point load", "loads at points"},
+                                        {"ledger spring", "springs"},
+                                        {"ledger dashpot", "dashpots"},
                                         {"ledger filtered strain", "strain by filtered velocity"},
                                         {"ledger filtered gravity", "rise by filtered velocity"},
                                         {"ledger remapped strain", "strain by remapped velocity"},
@@ -162,6 +176,7 @@ void draw_dissipation(const Table& table, const RunLabel& label, const std::file
   add_if_any("ledger remapped strain", "strain by remapped velocity", -1);
   add_if_any("ledger boundary", "boundary", -1);
   add_if_any("ledger contact", "contact", -1);
+  add_if_any("ledger damping", "damping", -1);
   const bool takes_back = table.find("ledger friction taken back") != nullptr;
   add_if_any("ledger friction", takes_back ? "friction that particles keep" : "of it friction", 1);
   add_if_any("ledger material dissipation", "material", 1);
@@ -193,6 +208,24 @@ void draw_contact(const Table& table, const RunLabel& label, const std::filesyst
   render::write_figure(nodes, stem.parent_path() / "contact_nodes");
 }
 
+/// Draws the components of forces and moments of every support, but for those that are zero all along.
+void draw_reactions(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+  const std::string start = "reaction ", moment = " moment ";
+  Plot forces, moments;
+  for (const std::string& name : names_without_units(table)) {
+    if (!name.starts_with(start)) continue;
+    const bool turns = name.find(moment) != std::string::npos;
+    Plot& plot = turns ? moments : forces;
+    if (plot.title.empty())
+      plot = plot_of(table, label,
+                     (turns ? "Moments of supports about the origin: " : "Forces of supports: ") + label.title,
+                     turns ? "moment M" : "force F", name);
+    if (largest_of(column(table, name)) > 0 || plot.series.empty()) add(plot, table, name, name.substr(start.size()));
+  }
+  render::write_figure(forces, stem);
+  if (!moments.title.empty()) render::write_figure(moments, stem.parent_path() / "reaction_moments");
+}
+
 void draw_volume(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
   Plot plot =
       plot_of(table, label, "Compression and expansion: " + label.title, "volume ratio J", "smallest volume ratio");
@@ -210,9 +243,20 @@ void draw_error(const Table& table, const RunLabel& label, const std::filesystem
   render::write_figure(plot, stem);
 }
 
+/// A plot of columns over time. The axis has their unit where they share one, else each curve names its own.
+Plot columns_over_time(const Table& table, const std::vector<std::string>& names) {
+  Plot plot;
+  plot.x_label = "time t (s)";
+  const std::string unit = unit_of(table, names.front());
+  const bool shared = std::all_of(names.begin(), names.end(), [&](auto& name) { return unit_of(table, name) == unit; });
+  for (const std::string& name : names) add(plot, table, name, name + (shared ? "" : unit_of(table, name)));
+  plot.y_label = (names.size() == 1 ? names.front() : std::string("value")) + (shared ? unit : "");
+  return plot;
+}
+
 struct FigureKind {
   const char* name;
-  const char* needs;   ///< a column of metrics.csv
+  const char* needs;   ///< a column of metrics.csv; with a space at its end, what one begins with
   const char* remedy;  ///< what records it
   void (*draw)(const Table&, const RunLabel&, const std::filesystem::path&);
 };
@@ -223,6 +267,7 @@ constexpr FigureKind kinds[] = {
     {"dissipation", "ledger residual", "set /output/ledger to true", draw_dissipation},
     {"momentum", "momentum y", "", draw_momentum},
     {"contact", "contact nodes", "give the experiment a \"contact\"", draw_contact},
+    {"reactions", "reaction ", "name supports in /output/reactions", draw_reactions},
     {"volume_ratio", "smallest volume ratio", "", draw_volume},
     {"error", "position error rms", "name an exact solution in /compare/exact", draw_error},
 };
@@ -238,7 +283,23 @@ struct RecordedRun {
   std::filesystem::path folder;
   std::string title, file;
   Table metrics;
+  std::vector<ColumnFigure> column_figures = {};
 };
+
+/// The figures of columns that a run's experiment asks for and its numbers have.
+std::vector<ColumnFigure> column_figures_of(const nlohmann::json& experiment, const Table& metrics) {
+  std::vector<ColumnFigure> figures;
+  if (!experiment.contains("figures") || !experiment["figures"].is_array()) return figures;
+  for (const auto& item : experiment["figures"]) {
+    if (!item.is_object()) continue;
+    ColumnFigure figure{item.value("name", ""), item.value("title", item.value("name", "")),
+                        item.value("columns", std::vector<std::string>()), item.value("log_y", false), ""};
+    const bool all = std::all_of(figure.columns.begin(), figure.columns.end(),
+                                 [&](const std::string& name) { return metrics.find(name) != nullptr; });
+    if (!figure.name.empty() && !figure.columns.empty() && all) figures.push_back(std::move(figure));
+  }
+  return figures;
+}
 
 [[noreturn]] void refuse(const std::filesystem::path& what, const std::string& message) {
   throw InputError({Problem{what.string(), 0, 0, "", message}});
@@ -260,6 +321,7 @@ RecordedRun recorded(const std::filesystem::path& folder) {
     const auto experiment = nlohmann::json::parse(support::read_file(file), nullptr, false);
     if (experiment.is_object() && experiment.contains("title") && experiment["title"].is_string())
       run.title = experiment["title"].get<std::string>();
+    if (experiment.is_object()) run.column_figures = column_figures_of(experiment, run.metrics);
   }
   if (run.title.empty()) run.title = run.folder.filename().string();
   run.file = run.folder.filename().string();
@@ -275,12 +337,16 @@ void tell_apart(std::vector<RecordedRun>& runs) {
       run.file = (run.folder.parent_path().filename() / run.folder.filename()).string();
 }
 
-/// Draws one curve a run, of the given columns.
-void draw_overlay(const std::vector<RecordedRun>& runs, Plot plot, const std::string& x, const std::string& y,
-                  const std::vector<std::string>& labels, const std::filesystem::path& stem) {
+/// Draws one curve a run and column.
+void draw_overlay(const std::vector<RecordedRun>& runs, Plot plot, const std::string& x,
+                  const std::vector<std::string>& columns, const std::vector<std::string>& labels,
+                  const std::filesystem::path& stem) {
   for (std::size_t k = 0; k < runs.size(); ++k)
-    plot.series.push_back(
-        {k < labels.size() ? labels[k] : runs[k].file, column(runs[k].metrics, x), column(runs[k].metrics, y)});
+    for (const std::string& y : columns) {
+      const std::string run = k < labels.size() ? labels[k] : runs[k].file;
+      const std::string label = columns.size() == 1 ? run : runs.size() == 1 && labels.empty() ? y : run + ", " + y;
+      plot.series.push_back({label, column(runs[k].metrics, x), column(runs[k].metrics, y)});
+    }
   for (const RecordedRun& run : runs) plot.footnote += (plot.footnote.empty() ? "runs " : ", ") + run.file;
   render::write_figure(plot, stem);
 }
@@ -292,7 +358,8 @@ Section specification_section() {
           {
               parameter("title", Type::string, "", "Title; default the name of y."),
               parameter("x", Type::string, "", "Column of metrics.csv.").standard("time"),
-              parameter("y", Type::string, "", "Column of metrics.csv.").needed(),
+              parameter("y", Type::string, "", "Column of metrics.csv; or \"columns\"."),
+              parameter("columns", Type::names, "", "Several columns of metrics.csv, a curve each of every run."),
               parameter("x_label", Type::string, "", "Default: the column and its unit."),
               parameter("y_label", Type::string, "", "Default: the column and its unit."),
               parameter("log_x", Type::boolean, "", "Logarithmic axis.").standard(false),
@@ -304,31 +371,33 @@ Section specification_section() {
 /// What `mpm figure --spec` draws, checked against the runs.
 struct Specification {
   Plot plot;
-  std::string x, y;
-  std::vector<std::string> labels;
+  std::string x;
+  std::vector<std::string> columns, labels;
 };
-
-std::vector<std::string> names_without_units(const Table& table) {
-  std::vector<std::string> names = table.header;
-  for (std::string& name : names) name = name.substr(0, name.find(" ("));
-  return names;
-}
 
 Specification read_specification(const std::filesystem::path& file, const std::vector<RecordedRun>& runs) {
   const Node root = read_located(file);
   ReadContext context;
   context.file = file.string();
   const Fields fields(&root, specification_section(), context);
-  for (const char* key : {"x", "y"}) {
-    if (!fields.valid(key)) continue;
-    const std::string& name = fields.text(key);
+  const auto check = [&](const Node& place, const std::string& name) {
     for (const RecordedRun& run : runs) {
       if (run.metrics.find(name)) continue;
       const auto names = names_without_units(run.metrics);
-      context.problem(fields.place(key), "run " + run.folder.string() + " has no column " + in_quotes(name) +
-                                             suggestion(name, names, "it has " + quoted_list(names)));
+      context.problem(place, "run " + run.folder.string() + " has no column " + in_quotes(name) +
+                                 suggestion(name, names, "it has " + quoted_list(names)));
     }
-  }
+  };
+  for (const char* key : {"x", "y"})
+    if (fields.valid(key) && (key[0] == 'x' || fields.given(key))) check(fields.place(key), fields.text(key));
+  for (std::size_t k = 0; k < fields.names("columns").size(); ++k)
+    check(fields.node("columns")->items[k], fields.names("columns")[k]);
+  if (!fields.given("y") && !fields.given("columns"))
+    context.problem(root.at, "/y", "missing key; or give \"columns\", a list of them");
+  if (fields.given("y") && fields.given("columns"))
+    context.problem(*fields.node("columns"), "give \"y\", one column, or \"columns\", a list of them");
+  if (fields.given("columns") && fields.valid("columns") && fields.names("columns").empty())
+    context.problem(*fields.node("columns"), "the list is empty");
   const std::size_t labels = fields.names("labels").size();
   if (fields.valid("labels") && labels > 0 && labels != runs.size())
     context.problem(fields.place("labels"),
@@ -338,11 +407,12 @@ Specification read_specification(const std::filesystem::path& file, const std::v
   const auto text_or = [&](const char* key, const std::string& standard) {
     return fields.given(key) ? fields.text(key) : standard;
   };
-  Specification read{{}, fields.text("x"), fields.text("y"), fields.names("labels")};
+  Specification read{{}, fields.text("x"), fields.names("columns"), fields.names("labels")};
+  if (fields.given("y")) read.columns = {fields.text("y")};
   const Table& first = runs.front().metrics;
-  read.plot.title = text_or("title", read.y);
+  read.plot.title = text_or("title", read.columns.front());
   read.plot.x_label = text_or("x_label", read.x + unit_of(first, read.x));
-  read.plot.y_label = text_or("y_label", read.y + unit_of(first, read.y));
+  read.plot.y_label = text_or("y_label", columns_over_time(first, read.columns).y_label);
   read.plot.log_x = fields.boolean("log_x");
   read.plot.log_y = fields.boolean("log_y");
   return read;
@@ -358,7 +428,11 @@ std::vector<std::string> figure_names() {
 
 std::string missing_for(const std::string& name, const Table& metrics) {
   const FigureKind& kind = kind_of(name);
-  if (metrics.find(kind.needs)) return "";
+  const std::string_view needs = kind.needs;
+  const bool recorded = needs.ends_with(' ') ? std::any_of(metrics.header.begin(), metrics.header.end(),
+                                                           [&](const std::string& h) { return h.starts_with(needs); })
+                                             : metrics.find(needs) != nullptr;
+  if (recorded) return "";
   return "figure \"" + name + "\" needs \"" + kind.needs + "\", which the run does not record: " + kind.remedy;
 }
 
@@ -370,6 +444,42 @@ void draw_figures(const std::vector<std::string>& names, const Table& metrics, c
     if (!missing.empty()) throw std::runtime_error(missing);
     kind_of(name).draw(metrics, label, folder / name);
   }
+}
+
+void draw_figures(const std::vector<ColumnFigure>& figures, const Table& metrics, const RunLabel& label,
+                  const std::filesystem::path& folder) {
+  if (figures.empty()) return;
+  std::filesystem::create_directories(folder);
+  for (const ColumnFigure& figure : figures) {
+    Plot plot = columns_over_time(metrics, figure.columns);
+    plot.title = figure.title + (label.title.empty() ? "" : ": " + label.title);
+    plot.footnote = label.footnote;
+    plot.log_y = figure.log_y;
+    render::write_figure(plot, folder / figure.name);
+  }
+}
+
+void refuse_unknown_records(const Experiment& experiment) {
+  const bool any = !experiment.expectations.empty() || !experiment.figures.empty() ||
+                   !experiment.column_figures.empty() || !experiment.output.probes.empty() ||
+                   !experiment.output.groups.empty();
+  if (!any) return;
+  const RecordNames names = record_names(experiment, backend_factory(1));
+  std::vector<Problem> problems = unknown_records(experiment, names);
+  Table columns;
+  columns.header = names.columns;
+  columns.columns.resize(columns.header.size());
+  const auto& items = experiment.resolved["figures"];
+  for (const std::string& name : experiment.figures)
+    if (const std::string missing = missing_for(name, columns); !missing.empty())
+      problems.push_back(problem_at(
+          experiment, "/figures/" + std::to_string(std::find(items.begin(), items.end(), name) - items.begin()),
+          missing));
+  if (problems.empty()) return;
+  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
+    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+  });
+  throw InputError(std::move(problems));
 }
 
 int figure(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& specification,
@@ -386,12 +496,15 @@ int figure(const std::vector<std::filesystem::path>& folders, const std::filesys
     refuse(target, "is a file; choose a folder with --out");
   std::filesystem::create_directories(target);
   if (specified) {
-    draw_overlay(runs, specified->plot, specified->x, specified->y, specified->labels, target / specification.stem());
+    draw_overlay(runs, specified->plot, specified->x, specified->columns, specified->labels,
+                 target / specification.stem());
   } else if (runs.size() == 1) {
     std::vector<std::string> names;
     for (const std::string& name : figure_names())
       if (missing_for(name, runs.front().metrics).empty()) names.push_back(name);
-    draw_figures(names, runs.front().metrics, {runs.front().title, "run " + runs.front().file}, target);
+    const RunLabel label{runs.front().title, "run " + runs.front().file};
+    draw_figures(names, runs.front().metrics, label, target);
+    draw_figures(runs.front().column_figures, runs.front().metrics, label, target);
   } else {
     const std::pair<const char*, const char*> overlays[] = {
         {"total energy", "Total energy"},
@@ -409,7 +522,7 @@ int figure(const std::vector<std::filesystem::path>& folders, const std::filesys
       plot.y_label = std::string(name) + unit_of(runs.front().metrics, name);
       std::string stem = name;
       std::replace(stem.begin(), stem.end(), ' ', '_');
-      draw_overlay(runs, plot, "time", name, {}, target / stem);
+      draw_overlay(runs, plot, "time", {name}, {}, target / stem);
     }
   }
   if (out.empty() && runs.size() == 1) output::write_report(runs.front().folder);

@@ -113,7 +113,7 @@ class Particles {
   std::size_t dimension() const { return static_cast<std::size_t>(experiment_->dimension); }
   py::array_t<double> times_ring(double of_one) const {
     Values values(count());
-    for (std::size_t p = 0; p < values.size(); ++p) values[p] = of_one * state_->ring(p);
+    for (std::size_t p = 0; p < values.size(); ++p) values[p] = of_one * state_->size_of(p);
     return view_of(std::move(values));
   }
 
@@ -194,9 +194,10 @@ void in_words(Stepper& run, const py::object& failed, Steps steps) {
   try {
     return steps();
   } catch (const RunFailure& stopped) {
-    text = failure_text(stopped.failure, run.simulation()) + "\nremedy: " + remedy_for(stopped.failure);
-  } catch (const ImposedHeatFailure& stopped) {
-    text = failure_text(stopped.imposed, run.simulation()) + "\nremedy: " + impossible_heat_remedy;
+    text = failure_text(stopped.failure, run.simulation()) +
+           "\nremedy: " + remedy_for(stopped.failure, run.simulation().experiment());
+  } catch (const ImposedValueFailure& stopped) {
+    text = failure_text(stopped.imposed, run.simulation()) + "\nremedy: " + impossible_value_remedy;
   }
   PyErr_SetString(failed.ptr(), text.c_str());
   throw py::error_already_set();

@@ -1,6 +1,7 @@
 #include "experiment/experiment.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace mpm {
@@ -13,6 +14,31 @@ double Component::parameter(std::string_view name) const {
   }
   throw std::out_of_range((plugin ? std::string(plugin->id()) : "no plugin") + " has no parameter " +
                           std::string(name));
+}
+
+double Damping::left_of_velocity(double dt) const {
+  return std::exp(-viscous * dt);
+}
+
+double Damping::left_of_change(double dt) const {
+  return viscous > 0 ? -std::expm1(-viscous * dt) / (viscous * dt) : 1;
+}
+
+std::string face_name(int axis, int side) {
+  return std::string(1, "xyz"[axis]) + (side == 0 ? "_min" : "_max");
+}
+
+std::string Experiment::giver_of(ExternalForce force, int body) const {
+  if (force == ExternalForce::body_force && body_force) return body_force_pointer;
+  for (const Load& load : loads)
+    if ((body < 0 || load.body == body) && load.gives(force)) return load.pointer;
+  return "";
+}
+
+std::string Experiment::loaded_at_points(int body) const {
+  for (const Load& load : loads)
+    if ((body < 0 || load.body == body) && load.at_points()) return load.pointer;
+  return "";
 }
 
 bool Experiment::any_face(ConditionType type) const {
@@ -28,6 +54,25 @@ bool Experiment::separates() const {
          });
 }
 
+bool Experiment::reads_initial_position() const {
+  return (body_force && body_force->uses_initial_position()) ||
+         std::any_of(grips.begin(), grips.end(),
+                     [](const Grip& grip) { return grip.velocity.uses_initial_position(); });
+}
+
+std::vector<Support> Experiment::supports() const {
+  std::vector<Support> all;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const ConditionType type = faces[axis][side].type;
+      const bool holds = type != ConditionType::free && type != ConditionType::periodic;
+      all.push_back({face_name(axis, side), axis < dimension && holds});
+    }
+  for (const BoxCondition& box : boxes) all.push_back({box.name, box.type != ConditionType::free});
+  for (const Grip& grip : grips) all.push_back({grip.name, true});
+  return all;
+}
+
 std::string Experiment::where(std::string_view pointer) const {
   // A default has no place of its own: the nearest part of the file around it has.
   while (true) {
@@ -39,6 +84,13 @@ std::string Experiment::where(std::string_view pointer) const {
     if (pointer.empty()) return file.string();
     pointer = pointer.substr(0, pointer.find_last_of('/') == pointer.npos ? 0 : pointer.find_last_of('/'));
   }
+}
+
+bool OutputSpecification::probes_take(std::string_view beginning) const {
+  for (const ProbeSpecification& probe : probes)
+    for (const std::string& name : probe.quantities)
+      if (name.starts_with(beginning)) return true;
+  return false;
 }
 
 }  // namespace mpm

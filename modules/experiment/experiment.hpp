@@ -13,6 +13,8 @@
 
 #include "experiment/expression.hpp"
 #include "experiment/geometry.hpp"
+#include "experiment/input_file.hpp"
+#include "experiment/loads.hpp"
 #include "experiment/vector3.hpp"
 #include "plugin/registry.hpp"
 
@@ -64,6 +66,9 @@ struct FaceCondition {
   ThermalCondition thermal;
 };
 
+/// The name of a face of the domain in files: "x_min", "x_max" ...
+std::string face_name(int axis, int side);
+
 /// Whether heat comes in through the wall by a flux, so that the area of it that a body covers counts.
 inline bool passes_heat(const FaceCondition& face) {
   return face.thermal.exchange == HeatExchange::flux || face.thermal.exchange == HeatExchange::convection;
@@ -78,8 +83,32 @@ struct BoxCondition {
   std::array<bool, 3> held{true, true,
                            true};  ///< `prescribed`: components that are given (null in the file leaves one free)
   std::optional<VectorExpression> velocity;
-  std::string pointer;
+  std::string pointer, name;  ///< the name is that of its reaction
   ThermalCondition thermal;
+};
+
+/// What may hold the material: a wall of the domain, a box of nodes or a grip. Its number is its place in
+/// Experiment::supports.
+struct Support {
+  std::string name;
+  bool holds = false;  ///< its condition gives velocities; free and periodic faces and thermal boxes give none
+};
+inline constexpr int number_of_walls = 6;
+constexpr int support_of_wall(int axis, int side) {
+  return 2 * axis + side;
+}
+constexpr int support_of_box(int box) {
+  return number_of_walls + box;
+}
+
+/// Particles of a body that move as they are told: those that lie in a region at the start.
+struct Grip {
+  std::string name;  ///< that of its reaction
+  int body = 0;      ///< index into Experiment::bodies
+  std::shared_ptr<const Geometry> region;
+  std::array<bool, 3> held{true, true, true};  ///< components that are given (null in the file leaves one free)
+  VectorExpression velocity;                   ///< m/s, function of x, y, z, initial X, Y, Z, and t
+  std::string pointer;
 };
 
 /// How one phase of a material conducts and stores heat.
@@ -110,6 +139,24 @@ struct MaterialSpecification {
   std::optional<Thermal> thermal;
 };
 
+/// How the particles of a body are placed: on the lattice of the cells, on one of the body's own, on that of the cells with
+/// the volume that lies inside, without order, evenly without order, where a file says.
+enum class SeedingKind { lattice, fitted, partial, random, blue_noise, points };
+
+/// A particle as a file of points gives it.
+struct SeededPoint {
+  Vector3 place{};
+  double volume = 0;  ///< m^3, in plane strain m^2, in axisymmetric scenes of the whole ring; 0: nominal
+};
+
+struct SeedingSpecification {
+  SeedingKind kind = SeedingKind::lattice;
+  double smallest_share = 0.05;  ///< of `partial`: lighter particles are merged, as a share of a whole one
+  int relaxations = 20;          ///< of `blue_noise`: times that each particle moves to the middle of its cell
+  std::shared_ptr<const std::vector<SeededPoint>> points;  ///< of `points`
+  bool points_have_volumes = false;
+};
+
 struct BodySpecification {
   std::string name;
   int material = 0;  ///< index into Experiment::materials
@@ -119,9 +166,23 @@ struct BodySpecification {
   double jitter = 0;          ///< largest random shift of a particle, in particle spacings
   bool frozen = false;        ///< particles keep their places and domains; velocity and material state evolve
   VectorExpression velocity;  ///< initial velocity, m/s, function of x, y, z
-  std::optional<VectorExpression> initial_displacement_gradient;  ///< unused until a case needs it
-  std::optional<ScalarExpression> temperature;                    ///< initial temperature, K, function of x, y, z
+  std::optional<ScalarExpression> temperature;  ///< initial temperature, K, function of x, y, z
+  SeedingSpecification seeding;
+  std::optional<VectorExpression> displacement;  ///< initial, m, function of X, Y, Z
+  std::optional<std::array<ScalarExpression, 9>>
+      deformation_gradient;                               ///< initial, row-major 3 x 3, function of X, Y, Z
+  std::optional<std::array<ScalarExpression, 6>> stress;  ///< initial, Cauchy, Pa: xx yy zz yz xz xy
   std::string pointer;
+
+  bool deformed() const { return displacement || deformation_gradient || stress; }
+  /// Whether particles differ in volume, axisymmetric rings aside.
+  bool varies_in_size() const {
+    const SeedingKind kind = seeding.kind;
+    return kind == SeedingKind::partial || kind == SeedingKind::random || kind == SeedingKind::blue_noise ||
+           (kind == SeedingKind::points && seeding.points_have_volumes);
+  }
+  /// Whether a particle's domain begins as something else than the box of the cells' lattice.
+  bool seeds_domains() const { return seeding.kind != SeedingKind::lattice || deformed(); }
 };
 
 struct SolverSpecification {
@@ -144,16 +205,82 @@ struct FilterSchedule {
   double tolerance = 0;          ///< the loop ends when |increment| <= tolerance |first|, mass norms; 0: never
 };
 
+/// Particle data in files, at times of their own.
+struct ParticleOutput {
+  bool vtk = true, csv = false;
+  std::vector<std::string> fields;  ///< names out of particle_fields()
+  std::vector<double> times;        ///< s, rising; each belongs to the first step at or after it
+  bool domains = false;             ///< particles are cells, their deformed domains; else points
+  bool grid = false;                ///< an image file of the nodes beside each
+  bool compress = true;             ///< by zlib
+  bool in_double = false;           ///< numbers of VTK files have 64 bits, else 32
+  bool asks(std::string_view field) const;
+};
+
+/// What takes energy out of the nodes' motion, each in its way.
+struct Damping {
+  double viscous = 0;  ///< c, 1/s: a force -c m v
+  double local = 0;    ///< share of the unbalanced force that acts against the motion (Cundall 1987)
+  std::string pointer;
+
+  bool acts() const { return viscous > 0 || local > 0; }
+  /// What a step of dt, s, leaves of a velocity, exp(-c dt), and of its change by constant forces, (1 - exp(-c dt)) / (c dt).
+  double left_of_velocity(double dt) const;
+  double left_of_change(double dt) const;
+};
+
+/// Particles whose numbers are summed apart: those that begin in a region.
+struct GroupSpecification {
+  std::string name;
+  int body = -1;                          ///< index of the body that they belong to; -1: any
+  std::shared_ptr<const Geometry> where;  ///< null: the whole body
+  std::string pointer;
+};
+
+/// Where a probe takes its values.
+enum class ProbeKind { nearest, place, line, section };
+
+/// Values of particles at one place, each with a column of its own.
+struct ProbeSpecification {
+  std::string name;
+  ProbeKind kind = ProbeKind::nearest;
+  std::vector<std::string> quantities;  ///< names that particle quantities have
+  int body = -1;                        ///< index of the body that is looked at; -1: all
+  Vector3 point{};                      ///< m; where a line begins, a point of a section
+  Vector3 end{};                        ///< m, where a line ends
+  Vector3 normal{};                     ///< of a section, of length one
+  int count = 0;                        ///< points of a line, its ends included
+  int profiles = 0;  ///< how many profiles of a line are written over the run, first and last included
+  std::string pointer;
+};
+
+/// A figure of columns of metrics.csv over time.
+struct ColumnFigure {
+  std::string name;  ///< stem of its files
+  std::string title;
+  std::vector<std::string> columns;  ///< headings without unit
+  bool log_y = false;
+  std::string pointer;
+};
+
 struct OutputSpecification {
   int metrics_every = 10;           ///< steps between rows of metrics.csv
   int frames = 0;                   ///< pictures over the run, first and last included
   std::string colour_by = "speed";  ///< attribute that colours the frames
   bool vtk = false;                 ///< a .vtu beside each frame
   bool film = false;
+  std::vector<int> reactions;      ///< supports whose reaction is recorded
   bool ledger = true;              ///< the energy ledger
   int ledger_every = 1;            ///< steps between its entries, each counted that many times
   double checkpoint_seconds = 60;  ///< seconds of the wall clock between checkpoints; 0: none by the clock
   long checkpoint_steps = 0;       ///< steps between checkpoints; 0: none by steps
+  std::vector<int> bodies;         ///< bodies whose numbers have columns of their own
+  std::vector<GroupSpecification> groups;
+  std::vector<ProbeSpecification> probes;
+  bool contact_pairs = false;  ///< contact has columns for each pair of fields
+
+  /// Whether a probe takes a quantity whose name begins so.
+  bool probes_take(std::string_view beginning) const;
 };
 
 struct Expectation {
@@ -167,6 +294,9 @@ struct Expectation {
 struct Limits {
   std::optional<bool> isolated;       ///< nothing: as the scene says
   std::optional<double> energy_gain;  ///< limit over the energy that an isolated scene began with; nothing: not judged
+  /// The same of energy that transfers, filters, walls and contact lose without a physical cause, and of energy lost
+  /// that no row of the ledger explains; nothing: a warning where it is much.
+  std::optional<double> numerical_loss, unexplained_loss;
   std::optional<std::array<double, 2>> volume_ratio;  ///< smallest and largest of any particle; nothing: not judged
 };
 
@@ -184,7 +314,8 @@ struct Experiment {
   int dimension = 2;
   Precision precision = Precision::double_;
   std::string backend = "cpu";
-  unsigned seed = 1;  ///< seed of particle jitter, when that is asked for
+  unsigned seed = 1;              ///< seed of particle jitter and of random places, where these are asked for
+  std::vector<InputFile> inputs;  ///< files that bodies are read from
 
   GridSpecification grid;
   std::array<std::array<FaceCondition, 2>, 3> faces;  ///< [axis][0 lower, 1 upper]
@@ -199,14 +330,21 @@ struct Experiment {
 
   std::vector<MaterialSpecification> materials;
   std::vector<BodySpecification> bodies;
+  std::vector<Grip> grips;
 
-  Vector3 gravity{};                           ///< m/s^2
+  Vector3 gravity{};  ///< m/s^2, as far as it is constant; zero along axes where it changes
+  /// All of gravity, a function of t, where it changes in time along any axis, and along which.
+  std::optional<VectorExpression> changing_gravity;
+  std::array<bool, 3> gravity_changes{};
   std::optional<VectorExpression> body_force;  ///< N/kg at (x, y, z), initial (X, Y, Z), t
   std::string body_force_pointer;
+  Damping damping;
+  std::vector<Load> loads;
 
   SolverSpecification solver;
   OutputSpecification output;
   std::vector<std::string> figures;
+  std::vector<ColumnFigure> column_figures;
   std::optional<ExactChoice> exact;
   std::vector<Expectation> expectations;
   Limits limits;
@@ -216,16 +354,34 @@ struct Experiment {
   /// Whether particles carry a temperature: then every body's material conducts, and every body has one.
   bool has_temperature() const;
   bool axisymmetric() const { return grid.symmetry == Symmetry::axisymmetric; }
+  /// Gravity in the step that begins at a time, s.
+  Vector3 gravity_at(double time) const { return changing_gravity ? (*changing_gravity)({}, {}, time) : gravity; }
+  bool has_gravity(int axis) const { return gravity[axis] != 0 || gravity_changes[axis]; }
   /// A particle that leaves along a periodic axis has its height again: gravity along it does work without a potential.
-  bool gravity_has_potential(int axis) const { return faces[axis][0].type != ConditionType::periodic; }
+  /// So does gravity that changes in time.
+  bool gravity_has_potential(int axis) const {
+    return faces[axis][0].type != ConditionType::periodic && !gravity_changes[axis];
+  }
+  /// The JSON pointer of the first that gives such a force, to one body or to any; empty where nothing does.
+  std::string giver_of(ExternalForce force, int body = -1) const;
+  /// The JSON pointer of the first load on a body that acts at points beside particles; empty where none does.
+  std::string loaded_at_points(int body = -1) const;
   /// Whether a wall of the domain is of this type.
   bool any_face(ConditionType type) const;
   /// Whether material may leave a wall or a box.
   bool separates() const;
+  /// The six faces of the domain, then the boxes of nodes, then the grips; numbered by support_of_wall, support_of_box and
+  /// support_of_grip.
+  std::vector<Support> supports() const;
+  int support_of_grip(std::size_t grip) const { return support_of_box(static_cast<int>(boxes.size() + grip)); }
+  /// Whether a formula of body forces or grips reads where particles began.
+  bool reads_initial_position() const;
 
   /// The place of a JSON pointer's value, "file:line:column", for messages that arise after reading.
   std::string where(std::string_view pointer) const;
   std::vector<std::pair<std::string, std::pair<int, int>>> positions;  ///< JSON pointer -> line, column
+
+  std::optional<ParticleOutput> particle_output;  ///< output/particles
 };
 
 }  // namespace mpm

@@ -11,11 +11,12 @@
 #include <unordered_map>
 
 #include "experiment/diagnostics.hpp"
+#include "experiment/expression_formulas.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr std::string_view variable_letters = "xyzXYZt";
+using formula::variable_letters;
 constexpr std::size_t longest = 2000;  ///< characters; beyond this it is no formula a person wrote
 
 double minimum(const double* values, int count) {
@@ -175,21 +176,15 @@ void check_expression(const std::string& text, const ExpressionScope& scope) {
   check(text, scope);
 }
 
-struct VectorExpression::Program {
-  std::array<std::string, 3> text;  ///< empty where the component is constant
-  ExpressionScope scope;
-  std::uint64_t id = 0;  ///< never used twice, unlike an address
-};
-
-/// The parsers of one thread for one program. They point into `values`, so it must not move.
+/// The parsers of one thread for some formulas. They point into `values`, so it must not move.
 struct VectorExpression::Instance {
-  std::weak_ptr<const Program> program;
+  std::weak_ptr<const Formulas> formulas;
   std::array<double, 7> values{};
   std::array<std::optional<mu::Parser>, 3> parsers;
 };
 
 VectorExpression::VectorExpression(std::span<const Term> terms, const ExpressionScope& scope) {
-  auto program = std::make_shared<Program>();
+  auto formulas = std::make_shared<Formulas>();
   for (std::size_t i = 0; i < terms.size() && i < 3; ++i) {
     if (const double* value = std::get_if<double>(&terms[i])) {
       constant_[i] = *value;
@@ -202,7 +197,7 @@ VectorExpression::VectorExpression(std::span<const Term> terms, const Expression
       constant_[i] = checked.value;
       continue;
     }
-    program->text[i] = text;
+    formulas->text[i] = text;
     uses_position_ |= any_of(checked.used, "xyz");
     uses_initial_position_ |= any_of(checked.used, "XYZ");
     uses_time_ |= any_of(checked.used, "t");
@@ -212,50 +207,45 @@ VectorExpression::VectorExpression(std::span<const Term> terms, const Expression
   }
   if (!uses_position_ && !uses_initial_position_ && !uses_time_) return;
   static std::atomic<std::uint64_t> next_id{1};
-  program->id = next_id++;
-  program->scope = scope;
-  program_ = std::move(program);
+  formulas->id = next_id++;
+  formulas->scope = scope;
+  for (std::size_t i = 0; i < 3; ++i) {
+    try {
+      formulas->add(formulas->text[i], constant_[i]);
+    } catch (const std::invalid_argument& error) {
+      fail(formulas->text[i], -1, error.what());
+    }
+  }
+  formulas->compile();
+  formulas_ = std::move(formulas);
 }
 
-VectorExpression::Instance& VectorExpression::instance_of_this_thread(const std::shared_ptr<const Program>& program) {
+VectorExpression::Instance& VectorExpression::instance_of_this_thread(const std::shared_ptr<const Formulas>& formulas) {
   thread_local std::unordered_map<std::uint64_t, std::unique_ptr<Instance>> instances;
-  std::unique_ptr<Instance>& slot = instances[program->id];
+  std::unique_ptr<Instance>& slot = instances[formulas->id];
   if (slot) return *slot;
   slot = std::make_unique<Instance>();
-  slot->program = program;
+  slot->formulas = formulas;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (program->text[i].empty()) continue;
+    if (formulas->text[i].empty()) continue;
     mu::Parser& parser = slot->parsers[i].emplace();
-    prepare(parser, program->scope, slot->values);
-    parser.SetExpr(program->text[i]);
+    prepare(parser, formulas->scope, slot->values);
+    parser.SetExpr(formulas->text[i]);
   }
   Instance& made = *slot;
-  std::erase_if(instances, [](const auto& entry) { return entry.second->program.expired(); });
+  std::erase_if(instances, [](const auto& entry) { return entry.second->formulas.expired(); });
   return made;
 }
 
 Vector3 VectorExpression::operator()(const Vector3& x, const Vector3& X, double t) const {
-  if (!program_) return constant_;
-  Instance& instance = instance_of_this_thread(program_);
+  if (!formulas_) return constant_;
+  Instance& instance = instance_of_this_thread(formulas_);
   instance.values = {x[0], x[1], x[2], X[0], X[1], X[2], t};
   Vector3 result = constant_;
   for (std::size_t i = 0; i < 3; ++i) {
     if (instance.parsers[i]) result[i] = instance.parsers[i]->Eval();
   }
   return result;
-}
-
-void VectorExpression::evaluate(int component, std::span<const Vector3> x, double t, double* result) const {
-  Instance* const instance = program_ ? &instance_of_this_thread(program_) : nullptr;
-  if (!instance || !instance->parsers[component]) {
-    std::fill_n(result, x.size(), constant_[component]);
-    return;
-  }
-  const mu::Parser& parser = *instance->parsers[component];
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    instance->values = {x[i][0], x[i][1], x[i][2], x[i][0], x[i][1], x[i][2], t};
-    result[i] = parser.Eval();
-  }
 }
 
 }  // namespace mpm

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace mpm {
@@ -13,6 +14,24 @@ double squared_distance(int dimension, const Vector3& a, const Vector3& b) {
   double sum = 0;
   for (int i = 0; i < dimension; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
   return sum;
+}
+
+double dot(const Vector3& a, const Vector3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+std::pair<double, double> about_centre(double centre, double half) {
+  return {centre - half, centre + half};
+}
+
+/// The distance from a box of a point at `beyond` its faces, along each axis the farther one's, negative inside.
+double distance_from_box(int dimension, const Vector3& beyond) {
+  double outside = 0, inside = -infinity;
+  for (int i = 0; i < dimension; ++i) {
+    outside += std::max(beyond[i], 0.0) * std::max(beyond[i], 0.0);
+    inside = std::max(inside, beyond[i]);
+  }
+  return inside > 0 ? std::sqrt(outside) : inside;
 }
 
 std::pair<Vector3, Vector3> box_around(int dimension, const Vector3& centre, const Vector3& half) {
@@ -33,7 +52,18 @@ class Ball final : public Geometry {
   std::pair<Vector3, Vector3> bounds() const override {
     return box_around(dimension_, centre_, {radius_, radius_, radius_});
   }
+  double distance(const Vector3& point) const override {
+    return std::sqrt(squared_distance(dimension_, point, centre_)) - radius_;
+  }
+  std::pair<double, double> extent(const Vector3& direction) const override {
+    return about_centre(dot(direction, centre_), radius_);
+  }
   double smallest_radius() const override { return radius_; }
+  Surface surface(double spacing, const std::pair<Vector3, Vector3>&) const override {
+    Surface pieces;
+    dimension_ == 2 ? add_circle(pieces, centre_, radius_, 1, spacing) : add_sphere(pieces, centre_, radius_, spacing);
+    return pieces;
+  }
 
  private:
   int dimension_;
@@ -52,6 +82,29 @@ class Box final : public Geometry {
     return true;
   }
   std::pair<Vector3, Vector3> bounds() const override { return {lower_, upper_}; }
+  Surface surface(double spacing, const std::pair<Vector3, Vector3>&) const override {
+    Surface pieces;
+    add_box(pieces, dimension_, lower_, upper_, spacing);
+    return pieces;
+  }
+  double distance(const Vector3& point) const override {
+    Vector3 beyond{};
+    for (int i = 0; i < dimension_; ++i) beyond[i] = std::max(lower_[i] - point[i], point[i] - upper_[i]);
+    return distance_from_box(dimension_, beyond);
+  }
+  std::pair<double, double> extent(const Vector3& direction) const override {
+    std::pair<double, double> ends{0, 0};
+    for (int i = 0; i < dimension_; ++i) {
+      const double a = direction[i] * lower_[i], b = direction[i] * upper_[i];
+      ends.first += std::min(a, b), ends.second += std::max(a, b);
+    }
+    return ends;
+  }
+  Frame frame() const override {
+    Frame frame;
+    frame.filled = true, frame.lower = lower_, frame.upper = upper_;
+    return frame;
+  }
 
  private:
   int dimension_;
@@ -80,7 +133,32 @@ class Ring final : public Geometry {
     half[axis_] = length_ / 2;
     return box_around(dimension_, centre_, half);
   }
+  double distance(const Vector3& point) const override {
+    double across = 0;
+    for (int i = 0; i < dimension_; ++i)
+      if (i != axis_) across += (point[i] - centre_[i]) * (point[i] - centre_[i]);
+    const double radius = std::sqrt(across);
+    const double beyond = inner_ > 0 ? std::max(inner_ - radius, radius - outer_) : radius - outer_;
+    if (dimension_ == 2) return beyond;
+    return distance_from_box(2, {beyond, std::abs(point[axis_] - centre_[axis_]) - length_ / 2, 0});
+  }
+  std::pair<double, double> extent(const Vector3& direction) const override {
+    const double along = dimension_ == 2 ? 0 : std::abs(direction[axis_]);
+    return about_centre(dot(direction, centre_),
+                        outer_ * std::sqrt(std::max(0.0, 1 - along * along)) + length_ / 2 * along);
+  }
   double smallest_radius() const override { return inner_ > 0 ? inner_ : outer_; }
+  Surface surface(double spacing, const std::pair<Vector3, Vector3>&) const override {
+    Surface pieces;
+    for (const auto& [radius, side] : {std::pair{inner_, -1}, std::pair{outer_, 1}}) {
+      if (radius == 0) continue;
+      dimension_ == 2 ? add_circle(pieces, centre_, radius, side, spacing)
+                      : add_cylinder(pieces, centre_, radius, axis_, length_, side, spacing);
+    }
+    for (const int end : {-1, 1})
+      if (dimension_ == 3) add_cap(pieces, centre_, inner_, outer_, axis_, length_, end, spacing);
+    return pieces;
+  }
 
  private:
   int dimension_, axis_;
@@ -110,6 +188,36 @@ class Polygon final : public Geometry {
       }
     }
     return box;
+  }
+  Surface surface(double spacing, const std::pair<Vector3, Vector3>&) const override {
+    Surface pieces;
+    const int turn = polygon_area(points_) > 0 ? 1 : -1;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Vector3 &a = points_[i], &b = points_[(i + 1) % points_.size()];
+      const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+      if (length > 0)
+        add_edge(pieces, a, b, {turn * (b[1] - a[1]) / length, -turn * (b[0] - a[0]) / length, 0}, spacing);
+    }
+    return pieces;
+  }
+  double distance(const Vector3& p) const override {
+    double squared = infinity;
+    for (std::size_t i = 0, j = points_.size() - 1; i < points_.size(); j = i++) {
+      const Vector3 &a = points_[j], &b = points_[i];
+      const double ex = b[0] - a[0], ey = b[1] - a[1], px = p[0] - a[0], py = p[1] - a[1];
+      const double length = ex * ex + ey * ey;
+      const double along = length > 0 ? std::clamp((px * ex + py * ey) / length, 0.0, 1.0) : 0;
+      squared = std::min(squared, std::pow(px - along * ex, 2) + std::pow(py - along * ey, 2));
+    }
+    return contains(p) ? -std::sqrt(squared) : std::sqrt(squared);
+  }
+  std::pair<double, double> extent(const Vector3& direction) const override {
+    std::pair<double, double> ends{infinity, -infinity};
+    for (const Vector3& point : points_) {
+      const double along = direction[0] * point[0] + direction[1] * point[1];
+      ends = {std::min(ends.first, along), std::max(ends.second, along)};
+    }
+    return ends;
   }
 
  private:
@@ -143,52 +251,58 @@ class HalfSpace final : public Geometry {
     if (axes == 1) (normal_[last] > 0 ? box.second : box.first)[last] = point_[last];
     return box;
   }
+  double distance(const Vector3& p) const override {
+    double height = 0;
+    for (int i = 0; i < dimension_; ++i) height += (p[i] - point_[i]) * normal_[i];
+    return height / length();
+  }
+  std::pair<double, double> extent(const Vector3& direction) const override {
+    double along = 0, foot = 0;
+    for (int i = 0; i < dimension_; ++i) along += direction[i] * normal_[i], foot += direction[i] * point_[i];
+    const double cosine = along / length();
+    if (std::abs(cosine) < 1 - 1e-12) return {-infinity, infinity};
+    return cosine > 0 ? std::pair(-infinity, foot) : std::pair(foot, infinity);
+  }
+  /// Rows lie along the plane, the first one half a spacing below it.
+  Frame frame() const override;
+  Surface surface(double spacing, const std::pair<Vector3, Vector3>& within) const override {
+    Surface pieces;
+    add_plane(pieces, dimension_, point_, normal_, within.first, within.second, spacing);
+    return pieces;
+  }
 
  private:
+  double length() const {
+    double sum = 0;
+    for (int i = 0; i < dimension_; ++i) sum += normal_[i] * normal_[i];
+    return std::sqrt(sum);
+  }
+
   int dimension_;
   Vector3 point_, normal_;
 };
 
-enum class Combination { join, intersect, subtract };
-
-class Combined final : public Geometry {
- public:
-  Combined(Combination how, std::vector<GeometryPointer> parts) : how_(how), parts_(std::move(parts)) {}
-  bool contains(const Vector3& point) const override {
-    const auto holds = [&](const GeometryPointer& part) { return part->contains(point); };
-    switch (how_) {
-      case Combination::join:
-        return std::any_of(parts_.begin(), parts_.end(), holds);
-      case Combination::intersect:
-        return std::all_of(parts_.begin(), parts_.end(), holds);
-      case Combination::subtract:
-        return holds(parts_[0]) && std::none_of(parts_.begin() + 1, parts_.end(), holds);
-    }
-    return false;
+Frame HalfSpace::frame() const {
+  Frame frame;
+  Vector3 up{};
+  for (int i = 0; i < dimension_; ++i) up[i] = normal_[i] / length();
+  frame.origin = point_;
+  if (dimension_ == 2) {
+    frame.axes = {{{up[1], -up[0], 0}, up, {0, 0, 1}}};
+    return frame;
   }
-  std::pair<Vector3, Vector3> bounds() const override {
-    auto box = parts_[0]->bounds();
-    if (how_ == Combination::subtract) return box;
-    const bool join = how_ == Combination::join;
-    for (const GeometryPointer& part : parts_) {
-      const auto [lower, upper] = part->bounds();
-      for (int i = 0; i < 3; ++i) {
-        box.first[i] = join ? std::min(box.first[i], lower[i]) : std::max(box.first[i], lower[i]);
-        box.second[i] = join ? std::max(box.second[i], upper[i]) : std::min(box.second[i], upper[i]);
-      }
-    }
-    return box;
-  }
-  double smallest_radius() const override {
-    double radius = infinity;
-    for (const GeometryPointer& part : parts_) radius = std::min(radius, part->smallest_radius());
-    return radius;
-  }
-
- private:
-  Combination how_;
-  std::vector<GeometryPointer> parts_;
-};
+  const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto least = std::min_element(up.begin(), up.end(), smaller) - up.begin();
+  Vector3 first{};
+  for (int i = 0; i < 3; ++i) first[i] = (i == least ? 1 : 0) - up[least] * up[i];
+  const double norm = std::sqrt(dot(first, first));
+  for (double& x : first) x /= norm;
+  frame.axes = {
+      {first,
+       {up[1] * first[2] - up[2] * first[1], up[2] * first[0] - up[0] * first[2], up[0] * first[1] - up[1] * first[0]},
+       up}};
+  return frame;
+}
 
 /// Twice the signed area of the triangle a b c.
 double turn(const Vector3& a, const Vector3& b, const Vector3& c) {
@@ -215,6 +329,34 @@ bool folds_back(const Vector3& a, const Vector3& b, const Vector3& c) {
 
 }  // namespace
 
+Vector3 Frame::to_world(const Vector3& local) const {
+  Vector3 point = origin;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) point[i] += axes[k][i] * local[k];
+  return point;
+}
+
+Vector3 Frame::to_local(const Vector3& point) const {
+  Vector3 local{};
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 3; ++i) local[k] += axes[k][i] * (point[i] - origin[i]);
+  return local;
+}
+
+Vector3 middle_of(const Geometry& geometry) {
+  const auto [lower, upper] = geometry.bounds();
+  Vector3 middle{};
+  for (int i = 0; i < 3; ++i)
+    if (std::isfinite(lower[i]) && std::isfinite(upper[i])) middle[i] = (lower[i] + upper[i]) / 2;
+  return middle;
+}
+
+Frame Geometry::frame() const {
+  Frame frame;
+  frame.origin = middle_of(*this);
+  return frame;
+}
+
 GeometryPointer make_ball(int dimension, const Vector3& centre, double radius) {
   return std::make_shared<Ball>(dimension, centre, radius);
 }
@@ -230,16 +372,6 @@ GeometryPointer make_polygon(std::vector<Vector3> points) {
 GeometryPointer make_half_space(int dimension, const Vector3& point, const Vector3& normal) {
   return std::make_shared<HalfSpace>(dimension, point, normal);
 }
-GeometryPointer make_union(std::vector<GeometryPointer> parts) {
-  return std::make_shared<Combined>(Combination::join, std::move(parts));
-}
-GeometryPointer make_intersection(std::vector<GeometryPointer> parts) {
-  return std::make_shared<Combined>(Combination::intersect, std::move(parts));
-}
-GeometryPointer make_difference(std::vector<GeometryPointer> parts) {
-  return std::make_shared<Combined>(Combination::subtract, std::move(parts));
-}
-
 double polygon_area(const std::vector<Vector3>& points) {
   double area = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {

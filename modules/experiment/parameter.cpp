@@ -119,7 +119,7 @@ std::string describe_expected(const ParameterSpec& spec) {
     case ParameterType::points:
       return "a list of points, each a list of numbers";
     case ParameterType::names:
-      return "a list of strings";
+      return spec.may_be_boolean ? "true, false or a list of strings" : "a list of strings";
     case ParameterType::nested:
       return spec.doc;
   }
@@ -316,13 +316,21 @@ bool Fields::read_text(const ParameterSpec& spec, const Node& node, Value& value
 }
 
 bool Fields::read_names(const ParameterSpec& spec, const Node& node, Value& value) {
+  if (spec.may_be_boolean && node.type == Node::Type::boolean) {
+    value.number = node.boolean;
+    value.resolved = node.boolean;
+    return true;
+  }
   if (node.type != Node::Type::array) return wrong_type(spec, node);
   const std::size_t before = context_.problems.size();
   value.resolved = OrderedJson::array();
   for (const Node& item : node.items) {
     const std::string& name = item.text;
-    if (item.type != Node::Type::string) {
-      context_.problem(item, "expected a string, got " + describe_value(item));
+    if (spec.table && item.type == Node::Type::object) {
+      value.resolved.push_back(nullptr);  // for its reader to put
+    } else if (item.type != Node::Type::string) {
+      context_.problem(item, "expected a string" + std::string(spec.table ? " or " + spec.table->doc : "") + ", got " +
+                                 describe_value(item));
     } else if (!spec.choices.empty() &&
                std::find(spec.choices.begin(), spec.choices.end(), name) == spec.choices.end()) {
       context_.problem(item, "expected one of " + quoted_list(spec.choices) + ", got " + in_quotes(name) +

@@ -14,6 +14,7 @@
 
 #include "experiment/diagnostics.hpp"
 #include "experiment/expression.hpp"
+#include "experiment/input_file.hpp"
 #include "experiment/located_json.hpp"
 #include "plugin/abi.h"
 
@@ -31,8 +32,9 @@ enum class ParameterType {
   expression,         ///< a number, a number with a unit, or a formula
   expression_vector,  ///< as many of them as the experiment has dimensions
   points,             ///< list of vectors, from `least_items` to `most_items`
-  names,              ///< list of strings, each once; out of `choices` unless that is empty
-  nested              ///< read by code of its own; its schema is its `table`, or `definition` names it
+  names,  ///< list of strings, each once; out of `choices` unless that is empty; or `or_boolean`; or objects
+          ///< of its `table`
+  nested  ///< read by code of its own; its schema is its `table`, or `definition` names it
 };
 
 struct Section;
@@ -52,6 +54,7 @@ struct ParameterSpec {
   std::string word;                                  ///< a number may also be this word ("auto")
   std::string variables;                             ///< letters that an expression may use
   bool may_leave_free = false;                       ///< components of an expression vector may be null
+  bool may_be_boolean = false;                       ///< names may be true (all) or false (none)
   bool may_be_null = false;                          ///< null says "none", and is kept
   bool unlisted = false;                             ///< read to be refused by name: no message offers it
   int components = 0;                                ///< components of a vector; 0: as the dimension of the experiment
@@ -71,6 +74,7 @@ struct ParameterSpec {
   ParameterSpec& over(std::string letters) { return variables = std::move(letters), *this; }
   ParameterSpec& leave_free() { return may_leave_free = true, *this; }
   ParameterSpec& not_offered() { return unlisted = true, *this; }
+  ParameterSpec& or_boolean() { return may_be_boolean = true, *this; }
   ParameterSpec& or_null() { return may_be_null = true, *this; }
   ParameterSpec& with_components(int count) { return components = count, *this; }
   ParameterSpec& items(std::size_t least, std::size_t most) { return least_items = least, most_items = most, *this; }
@@ -100,6 +104,7 @@ struct ReadContext {
   int dimension = 0;  ///< 0 while unknown: any length of vector is then accepted
   std::vector<std::pair<std::string, double>> constants;
   std::vector<Problem> problems;
+  std::vector<InputFile> inputs;  ///< files that the experiment names
 
   void problem(const Node& at, std::string message) { problem(at.at, at.pointer, std::move(message)); }
   void problem(const Position& at, std::string pointer, std::string message);

@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <cctype>
 
+#include "experiment/particle_output.hpp"
 #include "experiment/reader.hpp"
 #include "experiment/thermal.hpp"
 
 namespace mpm {
-namespace {
 
 bool is_name(const std::string& text) {
   const auto word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
   return !text.empty() && !std::isdigit(static_cast<unsigned char>(text[0])) &&
          std::all_of(text.begin(), text.end(), word);
 }
+
+namespace {
 
 /// The members of `object` in the order of a table.
 OrderedJson in_table_order(const OrderedJson& object, const Section& section) {
@@ -72,17 +74,22 @@ Experiment ExperimentReader::read() {
   read_components(fields);
   read_materials(fields.node("materials"));
   read_bodies(fields.node("bodies"));
+  read_grips(fields.node("grips"));
+  read_loads(fields.node("loads"));
+  read_damping(fields.node("damping"));
   read_solver(fields.node("solver"));
   read_output(fields.node("output"));
   read_compare(fields.node("compare"));
   read_limits(fields.node("limits"));
   check_axisymmetric();
   check_frozen();
+  check_free_fall();
   check_temperature(root_, experiment_, context_);
 
   if (!context_.problems.empty()) throw InputError(std::move(context_.problems));
   experiment_.resolved = in_table_order(resolved_, section);
   experiment_.positions = all_positions(root_);
+  experiment_.inputs = std::move(context_.inputs);
   return std::move(experiment_);
 }
 
@@ -120,8 +127,9 @@ void ExperimentReader::read_header(const Fields& fields) {
   experiment_.precision = fields.text("precision") == "float" ? Precision::single : Precision::double_;
   experiment_.backend = fields.text("backend");
   experiment_.seed = static_cast<unsigned>(fields.number("seed"));
-  experiment_.gravity = fields.vector("gravity");
+  read_gravity(fields);
   experiment_.figures = fields.names("figures");
+  read_column_figures(fields.node("figures"));
   if (fields.given("body_force")) {
     experiment_.body_force = fields.expression("body_force");
     experiment_.body_force_pointer = "/body_force";
@@ -163,8 +171,15 @@ void ExperimentReader::read_output(const Node* node) {
   output.checkpoint_seconds = fields.number("checkpoint_every");
   output.checkpoint_steps = static_cast<long>(fields.number("checkpoint_steps"));
   resolved_["output"] = fields.resolved;
+  if (fields.given("particles")) {
+    OrderedJson resolved;
+    experiment_.particle_output = read_particle_output(fields.nested("particles"), experiment_, context_, resolved);
+    resolved_["output"]["particles"] = std::move(resolved);
+  }
+  read_records(fields);
   if (fields.valid("ledger_every") && output.ledger_every > 1 && !output.ledger)
     problem(fields.place("ledger_every"), "there is no ledger to make entries in: set \"ledger\" to true");
+  read_reactions(fields);
   if (!fields.valid("frames")) return;
   if (output.film && output.frames < 2) problem(fields.place("film"), "a film needs \"frames\" of at least 2");
   if (output.vtk && output.frames < 1) problem(fields.place("vtk"), "VTK files are written at frames: set \"frames\"");

@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/places.hpp"
 #include "experiment/reader.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr const char* axis_names[] = {"x", "y", "z"};
+constexpr double most_places = 1e4;   ///< the same of particles placed, for seedings beside the lattice
 constexpr double most_samples = 4e6;  ///< bound on points tried, so that looking for a body's first one stays quick
 
 }  // namespace
@@ -50,7 +52,17 @@ OrderedJson ExperimentReader::read_body(const Node& node) {
       break;
     }
   }
-  if (const Node* geometry = fields.node("geometry")) {
+  resolved["seeding"] = read_seeding(fields.node("seeding"), body);
+  read_initial_state(fields, body, resolved);
+  if (body.jitter > 0 && body.seeding.kind >= SeedingKind::random)
+    problem(*fields.node("jitter"), "jitter moves particles off a lattice, and these lie on none; remove it");
+  const bool from_points = body.seeding.kind == SeedingKind::points;
+  const Node* const geometry = fields.node("geometry");
+  if (!geometry && !from_points)
+    context_.problem(node.at, child_pointer(node.pointer, "geometry"), "missing key; expected a geometry");
+  if (geometry && from_points)
+    problem(*geometry, "the points of the file are the body; remove \"geometry\"");
+  else if (geometry) {
     body.geometry = read_geometry(*geometry, context_, resolved["geometry"]);
     if (body.geometry && grid_good_ && fields.valid("particles_per_cell_axis")) check_inside(body, *geometry);
   }
@@ -91,6 +103,12 @@ bool ExperimentReader::holds_a_particle(const BodySpecification& body) const {
   const GridSpecification& grid = experiment_.grid;
   const auto [lower, upper] = body.geometry->bounds();
   const double spacing = grid.cell_size / body.particles_per_cell_axis;
+  if (body.seeding.kind != SeedingKind::lattice) {
+    double cells = 1;
+    for (int axis = 0; axis < context_.dimension; ++axis)
+      cells *= std::min(upper[axis] - lower[axis], grid.upper[axis] - grid.lower[axis]) / spacing;
+    return cells > most_places || !place_particles({grid, context_.dimension, 0}, body).points.empty();
+  }
   std::array<long, 3> first{0, 0, 0}, last{0, 0, 0};
   double samples = 1;
   for (int axis = 0; axis < context_.dimension; ++axis) {

@@ -1,6 +1,7 @@
 // Geometry as the file writes it.
 #include <cmath>
 
+#include "experiment/read_files.hpp"
 #include "experiment/reader.hpp"
 
 namespace mpm {
@@ -102,6 +103,33 @@ GeometryPointer read_combined(const Fields& fields, const std::string& name, Rea
   return name == "difference" ? make_difference(std::move(parts)) : make_intersection(std::move(parts));
 }
 
+GeometryPointer read_placed(const Fields& fields, const std::string& name, ReadContext& context,
+                            OrderedJson& resolved) {
+  const Node* of = fields.node("of");
+  if (!of) return nullptr;
+  GeometryPointer part = read_geometry(*of, context, resolved["of"]);
+  if (!part) return nullptr;
+  const std::array<Vector3, 3> unturned{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  if (name == "shifted")
+    return fields.valid("by") ? make_placed(std::move(part), unturned, {}, fields.vector("by")) : nullptr;
+  Vector3 axis{0, 0, 1}, about = middle_of(*part);
+  if (fields.given("axis") && context.dimension == 2) {
+    context.problem(*fields.node("axis"), "\"axis\" has no meaning in 2-D, where all turns in the plane");
+    return nullptr;
+  }
+  if (fields.given("axis")) axis = fields.vector("axis");
+  if (fields.given("axis") && fields.valid("axis") && axis == Vector3{}) {
+    context.problem(*fields.node("axis"), "the axis is zero");
+    return nullptr;
+  }
+  if (fields.given("about")) about = fields.vector("about");
+  for (const char* key : {"angle", "about", "axis"})
+    if (!fields.valid(key) && (fields.given(key) || std::string_view(key) == "angle")) return nullptr;
+  resolved["about"] = OrderedJson::array();
+  for (int c = 0; c < context.dimension; ++c) resolved["about"].push_back(about[c]);
+  return make_placed(std::move(part), rotation_about(axis, fields.number("angle")), about, {});
+}
+
 }  // namespace
 
 GeometryPointer read_geometry(const Node& node, ReadContext& context, OrderedJson& resolved) {
@@ -119,6 +147,9 @@ GeometryPointer read_geometry(const Node& node, ReadContext& context, OrderedJso
   if (name == "ring") return read_ring(fields, node, context);
   if (name == "polygon") return read_polygon(fields, context);
   if (name == "half_space") return read_half_space(fields, context);
+  if (name == "stl") return read_surface(fields, context, resolved);
+  if (name == "mask") return read_mask(fields, context, resolved);
+  if (name == "turned" || name == "shifted") return read_placed(fields, name, context, resolved);
   return read_combined(fields, name, context, resolved);
 }
 

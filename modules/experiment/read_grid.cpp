@@ -9,10 +9,6 @@ namespace {
 
 constexpr const char* axis_names[] = {"x", "y", "z"};
 
-std::string face_name(int axis, int side) {
-  return std::string(axis_names[axis]) + (side == 0 ? "_min" : "_max");
-}
-
 ConditionType condition_type(const std::string& name) {
   if (name == "free" || name == "thermal") return ConditionType::free;
   if (name == "stick") return ConditionType::stick;
@@ -150,6 +146,7 @@ OrderedJson ExperimentReader::read_node_condition(const Node& node) {
   box.lower = fields.vector("lower");
   box.upper = fields.vector("upper");
   box.pointer = node.pointer;
+  box.name = name_of_box(fields);
   const bool corners = fields.valid("lower") && fields.valid("upper");
   const GridSpecification& grid = experiment_.grid;
   for (int axis = 0; corners && axis < context_.dimension; ++axis) {

@@ -18,9 +18,10 @@ void ExperimentReader::check_axisymmetric() {
     return problem(nearest_node(root_, "/grid/symmetry"),
                    "axisymmetric scenes are 2-D (x the radius, y the axis); set \"dimension\" to 2");
   check_axis();
-  if (experiment_.gravity[0] != 0)
-    problem(nearest_node(root_, "/gravity"), "gravity has no radial component in an axisymmetric scene: [0, " +
-                                                 number_text(experiment_.gravity[1]) + "] acts along the axis");
+  const std::string axial = experiment_.gravity_changes[1] ? "..." : number_text(experiment_.gravity[1]);
+  if (experiment_.has_gravity(0))
+    problem(nearest_node(root_, "/gravity"),
+            "gravity has no radial component in an axisymmetric scene: [0, " + axial + "] acts along the axis");
   for (const MaterialSpecification& material : experiment_.materials) {
     const Plugin* const plugin = material.component.plugin;
     if (plugin && !(plugin->material().traits & MPM_STRAINS_AROUND_AXIS))
@@ -64,7 +65,7 @@ void ExperimentReader::check_frozen() {
     if (!experiment_.bodies[i].frozen) continue;
     const Node& place = nearest_node(root_, experiment_.bodies[i].pointer + "/frozen");
     const std::string name = "body " + in_quotes(experiment_.bodies[i].name) + " is frozen: ";
-    if (experiment_.gravity != Vector3{})
+    if (experiment_.gravity != Vector3{} || experiment_.changing_gravity)
       problem(place,
               name + "gravity would do work without a way, so that no energy balance closes; remove one of them");
     if (experiment_.contact)

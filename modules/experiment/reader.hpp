@@ -36,6 +36,18 @@ class ExperimentReader {
   OrderedJson read_exact(const Node& node);
   OrderedJson read_expectation(const Node& node);
 
+  // read_records.cpp
+  void read_records(const Fields& fields);
+  OrderedJson read_recorded_bodies(const Node& node);
+  OrderedJson read_group(const Node& node);
+  OrderedJson read_probe(const Node& node);
+  void read_line(const Fields& fields, ProbeSpecification& probe, OrderedJson& resolved);
+  void read_section(const Fields& fields, ProbeSpecification& probe, OrderedJson& resolved);
+  void read_column_figures(const Node* node);
+  void check_record_name(const Fields& fields, bool is_taken, const char* what);
+  /// The index of a body, or -1 with a problem recorded.
+  int body_index(const Node& place, const std::string& name);
+
   // read_components.cpp
   Chosen read_component(const Node& node, mpm_kind kind);
   void check_capability(const Plugin& plugin, mpm_kind kind, const Node& place);
@@ -52,10 +64,26 @@ class ExperimentReader {
   void read_node_conditions(const Node* node);
   OrderedJson read_node_condition(const Node& node);
 
+  // read_supports.cpp
+  void read_gravity(const Fields& fields);
+  void read_damping(const Node* node);
+  void read_reactions(const Fields& fields);
+  std::string name_of_box(const Fields& fields);
+  void check_support_name(const std::string& name, const Node& place);
+  void check_free_fall();
+  void read_grips(const Node* node);
+  OrderedJson read_grip(const Node& node);
+  int body_index(const Fields& fields);
+
   // read_symmetry.cpp
   void check_axisymmetric();
   void check_axis();
   void check_frozen();
+
+  // read_seeding.cpp
+  OrderedJson read_seeding(const Node* node, BodySpecification& body);
+  void read_points(const Fields& fields, BodySpecification& body, OrderedJson& resolved);
+  void read_initial_state(const Fields& fields, BodySpecification& body, OrderedJson& resolved);
 
   // read_bodies.cpp
   void read_bodies(const Node* node);
@@ -64,6 +92,15 @@ class ExperimentReader {
   void check_inside(const BodySpecification& body, const Node& place);
   bool holds_a_particle(const BodySpecification& body) const;
   void assign_fields(const Node& bodies);
+
+  // read_loads.cpp
+  void read_loads(const Node* node);
+  OrderedJson read_load(const Node& node);
+  bool find_loaded_body(const Fields& fields, Load& load);
+  bool may_be_loaded_at_points(const Load& load, const Fields& fields);
+  void read_spring(const Fields& fields, const Node& node, Load& load);
+  void check_loaded_points(const Load& load, const Fields& fields);
+  void check_loaded_surface(const Load& load, const Node& where);
 
   void problem(const Node& at, std::string message) { context_.problem(at, std::move(message)); }
   bool is_list(const Node& node, const char* what, bool may_be_empty);
@@ -77,6 +114,9 @@ class ExperimentReader {
   bool grid_good_ = false, capability_known_ = false;
   std::vector<std::string> field_choices_;  ///< what each body said, "" for nothing
 };
+
+/// Whether a text can name something in formulas, headings and paths: letters, digits and _, no digit first.
+bool is_name(const std::string& text);
 
 /// Reads a geometry and everything in it; null, with problems recorded, when it is not usable.
 GeometryPointer read_geometry(const Node& node, ReadContext& context, OrderedJson& resolved);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/particle_output.hpp"
+#include "experiment/records.hpp"
 #include "experiment/sections.hpp"
 
 namespace mpm {
@@ -81,8 +83,11 @@ Json value_schema(const ParameterSpec& spec) {
       return schema;
     }
     case ParameterType::names: {
-      Json schema = list_of(strings_of(spec));
+      Json items = strings_of(spec);
+      if (spec.table) items = {{"anyOf", Json::array({std::move(items), section_schema(*spec.table)})}};
+      Json schema = list_of(std::move(items));
       schema["uniqueItems"] = true;
+      if (spec.may_be_boolean) return {{"anyOf", Json::array({{{"type", "boolean"}}, std::move(schema)})}};
       return schema;
     }
     case ParameterType::nested: {
@@ -149,8 +154,8 @@ Json choice_schema(const std::vector<Section>& kinds, bool first_is_standard = f
   return schema;
 }
 
-Json face_condition_schema() {
-  const std::vector<Section> kinds = face_condition_kinds();
+/// A word, or an object whose keys have defaults or not.
+Json words_or(const std::vector<Section>& kinds) {
   Json names = Json::array();
   for (const Section& kind : kinds) {
     const auto& keys = kind.parameters;
@@ -166,7 +171,7 @@ Json definitions(const ComponentLookup& components, const ReadOptions& options) 
                       {"additionalProperties", quantity({{"type", "number"}}, {})}};
   all["grid"] = section_schema(grid_section());
   all["boundaries"] = section_schema(boundaries_section(3));
-  all["face_condition"] = face_condition_schema();
+  all["face_condition"] = words_or(face_condition_kinds());
   all["node_condition"] = choice_schema(node_condition_kinds());
   all["node_conditions"] = list_of(reference("node_condition"));
   for (const mpm_kind kind : {MPM_SHAPE, MPM_TRANSFER, MPM_FILTER, MPM_CONTACT, MPM_MATERIAL}) {
@@ -175,18 +180,28 @@ Json definitions(const ComponentLookup& components, const ReadOptions& options) 
   all["materials"] = {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", reference("material")}};
   all["geometry"] = choice_schema(geometry_kinds());
   all["geometries"] = list_of(reference("geometry"));
+  all["seeding"] = words_or(seeding_kinds());
   all["body"] = section_schema(body_section());
   all["bodies"] = list_of(reference("body"));
   all["bodies"]["minItems"] = 1;
+  all["load"] = choice_schema(load_kinds());
+  all["loads"] = list_of(reference("load"));
   all["solver"] = choice_schema(solver_kinds(options), true);
   all["output"] = section_schema(output_section(options));
+  all["grips"] = list_of(section_schema(grip_section()));
+  all["damping"] = section_schema(damping_section());
   all["compare"] = section_schema(compare_section());
   all["limits"] = section_schema(limits_section());
   all["exact"] = choice_schema(exact_kinds(options));
   all["expectation"] = section_schema(expectation_section());
   all["expectation"]["anyOf"] =
       Json::array({{{"required", {"at_least"}}}, {{"required", {"at_most"}}}, {{"required", {"equals"}}}});
+  const auto particle_outputs = particle_output_schemas();
+  for (const auto& [name, schema] : particle_outputs.items()) all[name] = schema;
   all["expectations"] = list_of(reference("expectation"));
+  all["recorded_bodies"] = {{"anyOf", Json::array({{{"type", "boolean"}}, list_of({{"type", "string"}})})}};
+  all["groups"] = list_of(section_schema(group_section()));
+  all["probes"] = list_of(section_schema(probe_section(options)));
   return all;
 }
 

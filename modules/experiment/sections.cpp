@@ -1,5 +1,7 @@
 #include "experiment/sections.hpp"
 
+#include "experiment/particle_output.hpp"
+#include "experiment/records.hpp"
 #include "experiment/thermal.hpp"
 
 namespace mpm {
@@ -79,17 +81,52 @@ Section experiment_section(const ReadOptions& options) {
               nested("contact", "a contact law between velocity fields", "contact"),
               nested("materials", "an object of materials by name", "materials").needed(),
               nested("bodies", "a list of bodies", "bodies").needed(),
-              parameter("gravity", Type::vector, "m/s^2", "Acceleration of every particle.").standard(0),
+              nested("grips", "a list of grips", "grips"),
+              parameter("gravity", Type::expression_vector, "m/s^2", "Acceleration of every particle, of time t.")
+                  .over("t")
+                  .standard(0),
               parameter("body_force", Type::expression_vector, "N/kg",
                         "Force per mass at x y z (X Y Z: where the particle began) and time t.")
                   .over("xyzXYZt"),
+              nested("loads", "a list of loads on bodies", "loads"),
+              nested("damping", "damping of the motion", "damping"),
               nested("solver", "a solver", "solver").needed(),
               nested("output", "output settings", "output"),
               parameter("figures", Type::names, "", "Figures to draw after the run.")
                   .of(options.figures)
+                  .made_of(column_figure_section())
                   .standard(OrderedJson::array()),
               nested("compare", "what to compare the results with", "compare"),
               nested("limits", "what a finished run must respect", "limits"),
+          }};
+}
+
+Section grip_section() {
+  return {"grip",
+          "a grip",
+          {
+              parameter("name", Type::string, "", "Name of its reaction; default grip_ and its place."),
+              parameter("body", Type::string, "", "Name out of bodies.").needed(),
+              nested("where", "a geometry", "geometry").needed(),
+              parameter("velocity", Type::expression_vector, "m/s",
+                        "Velocity of the particles that lie there at the start, of x y z, X Y Z and t; null leaves a "
+                        "component free.")
+                  .over("xyzXYZt")
+                  .leave_free()
+                  .needed(),
+          }};
+}
+
+Section damping_section() {
+  return {"damping",
+          "damping of the motion",
+          {
+              parameter("viscous", Type::number, "1/s", "c of a force -c m v on every node.").from(0).standard(0),
+              parameter("local", Type::number, "",
+                        "Share of the unbalanced force on a node that acts against its motion, component by component.")
+                  .from(0)
+                  .below(1)
+                  .standard(0),
           }};
 }
 
@@ -139,7 +176,10 @@ std::vector<Section> node_condition_kinds() {
   const ParameterSpec lower = parameter("lower", Type::vector, "m", "Lower corner of the box of nodes.").needed();
   const ParameterSpec upper = parameter("upper", Type::vector, "m", "Upper corner of the box of nodes.").needed();
   const auto box = [&](std::string name, std::string doc, const std::vector<ParameterSpec>& own) {
-    return kind(std::move(name), std::move(doc), joined(joined({lower, upper}, own), box_heat_parameters()));
+    std::vector<ParameterSpec> keys = joined({lower, upper}, own);
+    if (name != "thermal")
+      keys.push_back(parameter("name", Type::string, "", "Name of the box's reaction; default box_ and its place."));
+    return kind(std::move(name), std::move(doc), joined(std::move(keys), box_heat_parameters()));
   };
   return {
       box("stick", "The nodes are held.", {}),
@@ -159,6 +199,9 @@ std::vector<Section> node_condition_kinds() {
 std::vector<Section> geometry_kinds() {
   const ParameterSpec centre = parameter("centre", Type::vector, "m", "Centre.").needed();
   const ParameterSpec parts = nested("of", "a list of geometries", "geometries").needed();
+  const ParameterSpec part = nested("of", "a geometry", "geometry").needed();
+  const ParameterSpec file =
+      parameter("file", Type::string, "", "Path, from the folder of the experiment file.").needed();
   return {
       kind("ball", "A disc in 2-D, a ball in 3-D.",
            {centre, parameter("radius", Type::number, "m", "Radius.").above(0).needed()}),
@@ -179,34 +222,134 @@ std::vector<Section> geometry_kinds() {
       kind("union", "What lies in any part.", {parts}),
       kind("difference", "The first part without the others.", {parts}),
       kind("intersection", "What lies in every part.", {parts}),
+      kind("turned", "A geometry turned about a point.",
+           {part, parameter("angle", Type::number, "", "Angle, rad, counted from x to y in 2-D.").needed(),
+            parameter("about", Type::vector, "m", "Point that stays; default: the middle of the geometry's bounds."),
+            parameter("axis", Type::vector, "", "Axis of the rotation, in 3-D; default: z.").with_components(3)}),
+      kind("shifted", "A geometry moved.",
+           {part, parameter("by", Type::vector, "m", "Way that it is moved.").needed()}),
+      kind("stl", "What a closed surface of triangles encloses.",
+           {file, parameter("scale", Type::number, "", "Factor of the file's lengths, so that they are in m.")
+                      .above(0)
+                      .standard(1)},
+           3),
+      kind("mask", "The dark, or the bright, parts of a picture.",
+           {file, parameter("lower", Type::vector, "m", "Lower left corner of the picture.").needed(),
+            parameter("upper", Type::vector, "m", "Upper right corner of the picture.").needed(),
+            parameter("threshold", Type::number, "", "Darkness, times opacity, from which on there is material.")
+                .above(0)
+                .below(1)
+                .standard(0.5),
+            parameter("inside", Type::choice, "", "Which parts are material.").of({"dark", "bright"}).standard("dark")},
+           2),
   };
 }
 
-Section body_section() {
+std::vector<Section> seeding_kinds() {
   return {
-      "body",
-      "a body",
-      {
-          parameter("name", Type::string, "", "Unique name.").needed(),
-          parameter("material", Type::string, "", "Name out of materials.").needed(),
-          nested("geometry", "a geometry", "geometry").needed(),
-          parameter("particles_per_cell_axis", Type::integer, "", "Particles along each edge of a cell.")
-              .from(1)
-              .to(8)
-              .standard(2),
-          parameter("velocity", Type::expression_vector, "m/s", "Initial velocity, of x y z.").over("xyz").standard(0),
-          body_temperature(),
-          parameter("jitter", Type::number, "", "Random shift of each particle, in particle spacings.")
-              .from(0)
-              .to(0.5)
-              .standard(0),
-          parameter("frozen", Type::boolean, "",
-                    "Particles keep their places, and so their weights; velocities and stresses evolve.")
-              .standard(false),
-          parameter("field", Type::string, "",
-                    "Velocity field, with contact: bodies that name the same one do not slip on each other. "
-                    "Default: the body's name."),
-      }};
+      kind("lattice", "On the lattice of the cells.", {}),
+      kind("fitted", "On a lattice of the body's own, which turns and moves with it.", {}),
+      kind("partial", "On the lattice of the cells, each with the volume of its square or cube that is inside.",
+           {parameter("smallest_share", Type::number, "",
+                      "Lighter particles are merged with a neighbour, as a share of a whole one.")
+                .from(0)
+                .to(0.5)
+                .standard(0.05)}),
+      kind("random", "Thrown at random.", {}),
+      kind("blue_noise", "Without order, but evenly.",
+           {parameter("relaxations", Type::integer, "",
+                      "Times that each particle moves to the middle of what is nearest to it.")
+                .from(0)
+                .to(1000)
+                .standard(20)}),
+      kind("points", "Where a CSV file says: columns x, y, in 3-D z, and volume or mass.",
+           {parameter("file", Type::string, "", "Path, from the folder of the experiment file.").needed()}),
+  };
+}
+
+Section tensor_section(std::string doc, std::string unit, bool symmetric, double diagonal) {
+  Section section{"tensor", std::move(doc), {}};
+  for (const char a : {'x', 'y', 'z'})
+    for (const char b : {'x', 'y', 'z'})
+      if (!symmetric || a <= b)
+        section.parameters.push_back(parameter({a, b}, Type::expression, unit, "Component, of X Y Z.")
+                                         .over("XYZ")
+                                         .standard(a == b ? diagonal : 0.0));
+  return section;
+}
+
+Section body_section() {
+  return {"body",
+          "a body",
+          {
+              parameter("name", Type::string, "", "Unique name.").needed(),
+              parameter("material", Type::string, "", "Name out of materials.").needed(),
+              nested("geometry", "a geometry; not with points of a file", "geometry"),
+              nested("seeding", "how particles are placed", "seeding").standard("lattice"),
+              parameter("particles_per_cell_axis", Type::integer, "", "Particles along each edge of a cell.")
+                  .from(1)
+                  .to(8)
+                  .standard(2),
+              parameter("velocity", Type::expression_vector, "m/s",
+                        "Initial velocity, of x y z (X Y Z: before the initial displacement).")
+                  .over("xyzXYZ")
+                  .standard(0),
+              parameter("initial_displacement", Type::expression_vector, "m",
+                        "Initial displacement, of the undeformed place X Y Z.")
+                  .over("XYZ"),
+              nested("initial_deformation_gradient", "an initial deformation gradient", "deformation_gradient")
+                  .made_of(tensor_section("Initial deformation gradient F; default: that of the displacement.", "",
+                                          false, 1)),
+              nested("initial_stress", "an initial stress", "stress")
+                  .made_of(tensor_section("Initial Cauchy stress.", "Pa", true, 0)),
+              body_temperature(),
+              parameter("jitter", Type::number, "", "Random shift of each particle, in particle spacings.")
+                  .from(0)
+                  .to(0.5)
+                  .standard(0),
+              parameter("frozen", Type::boolean, "",
+                        "Particles keep their places, and so their weights; velocities and stresses evolve.")
+                  .standard(false),
+              parameter("field", Type::string, "",
+                        "Velocity field, with contact: bodies that name the same one do not slip on each other. "
+                        "Default: the body's name."),
+          }};
+}
+
+std::vector<Section> load_kinds() {
+  const ParameterSpec body = parameter("body", Type::string, "", "Name of the body that is loaded.").needed();
+  const ParameterSpec where =
+      nested("where", "a geometry: the part of the body's surface in it is loaded", "geometry").needed();
+  const auto given = [](std::string name, Type type, std::string unit, std::string doc) {
+    return parameter(std::move(name), type, std::move(unit), std::move(doc)).over("xyzXYZt").needed();
+  };
+  const auto load = [&](std::string name, std::string doc, const std::vector<ParameterSpec>& own, int dimension = 0) {
+    return kind(std::move(name), std::move(doc), joined({body}, own), dimension);
+  };
+  return {
+      load("traction", "A force per area of the surface as it was at the start.",
+           {where, given("traction", Type::expression_vector, "Pa", "Force per area.")}),
+      load("pressure", "A pressure on the surface.",
+           {where, given("pressure", Type::expression, "Pa", "Pressure; positive presses."),
+            parameter("follower", Type::boolean, "",
+                      "Whether it acts on the current area along the current normal, or on those of the start.")
+                .standard(true)}),
+      load("force", "A force at a point; in plane strain per metre of depth, around an axis that of the whole ring.",
+           {parameter("at", Type::vector, "m", "The point, where the body is at the start.").needed(),
+            given("force", Type::expression_vector, "N", "Force.")}),
+      load("line_force", "A force per length of a straight line, 3-D only.",
+           {parameter("from", Type::vector, "m", "One end, where the body is at the start.").needed(),
+            parameter("to", Type::vector, "m", "The other end.").needed(),
+            given("force", Type::expression_vector, "N/m", "Force per length as it was at the start.")},
+           3),
+      load("body_force", "A force per mass on all of a body.",
+           {given("acceleration", Type::expression_vector, "N/kg", "Force per mass.")}),
+      load("spring", "Springs and dashpots from a surface to the ground.",
+           {where,
+            parameter("stiffness", Type::vector, "N/m^3", "Force per area and displacement along each axis.")
+                .standard(0),
+            parameter("damping", Type::vector, "N s/m^3", "Force per area and velocity along each axis.").standard(0)}),
+  };
 }
 
 std::vector<Section> solver_kinds(const ReadOptions& options) {
@@ -232,7 +375,7 @@ Section output_section(const ReadOptions& options) {
                                    "Quantity that colours the particles.")
                              .of(options.colour_quantities)
                              .standard("speed");
-  return {
+  Section section{
       "output",
       "output settings",
       {
@@ -246,7 +389,12 @@ Section output_section(const ReadOptions& options) {
               .standard(0),
           colour,
           parameter("vtk", Type::boolean, "", "Write a VTK file beside each frame.").standard(false),
+          particle_output_parameter(),
           parameter("film", Type::boolean, "", "Join the frames to a film.").standard(false),
+          parameter("reactions", Type::names, "",
+                    "Walls and boxes of nodes whose force on the material is recorded; true: all that hold any.")
+              .or_boolean()
+              .standard(false),
           parameter("ledger", Type::boolean, "", "Keep the energy ledger.").standard(true),
           parameter("ledger_every", Type::integer, "",
                     "Steps between entries of the ledger, each counted that many times; 1: exact at every step.")
@@ -261,6 +409,8 @@ Section output_section(const ReadOptions& options) {
               .to(1e15)
               .standard(0),
       }};
+  for (ParameterSpec& spec : record_parameters()) section.parameters.push_back(std::move(spec));
+  return section;
 }
 
 Section compare_section() {
@@ -282,6 +432,16 @@ Section limits_section() {
               .from(0)
               .or_null()
               .standard(0.01),
+          parameter("numerical_loss", Type::number, "",
+                    "Largest share of its energy that an isolated scene may lose in transfers, filters, walls and "
+                    "contact without a physical cause.")
+              .from(0)
+              .or_null(),
+          parameter("unexplained_loss", Type::number, "",
+                    "Largest share of its energy that an isolated scene may lose without a row of the ledger that "
+                    "explains it.")
+              .from(0)
+              .or_null(),
           parameter("volume_ratio", Type::vector, "",
                     "Smallest and largest volume ratio of any particle at any recorded time.")
               .with_components(2)
@@ -308,6 +468,13 @@ Limits limits_of(const Fields& fields, ReadContext& context) {
   if (!fields.is_null("energy_gain")) limits.energy_gain = fields.number("energy_gain");
   if (fields.given("energy_gain") && limits.energy_gain && fields.given("isolated") && !*limits.isolated)
     context.problem(*fields.node("energy_gain"), "a gain is judged in isolated scenes only, and \"isolated\" is false");
+  for (const auto& [key, limit] :
+       {std::pair{"numerical_loss", &limits.numerical_loss}, std::pair{"unexplained_loss", &limits.unexplained_loss}}) {
+    if (!fields.given(key) || fields.is_null(key)) continue;
+    *limit = fields.number(key);
+    if (fields.given("isolated") && !*limits.isolated)
+      context.problem(*fields.node(key), "a loss is judged in isolated scenes only, and \"isolated\" is false");
+  }
   if (fields.is_null("volume_ratio")) return limits;
   const Vector3& range = fields.vector("volume_ratio");
   if (fields.valid("volume_ratio") && !(range[0] < range[1]))

@@ -9,6 +9,7 @@
 namespace mpm {
 
 constexpr int most_fields = 8;              ///< velocity fields an experiment may have
+constexpr int most_grips = 4;               ///< grips an experiment may have: nodes keep two vectors for each
 constexpr int most_cells_a_side = 1 << 20;  ///< beyond this no machine holds the grid
 
 Section experiment_section(const ReadOptions& options);
@@ -18,13 +19,18 @@ Section boundaries_section(int dimension);
 std::vector<Section> face_condition_kinds();
 std::vector<Section> node_condition_kinds();
 std::vector<Section> geometry_kinds();
+std::vector<Section> seeding_kinds();
 Section body_section();
+/// The loads, in the order of LoadType.
+std::vector<Section> load_kinds();
 /// The solvers that the program offers, each with its own keys.
 std::vector<Section> solver_kinds(const ReadOptions& options);
 /// Keys that every solver has, declared here for all of them.
 ParameterSpec end_time_parameter();
 ParameterSpec max_steps_parameter();
 Section output_section(const ReadOptions& options);
+Section damping_section();
+Section grip_section();
 Section compare_section();
 Section limits_section();
 Section expectation_section();

@@ -72,12 +72,15 @@ class BarVibration final : public ExactSolution {
   double amplitude_, b_, omega_;
 };
 
-/// A manufactured wave (Wallstedt & Guilkey 2008): u_i = A sin(pi X_i) sin(c pi t + phi_i), phi = (0, pi, 0), on the
+/// A manufactured wave (Wallstedt & Guilkey 2008): u_i = A sin(pi X_i) sin(c pi t + phase + phi_i), phi = (0, pi, 0), on the
 /// unit square or cube.
 class AxisAlignedWave final : public ExactSolution {
  public:
   AxisAlignedWave(const ExactChoice& choice, int dimension)
-      : amplitude_(value(choice, "amplitude")), speed_(value(choice, "wave_speed")), dimension_(dimension) {}
+      : amplitude_(value(choice, "amplitude")),
+        speed_(value(choice, "wave_speed")),
+        phase_(value(choice, "phase")),
+        dimension_(dimension) {}
   Vector3 position(const Vector3& X, const Vector3&, double t) const override {
     Vector3 x = X;
     for (int c = 0; c < dimension_; ++c)
@@ -92,8 +95,8 @@ class AxisAlignedWave final : public ExactSolution {
   }
 
  private:
-  static double phase(int component) { return component == 1 ? pi : 0; }
-  double amplitude_, speed_;
+  double phase(int component) const { return component == 1 ? phase_ + pi : phase_; }
+  double amplitude_, speed_, phase_;
   int dimension_;
 };
 
@@ -185,9 +188,10 @@ const std::vector<Entry>& entries() {
          number("density", "kg/m^3", "density").above(0).needed()}},
        [](const Experiment& e, double) { return std::make_unique<BarVibration>(*e.exact); }},
       {{"axis_aligned_wave",
-        "manufactured solution u_i = A sin(pi X_i) sin(c pi t + phi_i) on the unit square or cube",
+        "manufactured solution u_i = A sin(pi X_i) sin(c pi t + phase + phi_i) on the unit square or cube",
         {number("amplitude", "m", "amplitude A").needed(),
-         number("wave_speed", "m/s", "c = sqrt(E / density)").above(0).needed()}},
+         number("wave_speed", "m/s", "c = sqrt(E / density)").above(0).needed(),
+         number("phase", "", "phase at t = 0, rad").standard(0)}},
        [](const Experiment& e, double) { return std::make_unique<AxisAlignedWave>(*e.exact, e.dimension); }},
       {{"turned_wave",
         "manufactured solution u_i = A cos(pi X_i)^2 sin(c pi t + phi_i) on the unit square or cube about the origin, "

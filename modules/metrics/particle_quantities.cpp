@@ -47,6 +47,10 @@ int component_of(const std::string& name, const mpm_state& field, int dimension,
 }
 
 constexpr mpm_state velocity_field{"velocity", "m/s", "velocity v", MPM_STATE_VECTOR, MPM_INITIAL_ZERO};
+constexpr mpm_state position_field{"position", "m", "position x", MPM_STATE_VECTOR, MPM_INITIAL_ZERO};
+constexpr mpm_state displacement_field{"displacement", "m", "displacement u", MPM_STATE_VECTOR, MPM_INITIAL_ZERO};
+constexpr mpm_state stress_field{"stress", "Pa", "Cauchy stress σ", MPM_STATE_SYMMETRIC, MPM_INITIAL_ZERO};
+constexpr const mpm_state* computed_fields[] = {&velocity_field, &position_field, &displacement_field, &stress_field};
 
 void add_names(const mpm_state& field, std::vector<std::string>& names) {
   std::vector<std::string> added;
@@ -63,14 +67,6 @@ std::size_t padded(std::size_t n) {
 
 const Component& material_of(const Experiment& experiment, int body) {
   return experiment.materials[experiment.bodies[body].material].component;
-}
-
-double von_mises(const double* tau, int dimension) {
-  const double p = (tau[0] + tau[1] + tau[2]) / 3;
-  double norm = 0;
-  for (int i = 0; i < 3; ++i) norm += (tau[i] - p) * (tau[i] - p);
-  for (int i = 3; i < (dimension == 2 ? 4 : 6); ++i) norm += 2 * tau[i] * tau[i];
-  return std::sqrt(1.5 * norm);
 }
 
 }  // namespace
@@ -125,6 +121,14 @@ void evaluate(const Experiment& experiment, const Plugin& material, const std::v
 
 }  // namespace
 
+double von_mises(const double* tau, int dimension) {
+  const double p = (tau[0] + tau[1] + tau[2]) / 3;
+  double norm = 0;
+  for (int i = 0; i < 3; ++i) norm += (tau[i] - p) * (tau[i] - p);
+  for (int i = 3; i < (dimension == 2 ? 4 : 6); ++i) norm += 2 * tau[i] * tau[i];
+  return std::sqrt(1.5 * norm);
+}
+
 MaterialQuantities material_quantities(const Experiment& experiment, int body, const BodyState& state) {
   const MaterialSpecification& material = experiment.materials[experiment.bodies[body].material];
   const std::size_t n = state.position.size() / experiment.dimension;
@@ -154,10 +158,29 @@ std::span<const QuantityDescription> common_quantities() {
 std::vector<std::string> quantity_names(const Registry& registry) {
   std::vector<std::string> names;
   for (const QuantityDescription& description : common) names.push_back(description.name);
-  add_names(velocity_field, names);
+  for (const mpm_state* field : computed_fields) add_names(*field, names);
   for (const mpm_kind kind : {MPM_MATERIAL, MPM_TRANSFER})
     for (const Plugin* plugin : registry.of_kind(kind))
       for (const mpm_state& field : plugin->state()) add_names(field, names);
+  return names;
+}
+
+std::vector<std::string> quantity_names(const Experiment& experiment, int body) {
+  std::vector<std::string> names;
+  const auto& thermal = experiment.materials[experiment.bodies[body].material].thermal;
+  for (const QuantityDescription& description : common)
+    if ((description.name != "temperature" || thermal) &&
+        (description.name != "melted_fraction" || (thermal && thermal->phase_change)))
+      names.push_back(description.name);
+  const auto add = [&](const mpm_state& field) {
+    if (field.shape == MPM_STATE_SCALAR) names.emplace_back(field.name);
+    for (const std::string& suffix :
+         component_names(kept_shape(field, experiment.axisymmetric()), experiment.dimension))
+      names.push_back(std::string(field.name) + "_" + suffix);
+  };
+  for (const mpm_state* field : computed_fields) add(*field);
+  for (const mpm_state& field : material_of(experiment, body).plugin->state()) add(field);
+  for (const mpm_state& field : experiment.transfer.plugin->state()) add(field);
   return names;
 }
 
@@ -168,7 +191,8 @@ QuantityDescription describe_quantity(const Experiment& experiment, const std::s
     const std::string suffix = field.shape == MPM_STATE_SCALAR ? "" : name.substr(name.rfind('_'));
     return {name, field.doc + (suffix.empty() ? "" : ", component " + suffix.substr(1)), field.unit};
   };
-  if (component_of(name, velocity_field, 3) >= 0) return described(velocity_field);
+  for (const mpm_state* field : computed_fields)
+    if (component_of(name, *field, 3) >= 0) return described(*field);
   for (const MaterialSpecification& material : experiment.materials)
     for (const mpm_state& field : material.component.plugin->state())
       if (component_of(name, field, 3) >= 0) return described(field);
@@ -198,6 +222,15 @@ std::vector<double> quantity(const Experiment& experiment, int body, const BodyS
     for (std::size_t p = 0; p < n && !state.initial_position.empty(); ++p) values[p] = length_of(u, p);
   } else if (const int axis = component_of(name, velocity_field, D); axis >= 0) {
     for (std::size_t p = 0; p < n; ++p) values[p] = state.velocity[p * D + axis];
+  } else if (const int place = component_of(name, position_field, D); place >= 0) {
+    for (std::size_t p = 0; p < n; ++p) values[p] = state.position[p * D + place];
+  } else if (const int moved = component_of(name, displacement_field, D); moved >= 0) {
+    for (std::size_t p = 0; p < n && !state.initial_position.empty(); ++p)
+      values[p] = state.position[p * D + moved] - state.initial_position[p * D + moved];
+  } else if (const int component = component_of(name, stress_field, D); component >= 0) {
+    const MaterialQuantities material = material_quantities(experiment, body, state);
+    for (std::size_t p = 0; p < n; ++p)
+      values[p] = material.stress[p * symmetric + component] / material.volume_ratio[p];
   } else if (name == "pressure" || name == "von_mises_stress" || name == "volume_ratio" || name == "stored_energy") {
     MaterialQuantities material = material_quantities(experiment, body, state);
     if (name == "volume_ratio") return material.volume_ratio;

@@ -18,6 +18,9 @@ struct MaterialQuantities {
 };
 MaterialQuantities material_quantities(const Experiment& experiment, int body, const BodyState& state);
 
+/// The von Mises stress of a Kirchhoff stress in the order of MaterialQuantities.
+double von_mises(const double* tau, int dimension);
+
 /// Whether a particle has the melted phase's parameters.
 bool has_melted(const Experiment& experiment, int body, const BodyState& state, std::size_t p);
 
@@ -25,11 +28,14 @@ bool has_melted(const Experiment& experiment, int body, const BodyState& state, 
 struct QuantityDescription {
   std::string name, label, unit;
 };
-/// Quantities that every scene offers. Velocity components, and the state of its materials and transfer, add to them:
-/// scalars by name (equivalent_plastic_strain), others by component (deformation_gradient_xy).
+/// Quantities that every scene offers. Components of position, displacement, velocity and Cauchy stress (stress_xy), and the
+/// state of its materials and transfer, add to them: scalars by name (equivalent_plastic_strain), others by component
+/// (deformation_gradient_xy).
 std::span<const QuantityDescription> common_quantities();
 /// Names valid as output/colour_by for any of the plugins of `registry`.
 std::vector<std::string> quantity_names(const Registry& registry);
+/// Names that mean something for the particles of a body.
+std::vector<std::string> quantity_names(const Experiment& experiment, int body);
 QuantityDescription describe_quantity(const Experiment& experiment, const std::string& name);
 
 /// The quantity of every particle of a body; zero for bodies whose material has no such state field.

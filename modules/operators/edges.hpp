@@ -91,4 +91,10 @@ MPM_HD bool box_holds(int type, int axis, int side, int given, int component, S 
          (type == wall_prescribed && (given >> component & 1));
 }
 
+/// Whether a grip holds a node: at least half of the node's mass is of its particles.
+template <class S>
+MPM_HD bool grip_holds(S mass_of_grip, S mass) {
+  return mass_of_grip > S(0) && S(2) * mass_of_grip >= mass;
+}
+
 }  // namespace mpm

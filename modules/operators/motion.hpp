@@ -36,4 +36,15 @@ MPM_HD V mean_velocity(V before, V after) {
   return 0.5 * (before + after);
 }
 
+/// One component of the velocity that damping leaves of what forces, supports and contact make of `before`: of the
+/// change the share `local` acts against the motion (Cundall 1987, whose unbalanced force is m times the change over
+/// dt), and a force -c m v acts besides, integrated exactly under a constant acceleration: `left_of_velocity` is
+/// exp(-c dt), `left_of_change` (1 - exp(-c dt)) / (c dt). No step is too long for it.
+template <class S>
+MPM_HD S damped(S before, S after, S local, S left_of_velocity, S left_of_change) {
+  const S change = after - before, size = change < S(0) ? -change : change;
+  const S against = after > S(0) ? -size : after < S(0) ? size : S(0);
+  return left_of_velocity * before + left_of_change * (change + local * against);
+}
+
 }  // namespace mpm

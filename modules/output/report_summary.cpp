@@ -173,10 +173,6 @@ std::string verdict(const Json& expectation) {
                            : "<span class=\"verdict bad\">✗ not held</span>";
 }
 
-bool is_closing(const std::string& cause) {
-  return cause.find("residual") != std::string::npos;
-}
-
 /// A bar from a common zero; the scale leaves room on the negative side only when something is negative.
 std::string bar(double value, double least, double most) {
   const double span = most - least;
@@ -194,12 +190,14 @@ std::string bar(double value, double least, double most) {
 struct Share {
   std::string name;
   double value;
+  bool closes;  ///< what the others leave unexplained
 };
 
-std::vector<Share> shares_of(const Json& object) {
+/// The numbers of an object; `closing` is the key of the one that closes the sum, if any.
+std::vector<Share> shares_of(const Json& object, const std::string& closing = "") {
   std::vector<Share> shares;
   for (const auto& item : object.items()) {
-    if (item.value().is_number()) shares.push_back({item.key(), item.value().get<double>()});
+    if (item.value().is_number()) shares.push_back({item.key(), item.value().get<double>(), item.key() == closing});
   }
   return shares;
 }
@@ -223,7 +221,7 @@ std::string bars_table(const std::vector<Share>& shares, const char* heads, cons
   std::string html =
       std::string("<div class=\"scroll\"><table class=\"bars\"><thead><tr>") + heads + "</tr></thead><tbody>";
   for (const Share& share : shares) {
-    html += is_closing(share.name) ? "<tr class=\"total\">" : "<tr>";
+    html += share.closes ? "<tr class=\"total\">" : "<tr>";
     html += "<th scope=\"row\">" + label_html(share.name) + "</th><td class=\"number\">" + number_html(share.value) +
             "\xC2\xA0" + unit + "</td>";
     if (with_percent) {
@@ -239,14 +237,10 @@ std::string ledger(const Json& energy) {
   const Json* causes = member(energy, {"ledger"});
   if (causes == nullptr) return {};
   if (!causes->is_object()) return "<h3>Ledger</h3>" + table_html(*causes);
-  std::vector<Share> shares = shares_of(*causes);
-  std::stable_partition(shares.begin(), shares.end(), [](const Share& share) { return !is_closing(share.name); });
-  if (std::none_of(shares.begin(), shares.end(), [](const Share& share) { return is_closing(share.name); })) {
-    for (const char* name : {"residual", "closing_residual", "ledger_residual"}) {
-      const Json* residual = member(energy, {name});
-      if (residual != nullptr && residual->is_number()) shares.push_back({"closing residual", residual->get<double>()});
-    }
-  }
+  const Json* closing = member(energy, {"ledger_closed_by"});
+  std::vector<Share> shares =
+      shares_of(*causes, closing != nullptr && closing->is_string() ? closing->get<std::string>() : "");
+  std::stable_partition(shares.begin(), shares.end(), [](const Share& share) { return !share.closes; });
   const Json* every = member(energy, {"ledger_every"});
   const std::string sampled = every == nullptr || !every->is_number()
                                   ? ""
@@ -295,7 +289,8 @@ std::string energy_section(const Run& run) {
   const Json* energy = member(run.summary, {"energy"});
   if (energy == nullptr) return {};
   return section("Energy", "<p class=\"soft\">In J; this page keeps to SI units throughout.</p>" +
-                               group(run, "energy", {"ledger", "books"}) + ledger(*energy) + books(*energy));
+                               group(run, "energy", {"ledger", "ledger_closed_by", "books"}) + ledger(*energy) +
+                               books(*energy));
 }
 
 std::string performance_section(const Run& run) {

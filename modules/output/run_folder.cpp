@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -12,10 +11,6 @@ namespace mpm::output {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool holds_a_run(const fs::path& folder) {
-  return fs::is_regular_file(folder / "manifest.json");
-}
 
 /// Whether a file is one that write_atomically leaves when the process is killed in it.
 bool is_temporary(const fs::path& path) {
@@ -32,34 +27,15 @@ bool holds_no_file(const fs::path& folder) {
   return true;
 }
 
-bool contains(const fs::path& folder, const fs::path& path) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
-}
-
 fs::path without_trailing_slash(const fs::path& path) {
   const fs::path absolute = fs::weakly_canonical(fs::absolute(path));
   return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
-void move_aside(const fs::path& folder) {
-  const FolderLock nobody_writes(folder);
-  if (contains(folder, fs::current_path())) {
-    throw FolderRefused(folder.string() +
-                        " holds an earlier run, and the program was started inside it, so that it cannot be moved "
-                        "aside; start from another folder, or choose another with --out");
-  }
-  for (int i = 1;; ++i) {
-    const fs::path aside = folder.string() + "." + std::to_string(i);
-    if (fs::exists(fs::symlink_status(aside))) continue;
-    std::error_code error;
-    fs::rename(folder, aside, error);
-    if (!error) return;
-    // Another program took this number between the check and the move.
-    if (error != std::errc::directory_not_empty && error != std::errc::file_exists) {
-      throw support::MachineError::from_errno("move aside the earlier run in", folder, error.value());
-    }
-  }
-}
+/// All that a run writes but its manifest, by name.
+constexpr const char* results[] = {"experiment.json", "plan.json", "summary.json", "metrics.csv", "report.html",
+                                   "film.mp4",        "figures",   "frames",       "vtk",         "particles",
+                                   "checkpoint"};
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
@@ -67,25 +43,28 @@ void make_folder(const fs::path& folder) {
   if (error) throw support::MachineError::from_errno("create the folder", folder, error.value());
 }
 
-void refuse_or_clear(const fs::path& root) {
-  if (!fs::is_directory(root)) {
-    throw FolderRefused(root.string() + " is a file; choose another folder with --out");
-  }
-  if (holds_a_run(root)) {
-    move_aside(root);
-  } else if (!holds_no_file(root)) {
-    throw FolderRefused(root.string() +
-                        " holds files that are not an earlier run (no manifest.json), and none of them will be "
-                        "touched; empty it, or choose another folder with --out");
-  }
+void refuse_other_contents(const fs::path& root) {
+  if (!fs::is_directory(root)) throw FolderRefused(root.string() + " is a file; choose another folder with --out");
+  if (holds_no_file(root)) return;
+  throw FolderRefused(root.string() +
+                      (RunFolder::holds_run(root) ? " holds an earlier run; replace it with --replace"
+                                                  : " holds files that are not an earlier run (no "
+                                                    "manifest.json), and none of them will be touched; empty "
+                                                    "it") +
+                      ", or choose another folder with --out");
 }
 
 }  // namespace
 
+bool RunFolder::holds_run(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path / "manifest.json", ignored);
+}
+
 RunFolder RunFolder::create(const fs::path& path) {
   try {
     const fs::path root = without_trailing_slash(path);
-    if (fs::exists(root)) refuse_or_clear(root);
+    if (fs::exists(root)) refuse_other_contents(root);
     make_folder(root);
     return RunFolder(root);
   } catch (const fs::filesystem_error& error) {
@@ -93,9 +72,23 @@ RunFolder RunFolder::create(const fs::path& path) {
   }
 }
 
+RunFolder RunFolder::replace(const fs::path& path) {
+  const RunFolder folder = open(path);
+  // The summary goes first and the manifest stays: what is left when this is interrupted is an unfinished run.
+  for (const char* name : {"summary.json", "report.html"}) folder.remove(name);
+  for (const char* name : results) folder.remove(name);
+  folder.remove_temporary_files();
+  return folder;
+}
+
+void RunFolder::remove(const char* name) const {
+  std::error_code error;
+  fs::remove_all(root_ / name, error);
+  if (error) throw support::MachineError::from_errno("remove the earlier", root_ / name, error.value());
+}
+
 RunFolder RunFolder::open(const fs::path& path) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(path / "manifest.json", ignored)) {
+  if (!holds_run(path)) {
     throw FolderRefused(path.string() + " holds no run (no manifest.json); give the folder that mpm run wrote");
   }
   return RunFolder(without_trailing_slash(path));

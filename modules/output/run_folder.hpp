@@ -16,14 +16,21 @@ class FolderRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Nothing a person made is ever overwritten: an earlier run is moved aside whole, anything else is refused.
+/// Nothing a person made is ever overwritten: an earlier run is replaced when asked for, file by file of those that a run
+/// writes, and anything else is refused.
 class RunFolder {
  public:
-  /// Makes the folder and those above it. If it holds a previous run (a manifest.json), that run is first moved aside
-  /// as NAME.1, NAME.2 …, the first that is free. Write manifest.json early, so that a killed run is known as a run.
-  /// Throws FolderRefused, with a remedy, when the path is a file, a folder with other contents, the folder the program
-  /// works in, or a run that still goes on; MachineError when the disk refuses.
+  /// Whether there is a run at this path, finished or not: a folder with a manifest.json.
+  static bool holds_run(const std::filesystem::path& path);
+
+  /// Makes the folder and those above it. Write manifest.json early, so that a killed run is known as a run. Throws
+  /// FolderRefused, with a remedy, when the path is a file or a folder that holds files; MachineError when the disk
+  /// refuses.
   static RunFolder create(const std::filesystem::path& path);
+
+  /// Removes what a run wrote here, by the names that runs use, and keeps manifest.json, to be overwritten, and all else.
+  /// Only for who holds the lock. Throws FolderRefused when there is no run; MachineError when the disk refuses.
+  static RunFolder replace(const std::filesystem::path& path);
 
   /// Takes an existing run as it is, to resume it or to draw its figures again. Throws FolderRefused when there is no
   /// run at this path.
@@ -35,6 +42,7 @@ class RunFolder {
   std::filesystem::path figures() const { return subfolder("figures"); }
   std::filesystem::path frames() const { return subfolder("frames"); }
   std::filesystem::path vtk() const { return subfolder("vtk"); }
+  std::filesystem::path particles() const { return subfolder("particles"); }
   std::filesystem::path checkpoint() const { return subfolder("checkpoint"); }
 
   /// Removes what killed processes left half-written (".*.tmp"), in all subfolders. Only for who holds the lock.
@@ -49,6 +57,7 @@ class RunFolder {
  private:
   explicit RunFolder(std::filesystem::path root) : root_(std::move(root)) {}
   std::filesystem::path subfolder(const char* name) const;
+  void remove(const char* name) const;
 
   std::filesystem::path root_;  ///< absolute, so that a later change of the working folder cannot move it
 };

@@ -45,18 +45,18 @@ struct Field {
   std::string name;  ///< for people
   std::string unit;
   Owner owner = Owner::particle;
-  int body = -1;  ///< of particles: whose
+  int body = -1;  ///< which body's particles; -1 for a field of nodes
   Origin origin = Origin::host;
   int components = 1;
   Lifetime lifetime = Lifetime::saved;
   First first = First::zero;
   AtWall at_wall = AtWall::none;
   Folded folded = Folded::never;
-  bool cleared = false;     ///< of nodes: zero when a step's first scatter begins
-  bool for_ledger = false;  ///< of nodes: only the ledger reads it, so it may rest in the steps that have no entry
-  std::string beside;       ///< of nodes: a scalar that is kept as the fourth of this vector's group of four
-  std::string in_place_of;  ///< of nodes: shares memory with this field, which nobody reads any more
-  std::uint64_t bytes = 0;  ///< a particle; a node with all its velocity fields
+  bool cleared = false;     ///< nodes hold zero when a step's first scatter begins
+  bool for_ledger = false;  ///< only the ledger reads it at nodes, so it may rest in the steps that have no entry
+  std::string beside;       ///< nodes keep this scalar as the fourth of that vector's group of four
+  std::string in_place_of;  ///< nodes keep it in the memory of that field, which nobody reads any more
+  std::uint64_t bytes = 0;  ///< what a particle takes, or a node with all its velocity fields
   std::string because;      ///< JSON pointer of what asked for it, and why
 
   bool of_particles_of(int b) const { return owner == Owner::particle && body == b; }

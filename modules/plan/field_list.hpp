@@ -12,6 +12,12 @@ class FieldList {
   FieldList(Plan& plan, const Experiment& experiment)
       : plan(plan), experiment(experiment), needs(backend_needs(experiment.backend)) {}
 
+  /// What a state that a plugin declares begins as.
+  static First first_of(const mpm_state& declared) {
+    if (declared.initial == MPM_INITIAL_ZERO) return First::zero;
+    if (declared.initial == MPM_INITIAL_ONE) return First::one;
+    return declared.shape == MPM_STATE_SYMMETRIC ? First::symmetric_identity : First::identity;
+  }
   static std::string named(const Component& component) { return StepBuilder::named(component); }
   /// The reason for what the backend keeps although nothing in the scene asks for it.
   std::string why_apart() const { return "/backend \"" + experiment.backend + "\" keeps all values apart"; }

@@ -108,6 +108,7 @@ std::string why_not_fused(const Step& step, const Experiment& experiment) {
   if (find_pass(step, Act::begin_filter) && (find_pass(step, Act::project) || !of_another_shape.empty()))
     return experiment.filter->pointer + ": the filter reads the grid between gather and scatter";
   if (!of_another_shape.empty()) return of_another_shape;
+  if (!experiment.grips.empty()) return "/grips: nodes are held as their particles are told for each step";
   if (find_pass(step, Act::scatter_contact))
     return experiment.contact->pointer + ": several velocity fields take two passes";
   if (const Pass* conducts = find_pass(step, Act::conduct))

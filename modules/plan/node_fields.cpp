@@ -85,14 +85,16 @@ void filter_fields(FieldList& fields) {
 
 void increment_fields(FieldList& fields) {
   const bool gathered = gathers_increment(fields.experiment) && fields.plan.does(Act::gather);
+  const Damping& damping = fields.experiment.damping;
   if (!gathered && !fields.plan.does(Act::accelerate)) return;
-  if (!gathered && !fields.plan.has_ledger() && !fields.needs.keeps_all_apart) return;
+  if (!gathered && !damping.acts() && !fields.plan.has_ledger() && !fields.needs.keeps_all_apart) return;
   Field& before =
       fields.of_nodes("velocity_before", "m/s", fields.experiment.dimension,
                       gathered ? FieldList::named(fields.experiment.transfer) + ": gathers the change of velocity"
+                      : damping.acts()           ? damping.pointer + ": acts on the change of velocity"
                       : fields.plan.has_ledger() ? why_for_ledger(fields.plan)
                                                  : fields.why_apart());
-  before.cleared = true, before.for_ledger = !gathered;
+  before.cleared = true, before.for_ledger = !gathered && !damping.acts();
 }
 
 /// Who asks for a force that is not merged into the momentum; empty where nobody in the scene does.
@@ -101,7 +103,9 @@ std::string why_separate_force(const FieldList& fields) {
   if (gathers_increment(experiment)) return FieldList::named(experiment.transfer) + ": gathers the change of velocity";
   if (fields.plan.resolves_contact())
     return FieldList::named(*experiment.contact) + ": acts before and after the forces";
-  if (experiment.body_force) return experiment.body_force_pointer + ": work of the forces";
+  if (experiment.damping.acts()) return experiment.damping.pointer + ": acts on the change of velocity";
+  for (const ExternalForce external : external_forces)
+    if (const std::string giver = experiment.giver_of(external); !giver.empty()) return giver + ": work of the forces";
   const Pass* const strain = fields.plan.pass_of(Act::strain);
   const Operator* const scatters = fields.plan.find(Act::scatter_force);
   if (strain && scatters && strain->stage == Stage::before_forces)
@@ -125,16 +129,17 @@ void force_fields(FieldList& fields) {
                 : for_ledger ? why_for_ledger(fields.plan)
                              : fields.why_apart())
         .for_ledger = for_ledger;
-  if (experiment.body_force)
-    fields.summed("body_force", "N", D, AtWall::vector, Folded::with_force,
-                  experiment.body_force_pointer + ": its work is accounted for apart");
+  for (const ExternalForce external : external_forces)
+    if (const std::string giver = experiment.giver_of(external); !giver.empty())
+      fields.summed(field_of(external), "N", D, AtWall::vector, Folded::with_force,
+                    giver + ": its work is accounted for apart");
   if (fields.needs.keeps_weight_apart)
     fields.summed("weight", "N", D, AtWall::vector, Folded::with_force, "/gravity: its work is accounted for apart");
 }
 
 /// Whether walls or boxes give any node its velocity.
 bool holds_velocities(const Experiment& experiment) {
-  bool holds = !experiment.boxes.empty();
+  bool holds = !experiment.boxes.empty() || !experiment.grips.empty();
   for (const auto& faces : experiment.faces)
     for (const FaceCondition& face : faces) holds = holds || folds(static_cast<int>(face.type));
   return holds;
@@ -160,6 +165,7 @@ void impulse_fields(FieldList& fields) {
     add("contact_impulse", works);
     if (takes_back) add("standing_contact_impulse", total);
   }
+  if (experiment.damping.acts()) add("damping_impulse", works);
   if (fields.plan.filters()) add("filter_impulse", works);
 }
 
@@ -172,6 +178,19 @@ void contact_fields(FieldList& fields) {
   fields.summed("volume", "m^3", 1, AtWall::even, Folded::with_mass, normal, "volume_gradient");
   fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass,
                 contact + "/detection \"approach_and_position\"");
+}
+
+/// What nodes get from the particles of each grip: the momentum that these have as they are told at the end of the step,
+/// with their mass, and the one that they have now.
+void grip_fields(FieldList& fields) {
+  const Experiment& experiment = fields.experiment;
+  for (std::size_t k = 0; k < experiment.grips.size(); ++k) {
+    const std::string id = grip_field(k), because = experiment.grips[k].pointer;
+    fields.summed(id, "kg m/s", experiment.dimension, AtWall::vector, Folded::with_mass, because + ": holds nodes");
+    fields.summed(id + "_mass", "kg", 1, AtWall::even, Folded::with_mass, because + ": holds nodes", id);
+    fields.summed(id + "_before", "kg m/s", experiment.dimension, AtWall::vector, Folded::with_mass,
+                  because + ": holds nodes before the forces");
+  }
 }
 
 /// What a wall that heat comes through asks for.
@@ -210,7 +229,7 @@ void temperature_fields(FieldList& fields) {
 
 void declare_node_fields(FieldList& fields) {
   for (const auto declare : {transfer_fields, fused_fields, filter_fields, increment_fields, force_fields,
-                             impulse_fields, contact_fields, temperature_fields})
+                             impulse_fields, contact_fields, grip_fields, temperature_fields})
     declare(fields);
   for (Field& field : fields.plan.fields)
     if (field.name == field.id) std::replace(field.name.begin(), field.name.end(), '_', ' ');

@@ -58,10 +58,14 @@ class Uses {
 // What walls that heat comes through look at.
 #define MPM_HEATED_WALL "nodes/heated_volume", "nodes/volume_conductivity", "nodes/capacity_position"
 
+// What loads give.
+#define MPM_EXTERNAL_FORCES \
+  "nodes/body_force", "nodes/surface_load", "nodes/point_load", "nodes/spring", "nodes/dashpot"
+
 // What the ledger makes works of.
-#define MPM_IMPULSES                                                                                            \
-  "nodes/boundary_impulse", "nodes/contact_impulse", "nodes/filter_impulse", "nodes/standing_boundary_impulse", \
-      "nodes/standing_contact_impulse"
+#define MPM_IMPULSES                                                                                  \
+  "nodes/boundary_impulse", "nodes/contact_impulse", "nodes/filter_impulse", "nodes/damping_impulse", \
+      "nodes/standing_boundary_impulse", "nodes/standing_contact_impulse"
 
 // A velocity that conditions and contact have changed, and the one that a filter keeps aside.
 #define MPM_CONSTRAINED "nodes/velocity", "nodes/velocity_of_constraints"
@@ -81,22 +85,18 @@ const Declaration declarations[] = {
     {Act::clear, Where::nodes, {}, {}, {}},
     {Act::scatter_momentum,
      Where::particles,
-     {MPM_STENCIL, "particles/velocity", "particles/transfer", "particles/circumference"},
+     {MPM_STENCIL, "particles/velocity", "particles/transfer", "particles/size"},
      {},
      {}},
     {Act::scatter_force,
      Where::particles,
-     {MPM_STENCIL, "particles/material", "particles/circumference"},
+     {MPM_STENCIL, "particles/material", "particles/size", "particles/deformation"},
      {},
-     {"nodes/body_force"}},
-    {Act::scatter_contact,
-     Where::particles,
-     {MPM_STENCIL, "particles/material", "particles/circumference"},
-     {},
-     {MPM_PAIRS}},
+     {MPM_EXTERNAL_FORCES}},
+    {Act::scatter_contact, Where::particles, {MPM_STENCIL, "particles/material", "particles/size"}, {}, {MPM_PAIRS}},
     {Act::scatter_heat,
      Where::particles,
-     {MPM_STENCIL, "particles/temperature", "particles/melted_fraction", "particles/circumference",
+     {MPM_STENCIL, "particles/temperature", "particles/melted_fraction", "particles/size",
       "particles/temperature_state"},
      {},
      {"nodes/heat", "nodes/heat_capacity", MPM_HEATED_WALL}},
@@ -107,7 +107,7 @@ const Declaration declarations[] = {
      {}},
     {Act::accelerate,
      Where::nodes,
-     {MPM_CONSTRAINED, "nodes/mass", "nodes/force", "nodes/body_force", "nodes/weight", "nodes/velocity_before",
+     {MPM_CONSTRAINED, "nodes/mass", "nodes/force", MPM_EXTERNAL_FORCES, "nodes/weight", "nodes/velocity_before",
       MPM_PAIRS, MPM_IMPULSES},
      {MPM_CONSTRAINED, "nodes/velocity_before", MPM_IMPULSES},
      {}},
@@ -118,7 +118,7 @@ const Declaration declarations[] = {
      {}},
     {Act::conduct,
      Where::particles,
-     {MPM_STENCIL, "nodes/temperature", "particles/material", "particles/melted_fraction", "particles/circumference"},
+     {MPM_STENCIL, "nodes/temperature", "particles/material", "particles/melted_fraction", "particles/size"},
      {},
      {"nodes/heat_rate"}},
     {Act::heat,
@@ -157,7 +157,11 @@ const Declaration declarations[] = {
      {MPM_STENCIL, "particles/temperature", "nodes/temperature"},
      {"particles/temperature", "particles/temperature_state"},
      {}},
-    {Act::strain, Where::particles, {MPM_STENCIL, "nodes/velocity", "particles/material"}, {"particles/material"}, {}},
+    {Act::strain,
+     Where::particles,
+     {MPM_STENCIL, "nodes/velocity", "particles/material", "particles/deformation"},
+     {"particles/material", "particles/deformation"},
+     {}},
     {Act::move,
      Where::particles,
      {"particles/position", "particles/advection_velocity", "particles/moved_corners", "particles/strained_domain"},
@@ -199,21 +203,30 @@ void add_what_depends(Uses& uses, Act act, const Pass& pass, const Plan& plan, c
       pass.fused() ? uses.adds({"nodes/next_momentum", "nodes/next_mass"})
                    : uses.adds({"nodes/momentum", "nodes/mass"});
       if (!pass.remap()) uses.adds({"nodes/weight"});
+      for (std::size_t k = 0; k < experiment.grips.size(); ++k)
+        uses.reads({"particles/grip", "particles/initial_position"})
+            .adds({"nodes/" + grip_field(k), "nodes/" + grip_field(k) + "_mass", "nodes/" + grip_field(k) + "_before"});
       break;
     case Act::scatter_force:
-      if (experiment.body_force) uses.reads({"particles/initial_position"});
+      for (const ExternalForce external : external_forces)
+        if (!experiment.giver_of(external).empty()) uses.reads({"particles/initial_position"});
+      if (plan.node_field(field_of(ExternalForce::dashpot))) uses.reads({"particles/velocity"});
       plan.node_field("force") ? uses.adds({"nodes/force"})
       : pass.fused()           ? uses.adds({"nodes/next_momentum"})
                                : uses.adds({"nodes/momentum"});
       break;
     case Act::divide:
       if (!pass.remap()) uses.writes({"nodes/velocity_before"});
+      for (std::size_t k = 0; k < experiment.grips.size(); ++k)
+        uses.reads(
+            {"nodes/" + grip_field(k), "nodes/" + grip_field(k) + "_mass", "nodes/" + grip_field(k) + "_before"});
       break;
     case Act::scatter_heat:
       if (plan.node_field("heated_volume")) uses.reads({"particles/material"});
       break;
     case Act::gather:
       if (gathers_increment) uses.reads({"nodes/velocity_before"});
+      if (!experiment.grips.empty()) uses.reads({"particles/grip", "particles/initial_position"});
       break;
     case Act::gather_heat:
       if (gathers_increment) uses.reads({"nodes/temperature_before"});
@@ -247,6 +260,7 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
 #undef MPM_CONSTRAINED
 #undef MPM_KEPT
 #undef MPM_STENCIL
+#undef MPM_EXTERNAL_FORCES
 #undef MPM_PAIRS
 #undef MPM_HEATED_WALL
 

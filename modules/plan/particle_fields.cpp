@@ -23,13 +23,9 @@ namespace {
 void state_fields(FieldList& fields, int body, const Component& component, Origin origin) {
   const Experiment& experiment = fields.experiment;
   for (const mpm_state& declared : component.plugin->state()) {
-    const First first = declared.initial == MPM_INITIAL_ZERO    ? First::zero
-                        : declared.initial == MPM_INITIAL_ONE   ? First::one
-                        : declared.shape == MPM_STATE_SYMMETRIC ? First::symmetric_identity
-                                                                : First::identity;
     const int components = state_components(kept_shape(declared, experiment.axisymmetric()), experiment.dimension);
     fields
-        .of_particles(body, declared.name, declared.unit, components, first,
+        .of_particles(body, declared.name, declared.unit, components, FieldList::first_of(declared),
                       FieldList::named(component) + ": " + declared.doc)
         .origin = origin;
   }
@@ -55,7 +51,11 @@ void transfer_fields(FieldList& fields, int body) {
 
 void material_fields(FieldList& fields, int body) {
   const Experiment& experiment = fields.experiment;
-  state_fields(fields, body, experiment.materials[experiment.bodies[body].material].component, Origin::material);
+  const BodySpecification& specification = experiment.bodies[body];
+  const std::size_t before = fields.plan.fields.size();
+  state_fields(fields, body, experiment.materials[specification.material].component, Origin::material);
+  for (std::size_t k = before; specification.deformed() && k < fields.plan.fields.size(); ++k)
+    fields.plan.fields[k].first = First::seeded;
 }
 
 /// The transfer acts on the temperature as on the first component of a velocity, of a particle whose mass is its heat
@@ -81,21 +81,64 @@ void backend_fields(FieldList& fields, int body) {
         .bytes = 4;
 }
 
-void symmetry_fields(FieldList& fields, int body) {
+/// The factor of the nominal volume and mass.
+void size_fields(FieldList& fields, int body) {
+  const BodySpecification& specification = fields.experiment.bodies[body];
   if (fields.experiment.axisymmetric())
-    fields.of_particles(body, "circumference", "m", 1, First::seeded,
+    fields.of_particles(body, "size", "m", 1, First::seeded,
                         "/grid/symmetry \"axisymmetric\": a particle is a ring of volume and mass times 2 pi r");
+  else if (specification.varies_in_size())
+    fields.of_particles(body, "size", "", 1, First::seeded,
+                        specification.pointer + "/seeding: particles differ in volume and mass");
+}
+
+/// What of the forces on a body depends on where its particles began; empty where nothing does.
+std::string who_reads_initial_position(const Experiment& experiment, int body) {
+  if (experiment.body_force && experiment.body_force->uses_initial_position())
+    return experiment.body_force_pointer + ": the force depends on X";
+  for (const Load& load : experiment.loads) {
+    if (load.body != body) continue;
+    if (load.gives(ExternalForce::spring)) return load.pointer + ": springs pull towards X";
+    if (load.value.uses_initial_position()) return load.pointer + ": the load depends on X";
+  }
+  return "";
+}
+
+void load_fields(FieldList& fields, int body) {
+  const std::string pointer = fields.experiment.loaded_at_points(body);
+  if (pointer.empty()) return;
+  const int D = fields.experiment.dimension;
+  fields
+      .of_particles(body, "deformation", "", D * D,
+                    fields.experiment.bodies[body].deformed() ? First::seeded : First::identity,
+                    pointer + ": loaded points and normals move with the particle")
+      .name = "deformation gradient for loads";
 }
 
 void output_fields(FieldList& fields, int body) {
   const Experiment& experiment = fields.experiment;
-  const bool force_asks = experiment.body_force && experiment.body_force->uses_initial_position();
-  if (!experiment.exact && !force_asks && experiment.output.colour_by != "displacement") return;
-  const std::string because = experiment.exact ? experiment.exact->pointer + ": errors are measured at X"
-                              : force_asks     ? experiment.body_force_pointer + ": the force depends on X"
-                                               : "/output/colour_by \"displacement\"";
+  const std::string force_asks = who_reads_initial_position(experiment, body);
+  const auto& particles = experiment.particle_output;
+  const bool file_asks = particles && (particles->asks("initial_position") || particles->asks("displacement"));
+  const bool grip_asks = experiment.reads_initial_position();
+  const bool colour_asks = experiment.output.colour_by.starts_with("displacement");
+  if (!experiment.exact && force_asks.empty() && !grip_asks && !file_asks && !colour_asks &&
+      !experiment.output.probes_take("displacement"))
+    return;
+  const std::string because = experiment.exact      ? experiment.exact->pointer + ": errors are measured at X"
+                              : !force_asks.empty() ? force_asks
+                              : grip_asks           ? "/grips: a velocity depends on X"
+                              : file_asks           ? "/output/particles/fields: initial places are written"
+                              : colour_asks         ? "/output/colour_by \"" + experiment.output.colour_by + "\""
+                                                    : "/output/probes: a probe takes displacements";
   fields.of_particles(body, "initial_position", "m", experiment.dimension, First::seeded, because).lifetime =
       Lifetime::seeded;
+}
+
+void grip_fields(FieldList& fields, int body) {
+  if (fields.experiment.grips.empty()) return;
+  fields.of_particles(body, "grip", "", 1, First::seeded, "/grips: which one moves the particle").name =
+      "number of its grip";
 }
 
 /// Where a step strains between the gather and the move, what the gather found waits for the move. (A move that stands
@@ -121,12 +164,14 @@ void shape_fields(FieldList& fields, int body) {
   const Experiment& experiment = fields.experiment;
   const int D = experiment.dimension, corners = D * fields.plan.sample_points;
   const std::string shape = FieldList::named(experiment.shape);
+  const bool seeded = experiment.bodies[body].seeds_domains();
   if (corners > 0) {
-    fields.of_particles(body, "corners", "cells", corners, First::half_size_corners, shape + ": corners of the domain");
+    fields.of_particles(body, "corners", "cells", corners, seeded ? First::seeded : First::half_size_corners,
+                        shape + ": corners of the domain");
     waiting_field(fields, body, "moved_corners", "cells", corners, First::half_size_corners, "corners");
   }
   if ((experiment.shape.plugin->descriptor->needs & MPM_NEEDS_DOMAIN) == 0) return;
-  fields.of_particles(body, "domain", "cells", D * D, First::half_size_diagonal,
+  fields.of_particles(body, "domain", "cells", D * D, seeded ? First::seeded : First::half_size_diagonal,
                       shape + ": semi-side vectors of the particle's domain");
   // The reference backend keeps the stencils of a step; the others evaluate them anew in every pass.
   const Pass* const strain = fields.plan.pass_of(Act::strain);
@@ -145,7 +190,7 @@ void shape_fields(FieldList& fields, int body) {
 void declare_particle_fields(FieldList& fields) {
   for (int body = 0; body < static_cast<int>(fields.experiment.bodies.size()); ++body)
     for (const auto declare : {body_fields, transfer_fields, material_fields, temperature_fields, backend_fields,
-                               symmetry_fields, output_fields, move_fields, shape_fields})
+                               size_fields, grip_fields, load_fields, output_fields, move_fields, shape_fields})
       declare(fields, body);
 }
 

@@ -71,7 +71,7 @@ void take_numbers(Plan& plan, const Experiment& experiment) {
   const bool both_by_affine = (transfer.traits & MPM_STRESS_BY_AFFINE) && (transfer.traits & MPM_STRAIN_BY_AFFINE);
   plan.stencil.affine_moment = affine;
   plan.stencil.gradients = !both_by_affine || plan.resolves_contact() || (transfer.traits & MPM_GATHERS_GRADIENT) ||
-                           (affine && moment_is_gradient);
+                           (affine && moment_is_gradient) || !experiment.loaded_at_points().empty();
   plan.stencil.second_moment =
       shape.second_moment_kind == MPM_MOMENT_PER_PARTICLE && (affine || (transfer.traits & MPM_AFFINE_CARRIES_ENERGY));
 }

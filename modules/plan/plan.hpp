@@ -23,6 +23,11 @@ inline std::string temperature_state_of(const std::string& state_of_transfer) {
   return temperature_state + state_of_transfer;
 }
 
+/// The id of the field of nodes that holds what a grip's particles give them.
+inline std::string grip_field(std::size_t grip) {
+  return "grip_" + std::to_string(grip);
+}
+
 /// What a visit of a particle evaluates of its stencil, beside the weights.
 struct StencilNeeds {
   bool gradients = false;      ///< of the weights

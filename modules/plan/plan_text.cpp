@@ -110,12 +110,16 @@ nlohmann::ordered_json to_json(const std::vector<Step>& steps) {
     nlohmann::ordered_json json{
         {"name", step.name()}, {"every_steps", step.pass.every_steps}, {"because", because_of(step)}};
     if (step.kind == Step::Kind::repeat_until) json["times"] = step.times;
-    for (const Operator& operation : step.pass.operators)
+    for (const Operator& operation : step.pass.operators) {
+      const char* const visited = operation.where == Where::particles ? "particles" : "nodes";
+      if (auto& visits = json["visits"]; std::find(visits.begin(), visits.end(), visited) == visits.end())
+        visits.push_back(visited);
       for (const auto& [key, names] : {std::pair{"reads", &operation.reads}, std::pair{"writes", &operation.writes},
                                        std::pair{"adds", &operation.adds}})
         for (const std::string& name : *names)
           if (auto& known = json[key]; std::find(known.begin(), known.end(), name) == known.end())
             known.push_back(name);
+    }
     if (!step.children.empty()) json["passes"] = to_json(step.children);
     list.push_back(std::move(json));
   }

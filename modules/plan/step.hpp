@@ -39,8 +39,8 @@ enum class Act {
 };
 inline constexpr int act_count = static_cast<int>(Act::change_phase) + 1;
 
-/// What one instance of an operator works on.
-enum class Where { particles, nodes, scene };
+/// What an operator visits, one after another.
+enum class Where { particles, nodes };
 
 /// Which velocity of the step: v- before the forces, v+ after them, or the one that MUSL maps back from the particles.
 enum class Stage { before_forces, after_forces, remapped };
@@ -60,7 +60,7 @@ struct Pass {
   std::vector<Operator> operators;
   std::uint32_t acts = 0;  ///< bit of each operator's act, see `has`
   Stage stage = Stage::before_forces;
-  double share = 1;     ///< strain: of the step
+  double share = 1;     ///< how much of the step a strain takes
   int every_steps = 1;  ///< is executed in steps 0, every_steps, 2 every_steps ...
 
   bool has(Act act) const { return (acts >> static_cast<int>(act) & 1) != 0; }
@@ -69,7 +69,7 @@ struct Pass {
   bool remap() const { return stage == Stage::remapped; }
   /// The second strain of a step that strains twice.
   bool second_half() const { return stage == Stage::after_forces && share < 1; }
-  /// Of a fused visit: what belongs to the step itself.
+  /// What a fused visit does for the step itself, without what it does for the next one.
   Pass before_next_step() const;
   void add(Operator operation) {
     acts |= 1u << static_cast<int>(operation.act);
@@ -89,10 +89,10 @@ enum class Condition {
 struct Step {
   enum class Kind { pass, sequence, when, repeat_until };
   Kind kind = Kind::sequence;
-  Pass pass;                                          ///< of `pass`
-  Condition condition = Condition::unless_scattered;  ///< of `when`
-  int times = 0;        ///< of `repeat_until`: at most; ends when |increment| <= tolerance |first|
-  std::string because;  ///< of `when` and `repeat_until`
+  Pass pass;                                          ///< what a `pass` does
+  Condition condition = Condition::unless_scattered;  ///< when a `when` does
+  int times = 0;        ///< how often a `repeat_until` does at most; it ends when |increment| <= tolerance |first|
+  std::string because;  ///< why there is a `when` or a `repeat_until`
   std::vector<Step> children;
 
   std::string name() const;

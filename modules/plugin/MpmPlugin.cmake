@@ -1,8 +1,9 @@
 # mpm_add_plugin(KIND ID SOURCES... HEADER functor.hpp): a loadable plugin that carries the text of its functor, as target
 # KIND_ID and file plugins/KIND_ID.so of the build folder. Serves the sandbox itself and projects that found the package.
-# The text is embedded, so a GPU backend composes kernels at run time without looking for files.
+# The text is embedded, so a GPU backend composes kernels at run time without looking for files. With IN_TWO_PARTS
+# a material is compiled as two objects side by side (sdk.hpp): SOURCES hold nothing but MPM_EXPORT_PLUGIN then.
 function(mpm_add_plugin kind id)
-  cmake_parse_arguments(ARG "" "HEADER" "SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "IN_TWO_PARTS" "HEADER" "SOURCES" ${ARGN})
   if(NOT kind MATCHES "^(shape|transfer|filter|contact|material)$")
     message(FATAL_ERROR "mpm_add_plugin: \"${kind}\" is no kind; kinds are shape, transfer, filter, contact, material")
   endif()
@@ -16,12 +17,23 @@ function(mpm_add_plugin kind id)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
   file(READ ${header} text)
   file(CONFIGURE OUTPUT ${embedded} CONTENT "R\"MPM_SOURCE(@text@)MPM_SOURCE\"\n" @ONLY)
-  target_compile_definitions(${target} PRIVATE MPM_EMBEDDED_SOURCE="${embedded}")
-  if(TARGET mpm_flags)  # inside the sandbox: warnings and sanitizers too
-    target_link_libraries(${target} PRIVATE mpm_flags)
-  else()
-    target_link_libraries(${target} PRIVATE mpm_sandbox::plugin)
+  set(objects ${target})
+  if(ARG_IN_TWO_PARTS)
+    add_library(${target}_second_part OBJECT ${ARG_SOURCES})
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_second_part>)
+    target_compile_definitions(${target} PRIVATE MPM_PLUGIN_PART=1)
+    target_compile_definitions(${target}_second_part PRIVATE MPM_PLUGIN_PART=2)
+    set_target_properties(${target}_second_part PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden)
+    list(APPEND objects ${target}_second_part)
   endif()
+  foreach(object ${objects})
+    target_compile_definitions(${object} PRIVATE MPM_EMBEDDED_SOURCE="${embedded}")
+    if(TARGET mpm_flags)  # inside the sandbox: warnings and sanitizers too
+      target_link_libraries(${object} PRIVATE mpm_flags)
+    else()
+      target_link_libraries(${object} PRIVATE mpm_sandbox::plugin)
+    endif()
+  endforeach()
   set_target_properties(${target} PROPERTIES PREFIX "" SUFFIX .so OUTPUT_NAME ${target} CXX_EXTENSIONS OFF
                         CXX_VISIBILITY_PRESET hidden LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/plugins)
   set_property(GLOBAL APPEND PROPERTY MPM_PLUGIN_TARGETS ${target})

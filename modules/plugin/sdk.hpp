@@ -1,7 +1,9 @@
 #pragma once
 // What a plugin's author includes: a plugin is a functor (a header of its own, which compilers of device code read too)
 // and a .cpp with MPM_EXPORT_PLUGIN. What a functor must offer are the concepts in sdk/batches.hpp, what it may offer
-// beyond those in sdk/extensions.hpp.
+// beyond those in sdk/extensions.hpp. A material's source may be compiled into two objects of the plugin, side by side, as
+// that takes twice as long as any other's: MPM_PLUGIN_PART is 1 for what a run calls, 2 for what runs the functor over
+// scalars of its own (tangent, costs). Without it all is in one.
 
 #include "plugin/sdk/batches.hpp"
 #include "plugin/sdk/extensions.hpp"
@@ -64,6 +66,12 @@ constexpr mpm_descriptor material(const Manual& m, const char* source) {
   return descriptor<F>(MPM_MATERIAL, material_table<F>, &material_extension<F>, m, source);
 }
 
+/// What the second object of a plugin holds, by kind.
+namespace second_part {
+template <class F>
+inline constexpr auto material = &extension_over_other_scalars<F>;
+}
+
 }  // namespace mpm::sdk
 
 /// Text of the functor's header, written by the build (mpm_add_plugin in MpmPlugin.cmake).
@@ -75,6 +83,10 @@ inline constexpr char embedded_source[] =
 }  // namespace mpm::sdk
 #endif
 
+#if defined(MPM_PLUGIN_PART) && MPM_PLUGIN_PART == 2
+#define MPM_EXPORT_PLUGIN(maker, ...) \
+  [[gnu::used]] static constexpr auto mpm_second_part = mpm::sdk::second_part::maker;
+#else
 /// Exports the plugin: MPM_EXPORT_PLUGIN(material<NeoHookean>, {"neo_hookean", "1.0.0", "summary", "citation",
 /// "manual", "NeoHookean"})
 #define MPM_EXPORT_PLUGIN(maker, ...)                                                                     \
@@ -82,3 +94,4 @@ inline constexpr char embedded_source[] =
       mpm::sdk::maker(mpm::sdk::Manual __VA_ARGS__, mpm::sdk::embedded_source);                           \
   extern "C" __attribute__((visibility("default"))) constexpr mpm_plugin_library mpm_plugin_library_v = { \
       MPM_ABI_VERSION, sizeof(mpm_plugin_library), 1, 0, &mpm_exported_descriptor};
+#endif

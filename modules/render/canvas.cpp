@@ -42,6 +42,11 @@ double Canvas::measure_text(std::string_view utf8, double size, bool bold) const
   return FontSet::of_this_thread().width(utf8, bold) * size;
 }
 
+void Canvas::quadrilaterals(std::span<const Vertex> vertices) {
+  for (std::size_t i = 0; i + 3 < vertices.size(); i += 4)
+    polygon(std::array{vertices[i].at, vertices[i + 1].at, vertices[i + 2].at, vertices[i + 3].at}, vertices[i].colour);
+}
+
 void Canvas::line(Point a, Point b, const Stroke& stroke) {
   polyline(std::array{a, b}, stroke);
 }

@@ -60,6 +60,8 @@ class Canvas {
   virtual void polyline(std::span<const Point> points, const Stroke& stroke) = 0;
   /// Fills a convex polygon.
   virtual void polygon(std::span<const Point> points, const Colour& fill) = 0;
+  /// Fills convex quadrilaterals, four vertices each, every one in the opaque colour of its first, in their order.
+  virtual void quadrilaterals(std::span<const Vertex> vertices);
   /// Fills the band between two lines of equally many points.
   virtual void band(std::span<const Point> upper, std::span<const Point> lower, const Colour& fill) = 0;
   /// Fills triangles, three vertices each, colours interpolated where the canvas can.

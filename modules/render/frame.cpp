@@ -113,16 +113,26 @@ std::array<Point, 4> outline_of(const ParticleFrame& f, std::size_t i, const Pla
 void draw_particles(Canvas& canvas, const ParticleFrame& f, const std::vector<std::size_t>& shown,
                     const FieldColours& colours, const PlaneView& view, double u) {
   canvas.clip(view.box);
+  std::vector<Vertex> specks;  // those without a rim that come one after another
+  const auto draw_specks = [&] {
+    canvas.quadrilaterals(specks);
+    specks.clear();
+  };
   for (const std::size_t i : shown) {
     const auto corners = outline_of(f, i, view);
     const Colour colour = colours(f.values[i]);
-    canvas.polygon(corners, colour);
     // A darker rim tells neighbours of one colour apart; on specks it would drown the colour.
     const double side = std::hypot(corners[1].x - corners[0].x, corners[1].y - corners[0].y);
-    if (side < 9 * u) continue;
+    if (side < 9 * u) {
+      for (const Point& corner : corners) specks.push_back({corner, colour});
+      continue;
+    }
+    draw_specks();
+    canvas.polygon(corners, colour);
     const std::array<Point, 5> rim{corners[0], corners[1], corners[2], corners[3], corners[0]};
     canvas.polyline(rim, {mix(colour, kBlack, 0.3), u});
   }
+  draw_specks();
   canvas.unclip();
 }
 
@@ -231,16 +241,19 @@ std::string table_of(const ParticleFrame& f, const std::vector<std::size_t>& sho
   }
   cells.push_back(f.unit.empty() ? f.quantity : f.quantity + " (" + f.unit + ")");
   csv.row(cells);
+  std::string text = csv.text();
+  const auto add = [&](double value) {
+    support::append_shortest(text, value);
+    text += ',';
+  };
   for (const std::size_t i : shown) {
-    cells.clear();
-    for (std::size_t d = 0; d < dim; ++d) cells.push_back(support::full_precision(f.positions[i * dim + d]));
-    cells.push_back(support::full_precision(f.half_size[i]));
-    for (std::size_t k = 0; k < components; ++k)
-      cells.push_back(support::full_precision(f.domain_axes[i * components + k]));
-    cells.push_back(support::full_precision(f.values[i]));
-    csv.row(cells);
+    for (std::size_t d = 0; d < dim; ++d) add(f.positions[i * dim + d]);
+    add(f.half_size[i]);
+    for (std::size_t k = 0; k < components; ++k) add(f.domain_axes[i * components + k]);
+    support::append_shortest(text, f.values[i]);
+    text += '\n';
   }
-  return csv.text();
+  return text;
 }
 
 }  // namespace

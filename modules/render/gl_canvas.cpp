@@ -61,6 +61,10 @@ GlCanvas::GlCanvas(const Box& tile, int samples)
   glClear(GL_COLOR_BUFFER_BIT);
 }
 
+GlCanvas::~GlCanvas() {
+  for (const auto& [key, glyph] : glyphs_) glDeleteTextures(1, &glyph.texture);
+}
+
 void GlCanvas::polyline(std::span<const Point> points, const Stroke& stroke) {
   if (stroke.dash.empty()) return solid(points, stroke);
   for (const auto& piece : dashes(points, stroke.dash)) solid(piece, stroke);
@@ -83,6 +87,31 @@ void GlCanvas::polygon(std::span<const Point> points, const Colour& fill) {
   glBegin(GL_TRIANGLE_FAN);
   for (const Point& p : points) glVertex2d(p.x, p.y);
   glEnd();
+}
+
+void GlCanvas::quadrilaterals(std::span<const Vertex> vertices) {
+  // One call for all of them; opaque colours need no blending, which would read every sample before it writes it.
+  struct Corner {
+    float at[2], colour[3];
+  };
+  std::vector<Corner> corners;
+  corners.reserve(vertices.size());
+  for (std::size_t i = 0; i + 3 < vertices.size(); i += 4) {
+    const Colour& c = vertices[i].colour;
+    for (std::size_t k = i; k < i + 4; ++k)
+      corners.push_back({{static_cast<float>(vertices[k].at.x), static_cast<float>(vertices[k].at.y)},
+                         {static_cast<float>(c.r), static_cast<float>(c.g), static_cast<float>(c.b)}});
+  }
+  if (corners.empty()) return;
+  glDisable(GL_BLEND);
+  glEnableClientState(GL_VERTEX_ARRAY);
+  glEnableClientState(GL_COLOR_ARRAY);
+  glVertexPointer(2, GL_FLOAT, sizeof(Corner), corners.front().at);
+  glColorPointer(3, GL_FLOAT, sizeof(Corner), corners.front().colour);
+  glDrawArrays(GL_QUADS, 0, static_cast<GLsizei>(corners.size()));
+  glDisableClientState(GL_VERTEX_ARRAY);
+  glDisableClientState(GL_COLOR_ARRAY);
+  glEnable(GL_BLEND);
 }
 
 void GlCanvas::band(std::span<const Point> upper, std::span<const Point> lower, const Colour& fill) {
@@ -200,19 +229,23 @@ Image GlCanvas::resolve() {
   context_.finish();
   Image result(context_.width() / samples_, context_.height() / samples_);
   const auto& pixels = context_.pixels();
-  const int count = samples_ * samples_;
+  const std::size_t row = static_cast<std::size_t>(context_.width()) * 4, samples = static_cast<std::size_t>(samples_);
+  const unsigned count = static_cast<unsigned>(samples * samples);
+  std::vector<std::uint8_t> mean(count * 255 + 1);  // of a sum, rounded
+  for (unsigned sum = 0; sum < mean.size(); ++sum) mean[sum] = static_cast<std::uint8_t>((sum + count / 2) / count);
+  std::vector<std::uint16_t> sums(row);  // over the rows of a pixel
   for (int y = 0; y < result.height; ++y) {
-    for (int x = 0; x < result.width; ++x) {
-      int sum[3] = {count / 2, count / 2, count / 2};
-      for (int j = 0; j < samples_; ++j) {
-        const std::uint8_t* p =
-            pixels.data() + 4 * (static_cast<std::size_t>(y * samples_ + j) * context_.width() + x * samples_);
-        for (int i = 0; i < samples_; ++i, p += 4) {
-          for (int c = 0; c < 3; ++c) sum[c] += p[c];
-        }
+    const std::uint8_t* top = pixels.data() + static_cast<std::size_t>(y) * samples * row;
+    for (std::size_t i = 0; i < row; ++i) sums[i] = top[i];
+    for (std::size_t j = 1; j < samples; ++j)
+      for (std::size_t i = 0; i < row; ++i) sums[i] = static_cast<std::uint16_t>(sums[i] + top[j * row + i]);
+    std::uint8_t* out = result.at(0, y);
+    for (std::size_t at = 0; at < row; at += 4 * samples, out += 3)
+      for (std::size_t c = 0; c < 3; ++c) {
+        unsigned sum = 0;
+        for (std::size_t i = 0; i < samples; ++i) sum += sums[at + 4 * i + c];
+        out[c] = mean[sum];
       }
-      for (int c = 0; c < 3; ++c) result.at(x, y)[c] = static_cast<std::uint8_t>(sum[c] / count);
-    }
   }
   return result;
 }

@@ -17,9 +17,13 @@ class GlCanvas : public Canvas {
   /// `tile` is the part of the picture in whole pixels, `samples` the samples a pixel in each direction. Throws
   /// std::runtime_error when no OpenGL context can be made.
   GlCanvas(const Box& tile, int samples);
+  ~GlCanvas() override;
+  GlCanvas(const GlCanvas&) = delete;
+  GlCanvas& operator=(const GlCanvas&) = delete;
 
   void polyline(std::span<const Point> points, const Stroke& stroke) override;
   void polygon(std::span<const Point> points, const Colour& fill) override;
+  void quadrilaterals(std::span<const Vertex> vertices) override;
   void band(std::span<const Point> upper, std::span<const Point> lower, const Colour& fill) override;
   void triangles(std::span<const Vertex> vertices) override;
   void text(Point at, std::string_view utf8, const TextStyle& style) override;

@@ -8,7 +8,8 @@
 namespace mpm::render {
 
 /// A compatibility context with depth buffer; it is current on the creating thread while it lives, unless another is
-/// made.
+/// made. Each thread keeps the last few for the next pictures of their size: to make one costs more than to draw. State
+/// and matrices are as in a new one; textures and programs are to be deleted by who made them.
 class OsMesaContext {
  public:
   /// Makes a context of `width` by `height` pixels. Throws std::runtime_error with a remedy when the context cannot be
@@ -18,10 +19,10 @@ class OsMesaContext {
   OsMesaContext(const OsMesaContext&) = delete;
   OsMesaContext& operator=(const OsMesaContext&) = delete;
 
-  int width() const { return width_; }
-  int height() const { return height_; }
-  /// The picture as RGBA, rows from the top; complete after finish().
-  const std::vector<std::uint8_t>& pixels() const { return pixels_; }
+  int width() const { return surface_->width; }
+  int height() const { return surface_->height; }
+  /// The picture as RGBA, rows from the top; complete after finish(). It begins as an earlier picture left it.
+  const std::vector<std::uint8_t>& pixels() const { return surface_->pixels; }
   /// Waits for all drawing.
   void finish();
   /// Depth of every pixel in [0, 1], rows from the top; waits for all drawing.
@@ -31,9 +32,15 @@ class OsMesaContext {
   struct Deleter {
     void operator()(void* context) const;
   };
-  int width_, height_;
-  std::vector<std::uint8_t> pixels_;
-  std::unique_ptr<void, Deleter> context_;
+  struct Surface {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> pixels;
+    std::unique_ptr<void, Deleter> context;
+  };
+  static std::unique_ptr<Surface> made(int width, int height);
+  static std::vector<std::unique_ptr<Surface>>& idle();
+
+  std::unique_ptr<Surface> surface_;
 };
 
 }  // namespace mpm::render

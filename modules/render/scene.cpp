@@ -99,8 +99,11 @@ GLuint compiled(GLenum kind, const char* source) {
 
 GLuint ball_program() {
   const GLuint program = glCreateProgram();
-  glAttachShader(program, compiled(GL_VERTEX_SHADER, kVertexProgram));
-  glAttachShader(program, compiled(GL_FRAGMENT_SHADER, kFragmentProgram));
+  for (const GLuint shader :
+       {compiled(GL_VERTEX_SHADER, kVertexProgram), compiled(GL_FRAGMENT_SHADER, kFragmentProgram)}) {
+    glAttachShader(program, shader);
+    glDeleteShader(shader);  // with the program
+  }
   glLinkProgram(program);
   GLint is_good = 0;
   glGetProgramiv(program, GL_LINK_STATUS, &is_good);
@@ -336,6 +339,8 @@ Image render_scene(const std::vector<Ball>& balls, const Vec3& lo, const Vec3& h
   // The edges come after the geometry was read: a line casts no occlusion.
   draw_edges(lo, hi, line_width * kSamples);
   context.finish();
+  glDeleteTextures(1, &stage.texture);
+  glDeleteProgram(stage.program);
   const Vec3 size = minus(hi, lo);
   const double longest = std::max({size[0], size[1], size[2]});
   const double ball = median_radius(balls, 0.01 * longest);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <iostream>
-#include <optional>
 
 #include "experiment/diagnostics.hpp"
 #include "output/checkpoint_file.hpp"
+#include "output/json_differences.hpp"
 #include "support/files.hpp"
 #include "support/hash.hpp"
 
@@ -27,52 +27,11 @@ constexpr const char* free_keys[] = {"/title",
                                      "/output/checkpoint_every",
                                      "/output/checkpoint_steps"};
 
-constexpr const char* start_anew = "or start anew without --resume (the unfinished run is then moved aside)";
+constexpr const char* start_anew = "or start anew with --replace in place of --resume";
 
 /// The value as it would be read back from a file.
 Json as_written(const Json& value) {
   return Json::parse(value.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
-
-std::string escaped(const std::string& key) {
-  std::string text;
-  for (const char c : key) text += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
-  return text;
-}
-
-struct Difference {
-  std::string pointer;
-  const Json *now, *then;  ///< null where there is no value
-};
-
-/// The first place at which two values differ, in the order of the file that is run now.
-std::optional<Difference> first_difference(const Json& now, const Json& then, const std::string& pointer = "") {
-  const bool both_objects = now.is_object() && then.is_object(), both_arrays = now.is_array() && then.is_array();
-  if (!both_objects && !both_arrays)
-    return now == then ? std::nullopt : std::optional(Difference{pointer, &now, &then});
-  const auto compare_child = [&](const std::string& name, const Json* a, const Json* b) -> std::optional<Difference> {
-    const std::string place = pointer + "/" + escaped(name);
-    if (a && b) return first_difference(*a, *b, place);
-    return Difference{place, a, b};
-  };
-  if (both_arrays) {
-    for (std::size_t k = 0; k < std::max(now.size(), then.size()); ++k)
-      if (auto found = compare_child(std::to_string(k), k < now.size() ? &now[k] : nullptr,
-                                     k < then.size() ? &then[k] : nullptr))
-        return found;
-    return std::nullopt;
-  }
-  for (const auto& [key, value] : now.items())
-    if (auto found = compare_child(key, &value, then.contains(key) ? &then[key] : nullptr)) return found;
-  for (const auto& [key, value] : then.items())
-    if (!now.contains(key)) return compare_child(key, nullptr, &value);
-  return std::nullopt;
-}
-
-std::string short_text(const Json* value) {
-  if (!value) return "not there";
-  const std::string text = value->dump();
-  return text.size() > 80 ? text.substr(0, 77) + "..." : text;
 }
 
 Json without_free_keys(const Json& experiment) {
@@ -114,6 +73,15 @@ void refuse_other_plugins(const Json& now, const Json& then, const fs::path& pat
   }
 }
 
+/// Refuses files of bodies that have changed since the checkpoint.
+void refuse_other_inputs(const Experiment& experiment, const Json& then, const fs::path& path) {
+  const Json now = inputs_of(experiment);
+  for (std::size_t k = 0; k < now.size(); ++k)
+    if (k >= then.size() || then[k].value("sha256", "") != now[k]["sha256"].get<std::string>())
+      throw output::FolderRefused(now[k]["file"].get<std::string>() + " is not the file that " + path.string() +
+                                  " was made with: put that one back, " + start_anew);
+}
+
 EarlierParts read_earlier_parts(ArchiveReader& archive) {
   EarlierParts earlier;
   archive.get("wall_seconds", earlier.wall_seconds);
@@ -136,6 +104,7 @@ EarlierParts restore_from(const fs::path& path, Simulation& simulation, Recorder
   refuse_other_program(identity, file.identity, path);
   refuse_other_experiment(simulation.experiment(), file.identity.value("experiment", Json()), folder);
   refuse_other_plugins(identity, file.identity, path);
+  refuse_other_inputs(simulation.experiment(), file.identity.value("inputs", Json::array()), path);
   try {
     ArchiveReader archive(file.state);
     EarlierParts earlier = read_earlier_parts(archive);
@@ -162,6 +131,13 @@ std::vector<const Plugin*> plugins_of(const Experiment& experiment) {
   return used;
 }
 
+Json inputs_of(const Experiment& experiment) {
+  Json files = Json::array();
+  for (const InputFile& input : experiment.inputs)
+    files.push_back({{"pointer", input.pointer}, {"file", input.path.string()}, {"sha256", input.sha256}});
+  return files;
+}
+
 Json identity_of(const Experiment& experiment) {
   Json identity{{"program", "mpm"}, {"version", MPM_VERSION}, {"plugins", Json::array()}};
   for (const Plugin* plugin : plugins_of(experiment))
@@ -169,16 +145,24 @@ Json identity_of(const Experiment& experiment) {
                                    {"kind", kind_name(static_cast<mpm_kind>(plugin->descriptor->kind))},
                                    {"version", plugin->descriptor->version},
                                    {"file_sha256", support::sha256_of_file(plugin->file)}});
+  if (!experiment.inputs.empty()) identity["inputs"] = inputs_of(experiment);
   identity["experiment"] = as_written(experiment.resolved);
   return identity;
 }
 
-void refuse_other_experiment(const Experiment& experiment, const Json& recorded, const output::RunFolder& folder) {
+std::optional<ExperimentDifference> difference_to(const Experiment& experiment, const Json& recorded) {
   const Json now = without_free_keys(experiment.resolved), then = without_free_keys(recorded);
-  const auto difference = first_difference(now, then);
+  const auto found = output::differences(now, then);
+  if (found.empty()) return std::nullopt;
+  return ExperimentDifference{found.front().pointer, output::short_text(found.front().first),
+                              output::short_text(found.front().second)};
+}
+
+void refuse_other_experiment(const Experiment& experiment, const Json& recorded, const output::RunFolder& folder) {
+  const auto difference = difference_to(experiment, recorded);
   if (!difference) return;
-  const std::string message = "is " + short_text(difference->now) + ", and " + short_text(difference->then) +
-                              " in the run in " + folder.root().string() +
+  const std::string message = "is " + difference->now + ", and " + difference->then + " in the run in " +
+                              folder.root().string() +
                               ": a run is resumed with the experiment, --set and --backend that it was started with (" +
                               (folder.root() / "experiment.json").string() + " holds them all), " + start_anew;
   Problem problem{experiment.where(difference->pointer), 0, 0, difference->pointer, message};
@@ -218,8 +202,7 @@ EarlierParts restore_newest(Simulation& simulation, Recorder& recorder, const ou
     }
   }
   throw output::FolderRefused(reasons +
-                              "; no other checkpoint is left: start anew without --resume (the unfinished "
-                              "run is then moved aside)");
+                              "; no other checkpoint is left: start anew with --replace in place of --resume");
 }
 
 Checkpoints::Checkpoints(const Simulation& simulation, Recorder& recorder, const output::RunFolder& folder,

@@ -15,12 +15,22 @@ namespace mpm::app {
 /// The plugins that the experiment names, each once.
 std::vector<const Plugin*> plugins_of(const Experiment& experiment);
 
-/// What a checkpoint belongs to: version of the program, resolved experiment, files of the plugins.
+/// The files that bodies are read from, each with its SHA-256.
+nlohmann::ordered_json inputs_of(const Experiment& experiment);
+
+/// What a checkpoint belongs to: version of the program, resolved experiment, files of the plugins and of bodies.
 nlohmann::ordered_json identity_of(const Experiment& experiment);
 
+/// The first place at which an experiment differs from a recorded one, with the values in few words.
+struct ExperimentDifference {
+  std::string pointer, now, then;
+};
+/// Nothing where they are the same. Titles, figures, expectations, the film, max_steps and the cadence of checkpoints
+/// may differ: they change no number.
+std::optional<ExperimentDifference> difference_to(const Experiment& experiment, const nlohmann::ordered_json& recorded);
+
 /// Refuses a run whose experiment is another one than `recorded` (a resolved experiment), naming the first difference
-/// as JSON pointer. Titles, figures, expectations, the film, max_steps and the cadence of checkpoints may differ.
-/// Throws InputError.
+/// as JSON pointer (difference_to). Throws InputError.
 void refuse_other_experiment(const Experiment& experiment, const nlohmann::ordered_json& recorded,
                              const output::RunFolder& folder);
 

@@ -40,17 +40,33 @@ bool judge(const Limit& limit, const Json& summary, Json& entry) {
   return held;
 }
 
-std::string why_no_gain_is_judged(const Experiment& experiment, const Json& summary) {
+std::string why_no_loss_is_judged(const Experiment& experiment, const Json& summary) {
+  const std::string reason = why_no_change_is_judged(experiment, summary);
+  return !reason.empty() || experiment.output.ledger ? reason : "not recorded: /output/ledger is false";
+}
+
+std::string per_cent(double share) {
+  return number_text(100 * share) + " %";
+}
+
+}  // namespace
+
+std::string why_no_change_is_judged(const Experiment& experiment, const Json& summary) {
   if (const auto isolated = experiment.limits.isolated; isolated && !*isolated) return "/limits/isolated is false";
   const std::string work = experiment.limits.isolated ? "" : work_from_outside(experiment);
   if (!work.empty()) return work;
   return output::value_at(summary, "energy.total.gain") ? "" : "not recorded: the scene begins without energy";
 }
 
-}  // namespace
+double numerical_gain(const Ledger& ledger) {
+  return ledger.scatter + ledger.gather + ledger.boundary + (ledger.contact + ledger.friction) + ledger.filter +
+         ledger.filtered_strain + ledger.filtered_gravity + ledger.remapped_strain + ledger.second_moment;
+}
 
 std::string work_from_outside(const Experiment& experiment) {
   if (experiment.body_force) return experiment.body_force_pointer + " works on the scene";
+  if (experiment.changing_gravity) return "/gravity works on the scene: it changes in time";
+  if (!experiment.loads.empty()) return experiment.loads.front().pointer + " works on the scene";
   for (int axis = 0; axis < experiment.dimension; ++axis)
     for (const FaceCondition& face : experiment.faces[axis]) {
       if (face.velocity) return face.pointer + " works on the scene: the wall moves";
@@ -60,6 +76,8 @@ std::string work_from_outside(const Experiment& experiment) {
     }
   for (const BoxCondition& box : experiment.boxes)
     if (box.velocity) return box.pointer + " works on the scene: its nodes are moved";
+  if (!experiment.grips.empty())
+    return experiment.grips.front().pointer + " works on the scene: its particles are moved";
   return "";
 }
 
@@ -68,7 +86,10 @@ std::vector<std::string> judge_limits(const Experiment& experiment, Json& summar
   const auto ratio = [&](int end) {
     return limits.volume_ratio ? std::optional<double>((*limits.volume_ratio)[end]) : std::nullopt;
   };
-  const Limit gain{"energy.total.gain", "at_most", limits.energy_gain, why_no_gain_is_judged(experiment, summary)};
+  const Limit gain{"energy.total.gain", "at_most", limits.energy_gain, why_no_change_is_judged(experiment, summary)};
+  const std::string no_loss = why_no_loss_is_judged(experiment, summary);
+  const Limit losses[] = {{"energy.total.numerical_loss", "at_most", limits.numerical_loss, no_loss},
+                          {"energy.total.unexplained_loss", "at_most", limits.unexplained_loss, no_loss}};
   const Limit smallest{"stability.smallest_volume_ratio", "at_least", ratio(0), ""};
   const Limit largest{"stability.largest_volume_ratio", "at_most", ratio(1), ""};
   std::vector<std::string> flags;
@@ -83,6 +104,10 @@ std::vector<std::string> judge_limits(const Experiment& experiment, Json& summar
   if (!judge(largest, summary, entries.emplace_back()))
     flags.push_back("largest volume ratio J " + three_digits(number(largest)) + " (limit " +
                     number_text(*largest.bound) + ")");
+  for (const auto& [limit, name] : {std::pair{&losses[0], "numerical"}, std::pair{&losses[1], "unexplained"}})
+    if (!judge(*limit, summary, entries.emplace_back()))
+      flags.push_back(std::string(name) + " loss of " + three_digits(100 * number(*limit)) +
+                      " % of the energy (limit " + per_cent(*limit->bound) + ")");
   summary["limits"] = std::move(entries);
   summary["flags"] = flags;
   return flags;

@@ -3,21 +3,25 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <numbers>
+#include <span>
 
 #include "metrics/particle_quantities.hpp"
 #include "output/checkpoint_file.hpp"
 #include "output/film.hpp"
 #include "output/vtk.hpp"
+#include "support/parallel.hpp"
 
 namespace mpm::app {
 namespace {
 
 /// Frames are held until the end, when the colour scale of the whole run is known; beyond this they are drawn at once.
 constexpr std::size_t held_bytes_limit = 512u << 20;
+/// A thread that draws holds about 100 MB.
+constexpr int most_drawing_threads = 8;
 
 std::string numbered(const char* stem, std::size_t index) {
   char name[64];
@@ -37,11 +41,22 @@ Recorder::Recorder(const Simulation& simulation, const Metrics& metrics, const o
     : simulation_(simulation),
       metrics_(metrics),
       folder_(folder),
+      particles_(simulation, folder),
       kept_snapshots_(folder.root() / "checkpoint/snapshots.records"),
-      latest_(metrics.initial()),
-      largest_energy_(metrics.initial().total_energy()) {}
+      rows_(simulation, metrics),
+      profiles_(simulation, metrics, folder.root() / "probes") {}
+
+void Recorder::use_threads(int threads) {
+  threads_ = std::clamp(threads, 1, most_drawing_threads);
+  particles_.use_threads(threads);
+}
 
 void Recorder::start() {
+  start_rows();
+  profiles_.start();
+}
+
+void Recorder::start_rows() {
   csv_.emplace(folder_.root() / "metrics.csv", metrics_.columns());
 }
 
@@ -68,10 +83,9 @@ void Recorder::save(ArchiveWriter& archive) {
     archive.put("vtk_time", time);
     archive.put("vtk_name", name);
   }
-  archive.put("latest", latest_);
-  archive.put("extremes", std::array{largest_energy_, smallest_J_, largest_J_, largest_contact_force_,
-                                     largest_penetration_, momentum_scale_, angular_momentum_scale_});
-  archive.put("most_contact_nodes", most_contact_nodes_);
+  particles_.save(archive);
+  rows_.save(archive);
+  profiles_.save(archive);
 }
 
 void Recorder::restore(ArchiveReader& archive) {
@@ -104,19 +118,12 @@ void Recorder::restore(ArchiveReader& archive) {
     archive.get("vtk_time", time);
     archive.get("vtk_name", name);
   }
-  archive.get("latest", latest_);
-  std::array<double, 7> extremes{};
-  archive.get("extremes", extremes);
-  largest_energy_ = extremes[0];
-  smallest_J_ = extremes[1];
-  largest_J_ = extremes[2];
-  largest_contact_force_ = extremes[3];
-  largest_penetration_ = extremes[4];
-  momentum_scale_ = extremes[5];
-  angular_momentum_scale_ = extremes[6];
-  archive.get("most_contact_nodes", most_contact_nodes_);
+  particles_.restore(archive);
+  rows_.restore(archive);
+  profiles_.check(archive);
   support::cut_to(table, rows);
-  start();
+  start_rows();
+  profiles_.restore();
 }
 
 bool Recorder::frame_due(double time) const {
@@ -130,30 +137,24 @@ bool Recorder::frame_due(double time) const {
 }
 
 bool Recorder::due(double time, long steps) const {
-  return steps % simulation_.experiment().output.metrics_every == 0 || frame_due(time);
+  return steps % simulation_.experiment().output.metrics_every == 0 || frame_due(time) || particles_.due(time) ||
+         profiles_.due(time);
 }
 
 void Recorder::record(bool last) {
   const bool row_due = simulation_.steps() % simulation_.experiment().output.metrics_every == 0 || last;
   if (row_due && last_row_ != simulation_.steps()) record_row();
   if (frame_due(simulation_.time())) record_frame();
+  particles_.record();
+  profiles_.record();
 }
 
 void Recorder::record_row() {
   const Totals totals = metrics_.measure();
-  csv_->row(metrics_.row(totals));  // what can fail is done before anything is counted
-  latest_ = totals;
+  const std::vector<double> row = metrics_.row(totals);
+  csv_->row(row);  // what can fail is done before anything is counted
+  rows_.take(totals, std::span(row).last(metrics_.chosen().count()));
   last_row_ = simulation_.steps();
-  largest_energy_ = std::max(largest_energy_, latest_.total_energy());
-  smallest_J_ = std::min(smallest_J_, latest_.smallest_volume_ratio);
-  largest_J_ = std::max(largest_J_, latest_.largest_volume_ratio);
-  momentum_scale_ = std::max(momentum_scale_, latest_.momentum_scale);
-  angular_momentum_scale_ = std::max(angular_momentum_scale_, latest_.angular_momentum_scale);
-  const ContactRecord& contact = simulation_.backend().contact_record();
-  largest_contact_force_ =
-      std::max(largest_contact_force_, std::hypot(contact.force[0], contact.force[1], contact.force[2]));
-  largest_penetration_ = std::max(largest_penetration_, contact.largest_penetration);
-  most_contact_nodes_ = std::max(most_contact_nodes_, contact.nodes);
 }
 
 void Recorder::record_frame() {
@@ -171,10 +172,12 @@ void Recorder::record_frame() {
   if (experiment.output.vtk) write_vtk(frames_taken_);
   const std::size_t bytes =
       (snapshot.positions.size() + snapshot.values.size() + snapshot.domain_axes.size()) * sizeof(float);
-  if (bytes_held_ + bytes > held_bytes_limit)
-    draw(snapshot, frames_taken_, range_of(snapshot.values, {INFINITY, -INFINITY}));
-  else
+  if (bytes_held_ + bytes > held_bytes_limit) {
+    draw(frame_template(), snapshot, frames_taken_, range_of(snapshot.values, {INFINITY, -INFINITY}));
+    ++frames_drawn_;
+  } else {
     snapshots_.push_back(std::move(snapshot));
+  }
   bytes_held_ += bytes;
   ++frames_taken_;
 }
@@ -198,15 +201,23 @@ render::ParticleFrame Recorder::frame_template() const {
     frame.map = render::ColourMap::diverging;
   }
   for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
-    const std::size_t count = simulation_.backend().body_state(body).position.size() / experiment.dimension;
-    frame.half_size.insert(frame.half_size.end(), count,
-                           0.5 * experiment.grid.cell_size / experiment.bodies[body].particles_per_cell_axis);
+    const BodyState state = simulation_.backend().body_state(body);
+    const std::size_t count = state.position.size() / experiment.dimension;
+    const double half = 0.5 * experiment.grid.cell_size / experiment.bodies[body].particles_per_cell_axis;
+    frame.half_size.insert(frame.half_size.end(), count, half);
+    if (experiment.bodies[body].seeding.kind == SeedingKind::lattice) continue;
+    const int D = experiment.dimension;
+    for (std::size_t p = 0; p < count; ++p) {
+      const double around = experiment.axisymmetric() ? 2 * std::numbers::pi * state.position[p * D] : 1;
+      frame.half_size[frame.half_size.size() - count + p] =
+          std::pow(state.volume * state.size_of(p) / around, 1.0 / D) / 2;
+    }
   }
   return frame;
 }
 
-void Recorder::draw(const Snapshot& snapshot, std::size_t index, std::pair<double, double> range) {
-  render::ParticleFrame frame = frame_template();
+void Recorder::draw(render::ParticleFrame frame, const Snapshot& snapshot, std::size_t index,
+                    std::pair<double, double> range) const {
   frame.positions.assign(snapshot.positions.begin(), snapshot.positions.end());
   frame.values.assign(snapshot.values.begin(), snapshot.values.end());
   frame.domain_axes.assign(snapshot.domain_axes.begin(), snapshot.domain_axes.end());
@@ -218,13 +229,17 @@ void Recorder::draw(const Snapshot& snapshot, std::size_t index, std::pair<doubl
   }
   if (frame.map != render::ColourMap::categorical && range.first < range.second) frame.range = range;
   render::write_frame(frame, folder_.frames() / numbered("frame", index));
-  ++frames_drawn_;
 }
 
 void Recorder::draw_frames() {
   std::pair<double, double> range{INFINITY, -INFINITY};
   for (const Snapshot& snapshot : snapshots_) range = range_of(snapshot.values, range);
-  for (std::size_t index = 0; index < snapshots_.size(); ++index) draw(snapshots_[index], index, range);
+  if (!snapshots_.empty()) {
+    const render::ParticleFrame common = frame_template();
+    support::for_each_piece(snapshots_.size(), threads_,
+                            [&](std::size_t index) { draw(common, snapshots_[index], index, range); });
+    frames_drawn_ += snapshots_.size();
+  }
   snapshots_.clear();
   if (!simulation_.experiment().output.film || frames_drawn_ < 2) return;
   if (!output::write_film(folder_.frames(), folder_.root() / "film.mp4", 20))

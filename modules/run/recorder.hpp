@@ -12,6 +12,9 @@
 #include "output/record_file.hpp"
 #include "output/run_folder.hpp"
 #include "render/frame.hpp"
+#include "run/particle_series.hpp"
+#include "run/profiles.hpp"
+#include "run/run_record.hpp"
 #include "support/csv.hpp"
 
 namespace mpm::app {
@@ -19,6 +22,9 @@ namespace mpm::app {
 class Recorder {
  public:
   Recorder(const Simulation& simulation, const Metrics& metrics, const output::RunFolder& folder);
+
+  /// The most threads that write files and draw frames; no byte depends on it.
+  void use_threads(int threads);
 
   /// Begins metrics.csv. It is to be called, or `restore`, before anything is recorded.
   void start();
@@ -37,16 +43,11 @@ class Recorder {
   bool due(double time, long steps) const;
   /// Draws the frames, with one colour scale over all of them, and the film when asked for.
   void draw_frames();
+  /// Seconds that files of particle data have taken.
+  double particle_file_seconds() const { return particles_.seconds(); }
 
-  const Totals& latest() const { return latest_; }
-  double largest_total_energy() const { return largest_energy_; }
-  double smallest_volume_ratio() const { return smallest_J_; }
-  double largest_volume_ratio() const { return largest_J_; }
-  double largest_contact_force() const { return largest_contact_force_; }
-  double largest_penetration() const { return largest_penetration_; }
-  double momentum_scale() const { return momentum_scale_; }
-  double angular_momentum_scale() const { return angular_momentum_scale_; }
-  long most_contact_nodes() const { return most_contact_nodes_; }
+  /// What the rows so far came to.
+  const RunRecord& rows() const { return rows_; }
 
  private:
   struct Snapshot {
@@ -55,26 +56,29 @@ class Recorder {
     std::vector<float> positions, values;
     std::vector<float> domain_axes;  ///< domains of 2-D particles that carry one: four numbers a particle
   };
+  void start_rows();
   bool frame_due(double time) const;
   void record_row();
   void record_frame();
   void write_vtk(std::size_t frame);
-  void draw(const Snapshot& snapshot, std::size_t index, std::pair<double, double> range);
+  /// Draws one frame into the template of all.
+  void draw(render::ParticleFrame frame, const Snapshot& snapshot, std::size_t index,
+            std::pair<double, double> range) const;
   render::ParticleFrame frame_template() const;
 
   const Simulation& simulation_;
   const Metrics& metrics_;
   const output::RunFolder& folder_;
   std::optional<support::CsvAppender> csv_;
+  ParticleSeries particles_;
+  int threads_ = 1;
   output::RecordFile kept_snapshots_;  ///< the first of snapshots_, for a resumed run
   long last_row_ = -1;
   std::size_t frames_taken_ = 0, frames_drawn_ = 0, bytes_held_ = 0;
   std::vector<Snapshot> snapshots_;
   std::vector<std::pair<double, std::string>> vtk_files_;
-  Totals latest_;
-  double largest_energy_ = 0, smallest_J_ = 1, largest_J_ = 1, largest_contact_force_ = 0, largest_penetration_ = 0;
-  double momentum_scale_ = 0, angular_momentum_scale_ = 0;  ///< largest of the recorded rows
-  long most_contact_nodes_ = 0;
+  RunRecord rows_;
+  Profiles profiles_;
 };
 
 /// What `mpm run` does after a step: a function that makes, for a simulation, a recorder with a run folder of its own

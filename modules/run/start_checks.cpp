@@ -29,9 +29,13 @@ void refuse_impossible_temperatures(const Simulation& simulation) {
                                   trouble_of_temperature(*wrong) + " at particle " + std::to_string(particle) + ", " +
                                       point_text(std::span(state.position).subspan(particle * D, D))));
   }
-  if (const auto imposed = impossible_heat(experiment, 0, false))
-    problems.push_back(problem_at(experiment, imposed->pointer, text_of(*imposed)));
   if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+/// Refuses what formulas impose in the first step and nothing can have.
+void refuse_impossible_values(const Experiment& experiment) {
+  if (const auto imposed = impossible_value(experiment, {}, false))
+    throw InputError({problem_at(experiment, imposed->pointer, text_of(*imposed))});
 }
 
 void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
@@ -63,6 +67,7 @@ Problem problem_at(const Experiment& experiment, const std::string& pointer, con
 void refuse_impossible_starts(const Simulation& simulation) {
   refuse_velocities_that_are_no_numbers(simulation);
   refuse_impossible_temperatures(simulation);
+  refuse_impossible_values(simulation.experiment());
 }
 
 std::string failure_text(const Failure& failure, const Simulation& simulation) {
@@ -70,7 +75,7 @@ std::string failure_text(const Failure& failure, const Simulation& simulation) {
   return place_text(failure, simulation.place_of(failure), experiment) + " " + cause_text(failure, experiment);
 }
 
-std::string failure_text(const ImposedHeat& imposed, const Simulation& simulation) {
+std::string failure_text(const ImposedValue& imposed, const Simulation& simulation) {
   return "step " + std::to_string(simulation.steps() + 1) + ": " + imposed.pointer + ": " + text_of(imposed);
 }
 

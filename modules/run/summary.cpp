@@ -2,19 +2,16 @@
 
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <limits>
 #include <sstream>
 
 #include "bench/costs.hpp"
 #include "experiment/diagnostics.hpp"
+#include "metrics/body_sums.hpp"
 #include "output/summary_value.hpp"
-#include "run/books.hpp"
-#include "run/rim_steps.hpp"
-#include "run/tent_steps.hpp"
-#include "simulation/boundary.hpp"
+#include "run/limits.hpp"
+#include "run/record_names.hpp"
+#include "run/warnings.hpp"
 
 namespace mpm::app {
 namespace {
@@ -49,7 +46,24 @@ double available_energy(const Experiment& experiment, const Totals& start) {
   return energy;
 }
 
-Json energy(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder) {
+/// Writes the rows of a ledger, and which of them closes it.
+void put_ledger(Json& json, const std::vector<ValueRow>& rows) {
+  for (const ValueRow& row : rows) {
+    json["ledger"][key_of(row)] = row.value;
+    if (row.closes) json["ledger_closed_by"] = key_of(row);
+  }
+}
+
+/// What an isolated scene gained at most, and lost in the end, as shares of the energy that it could have lost.
+void add_changes(const Simulation& simulation, const Metrics& metrics, const RunRecord& recorder, double scale,
+                 Json& total) {
+  total["gain"] = (recorder.largest_total_energy() - metrics.initial().total_energy()) / scale;
+  if (!simulation.plan().has_ledger()) return;
+  total["numerical_loss"] = -numerical_gain(simulation.ledger()) / scale;
+  total["unexplained_loss"] = -metrics.ledger_residual(recorder.latest()) / scale;
+}
+
+Json energy(const Simulation& simulation, const Metrics& metrics, const RunRecord& recorder) {
   const Totals &start = metrics.initial(), &end = recorder.latest();
   Json json{{"kinetic", change(start.kinetic, end.kinetic)},
             {"strain", change(start.strain, end.strain)},
@@ -59,9 +73,9 @@ Json energy(const Simulation& simulation, const Metrics& metrics, const Recorder
   if (start.total_energy() != 0)
     json["total"]["largest_over_initial"] = recorder.largest_total_energy() / start.total_energy();
   if (const double scale = available_energy(simulation.experiment(), start); scale > 0)
-    json["total"]["gain"] = (recorder.largest_total_energy() - start.total_energy()) / scale;
+    add_changes(simulation, metrics, recorder, scale, json["total"]);
   if (!simulation.plan().has_ledger()) return json;
-  for (const ValueRow& row : metrics.ledger_rows(end)) json["ledger"][key_of(row)] = row.value;
+  put_ledger(json, metrics.ledger_rows(end));
   for (const ValueRow& row : metrics.book_rows()) json["books"][key_of(row)] = row.value;
   if (const int every = simulation.plan().ledger_every; every > 1) json["ledger_every"] = every;
   return json;
@@ -73,69 +87,39 @@ Json heat(const Metrics& metrics, const Totals& end) {
             {"latent", change(start.latent_heat, end.latent_heat)},
             {"lowest_temperature", end.lowest_temperature},
             {"highest_temperature", end.highest_temperature}};
-  for (const ValueRow& row : metrics.heat_ledger_rows(end)) json["ledger"][key_of(row)] = row.value;
+  put_ledger(json, metrics.heat_ledger_rows(end));
   return json;
 }
 
-void collect_names(const Json& value, const std::string& prefix, std::vector<std::string>& names) {
-  if (value.is_number()) names.push_back(prefix);
-  if (!value.is_object()) return;
-  for (const auto& [key, child] : value.items()) collect_names(child, prefix.empty() ? key : prefix + "." + key, names);
-}
-
-/// What mirror images made of the heat at walls with convection, where the particles keep it; empty where that is
-/// little. No warning is due where walls hold a temperature, as images are a part of the heat through those.
-std::string warning_of_images(const Simulation& simulation) {
-  const auto& faces = simulation.experiment().faces;
-  const auto any = [&](auto is) {
-    return std::any_of(std::begin(faces), std::end(faces), [&](auto& sides) { return is(sides[0]) || is(sides[1]); });
-  };
-  if (!simulation.plan().has_heat_ledger() || any([](auto& face) { return holds_temperature(face); })) return "";
-  if (!any([](auto& face) { return face.thermal.exchange == HeatExchange::convection; })) return "";
-  const HeatLedger& heat = simulation.backend().heat_ledger();
-  const double share = (heat.scatter + heat.images + heat.gather) / std::abs(heat.convection);
-  if (!(std::abs(share) > 0.05)) return "";
-  std::ostringstream warning;
-  warning << std::fixed << std::setprecision(0);
-  warning << "mirror images " << (share < 0 ? "took" : "gave") << " heat of " << 100 * std::abs(share)
-          << " % of what convection brought: transfer "
-          << std::quoted(std::string(simulation.experiment().transfer.plugin->id()))
-          << " keeps what they do in every step; take longer steps, or transfer \"flip\" or \"aflip\"";
-  return warning.str();
-}
-
-std::string warning_of_ledger(const Simulation& simulation, const Recorder& recorder, const Totals& start) {
-  if (!simulation.plan().has_ledger()) return "";
-  const bool single = simulation.experiment().precision == Precision::single;
-  return warning_of_books(simulation.ledger(),
-                          {single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon(),
-                           static_cast<double>(simulation.steps()),
-                           std::max(std::abs(start.total_energy()), std::abs(recorder.largest_total_energy())),
-                           start.mass, recorder.momentum_scale()});
-}
-
-Json warnings(const Simulation& simulation, const Recorder& recorder, const Totals& start) {
-  Json all = Json::array();
-  if (recorder.most_contact_nodes() > 0)
-    if (const std::string steps = warning_of_rim_steps(simulation.experiment()); !steps.empty()) all.push_back(steps);
-  if (const std::string tents = warning_of_tent_steps(simulation.experiment()); !tents.empty()) all.push_back(tents);
-  if (const std::string books = warning_of_ledger(simulation, recorder, start); !books.empty()) all.push_back(books);
-  if (const std::string images = warning_of_images(simulation); !images.empty()) all.push_back(images);
-  if (const double growth = simulation.backend().filter_record().largest_growth; growth > 1 + 1e-9) {
-    std::ostringstream warning;
-    warning.precision(6);
-    warning << "the filter's increment grew by a factor of up to " << growth
-            << " in one pass: its loop no longer contracts, because constraints or negative weights broke it; filter "
-               "with fewer passes or with /filter/constraints \"at_end\"";
-    all.push_back(warning.str());
+/// What the supports that were asked for did in the last step and, as a mean over time, since the run began.
+Json reactions(const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  const auto [first, first_spin] = recorded_axes(experiment);
+  const std::vector<Support> supports = experiment.supports();
+  Json json = Json::object();
+  for (const int asked : experiment.output.reactions) {
+    const Reaction& reaction = simulation.backend().reactions()[static_cast<std::size_t>(asked)];
+    Vector3 mean = reaction.impulse;
+    for (double& component : mean) component /= simulation.time();
+    Json& entry = json[supports[static_cast<std::size_t>(asked)].name];
+    entry["force"] = by_axis(reaction.force, first, experiment.dimension);
+    entry["mean_force"] = by_axis(mean, first, experiment.dimension);
+    if (first_spin < 3) entry["moment"] = by_axis(reaction.moment, first_spin, 3);
   }
-  constexpr long enough = 10;
-  const Plan& plan = simulation.plan();
-  const long entries = plan.accounts_within(simulation.steps());
-  if (plan.ledger_every > 1 && entries < enough)
-    all.push_back("the ledger is of " + std::to_string(entries) + " of " + std::to_string(simulation.steps()) +
-                  " steps, too few to say where the energy went; lower /output/ledger_every");
-  return all;
+  return json;
+}
+
+/// Puts the chosen numbers under their paths.
+void add_chosen(const Metrics& metrics, const RunRecord& rows, Json& json) {
+  if (rows.chosen().empty()) return;
+  const std::vector<ChosenRow> names = metrics.chosen().rows();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    Json* place = &json;
+    for (const std::string& name : names[k].path) place = &(*place)[name];
+    const RunRecord::Range& range = rows.chosen()[k];
+    *place = {
+        {"initial", range.initial}, {"final", range.latest}, {"smallest", range.smallest}, {"largest", range.largest}};
+  }
 }
 
 }  // namespace
@@ -151,21 +135,20 @@ Json record_of(const Failure& failure, const FailurePlace& place, const Experime
   record["values"] = Json::array();
   for (const ValueRow& row : values_of(failure, experiment))
     record["values"].push_back({{"name", row.name}, {"unit", row.unit}, {"value", row.value}});
-  record["remedy"] = remedy_for(failure);
+  record["remedy"] = remedy_for(failure, experiment);
   return record;
 }
 
-Json record_of(const ImposedHeat& imposed, long step) {
-  Json record{
-      {"cause", impossible_heat_cause},
-      {"where",
-       {{"step", step}, {"time", imposed.time}, {"condition", imposed.pointer}, {"position", imposed.position}}}};
+Json record_of(const ImposedValue& imposed, long step) {
+  Json record{{"cause", impossible_value_cause},
+              {"where", {{"step", step}, {"time", imposed.time}, {"condition", imposed.pointer}}}};
+  if (!imposed.position.empty()) record["where"]["position"] = imposed.position;
   record["values"] = Json::array({{{"name", imposed.name}, {"unit", imposed.unit}, {"value", imposed.value}}});
-  record["remedy"] = impossible_heat_remedy;
+  record["remedy"] = impossible_value_remedy;
   return record;
 }
 
-Json summarise(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder, double wall_seconds,
+Json summarise(const Simulation& simulation, const Metrics& metrics, const RunRecord& recorder, double wall_seconds,
                const EarlierParts& earlier) {
   const Experiment& experiment = simulation.experiment();
   const Totals &start = metrics.initial(), &end = recorder.latest();
@@ -200,6 +183,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
       json["momentum"]["angular"]["final_over_initial"][std::string(1, "xyz"[c])] =
           end.angular_momentum[c] / start.angular_momentum[c];
   json["scales"] = {{"momentum", recorder.momentum_scale()}, {"angular_momentum", recorder.angular_momentum_scale()}};
+  json["mass"] = start.mass;
   json["centre_of_mass"] = {{"initial", by_axis(start.centre_of_mass, first, experiment.dimension)},
                             {"final", by_axis(end.centre_of_mass, first, experiment.dimension)}};
   if (simulation.plan().resolves_contact()) {
@@ -209,7 +193,10 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
                        {"largest_penetration", recorder.largest_penetration()},
                        {"final_nodes", contact.nodes},
                        {"momentum_residual", contact.momentum_residual}};
+    json["contact"]["first_time"] =
+        std::isnan(recorder.first_contact_time()) ? Json() : Json(recorder.first_contact_time());
   }
+  if (!experiment.output.reactions.empty()) json["reaction"] = reactions(simulation);
   if (experiment.exact)
     json["error"] = {{"position", {{"rms", end.position_error_rms}, {"max", end.position_error_max}}},
                      {"velocity", {{"rms", end.velocity_error_rms}, {"max", end.velocity_error_max}}}};
@@ -236,7 +223,8 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const Recor
       flops ? Json(flops->total() * particles * static_cast<double>(simulation.steps())) : Json();
   for (const auto& [name, seconds] : seconds_by_pass) json["performance"]["seconds_by_pass"][name] = seconds;
   if (!earlier.resumed_from_steps.empty()) json["performance"]["resumed_from_step"] = earlier.resumed_from_steps;
-  json["warnings"] = warnings(simulation, recorder, start);
+  add_chosen(metrics, recorder, json);
+  json["warnings"] = warnings_of(simulation, metrics, recorder, json);
   return json;
 }
 
@@ -269,8 +257,7 @@ std::vector<std::string> judge_expectations(const Experiment& experiment, Json& 
       if (measured) {
         sentence << ", got " << x;
       } else {
-        std::vector<std::string> names;
-        collect_names(summary, "", names);
+        const std::vector<std::string> names = paths_of(summary);
         sentence << ", but the summary has no number of that name" << did_you_mean(expectation.metric, names);
       }
       failed.push_back(sentence.str());

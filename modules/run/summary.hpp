@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "run/recorder.hpp"
-#include "simulation/imposed_heat.hpp"
+#include "run/run_record.hpp"
+#include "simulation/imposed_value.hpp"
 
 namespace mpm::app {
 
@@ -23,7 +23,7 @@ struct Outcome {
 /// particle, position}, "values": [{name, unit, value}], "remedy"}.
 nlohmann::ordered_json record_of(const Failure& failure, const FailurePlace& place, const Experiment& experiment);
 /// The same where a wall or a box imposed what nothing can have: "where" has the condition in place of the particle.
-nlohmann::ordered_json record_of(const ImposedHeat& imposed, long step);
+nlohmann::ordered_json record_of(const ImposedValue& imposed, long step);
 
 /// What a resumed run spent before: only the work that led to the result, not what was lost with a process that was
 /// killed.
@@ -34,7 +34,7 @@ struct EarlierParts {
 };
 
 /// Makes all groups but `expect`, `limits`, `flags` and `outcome`. `wall_seconds` is that of this process.
-nlohmann::ordered_json summarise(const Simulation& simulation, const Metrics& metrics, const Recorder& recorder,
+nlohmann::ordered_json summarise(const Simulation& simulation, const Metrics& metrics, const RunRecord& recorder,
                                  double wall_seconds, const EarlierParts& earlier);
 
 /// Adds the group `expect`; returns the sentences of those that do not hold. A metric that summary.json does not have

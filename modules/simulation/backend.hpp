@@ -17,6 +17,13 @@
 
 namespace mpm {
 
+/// What seeds name a field by: its id, which two plugins may share.
+inline std::string seed_key(const Field& field) {
+  return field.origin == Origin::host       ? field.id
+         : field.origin == Origin::material ? "material/" + field.id
+                                            : "transfer/" + field.id;
+}
+
 /// Consecutive particles of a body, as they were seeded.
 struct SeedBatch {
   std::size_t first = 0, count = 0;  ///< in the order of seeding
@@ -26,16 +33,23 @@ struct SeedBatch {
   /// velocity of transfers that carry one (MPM_AFFINE_CARRIES_ENERGY, MPM_STARTS_WITH_GRADIENT: state 0), so that no
   /// spin is lost in the first step. With MPM_KEEPS_SPIN_ONLY it is the antisymmetric part; else it is null.
   const double* velocity_gradient = nullptr;
-  /// Other fields of the plan that start as seeded, by id; count*components, particle-major.
+  /// Other fields of the plan that start as seeded, by seed_key; count*components, particle-major. Where they hold an
+  /// initial position, `position` is a displaced one.
   std::vector<std::pair<std::string, const double*>> others = {};
 
-  /// The values that a particle field of the host starts with; null where the seeds have none.
-  const double* values(std::string_view field) const {
-    if (field == "position" || field == "initial_position") return position;
-    if (field == "velocity") return velocity;
+  /// Where the particles are in the undeformed body.
+  const double* undeformed() const {
     for (const auto& [id, first] : others)
-      if (id == field) return first;
-    return nullptr;
+      if (id == "initial_position") return first;
+    return position;
+  }
+  /// The values that a field starts with; null where the seeds have none.
+  const double* values(const Field& field) const {
+    const std::string key = seed_key(field);
+    for (const auto& [id, first] : others)
+      if (id == key) return first;
+    if (key == "position" || key == "initial_position") return position;
+    return key == "velocity" ? velocity : nullptr;
   }
 };
 
@@ -44,13 +58,15 @@ struct SeedArrays {
   std::vector<double> position, velocity, velocity_gradient;
 };
 
-/// The particles of one body as they were seeded, all of one volume and mass. They are made batch by batch when a
+/// The particles of one body as they were seeded. All have one volume and mass, times their `size` where the plan has that
+/// field. They are made batch by batch when a
 /// backend asks, so that no second copy of a large body is ever held.
 struct SeededBody {
   double volume = 0;  ///< initial, m^3 (m^2 per metre of depth in 2-D, of circumference in axisymmetric scenes)
   double mass = 0;    ///< kg
   std::size_t dimension = 2, particles = 0;
   bool with_gradient = false;  ///< batches carry the gradient of the velocity
+  bool with_size = false;      ///< batches carry sizes; else those of an axisymmetric scene are 2 pi r
   std::function<void(const std::function<void(const SeedBatch&)>&)> make;
 
   std::size_t count() const { return particles; }
@@ -58,7 +74,7 @@ struct SeededBody {
   void for_each_batch(const std::function<void(const SeedBatch&)>& visit) const { make(visit); }
   void replace(SeedArrays all) {
     particles = all.position.size() / dimension;
-    with_gradient = !all.velocity_gradient.empty();
+    with_gradient = !all.velocity_gradient.empty(), with_size = false;
     make = [all = std::move(all), count = particles](const std::function<void(const SeedBatch&)>& visit) {
       visit({0, count, all.position.data(), all.velocity.data(),
              all.velocity_gradient.empty() ? nullptr : all.velocity_gradient.data()});
@@ -68,7 +84,7 @@ struct SeededBody {
   std::vector<double> values(const Field& field) const {
     std::vector<double> all;
     for_each_batch([&](const SeedBatch& batch) {
-      if (const double* const first = batch.values(field.id))
+      if (const double* const first = batch.values(field))
         all.insert(all.end(), first, first + batch.count * static_cast<std::size_t>(field.components));
     });
     return all;
@@ -94,9 +110,9 @@ struct BodyState {
   std::vector<double> position, velocity, initial_position;                   ///< m, m/s, m (empty unless planned)
   std::map<std::string, std::vector<double>> transfer_state, material_state;  ///< by declared field name
   // Velocity and transfer_state may be empty after a step that is not observed.
-  double volume = 0, mass = 0;        ///< values of one particle; in axisymmetric scenes per metre of circumference
-  std::vector<double> circumference;  ///< n, m: 2 pi r as seeded; empty unless axisymmetric
-  double ring(std::size_t p) const { return circumference.empty() ? 1.0 : circumference[p]; }
+  double volume = 0, mass = 0;  ///< values of a particle of size 1, as seeded
+  std::vector<double> size;     ///< n: factor of both, in axisymmetric scenes m of circumference; empty unless planned
+  double size_of(std::size_t p) const { return size.empty() ? 1.0 : size[p]; }
   std::vector<double> domain;  ///< n*dimension*dimension, m, columns are semi-sides; empty unless planned
   /// The corners of each particle's domain, n*points*dimension, m from the particle; empty unless Plan::sample_points.
   std::vector<double> corners;
@@ -109,10 +125,9 @@ struct BodyState {
   std::vector<double>& of(const Field& field) {
     if (field.origin == Origin::transfer) return transfer_state[field.id];
     if (field.origin == Origin::material) return material_state[field.id];
-    for (const auto& [id, values] :
-         {std::pair{"position", &position}, std::pair{"velocity", &velocity},
-          std::pair{"initial_position", &initial_position}, std::pair{"circumference", &circumference},
-          std::pair{"domain", &domain}, std::pair{"corners", &corners}})
+    for (const auto& [id, values] : {std::pair{"position", &position}, std::pair{"velocity", &velocity},
+                                     std::pair{"initial_position", &initial_position}, std::pair{"size", &size},
+                                     std::pair{"domain", &domain}, std::pair{"corners", &corners}})
       if (field.id == id) return *values;
     return host_state[field.id];
   }
@@ -125,8 +140,11 @@ struct Ledger {
   double scatter = 0, gather = 0;      ///< exact differences of kinetic energy across the transfers
   double internal_force = 0;           ///< dt f.(v- + v+)/2 of the stresses
   double gravity = 0, body_force = 0;  ///< the same of the external forces
-  double periodic_gravity = 0;         ///< the same of gravity along periodic axes, where it has no potential
-  double boundary = 0, contact = 0;    ///< J.(v- + v+)/2 of impulses
+  double gravity_without_potential =
+      0;  ///< the same of gravity that has none: along periodic axes, or changing in time
+  double surface_load = 0, point_load = 0, spring = 0, dashpot = 0;  ///< the same (simulation/loads.hpp)
+  double boundary = 0, contact = 0;                                  ///< J.(v- + v+)/2 of impulses
+  double damping = 0;                                                ///< the same of what damping takes
   double friction = 0;             ///< share of contact that the law turned to heat (positive), as particles keep it
   double friction_taken_back = 0;  ///< more of it, before the forces, that gathering increments undoes (FLIP)
   double material = 0;             ///< dissipated by the materials (positive)
@@ -161,29 +179,35 @@ struct LedgerEntry {
   int turn = 0;  ///< entries are summed by turns; the rounding of the residual depends on their order
   const char* unit = "J";
 };
-inline constexpr LedgerEntry<Ledger> ledger_entries[] = {{"scatter", &Ledger::scatter},
-                                                         {"gather", &Ledger::gather},
-                                                         {"internal force", &Ledger::internal_force, 0},
-                                                         {"gravity", &Ledger::gravity, 0},
-                                                         {"body force", &Ledger::body_force, 1, 3},
-                                                         {"periodic gravity", &Ledger::periodic_gravity, 1, 3},
-                                                         {"boundary", &Ledger::boundary, 1, 2},
-                                                         {"contact", &Ledger::contact, 1, 2},
-                                                         {"friction", &Ledger::friction, 0},
-                                                         {"friction taken back", &Ledger::friction_taken_back, 0},
-                                                         {"material dissipation", &Ledger::material, -1, 4},
-                                                         {"filter", &Ledger::filter, 1, 1},
-                                                         {"filtered strain", &Ledger::filtered_strain, 1, 5},
-                                                         {"filtered gravity", &Ledger::filtered_gravity, 1, 5},
-                                                         {"remapped strain", &Ledger::remapped_strain, 1, 5},
-                                                         {"second moment", &Ledger::second_moment, 1, 5},
-                                                         {"stress power", &Ledger::stress_power, 0},
-                                                         {"stored", &Ledger::stored, 0},
-                                                         {"grid book", &Ledger::grid_book, 0},
-                                                         {"filter book", &Ledger::filter_book, 0},
-                                                         {"material book", &Ledger::material_book, 0},
-                                                         {"mass book", &Ledger::mass_book, 0, 0, "kg"},
-                                                         {"momentum book", &Ledger::momentum_book, 0, 0, "kg m/s"}};
+inline constexpr LedgerEntry<Ledger> ledger_entries[] = {
+    {"scatter", &Ledger::scatter},
+    {"gather", &Ledger::gather},
+    {"internal force", &Ledger::internal_force, 0},
+    {"gravity", &Ledger::gravity, 0},
+    {"body force", &Ledger::body_force, 1, 3},
+    {"surface load", &Ledger::surface_load, 1, 3},
+    {"point load", &Ledger::point_load, 1, 3},
+    {"spring", &Ledger::spring, 1, 3},
+    {"dashpot", &Ledger::dashpot, 1, 3},
+    {"gravity without potential", &Ledger::gravity_without_potential, 1, 3},
+    {"boundary", &Ledger::boundary, 1, 2},
+    {"contact", &Ledger::contact, 1, 2},
+    {"damping", &Ledger::damping, 1, 2},
+    {"friction", &Ledger::friction, 0},
+    {"friction taken back", &Ledger::friction_taken_back, 0},
+    {"material dissipation", &Ledger::material, -1, 4},
+    {"filter", &Ledger::filter, 1, 1},
+    {"filtered strain", &Ledger::filtered_strain, 1, 5},
+    {"filtered gravity", &Ledger::filtered_gravity, 1, 5},
+    {"remapped strain", &Ledger::remapped_strain, 1, 5},
+    {"second moment", &Ledger::second_moment, 1, 5},
+    {"stress power", &Ledger::stress_power, 0},
+    {"stored", &Ledger::stored, 0},
+    {"grid book", &Ledger::grid_book, 0},
+    {"filter book", &Ledger::filter_book, 0},
+    {"material book", &Ledger::material_book, 0},
+    {"mass book", &Ledger::mass_book, 0, 0, "kg"},
+    {"momentum book", &Ledger::momentum_book, 0, 0, "kg m/s"}};
 static_assert(sizeof(Ledger) == std::size(ledger_entries) * sizeof(double));
 
 inline Ledger Ledger::plus(const Ledger& other) const {
@@ -227,6 +251,21 @@ struct ContactRecord {
   long nodes = 0, sticking = 0, slipping = 0;  ///< last step
   double largest_penetration = 0;              ///< m, last step, of pairs in contact
   double momentum_residual = 0;                ///< kg m/s, sum of the pair's impulses: zero to rounding
+};
+
+/// The same of one pair of velocity fields. The force acts on its first field.
+struct PairRecord {
+  std::array<double, 3> force{};               ///< N
+  long nodes = 0, sticking = 0, slipping = 0;  ///< last step
+  double largest_penetration = 0;              ///< m, last step
+};
+
+/// A record of what a support (a wall or a box of nodes, Experiment::supports) does to the particles: what they took
+/// from it in the last step, so that their momentum changes by the sum of all reactions, gravity and loads.
+struct Reaction {
+  Vector3 force{};    ///< N, momentum given in the last step over dt
+  Vector3 moment{};   ///< N m about the origin
+  Vector3 impulse{};  ///< N s since the run began
 };
 
 /// The heat that came and went since the run began, J. Each row is summed where the heat is applied; content and latent
@@ -304,10 +343,14 @@ class Backend {
   virtual BodyState body_state(int body) const = 0;
   /// The sums over the steps with Plan::accounts_at.
   virtual const Ledger& ledger() const = 0;
-  /// The sums over all steps where Plan::heat_ledger is set; else zeros.
+  /// The sums over all steps where Plan::has_heat_ledger(); else zeros.
   virtual HeatLedger heat_ledger() const { return {}; }
   virtual const ContactRecord& contact_record() const = 0;
+  /// The record of each pair of fields, in the order of pair_index, where /output/contact_pairs asks; else empty.
+  virtual const std::vector<PairRecord>& contact_pairs() const = 0;
   virtual const FilterRecord& filter_record() const = 0;
+  /// By the number of the support; empty unless an experiment asks for any.
+  virtual const std::vector<Reaction>& reactions() const = 0;
 
   /// Whether the last gather_scatter left the next step's grid. It may refuse (particles must be sorted first): the
   /// next step then scatters as usual.

@@ -7,6 +7,14 @@
 
 namespace mpm {
 
+namespace {
+
+void add(Vector3& sum, const Vector3& impulse) {
+  for (std::size_t c = 0; c < 3; ++c) sum[c] += impulse[c];
+}
+
+}  // namespace
+
 GatherShares gather_shares(const Experiment& experiment) {
   constexpr std::size_t n = MPM_LANES;
   const mpm_transfer& transfer = experiment.transfer.plugin->transfer();
@@ -43,14 +51,24 @@ GatherShares gather_shares(const Experiment& experiment) {
 }
 
 ContactImpulse::ContactImpulse(const Experiment& experiment)
-    : shares_(experiment.contact ? gather_shares(experiment) : GatherShares()) {}
+    : shares_(experiment.contact ? gather_shares(experiment) : GatherShares()),
+      flows_(recorded_pairs(experiment)),
+      records_(flows_.size()) {}
 
-void ContactImpulse::add(const Vector3& impulse) {
-  for (std::size_t c = 0; c < 3; ++c) now_[c] += impulse[c];
+template <class Visit>
+void ContactImpulse::for_each_flow(const ContactGiven& given, Visit visit) {
+  visit(total_, given.impulse);
+  for (std::size_t k = 0; k < flows_.size(); ++k) visit(flows_[k], given.pairs[k].impulse);
+}
+
+template <class Visit>
+void ContactImpulse::for_each_flow(Visit visit) {
+  visit(total_);
+  for (Flow& flow : flows_) visit(flow);
 }
 
 void ContactImpulse::before_forces(const ContactGiven& given, bool filtered, Ledger* ledger) {
-  before_ = now_ = given.impulse;
+  for_each_flow(given, [](Flow& flow, const Vector3& impulse) { flow.before = flow.now = impulse; });
   friction_ = given.dissipated;
   if (!ledger) return;
   const double kept = filtered ? 1.0 : shares_.of_velocity;
@@ -59,31 +77,59 @@ void ContactImpulse::before_forces(const ContactGiven& given, bool filtered, Led
 }
 
 void ContactImpulse::after_forces(const ContactGiven& given, Ledger* ledger) {
-  add(given.impulse);
+  for_each_flow(given, [](Flow& flow, const Vector3& impulse) { add(flow.now, impulse); });
   friction_ += given.dissipated;
   if (ledger) ledger->friction += given.dissipated;
 }
 
 void ContactImpulse::in_filter(const ContactGiven& given, bool replaces, Ledger* ledger) {
   if (replaces && ledger) ledger->friction -= friction_;
-  if (replaces) now_ = {}, friction_ = 0;
+  if (replaces) {
+    for_each_flow(given, [](Flow& flow, const Vector3&) { flow.now = {}; });
+    friction_ = 0;
+  }
   after_forces(given, ledger);
+}
+
+void ContactImpulse::keep() {
+  for_each_flow([](Flow& flow) { flow.kept = flow.now; });
+  kept_friction_ = friction_;
 }
 
 void ContactImpulse::restore(bool keeps_correction) {
   friction_ = kept_friction_;
-  const Vector3 filtered = now_;
-  now_ = kept_;
-  if (!keeps_correction) return;
-  for (std::size_t c = 0; c < 3; ++c) kept_[c] = filtered[c] - kept_[c];
+  for_each_flow([&](Flow& flow) {
+    const Vector3 filtered = flow.now;
+    flow.now = flow.kept;
+    if (!keeps_correction) return;
+    for (std::size_t c = 0; c < 3; ++c) flow.kept[c] = filtered[c] - flow.kept[c];
+  });
 }
 
-Vector3 ContactImpulse::handed_over(bool filtered) const {
+void ContactImpulse::add_correction() {
+  for_each_flow([](Flow& flow) { add(flow.now, flow.kept); });
+}
+
+Vector3 ContactImpulse::handed_over(const Flow& flow, bool filtered) const {
   const GatherShares shares = filtered ? GatherShares() : shares_;
   Vector3 sum{};
   for (std::size_t c = 0; c < 3; ++c)
-    sum[c] = shares.of_velocity * now_[c] + shares.of_increment * (now_[c] - before_[c]);
+    sum[c] = shares.of_velocity * flow.now[c] + shares.of_increment * (flow.now[c] - flow.before[c]);
   return sum;
+}
+
+void ContactImpulse::record_counts(const ContactGiven& given) {
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    const PairGiven& pair = given.pairs[k];
+    records_[k] = {{}, pair.sticking + pair.slipping, pair.sticking, pair.slipping, pair.largest_penetration};
+  }
+}
+
+void ContactImpulse::record_forces(bool filtered, double dt) {
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    const Vector3 impulse = handed_over(flows_[k], filtered);
+    for (std::size_t c = 0; c < 3; ++c) records_[k].force[c] = impulse[c] / dt;
+  }
 }
 
 }  // namespace mpm

@@ -2,6 +2,10 @@
 // Counts the momentum that contact hands over in a step, so that the recorded force is that which particles feel, and
 // the heat of its friction.
 
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
 #include "experiment/experiment.hpp"
 #include "simulation/backend.hpp"
 
@@ -15,10 +19,41 @@ struct GatherShares {
 /// Asks the scene's transfer for them, with a particle at rest whose state is zero.
 GatherShares gather_shares(const Experiment& experiment);
 
+/// The place of the pair (a, b), a < b, among those of so many fields: (0, 1), (0, 2), ..., (1, 2), ...
+constexpr std::size_t pair_index(int a, int b, int fields) {
+  return static_cast<std::size_t>(a * (2 * fields - a - 1) / 2 + b - a - 1);
+}
+
+/// The pairs that are recorded apart: none unless the experiment asks.
+inline std::size_t recorded_pairs(const Experiment& experiment) {
+  const auto fields = static_cast<std::size_t>(experiment.field_count);
+  return experiment.contact && experiment.output.contact_pairs ? fields * (fields - 1) / 2 : 0;
+}
+
+/// The sums of what contact does to one pair at one occasion, over the nodes where it meets.
+struct PairGiven {
+  Vector3 impulse{};                ///< on the first body, kg m/s
+  long sticking = 0, slipping = 0;  ///< nodes
+  double largest_penetration = 0;   ///< m
+
+  /// Takes what the law did at a node.
+  void count(std::int32_t status, double separation, bool has_normal) {
+    sticking += status == MPM_STICKS;
+    slipping += status == MPM_SLIPS;
+    if (status != MPM_APART && has_normal) largest_penetration = std::max(largest_penetration, -separation);
+  }
+  void add(const PairGiven& other) {
+    for (std::size_t c = 0; c < 3; ++c) impulse[c] += other.impulse[c];
+    sticking += other.sticking, slipping += other.slipping;
+    largest_penetration = std::max(largest_penetration, other.largest_penetration);
+  }
+};
+
 /// The sums of what contact does to all pairs at one occasion.
 struct ContactGiven {
-  Vector3 impulse{};      ///< on the first bodies, kg m/s
-  double dissipated = 0;  ///< J, as the law says
+  Vector3 impulse{};               ///< on the first bodies, kg m/s
+  double dissipated = 0;           ///< J, as the law says
+  std::vector<PairGiven> pairs{};  ///< each of them, where pairs are recorded
 };
 
 /// The impulses of contact on the first bodies of all pairs through the parts of one step, and the heat of friction.
@@ -35,18 +70,36 @@ class ContactImpulse {
   /// In a filter's loop, where contact answers to the whole velocity again (`replaces`) or to what is left of it.
   void in_filter(const ContactGiven& given, bool replaces, Ledger* ledger);
   /// These follow the velocity of the grid through Act::keep_velocity, restore_velocity and add_correction.
-  void keep() { kept_ = now_, kept_friction_ = friction_; }
+  void keep();
   void restore(bool keeps_correction);
-  void add_correction() { add(kept_); }
+  void add_correction();
 
   /// The momentum that particles take from contact when they gather now.
-  Vector3 handed_over(bool filtered) const;
+  Vector3 handed_over(bool filtered) const { return handed_over(total_, filtered); }
+  /// Records of each recorded pair: the nodes where it meets after the forces, and the force by what particles take now,
+  /// over a step of dt.
+  void record_counts(const ContactGiven& given);
+  void record_forces(bool filtered, double dt);
+  /// The records of the pairs; empty where the experiment does not ask for them. They go into checkpoints.
+  std::vector<PairRecord>& pairs() { return records_; }
+  const std::vector<PairRecord>& pairs() const { return records_; }
 
  private:
-  void add(const Vector3& impulse);
+  /// An impulse on its way through the step.
+  struct Flow {
+    Vector3 before{}, now{}, kept{};
+  };
+  /// Visits the flow of all pairs together and that of each recorded one, with what was given to it.
+  template <class Visit>
+  void for_each_flow(const ContactGiven& given, Visit visit);
+  template <class Visit>
+  void for_each_flow(Visit visit);
+  Vector3 handed_over(const Flow& flow, bool filtered) const;
 
   GatherShares shares_;
-  Vector3 before_{}, now_{}, kept_{};
+  Flow total_;
+  std::vector<Flow> flows_;  ///< one a recorded pair
+  std::vector<PairRecord> records_;
   double friction_ = 0, kept_friction_ = 0;  ///< J, of all that contact has done in the step
 };
 

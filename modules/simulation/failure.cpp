@@ -18,7 +18,8 @@ constexpr const char* smaller_step =
     "a smaller /solver/courant or /solver/time_step, a transfer with more damping, or a material that is stiffer when "
     "crushed";
 constexpr const char* finite_expressions =
-    "check the expressions of the file (velocities, /body_force, moving walls) at that place and time; where they are "
+    "check the expressions of the file (velocities, /body_force, /loads, moving walls) at that place and time; where "
+    "they are "
     "finite, a smaller /solver/courant or /solver/time_step";
 constexpr const char* finite_heat =
     "check the expressions that warm or cool (temperatures, fluxes, heating) at that place and time; where they are "
@@ -148,7 +149,12 @@ std::string place_text(const Failure& failure, const FailurePlace& place, const 
          point_text(place.position);
 }
 
-std::string remedy_for(const Failure& failure) {
+std::string remedy_for(const Failure& failure, const Experiment& experiment) {
+  if (failure.cause == Cause::inverted && experiment.shape.plugin->id() == "linear")
+    return "another shape (/shape/type \"bspline_quadratic\"): with the linear one a particle near a node or between "
+           "cells inverts at any step, and smaller steps do not help; where nothing moves far, stiffer material or "
+           "more "
+           "particles a cell";
   return entry_of(failure.cause).remedy;
 }
 

@@ -85,7 +85,7 @@ std::string point_text(std::span<const double> position);
 /// The place in words: "step 3, t = 0.1 s: particle 4 of body "b" at (2, 0) m".
 std::string place_text(const Failure& failure, const FailurePlace& place, const Experiment& experiment);
 /// Advice on what to change in the experiment: "a larger /grid/domain, or …".
-std::string remedy_for(const Failure& failure);
+std::string remedy_for(const Failure& failure, const Experiment& experiment);
 /// The value that was measured and its bound, as rows.
 std::vector<ValueRow> values_of(const Failure& failure, const Experiment& experiment);
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "simulation/imposed_heat.hpp"
+#include "simulation/imposed_value.hpp"
 #include "simulation/seeding.hpp"
 #include "solvers/solver.hpp"
 
@@ -121,7 +121,8 @@ void Simulation::gather(const Step& step, StepInfo& info) {
 void Simulation::begin(StepInfo& info) {
   if (chosen_) return;
   dt_ = info.dt = time_step_from(time_);
-  if (experiment_.has_temperature()) stop_at_impossible_heat(experiment_, time_ + dt_);
+  if (experiment_.has_temperature() || experiment_.changing_gravity)
+    stop_at_impossible_value(experiment_, {time_, time_ + dt_});
   info.filtered = filter_due();
   chosen_ = true;
 }

@@ -10,6 +10,7 @@ struct ValueRow {
   std::string name;
   std::string unit;  ///< SI, empty for a pure number
   double value = 0;
+  bool closes = false;  ///< what the rows before it leave unexplained
 };
 
 /// The head of a column: "total energy (J)".

@@ -446,6 +446,10 @@ class StudyReader {
 
 }  // namespace
 
+bool is_study(const Node& root) {
+  return root.find("bodies") == nullptr && (root.find("axes") || root.find("base"));
+}
+
 Study read_study_text(std::string_view text, const std::filesystem::path& file,
                       const std::vector<std::string>& more_overrides) {
   const Node root = parse_located(text, file.string());
@@ -454,6 +458,10 @@ Study read_study_text(std::string_view text, const std::filesystem::path& file,
 
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& more_overrides) {
   const Node root = read_located(file);
+  if (root.find("bodies") && !root.find("axes"))
+    throw InputError({Problem{file.string(), 1, 1, "",
+                              "this is an experiment (it has \"bodies\"), and mpm study takes a study: use `mpm run " +
+                                  file.string() + "`"}});
   return StudyReader(root, file).read(more_overrides);
 }
 

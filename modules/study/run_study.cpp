@@ -106,14 +106,6 @@ class Task {
   bool over_ = false;
 };
 
-/// The reason without the file's name in front of each line: all come from the same one.
-std::string reason_of(const InputError& error) {
-  std::string text;
-  for (const Problem& problem : error.problems())
-    text += (text.empty() ? "" : "; ") + problem.pointer + (problem.pointer.empty() ? "" : ": ") + problem.message;
-  return text;
-}
-
 class Execution {
  public:
   Execution(const Study& study, const Registry& registry, const ReadOptions& read, const ExecutionOptions& options)
@@ -234,6 +226,13 @@ class Execution {
 };
 
 }  // namespace
+
+std::string reason_of(const InputError& error) {
+  std::string text;
+  for (const Problem& problem : error.problems())
+    text += (text.empty() ? "" : "; ") + problem.pointer + (problem.pointer.empty() ? "" : ": ") + problem.message;
+  return text;
+}
 
 Shares share_processors(int processors, int jobs, int threads) {
   if (jobs > 0) return {jobs, std::clamp(processors / jobs, 1, threads)};

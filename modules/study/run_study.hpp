@@ -30,6 +30,9 @@ struct Shares {
 /// depend on either.
 Shares share_processors(int processors, int jobs, int threads);
 
+/// Why a combination is refused, without the file's name in front of each line: all come from the same one.
+std::string reason_of(const InputError& error);
+
 /// Makes, runs or takes over every combination. `read` carries what experiments may name; its overrides are not used.
 /// Throws InputError when the base is no JSON, or when every combination is refused, and support::MachineError.
 Results run_study(const Study& study, const Registry& registry, const ReadOptions& read,

@@ -6,6 +6,10 @@
 #include <string>
 #include <vector>
 
+namespace mpm {
+struct Node;
+}
+
 namespace mpm::study {
 
 /// One value of an axis.
@@ -100,6 +104,9 @@ std::string with_unit(const std::string& label, const std::string& unit);
 
 /// Name of the measure that a bisection finds.
 inline constexpr const char* critical_measure = "critical";
+
+/// Whether a file's JSON is meant as a study: an object with "axes", or with "base" and without "bodies".
+bool is_study(const Node& root);
 
 /// Reads and checks a study; `more_overrides` are those of the command line. Throws InputError with every mistake.
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& more_overrides = {});

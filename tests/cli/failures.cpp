@@ -258,13 +258,15 @@ TEST_CASE("kill -9 leaves whole files, and the folder can be used again") {
   scene["output"]["frames"] = 3;
   scene["output"]["vtk"] = true;
   spill(folder / "scene.json", scene.dump());
-  int run = 0;
+  const fs::path manifest = folder / "run/manifest.json";
   for (const int rows : {0, 1, 50}) {
-    const fs::path earlier = folder / ("run." + std::to_string(run));
+    // The manifest is the first file of a run, written after all of the earlier one are gone.
+    const auto earlier = fs::exists(manifest) ? fs::last_write_time(manifest) : fs::file_time_type::min();
     Process process(folder, program({"run", "scene.json", "--out", "run", "--threads", "1"}));
-    REQUIRE(process.wait_until(
-        [&] { return (run == 0 || fs::exists(earlier)) && rows_written(folder / "run/metrics.csv", rows); }));
-    ++run;
+    REQUIRE(process.wait_until([&] {
+      return fs::exists(manifest) && fs::last_write_time(manifest) != earlier &&
+             rows_written(folder / "run/metrics.csv", rows);
+    }));
     process.send(SIGKILL);
     CHECK(process.finish().signal == SIGKILL);
     check_whole(folder / "run");
@@ -278,6 +280,8 @@ TEST_CASE("kill -9 leaves whole files, and the folder can be used again") {
   CHECK(fs::exists(folder / "run/figures/energy.png"));
   const Result again = run_scene(folder, ball());
   CHECK(again.code == 0);
-  CHECK(folder.names() == Words{"run", "run.1", "run.2", "run.3", "scene.json"});
+  CHECK(folder.names() == Words{"run", "scene.json"});
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "run"))
+    CHECK(!has(entry.path().filename().string(), ".tmp"));
   CHECK(fs::exists(folder / "run/summary.json"));
 }

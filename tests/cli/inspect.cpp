@@ -68,14 +68,14 @@ double held(const Json& scene) {
 
 TEST_CASE("--help lists every verb and exit code") {
   const std::string help = printed({"--help"});
-  for (const char* verb : {"run", "check", "plan", "list", "describe", "schema", "figure"})
+  for (const char* verb : {"run", "check", "plan", "list", "describe", "schema", "figure", "compare"})
     CHECK(has(help, std::string("\n  ") + verb + " "));
   for (const char* code :
        {"0 done", "2 bad input", "3 the run became unstable", "4 an expectation", "5 the machine", "130 stopped"})
     CHECK(has(help, code));
   CHECK(has(help, "MPM_PLUGIN_PATH"));
   const std::string run = printed({"run", "--help"});
-  for (const char* option : {"--set", "--out", "--threads", "--backend"}) CHECK(has(run, option));
+  for (const char* option : {"--set", "--out", "--threads", "--backend", "--replace"}) CHECK(has(run, option));
   CHECK(printed({"--version"}).starts_with("mpm "));
 }
 

@@ -222,10 +222,11 @@ inline Json expecting(Json scene, Json expectation) {
   return scene;
 }
 
-/// Writes the scene as scene.json and runs it on one thread into `run`.
+/// Writes the scene as scene.json and runs it on one thread into `run`, in place of what ran there before.
 inline Result run_scene(const Folder& folder, const Json& scene, Words more = {}) {
   spill(folder / "scene.json", scene.dump(1));
   Words words{"run", "scene.json", "--out", "run", "--threads", "1"};
+  if (fs::exists(folder / "run/manifest.json")) words.emplace_back("--replace");
   words.insert(words.end(), more.begin(), more.end());
   return call(folder, words);
 }

@@ -62,7 +62,7 @@ TEST_CASE("the base scene asks plugins for nothing but what MLS needs") {
 
 TEST_CASE("outputs that are not due change no byte, no pass and no call") {
   const RequiredRow base = counted("base");
-  for (const char* name : {"+ metrics", "+ frames", "+ vtk", "+ figures", "+ checkpoints"}) {
+  for (const char* name : {"+ metrics", "+ numbers", "+ frames", "+ vtk", "+ figures", "+ checkpoints"}) {
     INFO(name);
     const RequiredRow row = counted(name);
     CHECK(row.bytes_per_particle == base.bytes_per_particle);
@@ -85,7 +85,7 @@ TEST_CASE("outputs that are not due cost a handful of instructions to look at th
   CHECK(base.instructions->own > 1000 * base.steps);
   CHECK(base.instructions->all > base.instructions->own);
   constexpr long handful = 40;  // instructions that ask whether a frame is due
-  for (const char* name : {"+ metrics", "+ frames", "+ vtk", "+ figures", "+ checkpoints"}) {
+  for (const char* name : {"+ metrics", "+ numbers", "+ frames", "+ vtk", "+ figures", "+ checkpoints"}) {
     const RequiredRow row = counted(name);
     REQUIRE(row.instructions);
     INFO(name << ": " << row.instructions->own << " instructions, the base scene " << base.instructions->own);

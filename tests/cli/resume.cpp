@@ -17,10 +17,11 @@ namespace output = mpm::output;
 
 namespace {
 
-/// Two balls that meet, with rows, frames and VTK files that fall between the checkpoints.
+/// Two balls that meet, with rows, frames and files of particles that fall between the checkpoints.
 Json meeting() {
   Json scene = two_balls();
   scene["output"] = {{"metrics_every", 3}, {"frames", 4}, {"vtk", true}, {"checkpoint_steps", 7}};
+  scene["output"]["particles"] = {{"format", {"vtk", "csv"}}, {"count", 5}, {"grid", true}, {"shape", "domains"}};
   return scene;
 }
 
@@ -266,6 +267,7 @@ TEST_CASE("another number of threads goes on with the same bits") {
   for (Json& body : scene["bodies"]) body["particles_per_cell_axis"] = 4;
   scene["solver"] = {{"time_step", 0.001}, {"end_time", 0.03}};
   scene["output"].erase("frames");
+  scene["output"].erase("particles");
   scene["output"]["vtk"] = false;
   spill(folder / "scene.json", scene.dump(1));
   must_end_with(0, run_in(folder, "whole"));
@@ -351,7 +353,7 @@ TEST_CASE("a damaged checkpoint is never used: the one before is, and with none 
     spill(paths[0], bytes);
     spill(paths[1], "");
     resume_refused(folder, words_for("parts", {"--resume"}),
-                   {paths[0].filename().string(), reason, "start anew without --resume"});
+                   {paths[0].filename().string(), reason, "start anew with --replace in place of --resume"});
     spill(paths[1], older);
     const Result result = run_in(folder, "parts", {"--resume"});
     must_end_with(0, result);

@@ -12,7 +12,7 @@ namespace {
 /// A text read by a table of its own.
 struct Table {
   Table(std::vector<ParameterSpec> parameters, const std::string& text)
-      : root(parse_located(text, "FILE")), context{"FILE", 2, {{"A", 2.0}}, {}} {
+      : root(parse_located(text, "FILE")), context{"FILE", 2, {{"A", 2.0}}, {}, {}} {
     fields = std::make_unique<Fields>(&root, Section{"test", "a test", std::move(parameters)}, context);
   }
   std::string problems() const {

@@ -47,7 +47,7 @@ TEST_CASE("wrong types and ranges", "[config]") {
       errors_after("[\"energy\", \"contact\"]", "[\"energi\", \"energy\", \"energy\", 3]") ==
       R"(FILE:34:15: /figures/0: expected one of "energy", "dissipation", "contact", got "energi"; did you mean "energy"?
 FILE:34:35: /figures/2: "energy" is listed twice
-FILE:34:45: /figures/3: expected a string, got the number 3)");
+FILE:34:45: /figures/3: expected a string or a figure of columns, got the number 3)");
   CHECK(errors_after("\"gravity\": [0, \"-9.81 m/s^2\"]", "\"gravity\": [0, 1, 2]") ==
         "FILE:30:14: /gravity: expected 2 components in a 2-D experiment, got 3");
   CHECK(errors("[]") == "FILE:1:1: expected an object (an experiment), got a list");

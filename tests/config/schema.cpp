@@ -60,9 +60,10 @@ void check_keys(const Json& value, const Json& at) {
 TEST_CASE("the schema has every key of the experiment", "[schema]") {
   CHECK(schema()["$schema"] == "https://json-schema.org/draft/2020-12/schema");
   CHECK(schema()["additionalProperties"] == false);
-  for (const char* key : {"title",           "dimension",  "precision", "backend", "seed",    "constants", "grid",
-                          "node_conditions", "shape",      "transfer",  "filter",  "contact", "materials", "bodies",
-                          "gravity",         "body_force", "solver",    "output",  "figures", "compare",   "limits"}) {
+  for (const char* key :
+       {"title", "dimension", "precision", "backend", "seed",      "constants", "grid",    "node_conditions",
+        "shape", "transfer",  "filter",    "contact", "materials", "bodies",    "gravity", "body_force",
+        "loads", "damping",   "solver",    "output",  "figures",   "compare",   "limits"}) {
     INFO(key);
     CHECK(schema()["properties"].contains(key));
   }

@@ -92,6 +92,39 @@ TEST_CASE("body forces on the host-run device", "[device]") {
   check_on_device(mix);
 }
 
+TEST_CASE("loads on the host-run device", "[device][loads]") {
+  const std::string flat = R"J(, "loads": [
+    {"type": "pressure", "body": "a", "where": {"type": "half_space", "point": [0.31, 0], "normal": [1, 0.3]},
+     "pressure": "400+100*sin(9*t)+20*x"},
+    {"type": "traction", "body": "b", "where": {"type": "half_space", "point": [0, 0.6], "normal": [0, -1]},
+     "traction": ["200*X", "-300*y+100*t"]},
+    {"type": "force", "body": "a", "at": [0.4, 0.37], "force": [5, "20*t"]},
+    {"type": "body_force", "body": "b", "acceleration": ["X", "t-y"]},
+    {"type": "spring", "body": "b", "where": {"type": "half_space", "point": [0.52, 0], "normal": [1, 0]},
+     "stiffness": [2e3, 1e3], "damping": [50, 100]}])J";
+  const std::string deep = R"J(, "loads": [
+    {"type": "pressure", "body": "a", "where": {"type": "half_space", "point": [0.27, 0, 0], "normal": [1, 0.3, 0.1]},
+     "pressure": "400+100*sin(9*t)"},
+    {"type": "line_force", "body": "b", "from": [0.5, 0.15, 0.25], "to": [0.55, 0.35, 0.4], "force": [2, 3, "-t"]},
+    {"type": "spring", "body": "b", "where": {"type": "half_space", "point": [0.42, 0, 0], "normal": [1, 0, 0]},
+     "stiffness": [2e3, 1e3, 500], "damping": [50, 100, 0]}])J";
+  for (const auto& [order, transfer] : {std::pair{"last", "mls"}, std::pair{"first", "flip"},
+                                        std::pair{"modified_last", "apic"}, std::pair{"averaged", "apic"}}) {
+    Mix mix;
+    mix.stress_update = order, mix.transfer = std::string("{\"type\": \"") + transfer + "\"}", mix.more = flat;
+    if (mix.stress_update != "first")
+      mix.overrides = {set("/grid/symmetry", "axisymmetric"), set("/gravity", "[0, -1.3]")};
+    check_on_device(mix);
+  }
+  Mix mix;
+  mix.shape = R"({"type": "cpdi"})", mix.contact = coulomb, mix.filter = R"({"type": "fmpm", "order": 2})";
+  mix.more = flat;
+  check_on_device(mix);
+  mix = {};
+  mix.dimension = 3, mix.more = deep;
+  check_on_device(mix);
+}
+
 TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]") {
   for (const int dimension : {2, 3})
     for (const std::string& order : orders) {
@@ -127,6 +160,12 @@ TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]"
   mix.filter = R"({"type": "fmpm", "order": 2, "every_steps": 2})";
   check_entries();
   mix.stress_update = "last";
+  check_entries();
+  mix.more = R"J(, "loads": [
+    {"type": "pressure", "body": "a", "where": {"type": "half_space", "point": [0.31, 0], "normal": [1, 0.3]}, "pressure": 400},
+    {"type": "force", "body": "a", "at": [0.4, 0.37], "force": [5, "20*t"]},
+    {"type": "spring", "body": "b", "where": {"type": "half_space", "point": [0.52, 0], "normal": [1, 0]},
+     "stiffness": [0, 1e3], "damping": [50, 100]}])J";
   check_entries();
   for (const auto& [name, entry] : largest) {
     INFO(name);

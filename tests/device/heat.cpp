@@ -83,7 +83,7 @@ double heat_content(const AnyScene& scene) {
     const Thermal& thermal = *scene.experiment.materials[scene.experiment.bodies[body].material].thermal;
     const std::vector<double>& temperature = state.host_state.at("temperature");
     for (std::size_t p = 0; p < temperature.size(); ++p)
-      sum += state.mass * state.ring(p) * thermal.solid.heat_capacity * temperature[p];
+      sum += state.mass * state.size_of(p) * thermal.solid.heat_capacity * temperature[p];
   }
   return sum;
 }

@@ -45,11 +45,9 @@ set(cpu backends/cpu)
 mpm_fault(${cpu}/grid/grid_edges.hpp
           "  v[c] = velocity;\n}"
           "  v[c] = ${now}::wall ? static_cast<T>(v[c] + 0.99 * (velocity - v[c])) : velocity;\n}")
-foreach(impulse IN ITEMS "a, batch.node[i], c, impulse" "b, batch.node[i], c, -impulse")
-  mpm_fault(${cpu}/grid/grid_contact.hpp
-            "record(contact_impulse, standing_contact, ${impulse});"
-            "record(contact_impulse, standing_contact, ${impulse} * (${now}::contact ? 0.5 : 1.0));")
-endforeach()
+mpm_fault(${cpu}/grid/grid_contact.hpp
+          "batch.node[i], c, given);"
+          "batch.node[i], c, given * (${now}::contact ? 0.5 : 1.0));")
 mpm_fault(${cpu}/cpu_backend.hpp
           "  const Scattered particles = particle_step_->scatter(pass, step);\n"
           "  const Scattered particles = particle_step_->scatter(pass, step);
@@ -73,11 +71,9 @@ mpm_fault(${kernels}/grid.hpp
           "(velocity[c] - now[c]));
     for (int c = 0; c < D && MPM_FAULT == 1; ++c)
       a.grid.field[N::velocity][c * a.node_count + node] = now[c] + T(0.99) * (velocity[c] - now[c]);\n  });")
-foreach(impulse IN ITEMS "a.grid, c * nodes + node, impulse" "a.other, c * nodes + node, -impulse")
-  mpm_fault(${kernels}/contact.hpp
-            "(a, ${impulse});"
-            "(a, ${impulse} * (MPM_FAULT == 2 ? T(0.5) : T(1)));")
-endforeach()
+mpm_fault(${kernels}/contact.hpp
+          "a.grid, at, given);"
+          "a.grid, at, given * (MPM_FAULT == 2 ? T(0.5) : T(1)));")
 mpm_fault(${kernels}/scatter.hpp
           "      add(s.node, values);\n    });\n  });\n}\n\n}  // namespace"
           "      if (MPM_FAULT != 3 || p != 0 || s.weight > T(0.2)) add(s.node, values);\n    });\n  });\n}\n\n}  // namespace")
@@ -103,8 +99,8 @@ foreach(source ${reference_sources})
     target_sources(${program} PRIVATE ${PROJECT_SOURCE_DIR}/modules/${source})
   endif()
 endforeach()
-foreach(template grid particle)
-  target_sources(${program} PRIVATE ${PROJECT_BINARY_DIR}/modules/${cpu}/${template}_2_double.cpp)
+foreach(unit grid particle)
+  target_sources(${program} PRIVATE ${PROJECT_BINARY_DIR}/modules/${cpu}/${unit}_2_double.cpp)
 endforeach()
 target_sources(${program} PRIVATE ${PROJECT_SOURCE_DIR}/modules/${cpu}/cpu_backend.cpp)
 

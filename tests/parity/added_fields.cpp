@@ -159,7 +159,8 @@ TEST_CASE("nodes clear and fold what is added to the plan's list", "[parity]") {
   ContactRecord contact;
   FilterRecord filter;
   HeatLedger heat_ledger;
-  cpu::GridStep<2, double> step(scene, grid, ledger, heat_ledger, contact, filter);
+  ReactionImpulse reactions(experiment);
+  cpu::GridStep<2, double> step(scene, grid, ledger, heat_ledger, contact, filter, reactions);
   fill(motion, Quad{0, 0, 0, 1});
   for (const cpu::Channel channel : {heat, couple, normal}) fill(channel, Quad{1, 2, 0, 3});
   step.momentum_to_velocity(false, StepInfo{0.001, 0, 0});

@@ -15,20 +15,28 @@ using namespace mpm::output;
 using namespace mpm::output::testing;
 using namespace mpm::support;
 
-TEST_CASE("a run folder is made with those above it, and an earlier run is moved aside", "[output][folder]") {
+TEST_CASE("a run folder is made with those above it, and replaced file by file", "[output][folder]") {
   const TemporaryFolder scratch;
   const fs::path path = scratch / "runs/first/";
+  CHECK(!RunFolder::holds_run(path));
   const RunFolder first = RunFolder::create(path);
   CHECK(first.root().filename() == "first");
   first.write_json("manifest.json", {{"run", 1}});
+  CHECK(RunFolder::holds_run(path));
+  for (const char* name : {"experiment.json", "plan.json", "summary.json", "metrics.csv", "report.html", "film.mp4"})
+    write_atomically(first.root() / name, "old");
   write_atomically(first.frames() / "frame.png", "picture");
-  const RunFolder second = RunFolder::create(path);
-  CHECK(entries_in(second.root()) == 0);
-  CHECK(read_file(scratch / "runs/first.1/frames/frame.png") == "picture");
-  second.write_json("manifest.json", {{"run", 2}});
-  RunFolder::create(path);
-  CHECK(contains(read_file(scratch / "runs/first.1/manifest.json"), "1"));
-  CHECK(contains(read_file(scratch / "runs/first.2/manifest.json"), "2"));
+  for (const fs::path& folder : {first.figures(), first.vtk(), first.particles(), first.checkpoint()})
+    write_atomically(folder / "old", "old");
+  write_atomically(first.root() / ".metrics.csv.123.tmp", "half a file");
+  write_atomically(first.root() / "notes.txt", "a person's");
+  const std::string message = message_of<FolderRefused>([&] { RunFolder::create(path); });
+  CHECK(contains(message, "holds an earlier run; replace it with --replace, or choose another folder with --out"));
+  const RunFolder second = RunFolder::replace(path);
+  CHECK(entries_in(second.root()) == 2);
+  CHECK(read_file(second.root() / "notes.txt") == "a person's");
+  CHECK(contains(read_file(second.root() / "manifest.json"), "1"));
+  CHECK_THROWS_AS(RunFolder::replace(scratch / "runs"), FolderRefused);
 }
 
 TEST_CASE("a folder with other contents is refused with a remedy and left alone", "[output][folder]") {

@@ -35,7 +35,10 @@ RunFolder sample_run(const fs::path& path, int exit_code) {
       "summary.json",
       {{"outcome", {{"exit_code", exit_code}, {"status", "x"}, {"reason", exit_code ? "NaN at <step> 12" : ""}}},
        {"warnings", {"coarse & <slow>"}},
-       {"energy", {{"kinetic", 123456789.0}, {"ledger", {{"friction", -0.25}, {"residual", 1e-17}}}}},
+       {"energy",
+        {{"kinetic", 123456789.0},
+         {"ledger", {{"a_residual_cause", 0.5}, {"friction", -0.25}, {"rest", 1e-17}, {"wall", 0.125}}},
+         {"ledger_closed_by", "rest"}}},
        {"performance",
         {{"particle_steps_per_second", 2.9e7},
          {"peak_memory", 3221225472},
@@ -107,6 +110,18 @@ TEST_CASE("a failed run says so in red, with the reason", "[output][report]") {
   CHECK(contains(bad, "NaN at &lt;step&gt; 12"));
   CHECK(contains(bad, "exit code 3"));
   CHECK_FALSE(contains(bad, "class=\"banner good\""));
+}
+
+TEST_CASE("the row that closes the ledger stands last, by its mark and not by its name", "[output][report]") {
+  const TemporaryFolder scratch;
+  const std::string html = report_of(sample_run(scratch / "run", 0));
+  const std::size_t total = html.find("<tr class=\"total\">"), end = html.find("</table>", total);
+  REQUIRE(total != std::string::npos);
+  CHECK(html.find("<tr class=\"total\">", total + 1) > end);
+  CHECK(html.substr(total, end - total).find("wall") == std::string::npos);
+  CHECK(html.substr(total, end - total).find(">rest<") != std::string::npos);
+  for (const char* cause : {">a residual cause<", ">friction<", ">wall<"}) CHECK(html.find(cause) < total);
+  CHECK_FALSE(contains(html, "ledger closed by"));
 }
 
 TEST_CASE("missing and cut files cost a note, not the report", "[output][report]") {

@@ -2,6 +2,7 @@
 // operators say of the fields that they use.
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 
 #include "plan/step_builder.hpp"
@@ -200,4 +201,22 @@ TEST_CASE("whoever evaluates a material that melts reads how far its particles h
   CHECK_FALSE(uses(reads, Act::strain, temperature, cold));
   CHECK_FALSE(uses(writes, Act::strain, temperature, cold));
   CHECK_FALSE(uses(reads, Act::gather, melted));
+}
+
+TEST_CASE("a pass says whether it visits particles or nodes, and a fused one both", "[plan]") {
+  const auto visits = [](const char* scene) {
+    const Plan plan = make_plan(mpm::test::experiment_from(scene));
+    std::map<std::string, std::vector<std::string>> by_name;
+    for (const auto& pass : plan.to_json()["passes"])
+      if (pass.contains("visits")) by_name[pass["name"]] = pass["visits"].get<std::vector<std::string>>();
+    return by_name;
+  };
+  const std::vector<std::string> particles{"particles"}, nodes{"nodes"}, both{"particles", "nodes"};
+  auto warm = visits(slab), fused = visits(block);
+  CHECK(warm["scatter"] == particles);
+  CHECK(warm["momentum to velocity"] == nodes);
+  CHECK(warm["conduct"] == particles);
+  CHECK(warm["heat"] == nodes);
+  CHECK(warm["gather and strain"] == particles);
+  CHECK(fused["gather, strain and scatter"] == both);
 }

@@ -137,8 +137,8 @@ double breathing_period(const std::vector<std::string>& overrides, double root) 
     scene.simulation.step();
     const BodyState state = scene.body();
     double mode = 0;
-    for (std::size_t p = 0; p < state.circumference.size(); ++p)
-      mode += state.circumference[p] * state.velocity[2 * p] * start.velocity[2 * p];
+    for (std::size_t p = 0; p < state.size.size(); ++p)
+      mode += state.size[p] * state.velocity[2 * p] * start.velocity[2 * p];
     const double time = scene.simulation.time();
     if (before * mode < 0) crossings.push_back(before_time + (time - before_time) * before / (before - mode));
     before = mode, before_time = time;
@@ -239,7 +239,7 @@ TEST_CASE("a Taylor bar of copper keeps its length, foot and plastic strain", "[
   const BodyState state = simulation.backend().body_state(0);
   const std::vector<double>& plastic = state.material_state.at("equivalent_plastic_strain");
   double length = 0, radius = 0;
-  for (std::size_t p = 0; p < state.circumference.size(); ++p) {
+  for (std::size_t p = 0; p < state.size.size(); ++p) {
     radius = std::max(radius, state.position[2 * p]);
     length = std::max(length, state.position[2 * p + 1]);
   }

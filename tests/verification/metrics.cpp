@@ -102,7 +102,7 @@ TEST_CASE("mass, momentum, spin and energies of a body that flies and turns are 
       const Totals end = scene.run();
       CHECK(end.momentum[0] == Approx(mass * (1 + 2 * 1e-3)).epsilon(rounding));
       CHECK(end.momentum[1] == Approx(mass * (-2 - 9.81 * 1e-3)).epsilon(rounding));
-      // Of free flight, whatever the stresses do inside: the new velocity moves the centre in every step.
+      // The centre flies freely, whatever the stresses do inside: the new velocity moves it in every step.
       CHECK(end.centre_of_mass[0] == Approx(0.8 + 1e-3 + 2 * 1e-3 * (1e-3 + 1e-4) / 2).epsilon(rounding));
       CHECK(end.centre_of_mass[1] == Approx(1 - 2e-3 - 9.81 * 1e-3 * (1e-3 + 1e-4) / 2).epsilon(rounding));
     }

@@ -143,7 +143,7 @@ TEST_CASE("gravity along a periodic axis gives its work at every turn", "[ledger
       REQUIRE(way > 3 * 0.5);  // three turns
       const double gained = end.kinetic - start.kinetic;
       CHECK(gained == Approx(start.mass * 4.905 * way).epsilon(1e-9));  // uniform acceleration from 1.5 m/s
-      CHECK(scene.simulation.ledger().periodic_gravity == Approx(gained).epsilon(1e-9));
+      CHECK(scene.simulation.ledger().gravity_without_potential == Approx(gained).epsilon(1e-9));
       CHECK(scene.simulation.ledger().gravity == 0);
       CHECK(end.gravitational == 0);
       CHECK(std::abs(scene.metrics.ledger_residual(end)) < 1e-9 * gained);

@@ -68,7 +68,7 @@ class Experiment:
         """A Simulation at the experiment's first moment; threads=0 takes as many as are fastest. InputError."""
         return Simulation(self._checked, threads)
 
-    def run(self, out=None, threads=0):
+    def run(self, out=None, threads=0, replace=False):
         """Runs as `mpm run` does, into the folder `out` (default runs/<name of the file>), and returns the Run.
 
         RunFailed where it became unstable: what was recorded is in the folder. A failed expectation or a broken limit
@@ -85,6 +85,8 @@ class Experiment:
                 arguments += ["--set", override]
             if threads > 0:
                 arguments += ["--threads", str(threads)]
+            if replace:
+                arguments += ["--replace"]
             _call(arguments, good=(0, 4))
         return Run(place)
 

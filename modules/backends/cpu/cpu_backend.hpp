@@ -2,6 +2,7 @@
 // The cpu backend keeps particles in chunks and blocks, nodes in a sparse grid, and executes the passes over both.
 
 #include <chrono>
+#include <deque>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -35,7 +36,9 @@ class CpuBackend final : public Backend, NamedChannels {
   const Ledger& ledger() const override { return ledger_; }
   HeatLedger heat_ledger() const override { return heat_ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
+  const std::vector<PairRecord>& contact_pairs() const override { return grid_step_->contact_pairs(); }
   const FilterRecord& filter_record() const override { return filter_; }
+  const std::vector<Reaction>& reactions() const override { return reactions_.reactions(); }
   bool scattered() const override { return scattered_; }
   void save(ArchiveWriter& archive) const override;
   void restore(ArchiveReader& archive) override;
@@ -56,7 +59,7 @@ class CpuBackend final : public Backend, NamedChannels {
     paced_step_ = next_step;
   }
   std::vector<Body<D, T>> make_bodies(std::vector<SeededBody>& seeds);
-  void measure_circumferences(Particles<D, T>& particles) const;
+  void measure_rings(Particles<D, T>& particles) const;
   void sort_all();
   void sort_when_moved();
   void sort_between(const StepInfo& step);
@@ -82,10 +85,12 @@ class CpuBackend final : public Backend, NamedChannels {
   long looked_at_step_ = -1;  ///< step for which it is known whether the ledger takes entries
   bool accounted_ = false;    ///< whether it does
   std::vector<int> field_of_body_;
+  std::deque<BodyLoads> loads_;  ///< of bodies that have some
   Ledger ledger_;
   HeatLedger heat_ledger_;
   ContactRecord contact_;
   FilterRecord filter_;
+  ReactionImpulse reactions_;
   TimeStepLimit limit_;
   std::unique_ptr<support::Pace> pace_;  ///< null where there is one thread
   long paced_step_ = -1;
@@ -103,7 +108,11 @@ class CpuBackend final : public Backend, NamedChannels {
 template <int D, class T, class Components>
 CpuBackend<D, T, Components>::CpuBackend(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds,
                                          int threads, bool find_number)
-    : NamedChannels{plan}, scene_(experiment, plan, threads), grid_(scene_), particles_(seeds.size()) {
+    : NamedChannels{plan},
+      scene_(experiment, plan, threads),
+      grid_(scene_),
+      particles_(seeds.size()),
+      reactions_(experiment) {
   if (scene_.threads > 1) {
     std::size_t count = 0;
     for (const SeededBody& body : seeds) count += body.count();
@@ -113,7 +122,7 @@ CpuBackend<D, T, Components>::CpuBackend(const Experiment& experiment, const Pla
   }
   std::vector<Body<D, T>> bodies = make_bodies(seeds);
   particle_step_ = std::make_unique<Step>(scene_, grid_, particles_, std::move(bodies));
-  grid_step_ = std::make_unique<GridStep<D, T>>(scene_, grid_, ledger_, heat_ledger_, contact_, filter_);
+  grid_step_ = std::make_unique<GridStep<D, T>>(scene_, grid_, ledger_, heat_ledger_, contact_, filter_, reactions_);
   sort_all();
 }
 
@@ -143,8 +152,10 @@ std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<Se
     const T half = static_cast<T>(0.5 / experiment.bodies[i].particles_per_cell_axis);
     particles_[i].half_size.require(std::size_t(D) * chunk_size<T>);
     std::fill_n(particles_[i].half_size.data(), D * chunk_size<T>, half);
+    if (BodyLoads loads(experiment, body.index, seeds[i]); loads.any())
+      body.loads = &loads_.emplace_back(std::move(loads));
     seed_particles(particles_[i], seeds[i], scene_.domain);
-    measure_circumferences(particles_[i]);
+    if (particles_[i].size >= 0 && !seeds[i].with_size) measure_rings(particles_[i]);
     for (const Field& field : scene_.plan.fields)
       if (field.of_particles_of(body.index) && field.lifetime == Lifetime::seeded)
         body.seeded[field.id] = seeds[i].values(field);
@@ -155,16 +166,15 @@ std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<Se
   return bodies;
 }
 
-/// Computes 2 pi r of each particle where it was seeded.
+/// Computes 2 pi r of each particle where it was seeded, its size where the seeds name none.
 template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::measure_circumferences(Particles<D, T>& particles) const {
-  if (particles.circumference < 0) return;
+void CpuBackend<D, T, Components>::measure_rings(Particles<D, T>& particles) const {
   for (const Block<D>& block : particles.blocks)
     for_each_chunk<T>(block, [&](std::uint32_t chunk, int count) {
       const T* const x = particles.chunk(chunk) + Particles<D, T>::position * chunk_size<T>;
-      T* const around = particles.chunk(chunk) + particles.circumference * chunk_size<T>;
+      T* const ring = particles.chunk(chunk) + particles.size * chunk_size<T>;
       for (int p = 0; p < padded(count); ++p)
-        around[p] = static_cast<T>(
+        ring[p] = static_cast<T>(
             2 * std::numbers::pi *
             (scene_.domain.lower[0] + scene_.domain.cell_size * cells_from_corner(scene_.domain, block, 0, x[p])));
     });
@@ -231,6 +241,11 @@ void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step
     grid_step_->book_filtered_gravity(step.dt);
   }
   account_for_gather(pass, particle_step_->gather(pass, step));
+  for (std::size_t grip = 0; grip < scene_.experiment.grips.size(); ++grip) {
+    const GivenToGripped given = particle_step_->given_to_gripped(grip);
+    reactions_.give_particles(scene_.experiment.support_of_grip(grip), given, step.dt);
+    if (accounted_) ledger_.gather -= given.energy, ledger_.boundary += given.energy;
+  }
   if (pass.has(Act::move)) account_for_move();
 }
 
@@ -420,7 +435,9 @@ void CpuBackend<D, T, Components>::save(ArchiveWriter& archive) const {
   archive.put("ledger", ledger_);
   if (scene_.plan.has_heat_ledger()) archive.put("heat_ledger", heat_ledger_);
   archive.put("contact", contact_);
+  archive.put("contact_pairs", grid_step_->contact_pairs());
   archive.put("filter", filter_);
+  reactions_.save(archive);
   archive.put("speed", limit_.speed);
   archive.put("wave_speed", limit_.wave_speed);
   archive.put("limiting_body", limit_.body);
@@ -457,7 +474,9 @@ void CpuBackend<D, T, Components>::restore(ArchiveReader& archive) {
   archive.get("ledger", ledger_);
   if (scene_.plan.has_heat_ledger()) archive.get("heat_ledger", heat_ledger_);
   archive.get("contact", contact_);
+  archive.get("contact_pairs", grid_step_->contact_pairs());
   archive.get("filter", filter_);
+  reactions_.restore(archive);
   archive.get("speed", limit_.speed);
   archive.get("wave_speed", limit_.wave_speed);
   archive.get("limiting_body", limit_.body);

@@ -102,15 +102,19 @@ std::string yes(bool value) {
   return value ? "true" : "false";
 }
 
-/// Whether the scatter itself sums particles into a field. The weight follows from the masses, and heat has kernels of
-/// its own, as shared memory has no room for everything at once.
+/// Whether the scatter itself sums particles into a field. The weight follows from the masses, and loads and heat have
+/// kernels of their own, as shared memory has no room for everything at once.
 bool is_scattered(const Field& field) {
-  for (const char* other :
-       {"weight", "heat", "heat_capacity", "heat_rate", "heated_volume", "volume_conductivity", "capacity_position"})
+  for (const char* other : {"weight", "body_force", "surface_load", "point_load", "spring", "dashpot", "heat",
+                            "heat_capacity", "heat_rate", "heated_volume", "volume_conductivity", "capacity_position"})
     if (field.id == other) return false;
+  if (field.id.rfind("grip_", 0) == 0) return false;  // they have a scatter of their own
   return field.cleared && field.folded != Folded::never;
 }
 
+bool has_grips(const Choice& choice) {
+  return number_of(choice.particle_fields, "grip") >= 0;
+}
 bool has_temperature(const Choice& choice) {
   return number_of(choice.particle_fields, "temperature") >= 0;
 }
@@ -170,6 +174,11 @@ bool keeps_ledger(const Choice& choice) {
   return number_of(choice.particle_fields, "dissipated") >= 0;
 }
 
+/// Whether anything acts on bodies from outside.
+bool has_loads(const Choice& choice) {
+  return number_of(choice.particle_fields, "load_force") >= 0;
+}
+
 /// Whether the filter ever projects.
 bool has_filter_loop(const Choice& choice) {
   return number_of(choice.node_fields, "projection") >= 0;
@@ -224,8 +233,10 @@ std::string scene_text(const Choice& choice) {
     out << "};\n";
   }
   out << "MPM_DEVICE_ENTRIES\n";
+  if (has_loads(choice)) out << "MPM_DEVICE_LOAD_ENTRIES\n";
   if (keeps_ledger(choice)) out << "MPM_DEVICE_LEDGER_ENTRIES\n";
   if (choice.contact) out << "MPM_DEVICE_CONTACT_ENTRIES\n";
+  if (has_grips(choice)) out << "MPM_DEVICE_GRIP_ENTRIES\n";
   if (choice.filter) out << "MPM_DEVICE_FILTER_ENTRIES\n";
   if (has_filter_loop(choice)) out << "MPM_DEVICE_FILTER_LOOP_ENTRIES\n";
   if (has_temperature(choice)) out << "MPM_DEVICE_HEAT_ENTRIES\n";
@@ -250,8 +261,10 @@ std::vector<std::string> entry_names(const Choice& choice) {
     if (at == line.npos || line.rfind("//", 0) == 0) continue;
     at += start.size();
     const std::string name = line.substr(at, line.find(',', at) - at);
+    if (macro == "MPM_DEVICE_LOAD_ENTRIES" && !has_loads(choice)) continue;
     if (macro == "MPM_DEVICE_LEDGER_ENTRIES" && !keeps_ledger(choice)) continue;
     if (macro == "MPM_DEVICE_CONTACT_ENTRIES" && !choice.contact) continue;
+    if (macro == "MPM_DEVICE_GRIP_ENTRIES" && !has_grips(choice)) continue;
     if (macro == "MPM_DEVICE_FILTER_ENTRIES" && !choice.filter) continue;
     if (macro == "MPM_DEVICE_FILTER_LOOP_ENTRIES" && !has_filter_loop(choice)) continue;
     if (macro == "MPM_DEVICE_HEAT_ENTRIES" && !has_temperature(choice)) continue;

@@ -72,7 +72,8 @@ class Conditions {
         moving_.push_back({&*face.velocity, nodes_of_wall(scene, axis, side), {}});
         walls_.push_back({axis, side, moving_.size() - 1});
       }
-    for (const BoxCondition& condition : experiment.boxes) {
+    for (std::size_t k = 0; k < experiment.boxes.size(); ++k) {
+      const BoxCondition& condition = experiment.boxes[k];
       const std::optional<NodeRange> nodes = nodes_of_box(experiment, scene, condition);
       if (!nodes) continue;
       Box<T> box{};
@@ -82,10 +83,14 @@ class Conditions {
         box.given |= condition.held[c] << c;
       }
       boxes_.push_back(box);
+      supports_.push_back(support_of_box(static_cast<int>(k)));
       moving_of_box_.push_back(condition.velocity ? moving_.size() : none);
       if (condition.velocity) moving_.push_back({&*condition.velocity, *nodes, {}});
     }
   }
+
+  /// The supports that the scene's boxes are.
+  const std::vector<int>& supports() const { return supports_; }
 
   /// Evaluates velocities at a time, s, and points the scene to them.
   void evaluate(double time, Arguments<T>& scene) {
@@ -126,6 +131,7 @@ class Conditions {
   std::vector<Moving> moving_;
   std::vector<MovingWall> walls_;
   std::vector<Box<T>> boxes_;
+  std::vector<int> supports_;
   std::vector<std::size_t> moving_of_box_;
 };
 

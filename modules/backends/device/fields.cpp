@@ -35,13 +35,20 @@ std::vector<Field> node_fields(const Experiment&, const Plan& plan) {
   return fields;
 }
 
+bool gives_loads(const Plan& plan) {
+  return std::any_of(external_forces.begin(), external_forces.end(),
+                     [&](ExternalForce force) { return plan.node_field(field_of(force)) != nullptr; });
+}
+
 std::vector<Field> particle_fields(const Experiment& experiment, const Plan& plan, int body) {
   const int D = experiment.dimension;
   std::vector<Field> fields, material;
   for (const Field& field : plan.fields) {
     if (!field.of_particles_of(body) || field.lifetime == Lifetime::seeded) continue;
-    if (field.origin == Origin::host && field.id == "identity") continue;         // particles keep the order of seeding
-    if (field.origin == Origin::host && field.id == "melted_fraction") continue;  // it comes below
+    if (field.origin == Origin::host && field.id == "identity") continue;  // particles keep the order of seeding
+    if (field.origin == Origin::host &&
+        (field.id == "melted_fraction" || field.id == "deformation" || field.id == "size"))
+      continue;  // they come below
     (field.origin == Origin::material ? material : fields).push_back(field);
   }
   const auto work = [&](const char* id, const char* unit, int components) {
@@ -55,9 +62,24 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   work("wave_speed", "m/s", 1);
   if (plan.has_ledger())
     for (const char* id : {"dissipated", "stress_power", "stored"}) work(id, "J/m^3", 1);
-  if (experiment.body_force) work("body_acceleration", "m/s^2", D);
+  if (!experiment.grips.empty())
+    for (const char* id : {"told_velocity", "gathered_velocity"}) work(id, "m/s", D);
+  if (gives_loads(plan)) work("load_force", "N", D);
+  if (!experiment.loaded_at_points().empty()) {
+    work("load_moment", "N m", D * D);
+    // All bodies have the same numbers, those too that no load needs it of.
+    if (const Field* const deformation = plan.particle_field(body, "deformation"))
+      fields.push_back(*deformation);
+    else
+      work("deformation", "", D * D);
+  }
   if (plan.stencil.second_moment) work("second_moment", "cells^2", D * D);
-  // Bodies that cannot melt are solid all along, so that all bodies have the same numbers.
+  // All bodies have the same numbers: those whose particles are equal have the size 1, and those that cannot melt are
+  // solid all along.
+  if (const Field* const size = plan.particle_field(body, "size"))
+    fields.push_back(*size);
+  else if (std::any_of(plan.fields.begin(), plan.fields.end(), [](const Field& f) { return f.id == "size"; }))
+    work("size", "", 1), fields.back().first = First::one;
   if (const Field* const melted = plan.particle_field(body, "melted_fraction"))
     fields.push_back(*melted);
   else if (std::any_of(plan.fields.begin(), plan.fields.end(),

@@ -57,10 +57,11 @@ struct Body {
     const SeedArrays seeds = seeded.arrays();
     if (!seeds.velocity_gradient.empty())
       arrays.take(first_of(arrays.fields(), Origin::transfer), seeds.velocity_gradient);
-    if (T* const circumference = arrays.of("circumference"))
-      for (int p = 0; p < count; ++p)
-        circumference[p] =
-            static_cast<T>(2 * std::numbers::pi * seeds.position[static_cast<std::size_t>(p) * dimension]);
+    const int size = number("size");
+    if (size < 0 || arrays.fields()[size].first != First::seeded || seeded.with_size) return;
+    for (int p = 0; p < count; ++p)
+      arrays.of(size)[p] =
+          static_cast<T>(2 * std::numbers::pi * seeds.position[static_cast<std::size_t>(p) * dimension]);
   }
   int number(std::string_view id) const { return number_of(arrays.fields(), id); }
 

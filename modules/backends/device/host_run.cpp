@@ -15,9 +15,11 @@
 #include "backends/device/heat_conditions.hpp"
 #include "backends/device/host_arrays.hpp"
 #include "backends/device/kernels/sums.hpp"  // largest_team
+#include "backends/device/noted_reactions.hpp"
 #include "simulation/boundary.hpp"
 #include "simulation/contact_impulse.hpp"
 #include "simulation/contact_pair.hpp"
+#include "simulation/loads.hpp"
 
 namespace mpm::device {
 namespace {
@@ -34,16 +36,21 @@ class HostRun final : public Backend {
         scene_(described(experiment)),
         conditions_(experiment, scene_),
         edges_(edge_models(experiment)),
-        contact_impulse_(experiment) {
+        contact_impulse_(experiment),
+        reactions_(experiment),
+        noted_(experiment, scene_, reactions_, experiment.field_count) {
     if (team.lanes < 1 || team.lanes > largest_team)
       throw std::invalid_argument("a team has 1 to " + std::to_string(largest_team) + " lanes");
     scene_.first_failed = &first_failed_;
     if (experiment.has_temperature()) heat_conditions_.emplace(experiment, scene_);
-    for (std::size_t body = 0; body < seeded.size(); ++body)
+    for (std::size_t body = 0; body < seeded.size(); ++body) {
       bodies_.emplace_back(experiment, plan, static_cast<int>(body), seeded[body]);
+      loads_.emplace_back(experiment, static_cast<int>(body), seeded[body]);
+    }
     const std::size_t nodes = scene_.node_count, D = experiment.dimension;
     for (int field = 0; field < experiment.field_count; ++field) fields_.emplace_back(experiment, plan, nodes);
     for (int axis = 0; axis < experiment.dimension; ++axis) (periodic(axis) ? images_ : walls_).push_back(axis);
+    for (VelocityField<T>& field : fields_) grips_.push_back(grip_arrays(experiment, field));
     if (!plan.resolves_contact()) return;
     active_.resize(nodes), status_.resize(nodes);
     normal_.resize(D * nodes), impulse_.resize(D * nodes), unbalanced_.resize(D * nodes);
@@ -55,6 +62,7 @@ class HostRun final : public Backend {
   void execute(const Pass& pass, const StepInfo& step) override {
     scene_.dt = static_cast<T>(step.dt);
     accounted_ = plan_.accounts_at(step.step);
+    notes_reactions_ = reactions_.asked() && !pass.remap();
     switch (pass.operators.front().act) {
       case Act::estimate_time_step:
         return estimate_time_step();
@@ -95,6 +103,7 @@ class HostRun final : public Backend {
       case Act::restore_velocity:
         if (accounted_ && !pass.has(Act::keep_correction)) ledger_.filtered_strain -= early_share_ * power_of_filter();
         contact_impulse_.restore(pass.has(Act::keep_correction));
+        reactions_.restore(pass.has(Act::keep_correction));
         return for_each_field(pass.has(Act::keep_correction) ? "keep_correction" : "restore_velocity", vectors());
       case Act::add_correction:
         return add_correction(pass, step);
@@ -107,7 +116,9 @@ class HostRun final : public Backend {
   const Ledger& ledger() const override { return ledger_; }
   HeatLedger heat_ledger() const override { return heat_ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
+  const std::vector<PairRecord>& contact_pairs() const override { return contact_impulse_.pairs(); }
   const FilterRecord& filter_record() const override { return filter_; }
+  const std::vector<Reaction>& reactions() const override { return reactions_.reactions(); }
   bool scattered() const override { return false; }
 
   std::uint64_t particle_bytes() const override {
@@ -129,7 +140,9 @@ class HostRun final : public Backend {
     archive.put("ledger", ledger_);
     if (plan_.has_heat_ledger()) archive.put("heat ledger", heat_ledger_);
     archive.put("contact", contact_);
+    archive.put("contact_pairs", contact_impulse_.pairs());
     archive.put("filter", filter_);
+    reactions_.save(archive);
     archive.put("limit speeds", std::array{limit_.speed, limit_.wave_speed});
     archive.put("limit particle",
                 std::array<std::uint64_t, 2>{static_cast<std::uint64_t>(limit_.body), limit_.particle});
@@ -146,7 +159,9 @@ class HostRun final : public Backend {
     archive.get("ledger", ledger_);
     if (plan_.has_heat_ledger()) archive.get("heat ledger", heat_ledger_);
     archive.get("contact", contact_);
+    archive.get("contact_pairs", contact_impulse_.pairs());
     archive.get("filter", filter_);
+    reactions_.restore(archive);
     std::array<double, 2> speeds{};
     std::array<std::uint64_t, 2> particle{};
     archive.get("limit speeds", speeds);
@@ -188,7 +203,7 @@ class HostRun final : public Backend {
     for (int c = 0; c < 3; ++c) {
       const bool used = c < experiment.dimension;
       scene.lower[c] = static_cast<T>(grid.lower[c]);
-      scene.gravity[c] = static_cast<T>(experiment.gravity[c]);
+      scene.gravity_has_potential[c] = experiment.gravity_has_potential(c);
       scene.cells[c] = used ? grid.cells[c] : 0;
       scene.padding[c] = used ? grid_padding_of(experiment.shape.plugin->shape()) : 0;
       scene.extent[c] = scene.cells[c] + 1 + 2 * scene.padding[c];
@@ -226,9 +241,25 @@ class HostRun final : public Backend {
   };
   Arguments<T> arguments_of(VelocityField<T>& field, const Manner& manner) {
     Arguments<T> a = scene_;
+    take_grips(a, &field - fields_.data());
     a.grid = field.table(), a.iteration = static_cast<int>(filter_.iterations + 1);
     a.remap = manner.remap, a.after_forces = manner.after_forces, a.walls_at_rest = manner.walls_at_rest;
     return a;
+  }
+
+  static std::vector<GripArrays<T>> grip_arrays(const Experiment& experiment, VelocityField<T>& field) {
+    std::vector<GripArrays<T>> arrays;
+    for (std::size_t k = 0; k < experiment.grips.size(); ++k) {
+      const std::string id = grip_field(k);
+      int given = 0;
+      for (int c = 0; c < experiment.dimension; ++c) given |= int(experiment.grips[k].held[c]) << c;
+      arrays.push_back({field.arrays.of(id + "_mass"), field.arrays.of(id), field.arrays.of(id + "_before"), given});
+    }
+    return arrays;
+  }
+  void take_grips(Arguments<T>& a, std::ptrdiff_t field) const {
+    const std::vector<GripArrays<T>>& grips = grips_[static_cast<std::size_t>(field)];
+    a.grips = grips.data(), a.grip_count = static_cast<int>(grips.size());
   }
 
   /// Runs one phase over `indices` of every field's grid.
@@ -261,6 +292,7 @@ class HostRun final : public Backend {
     Arguments<T> a = scene_;
     a.particles = body.table();
     a.grid = fields_[body.field].table();
+    take_grips(a, body.field);
     a.material_parameters = body.material->parameters.data();
     a.melted_parameters = body.melted_parameters();
     a.blocks = {body.block_cell.data(), body.block_begin.data(), body.order.data()};
@@ -398,12 +430,13 @@ class HostRun final : public Backend {
     for (Body<T>& body : bodies_) {
       if (enters) body.sort(scene_);
       if (force || heat || pass.has(Act::scatter_contact)) run_material("stress", body);  // with the volume ratio
-      if (force) evaluate_body_force(body, step.time);
       Arguments<T> a = arguments_of(body);
       a.momentum = pass.has(Act::scatter_momentum), a.force = force;
       a.contact_fields = pass.has(Act::scatter_contact), a.remap = pass.remap();
       run("scatter", a, body.blocks(), body, Checks::stencil);
+      if (force) scatter_loads(body, a, step.time);
       if (heat) run("scatter_heat", a, body.blocks(), body, Checks::stencil);
+      if (enters && !experiment_.grips.empty()) scatter_grips(body, step.time + step.dt);
       if (heat && plan_.has_heat_ledger()) scattered_heat_ += sum_over_particles("heat_of_particles", body);
       if (accounted_ && enters) energy += sum_over_particles("energy_of_particles", body);
       if (accounted_ && enters) add(unbalanced, 1, sum<4>("momentum_of_particles", arguments_of(body), body.count));
@@ -411,6 +444,8 @@ class HostRun final : public Backend {
     if (!pass.has(Act::scatter_momentum)) return;
     for (VelocityField<T>& field : fields_)
       if (accounted_ && enters) add(unbalanced, -1, sum<4>("momentum_of_nodes", arguments_of(field, {}), nodes()));
+    const Vector3 gravity = experiment_.gravity_at(step.time);
+    for (std::size_t c = 0; c < 3; ++c) scene_.gravity[c] = static_cast<T>(gravity[c]);
     if (enters) for_each_field("weigh", nodes());
     for_each_axis("fold_masses", images_, {pass.remap()});
     if (!enters) return;
@@ -426,19 +461,93 @@ class HostRun final : public Backend {
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += sign * values[k];
   }
 
-  /// Evaluates the experiment's body force at every particle.
-  void evaluate_body_force(Body<T>& body, double time) {
-    if (!experiment_.body_force) return;
-    const T* const position = body.arrays.of("position");
-    T* const acceleration = body.arrays.of("body_acceleration");
+  /// Evaluates what gripped particles are told for the end of the step, and lets nodes know of them.
+  void scatter_grips(Body<T>& body, double end) {
     const std::size_t D = experiment_.dimension;
+    const T *const position = body.arrays.of("position"), *const numbers = body.arrays.of("grip");
+    T* const told = body.arrays.of("told_velocity");
     for (int p = 0; p < body.count; ++p) {
+      if (!(numbers[p] > T(0))) continue;
       const Vector3 x = body.vector(position, p);
       Vector3 X = x;
       for (std::size_t c = 0; c < D && !body.initial_position.empty(); ++c) X[c] = body.initial_position[p * D + c];
-      const Vector3 value = (*experiment_.body_force)(x, X, time);
-      for (std::size_t c = 0; c < D; ++c) acceleration[c * body.count + p] = static_cast<T>(value[c]);
+      const Vector3 velocity = velocity_of(experiment_.grips[static_cast<std::size_t>(numbers[p]) - 1], x, X, end);
+      for (std::size_t c = 0; c < D; ++c) told[c * body.count + p] = static_cast<T>(velocity[c]);
     }
+    for (std::size_t k = 0; k < experiment_.grips.size(); ++k) {
+      Arguments<T> a = arguments_of(body);
+      a.grip = static_cast<int>(k);
+      run("scatter_grip", a, body.blocks(), body, Checks::stencil);
+    }
+  }
+
+  /// Sums what grips gave a body's particles in the gather; returns the energy of it, J.
+  double note_gripped(const Body<T>& body, const StepInfo& step) {
+    std::vector<GivenToGripped> given(experiment_.grips.size());
+    const T *const numbers = body.arrays.of("grip"), *const ring = body.arrays.of("size");
+    for (int p = 0; p < body.count; ++p)
+      if (numbers[p] > T(0))
+        given[static_cast<std::size_t>(numbers[p]) - 1].add(
+            double(body.mass) * (ring ? double(ring[p]) : 1.0), body.vector(body.arrays.of("position"), p),
+            body.vector(body.arrays.of("gathered_velocity"), p), body.vector(body.arrays.of("velocity"), p));
+    double energy = 0;
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      reactions_.give_particles(experiment_.support_of_grip(k), given[k], step.dt);
+      energy += given[k].energy;
+    }
+    return energy;
+  }
+
+  /// Evaluates the loads of a body at its particles, and scatters each kind into its own field.
+  void scatter_loads(Body<T>& body, Arguments<T> a, double time) {
+    const BodyLoads& loads = loads_[static_cast<std::size_t>(&body - bodies_.data())];
+    const std::size_t D = experiment_.dimension, n = static_cast<std::size_t>(body.count);
+    T *const force = body.arrays.of("load_force"), *const moment = body.arrays.of("load_moment");
+    for (const ExternalForce kind : external_forces) {
+      if (!loads.gives(kind)) continue;
+      std::fill_n(force, D * n, T(0));
+      if (moment) std::fill_n(moment, D * D * n, T(0));
+      kind == ExternalForce::body_force ? evaluate_body_force(body, loads, time)
+                                        : evaluate_loads(body, loads, kind, time);
+      a.load_field = number_of(fields_[body.field].arrays.fields(), field_of(kind));
+      run("scatter_load", a, body.blocks(), body, Checks::stencil);
+    }
+  }
+
+  void evaluate_body_force(Body<T>& body, const BodyLoads& loads, double time) {
+    const std::size_t D = experiment_.dimension, n = static_cast<std::size_t>(body.count);
+    std::vector<double> x(D * n), X(D * n), values(D * n);
+    PointArrays at;
+    std::array<double*, 3> result{};
+    for (std::size_t c = 0; c < D; ++c) {
+      for (std::size_t p = 0; p < n; ++p) {
+        x[c * n + p] = body.component(body.arrays.of("position"), static_cast<int>(p), static_cast<int>(c));
+        X[c * n + p] = body.initial_position.empty() ? x[c * n + p] : body.initial_position[p * D + c];
+      }
+      at.x[c] = x.data() + c * n, at.X[c] = X.data() + c * n, result[c] = values.data() + c * n;
+    }
+    loads.accelerations(n, at, time, result);
+    T* const force = body.arrays.of("load_force");
+    const T* const around = body.arrays.of("size");
+    for (std::size_t k = 0; k < D * n; ++k)
+      force[k] = static_cast<T>(double(body.mass) * (around ? double(around[k % n]) : 1.0) * values[k]);
+  }
+
+  void evaluate_loads(Body<T>& body, const BodyLoads& loads, ExternalForce kind, double time) {
+    const std::size_t D = experiment_.dimension, n = static_cast<std::size_t>(body.count);
+    const T* const deformation = body.arrays.of("deformation");
+    T *const force = body.arrays.of("load_force"), *const moment = body.arrays.of("load_moment");
+    const auto read = [&](int p, LoadedParticle& particle) {
+      particle.x = particle.X = body.vector(body.arrays.of("position"), p);
+      particle.v = body.vector(body.arrays.of("velocity"), p);
+      for (std::size_t c = 0; c < D && !body.initial_position.empty(); ++c)
+        particle.X[c] = body.initial_position[p * D + c];
+      for (std::size_t k = 0; k < D * D; ++k) particle.F[k] = deformation[k * n + p];
+    };
+    loads.evaluate(kind, body.count, nullptr, time, read, [&](int p, const LoadCoefficients& given) {
+      for (std::size_t c = 0; c < D; ++c) force[c * n + p] = static_cast<T>(given.b[c]);
+      for (std::size_t k = 0; k < D * D; ++k) moment[k * n + p] = static_cast<T>(given.S[k]);
+    });
   }
 
   void momentum_to_velocity(const Pass& pass, const StepInfo& step) {
@@ -447,17 +556,20 @@ class HostRun final : public Backend {
     if (heat_conditions_) heat_conditions_->evaluate(step.time, scene_);
     const bool records_heat = plan_.has_heat_ledger() && !pass.remap() && heat_conditions_->walls_act();
     const double heat = records_heat ? sum_over_nodes("heat_of_nodes") : 0.0;
-    for_each_axis("fold_masses", walls_, {pass.remap()});
+    if (notes_reactions_) reactions_.begin_step();
+    fold_momenta({pass.remap()});
     if (!pass.remap()) heat_of_images_ = records_heat ? sum_over_nodes("heat_of_nodes") - heat : 0.0;
-    if (!pass.remap()) for_each_axis("fold_forces", folded_axes());
+    if (!pass.remap()) fold_forces();
     for_each_field("divide", vectors());
+    scene_.grips_at_end = pass.remap();
     keep_free_velocity({});
-    for_each_field("impose_conditions", nodes());
+    impose_conditions({});
     if (plan_.resolves_contact()) {
       resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::before_forces);
-      for_each_field("impose_conditions", nodes());
+      impose_conditions({});
     }
     measure_constraints();
+    if (notes_reactions_) reactions_.keep_before();
     if (scene_.records) book_folds(), book_impulses();
     if (!pass.remap()) for_each_field("keep_velocity", vectors());
     for_each_axis("fill_velocities", filled_axes());
@@ -465,28 +577,115 @@ class HostRun final : public Backend {
 
   void apply_forces(const StepInfo& step) {
     const Manner after{false, true};
+    scene_.grips_at_end = true;
     conditions_.evaluate(step.time + step.dt, scene_);
     scene_.records = accounted_;
-    for_each_axis("fold_forces", folded_axes());  // folds what USF scattered after the momenta were folded
+    fold_forces();  // folds what USF scattered after the momenta were folded
     if (accounted_) book_folds();
     for_each_field("accelerate", nodes());
     begin_stage(accounted_);
     keep_free_velocity(after);
-    for_each_field("impose_conditions", nodes(), after);
+    impose_conditions(after);
     if (plan_.resolves_contact()) {
       resolve_contact(step, Recorded::after_forces);
-      for_each_field("impose_conditions", nodes(), after);
+      impose_conditions(after);
     }
     measure_constraints();
+    if (experiment_.damping.acts()) damp(step);
     if (accounted_) account_for_impulses();
     for_each_axis("fill_velocities", filled_axes());
+    if (notes_reactions_) reactions_.apply_forces(step.dt);
+    record_reactions(step);
+  }
+
+  // ---- reactions: copies of what phases change are enough to tell what walls and boxes give by them -----------------
+
+  /// Copies a field of nodes.
+  static std::vector<T> copy_of(const VelocityField<T>& field, const char* id) {
+    const int number = number_of(field.arrays.fields(), id);
+    return {field.arrays.of(number), field.arrays.of(number) + field.arrays.size(number)};
+  }
+  static std::vector<T> sum_of_forces(const VelocityField<T>& field) {
+    std::vector<T> sum;
+    for (int number = 0; number < static_cast<int>(field.arrays.fields().size()); ++number) {
+      const Field& force = field.arrays.fields()[number];
+      if (force.folded != Folded::with_force || force.at_wall != AtWall::vector) continue;
+      sum.resize(field.arrays.size(number));
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += field.arrays.of(number)[k];
+    }
+    return sum;
+  }
+
+  void fold_momenta(const Manner& manner) {
+    for (const int axis : walls_) {
+      std::vector<std::vector<T>> momenta, masses;
+      for (std::size_t k = 0; notes_reactions_ && k < fields_.size(); ++k)
+        momenta.push_back(copy_of(fields_[k], "momentum")), masses.push_back(copy_of(fields_[k], "mass"));
+      for_each_axis("fold_masses", {axis}, manner);
+      for (std::size_t k = 0; k < momenta.size(); ++k)
+        noted_.fold_momenta(static_cast<int>(k), fields_[k], axis, std::move(momenta[k]), std::move(masses[k]));
+    }
+  }
+  void fold_forces() {
+    for (const int axis : folded_axes()) {
+      std::vector<std::vector<T>> forces;
+      for (std::size_t k = 0; notes_reactions_ && !periodic(axis) && k < fields_.size(); ++k)
+        forces.push_back(sum_of_forces(fields_[k]));
+      for_each_axis("fold_forces", {axis});
+      for (std::size_t k = 0; k < forces.size(); ++k) noted_.fold_forces(fields_[k], axis, std::move(forces[k]));
+    }
+  }
+  void fold_projection(bool at_rest) {
+    for (const int axis : folded_axes()) {
+      std::vector<std::vector<T>> projections;
+      for (std::size_t k = 0; notes_reactions_ && !periodic(axis) && k < fields_.size(); ++k)
+        projections.push_back(copy_of(fields_[k], "projection"));
+      for_each_axis("fold_projection", {axis}, {false, false, at_rest});
+      for (std::size_t k = 0; k < projections.size(); ++k)
+        noted_.fold_projection(static_cast<int>(k), fields_[k], axis, std::move(projections[k]), at_rest);
+    }
+  }
+  void impose_conditions(const Manner& manner) {
+    for (std::size_t k = 0; notes_reactions_ && k < fields_.size(); ++k)
+      noted_.hold(fields_[k], conditions_.supports(), grips_[k], scene_.grips_at_end);
+    for_each_field("impose_conditions", nodes(), manner);
+  }
+  void note_gathered_increment() {
+    if (!notes_reactions_) return;
+    reactions_.begin_projection();
+    for (const int axis : walls_)
+      for (std::size_t k = 0; k < fields_.size(); ++k) noted_.gather_increment(static_cast<int>(k), fields_[k], axis);
+  }
+  /// Records what particles take from the supports when they gather the velocity as it is now.
+  void record_reactions(const StepInfo& step) {
+    if (!notes_reactions_) return;
+    reactions_.begin_gather();
+    for (const int axis : walls_)
+      for (std::size_t k = 0; k < fields_.size(); ++k) noted_.gather(static_cast<int>(k), fields_[k], axis);
+    reactions_.record(step);
+  }
+
+  void damp(const StepInfo& step) {
+    const Damping& damping = experiment_.damping;
+    const Manner after{false, true};
+    scene_.local_damping = static_cast<T>(damping.local);
+    scene_.left_of_velocity = static_cast<T>(damping.left_of_velocity(step.dt));
+    scene_.left_of_change = static_cast<T>(damping.left_of_change(step.dt));
+    for_each_field("damp", vectors());
+    keep_free_velocity(after);
+    impose_conditions(after);
+    measure_constraints();
   }
 
   void account_for_impulses() {
     for (VelocityField<T>& field : fields_) {
-      const auto work = sum<6>("work_of_forces", arguments_of(field, {}), nodes());
+      const auto work = sum<11>("work_of_forces", arguments_of(field, {}), nodes());
       book(&Ledger::internal_force, work[0]), book(&Ledger::body_force, work[1]), book(&Ledger::gravity, work[2]);
-      book(&Ledger::boundary, work[3]), book(&Ledger::contact, work[4]), book(&Ledger::periodic_gravity, work[5]);
+      for (const ExternalForce kind : external_forces)
+        if (kind != ExternalForce::body_force) book(row_of(kind), work[5 + static_cast<std::size_t>(kind)]);
+      book(&Ledger::boundary, work[3]), book(&Ledger::contact, work[4]),
+          book(&Ledger::gravity_without_potential, work[5]);
+      book(&Ledger::damping, work[10]);
     }
     energy_after_ = sum_over_nodes("energy_of_velocities");
     lumped_power_ = power_of_forces();
@@ -552,7 +751,7 @@ class HostRun final : public Backend {
   }
 
   void gather(const Pass& pass, const StepInfo& step) {
-    double energy = 0, heat = 0;
+    double energy = 0, heat = 0, gripped = 0;
     if (accounted_ && step.filtered) {
       if (pass.has(Act::strain)) book_strain(&Ledger::filtered_strain, pass.share);
       ledger_.filtered_gravity -= power_of_forces()[1] - lumped_power_[1];
@@ -563,13 +762,15 @@ class HostRun final : public Backend {
       a.update_particles = true, a.filtered = step.filtered;
       a.moves_by_mean = experiment_.filter_schedule.moves_by_mean;
       run("gather", a, teams(body.count), body, Checks::stencil);
+      if (!experiment_.grips.empty()) gripped += note_gripped(body, step);
       if (pass.has(Act::gather_heat)) run("gather_heat", a, teams(body.count), body, Checks::temperature);
       if (pass.has(Act::gather_heat) && plan_.has_heat_ledger()) heat += sum_over_particles("heat_of_particles", body);
       if (accounted_) energy += sum_over_particles("energy_of_particles", body);  // weights are still those of the step
       if (pass.has(Act::strain)) run_strain(pass, body);
     }
     if (accounted_) {
-      ledger_.gather += energy - energy_after_;
+      ledger_.gather += energy - energy_after_ - gripped;
+      ledger_.boundary += gripped;
       ledger_.grid_book += energy_after_ - scattered_energy_ - works_;
       energy_before_move_ = energy;
     }
@@ -699,6 +900,7 @@ class HostRun final : public Backend {
     if (recorded == Recorded::after_forces) contact_ = {};
     Vector3 unbalanced{};
     ContactGiven given;
+    given.pairs.reserve(contact_impulse_.pairs().size());
     for (std::size_t a = 0; a < fields_.size(); ++a)
       for (std::size_t b = a + 1; b < fields_.size(); ++b) {
         find_pairs(a, b);
@@ -716,10 +918,12 @@ class HostRun final : public Backend {
       contact_impulse_.in_filter(given, plan_.node_field("velocity_of_constraints") != nullptr, ledger);
     if (recorded != Recorded::after_forces) return;
     contact_impulse_.after_forces(given, ledger);
+    contact_impulse_.record_counts(given);
     record_force(step);
     contact_.momentum_residual = std::hypot(unbalanced[0], unbalanced[1], unbalanced[2]);
   }
   void add_given(ContactGiven& sum) const {
+    if (!contact_impulse_.pairs().empty()) add_pair(sum.pairs.emplace_back());
     for (int node = 0; node < nodes(); ++node) {
       if (!active_[node]) continue;
       sum.dissipated += dissipated_[node];
@@ -727,10 +931,20 @@ class HostRun final : public Backend {
         sum.impulse[c] += impulse_[static_cast<std::size_t>(c) * nodes() + node];
     }
   }
+  /// Adds what the law did to the pair that it was asked about last.
+  void add_pair(PairGiven& pair) const {
+    for (int node = 0; node < nodes(); ++node) {
+      if (!active_[node]) continue;
+      for (int c = 0; c < experiment_.dimension; ++c)
+        pair.impulse[c] += impulse_[static_cast<std::size_t>(c) * nodes() + node];
+      pair.count(status_[node], separation_[node], true);
+    }
+  }
   /// Records the force that particles take when they gather the velocity as it is now.
   void record_force(const StepInfo& step) {
     const Vector3 impulse = contact_impulse_.handed_over(step.filtered);
     for (std::size_t c = 0; c < 3; ++c) contact_.force[c] = impulse[c] / step.dt;
+    contact_impulse_.record_forces(step.filtered, step.dt);
   }
 
   /// Finds normal, separation and area at every node that two fields share (simulation/contact_pair.hpp).
@@ -788,9 +1002,15 @@ class HostRun final : public Backend {
 
   double increment_norm() { return std::sqrt(sum_over_nodes("increment_norm")); }
 
+  void keep_unfiltered() {
+    for_each_field("keep_unfiltered", vectors());
+    contact_impulse_.keep();
+    reactions_.keep();
+  }
+
   void begin_filter(const Pass& pass) {
     for_each_field("begin_filter", vectors());
-    if (pass.has(Act::keep_velocity)) for_each_field("keep_unfiltered", vectors()), contact_impulse_.keep();
+    if (pass.has(Act::keep_velocity)) keep_unfiltered();
     filter_.iterations = 0;
     filter_.first_norm = filter_.last_norm = increment_norm();
     begin_stage(accounted_ && pass.stage == Stage::after_forces);
@@ -801,11 +1021,13 @@ class HostRun final : public Backend {
     conditions_.evaluate(time_of(pass, step), scene_);
     for_each_field("clear_projection", vectors());
     for (Body<T>& body : bodies_) run("project", arguments_of(body), body.blocks(), body, Checks::stencil);
-    for_each_axis("fold_projection", folded_axes(), {false, false, filter_.iterations > 0});
+    note_gathered_increment();
+    fold_projection(filter_.iterations > 0);
   }
 
   void update_filter(const Pass& pass, const StepInfo& step) {
     for_each_field("update_filter", nodes());
+    if (notes_reactions_) reactions_.take_projection(static_cast<int>(filter_.iterations + 1));
     if (experiment_.filter_schedule.constrain_always) {
       constrain_velocity(pass, step);
       for_each_field("correct_increment", vectors());
@@ -825,12 +1047,16 @@ class HostRun final : public Backend {
   /// ledger and records the contact force alone changes.
   void constrain_velocity(const Pass& pass, const StepInfo& step) {
     conditions_.evaluate(time_of(pass, step), scene_);
-    if (plan_.node_field("velocity_of_constraints")) for_each_field("take_free_velocity", vectors());
-    for_each_field("impose_conditions", nodes());
+    scene_.grips_at_end = pass.stage != Stage::before_forces;
+    if (plan_.node_field("velocity_of_constraints")) {
+      for_each_field("take_free_velocity", vectors());
+      if (notes_reactions_) reactions_.take_back();
+    }
+    impose_conditions({});
     if (plan_.resolves_contact()) {
       resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::filter);
       if (pass.stage == Stage::after_forces) record_force(step);
-      for_each_field("impose_conditions", nodes());
+      impose_conditions({});
     }
     measure_constraints();
   }
@@ -839,18 +1065,19 @@ class HostRun final : public Backend {
     conditions_.evaluate(time_of(pass, step), scene_);
     if (!experiment_.filter_schedule.constrain_always) constrain_velocity(pass, step);
     for_each_axis("fill_velocities", filled_axes());
-    if (!scene_.records) return;
-    book_filter();
+    if (scene_.records) book_filter();
+    if (pass.stage == Stage::after_forces) record_reactions(step);
   }
 
   void add_correction(const Pass& pass, const StepInfo& step) {
     begin_stage(accounted_);
     for_each_field("add_correction", vectors());
     contact_impulse_.add_correction();
+    reactions_.add_correction();
     constrain_velocity(pass, step);
     for_each_axis("fill_velocities", filled_axes());
-    if (!accounted_) return;
-    book_filter();
+    if (accounted_) book_filter();
+    record_reactions(step);
   }
 
   const Experiment& experiment_;
@@ -861,8 +1088,10 @@ class HostRun final : public Backend {
   Conditions<T> conditions_;
   std::optional<HeatConditions<T>> heat_conditions_;  ///< empty in scenes without temperature
   std::vector<Body<T>> bodies_;
+  std::vector<BodyLoads> loads_;  ///< of each body
   std::vector<VelocityField<T>> fields_;
-  std::vector<int> images_, walls_;  ///< axes with periodic images, and those with walls
+  std::vector<std::vector<GripArrays<T>>> grips_;  ///< [velocity field][grip]
+  std::vector<int> images_, walls_;                ///< axes with periodic images, and those with walls
   std::vector<EdgeModel> edges_;
   std::vector<int> active_, status_;
   std::vector<T> normal_, separation_, area_, impulse_, unbalanced_, dissipated_;
@@ -873,6 +1102,9 @@ class HostRun final : public Backend {
   bool accounted_ = false;  ///< the ledger takes its entries from the step under way
   ContactRecord contact_;
   ContactImpulse contact_impulse_;
+  ReactionImpulse reactions_;
+  NotedReactions<T> noted_;
+  bool notes_reactions_ = false;  ///< the pass under way notes what supports give
   FilterRecord filter_;
   double scattered_energy_ = 0;           ///< kinetic energy of the grid as scattered, images summed, J
   double energy_after_ = 0;               ///< kinetic energy of the grid when particles gather from it, J

@@ -63,6 +63,7 @@ void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, 
   if (after_forces) contact_ = {};
   Vector total_impulse = Vector::Zero(), total_change = Vector::Zero();
   double dissipated = 0;
+  std::vector<PairGiven> pairs(impulse_.pairs().size());
   for_each_pair([&](std::size_t a, std::size_t b) {
     const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step.dt);
     if (!pair) return;
@@ -75,17 +76,20 @@ void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, 
     momentum_[b] -= J;
     total_change += momentum_[a] + momentum_[b] - sum;
     total_impulse += J;
+    count(*pair, a, b, pairs);
     if (!after_forces || pair->status == MPM_APART) return;
     ++contact_.nodes;
     ++(pair->status == MPM_STICKS ? contact_.sticking : contact_.slipping);
     if (pair->has_normal) contact_.largest_penetration = std::max(contact_.largest_penetration, -pair->separation);
   });
   if (after_forces) {
-    impulse_.after_forces({as_array(total_impulse), dissipated}, ledger_to_book());
+    const ContactGiven given{as_array(total_impulse), dissipated, std::move(pairs)};
+    impulse_.after_forces(given, ledger_to_book());
+    impulse_.record_counts(given);
     record_force(step);
     contact_.momentum_residual = total_change.norm();
   } else if (!remap) {
-    impulse_.before_forces({as_array(total_impulse), dissipated}, step.filtered, ledger_to_book());
+    impulse_.before_forces({as_array(total_impulse), dissipated, std::move(pairs)}, step.filtered, ledger_to_book());
   }
   impose_conditions(after_forces ? step.time + step.dt : step.time);
 }
@@ -93,6 +97,15 @@ void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, 
 void ReferenceBackend::record_force(const StepInfo& step) {
   const Vector3 impulse = impulse_.handed_over(step.filtered);
   for (std::size_t c = 0; c < 3; ++c) contact_.force[c] = impulse[c] / step.dt;
+  impulse_.record_forces(step.filtered, step.dt);
+}
+
+void ReferenceBackend::count(const PairResult& result, std::size_t a, std::size_t b,
+                             std::vector<PairGiven>& pairs) const {
+  if (pairs.empty()) return;
+  PairGiven& pair = pairs[pair_index(grid_.velocity_field_of(a), grid_.velocity_field_of(b), grid_.velocity_fields())];
+  for (int c = 0; c < 3; ++c) pair.impulse[static_cast<std::size_t>(c)] += result.impulse[c];
+  pair.count(result.status, result.separation, result.has_normal);
 }
 
 }  // namespace mpm::reference

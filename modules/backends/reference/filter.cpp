@@ -26,7 +26,7 @@ void ReferenceBackend::begin_filter(const Pass& pass) {
     if (pass.stage == Stage::before_forces) unfiltered_[i] = velocity_[i];
     if (pass.stage == Stage::before_forces && keeps_constraints_) unfiltered_constrained_[i] = constrained_[i];
   });
-  if (pass.stage == Stage::before_forces) impulse_.keep();
+  if (pass.stage == Stage::before_forces) impulse_.keep(), reactions_.keep();
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = grid_.mass_norm(increment_);
 }
@@ -41,12 +41,14 @@ void ReferenceBackend::project(const Pass& pass, const StepInfo& step) {
   }
   // The first increment is a velocity, which a moving wall mirrors about its own; later ones are differences.
   const bool difference = filter_.iterations > 0;
+  grid_.note_gather_of(increment_);
   grid_.fold_as(projection_, AtWall::momentum, difference ? std::nullopt : std::optional(time_of(pass, step)));
   for_each_node([&](std::size_t i) { projection_[i] = over_mass(projection_[i], i); });
 }
 
 void ReferenceBackend::update_filter(const Pass& pass, const StepInfo& step) {
   for (int field = 0; field < grid_.velocity_fields(); ++field) call_filter(field);
+  if (notes_reactions_) reactions_.take_projection(static_cast<int>(filter_.iterations + 1));
   if (experiment_.filter_schedule.constrain_always) {
     for_each_node([&](std::size_t i) { trial_velocity_[i] = velocity_[i]; });
     constrain_free_velocity(pass, step);
@@ -97,6 +99,7 @@ void ReferenceBackend::end_filter(const Pass& pass, const StepInfo& step) {
   if (pass.stage == Stage::before_forces) return;  // the momentum stays that of the velocity kept aside
   for_each_node([&](std::size_t i) { momentum_[i] = mass_[i] * velocity_[i]; });
   if (records_) book_filter();
+  record_reactions(step);
 }
 
 void ReferenceBackend::restore_velocity(const Pass& pass, const StepInfo& step) {
@@ -106,6 +109,7 @@ void ReferenceBackend::restore_velocity(const Pass& pass, const StepInfo& step) 
     if (pass.has(Act::keep_correction)) unfiltered -= value;
   };
   impulse_.restore(pass.has(Act::keep_correction));
+  reactions_.restore(pass.has(Act::keep_correction));
   for_each_node([&](std::size_t i) {
     restore(velocity_[i], unfiltered_[i]);
     if (keeps_constraints_) restore(constrained_[i], unfiltered_constrained_[i]);
@@ -120,15 +124,18 @@ void ReferenceBackend::add_correction(const Pass& pass, const StepInfo& step) {
     if (keeps_constraints_) constrained_[i] += unfiltered_constrained_[i];
   });
   impulse_.add_correction();
+  reactions_.add_correction();
   constrain_free_velocity(pass, step);
   grid_.fill_velocity_ghosts(time_of(pass, step));
   for_each_node([&](std::size_t i) { momentum_[i] = mass_[i] * velocity_[i]; });
   if (records_) book_filter();
+  record_reactions(step);
 }
 
 /// Applies conditions and contact to the velocity without what they have added so far.
 void ReferenceBackend::constrain_free_velocity(const Pass& pass, const StepInfo& step) {
   if (!keeps_constraints_) return constrain_velocity(pass, step);
+  if (notes_reactions_) reactions_.take_back();
   for_each_node([&](std::size_t i) {
     if (mass_[i] <= 0) return;
     if (records_) take_back(i);
@@ -143,6 +150,7 @@ void ReferenceBackend::constrain_free_velocity(const Pass& pass, const StepInfo&
 /// Applies conditions, contact and conditions again, as after the forces, but to velocities; of the record, the force alone changes.
 void ReferenceBackend::constrain_velocity(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
+  grid_.hold_grips_at_end(pass.stage != Stage::before_forces);
   impose_on_velocity(time);
   if (!plan_.resolves_contact()) return;
   const ContactGiven given = resolve_contact_of_velocity(step.dt);
@@ -154,17 +162,20 @@ void ReferenceBackend::constrain_velocity(const Pass& pass, const StepInfo& step
 void ReferenceBackend::impose_on_velocity(double time) {
   for_each_node([&](std::size_t i) {
     if (mass_[i] <= 0) return;
-    const Held held = grid_.held(i, velocity_[i], time);
     const Vector before = velocity_[i];
-    for (int c = 0; c < 3; ++c)
-      if (held.component[c]) velocity_[i][c] = held.velocity[c];
-    if (held.any()) record(boundary_impulse_, standing_boundary_impulse_, i, mass_[i] * (velocity_[i] - before));
+    const std::vector<Held> all = grid_.held(i, before, time);
+    for (const Held& held : all) {
+      note_held(held, i, mass_[i] * (held.velocity - velocity_[i][held.component]));
+      velocity_[i][held.component] = held.velocity;
+    }
+    if (!all.empty()) record(boundary_impulse_, standing_boundary_impulse_, i, mass_[i] * (velocity_[i] - before));
   });
 }
 
 ContactGiven ReferenceBackend::resolve_contact_of_velocity(double dt) {
   Vector total = Vector::Zero();
   double dissipated = 0;
+  std::vector<PairGiven> pairs(impulse_.pairs().size());
   for_each_pair([&](std::size_t a, std::size_t b) {
     const auto pair = resolve_pair(a, b, mass_[a] * velocity_[a], mass_[b] * velocity_[b], dt);
     if (!pair) return;
@@ -173,9 +184,10 @@ ContactGiven ReferenceBackend::resolve_contact_of_velocity(double dt) {
     record(contact_impulse_, standing_contact_impulse_, a, pair->impulse);
     record(contact_impulse_, standing_contact_impulse_, b, -pair->impulse);
     total += pair->impulse;
+    count(*pair, a, b, pairs);
     dissipated += pair->dissipated;
   });
-  return {as_array(total), dissipated};
+  return {as_array(total), dissipated, std::move(pairs)};
 }
 
 }  // namespace mpm::reference

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <type_traits>
 
 namespace mpm::reference {
 
@@ -23,6 +24,8 @@ Grid::Grid(const Experiment& experiment, const Plan& plan)
       scalar(field.id).allocate(field, size()), bytes_ += size() * sizeof(double);
     else if (field.owner == Owner::node)
       vector(field.id).allocate(field, size()), bytes_ += size() * sizeof(Vector);
+  for (const ExternalForce kind : external_forces)
+    if (plan.node_field(field_of(kind))) external_forces_.push_back(&vector(field_of(kind)));
   // In a domain of few cells a ghost's mirror is a ghost of the other wall: it is folded on after all that it receives.
   for (int axis = 0; axis < experiment.dimension; ++axis) {
     auto& order = outermost_first_[axis];
@@ -77,7 +80,7 @@ double Grid::mass_norm(const VectorField& velocity) const {
 
 Vector Grid::force(std::size_t i) const {
   Vector sum = internal_force_[i];
-  if (experiment_.body_force) sum += body_force_[i];
+  for (const VectorField* external : external_forces_) sum += (*external)[i];
   return sum + weight_[i];
 }
 
@@ -186,11 +189,51 @@ void Grid::add_to_mirror(ScalarField& field, const Fold& fold, AtWall rule, cons
     field[fold.mirror] += mirrored(field[fold.ghost], fold, rule);
 }
 
+Vector Grid::image(const Vector& ghost, const Fold& fold, AtWall rule, const OfWall& wall) const {
+  if (rule == AtWall::momentum) return wall.momentum + mirrored(ghost - wall.momentum, fold, rule);
+  return mirrored(ghost, fold, rule);
+}
+
 void Grid::add_to_mirror(VectorField& field, const Fold& fold, AtWall rule, const OfWall& wall) const {
+  field[fold.mirror] += image(field[fold.ghost], fold, rule, wall);
+}
+
+// ---- reactions ---------------------------------------------------------------------------------------------------
+
+MirroredPlaces Grid::places(const Fold& fold) const {
+  return {support_of_wall(fold.axis, fold.side), as_array(position(coordinates(fold.ghost))),
+          as_array(position(coordinates(fold.mirror)))};
+}
+
+/// Notes that a wall takes a ghost's projection or force and gives its image to the mirror.
+void Grid::note_fold(const Fold& fold, AtWall rule, const OfWall& wall, const Vector& ghost) const {
+  if (!reactions_ || fold.side < 0) return;
+  const Vector3 given = as_array(image(ghost, fold, rule, wall));
   if (rule == AtWall::momentum)
-    field[fold.mirror] += wall.momentum + mirrored(field[fold.ghost] - wall.momentum, fold, rule);
+    reactions_->mirror_projection(places(fold), as_array(ghost), given);
   else
-    field[fold.mirror] += mirrored(field[fold.ghost], fold, rule);
+    reactions_->mirror_force(places(fold), as_array(ghost), given);
+}
+
+void Grid::note_gather_of(const VectorField& increment) const {
+  if (!reactions_) return;
+  reactions_->begin_projection();
+  for (const Fold& fold : folds_)
+    if (fold.side >= 0)
+      reactions_->beyond_projection(places(fold), as_array(fold.mass * increment[fold.mirror]),
+                                    as_array(fold.mass * increment[fold.ghost]));
+}
+
+void Grid::note_gather() const {
+  if (!reactions_) return;
+  reactions_->begin_gather();
+  for (const Fold& fold : folds_) {
+    if (fold.side < 0) continue;
+    const auto momentum = [&](std::size_t i) { return as_array(fold.mass * velocity_[i]); };
+    const auto change = [&](std::size_t i) { return as_array(fold.mass * (velocity_[i] - velocity_before_[i])); };
+    reactions_->beyond(places(fold), momentum(fold.mirror), momentum(fold.ghost));
+    reactions_->beyond_increment(places(fold), change(fold.mirror), change(fold.ghost));
+  }
 }
 
 bool Grid::approaches_wall(const Fold& fold, double dt) const {
@@ -247,6 +290,9 @@ void Grid::fold_node(Fold fold, double time) {
         2 * gradient_before_folds(fold) * (distance(fold) * fold.heat_capacity - capacity_inward(fold.ghost, fold));
   }
   work_of_folds_ += work_of_fold(fold, wall);
+  if (reactions_ && fold.side >= 0)
+    reactions_->mirror(places(fold), as_array(momentum_[fold.ghost]),
+                       as_array(image(momentum_[fold.ghost], fold, AtWall::momentum, wall)));
   for_each_field([&](auto& field) {
     if (field.waits_) add_to_mirror(field, fold, field.declared_->at_wall, wall);
   });
@@ -304,6 +350,7 @@ void Grid::fold_as(NodeField<Value>& field, AtWall rule, std::optional<double> t
   for (const Fold& fold : folds_) {
     OfWall wall;
     if (time) wall.momentum = fold.mass * wall_velocity(fold, *time);
+    if constexpr (std::is_same_v<Value, Vector>) note_fold(fold, rule, wall, field[fold.ghost]);
     add_to_mirror(field, fold, rule, wall);
     set_zero(field[fold.ghost]);
   }
@@ -344,16 +391,12 @@ void Grid::fill_ghosts(NodeField<Value>& field, AtWall rule) {
 template void Grid::fill_ghosts(ScalarField&, AtWall);
 template void Grid::fill_ghosts(VectorField&, AtWall);
 
-Held Grid::held(std::size_t i, const Vector& predicted, double time) const {
-  Held held;
+std::vector<Held> Grid::held(std::size_t i, const Vector& predicted, double time) const {
+  std::vector<Held> held;
   const Eigen::Vector3i& node = coordinates(i);
   const Vector x = position(node);
   const auto evaluate = [&](const std::optional<VectorExpression>& velocity) {
     return velocity ? to_eigen((*velocity)({x[0], x[1], x[2]}, {x[0], x[1], x[2]}, time)) : Vector(Vector::Zero());
-  };
-  const auto hold = [&](int component, const Vector& velocity) {
-    held.component[component] = true;
-    held.velocity[component] = velocity[component];
   };
   for (int axis = 0; axis < experiment_.dimension; ++axis) {
     for (int side = 0; side < 2; ++side) {
@@ -363,20 +406,33 @@ Held Grid::held(std::size_t i, const Vector& predicted, double time) const {
       if (face.type == ConditionType::separate && (side == 0 ? predicted[axis] >= 0 : predicted[axis] <= 0)) continue;
       const Vector velocity = evaluate(face.velocity);
       for (int c = 0; c < experiment_.dimension; ++c)
-        if (holds(face.type, axis, c)) hold(c, velocity);
+        if (holds(face.type, axis, c)) held.push_back({support_of_wall(axis, side), c, velocity[c]});
     }
   }
-  for (const BoxCondition& box : experiment_.boxes) {
+  for (std::size_t k = 0; k < experiment_.boxes.size(); ++k) {
+    const BoxCondition& box = experiment_.boxes[k];
     if (!inside(box, i)) continue;
     const Vector velocity = evaluate(box.velocity);
     for (int c = 0; c < experiment_.dimension; ++c) {
       const bool holds = box.type == ConditionType::stick || (box.type == ConditionType::slip && c == box.axis) ||
                          (box.type == ConditionType::separate && c == box.axis && box.side * predicted[c] < 0) ||
                          (box.type == ConditionType::prescribed && box.held[c]);
-      if (holds) hold(c, velocity);
+      if (holds) held.push_back({support_of_box(static_cast<int>(k)), c, velocity[c]});
     }
   }
+  hold_by_grips(i, held);
   return held;
+}
+
+/// Adds what grips hold, whose particles give the node half of its mass or more: their mean velocity by mass.
+void Grid::hold_by_grips(std::size_t i, std::vector<Held>& held) const {
+  for (std::size_t k = 0; k < experiment_.grips.size(); ++k) {
+    const double mass = scalar(grip_field(k) + "_mass")[i];
+    if (!(mass > 0) || 2 * mass < mass_[i]) continue;
+    const Vector momentum = vector(grip_field(k) + (grips_at_end_ ? "" : "_before"))[i];
+    for (int c = 0; c < experiment_.dimension; ++c)
+      if (experiment_.grips[k].held[c]) held.push_back({experiment_.support_of_grip(k), c, momentum[c] / mass});
+  }
 }
 
 bool Grid::inside(const BoxCondition& box, std::size_t i) const {

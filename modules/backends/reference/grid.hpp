@@ -10,6 +10,7 @@
 
 #include "simulation/backend.hpp"
 #include "simulation/boundary.hpp"
+#include "simulation/reaction_impulse.hpp"
 #include "simulation/wall_heat.hpp"
 
 namespace mpm::reference {
@@ -18,6 +19,10 @@ using Vector = Eigen::Vector3d;  ///< z = 0 in 2-D
 using Matrix = Eigen::Matrix3d;
 
 inline Vector to_eigen(const Vector3& v) {
+  return {v[0], v[1], v[2]};
+}
+
+inline Vector3 as_array(const Vector& v) {
   return {v[0], v[1], v[2]};
 }
 
@@ -61,11 +66,10 @@ class NodeField {
 using ScalarField = NodeField<double>;
 using VectorField = NodeField<Vector>;
 
-/// The components of a node's velocity that a condition gives.
+/// A component of a node's velocity that a support gives.
 struct Held {
-  bool component[3] = {false, false, false};
-  Vector velocity = Vector::Zero();
-  bool any() const { return component[0] || component[1] || component[2]; }
+  int support, component;
+  double velocity;
 };
 
 class Grid {
@@ -76,6 +80,8 @@ class Grid {
   /// The plan's field of nodes with this id; it stays where it is.
   ScalarField& scalar(const std::string& id) { return scalars_.try_emplace(id, id).first->second; }
   VectorField& vector(const std::string& id) { return vectors_.try_emplace(id, id).first->second; }
+  const ScalarField& scalar(const std::string& id) const { return scalars_.at(id); }
+  const VectorField& vector(const std::string& id) const { return vectors_.at(id); }
 
   /// Sets all fields to zero.
   void reset();
@@ -114,6 +120,8 @@ class Grid {
   /// is absent when the walls are at rest (what is folded is a difference).
   template <class Value>
   void fold_as(NodeField<Value>& field, AtWall rule, std::optional<double> time);
+  /// Notes what particles take from ghosts of the increment that a filter projects, before the projection is folded.
+  void note_gather_of(const VectorField& increment) const;
   /// Gives ghosts the mirrored velocities. `time` is that of the wall's velocity.
   void fill_velocity_ghosts(double time);
   /// Gives ghosts the temperature mirrored about that of walls that have one, at `time`, and bent by the flux through
@@ -128,8 +136,15 @@ class Grid {
   /// Gives ghosts the values mirrored by a rule at walls at rest.
   template <class Value>
   void fill_ghosts(NodeField<Value>& field, AtWall rule);
-  /// The components that conditions hold at a node whose velocity would be `predicted` without them.
-  Held held(std::size_t i, const Vector& predicted, double time) const;
+  /// What conditions hold at a node whose velocity would be `predicted` without them, in the order in which they do:
+  /// of those that hold the same component the last counts.
+  std::vector<Held> held(std::size_t i, const Vector& predicted, double time) const;
+  /// Lets grips hold nodes as their particles are told for the end of the step, or as they were at its start.
+  void hold_grips_at_end(bool at_end) { grips_at_end_ = at_end; }
+  /// Notes what folding gives and takes, where supports are asked for their reactions; null where nobody asks.
+  void note_in(ReactionImpulse* reactions) { reactions_ = reactions; }
+  /// Notes what particles take from ghosts more than they would from their mirrors.
+  void note_gather() const;
   /// Whether a node lies in the box of a condition, its faces included.
   bool inside(const BoxCondition& box, std::size_t i) const;
 
@@ -172,6 +187,10 @@ class Grid {
   double capacity_inward(std::size_t i, const Fold& fold) const;
   Vector wall_velocity(const Fold& fold, double time) const;
   double wall_temperature(const Fold& fold, double time) const;
+  void hold_by_grips(std::size_t i, std::vector<Held>& held) const;
+  Vector image(const Vector& ghost, const Fold& fold, AtWall rule, const OfWall& wall) const;
+  MirroredPlaces places(const Fold& fold) const;
+  void note_fold(const Fold& fold, AtWall rule, const OfWall& wall, const Vector& ghost) const;
   void add_to_mirror(ScalarField& field, const Fold& fold, AtWall rule, const OfWall& wall) const;
   void add_to_mirror(VectorField& field, const Fold& fold, AtWall rule, const OfWall& wall) const;
   double mirrored(double v, const Fold& fold, AtWall rule) const;
@@ -189,8 +208,10 @@ class Grid {
               &volume_conductivity_ = scalar("volume_conductivity");
   VectorField &momentum_ = vector("momentum"), &velocity_ = vector("velocity"),
               &velocity_before_ = vector("velocity_before"), &internal_force_ = vector("force"),
-              &body_force_ = vector("body_force"), &weight_ = vector("weight"),
-              &capacity_position_ = vector("capacity_position");
+              &weight_ = vector("weight"), &capacity_position_ = vector("capacity_position");
+  std::vector<VectorField*> external_forces_;  ///< of loads, as far as there are any
+  ReactionImpulse* reactions_ = nullptr;
+  bool grips_at_end_ = false;
   std::vector<Fold> folds_;
   double work_of_folds_ = 0;                   ///< J, of this step
   std::vector<double> gradient_before_folds_;  ///< K/m, of nodes on walls that heat comes through, for one axis

@@ -1,10 +1,13 @@
 // Turns momenta into velocities and applies conditions and forces.
 
+#include <cmath>
+
 #include "backends/reference/reference_backend.hpp"
 
 namespace mpm::reference {
 
 void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& step) {
+  if (notes_reactions_) reactions_.begin_step();
   const bool accounts_heat = plan_.has_heat_ledger() && !pass.remap();
   const double heat = accounts_heat ? sum(heat_) : 0.0;
   const double work_of_folds = grid_.fold_walls(step.time, pass.remap() ? 0.0 : step.dt);
@@ -13,6 +16,7 @@ void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& st
   const double power_of_walls = pass.remap() ? 0.0 : grid_.fold_forces(step.time);
   if (records_) ledger_.boundary += step.dt * power_of_walls;
   keep_free_velocity(false);
+  grid_.hold_grips_at_end(pass.remap());
   impose_conditions(step.time);
   if (plan_.resolves_contact()) resolve_contact(step, false, pass.remap());
   for_each_node([&](std::size_t i) {
@@ -20,6 +24,7 @@ void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& st
     if (!pass.remap()) velocity_before_[i] = velocity_[i];
   });
   measure_constraints();
+  if (notes_reactions_) reactions_.keep_before();
   if (records_) book_impulses();
   grid_.fill_velocity_ghosts(step.time);
 }
@@ -41,12 +46,52 @@ void ReferenceBackend::measure_constraints() {
 void ReferenceBackend::impose_conditions(double time) {
   for_each_node([&](std::size_t i) {
     if (mass_[i] <= 0) return;
-    const Held held = grid_.held(i, momentum_[i] / mass_[i], time);
     const Vector before = momentum_[i];
-    for (int c = 0; c < 3; ++c)
-      if (held.component[c]) momentum_[i][c] = mass_[i] * held.velocity[c];
-    if (held.any()) record(boundary_impulse_, standing_boundary_impulse_, i, momentum_[i] - before);
+    const std::vector<Held> all = grid_.held(i, momentum_[i] / mass_[i], time);
+    for (const Held& held : all) {
+      double& momentum = momentum_[i][held.component];
+      note_held(held, i, mass_[i] * held.velocity - momentum);
+      momentum = mass_[i] * held.velocity;
+    }
+    if (!all.empty()) record(boundary_impulse_, standing_boundary_impulse_, i, momentum_[i] - before);
   });
+}
+
+/// Notes the impulse that a support gives a component of a node.
+void ReferenceBackend::note_held(const Held& held, std::size_t i, double given) {
+  if (!notes_reactions_) return;
+  Vector3 impulse{};
+  impulse[held.component] = given;
+  reactions_.hold(held.support, as_array(grid_.position(grid_.coordinates(i))), impulse);
+}
+
+/// Damps the motion: a share of the unbalanced force, by which all that acts has changed the velocity, acts against each
+/// component, and -c m v. Supports hold what they held.
+void ReferenceBackend::damp(const StepInfo& step) {
+  const double c = experiment_.damping.viscous, decay = std::exp(-c * step.dt);
+  // A constant acceleration a makes v+ = exp(-c dt) v- + a (1 - exp(-c dt)) / c.
+  const double mean_decay = c > 0 ? (1 - decay) / (c * step.dt) : 1;
+  for_each_node([&](std::size_t i) {
+    if (mass_[i] <= 0) return;
+    Vector gain = velocity_[i] - velocity_before_[i];
+    for (int axis = 0; axis < experiment_.dimension; ++axis)
+      if (velocity_[i][axis] != 0)
+        gain[axis] -= experiment_.damping.local * std::copysign(gain[axis], velocity_[i][axis]);
+    const Vector damped = decay * velocity_before_[i] + mean_decay * gain;
+    if (records_) damping_impulse_[i] += mass_[i] * (damped - velocity_[i]);
+    momentum_[i] = mass_[i] * damped;
+  });
+  keep_free_velocity(true);
+  impose_conditions(step.time + step.dt);
+  for_each_node([&](std::size_t i) { velocity_[i] = over_mass(momentum_[i], i); });
+  measure_constraints();
+}
+
+/// Records what particles take from the supports when they gather the velocity as it is now.
+void ReferenceBackend::record_reactions(const StepInfo& step) {
+  if (!notes_reactions_) return;
+  grid_.note_gather();
+  reactions_.record(step);
 }
 
 void ReferenceBackend::apply_forces(const StepInfo& step) {
@@ -55,12 +100,16 @@ void ReferenceBackend::apply_forces(const StepInfo& step) {
   if (records_) ledger_.boundary += step.dt * power_of_walls;
   for_each_node([&](std::size_t i) { momentum_[i] += step.dt * grid_.force(i); });
   keep_free_velocity(true);
+  grid_.hold_grips_at_end(true);
   impose_conditions(step.time + step.dt);
   if (plan_.resolves_contact()) resolve_contact(step, true);
   for_each_node([&](std::size_t i) { velocity_[i] = over_mass(momentum_[i], i); });
   measure_constraints();
+  if (experiment_.damping.acts()) damp(step);
   if (records_) book_forces(step.dt);
   grid_.fill_velocity_ghosts(step.time + step.dt);
+  if (notes_reactions_) reactions_.apply_forces(step.dt);
+  record_reactions(step);
 }
 
 }  // namespace mpm::reference

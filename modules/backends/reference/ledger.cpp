@@ -96,17 +96,19 @@ void ReferenceBackend::book_filter() {
 
 /// Books the works of forces and of the impulses after them at the mean of v- and v+, and forgets the impulses.
 void ReferenceBackend::book_forces(double dt) {
-  const bool held = plan_.node_field("boundary_impulse"), meets = plan_.node_field("contact_impulse");
+  const bool held = plan_.node_field("boundary_impulse"), meets = plan_.node_field("contact_impulse"),
+             damps = plan_.node_field("damping_impulse");
   for_each_node([&](std::size_t i) {
     if (mass_[i] <= 0) return;
     const Vector mean = 0.5 * (velocity_before_[i] + velocity_[i]);
     book(&Ledger::internal_force, dt * internal_force_[i].dot(mean));
-    if (experiment_.body_force) book(&Ledger::body_force, dt * body_force_[i].dot(mean));
+    for (const External& external : external_forces_) book(external.row, dt * (*external.force)[i].dot(mean));
     for (int c = 0; c < 3; ++c)
-      book(experiment_.gravity_has_potential(c) ? &Ledger::gravity : &Ledger::periodic_gravity,
+      book(experiment_.gravity_has_potential(c) ? &Ledger::gravity : &Ledger::gravity_without_potential,
            dt * weight_[i][c] * mean[c]);
     if (held) book(&Ledger::boundary, boundary_impulse_[i].dot(mean)), boundary_impulse_[i].setZero();
     if (meets) book(&Ledger::contact, contact_impulse_[i].dot(mean)), contact_impulse_[i].setZero();
+    if (damps) book(&Ledger::damping, damping_impulse_[i].dot(mean)), damping_impulse_[i].setZero();
   });
   lumped_power_ = power_of_forces(dt);
   lumped_lift_ = power_of_weight(dt);
@@ -143,7 +145,8 @@ void ReferenceBackend::book_filtered_strain(double dt) {
 
 void ReferenceBackend::book_gather(const Pass& pass, double dt) {
   const double gathered = grid_.kinetic_energy();
-  ledger_.gather += particle_kinetic_energy() - gathered;
+  ledger_.gather += particle_kinetic_energy() - gathered - given_to_gripped_;
+  ledger_.boundary += given_to_gripped_;
   ledger_.grid_book += gathered - scattered_energy_ - works_;
   ledger_.filtered_gravity -= power_of_weight(dt) - lumped_lift_;
   if (pass.has(Act::strain)) ledger_.filtered_strain -= pass.share * (power_of_forces(dt) - lumped_power_);

@@ -23,7 +23,7 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
       frozen_(experiment.bodies[body].frozen),
       shape_(experiment, plan) {
   seeded.for_each_batch([this](const SeedBatch& batch) { seed(batch); });
-  if (axisymmetric()) values("circumference") = 2 * std::numbers::pi * position.topRows(1);
+  if (size_ && !seeded.with_size) values("size") = 2 * std::numbers::pi * position.topRows(1);
   for (Stored& stored : fields_) pad(stored.values);
 }
 
@@ -52,7 +52,7 @@ void Particles::seed(const SeedBatch& batch) {
       for (Eigen::Index k = 0; k < values.rows(); ++k) values(k, batch.first + p) = first[p * values.rows() + k];
   };
   for (Stored& stored : fields_)
-    if (stored.declared->first == First::seeded) take(stored.values, batch.values(stored.declared->id));
+    if (stored.declared->first == First::seeded) take(stored.values, batch.values(*stored.declared));
   if (batch.velocity_gradient)
     take(values(transfer_.plugin->state()[0].name, Origin::transfer), batch.velocity_gradient);
 }
@@ -153,7 +153,7 @@ void Particles::find_second_moments() {
 void Particles::scatter_coefficients() {
   Array mass = make(1);
   mass.setConstant(mass_);
-  if (axisymmetric()) mass = mass_ * *circumference_;
+  if (size_) mass = mass_ * *size_;
   scatter_by_transfer(mass, velocity, state_of(Origin::transfer));
   if (plan_.basis_functions == 0) return;
   higher = values(polynomial_coefficients, Origin::transfer);
@@ -292,11 +292,16 @@ StrainEnergies Particles::strain(double dt, bool booked) {
     for (std::size_t p = 0; p < padded_; ++p)
       set(domain, p, Matrix((Matrix::Identity() + dt * matrix(velocity_gradient, p)) * matrix(domain, p)));
   }
+  if (plan_.particle_field(body_, "deformation") && !frozen_) {
+    Array& F = values("deformation");
+    for (std::size_t p = 0; p < padded_; ++p)
+      set(F, p, Matrix((Matrix::Identity() + dt * matrix(velocity_gradient, p)) * matrix(F, p)));
+  }
   if (thermal_ && thermal_->dissipation_to_heat > 0)
     for (std::size_t p = 0; p < count_; ++p)
       values("temperature")(0, p) += thermal_->dissipation_to_heat * dissipated(0, p) /
                                      (material_.parameter("density") * thermal(p).heat_capacity);
-  if (axisymmetric()) dissipated.array() *= circumference_->array();
+  if (size_) dissipated.array() *= size_->array();
   energies.dissipated = volume_ * dissipated.leftCols(count_).sum();
   return energies;
 }

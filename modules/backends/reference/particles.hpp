@@ -26,9 +26,10 @@ class Particles {
   Particles(const Particles&) = delete;  // others refer to its arrays
 
   std::size_t count() const { return count_; }
+  int number() const { return body_; }
   int field() const { return field_; }
-  double mass(std::size_t p) const { return mass_ * ring(p); }
-  double volume(std::size_t p) const { return volume_ * ring(p); }
+  double mass(std::size_t p) const { return mass_ * size(p); }
+  double volume(std::size_t p) const { return volume_ * size(p); }
   bool axisymmetric() const { return experiment_.axisymmetric(); }
   bool frozen() const { return frozen_; }
   std::uint64_t bytes() const;
@@ -123,7 +124,7 @@ class Particles {
   /// The transfer's state for the velocity (T, 0, 0), in declared order.
   std::vector<Array> state_of_temperature() const;
   double stored_energy();  ///< sum over all particles, J
-  double ring(std::size_t p) const { return circumference_ ? (*circumference_)(0, p) : 1.0; }
+  double size(std::size_t p) const { return size_ ? (*size_)(0, p) : 1.0; }
   void refuse_inverted(std::int32_t particle);
   /// The work of the current stress on dt L, or where `after` on what that is of the strained body, dt L (I + dt L)^-1
   /// to second order, J.
@@ -136,7 +137,7 @@ class Particles {
   const std::optional<Thermal>& thermal_;
   int body_, field_, dimension_;
   std::size_t count_, padded_;
-  double mass_, volume_;  ///< in axisymmetric scenes per metre of circumference
+  double mass_, volume_;  ///< of a particle of size 1
   bool frozen_;
   Shape shape_;
   std::vector<Stencil> stencils_;
@@ -144,7 +145,7 @@ class Particles {
   std::vector<HigherBasis> higher_bases_;
   std::deque<Stored> fields_ = start_fields();  ///< in the order of the plan
   std::deque<Array> work_;                      ///< arrays that no later step reads
-  const Array* const circumference_ = axisymmetric() ? &values("circumference") : nullptr;
+  const Array* const size_ = plan_.particle_field(body_, "size") ? &values("size") : nullptr;
 
  public:
   Array &position = values("position"), &velocity = values("velocity"), &advection = values("advection_velocity");

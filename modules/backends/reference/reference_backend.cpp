@@ -13,9 +13,15 @@ ReferenceBackend::ReferenceBackend(const Experiment& experiment, const Plan& pla
       plan_(plan),
       grid_(experiment, plan),
       edges_(edge_models(experiment)),
-      impulse_(experiment) {
-  for (std::size_t body = 0; body < seeded.size(); ++body)
+      impulse_(experiment),
+      reactions_(experiment) {
+  for (std::size_t body = 0; body < seeded.size(); ++body) {
     bodies_.emplace_back(experiment, plan, static_cast<int>(body), seeded[body]);
+    loads_.emplace_back(experiment, static_cast<int>(body), seeded[body]);
+  }
+  for (const ExternalForce kind : external_forces)
+    if (plan.node_field(field_of(kind)))
+      external_forces_.push_back({kind, &grid_.vector(field_of(kind)), row_of(kind)});
 }
 
 void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
@@ -23,6 +29,8 @@ void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
   accounted_ = plan_.accounts_at(step.step);
   // What a filter does before the forces is undone again.
   records_ = accounted_ && (pass.stage == Stage::after_forces || (act == Act::divide && !pass.remap()));
+  notes_reactions_ = reactions_.asked() && !pass.remap();
+  grid_.note_in(notes_reactions_ ? &reactions_ : nullptr);
   switch (act) {
     case Act::estimate_time_step:
       return estimate_time_step();
@@ -153,7 +161,9 @@ void ReferenceBackend::save(ArchiveWriter& archive) const {
   for (const Particles& body : bodies_) body.save(archive);
   archive.put("ledger", ledger_);
   archive.put("contact", contact_);
+  archive.put("contact_pairs", impulse_.pairs());
   archive.put("filter", filter_);
+  reactions_.save(archive);
   if (plan_.has_heat_ledger()) archive.put("heat ledger", heat_ledger_);
   archive.put("limit speeds", std::array{limit_.speed, limit_.wave_speed});
   archive.put("limit particle", std::array<std::uint64_t, 2>{static_cast<std::uint64_t>(limit_.body), limit_.particle});
@@ -163,7 +173,9 @@ void ReferenceBackend::restore(ArchiveReader& archive) {
   for (Particles& body : bodies_) body.restore(archive);
   archive.get("ledger", ledger_);
   archive.get("contact", contact_);
+  archive.get("contact_pairs", impulse_.pairs());
   archive.get("filter", filter_);
+  reactions_.restore(archive);
   if (plan_.has_heat_ledger()) archive.get("heat ledger", heat_ledger_);
   std::array<double, 2> speeds{};
   std::array<std::uint64_t, 2> particle{};

@@ -13,6 +13,7 @@
 #include "backends/reference/particles.hpp"
 #include "simulation/contact_impulse.hpp"
 #include "simulation/contact_pair.hpp"
+#include "simulation/loads.hpp"
 
 namespace mpm::reference {
 
@@ -27,7 +28,9 @@ class ReferenceBackend final : public Backend {
   const Ledger& ledger() const override { return ledger_; }
   HeatLedger heat_ledger() const override { return heat_ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
+  const std::vector<PairRecord>& contact_pairs() const override { return impulse_.pairs(); }
   const FilterRecord& filter_record() const override { return filter_; }
+  const std::vector<Reaction>& reactions() const override { return reactions_.reactions(); }
   bool scattered() const override { return false; }
   void save(ArchiveWriter& archive) const override;
   void restore(ArchiveReader& archive) override;
@@ -43,10 +46,14 @@ class ReferenceBackend final : public Backend {
   void keep_inside(Vector& x, int body, std::size_t p) const;
   // ---- transfers.cpp
   void scatter(const Pass& pass, const StepInfo& step);
-  void scatter_momentum(Particles& body, bool remap);
+  void scatter_momentum(Particles& body, double time, bool remap);
   void scatter_affine(Particles& body, VectorField& momentum);
-  void scatter_force(Particles& body, double time);
+  void scatter_force(Particles& body);
+  void scatter_loads(Particles& body, const BodyLoads& loads, double time);
   void scatter_contact_fields(Particles& body);
+  void scatter_grips(Particles& body, double time);
+  Vector velocity_of_gripped(Particles& body, std::size_t p, double time) const;
+  void move_gripped(Particles& body, const StepInfo& step);
   void gather(const Pass& pass, const StepInfo& step);
   void gather_moments(Particles& body, const VectorField& velocities);
   void strain(const Pass& pass, const StepInfo& step);
@@ -58,6 +65,9 @@ class ReferenceBackend final : public Backend {
   void momentum_to_velocity(const Pass& pass, const StepInfo& step);
   /// Sets the momenta that conditions give.
   void impose_conditions(double time);
+  void note_held(const Held& held, std::size_t i, double given);
+  void record_reactions(const StepInfo& step);
+  void damp(const StepInfo& step);
   void keep_free_velocity(bool after_forces);
   void measure_constraints();
   void apply_forces(const StepInfo& step);
@@ -75,6 +85,8 @@ class ReferenceBackend final : public Backend {
     double separation = 0;  ///< m
     bool has_normal = false;
   };
+  /// Adds what the law did at a node to its pair, where pairs are recorded apart.
+  void count(const PairResult& result, std::size_t a, std::size_t b, std::vector<PairGiven>& pairs) const;
   /// Returns nothing when a pair is skipped: a field is absent or too light, or has no normal (and the law is no weld).
   std::optional<PairResult> resolve_pair(std::size_t a, std::size_t b, const Vector& momentum_a,
                                          const Vector& momentum_b, double dt) const;
@@ -83,7 +95,6 @@ class ReferenceBackend final : public Backend {
   void resolve_contact(const StepInfo& step, bool after_forces, bool remap = false);
   /// Records the force that particles take when they gather the velocity as it is now.
   void record_force(const StepInfo& step);
-  static Vector3 as_array(const Vector& v) { return {v[0], v[1], v[2]}; }
 
   // ---- filter.cpp
   void begin_filter(const Pass& pass);
@@ -158,7 +169,15 @@ class ReferenceBackend final : public Backend {
   VectorField& velocity_before_ = grid_.vector("velocity_before");  ///< v-
   VectorField& velocity_ = grid_.vector("velocity");                ///< v+ (or v- until the forces are applied)
   VectorField& internal_force_ = grid_.vector("force");
-  VectorField &body_force_ = grid_.vector("body_force"), &weight_ = grid_.vector("weight");
+  VectorField& weight_ = grid_.vector("weight");
+  /// A kind of force from outside, its field of the nodes and its entry of the ledger.
+  struct External {
+    ExternalForce kind;
+    VectorField* force;
+    double Ledger::*row;
+  };
+  std::vector<External> external_forces_;                           ///< those that the scene has
+  std::vector<BodyLoads> loads_;                                    ///< of each body
   VectorField& volume_gradient_ = grid_.vector("volume_gradient");  ///< sum V grad w
   VectorField& mass_position_ = grid_.vector("mass_position");      ///< sum w m (x_p - x_node)
   VectorField& increment_ = grid_.vector("increment");              ///< v* of the filter
@@ -173,7 +192,8 @@ class ReferenceBackend final : public Backend {
   VectorField &boundary_impulse_ = grid_.vector("boundary_impulse"),
               &contact_impulse_ = grid_.vector("contact_impulse"), &filter_impulse_ = grid_.vector("filter_impulse"),
               &standing_boundary_impulse_ = grid_.vector("standing_boundary_impulse"),
-              &standing_contact_impulse_ = grid_.vector("standing_contact_impulse");
+              &standing_contact_impulse_ = grid_.vector("standing_contact_impulse"),
+              &damping_impulse_ = grid_.vector("damping_impulse");
   ScalarField &heat_ = grid_.scalar("heat"), &heat_capacity_ = grid_.scalar("heat_capacity");
   ScalarField& temperature_before_ = grid_.scalar("temperature_before");  ///< T-
   ScalarField& temperature_ = grid_.scalar("temperature");                ///< T+ (or T- until it is heated)
@@ -194,8 +214,11 @@ class ReferenceBackend final : public Backend {
   double lumped_power_ = 0;      ///< work of the stresses' forces at v+ before any filter, J
   double lumped_lift_ = 0;       ///< the same of gravity, J
   double early_share_ = 0;       ///< share of the step's strain that came before the forces
+  double given_to_gripped_ = 0;  ///< energy that grips have given their particles after the gather, J
   ContactRecord contact_;
   ContactImpulse impulse_;
+  ReactionImpulse reactions_;
+  bool notes_reactions_ = false;  ///< the pass under way notes what supports give
   FilterRecord filter_;
   double held_beyond_ = 0, others_beyond_ = 0;  ///< heat of Grid::heat_beyond_walls before the forces
   double heat_after_ = 0;                       ///< heat of the grid when particles gather from it, J

@@ -9,13 +9,16 @@ namespace mpm::reference {
 
 void ReferenceBackend::scatter(const Pass& pass, const StepInfo& step) {
   if (pass.remap()) grid_.reset({"mass", "momentum"});
-  for (Particles& body : bodies_) {
+  for (std::size_t number = 0; number < bodies_.size(); ++number) {
+    Particles& body = bodies_[number];
     if (!pass.remap() && pass.has(Act::scatter_momentum)) body.find_stencils(grid_);
-    if (pass.has(Act::scatter_momentum)) scatter_momentum(body, pass.remap());
+    if (pass.has(Act::scatter_momentum)) scatter_momentum(body, step.time, pass.remap());
     if (pass.has(Act::scatter_force) || pass.has(Act::scatter_contact)) body.evaluate_stress();
-    if (pass.has(Act::scatter_force)) scatter_force(body, step.time);
+    if (pass.has(Act::scatter_force)) scatter_force(body);
+    if (pass.has(Act::scatter_force)) scatter_loads(body, loads_[number], step.time);
     if (pass.has(Act::scatter_contact)) scatter_contact_fields(body);
     if (pass.has(Act::scatter_heat)) scatter_heat(body);
+    if (pass.has(Act::scatter_momentum) && !pass.remap()) scatter_grips(body, step.time + step.dt);
   }
   if (!pass.has(Act::scatter_momentum)) return;
   if (accounted_ && !pass.remap()) book_scattered_sums();
@@ -25,8 +28,8 @@ void ReferenceBackend::scatter(const Pass& pass, const StepInfo& step) {
 }
 
 /// Gives each node w m, its weight, and the momentum as the transfer gives it.
-void ReferenceBackend::scatter_momentum(Particles& body, bool remap) {
-  const Vector gravity = to_eigen(experiment_.gravity);
+void ReferenceBackend::scatter_momentum(Particles& body, double time, bool remap) {
+  const Vector gravity = to_eigen(experiment_.gravity_at(time));
   body.scatter_coefficients();
   for (std::size_t p = 0; p < body.count(); ++p)
     for (const StencilNode& s : body.stencil(p)) {
@@ -97,24 +100,50 @@ void ReferenceBackend::gather_higher(Particles& body, const VectorField& velocit
 }
 
 /// Adds f = -V0 tau grad w, or -V0 tau (w D^-1 d) when the transfer takes stress by the affine term, around an axis
-/// also -w V0 tau_zz / r e_r, and the body forces w m b(x, X, t).
-void ReferenceBackend::scatter_force(Particles& body, double time) {
+/// also -w V0 tau_zz / r e_r.
+void ReferenceBackend::scatter_force(Particles& body) {
   const bool by_affine = experiment_.transfer.plugin->transfer().traits & MPM_STRESS_BY_AFFINE;
   for (std::size_t p = 0; p < body.count(); ++p) {
     const Matrix tau = body.symmetric(body.stress, p);
     const Vector hoop = body.hoop_force(p);
-    Vector force = Vector::Zero();
-    if (experiment_.body_force) {
-      const Vector x = body.column(body.position, p);
-      const Vector X =
-          plan_.particle_field(0, "initial_position") ? body.column(body.values("initial_position"), p) : x;
-      force = body.mass(p) * to_eigen((*experiment_.body_force)({x[0], x[1], x[2]}, {X[0], X[1], X[2]}, time));
-    }
     for (const StencilNode& s : body.stencil(p)) {
       const std::size_t i = grid_.at(body.field(), s.index);
       internal_force_[i] += s.weight * hoop - body.volume(p) * (tau * (by_affine ? s.affine : s.gradient));
-      if (experiment_.body_force) body_force_[i] += s.weight * force;
     }
+  }
+}
+
+/// Adds what loads give: w m a of forces per mass, w b + S grad w of those that act at points.
+void ReferenceBackend::scatter_loads(Particles& body, const BodyLoads& loads, double time) {
+  const int D = experiment_.dimension, count = static_cast<int>(body.count());
+  const bool keeps_start = plan_.particle_field(body.number(), "initial_position") != nullptr;
+  const auto read = [&](int p, LoadedParticle& particle) {
+    for (int c = 0; c < D; ++c) {
+      particle.x[c] = body.position(c, p), particle.v[c] = body.velocity(c, p);
+      particle.X[c] = keeps_start ? body.values("initial_position")(c, p) : particle.x[c];
+    }
+    for (int k = 0; loads.at_points() && k < D * D; ++k) particle.F[k] = body.values("deformation")(k, p);
+  };
+  for (const External& external : external_forces_) {
+    if (!loads.gives(external.kind)) continue;
+    const auto scatter = [&](std::size_t p, const Vector& b, const Matrix& S) {
+      for (const StencilNode& s : body.stencil(p))
+        (*external.force)[grid_.at(body.field(), s.index)] += s.weight * b + S * s.gradient;
+    };
+    if (external.kind == ExternalForce::body_force) {
+      for (int p = 0; p < count; ++p) {
+        LoadedParticle particle;
+        read(p, particle);
+        scatter(p, body.mass(p) * to_eigen(loads.acceleration(particle.x, particle.X, time)), Matrix::Zero());
+      }
+      continue;
+    }
+    loads.evaluate(external.kind, count, nullptr, time, read, [&](int p, const LoadCoefficients& given) {
+      Matrix S = Matrix::Zero();
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j) S(i, j) = given.S[D * i + j];
+      scatter(p, to_eigen(given.b), S);
+    });
   }
 }
 
@@ -131,13 +160,60 @@ void ReferenceBackend::scatter_contact_fields(Particles& body) {
   }
 }
 
+/// Gives nodes the mass of gripped particles, the momentum that these have now, and the one that they are told to have
+/// at a time, the end of the step.
+void ReferenceBackend::scatter_grips(Particles& body, double time) {
+  if (experiment_.grips.empty()) return;
+  for (std::size_t p = 0; p < body.count(); ++p) {
+    const int grip = static_cast<int>(body.values("grip")(0, p)) - 1;
+    if (grip < 0) continue;
+    const std::string id = grip_field(static_cast<std::size_t>(grip));
+    const Vector now = body.column(body.velocity, p), then = velocity_of_gripped(body, p, time);
+    for (const StencilNode& s : body.stencil(p)) {
+      const std::size_t i = grid_.at(body.field(), s.index);
+      grid_.scalar(id + "_mass")[i] += s.weight * body.mass(p);
+      grid_.vector(id)[i] += s.weight * body.mass(p) * then;
+      grid_.vector(id + "_before")[i] += s.weight * body.mass(p) * now;
+    }
+  }
+}
+
+/// The velocity that a gripped particle is told to have at a time; components that its grip leaves free are anything.
+Vector ReferenceBackend::velocity_of_gripped(Particles& body, std::size_t p, double time) const {
+  const Grip& grip = experiment_.grips[static_cast<std::size_t>(body.values("grip")(0, p)) - 1];
+  const Vector x = body.column(body.position, p);
+  const Vector X = plan_.particle_field(0, "initial_position") ? body.column(body.values("initial_position"), p) : x;
+  return to_eigen(velocity_of(grip, as_array(x), as_array(X), time));
+}
+
+/// Gives gripped particles the velocity that they are told to have, and lets it move them.
+void ReferenceBackend::move_gripped(Particles& body, const StepInfo& step) {
+  for (std::size_t p = 0; p < body.count(); ++p) {
+    const int number = static_cast<int>(body.values("grip")(0, p)) - 1;
+    if (number < 0) continue;
+    const Grip& grip = experiment_.grips[static_cast<std::size_t>(number)];
+    const Vector told = velocity_of_gripped(body, p, step.time + step.dt), gathered = body.column(body.velocity, p);
+    Vector velocity = gathered, advection = body.column(body.advection, p);
+    for (int c = 0; c < experiment_.dimension; ++c)
+      if (grip.held[c]) velocity[c] = advection[c] = told[c];
+    body.set(body.velocity, p, velocity);
+    body.set(body.advection, p, advection);
+    GivenToGripped given;
+    given.add(body.mass(p), as_array(body.column(body.position, p)), as_array(gathered), as_array(velocity));
+    given_to_gripped_ += given.energy;
+    reactions_.give_particles(experiment_.support_of_grip(static_cast<std::size_t>(number)), given, step.dt);
+  }
+}
+
 void ReferenceBackend::gather(const Pass& pass, const StepInfo& step) {
   double heat = 0;
+  given_to_gripped_ = 0;
   for (Particles& body : bodies_) {
     gather_moments(body, velocity_);
     const Array before = body.velocity;
     body.gather(step.dt);
     if (step.filtered) body.take_gathered_velocity(before, experiment_.filter_schedule.moves_by_mean);
+    if (!experiment_.grips.empty()) move_gripped(body, step);
     if (plan_.sample_points > 0) gather_corners(body, step);
     if (pass.has(Act::gather_heat)) gather_heat(body, step), heat += body.heat();
     if (pass.has(Act::strain)) strain(body, pass.share * step.dt);

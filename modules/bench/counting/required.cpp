@@ -104,6 +104,7 @@ std::string required_base_scene(int dimension) {
 std::vector<RequiredScene> required_scenes() {
   return {{"base", {}},
           {"+ metrics", {"/output/metrics_every=1000"}},
+          {"+ numbers", {"/output/metrics_every=1000", "/output/bodies=true"}},
           {"+ frames", {"/output/frames=2", "/output/colour_by=von_mises_stress"}},
           {"+ vtk", {"/output/frames=2", "/output/vtk=true"}},
           {"+ figures", {R"(/figures=["energy", "momentum", "volume_ratio"])"}},

@@ -3,10 +3,8 @@
 // material's trial and tangent); others come with a member of the functor: `box` and its fellows, `basis_order`,
 // `courant_limits`, `step_limit`, `projects`, a `temperature` at the end of State, a `cell_size` at the end of Parameters.
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <string_view>
 
 #include "kernel/counted.hpp"
 #include "kernel/dual.hpp"
@@ -16,11 +14,18 @@ namespace mpm::sdk {
 
 // ---- concepts: what a functor may offer --------------------------------------------------------------------------
 
+/// Compares two texts. (The library's headers that would do it take longer to read than the rest of the SDK.)
+constexpr bool same_text(const char* a, const char* b) {
+  for (; *a == *b; ++a, ++b)
+    if (*a == 0) return true;
+  return false;
+}
+
 template <class F>
-constexpr bool declares_parameter(std::string_view name) {
+constexpr bool declares_parameter(const char* name) {
   if constexpr (requires { F::parameters[0].name; })
     for (const mpm_parameter& row : F::parameters)
-      if (row.name == name) return true;
+      if (same_text(row.name, name)) return true;
   return false;
 }
 /// Parameters that end in a `cell_size` beyond the declared ones, m: the host writes that of the grid.
@@ -223,7 +228,7 @@ std::int32_t update_copy(const void* parameters, const mpm_trial_batch& q, bool 
   void* fields[components + 1];
   std::int32_t inadmissible = -1;
   for (std::uint32_t first = 0; first < q.count; first += full) {
-    const std::uint32_t count = std::min(full, q.count - first);
+    const std::uint32_t count = q.count - first < full ? q.count - first : full;
     const auto take = [&](const void* from, T* to, int rows) {
       if (from) copy_rows<T>(from, q.stride, first, to, full, 0, rows, count);
       return from ? to : nullptr;
@@ -385,43 +390,52 @@ inline constexpr mpm_material_cell_size cell_size_table{MPM_MATERIAL_CELL_SIZE_V
 // ---- by id -------------------------------------------------------------------------------------------------------
 
 template <class F>
-const void* costs_extension(std::string_view id) {
+const void* costs_extension(const char* id) {
   if constexpr (is_counted<F>())
-    if (id == MPM_COSTS_ID) return &costs_table<F>;
+    if (same_text(id, MPM_COSTS_ID)) return &costs_table<F>;
   return nullptr;
 }
 template <class F>
 const void* shape_extension(const char* id) {
   if constexpr (BoxShapeFunctor<F>)
-    if (std::string_view(id) == MPM_SHAPE_BOXES_ID) return &boxes_table<F>;
+    if (same_text(id, MPM_SHAPE_BOXES_ID)) return &boxes_table<F>;
   if constexpr (CourantLimitFunctor<F>)
-    if (std::string_view(id) == MPM_SHAPE_COURANT_LIMIT_ID) return &CourantLimitTable<F>::value;
+    if (same_text(id, MPM_SHAPE_COURANT_LIMIT_ID)) return &CourantLimitTable<F>::value;
   return costs_extension<F>(id);
 }
 template <class F>
 const void* transfer_extension(const char* id) {
   if constexpr (PolynomialFunctor<F>)
-    if (std::string_view(id) == MPM_TRANSFER_POLYNOMIALS_ID) return &polynomials_table<F>;
+    if (same_text(id, MPM_TRANSFER_POLYNOMIALS_ID)) return &polynomials_table<F>;
   return costs_extension<F>(id);
 }
 template <class F>
 const void* filter_extension(const char* id) {
   if constexpr (StepLimitFunctor<F>)
-    if (std::string_view(id) == MPM_FILTER_STEP_LIMIT_ID) return &step_limit_table<F>;
+    if (same_text(id, MPM_FILTER_STEP_LIMIT_ID)) return &step_limit_table<F>;
   return costs_extension<F>(id);
 }
+/// The extensions of a material that run its functor over scalars of their own.
+#if defined(MPM_PLUGIN_PART) && MPM_PLUGIN_PART == 1
+template <class F>
+const void* extension_over_other_scalars(const char* id);  // stands in the other object of the plugin
+#else
+template <class F>
+const void* extension_over_other_scalars(const char* id) {
+  if (same_text(id, MPM_MATERIAL_TANGENT_ID)) return &TangentTable<F>::value;
+  return costs_extension<F>(id);
+}
+#endif
 template <class F>
 const void* material_extension(const char* id) {
-  const std::string_view asked = id;
-  if (asked == MPM_MATERIAL_TRIAL_ID) return &trial_table<F>;
-  if (asked == MPM_MATERIAL_TANGENT_ID) return &TangentTable<F>::value;
+  if (same_text(id, MPM_MATERIAL_TRIAL_ID)) return &trial_table<F>;
   if constexpr (projects_by_update<F>())
-    if (asked == MPM_MATERIAL_PROJECTION_ID) return &projection_table<F>;
+    if (same_text(id, MPM_MATERIAL_PROJECTION_ID)) return &projection_table<F>;
   if constexpr (TemperatureFunctor<F>)
-    if (asked == MPM_MATERIAL_TEMPERATURE_ID) return &temperature_table<F>;
+    if (same_text(id, MPM_MATERIAL_TEMPERATURE_ID)) return &temperature_table<F>;
   if constexpr (CellSizeFunctor<F>)
-    if (asked == MPM_MATERIAL_CELL_SIZE_ID) return &cell_size_table<F>;
-  return costs_extension<F>(id);
+    if (same_text(id, MPM_MATERIAL_CELL_SIZE_ID)) return &cell_size_table<F>;
+  return extension_over_other_scalars<F>(id);
 }
 
 }  // namespace mpm::sdk

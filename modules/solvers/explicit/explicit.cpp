@@ -1,6 +1,7 @@
 #include "solvers/explicit/explicit.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -32,6 +33,28 @@ StepLimit thermal_limit(const Experiment& experiment) {
     const double density = material.component.parameter("density");
     phase(material.thermal->solid, density);
     if (material.thermal->phase_change) phase(material.thermal->phase_change->melted, density);
+  }
+  return limit;
+}
+
+/// The step that springs and dashpots to the ground allow: courant times what a row of particles on them stands, 2 / w
+/// with w^2 the stiffness over the mass of an area, and 2 over the damping a mass.
+StepLimit spring_limit(const Experiment& experiment) {
+  StepLimit limit{std::numeric_limits<double>::infinity(), "spring"};
+  for (std::size_t body = 0; body < experiment.bodies.size(); ++body) {
+    const BodySpecification& specification = experiment.bodies[body];
+    const double row = experiment.grid.cell_size / specification.particles_per_cell_axis *
+                       experiment.materials[specification.material].component.parameter("density");
+    for (int axis = 0; axis < experiment.dimension; ++axis) {
+      double stiffness = 0, damping = 0;
+      for (const Load& load : experiment.loads)
+        if (load.body == static_cast<int>(body)) stiffness += load.stiffness[axis], damping += load.damping[axis];
+      const auto take = [&](double seconds, std::string_view reason) {
+        if (seconds < limit.seconds) limit = {seconds, reason};
+      };
+      if (stiffness > 0) take(experiment.solver.courant * 2 * std::sqrt(row / stiffness), "spring");
+      if (damping > 0) take(experiment.solver.courant * 2 * row / damping, "dashpot");
+    }
   }
   return limit;
 }
@@ -172,8 +195,9 @@ StepLimit explicit_limit(const Experiment& experiment, const TimeStepSpeeds& spe
       if (const double seconds = filtered->limit(experiment.filter->parameters.data(), limit.seconds);
           seconds < limit.seconds)
         limit = {seconds, "filter order", true};
-  const StepLimit thermal = thermal_limit(experiment);
-  return thermal.seconds < limit.seconds ? thermal : limit;
+  for (const StepLimit& other : {thermal_limit(experiment), spring_limit(experiment)})
+    if (other.seconds < limit.seconds) limit = other;
+  return limit;
 }
 
 }  // namespace mpm

@@ -38,6 +38,18 @@ inline std::vector<Channel> channels_of(const Plan& plan, const FieldNames& name
   return channels;
 }
 
+/// A kind of force from outside that the scene has, and its channel.
+struct ExternalChannel {
+  ExternalForce kind;
+  Channel channel;
+};
+inline std::vector<ExternalChannel> external_channels(const Plan& plan) {
+  std::vector<ExternalChannel> channels;
+  for (const ExternalForce kind : external_forces)
+    if (plan.node_field(field_of(kind))) channels.push_back({kind, channel_of(plan, field_of(kind))});
+  return channels;
+}
+
 /// The channels that passes work on by name, resolved once a scene.
 struct NamedChannels {
   const Plan& plan_;
@@ -47,7 +59,8 @@ struct NamedChannels {
   const Channel next_motion = channel_of(plan_, "next_momentum");
   /// Holds v-, later the increment v+ - v-.
   const Channel velocity_before = channel_of(plan_, "velocity_before");
-  const Channel force = channel_of(plan_, "force"), body_force = channel_of(plan_, "body_force");
+  const Channel force = channel_of(plan_, "force");
+  const std::vector<ExternalChannel> external = external_channels(plan_);
   const Channel volume_gradient = channel_of(plan_, "volume_gradient");  ///< with the volume
   const Channel mass_position = channel_of(plan_, "mass_position");
   /// Holds heat and its capacity; temperature and capacity once the heat has been divided.
@@ -67,6 +80,7 @@ struct NamedChannels {
   const Channel boundary_impulse = channel_of(plan_, "boundary_impulse");
   const Channel contact_impulse = channel_of(plan_, "contact_impulse");
   const Channel filter_impulse = channel_of(plan_, "filter_impulse");
+  const Channel damping_impulse = channel_of(plan_, "damping_impulse");
   const Channel standing_boundary = channel_of(plan_, "standing_boundary_impulse");
   const Channel standing_contact = channel_of(plan_, "standing_contact_impulse");
 };

@@ -29,12 +29,14 @@ struct FaceNodes {
   std::vector<std::uint32_t> wall_edge;  ///< the same among the edge nodes, or ~0
   std::vector<Vector3> wall_position;
   std::vector<std::uint8_t> pair_folds;  ///< decided in each step: [field * pairs + i]
+  std::vector<double> folded_mass;       ///< kg, of the ghosts when folded, indexed likewise; for reactions only
   std::vector<double> folded_capacity;   ///< J/K, of the ghosts when folded, indexed likewise; with temperature only
 
   bool periodic() const { return condition->type == ConditionType::periodic; }
 };
 struct BoxNodes {
   const BoxCondition* condition = nullptr;
+  int support = 0;
   std::vector<std::uint32_t> nodes;
   std::vector<Vector3> position;
 };
@@ -84,6 +86,10 @@ class Grid {
     for (int a = 0; a < D; ++a) at[a] = node[a] >> block_bits<D>;
     const int slot = table_.find(at);
     return slot < 0 ? -1 : slot * block_nodes + node_in_block<D>(node);
+  }
+
+  Vector3 position_of(std::uint32_t node) const {
+    return scene_.domain.node_position(node_at<D>(found_[node / block_nodes], static_cast<int>(node % block_nodes)), D);
   }
 
   std::vector<FaceNodes>& faces() { return faces_; }
@@ -224,6 +230,7 @@ void Grid<D, T>::list_faces() {
   }
   for (FaceNodes& face : faces_) {
     face.pair_folds.assign(face.pairs.size() * fields_, 0);
+    face.folded_mass.assign(scene_.experiment.output.reactions.empty() ? 0 : face.pairs.size() * fields_, 0);
     face.folded_capacity.assign(scene_.experiment.has_temperature() ? face.pairs.size() * fields_ : 0, 0);
   }
   number_edge_nodes();
@@ -271,6 +278,7 @@ void Grid<D, T>::list_boxes() {
   for (const BoxCondition& condition : scene_.experiment.boxes) {
     BoxNodes box;
     box.condition = &condition;
+    box.support = support_of_box(static_cast<int>(boxes_.size()));
     for (std::uint32_t slot = 0; slot < slots(); ++slot) {
       if (!may_touch(condition, found_[slot])) continue;
       for (int local = 0; local < block_nodes; ++local) {

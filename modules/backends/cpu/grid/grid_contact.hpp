@@ -2,6 +2,7 @@
 // This part of GridStep lets velocity fields meet: pairs of a slot in batches, pair after pair, so three act in order.
 
 #include "backends/cpu/grid/grid_step.hpp"
+#include "operators/contact.hpp"
 
 namespace mpm::cpu {
 
@@ -11,6 +12,7 @@ struct GridStep<D, T>::ContactSums {
   double friction = 0, largest_penetration = 0;
   double impulse[3]{}, change[3]{};
   long sticking = 0, slipping = 0;
+  PairGiven* pairs = nullptr;  ///< one a pair of fields, where they are recorded apart
 };
 
 template <int D, class T>
@@ -30,11 +32,18 @@ struct GridStep<D, T>::ContactBatch {
     mass_a[count] = a[3], mass_b[count] = b[3];
     separation[count] = static_cast<T>(geometry.separation), area[count] = static_cast<T>(geometry.area);
     for (int c = 0; c < D; ++c) {
-      momentum_a[c * block_nodes + count] = a[3] * a[c];
-      momentum_b[c * block_nodes + count] = b[3] * b[c];
+      momentum_a[c * block_nodes + count] = momentum_of(a[c], a[3]);
+      momentum_b[c * block_nodes + count] = momentum_of(b[c], b[3]);
       normal[c * block_nodes + count] = geometry.valid ? static_cast<T>(geometry.normal[c]) : T(0);
     }
     ++count;
+  }
+  /// Adds what the law did to its pair.
+  void add_to(PairGiven& pair) const {
+    for (int i = 0; i < count; ++i) {
+      for (int c = 0; c < D; ++c) pair.impulse[c] += impulse[c * block_nodes + i];
+      pair.count(status[i], separation[i], valid[i]);
+    }
   }
   /// Copies the last pair so that whole lanes may be computed.
   int pad() {
@@ -89,18 +98,17 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
                                   batch.dissipated,
                                   batch.status};
   law.plugin->contact().apply[lane_precision<T>][D - 2](law.parameters.data(), &request);
+  const bool records = records_;  // the compiler need not ask again after each store
   for (int i = 0; i < batch.count; ++i) {
     Q &va = motion_at(a, batch.node[i]), &vb = motion_at(b, batch.node[i]);
+#pragma GCC unroll 3
     for (int c = 0; c < D; ++c) {
       const T impulse = batch.impulse[c * block_nodes + i];
-      const double a0 = va[c], b0 = vb[c];
-      va[c] = struck(T(va[c]), impulse, T(va[3]));
-      vb[c] = struck(T(vb[c]), -impulse, T(vb[3]));
-      if (records_) {
-        record(contact_impulse, standing_contact, a, batch.node[i], c, impulse);
-        record(contact_impulse, standing_contact, b, batch.node[i], c, -impulse);
-      }
-      sums.change[c] += va[3] * (va[c] - a0) + vb[3] * (vb[c] - b0);
+      T of_a = va[c], of_b = vb[c];
+      sums.change[c] += strike_pair<double>(of_a, of_b, T(va[3]), T(vb[3]), impulse, [&](bool second, T given) {
+        if (records) record(contact_impulse, standing_contact, second ? b : a, batch.node[i], c, given);
+      });
+      va[c] = of_a, vb[c] = of_b;
       sums.impulse[c] += impulse;
     }
     sums.friction += batch.dissipated[i];
@@ -130,14 +138,19 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
             contact_geometry(of_a.at(node), of_b.at(node), edges_[a], edges_[b], scene_.domain.cell_size, D);
         if (geometry.valid || weld) batch.add(first + node, va, vb, geometry);
       }
-      if (batch.count > 0) apply_law(batch, a, b, step, sums);
+      if (batch.count == 0) continue;
+      apply_law(batch, a, b, step, sums);
+      if (sums.pairs) batch.add_to(sums.pairs[pair_index(a, b, grid_.fields())]);
     }
 }
 
 template <int D, class T>
 void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
   const auto& slots = grid_.shared_slots();
+  const std::size_t pairs = impulse_.pairs().size();
   std::vector<ContactSums> sums(slots.size());
+  std::vector<PairGiven> pairs_of_slots(pairs * slots.size());
+  for (std::size_t i = 0; pairs > 0 && i < slots.size(); ++i) sums[i].pairs = &pairs_of_slots[i * pairs];
   scene_.team->for_each(slots.size(), 4, [&](std::size_t i, int) { resolve_slot(slots[i], step, sums[i]); });
 
   ContactGiven given;
@@ -145,11 +158,14 @@ void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
     for (int c = 0; c < D; ++c) given.impulse[c] += s.impulse[c];
     given.dissipated += s.friction;
   }
+  given.pairs.resize(pairs);
+  for (std::size_t k = 0; k < pairs_of_slots.size(); ++k) given.pairs[k % pairs].add(pairs_of_slots[k]);
   Ledger* const ledger = records_ ? &ledger_ : nullptr;
   if (recorded == Recorded::before_forces) return impulse_.before_forces(given, step.filtered, ledger);
   if (recorded == Recorded::filter) return impulse_.in_filter(given, grid_.has(constrained), ledger);
   if (recorded == Recorded::remap) return;
   impulse_.after_forces(given, ledger);
+  impulse_.record_counts(given);
 
   ContactRecord record;
   double change[3]{}, squared = 0;
@@ -170,6 +186,7 @@ template <int D, class T>
 void GridStep<D, T>::record_force(const StepInfo& step) {
   const Vector3 impulse = impulse_.handed_over(step.filtered);
   for (int c = 0; c < D; ++c) record_.force[c] = impulse[c] / step.dt;
+  impulse_.record_forces(step.filtered, step.dt);
 }
 
 }  // namespace mpm::cpu

@@ -35,8 +35,8 @@ bool GridStep<D, T>::approaches(const FaceNodes& face, int field, const MirrorPa
     T forces = motion_node[3] * gravity_[face.axis];
     if (edge != ~0u && has_gravity_)
       forces += static_cast<T>(gravity_correction_[(field * edges + edge) * 4 + face.axis]);
-    for (const Channel c : {force, body_force})
-      if (grid_.has(c)) forces += grid_.quad(c, field, node)[face.axis];
+    if (grid_.has(force)) forces += grid_.quad(force, field, node)[face.axis];
+    for (const ExternalChannel& load : external) forces += grid_.quad(load.channel, field, node)[face.axis];
     speed += predicted_velocity(motion_node[face.axis], forces, motion_node[3], static_cast<T>(dt));
   }
   return mpm::approaches(face.side, speed);
@@ -100,6 +100,7 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
     if (rule == AtWall::momentum) {
       const Q wall = wall_velocity(face.condition->velocity, pair.foot, time);
       if (records_ && !face.periodic()) work_of_folds_ += work_of_fold(field, pair, signs_[k].of, wall);
+      if (notes_reactions_ && !face.periodic()) note_mirror(face, index, field, signs_[k].of, wall);
       fold_momentum(c, field, pair, signs_[k].of, wall);
     } else if (rule == AtWall::heat)
       fold_heat(face, index, field, time);
@@ -155,6 +156,7 @@ void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step)
         const MirrorPair& pair = face.pairs[i];
         const bool folds = motion_at(field, pair.ghost)[3] > 0 && (!separate || approaches(face, field, pair, dt));
         face.pair_folds[field * face.pairs.size() + i] = folds;
+        if (notes_reactions_) face.folded_mass[field * face.pairs.size() + i] = motion_at(field, pair.ghost)[3];
         if (folds) fold_pair(face, i, field, remap, step.time);
       }
       if (!remap && grid_.has(capacity_position) && passes_heat(*face.condition)) fold_heat_onto_itself(face, field);
@@ -183,6 +185,8 @@ void GridStep<D, T>::fold_forces(bool periodic, double time, double dt) {
         if (ledger_on() && c == force && face.condition->velocity)
           ledger_.boundary += dt * work_beyond_wall(grid_.quad(c, field, pair.ghost), signs,
                                                     wall_velocity(face.condition->velocity, pair.foot, time));
+        if (notes_reactions_ && !periodic && grid_.field(c).at_wall == AtWall::vector)
+          note_mirrored_force(face, pair, widen(grid_.quad(c, field, pair.ghost)), signs);
         fold_as_is(c, field, pair, signs);
       });
     }
@@ -197,6 +201,11 @@ void GridStep<D, T>::fold_forces(bool periodic, double time, double dt) {
             weight[c] = static_cast<T>(correction[pair.ghost_edge * 4 + c]);
         ledger_.boundary +=
             dt * work_beyond_wall(weight, signs, wall_velocity(face.condition->velocity, pair.foot, time));
+      }
+      if (notes_reactions_) {
+        Wide weight{};
+        for (int c = 0; c < D; ++c) weight[c] = correction[pair.ghost_edge * 4 + c];
+        note_mirrored_force(face, pair, weight, signs);
       }
       for (int c = 0; c < D; ++c) {
         correction[pair.mirror_edge * 4 + c] += signs[c] * correction[pair.ghost_edge * 4 + c];
@@ -230,13 +239,14 @@ void GridStep<D, T>::fill_ghosts(double time, bool increments) {
 template <int D, class T>
 void GridStep<D, T>::impose(double time) {
   for (const FaceNodes& face : grid_.faces()) {
-    const int type = static_cast<int>(face.condition->type);
+    const int type = static_cast<int>(face.condition->type), support = support_of_wall(face.axis, face.side);
     for (std::size_t i = 0; i < face.wall.size(); ++i) {
       const Q velocity = wall_velocity(face.condition->velocity, face.wall_position[i], time);
       for (int field = 0; field < grid_.fields(); ++field) {
         const T across = motion_at(field, face.wall[i])[face.axis];
         for (int c = 0; c < D; ++c)
-          if (wall_holds(type, face.axis, face.side, c, across)) hold(field, face.wall[i], c, velocity[c]);
+          if (wall_holds(type, face.axis, face.side, c, across))
+            hold(field, face.wall[i], c, velocity[c], support, face.wall_position[i]);
       }
     }
   }
@@ -250,18 +260,113 @@ void GridStep<D, T>::impose(double time) {
         for (int c = 0; c < D; ++c)
           if (box_holds(static_cast<int>(condition.type), condition.axis, condition.side, given, c,
                         motion_at(field, box.nodes[i])[c]))
-            hold(field, box.nodes[i], c, velocity[c]);
+            hold(field, box.nodes[i], c, velocity[c], box.support, box.position[i]);
     }
+  }
+  if (!gripped_.empty()) impose_grips();
+}
+
+/// Finds the nodes to which particles of a grip give half of the mass or more.
+template <int D, class T>
+void GridStep<D, T>::find_gripped_nodes() {
+  gripped_.clear();
+  for (std::size_t grip = 0; grip < scene_.experiment.grips.size(); ++grip) {
+    const int field = scene_.experiment.bodies[scene_.experiment.grips[grip].body].field;
+    const Channel channel = channel_of(scene_.plan, grip_field(grip));
+    for (std::uint32_t node = 0; node < grid_.nodes(); ++node)
+      if (grip_holds(grid_.quad(channel, field, node)[3], motion_at(field, node)[3]))
+        gripped_.push_back({field, node, grip, grid_.position_of(node)});
+  }
+}
+
+/// Sets the velocities that grips give, the means of their particles' by mass.
+template <int D, class T>
+void GridStep<D, T>::impose_grips() {
+  for (const auto& [field, node, number, x] : gripped_) {
+    const Grip& grip = scene_.experiment.grips[number];
+    const T mass = grid_.quad(channel_of(scene_.plan, grip_field(number)), field, node)[3];
+    const Q momentum =
+        grid_.quad(channel_of(scene_.plan, grip_field(number) + (grips_at_end_ ? "" : "_before")), field, node);
+    for (int c = 0; c < D; ++c)
+      if (grip.held[c]) hold(field, node, c, momentum[c] / mass, scene_.experiment.support_of_grip(number), x);
   }
 }
 
 template <int D, class T>
-void GridStep<D, T>::hold(int field, std::uint32_t node, int c, T velocity) {
+void GridStep<D, T>::hold(int field, std::uint32_t node, int c, T velocity, int support, const Vector3& x) {
   Q& v = motion_at(field, node);
   if (!(v[3] > 0)) return;
-  if (records_)
-    record(boundary_impulse, standing_boundary, field, node, c, double(v[3]) * (double(velocity) - double(v[c])));
+  if (records_ || notes_reactions_) {
+    Vector3 impulse{};
+    impulse[c] = double(v[3]) * (double(velocity) - double(v[c]));
+    if (records_) record(boundary_impulse, standing_boundary, field, node, c, impulse[c]);
+    if (notes_reactions_) reactions_.hold(support, x, impulse);
+  }
   v[c] = velocity;
+}
+
+// ---- reactions of walls ------------------------------------------------------------------------------------------
+
+template <int D, class T>
+MirroredPlaces GridStep<D, T>::places(const FaceNodes& face, const MirrorPair& pair) const {
+  MirroredPlaces at{support_of_wall(face.axis, face.side), pair.foot, pair.foot};
+  const double inward = face.side == 0 ? pair.distance : -pair.distance;
+  at.ghost[face.axis] -= inward, at.mirror[face.axis] += inward;
+  return at;
+}
+
+/// Notes that a ghost's momentum is about to be folded.
+template <int D, class T>
+void GridStep<D, T>::note_mirror(const FaceNodes& face, std::size_t index, int field, Q signs, Q wall) {
+  const MirrorPair& pair = face.pairs[index];
+  const Q ghost = motion_at(field, pair.ghost);
+  reactions_.mirror(places(face, pair), as_array(widen(ghost)),
+                    as_array(mirrored(widen(ghost), widen(signs), Wide(double(ghost[3]) * widen(wall)))));
+}
+
+template <int D, class T>
+void GridStep<D, T>::note_mirrored_force(const FaceNodes& face, const MirrorPair& pair, Wide ghost, Q signs) {
+  reactions_.mirror_force(places(face, pair), as_array(ghost), as_array(widen(signs) * ghost));
+}
+
+/// Notes that particles have gathered an increment from a ghost, and that its projection is about to be folded.
+template <int D, class T>
+void GridStep<D, T>::note_projection(const FaceNodes& face, std::size_t index, int field, Q signs, Q wall) {
+  const MirrorPair& pair = face.pairs[index];
+  const MirroredPlaces at = places(face, pair);
+  const double mass = face.folded_mass[field * face.pairs.size() + index];
+  const auto momentum = [&](std::uint32_t node) {
+    return as_array(mass * widen(grid_.quad(filter_increment, field, node)));
+  };
+  reactions_.beyond_projection(at, momentum(pair.mirror), momentum(pair.ghost));
+  const Wide ghost = widen(grid_.quad(filter_projection, field, pair.ghost));
+  reactions_.mirror_projection(at, as_array(ghost),
+                               as_array(mirrored(ghost, widen(signs), Wide(ghost[3] * widen(wall)))));
+}
+
+/// Records what particles take from the supports when they gather the velocity as it is now. `increments`: its change
+/// stands in velocity_before.
+template <int D, class T>
+void GridStep<D, T>::record_reactions(const StepInfo& step, bool increments) {
+  if (!notes_reactions_) return;
+  reactions_.apply_forces(step.dt);
+  reactions_.begin_gather();
+  for (const FaceNodes& face : grid_.faces()) {
+    for (std::size_t index = 0; !face.periodic() && index < face.pair_folds.size(); ++index) {
+      if (!face.pair_folds[index]) continue;
+      const int field = static_cast<int>(index / face.pairs.size());
+      const MirrorPair& pair = face.pairs[index % face.pairs.size()];
+      const MirroredPlaces at = places(face, pair);
+      const double mass = face.folded_mass[index];
+      const auto momentum = [&](Channel c, std::uint32_t node) {
+        return as_array(mass * widen(grid_.quad(c, field, node)));
+      };
+      reactions_.beyond(at, momentum(motion, pair.mirror), momentum(motion, pair.ghost));
+      if (increments)
+        reactions_.beyond_increment(at, momentum(velocity_before, pair.mirror), momentum(velocity_before, pair.ghost));
+    }
+  }
+  reactions_.record(step);
 }
 
 }  // namespace mpm::cpu

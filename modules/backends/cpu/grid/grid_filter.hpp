@@ -35,7 +35,7 @@ void GridStep<D, T>::begin_filter(const Pass& pass) {
   copy_velocity(motion, filter_increment);
   if (pass.stage == Stage::before_forces) copy_velocity(motion, kept_velocity);
   if (pass.stage == Stage::before_forces && grid_.has(constrained)) copy_velocity(constrained, kept_constrained);
-  if (pass.stage == Stage::before_forces) impulse_.keep();
+  if (pass.stage == Stage::before_forces) impulse_.keep(), reactions_.keep();
   filter_.iterations = 0;
   filter_.first_norm = filter_.last_norm = mass_norm_of_increment();
 }
@@ -45,12 +45,15 @@ void GridStep<D, T>::begin_filter(const Pass& pass) {
 template <int D, class T>
 void GridStep<D, T>::project_increment(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
+  const bool first = filter_.iterations == 0;
+  if (notes_reactions_) reactions_.begin_projection();
   for (const FaceNodes& face : grid_.faces()) {  // images first, then walls, as fold_faces decided
     const Q signs = mirror_signs(face, AtWall::momentum);
     for_each_folded(face, [&](int field, const MirrorPair& pair) {
-      const bool first = filter_.iterations == 0;
-      fold_momentum(filter_projection, field, pair, signs,
-                    first ? wall_velocity(face.condition->velocity, pair.foot, time) : Q{});
+      const Q wall = first ? wall_velocity(face.condition->velocity, pair.foot, time) : Q{};
+      if (notes_reactions_ && !face.periodic())
+        note_projection(face, static_cast<std::size_t>(&pair - face.pairs.data()), field, signs, wall);
+      fold_momentum(filter_projection, field, pair, signs, wall);
     });
   }
   for_each_block([&](int field, std::uint32_t first, double*) {
@@ -126,6 +129,7 @@ void GridStep<D, T>::measure_constraints() {
 template <int D, class T>
 void GridStep<D, T>::constrain_free(const Pass& pass, const StepInfo& step) {
   if (!grid_.has(constrained)) return constrain(pass, step);
+  if (notes_reactions_) reactions_.take_back();
   for_each_block([&](int field, std::uint32_t first, double*) {
     Q *const nodes = &motion_at(field, first), *const added = &grid_.quad(constrained, field, first);
     if (records_) take_back(field, first);
@@ -139,6 +143,7 @@ void GridStep<D, T>::constrain_free(const Pass& pass, const StepInfo& step) {
 template <int D, class T>
 void GridStep<D, T>::constrain(const Pass& pass, const StepInfo& step) {
   const double time = time_of(pass, step);
+  grips_at_end_ = pass.stage != Stage::before_forces;
   impose(time);
   if (!scene_.plan.resolves_contact()) return;
   resolve_contact(step, pass.remap() ? Recorded::remap : Recorded::filter);
@@ -150,6 +155,7 @@ template <int D, class T>
 void GridStep<D, T>::update_filter(const Pass& pass, const StepInfo& step) {
   const std::uint32_t iteration = static_cast<std::uint32_t>(filter_.iterations + 1);
   for_each_block([&](int field, std::uint32_t first, double*) { update_block(field, first, iteration); });
+  if (notes_reactions_) reactions_.take_projection(static_cast<int>(iteration));
   if (scene_.experiment.filter_schedule.constrain_always) {
     copy_velocity(motion, filter_projection);
     constrain_free(pass, step);
@@ -179,12 +185,14 @@ void GridStep<D, T>::end_filter(const Pass& pass, const StepInfo& step) {
   if (!scene_.experiment.filter_schedule.constrain_always) constrain_free(pass, step);
   fill_ghosts(time, false);
   if (records_) book_filter();
+  if (pass.stage == Stage::after_forces) record_reactions(step, false);
 }
 
 template <int D, class T>
 void GridStep<D, T>::restore_velocity(const Pass& pass, const StepInfo& step) {
   if (ledger_on() && !pass.has(Act::keep_correction)) book_filtered_strain(step.dt);
   impulse_.restore(pass.has(Act::keep_correction));
+  reactions_.restore(pass.has(Act::keep_correction));
   restore(motion, kept_velocity, pass.has(Act::keep_correction));
   if (grid_.has(constrained)) restore(constrained, kept_constrained, pass.has(Act::keep_correction));
 }
@@ -223,9 +231,11 @@ void GridStep<D, T>::add_correction(const Pass& pass, const StepInfo& step) {
   add(kept_velocity, motion);
   if (grid_.has(constrained)) add(kept_constrained, constrained);
   impulse_.add_correction();
+  reactions_.add_correction();
   constrain_free(pass, step);
   fill_ghosts(time_of(pass, step), false);
   if (records_) book_filter();
+  record_reactions(step, false);
 }
 
 }  // namespace mpm::cpu

@@ -9,7 +9,7 @@ namespace mpm::cpu {
 
 template <int D, class T>
 GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, HeatLedger& heat_ledger,
-                         ContactRecord& record, FilterRecord& filter)
+                         ContactRecord& record, FilterRecord& filter, ReactionImpulse& reactions)
     : NamedChannels{scene.plan},
       scene_(scene),
       grid_(grid),
@@ -18,13 +18,11 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
       record_(record),
       impulse_(scene.experiment),
       filter_(filter),
+      reactions_(reactions),
       edges_(edge_models(scene.experiment)),
       wall_weights_(scene.plan.node_field("heated_volume") ? wall_weights(scene.experiment) : WallWeights()) {
-  for (int c = 0; c < D; ++c) {
-    gravity_[c] = static_cast<T>(scene.experiment.gravity[c]);
-    if (!scene.experiment.gravity_has_potential(c)) periodic_gravity_[c] = gravity_[c];
-    has_gravity_ = has_gravity_ || gravity_[c] != 0;
-  }
+  for (int c = 0; c < D; ++c) has_gravity_ = has_gravity_ || scene.experiment.has_gravity(c);
+  take_gravity(0);
   for (Channel c = 0; c < grid.channels(); ++c) {
     folded_[static_cast<int>(grid.field(c).folded)].push_back(c);
     if (grid.field(c).at_wall == AtWall::slip) slipping_.push_back(c);
@@ -32,6 +30,16 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
   may_merge_ = scene.plan.divides_with_forces();
   if (const Pass* const strain = scene.plan.pass_of(Act::strain); strain && strain->stage == Stage::before_forces)
     early_share_ = strain->share;
+}
+
+/// Sets gravity to that of the step that begins at a time, s.
+template <int D, class T>
+void GridStep<D, T>::take_gravity(double time) {
+  const Vector3 gravity = scene_.experiment.gravity_at(time);
+  for (int c = 0; c < D; ++c) {
+    gravity_[c] = static_cast<T>(gravity[c]);
+    if (!scene_.experiment.gravity_has_potential(c)) gravity_without_potential_[c] = gravity_[c];
+  }
 }
 
 /// Calls visit(field, first node, partial sums) for every block of nodes of every field.
@@ -127,11 +135,16 @@ double GridStep<D, T>::divide_by_mass(bool keeps_before, bool accounted) {
 template <int D, class T>
 void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   const bool accounted = ledger_on() && !remap, keeps_before = !remap && grid_.has(velocity_before);
+  if (!remap && scene_.experiment.changing_gravity) take_gravity(step.time);
   begin_stage(accounted);
+  notes_reactions_ = reactions_.asked() && !remap;
+  if (notes_reactions_) reactions_.begin_step();
   if (accounted) book_scattered_sums();
   fold_images(remap, step);
   const double edges_raw = accounted ? kinetic_energy_of_edges() : 0.0;
   fold_walls(remap, step);
+  if (!remap && !scene_.experiment.grips.empty()) find_gripped_nodes();
+  grips_at_end_ = remap;
   if (merges() && !remap) return;
   const double folded = accounted ? kinetic_energy_of_edges() - edges_raw : 0.0;
   const double energy = divide_by_mass(keeps_before, accounted);
@@ -148,6 +161,7 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
     impose(step.time);
   }
   measure_constraints();
+  if (notes_reactions_) reactions_.keep_before();
   if (keeps_before) copy_constrained_velocity();
   if (accounted) book_impulses();
   fill_ghosts(step.time, false);
@@ -156,11 +170,13 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
 /// Marks the slots where a condition or contact may change a velocity.
 template <int D, class T>
 void GridStep<D, T>::find_constrained_slots() {
-  constrained_.assign(grid_.slots(), 0);
+  constrained_.assign(grid_.slots(), scene_.experiment.damping.acts());  // which concerns all of them
+  if (scene_.experiment.damping.acts()) return;
   for (const FaceNodes& face : grid_.faces())
     for (const std::uint32_t node : face.wall) constrained_[node / block_nodes] = 1;
   for (const BoxNodes& box : grid_.boxes())
     for (const std::uint32_t node : box.nodes) constrained_[node / block_nodes] = 1;
+  for (const GrippedNode& gripped : gripped_) constrained_[gripped.node / block_nodes] = 1;
   if (!scene_.plan.resolves_contact()) return;
   for (const std::uint32_t slot : grid_.shared_slots()) constrained_[slot] = 1;
 }
@@ -213,7 +229,7 @@ void GridStep<D, T>::account_gravity_corrections(double dt) {
       for (int c = 0; c < D; ++c) {
         const double work = 0.5 * dt * gravity_corrections_at(field, i, c) * (static_cast<double>(before[c]) + v[c]);
         ledger_.internal_force -= work;
-        (scene_.experiment.gravity_has_potential(c) ? ledger_.gravity : ledger_.periodic_gravity) += work;
+        (scene_.experiment.gravity_has_potential(c) ? ledger_.gravity : ledger_.gravity_without_potential) += work;
       }
     }
 }
@@ -224,31 +240,37 @@ template <int D, class T>
 void GridStep<D, T>::account_for_block(int field, std::uint32_t first, double dt, bool with_impulses, double* partial) {
   const Q *const after = &motion_at(field, first), *const before = &grid_.quad(velocity_before, field, first),
                  *const forces = &grid_.quad(force, field, first);
-  const Q* const bodies = grid_.has(body_force) ? &grid_.quad(body_force, field, first) : nullptr;
   const Wide gravity = widen(gravity_);
   const Q* const walls =
       with_impulses && grid_.has(boundary_impulse) ? &grid_.quad(boundary_impulse, field, first) : nullptr;
   const Q* const pairs =
       with_impulses && grid_.has(contact_impulse) ? &grid_.quad(contact_impulse, field, first) : nullptr;
-  Wide internal{}, external{}, momentum{}, squares{}, boundary{}, contact{};
+  const Q* const damping =
+      with_impulses && grid_.has(damping_impulse) ? &grid_.quad(damping_impulse, field, first) : nullptr;
+  Wide internal{}, momentum{}, squares{}, boundary{}, contact{}, lost{};
   for (int k = 0; k < block_nodes; ++k) {
     const Wide v = widen(after[k]), old = widen(before[k]), f = widen(forces[k]), mean = mean_velocity(old, v);
-    const Wide body = bodies ? widen(bodies[k]) : Wide{};
     const double mass = v[3];
     internal += f * mean;
-    external += body * mean;
     momentum += mass * mean;
     squares += twice_kinetic_energy(v, mass);
     if (walls) boundary += widen(walls[k]) * mean;
     if (pairs) contact += widen(pairs[k]) * mean;
+    if (damping) lost += widen(damping[k]) * mean;
   }
   partial[of_internal_force] += dt * sum_of_components(internal);
-  partial[of_body_force] += dt * sum_of_components(external);
-  const Wide periodic = widen(periodic_gravity_);
+  for (const ExternalChannel& load : external) {
+    const Q* const given = &grid_.quad(load.channel, field, first);
+    Wide work{};
+    for (int k = 0; k < block_nodes; ++k) work += widen(given[k]) * mean_velocity(widen(before[k]), widen(after[k]));
+    partial[of_external + static_cast<int>(load.kind)] += dt * sum_of_components(work);
+  }
+  const Wide periodic = widen(gravity_without_potential_);
   partial[of_gravity] += dt * sum_of_components(momentum * (gravity - periodic));
-  partial[of_periodic_gravity] += dt * sum_of_components(momentum * periodic);
+  partial[of_gravity_without_potential] += dt * sum_of_components(momentum * periodic);
   partial[of_boundary] += sum_of_components(boundary);
   partial[of_contact] += sum_of_components(contact);
+  partial[of_damping] += sum_of_components(lost);
   partial[of_motion] += 0.5 * sum_of_components(squares);
 }
 
@@ -259,11 +281,13 @@ void GridStep<D, T>::account_for_impulses(double dt) {
     if (constrained_[first / block_nodes]) account_for_block(field, first, dt, true, partial);
   });
   book(&Ledger::internal_force, sum_partials(of_internal_force));
-  book(&Ledger::body_force, sum_partials(of_body_force));
+  for (const ExternalChannel& load : external)
+    book(row_of(load.kind), sum_partials(of_external + static_cast<int>(load.kind)));
   book(&Ledger::gravity, sum_partials(of_gravity));
-  book(&Ledger::periodic_gravity, sum_partials(of_periodic_gravity));
+  book(&Ledger::gravity_without_potential, sum_partials(of_gravity_without_potential));
   book(&Ledger::boundary, sum_partials(of_boundary));
   book(&Ledger::contact, sum_partials(of_contact));
+  book(&Ledger::damping, sum_partials(of_damping));
   kinetic_energy_after_ = sum_partials(of_motion);
   account_gravity_corrections(dt);
   if (scene_.plan.filters() || scene_.experiment.solver.stress_update == StressUpdate::modified_last)
@@ -281,16 +305,40 @@ void GridStep<D, T>::accelerate(double dt) {
   for_each_block([&](int field, std::uint32_t first, double* partial) {
     Q* const nodes = &motion_at(field, first);
     const Q* const f = grid_.has(force) ? &grid_.quad(force, field, first) : nullptr;
-    const Q* const body = grid_.has(body_force) ? &grid_.quad(body_force, field, first) : nullptr;
+    const Q* loads[external_force_count];
+    int count = 0;
+    for (const ExternalChannel& load : external) loads[count++] = &grid_.quad(load.channel, field, first);
     const bool heavy = for_each_pack(nodes, [&](int node, L velocity, L mass) {
-      if (!f && !body) return velocity + step * gravity;
+      if (!f && count == 0) return velocity + step * gravity;
       L total(T(0));
       if (f) total = total + pack_of(f + node);
-      if (body) total = total + pack_of(body + node);
+      for (int k = 0; k < count; ++k) total = total + pack_of(loads[k] + node);
       return accelerated(velocity, total, mass, gravity, step);
     });
     if (ledger_on() && heavy && !constrained_[first / block_nodes]) account_for_block(field, first, dt, false, partial);
   });
+}
+
+/// Damps what the forces, conditions and contact have made of the velocity; conditions hold what they held.
+template <int D, class T>
+void GridStep<D, T>::damp(const StepInfo& step) {
+  const Damping& damping = scene_.experiment.damping;
+  const T local = static_cast<T>(damping.local), of_velocity = static_cast<T>(damping.left_of_velocity(step.dt)),
+          of_change = static_cast<T>(damping.left_of_change(step.dt));
+  visit_blocks([&](int field, std::uint32_t first, double*) {
+    for (std::uint32_t node = first; node < first + block_nodes; ++node) {
+      Q& v = motion_at(field, node);
+      const Q before = grid_.quad(velocity_before, field, node);
+      for (int c = 0; c < D && v[3] > 0; ++c) {
+        const T now = damped<T>(before[c], v[c], local, of_velocity, of_change);
+        if (records_) grid_.quad(damping_impulse, field, node)[c] += v[3] * (now - v[c]);
+        v[c] = now;
+      }
+    }
+  });
+  keep_free_velocity(true);
+  impose(step.time + step.dt);
+  measure_constraints();
 }
 
 /// Makes velocities of momenta and applies gravity in one pass; forces came with the momenta.
@@ -342,11 +390,14 @@ void GridStep<D, T>::subtract_velocity_before() {
 template <int D, class T>
 void GridStep<D, T>::apply_forces(const StepInfo& step) {
   const double end = step.time + step.dt;
+  notes_reactions_ = reactions_.asked();
+  grips_at_end_ = true;
   if (merges()) {
     divide_and_accelerate(step.dt);
     add_gravity_corrections(step.dt);
     impose(end);
     fill_ghosts(end, false);
+    record_reactions(step, false);
     return extend_largest_by_edges();
   }
   for (const bool periodic : {true, false})
@@ -361,10 +412,12 @@ void GridStep<D, T>::apply_forces(const StepInfo& step) {
     impose(end);
   }
   measure_constraints();
+  if (scene_.experiment.damping.acts()) damp(step);
   if (ledger_on()) account_for_impulses(step.dt);
   const bool gathers_increment = scene_.has(MPM_GATHERS_INCREMENT);
   if (gathers_increment) subtract_velocity_before();
   fill_ghosts(end, gathers_increment);
+  record_reactions(step, gathers_increment);
 }
 
 }  // namespace mpm::cpu

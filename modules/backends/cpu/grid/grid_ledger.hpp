@@ -15,7 +15,7 @@ void GridStep<D, T>::begin_stage(bool records) {
   records_ = records;
   work_of_folds_ = 0;
   if (!records) return;
-  for (const Channel c : {boundary_impulse, contact_impulse, filter_impulse})
+  for (const Channel c : {boundary_impulse, contact_impulse, filter_impulse, damping_impulse})
     if (grid_.has(c)) grid_.clear(c);
 }
 
@@ -128,7 +128,7 @@ double GridStep<D, T>::power_of_forces(double dt) {
 /// The work of gravity, where it has a potential, at the velocity of the nodes as it is now, J.
 template <int D, class T>
 double GridStep<D, T>::power_of_weight(double dt) {
-  const Wide gravity = widen(gravity_) - widen(periodic_gravity_);
+  const Wide gravity = widen(gravity_) - widen(gravity_without_potential_);
   for_each_block([&](int field, std::uint32_t first, double* partial) {
     Wide sum{};
     for (std::uint32_t node = first; node < first + block_nodes; ++node) {

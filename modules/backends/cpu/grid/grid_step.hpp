@@ -11,6 +11,8 @@
 #include "operators/motion.hpp"
 #include "simulation/contact_impulse.hpp"
 #include "simulation/contact_pair.hpp"
+#include "simulation/loads.hpp"
+#include "simulation/reaction_impulse.hpp"
 #include "simulation/wall_heat.hpp"
 
 namespace mpm::cpu {
@@ -19,12 +21,15 @@ template <int D, class T>
 class GridStep : NamedChannels {
  public:
   GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& ledger, HeatLedger& heat_ledger, ContactRecord& record,
-           FilterRecord& filter);
+           FilterRecord& filter, ReactionImpulse& reactions);
 
   /// Folds what was scattered, divides by mass, imposes conditions and contact before the forces.
   void momentum_to_velocity(bool remap, const StepInfo& step);
   /// Computes v+ = v- + dt f / m with conditions, contact after the forces, increments, ghosts.
   void apply_forces(const StepInfo& step);
+  /// The records of pairs of fields, which go into checkpoints.
+  std::vector<PairRecord>& contact_pairs() { return impulse_.pairs(); }
+  const std::vector<PairRecord>& contact_pairs() const { return impulse_.pairs(); }
   /// The largest component of the velocities after apply_forces, along any axis.
   T largest_component() const { return merges() ? largest_ : grid_.largest_component(motion); }
 
@@ -90,7 +95,15 @@ class GridStep : NamedChannels {
   void fill_ghosts(double time, bool increments);
 
   void impose(double time);
-  void hold(int field, std::uint32_t node, int component, T velocity);
+  void hold(int field, std::uint32_t node, int component, T velocity, int support, const Vector3& x);
+  void find_gripped_nodes();
+  void impose_grips();
+  MirroredPlaces places(const FaceNodes& face, const MirrorPair& pair) const;
+  static Vector3 as_array(Wide values) { return {values[0], values[1], D == 3 ? values[2] : 0.0}; }
+  void note_mirror(const FaceNodes& face, std::size_t pair, int field, Q signs, Q wall);
+  void note_mirrored_force(const FaceNodes& face, const MirrorPair& pair, Wide force, Q signs);
+  void note_projection(const FaceNodes& face, std::size_t pair, int field, Q signs, Q wall);
+  void record_reactions(const StepInfo& step, bool increments);
   double work_of_fold(int field, const MirrorPair& pair, Q signs, Q wall_velocity);
   double divide_by_mass(bool keeps_before, bool accounted);
   void book_scattered_sums();
@@ -108,7 +121,9 @@ class GridStep : NamedChannels {
   void add_gravity_corrections(double dt);
   double gravity_corrections_at(int field, std::size_t edge, int component) const;
   void account_gravity_corrections(double dt);
+  void take_gravity(double time);
   void accelerate(double dt);
+  void damp(const StepInfo& step);
   void divide_and_accelerate(double dt);
   void extend_largest_by_edges();
   void account_for_impulses(double dt);
@@ -157,7 +172,7 @@ class GridStep : NamedChannels {
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
 
-  Q gravity_{}, periodic_gravity_{};  ///< all of it, and the part along periodic axes, m/s^2
+  Q gravity_{}, gravity_without_potential_{};  ///< all of it, and the part that has none, m/s^2
   const Scene<D, T>& scene_;
   Grid<D, T>& grid_;
   Ledger& ledger_;
@@ -165,21 +180,32 @@ class GridStep : NamedChannels {
   ContactRecord& record_;
   ContactImpulse impulse_;
   FilterRecord& filter_;
+  ReactionImpulse& reactions_;
   const std::vector<EdgeModel> edges_;
   std::array<std::vector<Channel>, 3> folded_;  ///< [when]
   struct Signs {
     Q of;
   };
+  /// A node that a grip holds in this step.
+  struct GrippedNode {
+    int field;
+    std::uint32_t node;
+    std::size_t grip;
+    Vector3 x;  ///< m
+  };
+  std::vector<GrippedNode> gripped_;
+  bool grips_at_end_ = false;      ///< nodes are held as particles are told for the end of the step, not as they were
   std::vector<Signs> signs_;       ///< signs of folded_[with_mass] at the face that is folded now
   std::vector<Channel> slipping_;  ///< channels that vanish across a wall on its nodes
   /// The partial sums of account_for_block.
   enum Partial {
     of_internal_force,
-    of_body_force,
-    of_gravity,
-    of_periodic_gravity,
+    of_external,  ///< the first of the kinds of ExternalForce
+    of_gravity = of_external + external_force_count,
+    of_gravity_without_potential,
     of_boundary,
     of_contact,
+    of_damping,
     of_filter,
     of_motion,
     partial_count
@@ -201,10 +227,16 @@ class GridStep : NamedChannels {
   Beyond beyond_;                                        ///< heat of the temperatures before the forces
   double heat_of_folds_ = 0, rate_of_folds_ = 0;         ///< J and W that nodes have since their ghosts were folded
   bool has_gravity_ = false;
-  bool may_merge_ = false;  ///< see merges: momentum_to_velocity leaves the division to apply_forces
-  bool accounted_ = false;  ///< the ledger takes its entries from the step under way
-  bool records_ = false;    ///< the stage under way notes its impulses
-  T largest_ = 0;           ///< see largest_component
+  bool may_merge_ = false;        ///< see merges: momentum_to_velocity leaves the division to apply_forces
+  bool accounted_ = false;        ///< the ledger takes its entries from the step under way
+  bool records_ = false;          ///< the stage under way notes its impulses
+  bool notes_reactions_ = false;  ///< supports note what they give in the stage under way
+  T largest_ = 0;                 ///< see largest_component
 };
 
 }  // namespace mpm::cpu
+
+/// What instantiation.cpp.in makes of this header and its parts for every dimension and scalar.
+#define MPM_INSTANTIATE_GRID(D, T) \
+  template class Grid<D, T>;       \
+  template class GridStep<D, T>;

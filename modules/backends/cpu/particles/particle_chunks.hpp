@@ -24,6 +24,8 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
     for (const Operator& operation : pass.operators)
       adds_[pass.fused()][static_cast<int>(operation.act)] = channels_of(scene.plan, operation.adds);
   });
+  for (std::size_t k = 0; k < scene.experiment.grips.size(); ++k)
+    grips_.push_back({channel_of(scene.plan, grip_field(k)), channel_of(scene.plan, grip_field(k) + "_before")});
   int transfer_components = 0;
   for (const Particles<D, T>& body : particles)
     transfer_components = std::max(transfer_components, body.motion_components - D);
@@ -434,13 +436,12 @@ double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const 
       for (int c = 0; c < D; ++c) squares = squares + load(v, c, p) * load(v, c, p);
       return squares;
     };
-    const T* const around = circumferences(chunk);
-    const double sum =
-        around ? sum_of_particles<T>(chunk.count, [&](int p) { return squares_of(p) * L::load(around + p); })
-               : sum_of_particles<T>(chunk.count, squares_of);
+    const T* const size = sizes(chunk);
+    const double sum = size ? sum_of_particles<T>(chunk.count, [&](int p) { return squares_of(p) * L::load(size + p); })
+                            : sum_of_particles<T>(chunk.count, squares_of);
     if (!higher_kernels_.squares) return 0.5 * chunk.body.mass * sum;
     const Stencils<T> stencils{work.first, false, work.weight, work.gradient, {}};
-    const double higher = higher_kernels_.squares(stencils, work.offset, chunk.higher(), around, chunk.count);
+    const double higher = higher_kernels_.squares(stencils, work.offset, chunk.higher(), size, chunk.count);
     return 0.5 * chunk.body.mass * (sum + higher);
   };
   if (!scene_.has(MPM_AFFINE_CARRIES_ENERGY)) return energy_with([](int) { return L(T(0)); });

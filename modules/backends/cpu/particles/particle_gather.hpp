@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "backends/cpu/particles/particle_grips.hpp"
 #include "backends/cpu/particles/particle_lists.hpp"
 #include "kernel/lanes.hpp"
 #include "operators/motion.hpp"
@@ -60,6 +61,7 @@ template <int D, class T, class Components>
 typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>::gather(const Pass& pass,
                                                                                          const StepInfo& step) {
   account_for(step);
+  if (!grips_.empty()) clear_given_to_gripped();
   for (auto& work : work_) work->moved = {};
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
@@ -158,6 +160,7 @@ template <int D, class T, class Components>
         std::copy_n(work.velocity + c * chunk_size<T>, chunk.end, target + c * chunk_size<T>);
   if (by_mean)
     for (int k = 0; k < D * chunk_size<T>; ++k) advection[k] = mean_velocity(before[k], velocity[k]);
+  if (chunk.particles.grip >= 0) move_gripped(chunk, advection, step.time + step.dt);
   const bool corners = chunk.particles.corners >= 0;
   T* const moved = !corners              ? nullptr
                    : pass.has(Act::move) ? work.moved_corners.data()
@@ -398,12 +401,16 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   if (accounted_) book_stress(chunk, request, request, true);
   if (chunk.particles.domain >= 0 && !chunk.body.frozen)
     advance_domain(chunk, velocity_gradient, request.dt, pass.second_half());
+  if (chunk.particles.deformation >= 0 && !chunk.body.frozen) {
+    T* const deformation = chunk.at(chunk.particles.deformation);
+    advance_columns(deformation, deformation, velocity_gradient, request.dt, chunk.end);
+  }
   if (chunk.body.warms_itself) warm_by_dissipation(chunk, work);
   if (!dissipation || !accounted_) return;
-  const T* const around = circumferences(chunk);
+  const T* const size = sizes(chunk);
   const auto energies = [&](int p) {
     const Lanes<T> energy = Lanes<T>::load(work.scalar + p);
-    return around ? energy * Lanes<T>::load(around + p) : energy;
+    return size ? energy * Lanes<T>::load(size + p) : energy;
   };
   chunk.block.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
 }
@@ -417,7 +424,7 @@ void ParticleStep<D, T, Components>::book_stress(const Chunk& chunk, const mpm_m
                                                                            static_cast<const T*>(now.stored_energy);
   const T* const L = static_cast<const T*>(strain.velocity_gradient);
   const T* const hoop = static_cast<const T*>(strain.velocity_gradient_zz);
-  const T* const around = circumferences(chunk);
+  const T* const size = sizes(chunk);
   const auto of_strained = [&](double rate, double squared) { return after ? rate - strain.dt * squared : rate; };
   double power = 0, stored = 0;
   for (int p = 0; p < chunk.count; ++p) {
@@ -429,9 +436,9 @@ void ParticleStep<D, T, Components>::book_stress(const Chunk& chunk, const mpm_m
         for (int k = 0; k < D; ++k) squared += at(L, i * D + k) * at(L, k * D + j);
         sum += at(stress, Sym<D, T>::index(i, j)) * of_strained(at(L, i * D + j), squared);
       }
-    const double ring = around ? double(around[p]) : 1.0;
-    power += ring * sum;
-    stored += ring * at(energy, 0);
+    const double share = size ? double(size[p]) : 1.0;
+    power += share * sum;
+    stored += share * at(energy, 0);
   }
   chunk.block.stress_power += 0.5 * strain.dt * chunk.body.volume * power;
   chunk.block.stored += (after ? 1 : -1) * chunk.body.volume * stored;
@@ -460,10 +467,16 @@ void ParticleStep<D, T, Components>::advance_domain(const Chunk& chunk, const T*
                                                     bool again) const {
   const int strained = chunk.particles.next_domain < 0 ? chunk.particles.domain : chunk.particles.next_domain;
   const T* const from = chunk.at(again ? strained : chunk.particles.domain);
-  T* const to = chunk.at(strained);
+  advance_columns(from, chunk.at(strained), velocity_gradient, dt, chunk.end);
+}
+
+/// Sets the matrices `to` <- (I + dt L) `from`, which may be the same.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::advance_columns(const T* from, T* to, const T* velocity_gradient, double dt,
+                                                     int count) const {
   using V = Lanes<T>;
   const T step = static_cast<T>(dt);
-  for (int p = 0; p < chunk.end; p += V::width) {
+  for (int p = 0; p < count; p += V::width) {
     V L[D * D];
     for (int c = 0; c < D * D; ++c) L[c] = V::load(velocity_gradient + c * chunk_size<T> + p);
     for (int k = 0; k < D; ++k) {  // column by column

@@ -92,11 +92,9 @@ void ParticleStep<D, T, Components>::scatter_heated_volume(const Chunk& chunk, W
   std::fill(work.b, work.b + D * chunk_size<T>, T(0));
   const T volume = static_cast<T>(chunk.body.volume);
   for (int p = 0; p < chunk.end; ++p) work.b[p] = volume * work.volume_ratio[p];
-  if (const T* const around = circumferences(chunk))
+  if (const T* const size = sizes(chunk))
     for (int p = 0; p < chunk.end; p += Lanes<T>::width)
-      (Lanes<T>::load(work.b + p) * Lanes<T>::load(around + p) /
-       (static_cast<T>(2 * std::numbers::pi) * radius(chunk, p)))
-          .store(work.b + p);
+      section(chunk, Lanes<T>::load(work.b + p) * Lanes<T>::load(size + p), p).store(work.b + p);
   for (int p = 0; p < chunk.end; ++p) work.scalar[p] = work.b[p] * of_phase(chunk, p, &ThermalProperties::conductivity);
   add_to_tile(chunk, work, heated_volume, work.scalar, true, false, false);
 }
@@ -127,10 +125,10 @@ void ParticleStep<D, T, Components>::conduct_chunk(const Chunk& chunk, Work& wor
   request.volume_ratio = work.volume_ratio;
   update_material(chunk, request);
   const T volume = static_cast<T>(-chunk.body.volume);
-  const T* const around = circumferences(chunk);
+  const T* const size = sizes(chunk);
   for (int p = 0; p < chunk.end; ++p)
-    work.scalar[p] = volume * work.volume_ratio[p] * (around ? around[p] : T(1)) *
-                     of_phase(chunk, p, &ThermalProperties::conductivity);
+    work.scalar[p] =
+        volume * work.volume_ratio[p] * (size ? size[p] : T(1)) * of_phase(chunk, p, &ThermalProperties::conductivity);
   for (int a = 0; a < D; ++a)  // S takes the place of the gradient
     for (int p = 0; p < chunk.end; ++p) work.S[a * chunk_size<T> + p] *= work.scalar[p];
   std::fill_n(work.S + D * chunk_size<T>, (D - 1) * D * chunk_size<T>, T(0));
@@ -228,9 +226,9 @@ void ParticleStep<D, T, Components>::change_phases(const Chunk& chunk, Work& wor
   std::swap_ranges(kept, kept + chunk.end, temperature);  // both energies at one temperature
   update_material(chunk, request);
   std::swap_ranges(kept, kept + chunk.end, temperature);
-  const T* const around = circumferences(chunk);
+  const T* const size = sizes(chunk);
   for (int p = 0; p < chunk.count; ++p) {
-    const double lost = chunk.body.volume * (around ? around[p] : T(1)) *
+    const double lost = chunk.body.volume * (size ? size[p] : T(1)) *
                         (static_cast<double>(before[p]) - static_cast<double>(work.scalar[p]));
     chunk.block.dissipated += lost;
     chunk.block.stored -= lost;

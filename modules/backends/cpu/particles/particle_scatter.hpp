@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "backends/cpu/particles/particle_boxes.hpp"
+#include "backends/cpu/particles/particle_grips.hpp"
 #include "backends/cpu/particles/particle_lists.hpp"
 
 namespace mpm::cpu {
@@ -67,9 +68,9 @@ Scattered ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepIn
 /// Adds mass and momentum of a chunk's particles to its block's sums.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::add_scattered(const Chunk& chunk) const {
-  const T* const around = circumferences(chunk);
+  const T* const size = sizes(chunk);
   for (int p = 0; p < chunk.count; ++p) {
-    const double mass = chunk.body.mass * (around ? double(around[p]) : 1.0);
+    const double mass = chunk.body.mass * (size ? double(size[p]) : 1.0);
     chunk.block.scattered_mass += mass;
     for (int c = 0; c < D; ++c) chunk.block.scattered_momentum[c] += mass * chunk.motion[c * chunk_size<T> + p];
   }
@@ -117,7 +118,8 @@ template <int D, class T, class Components>
                                                                      bool evaluated) {
   const bool separate = grid_.has(force), merged = pass.has(Act::scatter_force) && !separate;
   const bool by_gradient = pass.has(Act::scatter_force) && !scene_.stress_by_affine;
-  evaluate_shape(chunk, work, by_gradient || pass.has(Act::scatter_contact));
+  const bool loads_by_gradient = pass.has(Act::scatter_force) && chunk.body.loads && chunk.body.loads->at_points();
+  evaluate_shape(chunk, work, by_gradient || loads_by_gradient || pass.has(Act::scatter_contact));
   if (!stencils_hold(chunk, work)) return false;
   if (!place_to_scatter(chunk, work, pass.has(Act::scatter_momentum) && !pass.remap() && !work.far_only)) return false;
   work.clock.lap(Phase::weights);
@@ -127,7 +129,7 @@ template <int D, class T, class Components>
     update_material(chunk, request);
     work.clock.lap(Phase::material);
   }
-  if (scene_.axisymmetric && pass.has(Act::scatter_force)) weigh_stress(chunk, work);
+  if (chunk.particles.size >= 0 && pass.has(Act::scatter_force)) weigh_stress(chunk, work);
   if (pass.has(Act::scatter_momentum)) {
     momentum_coefficients(chunk, work);
     const bool adds_to_A = scene_.stress_by_affine && scene_.has(MPM_SCATTERS_AFFINE);
@@ -135,7 +137,6 @@ template <int D, class T, class Components>
     if (merged) {
       if (!in_packing) stress_coefficients(chunk, work, step.dt, adds_to_A);
       if (scene_.axisymmetric) add_hoop_force(chunk, work, step.dt);
-      if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, true, step.dt);
     }
     const bool affine = scene_.has(MPM_SCATTERS_AFFINE) || (merged && scene_.stress_by_affine);
     const T stress = in_packing ? stress_scale(chunk, step.dt) : T(0);
@@ -144,25 +145,27 @@ template <int D, class T, class Components>
   }
   if (pass.has(Act::scatter_force) && separate) {
     scatter_stress(chunk, work);
-    if (scene_.experiment.body_force) scatter_body_force(chunk, work, step.time, false, step.dt);
+    if (chunk.body.loads) scatter_loads(chunk, work, step.time);
   }
   if (pass.has(Act::scatter_contact)) scatter_contact_fields(chunk, work);
   if (pass.has(Act::scatter_heat)) scatter_heat(chunk, work);
+  if (chunk.particles.grip >= 0 && pass.has(Act::scatter_momentum) && !pass.remap())
+    scatter_grips(chunk, work, step.time + step.dt);
   return true;
 }
 
-/// The circumference of each particle as seeded; null in plane strain and 3-D.
+/// The factors of the body's mass and volume, 2 pi r in axisymmetric scenes; null where all particles are equal.
 template <int D, class T, class Components>
-const T* ParticleStep<D, T, Components>::circumferences(const Chunk& chunk) const {
-  return chunk.particles.circumference < 0 ? nullptr : chunk.at(chunk.particles.circumference);
+const T* ParticleStep<D, T, Components>::sizes(const Chunk& chunk) const {
+  return chunk.particles.size < 0 ? nullptr : chunk.at(chunk.particles.size);
 }
 
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::fill_masses(const Chunk& chunk, Work& work) const {
   const T mass = static_cast<T>(chunk.body.mass);
   std::fill(work.mass, work.mass + chunk.end, mass);
-  if (const T* const around = circumferences(chunk))
-    for (int p = 0; p < chunk.end; ++p) work.mass[p] = mass * around[p];
+  if (const T* const size = sizes(chunk))
+    for (int p = 0; p < chunk.end; ++p) work.mass[p] = mass * size[p];
 }
 
 /// The distance of a block's first node from the axis, cells; positions count from that node.
@@ -178,12 +181,26 @@ Lanes<T> ParticleStep<D, T, Components>::radius(const Chunk& chunk, int p) const
   return static_cast<T>(scene_.domain.cell_size) * (x + Lanes<T>(cells_from_axis(scene_, chunk.block)));
 }
 
-/// Multiplies the stress by the circumference, so that forces are those of rings.
+/// The place of a particle along an axis, m.
+template <int D, class T, class Components>
+double ParticleStep<D, T, Components>::place_of(const Chunk& chunk, int p, int axis) const {
+  const T x = chunk.at(Particles<D, T>::position + axis)[p];
+  return scene_.domain.lower[axis] + scene_.domain.cell_size * cells_from_corner(scene_.domain, chunk.block, axis, x);
+}
+
+/// The section of a pack of particles of these volumes: that of rings, else the volume.
+template <int D, class T, class Components>
+Lanes<T> ParticleStep<D, T, Components>::section(const Chunk& chunk, const Lanes<T>& volume, int p) const {
+  if (!scene_.axisymmetric) return volume;
+  return volume / (static_cast<T>(2 * std::numbers::pi) * radius(chunk, p));
+}
+
+/// Multiplies the stress by the sizes, so that forces are those of the particles' volumes.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::weigh_stress(const Chunk& chunk, Work& work) const {
-  const T* const around = circumferences(chunk);
+  const T* const size = sizes(chunk);
   for (int k = 0; k < Sym<D, T>::size; ++k)
-    for (int p = 0; p < chunk.end; ++p) work.stress[k * chunk_size<T> + p] *= around[p];
+    for (int p = 0; p < chunk.end; ++p) work.stress[k * chunk_size<T> + p] *= size[p];
 }
 
 /// Adds b += -factor V0 tau_zz / r along the radius; the stress has been weighed.
@@ -329,27 +346,56 @@ void ParticleStep<D, T, Components>::scatter_stress(const Chunk& chunk, Work& wo
   add_to_tile(chunk, work, force, nullptr, scene_.axisymmetric, scene_.stress_by_affine, !scene_.stress_by_affine);
 }
 
-/// Adds m b(x, X, t) into its own channel, or times dt onto the momentum's b.
+/// Adds the forces per mass, m a(x, X, t), into their channel.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged,
-                                                        double dt) {
-  const VectorExpression& expression = *scene_.experiment.body_force;
-  if (!merged) std::fill(work.b, work.b + D * chunk_size<T>, T(0));
-  const double factor = chunk.body.mass * (merged ? dt : 1.0);
-  const T* const around = circumferences(chunk);
-  const T* const position = chunk.at(Particles<D, T>::position);
-  for (int p = 0; p < chunk.count; ++p) {
-    Vector3 x{}, X{};
-    for (int a = 0; a < D; ++a) {
-      x[a] = scene_.domain.lower[a] + scene_.domain.cell_size * cells_from_corner(scene_.domain, chunk.block, a,
-                                                                                  position[a * chunk_size<T> + p]);
-      X[a] = chunk.body.initial_position ? chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a] : x[a];
-    }
-    const Vector3 f = expression(x, X, time);
-    for (int c = 0; c < D; ++c)
-      work.b[c * chunk_size<T> + p] += static_cast<T>(factor * (around ? around[p] : T(1)) * f[c]);
+void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work& work, double time, Channel channel) {
+  const T* const size = sizes(chunk);
+  double x[D][chunk_size<T>], X[D][chunk_size<T>], f[D][chunk_size<T>];
+  PointArrays places;
+  std::array<double*, 3> forces{};
+  for (int a = 0; a < D; ++a) {
+    places.x[a] = places.X[a] = x[a], forces[a] = f[a];
+    for (int p = 0; p < chunk.count; ++p) x[a][p] = place_of(chunk, p, a);
+    if (!chunk.body.initial_position) continue;
+    places.X[a] = X[a];
+    for (int p = 0; p < chunk.count; ++p) X[a][p] = chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
   }
-  if (!merged) add_to_tile(chunk, work, body_force, nullptr, true, false, false);
+  chunk.body.loads->accelerations(static_cast<std::size_t>(chunk.count), places, time, forces);
+  std::fill(work.b, work.b + D * chunk_size<T>, T(0));
+  for (int c = 0; c < D; ++c)
+    for (int p = 0; p < chunk.count; ++p)
+      work.b[c * chunk_size<T> + p] = static_cast<T>(chunk.body.mass * (size ? size[p] : T(1)) * f[c][p]);
+  add_to_tile(chunk, work, channel, nullptr, true, false, false);
+}
+
+/// Adds what loads give, w b + S grad w, each kind into its own channel.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::scatter_loads(const Chunk& chunk, Work& work, double time) {
+  const BodyLoads& loads = *chunk.body.loads;
+  const auto read = [&](int p, LoadedParticle& particle) {
+    for (int a = 0; a < D; ++a) {
+      particle.x[a] = particle.X[a] = place_of(chunk, p, a);
+      particle.v[a] = chunk.motion[a * chunk_size<T> + p];
+      if (chunk.body.initial_position) particle.X[a] = chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
+    }
+    const T* const deformation = chunk.at(chunk.particles.deformation);
+    for (int k = 0; k < D * D; ++k) particle.F[k] = deformation[k * chunk_size<T> + p];
+  };
+  const auto give = [&](int p, const LoadCoefficients& given) {
+    for (int c = 0; c < D; ++c) work.b[c * chunk_size<T> + p] = static_cast<T>(given.b[c]);
+    for (int k = 0; k < D * D; ++k) work.S[k * chunk_size<T> + p] = static_cast<T>(given.S[k]);
+  };
+  for (const ExternalChannel& load : external) {
+    if (!loads.gives(load.kind)) continue;
+    if (load.kind == ExternalForce::body_force) {
+      scatter_body_force(chunk, work, time, load.channel);
+      continue;
+    }
+    std::fill(work.b, work.b + D * chunk_size<T>, T(0));
+    std::fill(work.S, work.S + D * D * chunk_size<T>, T(0));
+    if (loads.evaluate(load.kind, chunk.count, chunk.ids, time, read, give))
+      add_to_tile(chunk, work, load.channel, nullptr, true, false, true);
+  }
 }
 
 /// Scatters V grad w with w V beside it, and w m (x_p - x_node), V = J V0. A ring has the gradient of its section, as
@@ -366,12 +412,12 @@ void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, 
       work.S[(c * D + c) * chunk_size<T> + p] = work.scalar[p];
       work.A[(c * D + c) * chunk_size<T> + p] = -work.mass[p];
     }
-  if (const T* const around = circumferences(chunk))
+  if (const T* const size = sizes(chunk))
     for (int p = 0; p < chunk.end; p += Lanes<T>::width) {
-      const Lanes<T> ring = Lanes<T>::load(work.scalar + p) * Lanes<T>::load(around + p);
-      const Lanes<T> section = ring / (static_cast<T>(2 * std::numbers::pi) * radius(chunk, p));
-      ring.store(work.scalar + p);
-      for (int c = 0; c < D; ++c) section.store(work.S + (c * D + c) * chunk_size<T> + p);
+      const Lanes<T> whole = Lanes<T>::load(work.scalar + p) * Lanes<T>::load(size + p);
+      const Lanes<T> cut = section(chunk, whole, p);
+      whole.store(work.scalar + p);
+      for (int c = 0; c < D; ++c) cut.store(work.S + (c * D + c) * chunk_size<T> + p);
     }
   add_to_tile(chunk, work, volume_gradient, work.scalar, false, false, true);
   add_to_tile(chunk, work, mass_position, nullptr, false, true, false);

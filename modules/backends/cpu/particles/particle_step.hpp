@@ -17,6 +17,8 @@
 #include "backends/cpu/tiles/higher_kernels.hpp"
 #include "kernel/tensor.hpp"
 #include "simulation/failure.hpp"
+#include "simulation/grips.hpp"
+#include "simulation/loads.hpp"
 
 namespace mpm::cpu {
 
@@ -125,10 +127,11 @@ struct alignas(page) Workspace {
 template <int D, class T>
 struct Body {
   int index = 0, field = 0;
-  double mass = 0, volume = 0;  ///< values of a particle; in axisymmetric scenes per metre of circumference
+  double mass = 0, volume = 0;  ///< values of a particle; of size 1
   bool frozen = false;          ///< particles and domains stay as they are
   const Component* material = nullptr;
   std::int32_t (*update_material)(const void*, const mpm_material_batch*) = nullptr;
+  const BodyLoads* loads = nullptr;  ///< null where nothing acts from outside
   bool dissipates = false;
   const Thermal* thermal = nullptr;  ///< null where particles have no temperature
   bool warms_itself = false;         ///< a share of what it dissipates becomes heat
@@ -172,6 +175,8 @@ class ParticleStep : NamedChannels {
     double stress_power = 0, stored = 0;        ///< J, with the ledger on
     double heat = 0, heat_of_dissipation = 0;   ///< J, with temperature
   };
+  /// What a grip gave its particles in the last gather.
+  GivenToGripped given_to_gripped(std::size_t grip) const;
   /// The sum of the heat that the last scatter of momenta took along, J.
   double scattered_heat() const;
   void conduct();
@@ -298,7 +303,8 @@ class ParticleStep : NamedChannels {
   template <class Visit>
   void scatter_far(int body, Visit&& visit);
   void fill_masses(const Chunk& chunk, Work& work) const;
-  const T* circumferences(const Chunk& chunk) const;
+  Lanes<T> section(const Chunk& chunk, const Lanes<T>& volume, int p) const;
+  const T* sizes(const Chunk& chunk) const;
   static T cells_from_axis(const Scene<D, T>& scene, const Block<D>& block);
   Lanes<T> radius(const Chunk& chunk, int p) const;
   void weigh_stress(const Chunk& chunk, Work& work) const;
@@ -313,8 +319,17 @@ class ParticleStep : NamedChannels {
   void pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient, int count, T stress);
   void add_higher_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* coefficients);
   void scatter_stress(const Chunk& chunk, Work& work);
-  void scatter_body_force(const Chunk& chunk, Work& work, double time, bool merged, double dt);
+  double place_of(const Chunk& chunk, int p, int axis) const;
+  void scatter_body_force(const Chunk& chunk, Work& work, double time, Channel channel);
+  void scatter_loads(const Chunk& chunk, Work& work, double time);
   void scatter_contact_fields(const Chunk& chunk, Work& work);
+
+  std::size_t grip_of(const Chunk& chunk, int p) const;
+  Vector3 place_of(const Chunk& chunk, int p) const;
+  Vector3 velocity_of_gripped(const Chunk& chunk, int p, std::size_t grip, double time) const;
+  void scatter_grips(const Chunk& chunk, Work& work, double end);
+  void move_gripped(const Chunk& chunk, T* advection, double end);
+  void clear_given_to_gripped();
 
   bool melted(const Chunk& chunk, int p) const;
   T of_phase(const Chunk& chunk, int p, double ThermalProperties::*value) const;
@@ -357,6 +372,7 @@ class ParticleStep : NamedChannels {
   void evaluate_moments(const Chunk& chunk, Work& work);
   void book_stress(const Chunk& chunk, const mpm_material_batch& now, const mpm_material_batch& strain, bool after);
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
+  void advance_columns(const T* from, T* to, const T* velocity_gradient, double dt, int count) const;
   Moved advance_position(const Chunk& chunk, const T* advection, T scale);
   void account_for_move();
   /// Sets what the pass that begins sums for the ledger; `follows` says that its scatter wants the energy.
@@ -382,6 +398,8 @@ class ParticleStep : NamedChannels {
   /// The channels of each pass so far, by its acts and whether the ledger rests.
   std::deque<std::pair<std::uint64_t, std::vector<Channel>>> scattered_channels_;
   std::array<std::array<std::vector<Channel>, act_count>, 2> adds_;  ///< [in a fused pass][act]: channels to add to
+  std::vector<std::array<Channel, 2>> grips_;  ///< channels of a grip's momentum at the end of the step, and before it
+  std::vector<std::vector<GivenToGripped>> given_to_gripped_;  ///< [body][block * grips + grip]
   std::vector<std::unique_ptr<Work>> work_;
   std::vector<std::atomic<int>> units_;  ///< states of a pass: UnitPass::State
   bool measures_drift_ = false;
@@ -396,3 +414,6 @@ class ParticleStep : NamedChannels {
 };
 
 }  // namespace mpm::cpu
+
+/// What instantiation.cpp.in makes of this header and its parts for every dimension and scalar.
+#define MPM_INSTANTIATE_PARTICLE(D, T) template class ParticleStep<D, T>;

@@ -68,10 +68,12 @@ struct Particles {
   int advection = -1;      ///< kept for the move pass of MUSL
   int domain = -1;         ///< semi-side vectors in cells, row-major, columns are vectors
   int next_domain = -1;    ///< domain that a step strains before its last use of the weights (Plan::strained_domain)
-  int circumference = -1;  ///< m, 2 pi r as seeded, a factor of the body's mass and volume; axisymmetric only
+  int size = -1;           ///< a factor of the body's mass and volume
   int corners = -1;        ///< corners of a domain that the grid's velocity moves: [corner][D] cells, from the particle
   int moved_corners = -1;  ///< where they go in this step, kept for the move pass of MUSL
+  int deformation = -1;    ///< deformation gradient, for loads, row-major
   int temperature = -1, melted_fraction = -1;
+  int grip = -1;  ///< number of the grip that moves a particle, from 1; 0: none
   int components = 0;
   int motion_components = 0;        ///< components of velocity and the transfer's state, from `velocity` on
   AlignedArray<T> half_size;        ///< [D][chunk_size] cells, for shapes that read it
@@ -125,11 +127,13 @@ void Particles<D, T>::lay_out(const Plan& plan, int body) {
   advection = place("advection_velocity");
   domain = place("domain");
   next_domain = place("strained_domain");
-  circumference = place("circumference");
+  size = place("size");
   corners = place("corners");
   moved_corners = place("moved_corners");
+  deformation = place("deformation");
   temperature = place("temperature");
   melted_fraction = place("melted_fraction");
+  grip = place("grip");
   for (const StoredField& state : transfer_state)
     for (const StoredField& stored : fields)
       if (stored.field->id == temperature_state_of(state.field->id)) temperature_state.push_back(stored);

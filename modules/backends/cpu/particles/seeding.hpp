@@ -27,7 +27,7 @@ void seed_particles(Particles<D, T>& particles, const SeededBody& seeds, const D
     std::vector<std::pair<StoredField, const double*>> seeded;  // seeded fields beside the position
     for (const StoredField& stored : particles.fields)
       if (stored.field->first == First::seeded && stored.first != Particles<D, T>::position)
-        if (const double* const values = batch.values(stored.field->id)) seeded.push_back({stored, values});
+        if (const double* const values = batch.values(*stored.field)) seeded.push_back({stored, values});
     for (std::size_t i = 0; i < batch.count; ++i) {
       double cells[D];
       BlockCoordinates at{};

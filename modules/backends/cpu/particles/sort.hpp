@@ -764,3 +764,8 @@ bool sort_particles(Particles<D, T>& particles, SortSpace& space, const Scene<D,
 }
 
 }  // namespace mpm::cpu
+
+/// What instantiation.cpp.in makes of seeding.hpp and this header for every dimension and scalar.
+#define MPM_INSTANTIATE_SORT(D, T)                                                        \
+  template void seed_particles<D, T>(Particles<D, T>&, const SeededBody&, const Domain&); \
+  template bool sort_particles<D, T>(Particles<D, T>&, SortSpace&, const Scene<D, T>&, bool, const Foresight<T>&);

@@ -229,3 +229,10 @@ ListKernels<D, T> list_kernels_of() {
 }
 
 }  // namespace mpm::cpu
+
+/// What instantiation.cpp.in makes of this header for every dimension and scalar.
+#define MPM_INSTANTIATE_BOX_KERNELS(D, T)  \
+  template <>                              \
+  ListKernels<D, T> list_kernels<D, T>() { \
+    return list_kernels_of<D, T>();        \
+  }

@@ -15,9 +15,8 @@ struct HigherKernels {
   using Scatter = void (*)(T* tile, const Stencils<T>&, const T* offset, const T* coefficients, const T* mass,
                            int count);
   using Gather = void (*)(const T* tile, const Stencils<T>&, const T* offset, T* coefficients, int count);
-  /// Sums |c|^2 sum w P^2 over all particles, each times its circumference where there is one.
-  using Squares = double (*)(const Stencils<T>&, const T* offset, const T* coefficients, const T* circumference,
-                             int count);
+  /// Sums |c|^2 sum w P^2 over all particles, each times its size where it has one.
+  using Squares = double (*)(const Stencils<T>&, const T* offset, const T* coefficients, const T* size, int count);
   Scatter scatter = nullptr;
   Gather gather = nullptr;
   Squares squares = nullptr;
@@ -119,7 +118,7 @@ void gather_higher(const T* tile, const Stencils<T>& stencils, const T* offset, 
 }
 
 template <int D, class T, int K, int R>
-double squares_of_higher(const Stencils<T>& stencils, const T* offset, const T* coefficients, const T* circumference,
+double squares_of_higher(const Stencils<T>& stencils, const T* offset, const T* coefficients, const T* size,
                          int count) {
   double sum = 0;
   for (int p = 0; p < count; ++p) {
@@ -130,7 +129,7 @@ double squares_of_higher(const Stencils<T>& stencils, const T* offset, const T* 
         const T c = coefficients[(function * D + a) * chunk_size<T> + p];
         norm *= basis.axis[a].norm[power[a]], squares += c * c;
       }
-      sum += static_cast<double>(norm * squares * (circumference ? circumference[p] : T(1)));
+      sum += static_cast<double>(norm * squares * (size ? size[p] : T(1)));
     });
   }
   return sum;
@@ -151,3 +150,10 @@ HigherKernels<D, T> choose_higher_kernels(int width, int order) {
 }
 
 }  // namespace mpm::cpu
+
+/// What instantiation.cpp.in makes of this header for every dimension and scalar.
+#define MPM_INSTANTIATE_HIGHER(D, T)                               \
+  template <>                                                      \
+  HigherKernels<D, T> higher_kernels<D, T>(int width, int order) { \
+    return choose_higher_kernels<D, T>(width, order);              \
+  }

@@ -1,6 +1,8 @@
 #pragma once
 // Tiles take nodes from the grid and give them back, line by line along the last axis; their kernels are listed here.
 
+#include <stdexcept>
+
 #include "backends/cpu/tiles/tile.hpp"
 
 namespace mpm::cpu {
@@ -182,6 +184,14 @@ TileKernels<D, T> tile_kernels_of_width() {
 }
 
 template <int D, class T>
+TileKernels<D, T> choose_tile_kernels(int width) {
+  if (width == 2) return tile_kernels_of_width<D, T, 2>();
+  if (width == 3) return tile_kernels_of_width<D, T, 3>();
+  if (width == 4) return tile_kernels_of_width<D, T, 4>();
+  throw std::invalid_argument("the cpu backend takes shapes of 2, 3 or 4 nodes an axis");
+}
+
+template <int D, class T>
 TileKernels<D, T> tiles_of_lists() {
   constexpr int K = 4;
   TileKernels<D, T> kernels;
@@ -193,3 +203,14 @@ TileKernels<D, T> tiles_of_lists() {
 }
 
 }  // namespace mpm::cpu
+
+/// What instantiation.cpp.in makes of this header for every dimension and scalar.
+#define MPM_INSTANTIATE_TILE(D, T)                  \
+  template <>                                       \
+  TileKernels<D, T> tile_kernels<D, T>(int width) { \
+    return choose_tile_kernels<D, T>(width);        \
+  }                                                 \
+  template <>                                       \
+  TileKernels<D, T> tile_kernels_of_lists<D, T>() { \
+    return tiles_of_lists<D, T>();                  \
+  }

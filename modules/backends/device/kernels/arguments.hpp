@@ -30,7 +30,7 @@ struct HeatOfBody {
 template <class T>
 struct ParticleArrays {
   int count, stride;
-  T mass, volume;         ///< values of a particle, kg and m^3; in axisymmetric scenes per metre of circumference
+  T mass, volume;         ///< values of a particle, kg and m^3; of size 1
   T half_size;            ///< half a side of the undeformed particle's box, cells
   int frozen;             ///< 1 where particles and domains stay as they are
   T* field[most_fields];  ///< numbered as Scene::Particle; the fields of one plugin's state lie one behind another
@@ -57,6 +57,13 @@ struct Box {
   int type, axis, side;    ///< Wall; axis and side as in box_holds
   int given;               ///< bit c: component c is prescribed
   const T* velocity;       ///< [D][node of the box, x first], m/s; null for rest
+};
+
+/// What the particles of a grip give the nodes of one velocity field, and bit c where component c is held.
+template <class T>
+struct GripArrays {
+  T *mass, *momentum, *before;  ///< [node], [D][node] at the end of the step, and as it begins
+  int given;
 };
 
 /// Heat through a wall: `value` is a flux, W/m^2, or, with a coefficient, the temperature beyond the wall, K.
@@ -86,10 +93,13 @@ struct Arguments {
   // These describe the scene; they are the same for all phases.
   T cell_size, inverse_cell_size, lower[3], gravity[3];
   int cells[3], extent[3], padding[3], node_count;
-  int walls[3][2];               ///< Wall
+  int walls[3][2];  ///< Wall
+  bool gravity_has_potential[3];
   const T* wall_velocity[3][2];  ///< [D][line of the axis], m/s, as evaluated last; null for rest
   const Box<T>* boxes;
   int box_count;
+  const GripArrays<T>* grips;  ///< of the velocity field `grid`
+  int grip_count;
   const double *shape_parameters, *transfer_parameters, *filter_parameters, *contact_parameters, *material_parameters;
   const double* melted_parameters;  ///< parameters of the material's melted particles
   const T* wall_temperature[3][2];  ///< [line of the axis], K, as evaluated last; null where none is held
@@ -108,18 +118,22 @@ struct Arguments {
   int* first_failed;     ///< smallest index of a particle that cannot go on; count where there is none
   // These say how it works.
   T dt;
-  int axis;                             ///< axis of folds and ghosts
-  int iteration;                        ///< number of the filter's pass, from 1
-  int heat_box;                         ///< number of the box that is warmed
-  T mass_of_box;                        ///< mass of its nodes in all velocity fields, kg
-  bool momentum, force, contact_fields; /**< scatter: as in Pass */
-  bool remap;                           ///< clear, fold: the remap of MUSL
-  bool after_forces;                    ///< v+ is made, not v-
-  bool records;                         ///< impulses are noted for the ledger
-  bool walls_at_rest;                   ///< what is folded or filled is a difference of velocities
-  bool update_particles;                ///< gather: velocity and state change too, not only the velocity gradient
-  bool filtered;                        ///< gather: the filtered velocity replaces the particle's
-  bool moves_by_mean;                   ///< gather: the mean of both moves the particle then
+  T local_damping, left_of_velocity, left_of_change;  ///< damp: see `damped`
+  int axis;                                           ///< axis of folds and ghosts
+  int iteration;                                      ///< number of the filter's pass, from 1
+  int load_field;                                     ///< field of nodes that a load goes to
+  int heat_box;                                       ///< number of the box that is warmed
+  T mass_of_box;                                      ///< mass of its nodes in all velocity fields, kg
+  bool momentum, force, contact_fields;               /**< scatter: as in Pass */
+  bool remap;                                         ///< clear, fold: the remap of MUSL
+  int grip;                                           ///< scatter_grip: which
+  bool grips_at_end;                                  ///< nodes are held as particles are told for the end of the step
+  bool after_forces;                                  ///< v+ is made, not v-
+  bool records;                                       ///< impulses are noted for the ledger
+  bool walls_at_rest;                                 ///< what is folded or filled is a difference of velocities
+  bool update_particles;  ///< gather: velocity and state change too, not only the velocity gradient
+  bool filtered;          ///< gather: the filtered velocity replaces the particle's
+  bool moves_by_mean;     ///< gather: the mean of both moves the particle then
 };
 
 /// A particle beyond a wall by more than this share of the domain has left it; a separating wall lets half a cell

@@ -2,7 +2,7 @@
 // Two velocity fields meet at a node through the contact functor; normal, separation and area are given.
 
 #include "backends/device/kernels/grid.hpp"
-#include "operators/motion.hpp"
+#include "operators/contact.hpp"
 
 namespace mpm::device {
 
@@ -19,8 +19,8 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
     ContactPair<D, T> pair;
     pair.mass_a = a.grid.field[N::mass][node], pair.mass_b = a.other.field[N::mass][node];
     for (int c = 0; c < D; ++c) {
-      pair.momentum_a[c] = pair.mass_a * a.grid.field[N::velocity][c * nodes + node];
-      pair.momentum_b[c] = pair.mass_b * a.other.field[N::velocity][c * nodes + node];
+      pair.momentum_a[c] = momentum_of(a.grid.field[N::velocity][c * nodes + node], pair.mass_a);
+      pair.momentum_b[c] = momentum_of(a.other.field[N::velocity][c * nodes + node], pair.mass_b);
     }
     pair.normal = load<D>(a.contact.normal, nodes, node);
     pair.separation = a.contact.separation[node], pair.area = a.contact.area[node];
@@ -28,13 +28,12 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
     ContactResult<D, T> result;
     Law::apply(parameters_of<Law>(a.contact_parameters), pair, result);
     for (int c = 0; c < D; ++c) {
-      T &va = a.grid.field[N::velocity][c * nodes + node], &vb = a.other.field[N::velocity][c * nodes + node];
-      const T before_a = va, before_b = vb, impulse = result.impulse[c];
-      va = struck(va, impulse, pair.mass_a);
-      vb = struck(vb, -impulse, pair.mass_b);
-      note_impulse<N::contact_impulse, N::standing_contact_impulse>(a, a.grid, c * nodes + node, impulse);
-      note_impulse<N::contact_impulse, N::standing_contact_impulse>(a, a.other, c * nodes + node, -impulse);
-      a.contact.unbalanced[c * nodes + node] = pair.mass_a * (va - before_a) + pair.mass_b * (vb - before_b);
+      const int at = c * nodes + node;
+      a.contact.unbalanced[at] = strike_pair<T>(a.grid.field[N::velocity][at], a.other.field[N::velocity][at],
+                                                pair.mass_a, pair.mass_b, result.impulse[c], [&](bool second, T given) {
+                                                  note_impulse<N::contact_impulse, N::standing_contact_impulse>(
+                                                      a, second ? a.other : a.grid, at, given);
+                                                });
     }
     store(a.contact.impulse, nodes, node, result.impulse);
     a.contact.dissipated[node] = result.dissipated;

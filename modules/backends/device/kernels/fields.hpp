@@ -13,12 +13,13 @@ enum FoldTime : int { never_folded = 0, folded_with_mass, folded_with_force };
 /// has. Other fields are cleared and folded all the same.
 struct NoNodeFields {
   static constexpr int mass = -1, momentum = -1, velocity = -1, velocity_before = -1;
-  static constexpr int force = -1, weight = -1, body_force = -1;
+  static constexpr int force = -1, weight = -1;
+  static constexpr int body_force = -1, surface_load = -1, point_load = -1, spring = -1, dashpot = -1;
   static constexpr int volume = -1, volume_gradient = -1, mass_position = -1;
   static constexpr int increment = -1, projection = -1, trial_velocity = -1, folded_mass = -1;
   static constexpr int unfiltered_velocity = -1;
   static constexpr int velocity_of_constraints = -1, unfiltered_velocity_of_constraints = -1;
-  static constexpr int boundary_impulse = -1, contact_impulse = -1, filter_impulse = -1;
+  static constexpr int boundary_impulse = -1, contact_impulse = -1, filter_impulse = -1, damping_impulse = -1;
   static constexpr int standing_boundary_impulse = -1, standing_contact_impulse = -1;
   static constexpr int work_beyond_walls = -1;  ///< work of walls that move on a ghost beyond them
   static constexpr int work_of_folds = -1;      ///< energy that folding a ghost at walls gives the nodes
@@ -31,16 +32,20 @@ struct NoNodeFields {
 struct NoParticleFields {
   static constexpr int position = -1, velocity = -1, advection_velocity = -1;
   static constexpr int transfer_state = -1, polynomial_coefficients = -1, material_state = -1;
-  static constexpr int circumference = -1, corners = -1, moved_corners = -1;
+  static constexpr int size = -1, corners = -1, moved_corners = -1;
   static constexpr int domain = -1;           ///< domain that weights are made of
   static constexpr int strained_domain = -1;  ///< domain strained in the rest of a step; absent where no weights follow
   static constexpr int stress = -1, volume_ratio = -1, wave_speed = -1, velocity_gradient = -1, hoop_rate = -1;
   static constexpr int dissipated = -1;  ///< energy dissipated by the last strain
   static constexpr int stress_power = -1,
-                       stored = -1;             ///< work of the stress, and change of the energy, of that strain
-  static constexpr int body_acceleration = -1;  ///< body force over mass, as the host evaluated it
-  static constexpr int second_moment = -1;      ///< what `second_moments` makes
+                       stored = -1;       ///< work of the stress, and change of the energy, of that strain
+  static constexpr int deformation = -1;  ///< deformation gradient, for loads
+  static constexpr int load_force = -1, load_moment = -1;  ///< b and S of a load, as the host evaluated them
+  static constexpr int second_moment = -1;                 ///< what `second_moments` makes
   static constexpr int temperature = -1, melted_fraction = -1;
+  static constexpr int grip = -1;               ///< number of the grip that moves the particle, from 1; 0: none
+  static constexpr int told_velocity = -1;      ///< velocity that its grip gives it, as the host evaluated it
+  static constexpr int gathered_velocity = -1;  ///< velocity that it would have without it
 };
 
 /// A field of particles that is a transfer's state for the temperature: its values stand in the State of a velocity

@@ -41,7 +41,7 @@ MPM_HD void project(const Team& team, const Arguments<typename Scene::Scalar>& a
   scatter_block<D, D>(team, a, channel, [&](int p, auto add) {
     const Stencil<Scene> stencil(a, p);
     if (!stencil.inside()) return Team::lower(a.first_failed, p);
-    const T mass = of_ring<Scene>(a.particles, a.particles.mass, p);
+    const T mass = of_size<Scene>(a.particles, a.particles.mass, p);
     auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::increment], nullptr);
     moments.velocity_increment = moments.velocity;
     const auto parameters = parameters_of<Transfer>(a.transfer_parameters);

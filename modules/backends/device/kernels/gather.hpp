@@ -89,6 +89,12 @@ MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a)
     if (a.filtered) v = advection = moments.velocity;
     if (a.filtered && a.moves_by_mean)
       for (int c = 0; c < D; ++c) advection[c] = mean_velocity(v_before[c], v[c]);
+    if constexpr (P::grip >= 0) {
+      store(particles.field[P::gathered_velocity], stride, p, v);
+      if (const int grip = int(particles.field[P::grip][p]); grip > 0)
+        for (int c = 0; c < D; ++c)
+          if (a.grips[grip - 1].given >> c & 1) v[c] = advection[c] = particles.field[P::told_velocity][c * stride + p];
+    }
     store(particles.field[P::velocity], stride, p, v);
     store(particles.field[P::advection_velocity], stride, p, advection);
     if constexpr (Scene::sampled) gather_corners<Scene>(a, p, advection, moments.velocity);

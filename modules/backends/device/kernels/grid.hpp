@@ -34,12 +34,23 @@ MPM_HD void weigh(const Team& team, const Arguments<typename Scene::Scalar>& a) 
   });
 }
 
+/// A component of a force from outside, zero where the scene has none of its kind.
+template <int field, class T>
+MPM_HD T load_at(const Arguments<T>& a, int at) {
+  if constexpr (field >= 0) return a.grid.field[field][at];
+  return T(0);
+}
+
 /// The sum of all forces on a node along one axis; `at` is the place of that component.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T total_force(const Arguments<T>& a, int at) {
   using N = typename Scene::Node;
   T force = a.grid.field[N::force][at] + a.grid.field[N::weight][at];
-  if constexpr (N::body_force >= 0) force += a.grid.field[N::body_force][at];
+  force += load_at<N::body_force>(a, at);
+  force += load_at<N::surface_load>(a, at);
+  force += load_at<N::point_load>(a, at);
+  force += load_at<N::spring>(a, at);
+  force += load_at<N::dashpot>(a, at);
   return force;
 }
 
@@ -145,7 +156,7 @@ MPM_HD void note_work_beyond_wall(const Arguments<T>& a, const Fold& fold) {
     for (int c = 0; c < Scene::dimension; ++c) {
       const int at = c * a.node_count + fold.ghost;
       T force = a.grid.field[N::force][at];
-      if (a.walls[c][0] != wall_periodic) force += a.grid.field[N::weight][at];
+      if (a.gravity_has_potential[c]) force += a.grid.field[N::weight][at];
       const T sign = T(mirror_sign(fold.wall, fold.axis, c));
       a.grid.field[N::work_beyond_walls][fold.ghost] -= a.dt * force * (T(1) - sign) * velocity_of_wall(a, fold, c);
     }
@@ -221,6 +232,24 @@ MPM_HD void accelerate(const Team& team, const Arguments<typename Scene::Scalar>
   });
 }
 
+/// Damps what the forces, conditions and contact have made of v-.
+template <class Scene>
+MPM_HD void damp(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  using N = typename Scene::Node;
+  if constexpr (N::velocity_before >= 0)
+    for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+      const T mass = a.grid.field[N::mass][at % a.node_count];
+      if (!(mass > T(0))) return;
+      T& velocity = a.grid.field[N::velocity][at];
+      const T now = damped<T>(a.grid.field[N::velocity_before][at], velocity, a.local_damping, a.left_of_velocity,
+                              a.left_of_change);
+      if constexpr (N::damping_impulse >= 0)
+        if (a.records) a.grid.field[N::damping_impulse][at] += mass * (now - velocity);
+      velocity = now;
+    });
+}
+
 /// The coordinates of a node by its index.
 template <int D, class T>
 MPM_HD void coordinates_of_node(const Arguments<T>& a, int index, int* node) {
@@ -283,6 +312,13 @@ MPM_HD void impose_conditions(const Team& team, const Arguments<typename Scene::
           velocity[c] = box.velocity ? box.velocity[c * nodes_of_box<D>(box) + index_in_box<D>(box, at)] : T(0);
           held |= 1 << c;
         }
+    }
+    for (int k = 0; k < a.grip_count; ++k) {
+      const GripArrays<T>& grip = a.grips[k];
+      if (!grip_holds(grip.mass[node], a.grid.field[N::mass][node])) continue;
+      const T* const momentum = a.grips_at_end ? grip.momentum : grip.before;
+      for (int c = 0; c < D; ++c)
+        if (grip.given >> c & 1) velocity[c] = momentum[c * a.node_count + node] / grip.mass[node], held |= 1 << c;
     }
     if (held == 0) return;
     store(a.grid.field[N::velocity], a.node_count, node, velocity);

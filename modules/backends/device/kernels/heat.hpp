@@ -17,13 +17,13 @@ namespace mpm::device {
 /// The heat capacity m c of a particle, J/K.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T capacity_of_particle(const ParticleArrays<T>& particles, int p) {
-  return of_ring<Scene>(particles, particles.mass, p) * heat_capacity_of<Scene>(particles, p);
+  return of_size<Scene>(particles, particles.mass, p) * heat_capacity_of<Scene>(particles, p);
 }
 
 /// The volume J V0 of a particle, m^3 (in plane strain for a metre of depth).
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T volume_of_particle(const ParticleArrays<T>& particles, int p) {
-  return of_ring<Scene>(particles, particles.volume, p) * particles.field[Scene::Particle::volume_ratio][p];
+  return of_size<Scene>(particles, particles.volume, p) * particles.field[Scene::Particle::volume_ratio][p];
 }
 
 /// The conductivity k of a particle, W/(m K).
@@ -373,7 +373,7 @@ template <class Scene>
 MPM_HD void heat_of_dissipation(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   sum_over<1>(team, a, a.particles.count, [&](int p, double* sum) {
     if constexpr (Scene::ledger)
-      sum[0] += double(of_ring<Scene>(a.particles, a.particles.mass, p)) * a.particles.heat.warming *
+      sum[0] += double(of_size<Scene>(a.particles, a.particles.mass, p)) * a.particles.heat.warming *
                 a.particles.field[Scene::Particle::dissipated][p];
   });
 }

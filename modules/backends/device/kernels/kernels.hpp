@@ -1,7 +1,7 @@
 #pragma once
 // This file includes all kernels and makes their entries. The composer defines Scene, and Scene0, Scene1 ... with a
-// material each, in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_LEDGER_ENTRIES,
-// MPM_DEVICE_CONTACT_ENTRIES, MPM_DEVICE_FILTER_ENTRIES, MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES and
+// material each, in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_LOAD_ENTRIES, MPM_DEVICE_LEDGER_ENTRIES,
+// MPM_DEVICE_CONTACT_ENTRIES, MPM_DEVICE_GRIP_ENTRIES, MPM_DEVICE_FILTER_ENTRIES, MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES and
 // MPM_DEVICE_HEAT_LEDGER_ENTRIES where the scene has these, and for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and,
 // where any melts, MPM_DEVICE_MELTING_ENTRIES(n).
 
@@ -9,6 +9,7 @@
 #include "backends/device/kernels/filter.hpp"
 #include "backends/device/kernels/gather.hpp"
 #include "backends/device/kernels/grid.hpp"
+#include "backends/device/kernels/grips.hpp"
 #include "backends/device/kernels/heat.hpp"
 #include "backends/device/kernels/ledger.hpp"
 #include "backends/device/kernels/material.hpp"
@@ -25,14 +26,18 @@
   MPM_DEVICE_ENTRY(mpm_impose_conditions, impose_conditions<Scene>, 1)               \
   MPM_DEVICE_ENTRY(mpm_keep_velocity, keep_velocity<Scene>, 1)                       \
   MPM_DEVICE_ENTRY(mpm_accelerate, accelerate<Scene>, 1)                             \
+  MPM_DEVICE_ENTRY(mpm_damp, damp<Scene>, 1)                                         \
   MPM_DEVICE_ENTRY(mpm_gather, gather<Scene>, 1)                                     \
   MPM_DEVICE_ENTRY(mpm_move, move<Scene>, 1)                                         \
   MPM_DEVICE_ENTRY(mpm_second_moments, second_moments<Scene>, 1)
 
+#define MPM_DEVICE_LOAD_ENTRIES \
+  MPM_DEVICE_ENTRY(mpm_scatter_load, scatter_load<Scene>, mpm::device::load_scalars<Scene>)
+
 #define MPM_DEVICE_LEDGER_ENTRIES                                                                               \
   MPM_DEVICE_ENTRY(mpm_energy_of_momenta, energy_of_momenta<Scene>, (mpm::device::sum_scalars<Scene, 1>))       \
   MPM_DEVICE_ENTRY(mpm_energy_of_velocities, energy_of_velocities<Scene>, (mpm::device::sum_scalars<Scene, 1>)) \
-  MPM_DEVICE_ENTRY(mpm_work_of_forces, work_of_forces<Scene>, (mpm::device::sum_scalars<Scene, 6>))             \
+  MPM_DEVICE_ENTRY(mpm_work_of_forces, work_of_forces<Scene>, (mpm::device::sum_scalars<Scene, 11>))            \
   MPM_DEVICE_ENTRY(mpm_energy_of_particles, energy_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 1>))   \
   MPM_DEVICE_ENTRY(mpm_energy_dissipated, energy_dissipated<Scene>, (mpm::device::sum_scalars<Scene, 3>))       \
   MPM_DEVICE_ENTRY(mpm_clear_work_of_folds, clear_work_of_folds<Scene>, 1)                                      \
@@ -43,6 +48,9 @@
   MPM_DEVICE_ENTRY(mpm_work_of_folds, work_of_folds<Scene>, (mpm::device::sum_scalars<Scene, 2>))               \
   MPM_DEVICE_ENTRY(mpm_momentum_of_nodes, momentum_of_nodes<Scene>, (mpm::device::sum_scalars<Scene, 4>))       \
   MPM_DEVICE_ENTRY(mpm_momentum_of_particles, momentum_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 4>))
+
+#define MPM_DEVICE_GRIP_ENTRIES \
+  MPM_DEVICE_ENTRY(mpm_scatter_grip, scatter_grip<Scene>, mpm::device::scatter_grip_scalars<Scene>)
 
 #define MPM_DEVICE_CONTACT_ENTRIES MPM_DEVICE_ENTRY(mpm_contact, contact<Scene>, 1)
 

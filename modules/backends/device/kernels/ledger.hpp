@@ -54,6 +54,7 @@ MPM_HD void clear_impulses(const Team& team, const Arguments<typename Scene::Sca
     if constexpr (N::boundary_impulse >= 0) a.grid.field[N::boundary_impulse][at] = T(0);
     if constexpr (N::contact_impulse >= 0) a.grid.field[N::contact_impulse][at] = T(0);
     if constexpr (N::filter_impulse >= 0) a.grid.field[N::filter_impulse][at] = T(0);
+    if constexpr (N::damping_impulse >= 0) a.grid.field[N::damping_impulse][at] = T(0);
   });
 }
 
@@ -93,7 +94,7 @@ MPM_HD void power_of_forces(const Team& team, const Arguments<typename Scene::Sc
         const int at = c * a.node_count + node;
         const double way = double(a.dt) * a.grid.field[N::velocity][at];
         sum[0] += a.grid.field[N::force][at] * way;
-        if (a.walls[c][0] != wall_periodic) sum[1] += a.grid.field[N::weight][at] * way;
+        if (a.gravity_has_potential[c]) sum[1] += a.grid.field[N::weight][at] * way;
       }
   });
 }
@@ -136,19 +137,19 @@ MPM_HD void momentum_of_nodes(const Team& team, const Arguments<typename Scene::
 template <class Scene>
 MPM_HD void momentum_of_particles(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   sum_over<4>(team, a, a.particles.count, [&](int p, double* sum) {
-    const double mass = of_ring<Scene>(a.particles, a.particles.mass, p);
+    const double mass = of_size<Scene>(a.particles, a.particles.mass, p);
     for (int c = 0; c < Scene::dimension; ++c)
       sum[c] += mass * a.particles.field[Scene::Particle::velocity][c * a.particles.stride + p];
     sum[3] += mass;
   });
 }
 
-/// Sums the work of the internal, body and gravity forces, and of the impulses of conditions and contact, between v- and
+/// Sums the work of the internal forces, loads and gravity, and of the impulses of conditions and contact, between v- and
 /// v+ at their mean.
 template <class Scene>
 MPM_HD void work_of_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<6>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over<11>(team, a, a.node_count, [&](int node, double* sum) {
     if constexpr (Scene::ledger) {
       const double mass = a.grid.field[N::mass][node], dt = a.dt;
       if (!(mass > 0)) return;
@@ -156,14 +157,17 @@ MPM_HD void work_of_forces(const Team& team, const Arguments<typename Scene::Sca
         const int at = c * a.node_count + node;
         const double before = a.grid.field[N::velocity_before][at], after = a.grid.field[N::velocity][at];
         const double mean = mean_velocity(before, after);
-        double body = 0;
-        if constexpr (N::body_force >= 0) body = a.grid.field[N::body_force][at];
         const double internal = a.grid.field[N::force][at], weight = a.grid.field[N::weight][at];
         sum[0] += dt * internal * mean;
-        sum[1] += dt * body * mean;
-        sum[a.walls[c][0] == wall_periodic ? 5 : 2] += dt * weight * mean;
+        sum[1] += dt * load_at<N::body_force>(a, at) * mean;
+        sum[6] += dt * load_at<N::surface_load>(a, at) * mean;
+        sum[7] += dt * load_at<N::point_load>(a, at) * mean;
+        sum[8] += dt * load_at<N::spring>(a, at) * mean;
+        sum[9] += dt * load_at<N::dashpot>(a, at) * mean;
+        sum[a.gravity_has_potential[c] ? 2 : 5] += dt * weight * mean;
         sum[3] += impulse_at<N::boundary_impulse>(a, at) * mean;
         sum[4] += impulse_at<N::contact_impulse>(a, at) * mean;
+        sum[10] += impulse_at<N::damping_impulse>(a, at) * mean;
       }
     }
   });
@@ -177,7 +181,7 @@ MPM_HD void energy_of_particles(const Team& team, const Arguments<typename Scene
   constexpr int D = Scene::dimension;
   sum_over<1>(team, a, a.particles.count, [&](int p, double* sum) {
     const int stride = a.particles.stride;
-    const double mass = of_ring<Scene>(a.particles, a.particles.mass, p);
+    const double mass = of_size<Scene>(a.particles, a.particles.mass, p);
     double squares = 0;
     for (int c = 0; c < D; ++c) {
       const double v = a.particles.field[P::velocity][c * stride + p];
@@ -205,7 +209,7 @@ MPM_HD void energy_dissipated(const Team& team, const Arguments<typename Scene::
   using P = typename Scene::Particle;
   sum_over<3>(team, a, a.particles.count, [&](int p, double* sum) {
     if constexpr (Scene::ledger) {
-      const double volume = of_ring<Scene>(a.particles, a.particles.volume, p);
+      const double volume = of_size<Scene>(a.particles, a.particles.volume, p);
       sum[0] += volume * a.particles.field[P::dissipated][p];
       sum[1] += volume * a.particles.field[P::stress_power][p];
       sum[2] += volume * a.particles.field[P::stored][p];

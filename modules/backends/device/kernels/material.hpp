@@ -151,6 +151,12 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
       a.particles.field[P::temperature][p] +=
           a.particles.heat.warming * dissipated / heat_capacity_of<Scene>(a.particles, p);
     store_material_state<Scene>(a.particles, p, state);
+    if constexpr (P::deformation >= 0) {
+      auto* const deformation = a.particles.field[P::deformation];
+      const int stride = a.particles.stride;
+      if (!a.particles.frozen)
+        store_matrix(deformation, stride, p, advanced(load_matrix<D>(deformation, stride, p), in_plane(L), a.dt));
+    }
     if constexpr (P::domain >= 0) {
       auto* const domain = a.particles.field[P::strained_domain >= 0 ? P::strained_domain : P::domain];
       const int stride = a.particles.stride;

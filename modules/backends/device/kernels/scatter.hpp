@@ -74,14 +74,14 @@ MPM_HD void find_channels(const Arguments<T>& a, T** channel) {
   });
 }
 
-/// The mass or volume of a particle, given what the body says.
+/// The mass or volume of a particle, given that of one of size 1.
 template <class Scene, class T = typename Scene::Scalar>
-MPM_HD T of_ring(const ParticleArrays<T>& particles, T of_body, int p) {
-  if constexpr (Scene::axisymmetric) return of_body * particles.field[Scene::Particle::circumference][p];
+MPM_HD T of_size(const ParticleArrays<T>& particles, T of_body, int p) {
+  if constexpr (Scene::Particle::size >= 0) return of_body * particles.field[Scene::Particle::size][p];
   return of_body;
 }
 
-/// Scatters w m, w (b + A d), -V0 tau grad w (or w D^-1 d) and w m b, and the contact fields, as `a` says, around an
+/// Scatters w m, w (b + A d), -V0 tau grad w (or w D^-1 d), and the contact fields, as `a` says, around an
 /// axis also -w V0 tau_zz / r. The weight follows from the masses (weigh).
 template <class Scene>
 MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a) {
@@ -101,8 +101,8 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
     Vec<D, T> b{};
     Mat<D, T> A{};
     Sym<D, T> tau{};
-    const T mass_of_particle = of_ring<Scene>(particles, particles.mass, p);
-    const T volume_of_particle = of_ring<Scene>(particles, particles.volume, p);
+    const T mass_of_particle = of_size<Scene>(particles, particles.mass, p);
+    const T volume_of_particle = of_size<Scene>(particles, particles.volume, p);
     if (a.momentum)
       Transfer::scatter(parameters_of<Transfer>(a.transfer_parameters), mass_of_particle,
                         load<D>(particles.field[P::velocity], stride, p), transfer_state<Scene>(particles, p), b, A);
@@ -127,8 +127,6 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
         if constexpr (Scene::basis_functions > 0)
           values[Place::momentum + i] += mass_of_particle * higher.given(s.node, i);
         values[Place::force + i] = -volume_of_particle * traction;
-        if constexpr (Place::body_force >= 0)
-          values[Place::body_force + i] = mass * particles.field[P::body_acceleration][i * stride + p];
       }
       if constexpr (Scene::axisymmetric) values[Place::force] -= s.weight * volume_of_particle * tau.s[2] / position[p];
       if constexpr (Place::volume >= 0) {
@@ -140,6 +138,35 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
           values[Place::volume_gradient + i] = section * s.gradient[i];
           values[Place::mass_position + i] = -mass * s.distance[i];
         }
+      }
+      add(s.node, values);
+    });
+  });
+}
+
+template <class Scene>
+inline constexpr int load_scalars = Scene::dimension* Tile<Scene::dimension>::nodes;
+
+/// Scatters w b + S grad w of a load, as the host evaluated it, to the field of nodes `a.load_field`.
+template <class Scene>
+MPM_HD void scatter_load(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  using P = typename Scene::Particle;
+  constexpr int D = Scene::dimension;
+  T* channel[D];
+  for (int c = 0; c < D; ++c) channel[c] = a.grid.field[a.load_field] + c * a.node_count;
+  scatter_block<D, D>(team, a, channel, [&](int p, auto add) {
+    const Stencil<Scene> stencil(a, p);
+    if (!stencil.inside()) return Team::lower(a.first_failed, p);
+    const int stride = a.particles.stride;
+    const Vec<D, T> b = load<D>(a.particles.field[P::load_force], stride, p);
+    Mat<D, T> S{};
+    if constexpr (P::load_moment >= 0) S = load_matrix<D>(a.particles.field[P::load_moment], stride, p);
+    stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
+      T values[D];
+      for (int i = 0; i < D; ++i) {
+        values[i] = s.weight * b[i];
+        for (int j = 0; j < D; ++j) values[i] += S(i, j) * s.gradient[j];
       }
       add(s.node, values);
     });

@@ -1,0 +1,101 @@
+#pragma once
+// Formulas as a list of instructions for many points at once. Every instruction does its work for a batch of points
+// before the next one begins, in the lanes of the machine.
+
+#include <array>
+#include <vector>
+
+#include "experiment/formula.hpp"
+
+namespace mpm::formula {
+
+inline constexpr int batch_size = 64;  ///< points of one run of a program
+inline constexpr int pack_size = 8;    ///< points by which a run grows; no machine has more lanes of double
+
+struct alignas(64) Register {
+  double values[batch_size];
+};
+/// One number for all points.
+struct alignas(64) Pack {
+  double values[pack_size];
+};
+
+/// Where an instruction finds a value.
+struct Source {
+  enum class Kind : std::uint8_t { none, in_register, constant, of_call };
+  Kind kind = Kind::none;
+  int index = 0;
+};
+
+struct Instruction {
+  Operation operation;
+  bool and_cosine = false;  ///< with a sine: the cosine of the same value too, which shares most of its work
+  std::array<Source, 3> of;
+  int to = 0, cosine_to = 0;  ///< registers
+  int exponent = 0;           ///< of whole_power
+};
+
+/// An operation on numbers that are the same at all points, done once a call.
+struct CallInstruction {
+  Operation operation;
+  std::array<Source, 3> of;
+};
+
+/// What a run works in; each thread has one of its own.
+struct Space {
+  std::vector<Register> registers;
+  std::vector<Pack> of_call;
+};
+
+/// Values of one component at the points of a batch: value p stands at values[p & mask].
+struct Values {
+  const double* values = nullptr;
+  int mask = 0;
+
+  double operator[](int p) const { return values[p & mask]; }
+  bool same_everywhere() const { return mask != ~0; }
+};
+
+class Program {
+ public:
+  Program() = default;
+  /// Compiles terms of a graph; -1 for what is not asked.
+  Program(const Graph& graph, const std::vector<int>& outputs);
+
+  /// Finds what depends on time alone.
+  void begin(double t, Space& space) const;
+  /// The place for a variable's values at the points, number 0 to 5; null where no instruction reads it.
+  double* input(int variable, Space& space) const {
+    return inputs_[variable] < 0 ? nullptr : space.registers[inputs_[variable]].values;
+  }
+  /// Runs for the first `lanes` points, a multiple of pack_size.
+  void run(Space& space, int lanes) const;
+  Values output(std::size_t number, const Space& space) const { return find(outputs_[number], space); }
+
+  const std::vector<Instruction>& instructions() const { return instructions_; }
+  const std::vector<CallInstruction>& call_instructions() const { return call_instructions_; }
+  int registers() const { return registers_; }
+
+ private:
+  Values find(const Source& source, const Space& space) const {
+    switch (source.kind) {
+      case Source::Kind::in_register:
+        return {space.registers[source.index].values, ~0};
+      case Source::Kind::constant:
+        return {constants_[source.index].values, pack_size - 1};
+      case Source::Kind::of_call:
+        return {space.of_call[source.index].values, pack_size - 1};
+      default:
+        return {};
+    }
+  }
+
+  std::vector<Instruction> instructions_;
+  std::vector<CallInstruction> call_instructions_;
+  std::vector<Pack> constants_;
+  std::vector<Source> outputs_;
+  std::array<int, 6> inputs_{-1, -1, -1, -1, -1, -1};
+  int registers_ = 0;
+};
+
+}  // namespace mpm::formula

@@ -1,0 +1,28 @@
+#pragma once
+// What happens at a node to two velocity fields that meet there, around the law's own formula (abi.h, mpm_contact). S is
+// the scalar of the fields. Loops over pairs and nodes, and where the values lie, are the caller's.
+
+#include "operators/motion.hpp"
+
+namespace mpm {
+
+/// One component of the momentum that a law is told of.
+template <class S>
+MPM_HD S momentum_of(S velocity, S mass) {
+  return mass * velocity;
+}
+
+/// Strikes one component of a pair with the law's impulse: field a takes it, field b its opposite. Calls note(of_b,
+/// impulse) for what each is given, for the ledger. Returns the momentum that the pair gains, kg m/s, zero to rounding,
+/// in the precision of `Sum`.
+template <class Sum, class S, class Note>
+MPM_HD Sum strike_pair(S& velocity_a, S& velocity_b, S mass_a, S mass_b, S impulse, Note&& note) {
+  const Sum before_a = velocity_a, before_b = velocity_b;
+  velocity_a = struck(velocity_a, impulse, mass_a);
+  velocity_b = struck(velocity_b, -impulse, mass_b);
+  note(false, impulse);
+  note(true, -impulse);
+  return mass_a * (velocity_a - before_a) + mass_b * (velocity_b - before_b);
+}
+
+}  // namespace mpm

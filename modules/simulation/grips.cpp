@@ -1,0 +1,35 @@
+#include "simulation/grips.hpp"
+
+#include <cmath>
+
+#include "simulation/imposed_value.hpp"
+
+namespace mpm {
+
+Vector3 velocity_of(const Grip& grip, const Vector3& x, const Vector3& X, double time) {
+  const Vector3 velocity = grip.velocity(x, X, time);
+  for (std::size_t c = 0; c < 3; ++c)
+    if (grip.held[c] && !std::isfinite(velocity[c]))
+      throw ImposedValueFailure(
+          {grip.pointer + "/velocity", "velocity", "m/s", velocity[c], time, std::vector<double>(x.begin(), x.end())});
+  return velocity;
+}
+
+void GivenToGripped::add(double mass, const Vector3& x, const Vector3& from, const Vector3& to) {
+  Vector3 given{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    given[c] = mass * (to[c] - from[c]);
+    impulse[c] += given[c];
+    energy += 0.5 * given[c] * (to[c] + from[c]);
+  }
+  moment[0] += x[1] * given[2] - x[2] * given[1];
+  moment[1] += x[2] * given[0] - x[0] * given[2];
+  moment[2] += x[0] * given[1] - x[1] * given[0];
+}
+
+void GivenToGripped::add(const GivenToGripped& other) {
+  for (std::size_t c = 0; c < 3; ++c) impulse[c] += other.impulse[c], moment[c] += other.moment[c];
+  energy += other.energy;
+}
+
+}  // namespace mpm

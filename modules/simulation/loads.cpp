@@ -1,0 +1,264 @@
+#include "simulation/loads.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <unordered_map>
+
+namespace mpm {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Particles near the pieces of a surface, in bins of the side of two particle spacings.
+class Neighbourhood {
+ public:
+  Neighbourhood(int dimension, double spacing, const Surface& pieces, const SeededBody& seeds)
+      : dimension_(dimension), spacing_(spacing), seeds_(seeds) {
+    for (const SurfacePiece& piece : pieces)
+      for_each_bin_around(piece.point, [&](const Bin& bin) { bins_.try_emplace(bin); });
+    for_each_particle([&](const Particle& particle) {
+      const auto found = bins_.find(bin_of(particle.x));
+      if (found != bins_.end()) found->second.push_back(particle);
+    });
+  }
+
+  struct Particle {
+    std::size_t id;
+    Vector3 x;
+  };
+  /// The particles that are nearest to a point: several where they are equally far.
+  std::vector<Particle> nearest(const Vector3& point) const {
+    std::vector<Particle> found;
+    double least = 1e300;
+    const auto look = [&](const Particle& particle) { compare(particle, point, found, least); };
+    for_each_bin_around(point, [&](const Bin& bin) {
+      for (const Particle& particle : bins_.at(bin)) look(particle);
+    });
+    if (found.empty()) for_each_particle(look);  // a corner that no particle is near
+    return found;
+  }
+
+ private:
+  using Bin = std::array<long, 3>;
+  struct Hash {
+    std::size_t operator()(const Bin& bin) const {
+      std::size_t hash = 0;
+      for (const long at : bin) hash = hash * 1000003u + static_cast<std::size_t>(at);
+      return hash;
+    }
+  };
+  Bin bin_of(const Vector3& x) const {
+    Bin bin{};
+    for (int c = 0; c < dimension_; ++c) bin[c] = static_cast<long>(std::floor(x[c] / (2 * spacing_)));
+    return bin;
+  }
+  template <class Visit>
+  void for_each_bin_around(const Vector3& point, Visit&& visit) const {
+    const Bin middle = bin_of(point);
+    const long deep = dimension_ == 3 ? 1 : 0;
+    for (long i = -1; i <= 1; ++i)
+      for (long j = -1; j <= 1; ++j)
+        for (long k = -deep; k <= deep; ++k) visit(Bin{middle[0] + i, middle[1] + j, middle[2] + k});
+  }
+  template <class Visit>
+  void for_each_particle(Visit&& visit) const {
+    const std::size_t D = static_cast<std::size_t>(dimension_);
+    seeds_.for_each_batch([&](const SeedBatch& batch) {
+      for (std::size_t p = 0; p < batch.count; ++p) {
+        Particle particle{batch.first + p, {}};
+        std::copy_n(batch.undeformed() + p * D, D, particle.x.begin());
+        visit(particle);
+      }
+    });
+  }
+  void compare(const Particle& particle, const Vector3& point, std::vector<Particle>& found, double& least) const {
+    const double same = 1e-6 * spacing_ * spacing_;
+    double squared = 0;
+    for (int c = 0; c < dimension_; ++c) squared += (point[c] - particle.x[c]) * (point[c] - particle.x[c]);
+    if (squared < least - same) found.clear();
+    if (squared < least + same) found.push_back(particle);
+    least = std::min(least, squared);
+  }
+
+  int dimension_;
+  double spacing_;
+  const SeededBody& seeds_;
+  std::unordered_map<Bin, std::vector<Particle>, Hash> bins_;
+};
+
+/// The cofactor matrix of F, row-major: what it makes of an area vector is that of the deformed body.
+std::array<double, 9> cofactor(int dimension, const std::array<double, 9>& F) {
+  if (dimension == 2) return {F[3], -F[2], -F[1], F[0]};
+  std::array<double, 9> C{};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+      C[3 * i + j] = F[3 * a + c] * F[3 * b + d] - F[3 * a + d] * F[3 * b + c];
+    }
+  return C;
+}
+
+Vector3 product(int D, const std::array<double, 9>& A, const Vector3& v) {
+  Vector3 result{};
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) result[i] += A[D * i + j] * v[j];
+  return result;
+}
+
+}  // namespace
+
+BodyLoads::BodyLoads(const Experiment& experiment, int body, const SeededBody& seeds)
+    : experiment_(experiment),
+      body_(body),
+      dimension_(experiment.dimension),
+      spacing_(experiment.grid.cell_size / experiment.bodies[body].particles_per_cell_axis) {
+  for (const ExternalForce force : external_forces)
+    gives_[static_cast<std::size_t>(force)] = !experiment.giver_of(force, body).empty();
+  if (experiment.body_force) accelerations_.push_back(&*experiment.body_force);
+  for (const Load& load : experiment.loads)
+    if (load.body == body && load.gives(ExternalForce::body_force)) accelerations_.push_back(&load.value);
+  if (!experiment.loaded_at_points(body).empty()) take_shares(seeds);
+}
+
+bool BodyLoads::any() const {
+  return std::any_of(gives_.begin(), gives_.end(), [](bool gives) { return gives; });
+}
+
+/// The pieces of a surface, line or point that a load acts on. A surface has eight to a particle's spacing, in 3-D four,
+/// so that the rim of a region is known to that.
+Surface BodyLoads::pieces_of(const Load& load) const {
+  Surface pieces;
+  switch (load.type) {
+    case LoadType::force:
+      return {{load.from, {}, 1}};
+    case LoadType::line_force:
+      add_edge(pieces, load.from, load.to, {}, spacing_ / 8);
+      return pieces;
+    default:
+      return loaded_surface(load, *experiment_.bodies[body_].geometry, {experiment_.grid.lower, experiment_.grid.upper},
+                            spacing_ / (dimension_ == 2 ? 8 : 4));
+  }
+}
+
+void BodyLoads::take_shares(const SeededBody& seeds) {
+  const int D = dimension_;
+  std::map<std::pair<std::size_t, int>, Share> shares;  // by particle, then by load
+  for (int number = 0; number < static_cast<int>(experiment_.loads.size()); ++number) {
+    const Load& load = experiment_.loads[number];
+    if (load.body != body_ || !load.at_points()) continue;
+    const Surface pieces = pieces_of(load);
+    const Neighbourhood neighbourhood(D, spacing_, pieces, seeds);
+    for (const SurfacePiece& piece : pieces) {
+      const bool rings = experiment_.axisymmetric() && load.on_surface();
+      if (rings && piece.point[0] < 1e-9 * spacing_) continue;  // the axis is no surface
+      const auto nearest = neighbourhood.nearest(piece.point);
+      for (const Neighbourhood::Particle& particle : nearest) {
+        const double section = piece.area / static_cast<double>(nearest.size());
+        const double area = rings ? 2 * pi * piece.point[0] * section : section;
+        Share& share = shares[{particle.id, number}];
+        share.load = number;
+        share.measure += area;
+        Vector3 r{};
+        for (int c = 0; c < D; ++c) r[c] = piece.point[c] - particle.x[c], share.first[c] += area * r[c];
+        const double of_normals = load.follower ? section : area;
+        for (int i = 0; i < D; ++i) {
+          share.area[i] += of_normals * piece.normal[i];
+          for (int j = 0; j < D; ++j) share.area_moment[D * i + j] += of_normals * piece.normal[i] * r[j];
+        }
+      }
+    }
+  }
+  first_.assign(seeds.count() + 1, 0);
+  for (const auto& [of, share] : shares) ++first_[of.first + 1], shares_.push_back(share);
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+}
+
+Vector3 BodyLoads::acceleration(const Vector3& x, const Vector3& X, double time) const {
+  Vector3 sum{};
+  for (const VectorExpression* expression : accelerations_) {
+    const Vector3 value = (*expression)(x, X, time);
+    for (int c = 0; c < dimension_; ++c) sum[c] += value[c];
+  }
+  return sum;
+}
+
+std::size_t BodyLoads::accelerations(std::size_t count, const PointArrays& at, double time,
+                                     const std::array<double*, 3>& result) const {
+  std::size_t finite = accelerations_.front()->evaluate(count, at, time, result);
+  std::vector<double> values(accelerations_.size() > 1 ? dimension_ * count : 0);
+  for (std::size_t k = 1; k < accelerations_.size(); ++k) {
+    std::array<double*, 3> more{};
+    for (int c = 0; c < dimension_; ++c) more[c] = values.data() + c * count;
+    finite = std::min(finite, accelerations_[k]->evaluate(count, at, time, more));
+    for (int c = 0; c < dimension_; ++c)
+      for (std::size_t p = 0; p < count; ++p) result[c][p] += more[c][p];
+  }
+  return finite;
+}
+
+bool BodyLoads::carries(ExternalForce force, std::size_t id) const {
+  if (first_.empty()) return false;
+  for (std::uint32_t k = first_[id]; k < first_[id + 1]; ++k)
+    if (experiment_.loads[shares_[k].load].gives(force)) return true;
+  return false;
+}
+
+LoadCoefficients BodyLoads::coefficients(ExternalForce force, std::size_t id, const LoadedParticle& particle,
+                                         double time) const {
+  const int D = dimension_;
+  LoadCoefficients sum;
+  for (std::uint32_t k = first_[id]; k < first_[id + 1]; ++k) {
+    const Share& share = shares_[k];
+    const Load& load = experiment_.loads[share.load];
+    if (!load.gives(force)) continue;
+    const Vector3 way = product(D, particle.F, share.first);  // of r over the measure
+    Vector3 place = particle.x, initial = particle.X;
+    for (int c = 0; c < D; ++c) place[c] += way[c] / share.measure, initial[c] += share.first[c] / share.measure;
+    Vector3 value{};
+    if (load.type != LoadType::spring) {
+      value = load.value(place, initial, time);
+      if (load.type == LoadType::pressure) {
+        add_pressure(share, particle, value[0], load.follower, sum);
+        continue;
+      }
+    }
+    for (int c = 0; c < D; ++c) {
+      if (force == ExternalForce::spring) value[c] = -load.stiffness[c] * (place[c] - initial[c]);
+      if (force == ExternalForce::dashpot) value[c] = -load.damping[c] * particle.v[c];
+      sum.b[c] += share.measure * value[c];
+      for (int j = 0; j < D; ++j) sum.S[D * c + j] += value[c] * way[j];
+    }
+  }
+  return sum;
+}
+
+/// Adds -p times the integrals of n and of n (x) r. A ring's area grows as its radius does: about an axis those of a
+/// follower are over the section, and each point has its own radius.
+void BodyLoads::add_pressure(const Share& share, const LoadedParticle& particle, double pressure, bool follower,
+                             LoadCoefficients& sum) const {
+  const int D = dimension_;
+  const std::array<double, 9> C = follower ? cofactor(D, particle.F) : std::array<double, 9>{};
+  const Vector3 area = follower ? product(D, C, share.area) : share.area;
+  std::array<double, 9> turned = share.area_moment, moment{};
+  if (follower) {
+    turned = {};
+    for (int i = 0; i < D; ++i)
+      for (int j = 0; j < D; ++j)
+        for (int k = 0; k < D; ++k) turned[D * i + j] += C[D * i + k] * share.area_moment[D * k + j];
+  }
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j)
+      for (int k = 0; k < D; ++k) moment[D * i + j] += turned[D * i + k] * particle.F[D * j + k];
+  const bool rings = follower && experiment_.axisymmetric();
+  const double radius = particle.x[0];
+  const double of_centre = radius + product(D, particle.F, share.first)[0] / share.measure;
+  for (int i = 0; i < D; ++i) {
+    sum.b[i] -= pressure * (rings ? 2 * pi * (radius * area[i] + moment[D * i]) : area[i]);
+    for (int j = 0; j < D; ++j) sum.S[D * i + j] -= pressure * (rings ? 2 * pi * of_centre : 1.0) * moment[D * i + j];
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,95 @@
+#pragma once
+// What loads make of the particles that carry them, for all backends: a particle gives each of its nodes w b + S grad w.
+//
+// A force acts at a point of the body beside the particle that is nearest to it, at r from its centre. The field of the
+// nodes' velocities there, to first order about the particle, is sum v (w + r . grad w); what has the same power is
+// b = sum f and S = sum f (x) r, so that work on every affine motion is exact, no node is pushed that the particle does
+// not reach, and none that has no mass. Points and normals follow the particle's deformation F: r = F r0, and the
+// area vector n da = cof(F) N dA (Nanson).
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "simulation/backend.hpp"
+
+namespace mpm {
+
+/// The entries of the ledger that the works of forces from outside have, in the order of ExternalForce.
+inline constexpr std::array<double Ledger::*, external_force_count> external_rows{
+    &Ledger::body_force, &Ledger::surface_load, &Ledger::point_load, &Ledger::spring, &Ledger::dashpot};
+constexpr double Ledger::*row_of(ExternalForce force) {
+  return external_rows[static_cast<std::size_t>(force)];
+}
+
+/// A particle as its loads see it. Tensors are row-major with the dimension of the scene.
+struct LoadedParticle {
+  Vector3 x{}, X{}, v{};      ///< m, m at the start, m/s
+  std::array<double, 9> F{};  ///< deformation gradient; only where Experiment::loaded_at_points
+};
+
+/// What a particle gives a node: w b + S grad w.
+struct LoadCoefficients {
+  Vector3 b{};                ///< N
+  std::array<double, 9> S{};  ///< N m, row-major with the dimension of the scene
+};
+
+/// The loads of one body, taken to its particles where they are seeded.
+class BodyLoads {
+ public:
+  BodyLoads(const Experiment& experiment, int body, const SeededBody& seeds);
+
+  bool gives(ExternalForce force) const { return gives_[static_cast<std::size_t>(force)]; }
+  bool any() const;
+  /// Whether particles give S, and keep the deformation gradient that it needs.
+  bool at_points() const { return !first_.empty(); }
+  /// The acceleration by forces per mass, N/kg, at one point and time of a step's begin.
+  Vector3 acceleration(const Vector3& x, const Vector3& X, double time) const;
+  /// The same at many points, an array a component; returns the number of points before the first without a finite one.
+  std::size_t accelerations(std::size_t count, const PointArrays& at, double time,
+                            const std::array<double*, 3>& result) const;
+
+  /// Evaluates a kind of force that acts at points, at the time of a step's begin: calls give(p, coefficients) for those
+  /// of `count` particles that carry some, after read(p, particle) has filled the particle. ids[p] is the index of
+  /// seeding, or p itself where ids is null. Returns whether any carries some.
+  template <class Read, class Give>
+  bool evaluate(ExternalForce force, int count, const std::int32_t* ids, double time, Read&& read, Give&& give) const {
+    bool any = false;
+    for (int p = 0; p < count; ++p) {
+      const std::size_t id = static_cast<std::size_t>(ids ? ids[p] : p);
+      if (!carries(force, id)) continue;
+      LoadedParticle particle;
+      read(p, particle);
+      give(p, coefficients(force, id, particle, time));
+      any = true;
+    }
+    return any;
+  }
+
+ private:
+  /// What a particle carries of one load: integrals over the pieces of the surface, or of the line, that are nearest to
+  /// it. In axisymmetric scenes they are over the whole ring, but those of normals over its section.
+  struct Share {
+    int load = 0;
+    double measure = 0;                   ///< area, length or, of a point, 1
+    Vector3 first{};                      ///< of r0 over the measure
+    Vector3 area{};                       ///< of the normal over the area, of pressures
+    std::array<double, 9> area_moment{};  ///< of N (x) r0 over the area, row-major with the dimension
+  };
+  bool carries(ExternalForce force, std::size_t id) const;
+  LoadCoefficients coefficients(ExternalForce force, std::size_t id, const LoadedParticle& particle, double time) const;
+  void add_pressure(const Share& share, const LoadedParticle& particle, double pressure, bool follower,
+                    LoadCoefficients& sum) const;
+  void take_shares(const SeededBody& seeds);
+  Surface pieces_of(const Load& load) const;
+
+  const Experiment& experiment_;
+  int body_, dimension_;
+  double spacing_;  ///< m, of the particles as they are seeded
+  std::array<bool, external_force_count> gives_{};
+  std::vector<const VectorExpression*> accelerations_;  ///< of forces per mass, all that act on the body
+  std::vector<std::uint32_t> first_;  ///< first share of each particle, by the index of seeding, and the end of all
+  std::vector<Share> shares_;
+};
+
+}  // namespace mpm

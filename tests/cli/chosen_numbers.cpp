@@ -1,0 +1,179 @@
+// Bodies, groups, probes, pairs and figures of columns as `mpm run` records them and `mpm check` checks them.
+
+#include "cli/program.hpp"
+#include "support/csv.hpp"
+
+using namespace mpm::test;
+
+namespace {
+
+/// Two balls that meet, with everything that can be asked for.
+Json asking() {
+  Json scene = two_balls();
+  scene["output"] = Json::parse(R"({"metrics_every": 3, "bodies": true, "contact_pairs": true,
+    "groups": [{"name": "core", "body": "ball", "where": {"type": "ball", "centre": [0.3, 0.3], "radius": 0.1}}],
+    "probes": [{"name": "tip", "quantities": ["velocity_x", "stress_xy"], "nearest": [0.4, 0.4]},
+               {"name": "gap", "quantities": ["pressure"], "place": [0.45, 0.45]},
+               {"name": "nowhere", "quantities": ["pressure"], "place": [0.1, 0.9]},
+               {"name": "cut", "section": {"point": [0.3, 0.3], "normal": [1, 1]}},
+               {"name": "line", "quantities": ["volume_ratio", "displacement_x"],
+                "line": {"from": [0.1, 0.1], "to": [0.8, 0.8], "count": 15, "profiles": 3}}]})");
+  scene["figures"] = Json::parse(R"(["energy", {"type": "columns", "name": "ball_speeds", "title": "Speeds",
+      "columns": ["body ball velocity x", "body other velocity x"]}])");
+  return scene;
+}
+
+mpm::support::Table metrics_of(const fs::path& run) {
+  return mpm::support::read_csv(run / "metrics.csv");
+}
+
+/// What `mpm check` says of a scene that it refuses.
+std::string refusal(const Json& scene, const std::string& verb = "check") {
+  const Folder folder;
+  spill(folder / "scene.json", scene.dump(1));
+  const Result result = call(folder, {verb, "scene.json"});
+  INFO(result.err);
+  CHECK(result.code == 2);
+  CHECK(folder.names() == Words{"scene.json"});
+  return result.err;
+}
+
+}  // namespace
+
+TEST_CASE("what is asked for has columns, a place in the summary, figures and files") {
+  const Folder folder;
+  Json scene = asking();
+  scene["compare"]["expect"] = Json::parse(R"([{"metric": "bodies.ball.mass.final", "at_least": 1},
+    {"metric": "pairs.ball.other.force_x.smallest", "at_most": 0}, {"metric": "groups.core.velocity_x.initial", "equals": 1, "tolerance": 1e-9},
+    {"metric": "probes.tip.velocity_x.largest", "at_least": 0.9}])");
+  const Result result = run_scene(folder, scene);
+  INFO(result.err);
+  CHECK(result.code == 0);
+  const auto table = metrics_of(folder / "run");
+  for (const char* column : {"body ball mass (kg/m)", "body other angular velocity z (1/s)",
+                             "group core momentum y (kg/s)", "probe tip stress_xy (Pa)", "probe gap pressure (Pa)",
+                             "probe cut force x (N/m)", "pair ball other force x (N/m)", "pair ball other nodes"}) {
+    INFO(column);
+    CHECK(std::count(table.header.begin(), table.header.end(), column) == 1);
+  }
+  // The pair of the only two fields is what contact records; bodies sum to the scene.
+  for (const char* axis : {"x", "y"})
+    CHECK(*table.find(std::string("pair ball other force ") + axis) ==
+          *table.find(std::string("contact force ") + axis));
+  CHECK(*table.find("pair ball other nodes") == *table.find("contact nodes"));
+  CHECK(*table.find("pair ball other largest penetration") == *table.find("largest penetration"));
+  for (std::size_t k = 0; k < table.rows(); ++k)
+    CHECK((*table.find("body ball kinetic energy"))[k] + (*table.find("body other kinetic energy"))[k] ==
+          Approx((*table.find("kinetic energy"))[k]).epsilon(1e-12));
+  const Json summary = json_in(folder / "run/summary.json");
+  const Json& mass = summary["bodies"]["ball"]["mass"];
+  CHECK(mass["initial"] == mass["largest"]);
+  CHECK(summary["probes"]["tip"]["velocity_x"]["initial"].get<double>() == Approx(1));
+  CHECK(summary["probes"]["nowhere"]["pressure"]["largest"].is_null());  // there is no material
+  for (const char* file :
+       {"figures/ball_speeds.png", "figures/ball_speeds.svg", "figures/energy.png", "probes/line.csv"})
+    CHECK(fs::is_regular_file(folder / "run" / file));
+  const auto profile = mpm::support::read_csv(folder / "run/probes/line.csv");
+  CHECK(profile.rows() == 3 * 15);
+  CHECK(profile.header ==
+        std::vector<std::string>{"time (s)", "distance (m)", "x (m)", "y (m)", "volume_ratio", "displacement_x (m)"});
+  CHECK((*profile.find("time"))[44] == Approx(0.08));
+  CHECK(has(slurp(folder / "run/report.html"), "ball_speeds"));
+
+  const Result again = call(folder, {"check", "run/experiment.json"});
+  INFO(again.err);
+  CHECK(again.code == 0);
+  fs::remove(folder / "run/figures/ball_speeds.png");
+  CHECK(call(folder, {"figure", "run"}).code == 0);
+  CHECK(fs::is_regular_file(folder / "run/figures/ball_speeds.png"));
+  spill(folder / "both.json", R"({"columns": ["body ball velocity y", "body other velocity y"]})");
+  const Result drawn = call(folder, {"figure", "run", "--spec", "both.json"});
+  INFO(drawn.err);
+  CHECK(drawn.code == 0);
+  CHECK(fs::is_regular_file(folder / "run/figures/both.png"));
+}
+
+TEST_CASE("nothing of it is there unless it is asked for, and asking changes no other number") {
+  const Folder folder;
+  Json scene = two_balls();
+  scene["output"]["metrics_every"] = 3;
+  REQUIRE(run_scene(folder, scene).code == 0);
+  const auto bare = metrics_of(folder / "run");
+  const Json summary = json_in(folder / "run/summary.json");
+  for (const char* group : {"bodies", "groups", "probes", "pairs"}) CHECK(!summary.contains(group));
+  CHECK(!fs::exists(folder / "run/probes"));
+  const Folder other;
+  REQUIRE(run_scene(other, asking()).code == 0);
+  const auto asked = metrics_of(other / "run");
+  REQUIRE(asked.header.size() > bare.header.size());
+  for (std::size_t k = 0; k < bare.header.size(); ++k) {
+    CHECK(asked.header[k] == bare.header[k]);
+    CHECK(asked.columns[k] == bare.columns[k]);
+  }
+}
+
+TEST_CASE("a resumed run writes the same bytes of them") {
+  const Folder folder;
+  Json scene = asking();
+  scene["output"]["checkpoint_steps"] = 7;
+  REQUIRE(run_scene(folder, scene).code == 0);
+  for (const int steps : {10, 23, 36}) {
+    INFO(steps);
+    spill(folder / "scene.json", scene.dump(1));
+    const Words part{"run", "scene.json", "--out", "part", "--threads", "1"};
+    Words stopped = part;
+    stopped.insert(stopped.end(), {"--set", "/solver/max_steps=" + std::to_string(steps)});
+    CHECK(call(folder, stopped).code == 3);
+    Words resumed = part;
+    resumed.push_back("--resume");
+    const Result result = call(folder, resumed);
+    INFO(result.err);
+    CHECK(result.code == 0);
+    for (const char* file : {"metrics.csv", "probes/line.csv", "figures/ball_speeds.csv"})
+      CHECK((slurp(folder / "part" / file) == slurp(folder / "run" / file)));
+    const Json whole = json_in(folder / "run/summary.json"), again = json_in(folder / "part/summary.json");
+    for (const char* group : {"bodies", "groups", "probes", "pairs", "warnings"}) CHECK(whole[group] == again[group]);
+    fs::remove_all(folder / "part");
+  }
+}
+
+TEST_CASE("names that no record has are mistakes of the file, with place and nearest name") {
+  Json scene = asking();
+  scene["compare"]["expect"] = Json::parse(R"([{"metric": "bodies.bal.mass.final", "at_least": 1}])");
+  CHECK(has(refusal(scene),
+            "/compare/expect/0/metric: no run of this experiment records \"bodies.bal.mass.final\"; did "
+            "you mean \"bodies.ball.mass.final\"?"));
+  CHECK(has(refusal(scene, "run"), "/compare/expect/0/metric: no run of this experiment records"));
+  scene = asking();
+  scene["figures"][1]["columns"][0] = "body ball velocty x";
+  const std::string column = refusal(scene);
+  CHECK(has(column,
+            "/figures/1/columns/0: no run of this experiment has a column \"body ball velocty x\"; did you mean "
+            "\"body ball velocity x\"?"));
+  CHECK(column.starts_with("scene.json:"));
+  scene = asking();
+  scene["output"]["probes"][0]["quantities"][0] = "equivalent_plastic_strain";
+  CHECK(has(refusal(scene),
+            "/output/probes/0/quantities/0: no particle of this experiment has "
+            "\"equivalent_plastic_strain\""));
+  scene["output"]["probes"][0]["quantities"][0] = "velocityx";
+  CHECK(has(refusal(scene), "did you mean \"velocity_x\"?"));
+  scene = asking();
+  scene["output"]["groups"][0]["where"]["centre"] = {0.9, 0.1};
+  CHECK(has(refusal(scene), "/output/groups/0/where: no particle begins in this region"));
+  scene = asking();
+  scene["output"]["bodies"] = {"ball", "othr"};
+  CHECK(has(refusal(scene), "/output/bodies/1: there is no body \"othr\"; did you mean \"other\"?"));
+  scene = asking();
+  scene["output"]["probes"][1]["nearest"] = {0.1, 0.1};
+  CHECK(has(refusal(scene), "/output/probes/1: says more than one place"));
+  scene = asking();
+  scene.erase("contact");
+  CHECK(has(refusal(scene), "/output/contact_pairs: there are no pairs without \"contact\""));
+  scene = two_balls();
+  scene["output"]["ledger"] = false;
+  scene["figures"] = {{{"type", "columns"}, {"name", "energy"}, {"columns", {"total energy"}}}, "ledger"};
+  CHECK(has(refusal(scene), "/figures/0/name: there are two figures named \"energy\""));
+  scene["figures"][0]["name"] = "mine";
+  CHECK(has(refusal(scene), "/figures/1: figure \"ledger\" needs \"ledger residual\""));
+}
