@@ -223,7 +223,7 @@ std::vector<Section> geometry_kinds() {
       kind("difference", "The first part without the others.", {parts}),
       kind("intersection", "What lies in every part.", {parts}),
       kind("turned", "A geometry turned about a point.",
-           {part, parameter("angle", Type::number, "", "Angle, rad, counted from x to y in 2-D.").needed(),
+           {part, parameter("angle", Type::number, "rad", "Angle, counted from x to y in 2-D.").needed(),
             parameter("about", Type::vector, "m", "Point that stays; default: the middle of the geometry's bounds."),
             parameter("axis", Type::vector, "", "Axis of the rotation, in 3-D; default: z.").with_components(3)}),
       kind("shifted", "A geometry moved.",

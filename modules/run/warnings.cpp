@@ -187,14 +187,14 @@ std::string loneliness(const Evidence& run) {
 
 /// Contact that acted while nothing touched.
 std::string early_contact(const Evidence& run) {
-  constexpr double open = 0.25, most_of_it = 0.1;
+  constexpr double most_of_it = 0.1;
   const Seen& seen = run.rows.seen();
   const double h = run.experiment().grid.cell_size;
-  if (seen.met && seen.first_gap > open * h)
-    return "contact began while the particles of the bodies were a spacing and another " + digits(seen.first_gap / h) +
-           " cells apart: detection sees a surface where a body has no particles, as at corners, in thin parts and "
-           "with "
-           "few particles a cell; take smaller cells or more particles a cell (docs/method.md#contact)";
+  if (seen.early_force > most_of_it * seen.largest_force)
+    return "contact acted while a gap of " + digits(seen.early_gap / h) + " cells was open between the bodies, with " +
+           digits(100 * seen.early_force / seen.largest_force) +
+           " % of the largest force: detection sees a surface where a body has no particles, as at corners, in thin "
+           "parts and with few particles a cell; take smaller cells or more particles a cell (docs/method.md#contact)";
   if (seen.apart_force > most_of_it * seen.largest_force)
     return "a contact force of " + digits(seen.apart_force) +
            " was recorded where detection said that nothing touches, " +

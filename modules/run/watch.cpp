@@ -43,9 +43,13 @@ void Watch::look() {
   const double force = length(contact.force);
   // In a filter's loop contact acts once more after the nodes were counted.
   if (contact.nodes == 0 && !simulation_.plan().filters()) seen_.apart_force = std::max(seen_.apart_force, force);
-  if (force > 0 && !seen_.met) seen_.met = true, seen_.first_gap = gap_between_fields(simulation_);
+  if (force > 0 && !seen_.met) {
+    const double gap = gap_between_fields(simulation_);
+    seen_.met = gap <= open_gap * simulation_.experiment().grid.cell_size;
+    if (!seen_.met && force > seen_.early_force) seen_.early_force = force, seen_.early_gap = gap;
+  }
   seen_.largest_force = std::max(seen_.largest_force, force);
-  if (watches_slide_ && force > 0 && seen_.in_contact)
+  if (watches_slide_ && seen_.met && force > 0 && seen_.in_contact)
     seen_.slide += (simulation_.time() - seen_.time) * sliding_speed();
   seen_.in_contact = force > 0;
   seen_.time = simulation_.time();

@@ -5,14 +5,19 @@
 
 namespace mpm::app {
 
+/// A gap between fields, in cells, across which nothing should act.
+inline constexpr double open_gap = 0.4;
+
 /// What was seen of contact. Only laws that detect surfaces are watched.
 struct Seen {
   double largest_force = 0;  ///< N
   double apart_force = 0;    ///< N, the largest force in a row where no node touched
-  double first_gap = 0;      ///< m, between the particles of the fields in the first row with a force
+  double early_force = 0;    ///< N, the largest force before the fields were first nearer than `open_gap`
+  double early_gap = 0;      ///< m, between the particles of the fields when that force acted
   double slide = 0;          ///< m, way along the surface that two fields with contact slid on each other
   double time = 0;           ///< s, of the last row
-  bool met = false, in_contact = false;
+  bool met = false;          ///< the fields have been nearer than `open_gap` in a row with a force
+  bool in_contact = false;   ///< in the last row
 };
 
 class Watch {

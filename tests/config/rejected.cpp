@@ -177,11 +177,12 @@ TEST_CASE("geometry that is degenerate or outside", "[config]") {
                                                               {"type": "ball", "centre": [0.6, 0.6], "radius": 0.1}]})") ==
       "FILE:23:18: /bodies/0/geometry: no particle lies in the body: it is empty, or thinner than the particle spacing "
       "of 0.008333333333 m");
-  CHECK(errors_of_geometry(R"({"type": "union", "of": [{"type": "bal"}, "ball"]})") ==
-        R"(FILE:23:52: /bodies/0/geometry/of/0/type: unknown geometry "bal"; did you mean "ball"? )"
-        R"((available: "ball", "box", "ring", "polygon", "half_space", "union", "difference", "intersection"))"
-        "\n"
-        R"(FILE:23:60: /bodies/0/geometry/of/1: expected an object with "type" (geometry), got the string "ball")");
+  CHECK(
+      errors_of_geometry(R"({"type": "union", "of": [{"type": "bal"}, "ball"]})") ==
+      R"(FILE:23:52: /bodies/0/geometry/of/0/type: unknown geometry "bal"; did you mean "ball"? )"
+      R"((available: "ball", "box", "ring", "polygon", "half_space", "union", "difference", "intersection", "turned", "shifted", "stl", "mask"))"
+      "\n"
+      R"(FILE:23:60: /bodies/0/geometry/of/1: expected an object with "type" (geometry), got the string "ball")");
   CHECK(errors_of_geometry(R"({"type": "union", "of": []})") ==
         "FILE:23:42: /bodies/0/geometry/of: a union takes at least 1 geometry, got 0");
 }
@@ -199,7 +200,7 @@ FILE:31:25: /body_force/1: in the expression "pi*t*z" at character 6: "z" is not
       errors_after("\"A*x\"", "\"amplitude*x\"") ==
       "FILE:24:30: /bodies/0/velocity/1: in the expression \"amplitude*x\" at character 1: unknown name \"amplitude\"; "
       "known: " +
-          std::string(functions) + ", \"A\", \"w\", \"x\", \"y\"");
+          std::string(functions) + ", \"A\", \"w\", \"x\", \"y\", \"X\", \"Y\"");
 }
 
 TEST_CASE("output and comparisons", "[config]") {

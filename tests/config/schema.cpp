@@ -85,7 +85,7 @@ TEST_CASE("parameters of plugins appear with unit, range, default and choices", 
   CHECK(branch("contact", "coulomb")["properties"].contains("detection"));
   CHECK(schema()["$defs"]["shape"]["properties"]["type"]["enum"] == Json({"linear", "bspline_quadratic", "only_flat"}));
   CHECK(schema()["$defs"]["filter"].contains("not"));
-  CHECK(schema()["properties"]["figures"]["items"]["enum"] == Json({"energy", "dissipation", "contact"}));
+  CHECK(schema()["properties"]["figures"]["items"]["anyOf"][0]["enum"] == Json({"energy", "dissipation", "contact"}));
 }
 
 TEST_CASE("a key that may be null says so, with its default", "[schema]") {

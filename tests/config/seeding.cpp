@@ -48,11 +48,11 @@ TEST_CASE("a seeding is a word or an object, and the lattice where none is named
   CHECK(discs.read(R"("seeding": {"type": "blue_noise", "relaxations": 3},)").bodies[0].seeding.relaxations == 3);
   CHECK(
       discs.errors_of(R"("seeding": "fited",)") ==
-      R"(FILE:22:53: /bodies/0/seeding: unknown seeding "fited"; did you mean "fitted"? (available: "lattice", "fitted", "partial", "random", "blue_noise", "points"))");
+      R"(FILE:22:55: /bodies/0/seeding: unknown seeding "fited"; did you mean "fitted"? (available: "lattice", "fitted", "partial", "random", "blue_noise", "points"))");
   CHECK(discs.errors_of(R"("seeding": {"type": "partial", "smallest_share": 0.6},)") ==
-        "FILE:22:91: /bodies/0/seeding/smallest_share: out of range: expected a number from 0 to 0.5, got 0.6");
+        "FILE:22:93: /bodies/0/seeding/smallest_share: out of range: expected a number from 0 to 0.5, got 0.6");
   CHECK(discs.errors_of(R"("seeding": "random", "jitter": 0.1,)") ==
-        "FILE:22:73: /bodies/0/jitter: jitter moves particles off a lattice, and these lie on none; remove it");
+        "FILE:22:75: /bodies/0/jitter: jitter moves particles off a lattice, and these lie on none; remove it");
 }
 
 TEST_CASE("geometry may be turned and moved, and says what it cannot be", "[config]") {
@@ -89,7 +89,7 @@ TEST_CASE("points of a file are the body", "[config]") {
     discs.put("points.csv", text);
     return discs.errors_of(seeding, "none");
   };
-  const std::string at = "FILE:22:80: /bodies/0/seeding/file: FOLDER/points.csv: ";
+  const std::string at = "FILE:22:82: /bodies/0/seeding/file: FOLDER/points.csv: ";
   CHECK(refused("x,y\n0.2,1.3\n") == at + "line 2: the point lies outside the domain, or is no number");
   CHECK(refused("x,y,volume\n0.2,0.3,1\n0.2,0.3,0\n") == at + "line 3: expected a volume above 0");
   CHECK(refused("x,volume\n0.2,1\n") == at + "line 1: there is no column \"y\"");
@@ -98,7 +98,7 @@ TEST_CASE("points of a file are the body", "[config]") {
   CHECK(refused("x,y\n") == at + "there is no point in it");
   CHECK(refused("x,y\n0.2\n").find(at.substr(0, 36)) == 0);
   CHECK(discs.errors_of(R"("seeding": {"type": "points", "file": "none.csv"},)", "none") ==
-        "FILE:22:80: /bodies/0/seeding/file: there is no file FOLDER/none.csv; a path counts from the folder of the "
+        "FILE:22:82: /bodies/0/seeding/file: there is no file FOLDER/none.csv; a path counts from the folder of the "
         "experiment file");
 }
 
@@ -122,11 +122,11 @@ TEST_CASE("initial states are read by component, and what cannot be is refused",
   CHECK((*stretched.bodies[0].deformation_gradient)[0]({}, {}, 0) == 1);
   CHECK((*stretched.bodies[0].deformation_gradient)[1]({}, {}, 0) == 0.5);
   CHECK(discs.errors_of(R"("initial_stress": {"zz": 1},)") ==
-        "FILE:22:67: /bodies/0/initial_stress/zz: in plane strain the stress out of the plane follows from the "
+        "FILE:22:69: /bodies/0/initial_stress/zz: in plane strain the stress out of the plane follows from the "
         "others; remove \"zz\"");
   CHECK(discs.errors_of(R"("initial_deformation_gradient": {"xz": 1},)") ==
-        "FILE:22:81: /bodies/0/initial_deformation_gradient/xz: in 2-D nothing is sheared out of the plane; remove "
+        "FILE:22:83: /bodies/0/initial_deformation_gradient/xz: in 2-D nothing is sheared out of the plane; remove "
         "\"xz\"");
   CHECK(discs.errors_of(R"("initial_stress": {"xx": 1}, "initial_displacement": [0, 0],)") ==
-        "FILE:22:60: /bodies/0/initial_stress: the stress follows from \"initial_displacement\"; give one of them");
+        "FILE:22:62: /bodies/0/initial_stress: the stress follows from \"initial_displacement\"; give one of them");
 }

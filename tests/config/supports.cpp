@@ -61,7 +61,8 @@ TEST_CASE("gravity may be formulas of time", "[config]") {
   CHECK(experiment.gravity_at(0.05)[1] == Approx(-4.905).epsilon(1e-14));
   CHECK(experiment.gravity_has_potential(0));
   CHECK_FALSE(experiment.gravity_has_potential(1));
-  CHECK(errors(two_discs, {R"(/gravity=[0, "x"])"}).find("unknown name \"x\"") != std::string::npos);
+  CHECK(errors(two_discs, {R"(/gravity=[0, "x"])"}).find("\"x\" is not available here; variables are t") !=
+        std::string::npos);
   CHECK(errors(two_discs, {R"(/gravity=[0, "-t"])"}).find("is one of constant gravity") != std::string::npos);
-  CHECK(errors(two_discs, {R"(/gravity=[0, "1/0"])"}).find("gravity is not a finite number") != std::string::npos);
+  CHECK(errors(two_discs, {R"(/gravity=[0, "1/0"])"}).find("its value is not a finite number") != std::string::npos);
 }

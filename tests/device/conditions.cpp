@@ -161,7 +161,7 @@ TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]"
   check_entries();
   mix.stress_update = "last";
   check_entries();
-  mix.more = R"J(, "loads": [
+  mix.more = R"J(, "damping": {"viscous": 3, "local": 0.2}, "loads": [
     {"type": "pressure", "body": "a", "where": {"type": "half_space", "point": [0.31, 0], "normal": [1, 0.3]}, "pressure": 400},
     {"type": "force", "body": "a", "at": [0.4, 0.37], "force": [5, "20*t"]},
     {"type": "spring", "body": "b", "where": {"type": "half_space", "point": [0.52, 0], "normal": [1, 0]},

@@ -21,6 +21,20 @@ void prepare(const std::vector<Mix>& mixes, const std::vector<std::string>& in =
   Devices::shared().prepare(choices);
 }
 
+void check_every_pair(int dimension) {
+  std::vector<Mix> mixes;
+  const std::vector<std::string> orders{"last", "first", "modified_last", "averaged"};
+  for (const Plugin* shape : plugins().of_kind(MPM_SHAPE))
+    for (const Plugin* transfer : plugins().of_kind(MPM_TRANSFER)) {
+      Mix mix = mix_with(*shape, dimension);
+      mix.transfer = device_choice(*transfer);
+      mix.stress_update = orders[mixes.size() % orders.size()];
+      if (!is_refused(mix)) mixes.push_back(mix);
+    }
+  prepare(mixes, {"double"});
+  for (const Mix& mix : mixes) check_on_device(mix, {"double"});
+}
+
 }  // namespace
 
 TEST_CASE("every plugin runs on the host-run device as on the reference backend", "[device]") {
@@ -33,16 +47,9 @@ TEST_CASE("every plugin runs on the host-run device as on the reference backend"
 }
 
 TEST_CASE("every shape runs with every transfer on the host-run device", "[device]") {
-  std::vector<Mix> mixes;
-  const std::vector<std::string> orders{"last", "first", "modified_last", "averaged"};
-  for (const Plugin* shape : plugins().of_kind(MPM_SHAPE))
-    for (const Plugin* transfer : plugins().of_kind(MPM_TRANSFER))
-      for (const int dimension : {2, 3}) {
-        Mix mix = mix_with(*shape, dimension);
-        mix.transfer = device_choice(*transfer);
-        mix.stress_update = orders[mixes.size() % orders.size()];
-        if (!is_refused(mix)) mixes.push_back(mix);
-      }
-  prepare(mixes, {"double"});
-  for (const Mix& mix : mixes) check_on_device(mix, {"double"});
+  check_every_pair(2);
+}
+
+TEST_CASE("every shape runs with every transfer on the host-run device in 3-D", "[device][slow]") {
+  check_every_pair(3);
 }

@@ -207,7 +207,8 @@ TEST_CASE("a pass says whether it visits particles or nodes, and a fused one bot
   const auto visits = [](const char* scene) {
     const Plan plan = make_plan(mpm::test::experiment_from(scene));
     std::map<std::string, std::vector<std::string>> by_name;
-    for (const auto& pass : plan.to_json()["passes"])
+    const auto json = plan.to_json();
+    for (const auto& pass : json["passes"])
       if (pass.contains("visits")) by_name[pass["name"]] = pass["visits"].get<std::vector<std::string>>();
     return by_name;
   };
