@@ -75,8 +75,9 @@ mpm_fault(${kernels}/contact.hpp
           "a.grid, at, given);"
           "a.grid, at, given * (MPM_FAULT == 2 ? T(0.5) : T(1)));")
 mpm_fault(${kernels}/scatter.hpp
-          "      add(s.node, values);\n    });\n  });\n}\n\n}  // namespace"
-          "      if (MPM_FAULT != 3 || p != 0 || s.weight > T(0.2)) add(s.node, values);\n    });\n  });\n}\n\n}  // namespace")
+          "mass * s.distance[i];\n        }\n      }\n      add(s.node, values);"
+          "mass * s.distance[i];\n        }\n      }
+      if (MPM_FAULT != 3 || p != 0 || s.weight > T(0.2)) add(s.node, values);")
 mpm_fault(${kernels}/filter.hpp
           "    store(a.grid.field[N::velocity], nodes, node, velocity);\n    if constexpr (N::trial"
           "    for (int c = 0; c < D && MPM_FAULT == 4; ++c) velocity[c] *= T(1 + 1e-3);
