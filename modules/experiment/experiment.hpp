@@ -150,7 +150,7 @@ struct SeededPoint {
 };
 
 struct SeedingSpecification {
-  SeedingKind kind = SeedingKind::lattice;
+  SeedingKind kind = SeedingKind::fitted;
   double smallest_share = 0.05;  ///< of `partial`: lighter particles are merged, as a share of a whole one
   int relaxations = 20;          ///< of `blue_noise`: times that each particle moves to the middle of its cell
   std::shared_ptr<const std::vector<SeededPoint>> points;  ///< of `points`

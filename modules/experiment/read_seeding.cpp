@@ -10,7 +10,7 @@ namespace mpm {
 
 OrderedJson ExperimentReader::read_seeding(const Node* node, BodySpecification& body) {
   OrderedJson resolved;
-  resolved["type"] = "lattice";
+  resolved["type"] = "fitted";
   if (!node || node->type == Node::Type::null) return resolved;
   const std::vector<Section> kinds = seeding_kinds();
   const Section* const kind = choose_kind(*node, kinds, "seeding", true, context_);

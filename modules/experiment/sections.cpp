@@ -285,7 +285,7 @@ Section body_section() {
               parameter("name", Type::string, "", "Unique name.").needed(),
               parameter("material", Type::string, "", "Name out of materials.").needed(),
               nested("geometry", "a geometry; not with points of a file", "geometry"),
-              nested("seeding", "how particles are placed", "seeding").standard("lattice"),
+              nested("seeding", "how particles are placed", "seeding").standard("fitted"),
               parameter("particles_per_cell_axis", Type::integer, "", "Particles along each edge of a cell.")
                   .from(1)
                   .to(8)

@@ -20,6 +20,8 @@ std::string warning_of_rim_steps(const Experiment& experiment) {
   const BodySpecification* coarsest = nullptr;
   double fewest = std::numeric_limits<double>::infinity();
   for (const BodySpecification& body : experiment.bodies) {
+    const SeedingKind kind = body.seeding.kind;
+    if (kind != SeedingKind::lattice && kind != SeedingKind::fitted) continue;  // others have no rows
     const double rows = body.geometry->smallest_radius() * body.particles_per_cell_axis / experiment.grid.cell_size;
     if (rows < fewest) fewest = rows, coarsest = &body;
   }

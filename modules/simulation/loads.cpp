@@ -37,7 +37,10 @@ class Neighbourhood {
     for_each_bin_around(point, [&](const Bin& bin) {
       for (const Particle& particle : bins_.at(bin)) look(particle);
     });
-    if (found.empty()) for_each_particle(look);  // a corner that no particle is near
+    if (found.empty()) {  // a corner that no particle is near
+      if (all_.empty()) for_each_particle([&](const Particle& particle) { all_.push_back(particle); });
+      for (const Particle& particle : all_) look(particle);
+    }
     return found;
   }
 
@@ -87,6 +90,7 @@ class Neighbourhood {
   double spacing_;
   const SeededBody& seeds_;
   std::unordered_map<Bin, std::vector<Particle>, Hash> bins_;
+  mutable std::vector<Particle> all_;  ///< filled where a point is far from every particle: seeding again is slow
 };
 
 /// The cofactor matrix of F, row-major: what it makes of an area vector is that of the deformed body.

@@ -37,10 +37,11 @@ class Discs {
 
 }  // namespace
 
-TEST_CASE("a seeding is a word or an object, and the lattice where none is named", "[config]") {
+TEST_CASE("a seeding is a word or an object, and fitted where none is named", "[config]") {
   const Discs discs;
-  CHECK(discs.read("").bodies[0].seeding.kind == SeedingKind::lattice);
-  CHECK(discs.read("").resolved["bodies"][0]["seeding"].dump() == R"({"type":"lattice"})");
+  CHECK(discs.read("").bodies[0].seeding.kind == SeedingKind::fitted);
+  CHECK(discs.read("").resolved["bodies"][0]["seeding"].dump() == R"({"type":"fitted"})");
+  CHECK(discs.read(R"("seeding": "lattice",)").bodies[0].seeding.kind == SeedingKind::lattice);
   const Experiment partial = discs.read(R"("seeding": "partial",)");
   CHECK(partial.bodies[0].seeding.kind == SeedingKind::partial);
   CHECK(partial.bodies[0].seeding.smallest_share == 0.05);

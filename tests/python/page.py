@@ -2,13 +2,12 @@
 
     page.py SOURCE PAGE PROGRAM
 
-Executed are its blocks of Python, and its blocks of the shell (sh) that call the program only; ./mpm is then PROGRAM. A
-block of text after one of these is what it prints. A block of JSON that begins with the comment "// NAME.json" is saved as
-that file. Blocks that import VTK are left out where it is not installed, and that is said.
+Executed are its blocks of Python, and its blocks of the shell (sh) that call the program only; ./mpm is then PROGRAM.
+A block of text after one of these is what it prints. A block of JSON that begins with the comment "// NAME.json" is
+saved as that file. Blocks that import VTK are left out where it is not installed, and that is said.
 """
 
 import contextlib
-import importlib.util
 import io
 import os
 import pathlib
@@ -25,8 +24,12 @@ names = {"__name__": "page"}
 counts = {"executed": 0, "compared": 0, "saved": 0, "left out": 0}
 
 
-def lines_before(at):
-    return text.count("\n", 0, at) + 1
+def has_vtk():
+    try:
+        import vtkmodules  # noqa: F401
+    except ImportError:
+        return False
+    return True
 
 
 def run_python(block, line):
@@ -53,22 +56,25 @@ with tempfile.TemporaryDirectory() as folder:
     os.symlink(source / "experiments", pathlib.Path(folder) / "experiments")
     os.symlink(program, pathlib.Path(folder) / "mpm")
     os.chdir(folder)  # results stay out of the tree
-    printed = None  # by the block before; "" of one that was left out is compared with nothing
+    printed = None  # by the block before; ...: it was left out
     for match in re.finditer(r"^```(\w*)\n(.*?)^```", text, flags=re.M | re.S):
         language, block = match.groups()
-        line = lines_before(match.start())
+        line = text.count("\n", 0, match.start()) + 1
         if language == "text":
-            assert printed is not None, f"{page}:{line}: nothing that was executed stands before this output"
+            assert printed is not None, f"{page}:{line}: no block that was executed stands before this output"
             if printed is not ...:
                 assert printed == block, f"{page}:{line}: the page says\n{block}\nand the program\n{printed}"
                 counts["compared"] += 1
             printed = None
-        elif language == "python" and "vtkmodules" in block and not importlib.util.find_spec("vtkmodules"):
+            continue
+        printed = None
+        if language == "python" and "vtkmodules" in block and not has_vtk():
             print(f"SKIPPED: {page}:{line}: VTK's own reader (python3-vtk9) is not installed")
             printed, counts["left out"] = ..., counts["left out"] + 1
-        elif language == "python" or (language == "sh" and calls_only_the_program(block)):
-            printed = (run_python if language == "python" else run_shell)(block, line)
-            counts["executed"] += 1
+        elif language == "python":
+            printed, counts["executed"] = run_python(block, line), counts["executed"] + 1
+        elif language == "sh" and calls_only_the_program(block):
+            printed, counts["executed"] = run_shell(block, line), counts["executed"] + 1
         elif language == "json" and (name := re.match(r"// (\w+\.json)\n", block)):
             pathlib.Path(name[1]).write_text(block)
             counts["saved"] += 1

@@ -140,7 +140,7 @@ TEST_CASE("probes in a linear field are exact, inside and at the edge, and say n
   Numbers now = chosen(scene.metrics);
   CHECK(now["probe inside velocity_x"] == Approx(field(1.013, 0.957)).epsilon(1e-11));
   CHECK(now["probe inside velocity_y"] == Approx(1.013).epsilon(1e-11));
-  CHECK(now["probe corner velocity_x"] == Approx(field(0.7, 0.8)).epsilon(1e-11));
+  CHECK(now["probe corner velocity_x"] == Approx(field(0.7, 0.8)).margin(1e-12));  // 0
   CHECK(std::isnan(now["probe beside velocity_x"]));
   CHECK(now["probe particle velocity_x"] == Approx(field(0.725, 0.825)).epsilon(1e-12));
   CHECK(now["probe particle position_x"] == Approx(0.725).epsilon(1e-12));
@@ -151,7 +151,7 @@ TEST_CASE("probes in a linear field are exact, inside and at the edge, and say n
   REQUIRE(profile.rows.size() == 11);
   for (const std::vector<double>& row : profile.rows) {
     const bool material = row[2] > 0.69 && row[2] < 1.31;
-    if (material) CHECK(row[4] == Approx(field(row[2], row[3])).epsilon(1e-10));
+    if (material) CHECK(row[4] == Approx(field(row[2], row[3])).epsilon(1e-10).margin(1e-12));
     if (row[2] < 0.65 || row[2] > 1.35) CHECK(std::isnan(row[4]));
   }
   CHECK(profile.rows[10][1] == Approx(std::hypot(1, 0.2)));
@@ -183,15 +183,11 @@ TEST_CASE("a pair's force is what the block above it feels", "[chosen][pairs]") 
 }
 
 TEST_CASE("the pairs of three stacked blocks carry what lies above them", "[chosen][pairs]") {
-  Scene scene(stacked_blocks("cpu", R"({"type": "flip", "pic_fraction": 0.05})", ""), {"/solver/end_time=1.2"});
-  double lower = 0, upper = 0, time = 0;
-  while (!scene.simulation.finished()) {
-    scene.simulation.step();
-    if (scene.simulation.time() < 0.6) continue;
-    Numbers now = chosen(scene.metrics);
-    const double dt = scene.simulation.last_time_step();
-    lower += now["pair b1 b2 force y"] * dt, upper += now["pair b2 b3 force y"] * dt, time += dt;
-  }
-  CHECK(lower / time == Approx(-2 * block_weight).epsilon(0.02));
-  CHECK(upper / time == Approx(-block_weight).epsilon(0.02));
+  // Local damping brings the stack to rest and leaves weights as they are.
+  Scene scene(stacked_blocks("cpu", R"({"type": "flip", "pic_fraction": 0.05})", ""),
+              {"/solver/end_time=1.2", R"(/damping={"local": 0.5})"});
+  scene.run();
+  Numbers now = chosen(scene.metrics);
+  CHECK(now["pair b1 b2 force y"] == Approx(-2 * block_weight).epsilon(1e-3));
+  CHECK(now["pair b2 b3 force y"] == Approx(-block_weight).epsilon(1e-3));
 }
