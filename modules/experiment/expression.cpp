@@ -207,7 +207,7 @@ VectorExpression::VectorExpression(std::span<const Term> terms, const Expression
   }
   if (!uses_position_ && !uses_initial_position_ && !uses_time_) return;
   static std::atomic<std::uint64_t> next_id{1};
-  formulas->id = next_id++;
+  formulas->id = next_id.fetch_add(4);
   formulas->scope = scope;
   for (std::size_t i = 0; i < 3; ++i) {
     try {

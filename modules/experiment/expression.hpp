@@ -52,7 +52,7 @@ struct NotFinite {
 ///
 /// Many points are evaluated by one compiled program of all components: constants are folded, equal terms are found
 /// once, terms of t alone once a call, the rest in lanes. It is much faster than single points and agrees with them to
-/// rounding (sin, cos, exp and log are within 1 ulp, small whole powers are products). A point has the same bits
+/// rounding (sin and cos are within 1.5 ulp, exp and log within 1, small whole powers are products). A point has the same bits
 /// wherever it stands among others, on any thread. All evaluate() return the number of points before the first one
 /// where a value is not finite; values are written for all points nevertheless.
 class VectorExpression {
@@ -70,8 +70,13 @@ class VectorExpression {
   /// Evaluates at many positions x with initial positions X; `result` is as long as they are.
   std::size_t evaluate(std::span<const Vector3> x, std::span<const Vector3> X, double t,
                        std::span<Vector3> result) const;
-  /// Evaluates one component at many positions, which are the initial ones too.
-  std::size_t evaluate(int component, std::span<const Vector3> x, double t, double* result) const;
+  /// Evaluates one component at many positions x with initial positions X.
+  std::size_t evaluate(int component, std::span<const Vector3> x, std::span<const Vector3> X, double t,
+                       double* result) const;
+  /// The same at positions that are the initial ones too.
+  std::size_t evaluate(int component, std::span<const Vector3> x, double t, double* result) const {
+    return evaluate(component, x, x, t, result);
+  }
 
   /// Looks for the operation that gives no finite number at a point; nothing where all values are finite.
   std::optional<NotFinite> not_finite(const Vector3& x, const Vector3& X, double t) const;
@@ -106,10 +111,12 @@ class ScalarExpression {
   explicit ScalarExpression(VectorExpression first) : first_(std::move(first)) {}
 
   double operator()(const Vector3& x, const Vector3& X, double t) const { return first_(x, X, t)[0]; }
-  /// Evaluates the formula at many positions, which are the initial ones too.
-  std::size_t evaluate(std::span<const Vector3> x, double t, double* result) const {
-    return first_.evaluate(0, x, t, result);
+  /// Evaluates the formula at many positions x with initial positions X.
+  std::size_t evaluate(std::span<const Vector3> x, std::span<const Vector3> X, double t, double* result) const {
+    return first_.evaluate(0, x, X, t, result);
   }
+  /// The same at positions that are the initial ones too.
+  std::size_t evaluate(std::span<const Vector3> x, double t, double* result) const { return evaluate(x, x, t, result); }
   /// Looks for the operation that gives no finite number at a point.
   std::optional<NotFinite> not_finite(const Vector3& x, const Vector3& X, double t) const {
     return first_.not_finite(x, X, t);

@@ -38,9 +38,12 @@ void for_each(const formula::Values& values, int count, Take take) {
 /// Runs a program for all points: fill(variable, first, count, to) writes a variable's values, and
 /// take(output, first, count, values) reads those of an output.
 template <class Fill, class Take>
-std::size_t run(const formula::Program& program, int outputs, std::size_t count, double t, Fill fill, Take take) {
+std::size_t run(const formula::Program& program, std::uint64_t id, int outputs, std::size_t count, double t, Fill fill,
+                Take take) {
   thread_local formula::Space space;
-  program.begin(t, space);
+  // A thread that evaluates one program for chunk after chunk finds what depends on time alone once.
+  thread_local std::pair<std::uint64_t, std::uint64_t> found{0, 0};
+  if (const std::pair now{id, std::bit_cast<std::uint64_t>(t)}; now != found) program.begin(t, space), found = now;
   std::size_t finite = count;
   for (std::size_t first = 0; first < count; first += batch_size) {
     const int n = static_cast<int>(std::min<std::size_t>(batch_size, count - first));
@@ -51,7 +54,7 @@ std::size_t run(const formula::Program& program, int outputs, std::size_t count,
       fill(variable, first, n, to);
       std::fill(to + n, to + lanes, to[n - 1]);  // a full pack does what a part of one would, to the last bit
     }
-    program.run(space, lanes);
+    formula::Program::run(space, lanes);
     for (int output = 0; output < outputs; ++output) {
       const formula::Values values = program.output(output, space);
       take(output, first, n, values);
@@ -84,9 +87,11 @@ std::size_t VectorExpression::evaluate(std::size_t count, const PointArrays& at,
     else
       std::fill_n(to, n, 0.0);
   };
-  return run(formulas_->all, 3, count, t, fill, [&](int c, std::size_t first, int n, const formula::Values& values) {
-    if (double* const to = result[c]) for_each(values, n, [&](int p, double value) { to[first + p] = value; });
-  });
+  return run(formulas_->all, formulas_->id, 3, count, t, fill,
+             [&](int c, std::size_t first, int n, const formula::Values& values) {
+               if (double* const to = result[c])
+                 for_each(values, n, [&](int p, double value) { to[first + p] = value; });
+             });
 }
 
 std::size_t VectorExpression::evaluate(std::span<const Vector3> x, std::span<const Vector3> X, double t,
@@ -95,19 +100,20 @@ std::size_t VectorExpression::evaluate(std::span<const Vector3> x, std::span<con
     std::fill_n(result.begin(), x.size(), constant_);
     return x.size();
   }
-  return run(formulas_->all, 3, x.size(), t, from(x, X),
+  return run(formulas_->all, formulas_->id, 3, x.size(), t, from(x, X),
              [&](int c, std::size_t first, int n, const formula::Values& values) {
                for_each(values, n, [&](int p, double value) { result[first + p][c] = value; });
              });
 }
 
-std::size_t VectorExpression::evaluate(int component, std::span<const Vector3> x, double t, double* result) const {
+std::size_t VectorExpression::evaluate(int component, std::span<const Vector3> x, std::span<const Vector3> X, double t,
+                                       double* result) const {
   if (!formulas_) {
     std::fill_n(result, x.size(), constant_[component]);
     return x.size();
   }
-  return run(formulas_->components[component], 1, x.size(), t, from(x, x),
-             [&](int, std::size_t first, int n, const formula::Values& values) {
+  return run(formulas_->components[component], formulas_->id + 1 + static_cast<std::uint64_t>(component), 1, x.size(),
+             t, from(x, X), [&](int, std::size_t first, int n, const formula::Values& values) {
                for_each(values, n, [&](int p, double value) { result[first + p] = value; });
              });
 }

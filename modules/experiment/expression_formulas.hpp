@@ -14,7 +14,8 @@ namespace mpm {
 struct VectorExpression::Formulas {
   std::array<std::string, 3> text;  ///< empty where the component is constant
   ExpressionScope scope;
-  std::uint64_t id = 0;  ///< never used twice, unlike an address
+  /// Number of the program of all components, before those of one each; never used twice, unlike an address.
+  std::uint64_t id = 0;
   formula::Graph graph;
   std::vector<int> terms;                      ///< of the components in the graph
   formula::Program all;                        ///< of all components

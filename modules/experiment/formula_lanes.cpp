@@ -40,34 +40,33 @@ inline Wide choose(Bits mask, Wide yes, Wide no) {
 }
 
 // ---- functions ------------------------------------------------------------------------------------------------------
-// Reductions and polynomials are those of fdlibm (Sun Microsystems, 1993), whose errors are below 1 ulp; here for all
-// lanes without a branch, and so in a range that holds almost every argument. The C library does the others.
+// Polynomials are those of fdlibm (Sun Microsystems, 1993); here for all lanes without a branch, and so in a range that
+// holds almost every argument. The C library does the others.
 
 /// Whole numbers are added to this to have them in the low bits.
 constexpr double shifter = 0x1.8p52;
 
 constexpr double largest_angle = 12000;  ///< rad, below 2^13 pi / 2
 
-/// Sine and cosine for |x| <= largest_angle: pi / 2 in parts of 33 bits, whose multiples are exact.
+/// Sine and cosine for |x| <= largest_angle: pi / 2 in parts of 40 bits, whose multiples up to 2^13 are exact.
 inline void sine_and_cosine(Wide x, Wide& sine, Wide& cosine) {
   const Wide shifted = x * 0x1.45f306dc9c883p-1 + shifter, n = shifted - shifter;
   const Bits quadrant = (Bits)shifted;
-  const Wide first = x - n * 1.57079632673412561417e+00, part = n * 6.07710050630396597660e-11;
-  const Wide second = first - part, rest = n * 2.02226624879595063154e-21 - ((first - second) - part);
-  const Wide r = second - rest, low = (second - r) - rest;
-  const Wide z = r * r, cube = z * r;
+  const Wide r = ((x - n * 0x1.921fb54442000p+0) - n * 0x1.a308d31318000p-41) - n * 0x1.8a2e03707344ap-81;
+  const Wide z = r * r;
   const Wide s =
-      8.33333333332248946124e-03 +
-      z * (-1.98412698298579493134e-04 +
-           z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
+      -1.66666666666666324348e-01 +
+      z * (8.33333333332248946124e-03 +
+           z * (-1.98412698298579493134e-04 +
+                z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10))));
   const Wide c = z * (4.16666666666666019037e-02 +
                       z * (-1.38888888888741095749e-03 +
                            z * (2.48015872894767294178e-05 +
                                 z * (-2.75573143513906633035e-07 +
                                      z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11)))));
   const Wide half = 0.5 * z, near_one = 1.0 - half;
-  const Wide of_sine = r - ((z * (0.5 * low - cube * s) - low) - cube * -1.66666666666666324348e-01);
-  const Wide of_cosine = near_one + (((1.0 - near_one) - half) + (z * c - r * low));
+  const Wide of_sine = (Wide)((Bits)(r + (z * r) * s) | ((Bits)r & sign_bit));  // also of -0
+  const Wide of_cosine = near_one + (((1.0 - near_one) - half) + z * c);
   const Bits swapped = -(quadrant & 1);
   sine = (Wide)((Bits)choose(swapped, of_cosine, of_sine) ^ ((quadrant & 2) << 62));
   cosine = (Wide)((Bits)choose(swapped, of_sine, of_cosine) ^ (((quadrant + 1) & 2) << 62));
@@ -144,25 +143,52 @@ inline Wide whole_power(Wide x, int exponent) {
 
 // ---- loops ----------------------------------------------------------------------------------------------------------
 
-template <class Function>
-void each(double* to, const Values& a, int lanes, Function function) {
-  for (int p = 0; p < lanes; p += width) store(to + p, function(load(a, p)));
+/// Calls visit(p) for the first point of every pack.
+template <class Visit>
+inline void for_each_pack(int lanes, Visit visit) {
+#pragma GCC unroll 4
+  for (int p = 0; p < lanes; p += width) visit(p);
+}
+
+/// The values of a pack, which are the same for all of them where `same`.
+template <bool same>
+inline Wide get(const Values& values, int p) {
+  return *reinterpret_cast<const Wide*>(values.values + (same ? 0 : p));
 }
 
 template <class Function>
-void each(double* to, const Values& a, const Values& b, int lanes, Function function) {
-  for (int p = 0; p < lanes; p += width) store(to + p, function(load(a, p), load(b, p)));
+void unary(const Step& step, int lanes) {
+  const Values a = step.of[0];
+  double* const to = step.to;
+  for_each_pack(lanes, [&](int p) { store(to + p, Function{}(get<false>(a, p))); });
+}
+
+template <class Function, bool same_a, bool same_b>
+void binary(const Step& step, int lanes) {
+  const Values a = step.of[0], b = step.of[1];
+  double* const to = step.to;
+  for_each_pack(lanes, [&](int p) { store(to + p, Function{}(get<same_a>(a, p), get<same_b>(b, p))); });
+}
+
+template <class Function, class Next, bool same_a, bool same_b, bool same_c>
+void chained(const Step& step, int lanes) {
+  const Values a = step.of[0], b = step.of[1], c = step.of[2];
+  double* const to = step.to;
+  for_each_pack(lanes, [&](int p) {
+    store(to + p, Next{}(Function{}(get<same_a>(a, p), get<same_b>(b, p)), get<same_c>(c, p)));
+  });
 }
 
 /// Leaves points beyond a range, and what is not a number, to `exact`.
 template <class Function, class Exact>
-void within(const Values& a, int lanes, double lower, double upper, Function function, Exact exact) {
+void within(const Step& step, int lanes, double lower, double upper, Function function, Exact exact) {
+  const Values a = step.of[0];
   Bits outside{};
-  for (int p = 0; p < lanes; p += width) {
-    const Wide x = load(a, p);
+  for_each_pack(lanes, [&](int p) {
+    const Wide x = get<false>(a, p);
     outside |= ~((Bits)(x >= lower) & (Bits)(x <= upper));
     function(x, p);
-  }
+  });
   std::uint64_t any = 0;
   for (int i = 0; i < width; ++i) any |= outside[i];
   if (any == 0) return;
@@ -170,154 +196,191 @@ void within(const Values& a, int lanes, double lower, double upper, Function fun
     if (const double x = a[p]; !(x >= lower && x <= upper)) exact(x, p);
 }
 
-void by_library(Operation operation, double* to, const Values& a, const Values& b, int lanes) {
-  const Values& second = operands(operation) > 1 ? b : a;
-  for (int p = 0; p < lanes; ++p) to[p] = value_of(operation, a[p], second[p], 0);
-}
-
-void sine(const Instruction& instruction, double* to, double* cosine_to, const Values& a, int lanes) {
-  if (instruction.and_cosine)
-    within(
-        a, lanes, -largest_angle, largest_angle,
-        [&](Wide x, int p) {
-          Wide s, c;
-          sine_and_cosine(x, s, c);
-          store(to + p, s), store(cosine_to + p, c);
-        },
-        [&](double x, int p) { to[p] = std::sin(x), cosine_to[p] = std::cos(x); });
-  else
-    within(
-        a, lanes, -largest_angle, largest_angle,
-        [&](Wide x, int p) {
-          Wide s, c;
-          sine_and_cosine(x, s, c);
-          store(to + p, s);
-        },
-        [&](double x, int p) { to[p] = std::sin(x); });
-}
-
-void cosine(double* to, const Values& a, int lanes) {
+template <bool with_sine, bool with_cosine>
+void circular(const Step& step, int lanes) {
+  double *const to = step.to, *const cosine_to = with_sine ? step.cosine_to : step.to;
   within(
-      a, lanes, -largest_angle, largest_angle,
+      step, lanes, -largest_angle, largest_angle,
       [&](Wide x, int p) {
-        Wide s, c;
-        sine_and_cosine(x, s, c);
-        store(to + p, c);
+        Wide sine, cosine;
+        sine_and_cosine(x, sine, cosine);
+        if (with_sine) store(to + p, sine);
+        if (with_cosine) store(cosine_to + p, cosine);
       },
-      [&](double x, int p) { to[p] = std::cos(x); });
+      [&](double x, int p) {
+        if (with_sine) to[p] = std::sin(x);
+        if (with_cosine) cosine_to[p] = std::cos(x);
+      });
 }
 
-void exponential(double* to, const Values& a, int lanes) {
+void exponential(const Step& step, int lanes) {
+  double* const to = step.to;
   within(
-      a, lanes, least_exponent, largest_exponent, [&](Wide x, int p) { store(to + p, exponential(x)); },
+      step, lanes, least_exponent, largest_exponent, [&](Wide x, int p) { store(to + p, exponential(x)); },
       [&](double x, int p) { to[p] = std::exp(x); });
 }
 
-void logarithm(double* to, const Values& a, int lanes) {
+void logarithm(const Step& step, int lanes) {
   constexpr double least = std::numeric_limits<double>::min(), largest = std::numeric_limits<double>::max();
+  double* const to = step.to;
   within(
-      a, lanes, least, largest, [&](Wide x, int p) { store(to + p, logarithm(x)); },
+      step, lanes, least, largest, [&](Wide x, int p) { store(to + p, logarithm(x)); },
       [&](double x, int p) { to[p] = std::log(x); });
 }
 
 /// Whole powers in lanes, as long as no part of a product is too large or too small to be split.
-void whole_power(double* to, const Values& a, int exponent, int lanes) {
+void whole_power(const Step& step, int lanes) {
   constexpr double least = 1e-200, largest = 1e200;
-  each(to, a, lanes, [&](Wide x) { return whole_power(x, exponent); });
+  double* const to = step.to;
+  for_each_pack(lanes, [&](int p) { store(to + p, whole_power(get<false>(step.of[0], p), step.exponent)); });
   for (int p = 0; p < lanes; ++p)
-    if (const double size = std::abs(to[p]); !(size >= least && size <= largest)) to[p] = std::pow(a[p], exponent);
+    if (const double size = std::abs(to[p]); !(size >= least && size <= largest))
+      to[p] = std::pow(step.of[0][p], step.exponent);
 }
 
-void run_arithmetic(const Instruction& instruction, double* to, const Values& a, const Values& b, int lanes) {
-  switch (instruction.operation) {
-    case Operation::negate:
-      return each(to, a, lanes, [](Wide x) { return -x; });
-    case Operation::sqrt:
-      return each(to, a, lanes, [](Wide x) {
-        for (int i = 0; i < width; ++i) x[i] = std::sqrt(x[i]);
-        return x;
-      });
-    case Operation::abs:
-      return each(to, a, lanes, magnitude);
-    case Operation::floor:
-      return each(to, a, lanes, floor_of);
-    case Operation::add:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return x + y; });
-    case Operation::subtract:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return x - y; });
-    case Operation::multiply:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return x * y; });
-    case Operation::divide:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return x / y; });
-    case Operation::min:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return choose((Bits)(y < x), y, x); });
-    case Operation::max:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return choose((Bits)(x < y), y, x); });
-    default:
-      return by_library(instruction.operation, to, a, b, lanes);
+void square_root(const Step& step, int lanes) {
+  const double* const from = step.of[0].values;
+  double* const __restrict to = step.to;
+  for (int p = 0; p < lanes; ++p) to[p] = std::sqrt(from[p]);
+}
+
+void alternative(const Step& step, int lanes) {
+  const Values condition = step.of[0], yes = step.of[1], no = step.of[2];
+  for_each_pack(
+      lanes, [&](int p) { store(step.to + p, choose((Bits)(load(condition, p) != 0.0), load(yes, p), load(no, p))); });
+}
+
+void by_library(const Step& step, int lanes) {
+  const Values a = step.of[0], b = step.of[operands(step.operation) > 1 ? 1 : 0];
+  for (int p = 0; p < lanes; ++p) step.to[p] = value_of(step.operation, a[p], b[p], 0);
+}
+
+// ---- choice ---------------------------------------------------------------------------------------------------------
+
+constexpr auto sum = [](Wide x, Wide y) { return x + y; };
+constexpr auto difference = [](Wide x, Wide y) { return x - y; };
+constexpr auto reversed_difference = [](Wide x, Wide y) { return y - x; };
+constexpr auto simple_product = [](Wide x, Wide y) { return x * y; };
+constexpr auto quotient = [](Wide x, Wide y) { return x / y; };
+constexpr auto smaller = [](Wide x, Wide y) { return choose((Bits)(y < x), y, x); };
+constexpr auto larger = [](Wide x, Wide y) { return choose((Bits)(x < y), y, x); };
+constexpr auto less = [](Wide x, Wide y) { return one_where((Bits)(x < y)); };
+constexpr auto greater = [](Wide x, Wide y) { return one_where((Bits)(x > y)); };
+constexpr auto less_or_equal = [](Wide x, Wide y) { return one_where((Bits)(x <= y)); };
+constexpr auto greater_or_equal = [](Wide x, Wide y) { return one_where((Bits)(x >= y)); };
+constexpr auto equal = [](Wide x, Wide y) { return one_where((Bits)(x == y)); };
+constexpr auto unequal = [](Wide x, Wide y) { return one_where((Bits)(x != y)); };
+constexpr auto both = [](Wide x, Wide y) { return one_where((Bits)(x != 0.0) & (Bits)(y != 0.0)); };
+constexpr auto either = [](Wide x, Wide y) { return one_where((Bits)(x != 0.0) | (Bits)(y != 0.0)); };
+constexpr auto negative = [](Wide x) { return -x; };
+constexpr auto size = [](Wide x) { return magnitude(x); };
+constexpr auto whole_below = [](Wide x) { return floor_of(x); };
+
+/// Which of the values of an instruction are the same at all points.
+struct Same {
+  bool a, b, c;
+};
+
+template <class Function>
+Work binary_work(Function, Same same) {
+  if (same.a) return &binary<Function, true, false>;
+  return same.b ? &binary<Function, false, true> : &binary<Function, false, false>;
+}
+
+template <class Function, class Next>
+Work chained_work(Function, Next, Same same) {
+  if (same.a)
+    return same.c ? &chained<Function, Next, true, false, true> : &chained<Function, Next, true, false, false>;
+  if (same.b)
+    return same.c ? &chained<Function, Next, false, true, true> : &chained<Function, Next, false, true, false>;
+  return same.c ? &chained<Function, Next, false, false, true> : &chained<Function, Next, false, false, false>;
+}
+
+template <class Function>
+Work arithmetic_work(Function function, Then then, Same same) {
+  switch (then) {
+    case Then::nothing:
+      break;
+    case Then::add:
+      return chained_work(function, sum, same);
+    case Then::subtract:
+      return chained_work(function, difference, same);
+    case Then::subtract_from:
+      return chained_work(function, reversed_difference, same);
+    case Then::multiply:
+      return chained_work(function, simple_product, same);
   }
+  return binary_work(function, same);
 }
 
-void run_comparison(const Instruction& instruction, double* to, const Values& a, const Values& b, const Values& c,
-                    int lanes) {
-  switch (instruction.operation) {
+Work comparison_work(Operation operation, Same same) {
+  switch (operation) {
     case Operation::less:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return one_where((Bits)(x < y)); });
+      return binary_work(less, same);
     case Operation::greater:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return one_where((Bits)(x > y)); });
+      return binary_work(greater, same);
     case Operation::less_or_equal:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return one_where((Bits)(x <= y)); });
+      return binary_work(less_or_equal, same);
     case Operation::greater_or_equal:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return one_where((Bits)(x >= y)); });
+      return binary_work(greater_or_equal, same);
     case Operation::equal:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return one_where((Bits)(x == y)); });
+      return binary_work(equal, same);
     case Operation::unequal:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return one_where((Bits)(x != y)); });
+      return binary_work(unequal, same);
     case Operation::both:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return one_where((Bits)(x != 0.0) & (Bits)(y != 0.0)); });
+      return binary_work(both, same);
     case Operation::either:
-      return each(to, a, b, lanes, [](Wide x, Wide y) { return one_where((Bits)(x != 0.0) | (Bits)(y != 0.0)); });
+      return binary_work(either, same);
+    case Operation::choose:
+      return &alternative;
     default:
-      for (int p = 0; p < lanes; p += width) store(to + p, choose((Bits)(load(a, p) != 0.0), load(b, p), load(c, p)));
+      return &by_library;
   }
+}
+
+template <class Function>
+Work unary_work(Function) {
+  return &unary<Function>;
 }
 
 }  // namespace
 
-void Program::run(Space& space, int lanes) const {
-  for (const Instruction& instruction : instructions_) {
-    double* const to = space.registers[instruction.to].values;
-    const Values a = find(instruction.of[0], space), b = find(instruction.of[1], space);
-    switch (instruction.operation) {
-      case Operation::sin:
-        sine(instruction, to, space.registers[instruction.cosine_to].values, a, lanes);
-        break;
-      case Operation::cos:
-        cosine(to, a, lanes);
-        break;
-      case Operation::exp:
-        exponential(to, a, lanes);
-        break;
-      case Operation::log:
-        logarithm(to, a, lanes);
-        break;
-      case Operation::whole_power:
-        whole_power(to, a, instruction.exponent, lanes);
-        break;
-      case Operation::less:
-      case Operation::greater:
-      case Operation::less_or_equal:
-      case Operation::greater_or_equal:
-      case Operation::equal:
-      case Operation::unequal:
-      case Operation::both:
-      case Operation::either:
-      case Operation::choose:
-        run_comparison(instruction, to, a, b, find(instruction.of[2], space), lanes);
-        break;
-      default:
-        run_arithmetic(instruction, to, a, b, lanes);
-    }
+Work work_of(const Instruction& instruction) {
+  const auto is_same = [&](int i) { return instruction.of[i].kind != Source::Kind::in_register; };
+  const Same same{is_same(0), is_same(1), is_same(2)};
+  switch (instruction.operation) {
+    case Operation::negate:
+      return unary_work(negative);
+    case Operation::abs:
+      return unary_work(size);
+    case Operation::floor:
+      return unary_work(whole_below);
+    case Operation::sqrt:
+      return &square_root;
+    case Operation::sin:
+      return instruction.and_cosine ? &circular<true, true> : &circular<true, false>;
+    case Operation::cos:
+      return &circular<false, true>;
+    case Operation::exp:
+      return &exponential;
+    case Operation::log:
+      return &logarithm;
+    case Operation::whole_power:
+      return &whole_power;
+    case Operation::add:
+      return arithmetic_work(sum, instruction.then, same);
+    case Operation::subtract:
+      return arithmetic_work(difference, instruction.then, same);
+    case Operation::multiply:
+      return arithmetic_work(simple_product, instruction.then, same);
+    case Operation::divide:
+      return binary_work(quotient, same);
+    case Operation::min:
+      return binary_work(smaller, same);
+    case Operation::max:
+      return binary_work(larger, same);
+    default:
+      return comparison_work(instruction.operation, same);
   }
 }
 

@@ -64,7 +64,9 @@ class Parser {
 
   int apply(std::size_t first, Operation operation, int a, int b = -1, int c = -1) {
     const int term = graph_.apply(operation, a, b, c);
-    graph_.written(term, number_, first, at_);
+    std::size_t end = at_;  // beyond blanks where another operator was looked for
+    while (text_[end - 1] == ' ' || text_[end - 1] == '\t') --end;
+    graph_.written(term, number_, first, end);
     return term;
   }
 

@@ -27,24 +27,29 @@ struct Source {
   int index = 0;
 };
 
+/// What an instruction does next with its result a and a third value c: a + c, a - c, c - a or a c, rounded apart.
+enum class Then : std::uint8_t { nothing, add, subtract, subtract_from, multiply };
+
+struct Step;
+using Work = void (*)(const Step& step, int lanes);
+
 struct Instruction {
   Operation operation;
+  Then then = Then::nothing;
   bool and_cosine = false;  ///< with a sine: the cosine of the same value too, which shares most of its work
   std::array<Source, 3> of;
   int to = 0, cosine_to = 0;  ///< registers
   int exponent = 0;           ///< of whole_power
+  Work work = nullptr;
 };
+
+/// The function that does an instruction; which it is depends on what it reads, not on where that stands.
+Work work_of(const Instruction& instruction);
 
 /// An operation on numbers that are the same at all points, done once a call.
 struct CallInstruction {
   Operation operation;
   std::array<Source, 3> of;
-};
-
-/// What a run works in; each thread has one of its own.
-struct Space {
-  std::vector<Register> registers;
-  std::vector<Pack> of_call;
 };
 
 /// Values of one component at the points of a batch: value p stands at values[p & mask].
@@ -56,20 +61,38 @@ struct Values {
   bool same_everywhere() const { return mask != ~0; }
 };
 
+/// An instruction with its addresses in a space.
+struct Step {
+  Work work;
+  Operation operation;
+  int exponent;
+  double *to, *cosine_to;
+  std::array<Values, 3> of;
+};
+
+/// What a run works in; each thread has one of its own.
+struct Space {
+  std::vector<Register> registers;
+  std::vector<Pack> of_call;
+  std::vector<Step> steps;
+};
+
 class Program {
  public:
   Program() = default;
   /// Compiles terms of a graph; -1 for what is not asked.
   Program(const Graph& graph, const std::vector<int>& outputs);
 
-  /// Finds what depends on time alone.
+  /// Finds what depends on time alone. Runs follow in this space until another program begins in it.
   void begin(double t, Space& space) const;
   /// The place for a variable's values at the points, number 0 to 5; null where no instruction reads it.
   double* input(int variable, Space& space) const {
     return inputs_[variable] < 0 ? nullptr : space.registers[inputs_[variable]].values;
   }
   /// Runs for the first `lanes` points, a multiple of pack_size.
-  void run(Space& space, int lanes) const;
+  static void run(const Space& space, int lanes) {
+    for (const Step& step : space.steps) step.work(step, lanes);
+  }
   Values output(std::size_t number, const Space& space) const { return find(outputs_[number], space); }
 
   const std::vector<Instruction>& instructions() const { return instructions_; }

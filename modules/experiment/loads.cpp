@@ -1,6 +1,7 @@
 #include "experiment/loads.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace mpm {
 
@@ -21,6 +22,24 @@ bool Load::gives(ExternalForce force) const {
       return type == LoadType::spring && any(damping);
   }
   return false;
+}
+
+LoadValue value_of(LoadType type) {
+  switch (type) {
+    case LoadType::traction:
+      return {"traction", "traction", "Pa", true};
+    case LoadType::pressure:
+      return {"pressure", "pressure", "Pa", false};
+    case LoadType::force:
+      return {"force", "force", "N", true};
+    case LoadType::line_force:
+      return {"force", "force per length", "N/m", true};
+    case LoadType::body_force:
+      return {"acceleration", "body force", "N/kg", true};
+    case LoadType::spring:
+      break;
+  }
+  throw std::logic_error("a spring has no value");
 }
 
 Surface loaded_surface(const Load& load, const Geometry& body, const std::pair<Vector3, Vector3>& domain,

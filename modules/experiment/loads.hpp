@@ -52,6 +52,14 @@ struct Load {
   bool gives(ExternalForce force) const;
 };
 
+/// The value of a load as the file and messages name it.
+struct LoadValue {
+  const char *key, *name, *unit;
+  bool is_vector;  ///< the file has a list of components
+};
+/// That of a type of load; a spring has none.
+LoadValue value_of(LoadType type);
+
 /// The pieces of a body's surface that a load acts on.
 Surface loaded_surface(const Load& load, const Geometry& body, const std::pair<Vector3, Vector3>& domain,
                        double spacing);

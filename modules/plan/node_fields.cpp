@@ -97,6 +97,12 @@ void increment_fields(FieldList& fields) {
   before.cleared = true, before.for_ledger = !gathered && !damping.acts();
 }
 
+/// Whether a force from outside is scattered with that of the stress or with the momenta: then only the ledger wants it
+/// apart.
+bool joins_force(ExternalForce external) {
+  return external == ExternalForce::body_force;
+}
+
 /// Who asks for a force that is not merged into the momentum; empty where nobody in the scene does.
 std::string why_separate_force(const FieldList& fields) {
   const Experiment& experiment = fields.experiment;
@@ -104,8 +110,10 @@ std::string why_separate_force(const FieldList& fields) {
   if (fields.plan.resolves_contact())
     return FieldList::named(*experiment.contact) + ": acts before and after the forces";
   if (experiment.damping.acts()) return experiment.damping.pointer + ": acts on the change of velocity";
-  for (const ExternalForce external : external_forces)
-    if (const std::string giver = experiment.giver_of(external); !giver.empty()) return giver + ": work of the forces";
+  for (const ExternalForce external : external_forces) {
+    const std::string giver = experiment.giver_of(external);
+    if (!joins_force(external) && !giver.empty()) return giver + ": work of the forces";
+  }
   const Pass* const strain = fields.plan.pass_of(Act::strain);
   const Operator* const scatters = fields.plan.find(Act::scatter_force);
   if (strain && scatters && strain->stage == Stage::before_forces)
@@ -129,10 +137,15 @@ void force_fields(FieldList& fields) {
                 : for_ledger ? why_for_ledger(fields.plan)
                              : fields.why_apart())
         .for_ledger = for_ledger;
-  for (const ExternalForce external : external_forces)
-    if (const std::string giver = experiment.giver_of(external); !giver.empty())
-      fields.summed(field_of(external), "N", D, AtWall::vector, Folded::with_force,
-                    giver + ": its work is accounted for apart");
+  for (const ExternalForce external : external_forces) {
+    const std::string giver = experiment.giver_of(external);
+    const bool ledger_alone = joins_force(external) && !fields.needs.keeps_all_apart;
+    if (giver.empty() || (ledger_alone && !fields.plan.has_ledger())) continue;
+    fields
+        .summed(field_of(external), "N", D, AtWall::vector, Folded::with_force,
+                giver + ": its work is accounted for apart")
+        .for_ledger = ledger_alone;
+  }
   if (fields.needs.keeps_weight_apart)
     fields.summed("weight", "N", D, AtWall::vector, Folded::with_force, "/gravity: its work is accounted for apart");
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "simulation/seeding.hpp"
+
 namespace mpm::app {
 namespace {
 
@@ -38,6 +40,17 @@ void refuse_impossible_values(const Experiment& experiment) {
     throw InputError({problem_at(experiment, imposed->pointer, text_of(*imposed))});
 }
 
+/// Where a particle is before the initial displacement, m, which a run may not keep.
+Vector3 undeformed_place(const Experiment& experiment, int body, std::size_t particle) {
+  const std::size_t D = static_cast<std::size_t>(experiment.dimension);
+  Vector3 X{};
+  seed_body(experiment, body).for_each_batch([&](const SeedBatch& batch) {
+    if (particle >= batch.first && particle < batch.first + batch.count)
+      std::copy_n(batch.undeformed() + (particle - batch.first) * D, D, X.begin());
+  });
+  return X;
+}
+
 void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
   const Experiment& experiment = simulation.experiment();
   const std::size_t D = static_cast<std::size_t>(experiment.dimension);
@@ -48,9 +61,14 @@ void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
                                         [](double component) { return std::isfinite(component); });
     if (wrong == state.velocity.end()) continue;
     const std::size_t particle = static_cast<std::size_t>(wrong - state.velocity.begin()) / D;
+    Vector3 x{};
+    std::copy_n(&state.position[particle * D], D, x.begin());
+    const Vector3 X = undeformed_place(experiment, body, particle);
+    const std::optional<NotFinite> found = experiment.bodies[body].velocity.not_finite(x, X, 0);
+    const std::string why = found ? ": " + found->why : "";
     problems.push_back(problem_at(experiment, experiment.bodies[body].pointer + "/velocity",
                                   "is not a finite number at particle " + std::to_string(particle) + ", " +
-                                      point_text(std::span(state.position).subspan(particle * D, D))));
+                                      point_text(std::span(state.position).subspan(particle * D, D)) + why));
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }

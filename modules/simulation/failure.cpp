@@ -12,7 +12,7 @@ namespace mpm {
 namespace {
 
 /// The checks of a pass, in their order.
-enum class Looks { at_domain, at_temperature, at_deformation, at_position, at_speed };
+enum class Looks { at_domain, at_force, at_temperature, at_deformation, at_position, at_speed };
 
 constexpr const char* smaller_step =
     "a smaller /solver/courant or /solver/time_step, a transfer with more damping, or a material that is stiffer when "
@@ -21,6 +21,9 @@ constexpr const char* finite_expressions =
     "check the expressions of the file (velocities, /body_force, /loads, moving walls) at that place and time; where "
     "they are "
     "finite, a smaller /solver/courant or /solver/time_step";
+constexpr const char* finite_force =
+    "check that expression: wherever a particle comes and up to /solver/end_time it has to give a finite number; "
+    "comparisons and ? : leave points out (x > 0 ? log(x) : 0), max(x, 1e-9) bounds a term";
 constexpr const char* finite_heat =
     "check the expressions that warm or cool (temperatures, fluxes, heating) at that place and time; where they are "
     "finite, a smaller /solver/courant or /solver/time_step";
@@ -41,6 +44,7 @@ constexpr std::array entries{
           "a larger /grid/domain, more particles a cell (particles_per_cell_axis of the body), so that a domain is "
           "shorter, or a shape whose domain does not follow the deformation (\"gimp\"); a smaller step changes nothing "
           "where the stretch is meant"},
+    Entry{Cause::force_not_a_number, Looks::at_force, "not a number", finite_force},
     Entry{Cause::temperature_not_a_number, Looks::at_temperature, "not a number", finite_heat},
     Entry{Cause::deformation_not_a_number, Looks::at_deformation, "not a number", finite_expressions},
     Entry{Cause::inverted, Looks::at_deformation, "inverted", smaller_step},
@@ -86,6 +90,23 @@ const char* name_of(Cause cause) {
   return entry_of(cause).name;
 }
 
+Failure force_failure(const Experiment& experiment, const Load* load, int body, std::size_t particle, const Vector3& x,
+                      const Vector3& X, double time) {
+  const LoadValue value = value_of(load ? load->type : LoadType::body_force);
+  const VectorExpression& expression = load ? load->value : *experiment.body_force;
+  const std::optional<NotFinite> found = expression.not_finite(x, X, time);
+  Failure failure{Cause::force_not_a_number, body, particle, found ? found->component : 0};
+  if (found) failure.value = found->value;
+  failure.name = value.name + (value.is_vector ? " along " + axis_name(failure) : "");
+  failure.unit = value.unit;
+  std::string pointer = load ? load->pointer + "/" + value.key : experiment.body_force_pointer;
+  if (value.is_vector) pointer += "/" + std::to_string(failure.axis);
+  const std::string place = experiment.where(pointer);
+  failure.formula = (place.empty() ? "" : place + ": ") + pointer + " is not finite at t = " + number_text(time) + " s";
+  if (found) failure.formula += ": " + found->why;
+  return failure;
+}
+
 bool comes_before(const Failure& a, const Failure& b) {
   const auto key = [](const Failure& f) {
     return std::tuple(entry_of(f.cause).looks, f.body, f.particle, f.axis, f.cause);
@@ -107,6 +128,9 @@ std::string cause_text(const Failure& failure, const Experiment& experiment) {
       text.str("");
       text << "its domain reaches more than " << grid_padding_of(experiment.shape.plugin->shape())
            << " cells beyond the domain's edge";
+      break;
+    case Cause::force_not_a_number:
+      text << ": " << failure.formula;
       break;
     case Cause::temperature_not_a_number:
       text << ": its temperature is no longer finite";
@@ -167,6 +191,8 @@ std::vector<ValueRow> values_of(const Failure& failure, const Experiment& experi
       return {};
     case Cause::domain_beyond_grid:
       return {{"longest reach", "cells", static_cast<double>(grid_padding_of(experiment.shape.plugin->shape()))}};
+    case Cause::force_not_a_number:
+      return {{failure.name, failure.unit, failure.value}};
     case Cause::temperature_not_a_number:
       return {{"temperature", "K", failure.value}};
     case Cause::inverted:

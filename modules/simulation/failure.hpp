@@ -19,6 +19,7 @@ enum class Cause {
   domain_outgrew_stencil,    ///< the particle's box is longer than the nodes of its shape hold
   domain_inside_out,         ///< its corners have passed one another
   domain_beyond_grid,        ///< its list has nodes beyond the padding of the domain
+  force_not_a_number,        ///< an expression of the force on it has no finite value
   temperature_not_a_number,  ///< the temperature that the grid gives it
   deformation_not_a_number,  ///< part of the material's state is not a number
   inverted,                  ///< J <= 0
@@ -40,9 +41,16 @@ struct Failure {
   int axis = -1;             ///< axis of a position or stencil; -1 for causes without one
   /// The position along the axis, m, or J, or the speed, m/s, or the temperature, K. It is NaN where that is the failure or none applies.
   double value = std::numeric_limits<double>::quiet_NaN();
+  std::string formula{};       ///< of a force: its expression, with its place in the file, and what is wrong with it
+  std::string name{}, unit{};  ///< of a force: those of `value`
 };
 
-/// Whether `a` is the one of two failures of a pass that is reported. A pass checks domains first, then
+/// The failure of a particle where a load, or without one /body_force, has no finite value at the place x that it acts on,
+/// which began at X (m).
+Failure force_failure(const Experiment& experiment, const Load* load, int body, std::size_t particle, const Vector3& x,
+                      const Vector3& X, double time);
+
+/// Whether `a` is the one of two failures of a pass that is reported. A pass checks domains first, then forces,
 /// temperatures, deformations and positions; of particles that fail alike the one with the lowest body, index and axis is reported.
 bool comes_before(const Failure& a, const Failure& b);
 
@@ -58,6 +66,9 @@ class FirstFailure {
  public:
   void note(const Failure& failure) {
     if (!first_ || comes_before(failure, *first_)) first_ = failure;
+  }
+  void note(const FirstFailure& other) {
+    if (other.first_) note(*other.first_);
   }
   bool any() const { return first_.has_value(); }
   /// Throws RunFailure where a failure was noted, and forgets it.

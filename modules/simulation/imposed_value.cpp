@@ -35,19 +35,23 @@ std::optional<ImposedValue> look(const Experiment& experiment, const ThermalCond
   const bool warms = condition.exchange == HeatExchange::flux || condition.exchange == HeatExchange::heating;
   for (int c = 0; c < 3; ++c)
     if (!condition.value.varies(c)) nodes.last[c] = nodes.first[c];
+  std::vector<Vector3> row(static_cast<std::size_t>(nodes.last[0] - nodes.first[0] + 1));
+  std::vector<double> values(row.size());
   for (int k = nodes.first[2]; k <= nodes.last[2]; ++k)
-    for (int j = nodes.first[1]; j <= nodes.last[1]; ++j)
-      for (int i = nodes.first[0]; i <= nodes.last[0]; ++i) {
-        const std::array node{i, j, k};
-        Vector3 x{};
-        for (int c = 0; c < experiment.dimension; ++c) x[c] = grid.lower[c] + grid.cell_size * node[c];
-        const double value = condition.value(x, x, time);
-        if (std::isfinite(value) && (warms || value >= 0)) continue;
+    for (int j = nodes.first[1]; j <= nodes.last[1]; ++j) {
+      for (std::size_t n = 0; n < row.size(); ++n) {
+        const std::array node{nodes.first[0] + static_cast<int>(n), j, k};
+        for (int c = 0; c < experiment.dimension; ++c) row[n][c] = grid.lower[c] + grid.cell_size * node[c];
+      }
+      condition.value.evaluate(row, time, values.data());
+      for (std::size_t n = 0; n < row.size(); ++n) {
+        if (std::isfinite(values[n]) && (warms || values[n] >= 0)) continue;
         ImposedValue found = named(condition);
-        found.value = value, found.time = time;
-        found.position.assign(x.begin(), x.begin() + experiment.dimension);
+        found.value = values[n], found.time = time;
+        found.position.assign(row[n].begin(), row[n].begin() + experiment.dimension);
         return found;
       }
+    }
   return std::nullopt;
 }
 

@@ -105,6 +105,10 @@ std::array<double, 9> cofactor(int dimension, const std::array<double, 9>& F) {
   return C;
 }
 
+bool finite(const Vector3& v) {
+  return std::all_of(v.begin(), v.end(), [](double component) { return std::isfinite(component); });
+}
+
 Vector3 product(int D, const std::array<double, 9>& A, const Vector3& v) {
   Vector3 result{};
   for (int i = 0; i < D; ++i)
@@ -121,9 +125,9 @@ BodyLoads::BodyLoads(const Experiment& experiment, int body, const SeededBody& s
       spacing_(experiment.grid.cell_size / experiment.bodies[body].particles_per_cell_axis) {
   for (const ExternalForce force : external_forces)
     gives_[static_cast<std::size_t>(force)] = !experiment.giver_of(force, body).empty();
-  if (experiment.body_force) accelerations_.push_back(&*experiment.body_force);
+  if (experiment.body_force) accelerations_.push_back({&*experiment.body_force, nullptr});
   for (const Load& load : experiment.loads)
-    if (load.body == body && load.gives(ExternalForce::body_force)) accelerations_.push_back(&load.value);
+    if (load.body == body && load.gives(ExternalForce::body_force)) accelerations_.push_back({&load.value, &load});
   if (!experiment.loaded_at_points(body).empty()) take_shares(seeds);
 }
 
@@ -180,27 +184,65 @@ void BodyLoads::take_shares(const SeededBody& seeds) {
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
 }
 
-Vector3 BodyLoads::acceleration(const Vector3& x, const Vector3& X, double time) const {
+bool BodyLoads::accelerations_use_position() const {
+  return std::any_of(accelerations_.begin(), accelerations_.end(),
+                     [](const PerMass& force) { return force.expression->uses_position(); });
+}
+
+bool BodyLoads::accelerations_use_initial_position() const {
+  return std::any_of(accelerations_.begin(), accelerations_.end(),
+                     [](const PerMass& force) { return force.expression->uses_initial_position(); });
+}
+
+Vector3 BodyLoads::acceleration(std::size_t id, const Vector3& x, const Vector3& X, double time,
+                                FirstFailure& failures) const {
   Vector3 sum{};
-  for (const VectorExpression* expression : accelerations_) {
-    const Vector3 value = (*expression)(x, X, time);
+  for (const PerMass& force : accelerations_) {
+    const Vector3 value = (*force.expression)(x, X, time);
+    if (!finite(value)) failures.note(force_failure(experiment_, force.load, body_, id, x, X, time));
     for (int c = 0; c < dimension_; ++c) sum[c] += value[c];
   }
   return sum;
 }
 
-std::size_t BodyLoads::accelerations(std::size_t count, const PointArrays& at, double time,
-                                     const std::array<double*, 3>& result) const {
-  std::size_t finite = accelerations_.front()->evaluate(count, at, time, result);
-  std::vector<double> values(accelerations_.size() > 1 ? dimension_ * count : 0);
-  for (std::size_t k = 1; k < accelerations_.size(); ++k) {
-    std::array<double*, 3> more{};
-    for (int c = 0; c < dimension_; ++c) more[c] = values.data() + c * count;
-    finite = std::min(finite, accelerations_[k]->evaluate(count, at, time, more));
-    for (int c = 0; c < dimension_; ++c)
-      for (std::size_t p = 0; p < count; ++p) result[c][p] += more[c][p];
+void BodyLoads::accelerations(std::size_t count, const std::int32_t* ids, const PointArrays& at, double time,
+                              const std::array<double*, 3>& result, FirstFailure& failures) const {
+  bool good = accelerations_.front().expression->evaluate(count, at, time, result) == count;
+  constexpr std::size_t piece = 64;
+  double values[3][piece];
+  const std::array<double*, 3> more{values[0], values[1], values[2]};
+  const auto from = [](const double* array, std::size_t first) { return array ? array + first : nullptr; };
+  for (std::size_t k = 1; k < accelerations_.size(); ++k)
+    for (std::size_t first = 0; first < count; first += piece) {
+      PointArrays here;
+      for (int c = 0; c < dimension_; ++c) here.x[c] = from(at.x[c], first), here.X[c] = from(at.X[c], first);
+      const std::size_t n = std::min(piece, count - first);
+      good = accelerations_[k].expression->evaluate(n, here, time, more) == n && good;
+      for (int c = 0; c < dimension_; ++c)
+        for (std::size_t p = 0; p < n; ++p) result[c][first + p] += values[c][p];
+    }
+  for (std::size_t p = 0; !good && p < count; ++p) {
+    Vector3 x{}, X{}, sum{};
+    for (int c = 0; c < dimension_; ++c) {
+      sum[c] = result[c][p];
+      if (at.x[c]) x[c] = at.x[c][p];
+      if (at.X[c]) X[c] = at.X[c][p];
+    }
+    if (!finite(sum)) note_acceleration(ids ? static_cast<std::size_t>(ids[p]) : p, x, X, time, failures);
   }
-  return finite;
+}
+
+/// Notes what makes the acceleration of a particle not finite.
+void BodyLoads::note_acceleration(std::size_t id, const Vector3& x, const Vector3& X, double time,
+                                  FirstFailure& failures) const {
+  bool noted = false;
+  for (const PerMass& force : accelerations_) {
+    if (!force.expression->not_finite(x, X, time)) continue;
+    failures.note(force_failure(experiment_, force.load, body_, id, x, X, time));
+    noted = true;
+  }
+  // A number at the very end of the range may be finite alone and not in a batch.
+  if (!noted) failures.note(force_failure(experiment_, accelerations_.front().load, body_, id, x, X, time));
 }
 
 bool BodyLoads::carries(ExternalForce force, std::size_t id) const {
@@ -211,7 +253,7 @@ bool BodyLoads::carries(ExternalForce force, std::size_t id) const {
 }
 
 LoadCoefficients BodyLoads::coefficients(ExternalForce force, std::size_t id, const LoadedParticle& particle,
-                                         double time) const {
+                                         double time, FirstFailure& failures) const {
   const int D = dimension_;
   LoadCoefficients sum;
   for (std::uint32_t k = first_[id]; k < first_[id + 1]; ++k) {
@@ -224,6 +266,7 @@ LoadCoefficients BodyLoads::coefficients(ExternalForce force, std::size_t id, co
     Vector3 value{};
     if (load.type != LoadType::spring) {
       value = load.value(place, initial, time);
+      if (!finite(value)) failures.note(force_failure(experiment_, &load, body_, id, place, initial, time));
       if (load.type == LoadType::pressure) {
         add_pressure(share, particle, value[0], load.follower, sum);
         continue;

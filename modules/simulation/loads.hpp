@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "simulation/backend.hpp"
+#include "simulation/failure.hpp"
 
 namespace mpm {
 
@@ -43,24 +44,28 @@ class BodyLoads {
   bool any() const;
   /// Whether particles give S, and keep the deformation gradient that it needs.
   bool at_points() const { return !first_.empty(); }
-  /// The acceleration by forces per mass, N/kg, at one point and time of a step's begin.
-  Vector3 acceleration(const Vector3& x, const Vector3& X, double time) const;
-  /// The same at many points, an array a component; returns the number of points before the first without a finite one.
-  std::size_t accelerations(std::size_t count, const PointArrays& at, double time,
-                            const std::array<double*, 3>& result) const;
+  /// Whether forces per mass depend on where a particle is, and on where it began.
+  bool accelerations_use_position() const;
+  bool accelerations_use_initial_position() const;
+  /// The acceleration of a particle by forces per mass, N/kg, at the time of a step's begin. Notes one that is not finite.
+  Vector3 acceleration(std::size_t id, const Vector3& x, const Vector3& X, double time, FirstFailure& failures) const;
+  /// The same of many particles, an array a component; ids[p] is the index of seeding, or p itself where ids is null.
+  void accelerations(std::size_t count, const std::int32_t* ids, const PointArrays& at, double time,
+                     const std::array<double*, 3>& result, FirstFailure& failures) const;
 
   /// Evaluates a kind of force that acts at points, at the time of a step's begin: calls give(p, coefficients) for those
-  /// of `count` particles that carry some, after read(p, particle) has filled the particle. ids[p] is the index of
-  /// seeding, or p itself where ids is null. Returns whether any carries some.
+  /// of `count` particles that carry some, after read(p, particle) has filled the particle, and notes those whose load is
+  /// not finite. ids[p] is the index of seeding, or p itself where ids is null. Returns whether any carries some.
   template <class Read, class Give>
-  bool evaluate(ExternalForce force, int count, const std::int32_t* ids, double time, Read&& read, Give&& give) const {
+  bool evaluate(ExternalForce force, int count, const std::int32_t* ids, double time, Read&& read, Give&& give,
+                FirstFailure& failures) const {
     bool any = false;
     for (int p = 0; p < count; ++p) {
       const std::size_t id = static_cast<std::size_t>(ids ? ids[p] : p);
       if (!carries(force, id)) continue;
       LoadedParticle particle;
       read(p, particle);
-      give(p, coefficients(force, id, particle, time));
+      give(p, coefficients(force, id, particle, time, failures));
       any = true;
     }
     return any;
@@ -76,8 +81,15 @@ class BodyLoads {
     Vector3 area{};                       ///< of the normal over the area, of pressures
     std::array<double, 9> area_moment{};  ///< of N (x) r0 over the area, row-major with the dimension
   };
+  /// A force per mass; `load` is null for that of the whole scene.
+  struct PerMass {
+    const VectorExpression* expression;
+    const Load* load;
+  };
+  void note_acceleration(std::size_t id, const Vector3& x, const Vector3& X, double time, FirstFailure& failures) const;
   bool carries(ExternalForce force, std::size_t id) const;
-  LoadCoefficients coefficients(ExternalForce force, std::size_t id, const LoadedParticle& particle, double time) const;
+  LoadCoefficients coefficients(ExternalForce force, std::size_t id, const LoadedParticle& particle, double time,
+                                FirstFailure& failures) const;
   void add_pressure(const Share& share, const LoadedParticle& particle, double pressure, bool follower,
                     LoadCoefficients& sum) const;
   void take_shares(const SeededBody& seeds);
@@ -87,8 +99,8 @@ class BodyLoads {
   int body_, dimension_;
   double spacing_;  ///< m, of the particles as they are seeded
   std::array<bool, external_force_count> gives_{};
-  std::vector<const VectorExpression*> accelerations_;  ///< of forces per mass, all that act on the body
-  std::vector<std::uint32_t> first_;  ///< first share of each particle, by the index of seeding, and the end of all
+  std::vector<PerMass> accelerations_;  ///< all that act on the body
+  std::vector<std::uint32_t> first_;    ///< first share of each particle, by the index of seeding, and the end of all
   std::vector<Share> shares_;
 };
 

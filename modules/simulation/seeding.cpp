@@ -154,7 +154,7 @@ class Seeder {
   void seed_temperature() {
     if (!body_.temperature) return;
     std::vector<double>& temperature = field("temperature", 1);
-    for (std::size_t p = 0; p < points_.size(); ++p) temperature[p] = (*body_.temperature)(moved_[p], points_[p], 0);
+    body_.temperature->evaluate(moved_, points_, 0, temperature.data());
     const auto& thermal = experiment_.materials[body_.material].thermal;
     if (!thermal || !thermal->phase_change) return;
     std::vector<double>& melted = field("melted_fraction", 1);
@@ -213,16 +213,9 @@ class Seeder {
 
   void seed_velocity() {
     const std::size_t n = points_.size(), D = static_cast<std::size_t>(experiment_.dimension);
-    if (body_.displacement) {
-      std::vector<Vector3> velocity(n);
-      body_.velocity.evaluate(moved_, points_, 0, velocity);
-      for (std::size_t p = 0; p < n; ++p) std::copy_n(velocity[p].begin(), D, &velocity_[p * D]);
-    } else {
-      for (std::size_t c = 0; c < D; ++c) {
-        body_.velocity.evaluate(static_cast<int>(c), points_, 0, values_.data());
-        for (std::size_t p = 0; p < n; ++p) velocity_[p * D + c] = values_[p];
-      }
-    }
+    velocities_.resize(n);
+    body_.velocity.evaluate(moved_, points_, 0, velocities_);
+    for (std::size_t p = 0; p < n; ++p) std::copy_n(velocities_[p].begin(), D, &velocity_[p * D]);
     if (affine_ && body_.displacement) differentiate_displaced();
     if (affine_ && !body_.displacement) differentiate();
   }
@@ -313,7 +306,7 @@ class Seeder {
   const Places* places_ = nullptr;  ///< null on the lattice of the cells
   std::size_t given_ = 0;
   std::vector<Vector3> points_, moved_;  ///< undeformed, and where they begin
-  std::vector<Vector3> ahead_, behind_;
+  std::vector<Vector3> velocities_, ahead_, behind_;
   std::vector<double> position_, velocity_, gradient_, values_, behind_values_;
   std::map<std::string, std::vector<double>> fields_;
   std::vector<std::pair<std::string, const double*>> others_;

@@ -131,7 +131,12 @@ TEST_CASE("2: combinations that cannot run") {
   refused_scene(scene, "/bodies/0/geometry");
   scene = ball();
   scene["bodies"][0]["velocity"] = {"sqrt(x - 0.5)", 0};
-  refused_scene(scene, "/bodies/0/velocity: is not a finite number at particle 0, (0.425, 0.325) m");
+  refused_scene(scene,
+                "/bodies/0/velocity: is not a finite number at particle 0, (0.425, 0.325) m: "
+                "\"sqrt(x - 0.5)\" at character 1 is sqrt(-0.075");
+  scene["bodies"][0]["initial_displacement"] = {0.1, 0};
+  scene["bodies"][0]["velocity"] = {"sqrt(X - 0.5)", 0};  // which began at another place
+  refused_scene(scene, "(0.525, 0.325) m: \"sqrt(X - 0.5)\" at character 1 is sqrt(-0.075");
 }
 
 TEST_CASE("2: temperatures that nothing can have at the start, in a body, at a wall and in a box") {

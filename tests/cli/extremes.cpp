@@ -243,7 +243,7 @@ TEST_CASE("a run that stops says why, and what helps against that") {
 
   scene = ball();
   scene["body_force"] = {"sqrt(0.05 - t)", 0};
-  stops(scene, "not a number", "check the expressions of the file");
+  stops(scene, "not a number", "check that expression");
 
   scene = ball();
   scene["grid"]["boundaries"]["all"] = "free";

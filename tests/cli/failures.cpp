@@ -98,15 +98,48 @@ TEST_CASE("3: a particle that leaves the domain") {
   }
 }
 
-TEST_CASE("3: not a number, in the very first step and later") {
-  Json scene = ball();
+TEST_CASE("3: a force that is no number, in the very first step and later") {
+  struct Case {
+    const char *force, *step, *why;
+  };
+  // The ball's first particle is the lowest one, and in its row the leftmost.
+  const Case cases[] = {
+      {"sqrt(x - 10)", "step 1, t = 0 s: particle 0 of body \"ball\" at (",
+       "\"sqrt(x - 10)\" at character 1 is sqrt(-9."},
+      {"1 + 2*log(0.049 - t)", "step 26, t = 0.05 s: particle 0 of body \"ball\" at (",
+       "\"log(0.049 - t)\" at character 7 is log(-0.001"},
+      {"1/(X - X)", "step 1, t = 0 s: particle 0 of body", "\"1/(X - X)\" at character 1 is 1 / 0"},
+      {"x > 0 ? t/(t - t) : log(x)", "step 1, t = 0 s: particle 0 of body", "\"t/(t - t)\" at character 9 is 0 / 0"}};
   for (const char* backend : {"cpu", "reference"})
-    for (const char* force : {"sqrt(x - 10)", "sqrt(0.05 - t)"}) {
+    for (const Case& c : cases)
+      for (const bool of_body : {false, true}) {
+        Json scene = ball();
+        scene["backend"] = backend;
+        if (of_body)
+          scene["loads"] = {{{"type", "body_force"}, {"body", "ball"}, {"acceleration", {0, c.force}}}};
+        else
+          scene["body_force"] = {0, c.force};
+        INFO(backend << " " << c.force);
+        const std::string place = of_body ? ": /loads/0/acceleration/1" : ": /body_force/1";
+        fails(scene, {c.step, ") m not a number: ", ".json:", place + " is not finite at t = ", c.why});
+      }
+}
+
+TEST_CASE("3: a load at points that is no number") {
+  const Json everywhere{{"type", "half_space"}, {"point", {0, 0}}, {"normal", {0, -1}}};
+  const std::pair<Json, std::string> cases[] = {
+      {{{"type", "traction"}, {"where", everywhere}, {"traction", {"log(-X)", 0}}}, "/loads/1/traction/0"},
+      {{{"type", "pressure"}, {"where", everywhere}, {"pressure", "1/(x - x)"}}, "/loads/1/pressure"},
+      {{{"type", "force"}, {"at", {0.5, 0.5}}, {"force", {0, "sqrt(-1 - t)"}}}, "/loads/1/force/1"}};
+  for (const char* backend : {"cpu", "reference"})
+    for (auto [load, place] : cases) {
+      Json scene = ball();
       scene["backend"] = backend;
-      scene["body_force"] = {force, 0};
-      INFO(backend << " " << force);
-      const bool first = std::string(force) == "sqrt(x - 10)";
-      fails(scene, {first ? "step 1, t = 0 s: particle " : "step 2", "of body \"ball\" at (", ") m "});
+      load["body"] = "ball";
+      scene["loads"] = {{{"type", "body_force"}, {"body", "ball"}, {"acceleration", {0, "t"}}}, load};
+      INFO(backend << " " << place);
+      fails(scene,
+            {"step 1, t = 0 s: particle ", ") m not a number: ", ": " + place + " is not finite at t = 0 s: \""});
     }
 }
 

@@ -145,3 +145,34 @@ TEST_CASE("a choice adds what it declares and nothing else") {
   CHECK(contact.bytes_per_particle == base.bytes_per_particle);
   CHECK(contact.bytes_per_node == 2 * 4 * quad);
 }
+
+TEST_CASE("a manufactured solution costs at most 1.3 times what its scene costs without the force") {
+  const auto stepped = [](const Json& scene) {
+    const Experiment experiment = experiment_from(scene.dump());
+    std::unique_ptr<Simulation> simulation;
+    return counting::count_instructions(
+        [&] {
+          simulation = std::make_unique<Simulation>(experiment, backend_factory(1));
+          for (int i = 0; i < 2; ++i) simulation->step();
+        },
+        [&] { simulation->step(); });
+  };
+  for (const auto& [study, cell_size] :
+       {std::pair{"manufactured_wave", 0.125}, std::pair{"generalised_vortex", 0.25}}) {
+    INFO(study);
+    Json scene =
+        Json::parse(slurp(MPM_SOURCE_DIR "/experiments/studies/" + std::string(study) + ".json"), nullptr, true, true);
+    scene["grid"]["cell_size"] = cell_size;
+    const auto with = stepped(scene);
+    scene.erase("body_force");
+    const auto without = stepped(scene);
+    if (!with || !without) {
+      WARN("this machine refuses to single-step a process");
+      return;
+    }
+    const double ratio = static_cast<double>(with->all) / static_cast<double>(without->all);
+    INFO(with->all << " instructions beside " << without->all << ": " << ratio);
+    CHECK(ratio <= 1.3);
+    CHECK(ratio > 1.02);  // the force is there
+  }
+}

@@ -83,6 +83,22 @@ TEST_CASE("every backend names what is not a number", "[device][failure]") {
   CHECK(std::string(name_of(failure.cause)) == "not a number");
 }
 
+TEST_CASE("every backend names the load that is no number, and the first particle of the experiment's order",
+          "[device][failure]") {
+  const std::string text = thrown("bspline_quadratic", "pic", R"J(["1", "1"])J");
+  const std::string of_body = R"J({"type": "body_force", "body": "b", "acceleration": ["0.1", "log(3.04 - x)"]})J";
+  const std::string edge = R"J("where": {"type": "half_space", "point": [2.5, 0], "normal": [-1, 0]})J";
+  const Failure pulled = common_failure(text, {"/loads=[" + of_body + "]"});
+  CHECK(pulled.cause == Cause::force_not_a_number);
+  CHECK(pulled.particle > 0);
+  CHECK(pulled.formula.find(": /loads/0/acceleration/1 is not finite") != std::string::npos);
+  // With a force of all bodies, which is good, and one on the surface, which is not.
+  const std::string pressed = R"J({"type": "pressure", "body": "b", )J" + edge + R"J(, "pressure": "1e-9/(Y - Y)"})J";
+  const Failure both =
+      common_failure(text, {R"J(/body_force=["X", "t"])J", "/loads=[" + of_body + ", " + pressed + "]"});
+  CHECK(both.formula.find(": /loads/1/pressure is not finite at t = 0 s") != std::string::npos);
+}
+
 TEST_CASE("every backend names a temperature that is not a number", "[device][failure]") {
   const std::string text = thrown("bspline_quadratic", "pic", R"J(["1", "1"])J");
   for (const std::string temperature : {"20+sqrt(9.6-x)", "20+10^(500*(x-9))"}) {  // the second one is infinite

@@ -44,6 +44,27 @@ Mix loaded_ring() {
   return mix;
 }
 
+/// Forces per mass on all bodies and on one of them, which the ledger alone keeps apart from the stress.
+Mix pulled(int dimension, const std::string& output) {
+  Mix mix;
+  mix.dimension = dimension;
+  const bool flat = dimension == 2;
+  mix.more = std::string(R"J(, "body_force": ["2*sin(3*X)+t", "x-Y*y")J") + (flat ? "]" : R"J(, "z*X"])J") +
+             R"J(, "loads": [{"type": "body_force", "body": "b", "acceleration": )J" +
+             (flat ? R"J(["X", "t-y"]})J" : R"J(["X", "t-y", "z"]})J") +
+             R"J(, {"type": "body_force", "body": "b", "acceleration": )J" + (flat ? "[0, 0.5]" : "[0, 0.5, -0.2]") +
+             "}], \"output\": " + output;
+  return mix;
+}
+
+Mix pulled_ring(const std::string& output) {
+  Mix mix = pulled(2, output);
+  mix.overrides = {set("/grid/symmetry", "axisymmetric"), set("/gravity", "[0, -1.3]")};
+  return mix;
+}
+
+const char* const outputs[] = {R"({"ledger": false})", R"({"ledger_every": 3})", R"({"ledger": true})"};
+
 }  // namespace
 
 TEST_CASE("parity of loads on every shape and transfer", "[parity][loads]") {
@@ -75,10 +96,35 @@ TEST_CASE("parity of loads in 3-D, around an axis, in every order, with filters 
   check_parity(mix);
 }
 
+TEST_CASE("parity of forces per mass with the momenta, with the stress and apart", "[parity][loads]") {
+  for (const std::string output : outputs) {
+    for (const std::string transfer : {"flip", "apic", "mls"})
+      for (const std::string order : {"last", "first", "modified_last", "averaged"})
+        for (Mix mix : {pulled(2, output), pulled(3, output), pulled_ring(output)}) {
+          if (mix.dimension == 3 && order != "last") continue;
+          mix.transfer = "{\"type\": \"" + transfer + "\"}", mix.stress_update = order;
+          check_parity(mix);
+        }
+    Mix mix = pulled(2, output);
+    mix.filter = R"({"type": "fmpm", "order": 2})", mix.contact = R"({"type": "coulomb", "friction": 0.2})";
+    check_parity(mix);
+    mix = pulled(2, output);
+    mix.boundaries = R"({"all": "separate"})", mix.close = true;
+    check_parity(mix);
+    mix = pulled(2, output);
+    mix.more += R"(, "damping": {"viscous": 2})";
+    check_parity(mix);
+    mix = loaded(2);
+    mix.more += ", \"output\": " + output;
+    check_parity(mix);
+  }
+}
+
 TEST_CASE("loads give the same bits fused and apart, with 1 and 2 threads, and resumed", "[parity][loads]") {
   for (const std::string precision : {"double", "float"})
     for (const std::string transfer : {"apic", "mls", "flip"})
-      for (const Mix& base : {loaded(2), loaded(3), loaded_ring()}) {
+      for (const Mix& base : {loaded(2), loaded(3), loaded_ring(), pulled(2, outputs[0]), pulled(3, outputs[1]),
+                              pulled_ring(outputs[0]), pulled(2, outputs[1])}) {
         Mix mix = base;
         mix.transfer = "{\"type\": \"" + transfer + "\"}";
         INFO(precision << " " << mix.name());

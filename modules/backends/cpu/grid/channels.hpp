@@ -60,6 +60,7 @@ struct NamedChannels {
   /// Holds v-, later the increment v+ - v-.
   const Channel velocity_before = channel_of(plan_, "velocity_before");
   const Channel force = channel_of(plan_, "force");
+  const Channel body_force = channel_of(plan_, "body_force");
   const std::vector<ExternalChannel> external = external_channels(plan_);
   const Channel volume_gradient = channel_of(plan_, "volume_gradient");  ///< with the volume
   const Channel mass_position = channel_of(plan_, "mass_position");

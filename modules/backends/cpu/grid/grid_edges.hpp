@@ -12,13 +12,26 @@ Quad<T> GridStep<D, T>::mirror_signs(const FaceNodes& face, AtWall rule) const {
   return signs;
 }
 
+/// Finds the velocities that a wall or a box gives at some places, all at once.
 template <int D, class T>
-Quad<T> GridStep<D, T>::wall_velocity(const std::optional<VectorExpression>& velocity, const Vector3& x,
-                                      double time) const {
+void GridStep<D, T>::find_velocities(const std::optional<VectorExpression>& velocity, std::span<const Vector3> x,
+                                     double time) {
+  found_.resize(velocity ? x.size() : 0);
+  if (velocity) velocity->evaluate(x, x, time, found_);
+}
+
+template <int D, class T>
+void GridStep<D, T>::find_wall_velocities(const FaceNodes& face, double time) {
+  feet_.clear();
+  if (face.condition->velocity)
+    for (const MirrorPair& pair : face.pairs) feet_.push_back(pair.foot);
+  find_velocities(face.condition->velocity, feet_, time);
+}
+
+template <int D, class T>
+Quad<T> GridStep<D, T>::found_velocity(std::size_t i) const {
   Q result{};
-  if (!velocity) return result;
-  const Vector3 v = (*velocity)(x, x, time);
-  for (int c = 0; c < D; ++c) result[c] = static_cast<T>(v[c]);
+  for (int c = 0; !found_.empty() && c < D; ++c) result[c] = static_cast<T>(found_[i][c]);
   return result;
 }
 
@@ -36,7 +49,8 @@ bool GridStep<D, T>::approaches(const FaceNodes& face, int field, const MirrorPa
     if (edge != ~0u && has_gravity_)
       forces += static_cast<T>(gravity_correction_[(field * edges + edge) * 4 + face.axis]);
     if (grid_.has(force)) forces += grid_.quad(force, field, node)[face.axis];
-    for (const ExternalChannel& load : external) forces += grid_.quad(load.channel, field, node)[face.axis];
+    for (const ExternalChannel& load : external)
+      if (grid_.has(load.channel)) forces += grid_.quad(load.channel, field, node)[face.axis];
     speed += predicted_velocity(motion_node[face.axis], forces, motion_node[3], static_cast<T>(dt));
   }
   return mpm::approaches(face.side, speed);
@@ -98,7 +112,7 @@ void GridStep<D, T>::fold_pair(FaceNodes& face, std::size_t index, int field, bo
     if (!grid_.has(c) || (remap && c != motion)) continue;
     const AtWall rule = grid_.field(c).at_wall;
     if (rule == AtWall::momentum) {
-      const Q wall = wall_velocity(face.condition->velocity, pair.foot, time);
+      const Q wall = wall_velocity(face, pair);
       if (records_ && !face.periodic()) work_of_folds_ += work_of_fold(field, pair, signs_[k].of, wall);
       if (notes_reactions_ && !face.periodic()) note_mirror(face, index, field, signs_[k].of, wall);
       fold_momentum(c, field, pair, signs_[k].of, wall);
@@ -147,6 +161,7 @@ void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step)
   for (FaceNodes& face : grid_.faces()) {
     if (face.periodic() != periodic || (face.pairs.empty() && face.wall.empty())) continue;
     const bool separate = face.condition->type == ConditionType::separate;
+    find_wall_velocities(face, step.time);
     signs_.clear();
     for (const Channel c : folded_[static_cast<int>(Folded::with_mass)])
       signs_.push_back({mirror_signs(face, grid_.field(c).at_wall)});
@@ -177,14 +192,14 @@ template <int D, class T>
 void GridStep<D, T>::fold_forces(bool periodic, double time, double dt) {
   for (const FaceNodes& face : grid_.faces()) {
     if (face.periodic() != periodic) continue;
+    if (ledger_on()) find_wall_velocities(face, time);
     for (const Channel c : folded_[static_cast<int>(Folded::with_force)]) {
       if (!grid_.has(c) || face.pairs.empty()) continue;
       const Q signs = mirror_signs(face, grid_.field(c).at_wall);
       for_each_folded(face, [&](int field, const MirrorPair& pair) {
         if (c == heat_rate) rate_of_folds_ += (signs[0] - 1) * static_cast<double>(grid_.quad(c, field, pair.ghost)[0]);
         if (ledger_on() && c == force && face.condition->velocity)
-          ledger_.boundary += dt * work_beyond_wall(grid_.quad(c, field, pair.ghost), signs,
-                                                    wall_velocity(face.condition->velocity, pair.foot, time));
+          ledger_.boundary += dt * work_beyond_wall(grid_.quad(c, field, pair.ghost), signs, wall_velocity(face, pair));
         if (notes_reactions_ && !periodic && grid_.field(c).at_wall == AtWall::vector)
           note_mirrored_force(face, pair, widen(grid_.quad(c, field, pair.ghost)), signs);
         fold_as_is(c, field, pair, signs);
@@ -199,8 +214,7 @@ void GridStep<D, T>::fold_forces(bool periodic, double time, double dt) {
         for (int c = 0; c < D; ++c)
           if (scene_.experiment.gravity_has_potential(c))
             weight[c] = static_cast<T>(correction[pair.ghost_edge * 4 + c]);
-        ledger_.boundary +=
-            dt * work_beyond_wall(weight, signs, wall_velocity(face.condition->velocity, pair.foot, time));
+        ledger_.boundary += dt * work_beyond_wall(weight, signs, wall_velocity(face, pair));
       }
       if (notes_reactions_) {
         Wide weight{};
@@ -221,8 +235,9 @@ void GridStep<D, T>::fill_ghosts(double time, bool increments) {
   auto& faces = grid_.faces();
   for (auto face = faces.rbegin(); face != faces.rend(); ++face) {
     const Q signs = mirror_signs(*face, AtWall::vector);
+    find_wall_velocities(*face, time);
     for_each_folded(*face, [&](int field, const MirrorPair& pair) {
-      const Q wall = wall_velocity(face->condition->velocity, pair.foot, time);
+      const Q wall = wall_velocity(*face, pair);
       Q& ghost = motion_at(field, pair.ghost);
       const T mass = ghost[3];
       ghost = mirrored(motion_at(field, pair.mirror), signs, wall);
@@ -240,8 +255,9 @@ template <int D, class T>
 void GridStep<D, T>::impose(double time) {
   for (const FaceNodes& face : grid_.faces()) {
     const int type = static_cast<int>(face.condition->type), support = support_of_wall(face.axis, face.side);
+    find_velocities(face.condition->velocity, face.wall_position, time);
     for (std::size_t i = 0; i < face.wall.size(); ++i) {
-      const Q velocity = wall_velocity(face.condition->velocity, face.wall_position[i], time);
+      const Q velocity = found_velocity(i);
       for (int field = 0; field < grid_.fields(); ++field) {
         const T across = motion_at(field, face.wall[i])[face.axis];
         for (int c = 0; c < D; ++c)
@@ -254,8 +270,9 @@ void GridStep<D, T>::impose(double time) {
     const BoxCondition& condition = *box.condition;
     int given = 0;
     for (int c = 0; c < D; ++c) given |= int(condition.held[c]) << c;
+    find_velocities(condition.velocity, box.position, time);
     for (std::size_t i = 0; i < box.nodes.size(); ++i) {
-      const Q velocity = wall_velocity(condition.velocity, box.position[i], time);
+      const Q velocity = found_velocity(i);
       for (int field = 0; field < grid_.fields(); ++field)
         for (int c = 0; c < D; ++c)
           if (box_holds(static_cast<int>(condition.type), condition.axis, condition.side, given, c,

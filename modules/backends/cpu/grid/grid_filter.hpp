@@ -49,8 +49,9 @@ void GridStep<D, T>::project_increment(const Pass& pass, const StepInfo& step) {
   if (notes_reactions_) reactions_.begin_projection();
   for (const FaceNodes& face : grid_.faces()) {  // images first, then walls, as fold_faces decided
     const Q signs = mirror_signs(face, AtWall::momentum);
+    if (first) find_wall_velocities(face, time);
     for_each_folded(face, [&](int field, const MirrorPair& pair) {
-      const Q wall = first ? wall_velocity(face.condition->velocity, pair.foot, time) : Q{};
+      const Q wall = first ? wall_velocity(face, pair) : Q{};
       if (notes_reactions_ && !face.periodic())
         note_projection(face, static_cast<std::size_t>(&pair - face.pairs.data()), field, signs, wall);
       fold_momentum(filter_projection, field, pair, signs, wall);

@@ -307,7 +307,8 @@ void GridStep<D, T>::accelerate(double dt) {
     const Q* const f = grid_.has(force) ? &grid_.quad(force, field, first) : nullptr;
     const Q* loads[external_force_count];
     int count = 0;
-    for (const ExternalChannel& load : external) loads[count++] = &grid_.quad(load.channel, field, first);
+    for (const ExternalChannel& load : external)
+      if (grid_.has(load.channel)) loads[count++] = &grid_.quad(load.channel, field, first);
     const bool heavy = for_each_pack(nodes, [&](int node, L velocity, L mass) {
       if (!f && count == 0) return velocity + step * gravity;
       L total(T(0));

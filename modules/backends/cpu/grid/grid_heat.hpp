@@ -208,11 +208,13 @@ void GridStep<D, T>::heat_box(const BoxNodes& box, double time, double dt) {
   for (int field = 0; field < grid_.fields(); ++field)
     for (const std::uint32_t node : box.nodes) mass += motion_at(field, node)[3];
   if (!(mass > 0)) return;
+  std::vector<double> heating(box.nodes.size());
+  box.condition->thermal.value.evaluate(box.position, time, heating.data());
   for (int field = 0; field < grid_.fields(); ++field)
     for (std::size_t i = 0; i < box.nodes.size(); ++i) {
       const double of_node = motion_at(field, box.nodes[i])[3];
       if (!(of_node > 0)) continue;
-      const double rate = box.condition->thermal.value(box.position[i], box.position[i], time) * of_node / mass;
+      const double rate = heating[i] * of_node / mass;
       grid_.quad(heat_rate, field, box.nodes[i])[0] += static_cast<T>(rate);
       heat_ledger_.boxes += dt * rate;
     }
@@ -220,22 +222,25 @@ void GridStep<D, T>::heat_box(const BoxNodes& box, double time, double dt) {
 
 template <int D, class T>
 void GridStep<D, T>::impose_temperatures(double time, double& from_walls, double& from_boxes) {
-  const auto hold_at = [&](std::uint32_t node, const Vector3& x, const ThermalCondition& condition, double& entry) {
-    const T held = static_cast<T>(condition.value(x, x, time));
-    for (int field = 0; field < grid_.fields(); ++field) {
-      Q& of_node = grid_.quad(heat, field, node);
-      if (!(of_node[3] > T(0))) continue;
-      entry += static_cast<double>(of_node[3]) * (static_cast<double>(held) - of_node[0]);
-      of_node[0] = held;
-    }
+  std::vector<double> held;
+  const auto hold_at = [&](std::span<const std::uint32_t> nodes, std::span<const Vector3> x,
+                           const ThermalCondition& condition, double& entry) {
+    held.resize(nodes.size());
+    condition.value.evaluate(x, time, held.data());
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      for (int field = 0; field < grid_.fields(); ++field) {
+        Q& of_node = grid_.quad(heat, field, nodes[i]);
+        if (!(of_node[3] > T(0))) continue;
+        const T value = static_cast<T>(held[i]);
+        entry += static_cast<double>(of_node[3]) * (static_cast<double>(value) - of_node[0]);
+        of_node[0] = value;
+      }
   };
   for (const FaceNodes& face : grid_.faces())
-    for (std::size_t i = 0; holds_temperature(*face.condition) && i < face.wall.size(); ++i)
-      hold_at(face.wall[i], face.wall_position[i], face.condition->thermal, from_walls);
+    if (holds_temperature(*face.condition)) hold_at(face.wall, face.wall_position, face.condition->thermal, from_walls);
   for (const BoxNodes& box : grid_.boxes())
-    for (std::size_t i = 0; box.condition->thermal.exchange == HeatExchange::fixed_temperature && i < box.nodes.size();
-         ++i)
-      hold_at(box.nodes[i], box.position[i], box.condition->thermal, from_boxes);
+    if (box.condition->thermal.exchange == HeatExchange::fixed_temperature)
+      hold_at(box.nodes, box.position, box.condition->thermal, from_boxes);
 }
 
 /// Gives ghosts mirrored temperatures. What was folded belongs to the particles as it was, beyond the wall: returns how

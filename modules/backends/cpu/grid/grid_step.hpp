@@ -66,7 +66,13 @@ class GridStep : NamedChannels {
   bool merges() const { return may_merge_ && !grid_.has(force); }
   Q& motion_at(int field, std::uint32_t node) { return grid_.quad(motion, field, node); }
   Q mirror_signs(const FaceNodes& face, AtWall rule) const;
-  Q wall_velocity(const std::optional<VectorExpression>& velocity, const Vector3& x, double time) const;
+  void find_velocities(const std::optional<VectorExpression>& velocity, std::span<const Vector3> x, double time);
+  void find_wall_velocities(const FaceNodes& face, double time);
+  Q found_velocity(std::size_t i) const;
+  /// The velocity of a wall at the foot of one of its ghosts, of those that find_wall_velocities found.
+  Q wall_velocity(const FaceNodes& face, const MirrorPair& pair) const {
+    return found_velocity(static_cast<std::size_t>(&pair - face.pairs.data()));
+  }
   template <class Visit>
   void for_each_block(Visit&& visit);
   template <class Visit>
@@ -213,6 +219,7 @@ class GridStep : NamedChannels {
   std::vector<double> partials_;            ///< partial_count a block of a field, summed in order
   std::vector<std::uint8_t> constrained_;   ///< [slot], set by find_constrained_slots
   std::vector<double> gravity_correction_;  ///< N, [field][edge node][4]: weight folds like a force, not like a mass
+  std::vector<Vector3> feet_, found_;       ///< places on a wall, m, and what it or a box gives there, m/s; empty: rest
   Scattered particles_;
   double scattered_energy_ = 0;      ///< kinetic energy of the grid as it was scattered, J
   double works_ = 0;                 ///< works on the grid since the scatter, J

@@ -200,6 +200,14 @@ void ParticleStep<D, T, Components>::note(Cause cause, const Chunk& chunk, int p
   failure_.note({cause, chunk.body.index, static_cast<std::size_t>(chunk.ids[p]), axis, value});
 }
 
+/// Notes the forces on a chunk that are not finite.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::note_forces(const FirstFailure& found) {
+  if (!found.any()) return;
+  const std::lock_guard lock(mutex_);
+  failed_forces_.note(found);
+}
+
 /// Evaluates the weights of a chunk (and gradients, and what the second moment needs). Several passes that must agree
 /// to the last bit call it, so it is compiled once.
 template <int D, class T, class Components>

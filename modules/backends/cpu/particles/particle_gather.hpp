@@ -116,9 +116,10 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
           flush(body, block, work, c);
     });
   Fused result;
+  if (failure_.any()) failed_forces_ = {};
   result.gathered = sum_gathered(pass.has(Act::move));
-  result.scattered = !abandoned_ && !must_sort();
-  if (!result.scattered && !step.observed)
+  result.scattered = !abandoned_ && !must_sort() && !failed_forces_.any();
+  if (!result.scattered && !failed_forces_.any() && !step.observed)
     throw std::logic_error("particles moved farther than the nodes around them, and their velocities were not kept");
   if (follows || moves) result.particles = sum_scattered();
   if (moves && abandoned_) result.particles.kinetic_energy = kinetic_energy_now();

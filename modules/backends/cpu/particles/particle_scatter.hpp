@@ -61,6 +61,7 @@ Scattered ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepIn
     });
     scatter_far(body, [&](const Chunk& chunk, Work& work) { scatter_chunk(pass, step, chunk, work, motion, false); });
   }
+  failure_.note(std::exchange(failed_forces_, {}));
   failure_.raise();
   return energies ? sum_scattered() : Scattered();
 }
@@ -117,6 +118,7 @@ template <int D, class T, class Components>
                                                                      const Chunk& chunk, Work& work, Channel momentum,
                                                                      bool evaluated) {
   const bool separate = grid_.has(force), merged = pass.has(Act::scatter_force) && !separate;
+  if (pass.has(Act::scatter_force)) fetch_initial_positions(chunk);
   const bool by_gradient = pass.has(Act::scatter_force) && !scene_.stress_by_affine;
   const bool loads_by_gradient = pass.has(Act::scatter_force) && chunk.body.loads && chunk.body.loads->at_points();
   evaluate_shape(chunk, work, by_gradient || loads_by_gradient || pass.has(Act::scatter_contact));
@@ -137,6 +139,7 @@ template <int D, class T, class Components>
     if (merged) {
       if (!in_packing) stress_coefficients(chunk, work, step.dt, adds_to_A);
       if (scene_.axisymmetric) add_hoop_force(chunk, work, step.dt);
+      if (is_pulled(chunk)) add_body_force(chunk, work, step.time, step.dt);
     }
     const bool affine = scene_.has(MPM_SCATTERS_AFFINE) || (merged && scene_.stress_by_affine);
     const T stress = in_packing ? stress_scale(chunk, step.dt) : T(0);
@@ -144,7 +147,7 @@ template <int D, class T, class Components>
     if (higher_kernels_.scatter) add_higher_to_tile(chunk, work, momentum, chunk.higher());
   }
   if (pass.has(Act::scatter_force) && separate) {
-    scatter_stress(chunk, work);
+    scatter_forces(chunk, work, step.time);
     if (chunk.body.loads) scatter_loads(chunk, work, step.time);
   }
   if (pass.has(Act::scatter_contact)) scatter_contact_fields(chunk, work);
@@ -336,36 +339,58 @@ void ParticleStep<D, T, Components>::add_higher_to_tile(const Chunk& chunk, Work
   work.clock.lap(Phase::scatter);
 }
 
+/// Whether forces per mass act on a chunk.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::scatter_stress(const Chunk& chunk, Work& work) {
-  stress_coefficients(chunk, work, 1.0, false);
-  if (scene_.axisymmetric) {
-    std::fill(work.b, work.b + D * chunk_size<T>, T(0));
-    add_hoop_force(chunk, work, 1.0);
-  }
-  add_to_tile(chunk, work, force, nullptr, scene_.axisymmetric, scene_.stress_by_affine, !scene_.stress_by_affine);
+bool ParticleStep<D, T, Components>::is_pulled(const Chunk& chunk) const {
+  return chunk.body.loads && chunk.body.loads->gives(ExternalForce::body_force);
 }
 
-/// Adds the forces per mass, m a(x, X, t), into their channel.
+/// Scatters the forces of the stress, and with them forces per mass where these have no channel of their own.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::scatter_body_force(const Chunk& chunk, Work& work, double time, Channel channel) {
-  const T* const size = sizes(chunk);
+void ParticleStep<D, T, Components>::scatter_forces(const Chunk& chunk, Work& work, double time) {
+  stress_coefficients(chunk, work, 1.0, false);
+  const bool pulled = is_pulled(chunk) && !grid_.has(body_force), constant = scene_.axisymmetric || pulled;
+  if (constant) std::fill(work.b, work.b + D * chunk_size<T>, T(0));
+  if (scene_.axisymmetric) add_hoop_force(chunk, work, 1.0);
+  if (pulled) add_body_force(chunk, work, time, 1.0);
+  add_to_tile(chunk, work, force, nullptr, constant, scene_.stress_by_affine, !scene_.stress_by_affine);
+}
+
+/// Asks for what add_body_force reads of the particles' first places, which lie far apart, while other work is done.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::fetch_initial_positions(const Chunk& chunk) const {
+  if (!is_pulled(chunk) || !chunk.body.loads->accelerations_use_initial_position()) return;
+  for (int p = 0; p < chunk.count; ++p) __builtin_prefetch(chunk.body.initial_position + std::size_t(chunk.ids[p]) * D);
+}
+
+/// Adds `factor` m a(x, X, t) of the forces per mass to the coefficients b.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::add_body_force(const Chunk& chunk, Work& work, double time, double factor) {
+  const BodyLoads& loads = *chunk.body.loads;
+  const bool asks_x = loads.accelerations_use_position(), asks_X = loads.accelerations_use_initial_position();
   double x[D][chunk_size<T>], X[D][chunk_size<T>], f[D][chunk_size<T>];
   PointArrays places;
   std::array<double*, 3> forces{};
   for (int a = 0; a < D; ++a) {
-    places.x[a] = places.X[a] = x[a], forces[a] = f[a];
-    for (int p = 0; p < chunk.count; ++p) x[a][p] = place_of(chunk, p, a);
-    if (!chunk.body.initial_position) continue;
-    places.X[a] = X[a];
-    for (int p = 0; p < chunk.count; ++p) X[a][p] = chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
+    forces[a] = f[a];
+    if (asks_x) places.x[a] = x[a];
+    if (asks_X) places.X[a] = X[a];
+    for (int p = 0; asks_x && p < chunk.count; ++p) x[a][p] = place_of(chunk, p, a);
+    for (int p = 0; asks_X && p < chunk.count; ++p)
+      X[a][p] = chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
   }
-  chunk.body.loads->accelerations(static_cast<std::size_t>(chunk.count), places, time, forces);
-  std::fill(work.b, work.b + D * chunk_size<T>, T(0));
-  for (int c = 0; c < D; ++c)
-    for (int p = 0; p < chunk.count; ++p)
-      work.b[c * chunk_size<T> + p] = static_cast<T>(chunk.body.mass * (size ? size[p] : T(1)) * f[c][p]);
-  add_to_tile(chunk, work, channel, nullptr, true, false, false);
+  FirstFailure failures;
+  loads.accelerations(static_cast<std::size_t>(chunk.count), chunk.ids, places, time, forces, failures);
+  note_forces(failures);
+  const double mass = factor * chunk.body.mass;
+  const T* const size = sizes(chunk);
+  for (int c = 0; c < D; ++c) {
+    T* const b = work.b + c * chunk_size<T>;
+    if (size)
+      for (int p = 0; p < chunk.count; ++p) b[p] += static_cast<T>(mass * size[p] * f[c][p]);
+    else
+      for (int p = 0; p < chunk.count; ++p) b[p] += static_cast<T>(mass * f[c][p]);
+  }
 }
 
 /// Adds what loads give, w b + S grad w, each kind into its own channel.
@@ -385,17 +410,20 @@ void ParticleStep<D, T, Components>::scatter_loads(const Chunk& chunk, Work& wor
     for (int c = 0; c < D; ++c) work.b[c * chunk_size<T> + p] = static_cast<T>(given.b[c]);
     for (int k = 0; k < D * D; ++k) work.S[k * chunk_size<T> + p] = static_cast<T>(given.S[k]);
   };
+  FirstFailure failures;
   for (const ExternalChannel& load : external) {
-    if (!loads.gives(load.kind)) continue;
+    if (!loads.gives(load.kind) || !grid_.has(load.channel)) continue;
+    std::fill(work.b, work.b + D * chunk_size<T>, T(0));
     if (load.kind == ExternalForce::body_force) {
-      scatter_body_force(chunk, work, time, load.channel);
+      add_body_force(chunk, work, time, 1.0);
+      add_to_tile(chunk, work, load.channel, nullptr, true, false, false);
       continue;
     }
-    std::fill(work.b, work.b + D * chunk_size<T>, T(0));
     std::fill(work.S, work.S + D * D * chunk_size<T>, T(0));
-    if (loads.evaluate(load.kind, chunk.count, chunk.ids, time, read, give))
+    if (loads.evaluate(load.kind, chunk.count, chunk.ids, time, read, give, failures))
       add_to_tile(chunk, work, load.channel, nullptr, true, false, true);
   }
+  note_forces(failures);
 }
 
 /// Scatters V grad w with w V beside it, and w m (x_p - x_node), V = J V0. A ring has the gradient of its section, as

@@ -208,6 +208,8 @@ class ParticleStep : NamedChannels {
   double last_drift() const { return last_drift_; }
   void set_drift(double drift) { drift_ = drift; }
   void set_drift(double drift, double last) { drift_ = drift, last_drift_ = last; }
+  /// Forgets forces of a step that does not follow.
+  void forget_failed_forces() { failed_forces_ = {}; }
   /// Sets the reach of particles that have just been sorted: first nodes lie in their own block, or (`ahead`) up to a
   /// cell beside it.
   void reach_own_cells(bool ahead);
@@ -268,6 +270,7 @@ class ParticleStep : NamedChannels {
   States transfer_states(const Chunk& chunk) const;
   void note(Cause cause, const Chunk& chunk, int p, int axis = -1,
             double value = std::numeric_limits<double>::quiet_NaN());
+  void note_forces(const FirstFailure& found);
 
   void evaluate_shape(const Chunk& chunk, Work& work, bool gradients);
   void evaluate_lists(const Chunk& chunk, Work& work, bool gradients);
@@ -318,9 +321,11 @@ class ParticleStep : NamedChannels {
   void pack_coefficients(Work& work, const T* last, bool constant, int count, T stress);
   void pack_coefficients(Work& work, const T* last, bool constant, bool affine, bool gradient, int count, T stress);
   void add_higher_to_tile(const Chunk& chunk, Work& work, Channel channel, const T* coefficients);
-  void scatter_stress(const Chunk& chunk, Work& work);
+  void scatter_forces(const Chunk& chunk, Work& work, double time);
   double place_of(const Chunk& chunk, int p, int axis) const;
-  void scatter_body_force(const Chunk& chunk, Work& work, double time, Channel channel);
+  bool is_pulled(const Chunk& chunk) const;
+  void fetch_initial_positions(const Chunk& chunk) const;
+  void add_body_force(const Chunk& chunk, Work& work, double time, double factor);
   void scatter_loads(const Chunk& chunk, Work& work, double time);
   void scatter_contact_fields(const Chunk& chunk, Work& work);
 
@@ -406,6 +411,7 @@ class ParticleStep : NamedChannels {
   bool accounted_ = false, sums_energy_ = false;  ///< see account_for
   double drift_ = 0, last_drift_ = 0;             ///< drift since the last sort, and by the last move, in cells
   FirstFailure failure_;
+  FirstFailure failed_forces_;  ///< the fused pass leaves them to the step that they belong to, which scatters apart
   std::exception_ptr exception_;
   std::mutex mutex_;
   PhaseClock::Ticks measured_from_ = 0;
