@@ -18,7 +18,9 @@ namespace mpm::render {
 namespace {
 
 constexpr std::size_t kMostVectorParticles = 20000;
-constexpr int kWritingSamples = 2;  ///< samples a pixel in each direction over a 3-D scene
+constexpr int kPlaneSamples = 3;  ///< samples a pixel in each direction of a 2-D picture
+constexpr int kSpaceSamples = 2;  ///< samples a pixel in each direction of a 3-D picture
+constexpr double kOutline = 2;    ///< width of the domain's outline, units of the theme
 constexpr std::array<const char*, 3> kAxisNames{"x", "y", "z"};
 
 void check(const ParticleFrame& f) {
@@ -104,10 +106,17 @@ void draw_cells(Canvas& canvas, const ParticleFrame& f, const PlaneView& view, d
 std::array<Point, 4> outline_of(const ParticleFrame& f, std::size_t i, const PlaneView& view) {
   const double x = f.positions[2 * i], y = f.positions[2 * i + 1], h = f.half_size[i];
   const bool has_axes = !f.domain_axes.empty();
-  const double* a = has_axes ? f.domain_axes.data() + 4 * i : nullptr;
+  const float* a = has_axes ? f.domain_axes.data() + 4 * i : nullptr;
   const double ax = has_axes ? a[0] : h, ay = has_axes ? a[1] : 0, bx = has_axes ? a[2] : 0, by = has_axes ? a[3] : h;
   return {view.at(x - ax - bx, y - ay - by), view.at(x + ax - bx, y + ay - by), view.at(x + ax + bx, y + ay + by),
           view.at(x - ax + bx, y - ay + by)};
+}
+
+/// Whether a particle is drawn without the darker rim that tells neighbours of one colour apart: on specks it would
+/// drown the colour.
+bool is_speck(const std::array<Point, 4>& corners, double u) {
+  const double x = corners[1].x - corners[0].x, y = corners[1].y - corners[0].y;
+  return x * x + y * y < 81 * u * u;
 }
 
 void draw_particles(Canvas& canvas, const ParticleFrame& f, const std::vector<std::size_t>& shown,
@@ -121,9 +130,7 @@ void draw_particles(Canvas& canvas, const ParticleFrame& f, const std::vector<st
   for (const std::size_t i : shown) {
     const auto corners = outline_of(f, i, view);
     const Colour colour = colours(f.values[i]);
-    // A darker rim tells neighbours of one colour apart; on specks it would drown the colour.
-    const double side = std::hypot(corners[1].x - corners[0].x, corners[1].y - corners[0].y);
-    if (side < 9 * u) {
+    if (is_speck(corners, u)) {
       for (const Point& corner : corners) specks.push_back({corner, colour});
       continue;
     }
@@ -136,6 +143,15 @@ void draw_particles(Canvas& canvas, const ParticleFrame& f, const std::vector<st
   canvas.unclip();
 }
 
+/// Paints particles that are all specks, within the outline of the domain.
+void paint_specks(const TileSamples& tile, const ParticleFrame& f, const std::vector<std::size_t>& shown,
+                  const FieldColours& colours, const PlaneView& view, double outline) {
+  const Box& box = view.box;
+  const SpeckPainter painter(tile,
+                             {box.x0 + outline / 2, box.y0 + outline / 2, box.x1 - outline / 2, box.y1 - outline / 2});
+  for (const std::size_t i : shown) painter.fill(outline_of(f, i, view), colours(f.values[i]));
+}
+
 void draw_scale_bar(Canvas& canvas, const Theme& theme, const PlaneView& view) {
   const double length = nice_below(view.box.width() / view.scale / 4);
   const double u = theme.unit, y = view.box.y1 + 1.1 * theme.text;
@@ -146,8 +162,11 @@ void draw_scale_bar(Canvas& canvas, const Theme& theme, const PlaneView& view) {
   canvas.text({b.x + 0.6 * theme.text, y}, metres(length), theme.style(kInk, Anchor::start, Baseline::middle));
 }
 
-void draw_plane(Canvas& canvas, const ParticleFrame& f, const Theme& theme, const std::vector<std::size_t>& shown,
-                const FieldColours& colours) {
+/// Draws a 2-D picture. With `leaves_specks` particles are left out where all are specks, and the view to paint them in
+/// is returned.
+std::optional<PlaneView> draw_plane(Canvas& canvas, const ParticleFrame& f, const Theme& theme,
+                                    const std::vector<std::size_t>& shown, const FieldColours& colours,
+                                    bool leaves_specks) {
   const Box page = draw_page(canvas, theme, f.title, joined(f.footnote, remark(f, shown)));
   const double gap = 2 * theme.text;
   const double top = page.y0 + 1.6 * theme.text, bottom = page.y1 - 2.2 * theme.text;
@@ -161,14 +180,29 @@ void draw_plane(Canvas& canvas, const ParticleFrame& f, const Theme& theme, cons
 
   if (f.map == ColourMap::diverging) canvas.rectangle(view.box, {0.94, 0.94, 0.94});  // white particles need a ground
   draw_cells(canvas, f, view, theme.unit);
-  draw_particles(canvas, f, shown, colours, view, theme.unit);
-  canvas.outline(view.box, {kInk, 2 * theme.unit});
+  const bool are_left = leaves_specks && std::all_of(shown.begin(), shown.end(), [&](std::size_t i) {
+                          return is_speck(outline_of(f, i, view), theme.unit);
+                        });
+  if (!are_left) draw_particles(canvas, f, shown, colours, view, theme.unit);
+  canvas.outline(view.box, {kInk, kOutline * theme.unit});
   canvas.text({view.box.x0, view.box.y0 - 0.6 * theme.text}, clock_text(f), theme.style());
   draw_scale_bar(canvas, theme, view);
   // A flat domain would squash the colour bar.
   const double key_height = std::max(h, std::min(bottom - top, 12 * theme.text));
   const double key_top = std::clamp(upper + h / 2 - key_height / 2, top, std::max(top, bottom - key_height));
   colours.draw_key(canvas, theme, {view.box.x1 + gap, key_top, page.x1, key_top + key_height});
+  return are_left ? std::optional(view) : std::nullopt;
+}
+
+Image plane_picture(const ParticleFrame& f, const Theme& theme, const std::vector<std::size_t>& shown,
+                    const FieldColours& colours) {
+  std::optional<PlaneView> left;
+  return rasterise(
+      f.width, f.height, kPlaneSamples,
+      [&](GlCanvas& canvas) { left = draw_plane(canvas, f, theme, shown, colours, true); },
+      [&](const TileSamples& tile) {
+        if (left) paint_specks(tile, f, shown, colours, *left, kOutline * theme.unit);
+      });
 }
 
 /// The order of the axes on the picture: two in the ground plane, then up; a cyclic shift keeps the space right-handed.
@@ -181,8 +215,9 @@ std::vector<Ball> balls_of(const ParticleFrame& f, const std::vector<std::size_t
   const auto axes = view_axes(f);
   const double same_volume = std::cbrt(6 / std::numbers::pi);  // radius of a ball with the volume of a cube of side 2
   std::vector<Ball> balls;
+  balls.reserve(shown.size());
   for (const std::size_t i : shown) {
-    const double* p = f.positions.data() + 3 * i;
+    const float* p = f.positions.data() + 3 * i;
     balls.push_back({{p[axes[0]], p[axes[1]], p[axes[2]]}, same_volume * f.half_size[i], colours(f.values[i])});
   }
   return balls;
@@ -202,9 +237,9 @@ void draw_edge_lengths(Canvas& canvas, const Theme& theme, const ParticleFrame& 
   canvas.text({post.x - 0.6 * theme.text, post.y}, name(2), theme.style(kInk, Anchor::end, Baseline::middle));
 }
 
-/// Draws a 3-D picture: the scene is rendered once, then laid under the writing.
-Image draw_space(const ParticleFrame& f, const Theme& theme, const std::vector<std::size_t>& shown,
-                 const FieldColours& colours) {
+/// Draws a 3-D picture: room and writing by OpenGL, then balls over them.
+Image space_picture(const ParticleFrame& f, const Theme& theme, const std::vector<std::size_t>& shown,
+                    const FieldColours& colours) {
   const auto axes = view_axes(f);
   const Vec3 lo{f.lower[axes[0]], f.lower[axes[1]], f.lower[axes[2]]};
   const Vec3 hi{f.upper[axes[0]], f.upper[axes[1]], f.upper[axes[2]]};
@@ -217,16 +252,23 @@ Image draw_space(const ParticleFrame& f, const Theme& theme, const std::vector<s
                   std::floor(page.y1)};
   const Box inner{space.x0 + 5.5 * theme.text, space.y0 + 0.5 * theme.text, space.x1 - 2.5 * theme.text,
                   space.y1 - 1.6 * theme.text};
+  if (inner.x1 - inner.x0 < 1 || inner.y1 - inner.y0 < 1)
+    throw std::invalid_argument("a 3-D frame of " + std::to_string(f.width) + " x " + std::to_string(f.height) +
+                                " pixels leaves no room for the scene");
   const Camera camera(lo, hi, inner, space);
-  const Image scene = render_scene(balls_of(f, shown, colours), lo, hi, camera, 2 * theme.unit);
-  return rasterise(f.width, f.height, kWritingSamples, [&](GlCanvas& canvas) {
+  const Scene scene(balls_of(f, shown, colours), lo, hi, camera, 2 * theme.unit, kSpaceSamples);
+  const auto draw = [&](GlCanvas& canvas) {
     draw_page(canvas, theme, f.title, footnote);
-    canvas.image(space, scene);
+    scene.draw_room(canvas);
     canvas.text({page.x0, page.y0 + 0.9 * theme.text}, clock_text(f), theme.style());
     draw_edge_lengths(canvas, theme, f, camera, lo, hi);
     const double key_top = page.y0 + (page.height() - key_height) / 2;
     colours.draw_key(canvas, theme, {key_left, key_top, page.x1, key_top + key_height});
-  });
+  };
+  Image picture =
+      rasterise(f.width, f.height, kSpaceSamples, draw, [&](const TileSamples& tile) { scene.paint_balls(tile); });
+  scene.darken(picture);
+  return picture;
 }
 
 std::string table_of(const ParticleFrame& f, const std::vector<std::size_t>& shown) {
@@ -242,7 +284,9 @@ std::string table_of(const ParticleFrame& f, const std::vector<std::size_t>& sho
   cells.push_back(f.unit.empty() ? f.quantity : f.quantity + " (" + f.unit + ")");
   csv.row(cells);
   std::string text = csv.text();
-  const auto add = [&](double value) {
+  constexpr std::size_t digits = 12;  // of most numbers, comma included
+  text.reserve(text.size() + shown.size() * cells.size() * digits);
+  const auto add = [&](auto value) {
     support::append_shortest(text, value);
     text += ',';
   };
@@ -264,14 +308,16 @@ void write_frame(const ParticleFrame& frame, const std::filesystem::path& stem) 
   const auto shown = finite_particles(frame);
   const FieldColours colours(frame, shown);
   const std::string csv = table_of(frame, shown);
-  if (frame.dimension == 3) {
-    write_part(stem, ".png", encode_png(draw_space(frame, theme, shown, colours)));
-    write_part(stem, ".csv", csv);
-    return;
+  const bool is_plane = frame.dimension == 2;
+  write_part(
+      stem, ".png",
+      encode_png(is_plane ? plane_picture(frame, theme, shown, colours) : space_picture(frame, theme, shown, colours)));
+  if (is_plane && shown.size() <= kMostVectorParticles) {
+    SvgCanvas vector(frame.width, frame.height, frame.title);
+    draw_plane(vector, frame, theme, shown, colours, false);
+    write_part(stem, ".svg", vector.document());
   }
-  write_all(
-      stem, frame.width, frame.height, frame.title, csv,
-      [&](Canvas& canvas) { draw_plane(canvas, frame, theme, shown, colours); }, shown.size() <= kMostVectorParticles);
+  write_part(stem, ".csv", csv);
 }
 
 }  // namespace mpm::render

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 #include <GL/gl.h>
@@ -200,64 +199,53 @@ void GlCanvas::unclip() {
   glDisable(GL_SCISSOR_TEST);
 }
 
-void GlCanvas::image(const Box& box, const Image& picture) {
+void GlCanvas::lit_quadrilateral(const std::array<DistantPoint, 4>& corners, const Colour& colour, int size,
+                                 std::span<const float> brightness) {
+  constexpr double across[4] = {0, 1, 1, 0}, along[4] = {0, 0, 1, 1};
   unsigned texture = 0;
   glGenTextures(1, &texture);
   glBindTexture(GL_TEXTURE_2D, texture);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, picture.width, picture.height, 0, GL_RGB, GL_UNSIGNED_BYTE,
-               picture.rgb.data());
-  if (glGetError() != GL_NO_ERROR) {
-    throw std::runtime_error("OpenGL refused a picture of " + std::to_string(picture.width) + " x " +
-                             std::to_string(picture.height) + " pixels; ask for a smaller figure");
-  }
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_LUMINANCE, size, size, 0, GL_LUMINANCE, GL_FLOAT, brightness.data());
   glEnable(GL_TEXTURE_2D);
-  glColor4d(1, 1, 1, 1);
-  glBegin(GL_TRIANGLE_STRIP);
-  glTexCoord2d(0, 0), glVertex2d(box.x0, box.y0);
-  glTexCoord2d(1, 0), glVertex2d(box.x1, box.y0);
-  glTexCoord2d(0, 1), glVertex2d(box.x0, box.y1);
-  glTexCoord2d(1, 1), glVertex2d(box.x1, box.y1);
+  glDisable(GL_BLEND);
+  set_colour(colour);
+  glBegin(GL_QUADS);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double near = 1 / corners[k].ahead;
+    glTexCoord4d(across[k] * near, along[k] * near, 0, near);  // divided by the last for each sample: perspective
+    glVertex2d(corners[k].at.x, corners[k].at.y);
+  }
   glEnd();
+  glEnable(GL_BLEND);
   glDisable(GL_TEXTURE_2D);
   glDeleteTextures(1, &texture);
 }
 
-Image GlCanvas::resolve() {
+TileSamples GlCanvas::finished() {
   context_.finish();
-  Image result(context_.width() / samples_, context_.height() / samples_);
-  const auto& pixels = context_.pixels();
-  const std::size_t row = static_cast<std::size_t>(context_.width()) * 4, samples = static_cast<std::size_t>(samples_);
-  const unsigned count = static_cast<unsigned>(samples * samples);
-  std::vector<std::uint8_t> mean(count * 255 + 1);  // of a sum, rounded
-  for (unsigned sum = 0; sum < mean.size(); ++sum) mean[sum] = static_cast<std::uint8_t>((sum + count / 2) / count);
-  std::vector<std::uint16_t> sums(row);  // over the rows of a pixel
-  for (int y = 0; y < result.height; ++y) {
-    const std::uint8_t* top = pixels.data() + static_cast<std::size_t>(y) * samples * row;
-    for (std::size_t i = 0; i < row; ++i) sums[i] = top[i];
-    for (std::size_t j = 1; j < samples; ++j)
-      for (std::size_t i = 0; i < row; ++i) sums[i] = static_cast<std::uint16_t>(sums[i] + top[j * row + i]);
-    std::uint8_t* out = result.at(0, y);
-    for (std::size_t at = 0; at < row; at += 4 * samples, out += 3)
-      for (std::size_t c = 0; c < 3; ++c) {
-        unsigned sum = 0;
-        for (std::size_t i = 0; i < samples; ++i) sum += sums[at + 4 * i + c];
-        out[c] = mean[sum];
-      }
-  }
-  return result;
+  return {tile_, samples_, context_.width(), context_.height(), context_.pixels()};
 }
 
-Image rasterise(int width, int height, int samples, const std::function<void(GlCanvas&)>& draw) {
+Image GlCanvas::resolve() {
+  context_.finish();
+  return mean_of(context_.pixels(), context_.width(), context_.height(), samples_);
+}
+
+Image rasterise(int width, int height, int samples, const std::function<void(GlCanvas&)>& draw,
+                const std::function<void(const TileSamples&)>& paint) {
+  const auto tile = [&](int x0, int y0, int x1, int y1) {
+    GlCanvas canvas({double(x0), double(y0), double(x1), double(y1)}, samples);
+    draw(canvas);
+    if (paint) paint(canvas.finished());
+    return canvas.resolve();
+  };
+  if (width <= kLargestTile && height <= kLargestTile) return tile(0, 0, width, height);
   Image whole(width, height);
   for (int y = 0; y < height; y += kLargestTile) {
     for (int x = 0; x < width; x += kLargestTile) {
-      const int x1 = std::min(x + kLargestTile, width), y1 = std::min(y + kLargestTile, height);
-      GlCanvas canvas({double(x), double(y), double(x1), double(y1)}, samples);
-      draw(canvas);
-      const Image part = canvas.resolve();
+      const Image part = tile(x, y, std::min(x + kLargestTile, width), std::min(y + kLargestTile, height));
       for (int row = 0; row < part.height; ++row) {
         std::copy_n(part.at(0, row), static_cast<std::size_t>(part.width) * 3, whole.at(x, y + row));
       }

@@ -1,13 +1,18 @@
 // The raster canvas: OpenGL triangles and FreeType glyphs, supersampled.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <span>
 #include <tuple>
+#include <vector>
 
 #include "render/canvas.hpp"
 #include "render/image.hpp"
 #include "render/osmesa_context.hpp"
+#include "render/tile_samples.hpp"
 
 namespace mpm::render {
 
@@ -29,9 +34,17 @@ class GlCanvas : public Canvas {
   void text(Point at, std::string_view utf8, const TextStyle& style) override;
   void clip(const Box& box) override;
   void unclip() override;
-  /// Stretches an image over the box.
-  void image(const Box& box, const Image& picture);
+  /// Fills a quadrilateral seen in perspective with a colour times the brightness of a square grid of `size` by `size`
+  /// values, x fastest, whose corners are those of the quadrilateral in turn.
+  struct DistantPoint {
+    Point at;
+    double ahead;  ///< of the eye, in any unit
+  };
+  void lit_quadrilateral(const std::array<DistantPoint, 4>& corners, const Colour& colour, int size,
+                         std::span<const float> brightness);
 
+  /// Waits for all drawing; what is painted into the samples then lies on top, and nothing is drawn after it.
+  TileSamples finished();
   /// The tile, averaged down to one value a pixel.
   Image resolve();
 
@@ -49,7 +62,9 @@ class GlCanvas : public Canvas {
   std::map<std::tuple<int, unsigned, int>, Glyph> glyphs_;
 };
 
-/// Runs `draw` for every tile of a picture of the given size and joins the tiles; large pictures cost no more memory.
-Image rasterise(int width, int height, int samples, const std::function<void(GlCanvas&)>& draw);
+/// Runs `draw` for every tile of a picture of the given size, then `paint` where it is given, and joins the tiles;
+/// large pictures cost no more memory.
+Image rasterise(int width, int height, int samples, const std::function<void(GlCanvas&)>& draw,
+                const std::function<void(const TileSamples&)>& paint = nullptr);
 
 }  // namespace mpm::render

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "render/scene.hpp"
+#include "render/ball_view.hpp"
 
 namespace mpm::render {
 

@@ -1,8 +1,11 @@
 #include "render/image.hpp"
 
+#include <bit>
+#include <cstring>
 #include <stdexcept>
 
 #include <png.h>
+#include <zlib.h>
 
 namespace mpm::render {
 
@@ -21,6 +24,35 @@ struct PngWriter {
 
 }  // namespace
 
+Image mean_of(const std::vector<std::uint8_t>& rgba, int columns, int rows, int samples_a_side) {
+  static_assert(std::endian::native == std::endian::little, "red is the lowest of four sums");
+  Image result(columns / samples_a_side, rows / samples_a_side);
+  const std::size_t row = static_cast<std::size_t>(columns) * 4, samples = static_cast<std::size_t>(samples_a_side);
+  const unsigned count = static_cast<unsigned>(samples * samples);
+  std::vector<std::uint8_t> mean(count * 255 + 1);  // of a sum, rounded
+  for (unsigned sum = 0; sum < mean.size(); ++sum) mean[sum] = static_cast<std::uint8_t>((sum + count / 2) / count);
+  std::vector<std::uint16_t> sums(row);  // over the rows of a pixel
+  for (int y = 0; y < result.height; ++y) {
+    const std::uint8_t* top = rgba.data() + static_cast<std::size_t>(y) * samples * row;
+    for (std::size_t i = 0; i < row; ++i) sums[i] = top[i];
+    for (std::size_t j = 1; j < samples; ++j)
+      for (std::size_t i = 0; i < row; ++i) sums[i] = static_cast<std::uint16_t>(sums[i] + top[j * row + i]);
+    std::uint8_t* out = result.at(0, y);
+    const std::uint16_t* next = sums.data();
+    for (int x = 0; x < result.width; ++x, out += 3) {
+      // The four sums of a sample are added at once, as one number: none of them grows into the next.
+      std::uint64_t four = 0;
+      for (std::size_t i = 0; i < samples; ++i, next += 4) {
+        std::uint64_t sample;
+        std::memcpy(&sample, next, sizeof sample);
+        four += sample;
+      }
+      for (int c = 0; c < 3; ++c) out[c] = mean[four >> 16 * c & 0xFFFF];
+    }
+  }
+  return result;
+}
+
 std::string encode_png(const Image& image) {
   std::string bytes;
   PngWriter writer;
@@ -35,8 +67,9 @@ std::string encode_png(const Image& image) {
       [](png_structp) {});
   png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height),
                8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  // Level 3 with one filter takes a fifth of the time of libpng's own choice; frames become a tenth larger.
-  png_set_compression_level(writer.png, 3);
+  // One filter and runs of bytes alone: as large as level 3 within a tenth, in three quarters of the time.
+  png_set_compression_level(writer.png, 1);
+  png_set_compression_strategy(writer.png, Z_RLE);
   png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
   png_write_info(writer.png, writer.info);
   for (int y = 0; y < image.height; ++y)

@@ -19,6 +19,9 @@ struct Image {
   const std::uint8_t* at(int x, int y) const { return rgb.data() + 3 * (static_cast<std::size_t>(y) * width + x); }
 };
 
+/// The mean of `samples` by `samples` values for each pixel, of RGBA values in rows of `columns`.
+Image mean_of(const std::vector<std::uint8_t>& rgba, int columns, int rows, int samples);
+
 /// The bytes of a PNG file. Throws std::runtime_error when libpng refuses.
 std::string encode_png(const Image& image);
 

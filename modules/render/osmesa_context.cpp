@@ -15,7 +15,7 @@ void OsMesaContext::Deleter::operator()(void* context) const {
 }
 
 namespace {
-constexpr std::size_t most_idle = 2;  ///< the scene and the writing over it
+constexpr std::size_t most_idle = 2;  ///< frames and the tiles of a figure take turns
 constexpr const char* remedy =
     "; check that the Debian package libosmesa6 is installed, that memory suffices, and ask for a smaller figure";
 }  // namespace
@@ -33,8 +33,7 @@ std::unique_ptr<OsMesaContext::Surface> OsMesaContext::made(int width, int heigh
   auto surface = std::make_unique<Surface>();
   surface->width = width, surface->height = height;
   surface->pixels.resize(static_cast<std::size_t>(width) * height * 4);
-  const int attributes[] = {
-      OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_PROFILE, OSMESA_COMPAT_PROFILE, 0};
+  const int attributes[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 0, OSMESA_PROFILE, OSMESA_COMPAT_PROFILE, 0};
   surface->context.reset(OSMesaCreateContextAttribs(attributes, nullptr));
   if (!surface->context)
     throw std::runtime_error(std::string("OSMesa could not make an off-screen OpenGL context") + remedy);
@@ -75,19 +74,6 @@ OsMesaContext::~OsMesaContext() {
 
 void OsMesaContext::finish() {
   glFinish();
-}
-
-std::vector<float> OsMesaContext::depth() {
-  finish();
-  std::vector<float> values(static_cast<std::size_t>(width()) * height());
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width(), height(), GL_DEPTH_COMPONENT, GL_FLOAT, values.data());
-  for (int row = 0; row < height() / 2; ++row) {
-    std::swap_ranges(values.begin() + static_cast<std::ptrdiff_t>(row) * width(),
-                     values.begin() + static_cast<std::ptrdiff_t>(row + 1) * width(),
-                     values.begin() + static_cast<std::ptrdiff_t>(height() - 1 - row) * width());
-  }
-  return values;
 }
 
 }  // namespace mpm::render

@@ -7,7 +7,7 @@
 
 namespace mpm::render {
 
-/// A compatibility context with depth buffer; it is current on the creating thread while it lives, unless another is
+/// A compatibility context without depth buffer; it is current on the creating thread while it lives, unless another is
 /// made. Each thread keeps the last few for the next pictures of their size: to make one costs more than to draw. State
 /// and matrices are as in a new one; textures and programs are to be deleted by who made them.
 class OsMesaContext {
@@ -21,12 +21,11 @@ class OsMesaContext {
 
   int width() const { return surface_->width; }
   int height() const { return surface_->height; }
-  /// The picture as RGBA, rows from the top; complete after finish(). It begins as an earlier picture left it.
-  const std::vector<std::uint8_t>& pixels() const { return surface_->pixels; }
+  /// The picture as RGBA, rows from the top; complete after finish(), when it may be painted over if nothing is drawn
+  /// any more. It begins as an earlier picture left it.
+  std::vector<std::uint8_t>& pixels() { return surface_->pixels; }
   /// Waits for all drawing.
   void finish();
-  /// Depth of every pixel in [0, 1], rows from the top; waits for all drawing.
-  std::vector<float> depth();
 
  private:
   struct Deleter {

@@ -1,270 +1,19 @@
-#define GL_GLEXT_PROTOTYPES
 #include "render/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
-#include <stdexcept>
-#include <string>
-
-#include <GL/gl.h>
-#include <GL/glext.h>
-
-#include "render/ambient_occlusion.hpp"
-#include "render/chart.hpp"
-#include "render/ground_shadow.hpp"
-#include "render/osmesa_context.hpp"
 
 namespace mpm::render {
 namespace {
 
-constexpr int kSamples = 2;                        ///< samples a pixel in each direction
-constexpr Vec3 kViewDirection{0.42, -0.83, 0.36};  ///< from the domain towards the eye
-constexpr Vec3 kToLight{-0.35, -0.40, 0.85};       ///< normalised where it is used
+constexpr Vec3 kToLight{-0.35, -0.40, 0.85};  ///< normalised where it is used
 constexpr Colour kGround{0.93, 0.93, 0.93};
+constexpr Colour kEdge{0.45, 0.45, 0.45};
 constexpr double kGroundOverhang = 0.05;  ///< fraction of the longer side of the domain's floor
-
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 minus(const Vec3& a, const Vec3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Vec3 unit(const Vec3& a) {
-  const double length = std::sqrt(dot(a, a));
-  return {a[0] / length, a[1] / length, a[2] / length};
-}
-
-std::array<Vec3, 8> corners_of(const Vec3& lo, const Vec3& hi) {
-  std::array<Vec3, 8> corners;
-  for (int k = 0; k < 8; ++k) {
-    corners[static_cast<std::size_t>(k)] = {k & 1 ? hi[0] : lo[0], k & 2 ? hi[1] : lo[1], k & 4 ? hi[2] : lo[2]};
-  }
-  return corners;
-}
-
-/// A ball is one square facing the eye; the fragment program finds the exact point of the sphere.
-constexpr const char* kVertexProgram = R"(#version 120
-varying vec3 centre, ray;
-varying float radius;
-void main() {
-  centre = (gl_ModelViewMatrix * gl_Vertex).xyz;
-  radius = gl_MultiTexCoord0.z;
-  vec3 forward = normalize(centre);
-  vec3 right = normalize(cross(forward, vec3(0.0, 1.0, 0.0)));
-  vec3 up = cross(right, forward);
-  float distance2 = dot(centre, centre);
-  float half_side = radius * sqrt(distance2 / max(distance2 - radius * radius, 0.01 * distance2));
-  ray = centre + (gl_MultiTexCoord0.x * right + gl_MultiTexCoord0.y * up) * half_side;
-  gl_Position = gl_ProjectionMatrix * vec4(ray, 1.0);
-  gl_FrontColor = gl_Color;
-})";
-
-constexpr const char* kFragmentProgram = R"(#version 120
-uniform vec3 to_light;
-uniform float writes_normals;
-varying vec3 centre, ray;
-varying float radius;
-void main() {
-  vec3 forward = normalize(ray);
-  float along = dot(forward, centre);
-  vec3 miss = centre - along * forward;
-  float chord2 = radius * radius - dot(miss, miss);
-  if (chord2 < 0.0) discard;
-  vec3 point = (along - sqrt(chord2)) * forward;
-  vec3 normal = (point - centre) / radius;
-  vec4 clip = gl_ProjectionMatrix * vec4(point, 1.0);
-  gl_FragDepth = 0.5 * clip.z / clip.w + 0.5;
-  float lambert = 0.5 * dot(normal, to_light) + 0.5;
-  float shine = pow(max(dot(normal, normalize(to_light - forward)), 0.0), 24.0);
-  // The added light keeps the dark end of a colour map from looking flat.
-  vec3 lit = gl_Color.rgb * mix(0.60, 1.02, lambert) + 0.09 * lambert * lambert + 0.08 * shine;
-  gl_FragColor = vec4(writes_normals > 0.5 ? 0.5 * normal + 0.5 : lit, 1.0);
-})";
-
-GLuint compiled(GLenum kind, const char* source) {
-  const GLuint shader = glCreateShader(kind);
-  glShaderSource(shader, 1, &source, nullptr);
-  glCompileShader(shader);
-  GLint is_good = 0;
-  glGetShaderiv(shader, GL_COMPILE_STATUS, &is_good);
-  if (is_good) return shader;
-  char log[1024] = "";
-  glGetShaderInfoLog(shader, sizeof log, nullptr, log);
-  throw std::runtime_error(std::string("OpenGL could not compile the program that draws balls: ") + log);
-}
-
-GLuint ball_program() {
-  const GLuint program = glCreateProgram();
-  for (const GLuint shader :
-       {compiled(GL_VERTEX_SHADER, kVertexProgram), compiled(GL_FRAGMENT_SHADER, kFragmentProgram)}) {
-    glAttachShader(program, shader);
-    glDeleteShader(shader);  // with the program
-  }
-  glLinkProgram(program);
-  GLint is_good = 0;
-  glGetProgramiv(program, GL_LINK_STATUS, &is_good);
-  if (!is_good) throw std::runtime_error("OpenGL could not link the program that draws balls");
-  return program;
-}
-
-struct BallVertex {
-  float centre[3], corner[3], colour[3];
-};
-
-std::vector<BallVertex> ball_vertices(const std::vector<Ball>& balls) {
-  constexpr float corners[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-  std::vector<BallVertex> vertices;
-  vertices.reserve(balls.size() * 4);
-  for (const Ball& b : balls) {
-    for (const auto& c : corners) {
-      vertices.push_back({{float(b.centre[0]), float(b.centre[1]), float(b.centre[2])},
-                          {c[0], c[1], float(b.radius)},
-                          {float(b.colour.r), float(b.colour.g), float(b.colour.b)}});
-    }
-  }
-  return vertices;
-}
-
-void draw_balls(const std::vector<BallVertex>& vertices) {
-  if (vertices.empty()) return;
-  constexpr GLsizei stride = sizeof(BallVertex);
-  glEnableClientState(GL_VERTEX_ARRAY);
-  glEnableClientState(GL_TEXTURE_COORD_ARRAY);
-  glEnableClientState(GL_COLOR_ARRAY);
-  glVertexPointer(3, GL_FLOAT, stride, vertices.front().centre);
-  glTexCoordPointer(3, GL_FLOAT, stride, vertices.front().corner);
-  glColorPointer(3, GL_FLOAT, stride, vertices.front().colour);
-  glDrawArrays(GL_QUADS, 0, static_cast<GLsizei>(vertices.size()));
-  glDisableClientState(GL_VERTEX_ARRAY);
-  glDisableClientState(GL_TEXTURE_COORD_ARRAY);
-  glDisableClientState(GL_COLOR_ARRAY);
-}
-
-void set_view(const Camera& camera, int samples) {
-  const Box& v = camera.view();
-  glViewport(0, 0, static_cast<int>(v.width()) * samples, static_cast<int>(v.height()) * samples);
-  const double n = camera.near_plane(), per_pixel = n / camera.scale();
-  glMatrixMode(GL_PROJECTION);
-  glLoadIdentity();
-  glFrustum((v.x0 - camera.axis().x) * per_pixel, (v.x1 - camera.axis().x) * per_pixel,
-            (camera.axis().y - v.y1) * per_pixel, (camera.axis().y - v.y0) * per_pixel, n, camera.far_plane());
-  glMatrixMode(GL_MODELVIEW);
-  glLoadMatrixd(camera.matrix().data());
-}
-
-unsigned shadow_texture(const GroundShadow& shadow) {
-  unsigned texture = 0;
-  glGenTextures(1, &texture);
-  glBindTexture(GL_TEXTURE_2D, texture);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_LUMINANCE, shadow.size, shadow.size, 0, GL_LUMINANCE, GL_FLOAT,
-               shadow.light.data());
-  return texture;
-}
-
-void draw_ground(const GroundShadow& s, double z) {
-  const double points[4][4] = {{0, 0, s.x0, s.y0}, {1, 0, s.x1, s.y0}, {1, 1, s.x1, s.y1}, {0, 1, s.x0, s.y1}};
-  glBegin(GL_QUADS);
-  for (const auto& p : points) glTexCoord2d(p[0], p[1]), glVertex3d(p[2], p[3], z);
-  glEnd();
-}
-
-void draw_edges(const Vec3& lo, const Vec3& hi, double width) {
-  const auto corners = corners_of(lo, hi);
-  glLineWidth(static_cast<float>(width));
-  glColor3d(0.45, 0.45, 0.45);
-  glBegin(GL_LINES);
-  for (std::size_t a = 0; a < 8; ++a) {
-    for (const std::size_t bit : {1, 2, 4}) {
-      if (a & bit) continue;
-      glVertex3dv(corners[a].data());
-      glVertex3dv(corners[a | bit].data());
-    }
-  }
-  glEnd();
-}
-
-/// Everything that one pass over the scene needs.
-struct Stage {
-  std::vector<BallVertex> balls;
-  GroundShadow shadow;
-  Vec3 lo, hi, up, light;  ///< up and light are seen from the eye
-  unsigned texture = 0;
-  GLuint program = 0;
-  double line_width = 1;  ///< samples
-
-  void draw(bool writes_normals) const {
-    glClearColor(1, 1, 1, 1);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    if (writes_normals) {
-      glColor3d(0.5 * up[0] + 0.5, 0.5 * up[1] + 0.5, 0.5 * up[2] + 0.5);
-    } else {
-      glEnable(GL_TEXTURE_2D);
-      glColor3d(kGround.r, kGround.g, kGround.b);
-    }
-    // The ground is set back a little, or the domain's lower edges would sink into it here and there.
-    glEnable(GL_POLYGON_OFFSET_FILL);
-    glPolygonOffset(2, 8);
-    draw_ground(shadow, lo[2]);
-    glDisable(GL_POLYGON_OFFSET_FILL);
-    glDisable(GL_TEXTURE_2D);
-    glUseProgram(program);
-    glUniform3f(glGetUniformLocation(program, "to_light"), float(light[0]), float(light[1]), float(light[2]));
-    glUniform1f(glGetUniformLocation(program, "writes_normals"), writes_normals ? 1.0f : 0.0f);
-    draw_balls(balls);
-    glUseProgram(0);
-  }
-};
-
-/// Takes the first sample of each pixel, so that a pixel never mixes two surfaces.
-GeometryBuffer geometry_of(const Camera& camera, const std::vector<float>& depth,
-                           const std::vector<std::uint8_t>& normals) {
-  const Box& view = camera.view();
-  GeometryBuffer g{static_cast<int>(view.width()), static_cast<int>(view.height()), {}, {}};
-  const double n = camera.near_plane(), f = camera.far_plane();
-  for (int y = 0; y < g.height; ++y) {
-    for (int x = 0; x < g.width; ++x) {
-      const std::size_t at =
-          static_cast<std::size_t>(y * kSamples) * g.width * kSamples + static_cast<std::size_t>(x) * kSamples;
-      if (depth[at] >= 1) {
-        g.position.push_back({0, 0, 0});
-        g.normal.push_back({0, 0, 1});
-        continue;
-      }
-      const double z = n * f / (f - depth[at] * (f - n));  // distance in front of the eye
-      const double px = view.x0 + x + 0.25 - camera.axis().x, py = camera.axis().y - view.y0 - y - 0.25;
-      g.position.push_back({float(px / camera.scale() * z), float(py / camera.scale() * z), float(-z)});
-      const std::uint8_t* c = normals.data() + 4 * at;
-      g.normal.push_back({c[0] / 127.5f - 1, c[1] / 127.5f - 1, c[2] / 127.5f - 1});
-    }
-  }
-  return g;
-}
-
-Image shaded(const std::vector<std::uint8_t>& rgba, const GeometryBuffer& g, const std::vector<float>& open) {
-  Image image(g.width, g.height);
-  for (int y = 0; y < g.height; ++y) {
-    for (int x = 0; x < g.width; ++x) {
-      int sum[3] = {};
-      for (int j = 0; j < kSamples; ++j) {
-        for (int i = 0; i < kSamples; ++i) {
-          const std::size_t at = static_cast<std::size_t>(y * kSamples + j) * g.width * kSamples +
-                                 static_cast<std::size_t>(x * kSamples + i);
-          for (int c = 0; c < 3; ++c) sum[c] += rgba[4 * at + static_cast<std::size_t>(c)];
-        }
-      }
-      const float light = open[static_cast<std::size_t>(y) * g.width + x] / (kSamples * kSamples);
-      for (int c = 0; c < 3; ++c)
-        image.at(x, y)[c] = static_cast<std::uint8_t>(std::lround(static_cast<float>(sum[c]) * light));
-    }
-  }
-  return image;
-}
+constexpr float kLongestReach = 0.25f;    ///< of occlusion, as a fraction of the picture's width
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
 
 double median_radius(const std::vector<Ball>& balls, double fallback) {
   std::vector<double> radii;
@@ -274,78 +23,176 @@ double median_radius(const std::vector<Ball>& balls, double fallback) {
   return radii[radii.size() / 2];
 }
 
-}  // namespace
-
-Camera::Camera(const Vec3& lo, const Vec3& hi, const Box& inner, const Box& view) : view_(view) {
-  const Vec3 centre{(lo[0] + hi[0]) / 2, (lo[1] + hi[1]) / 2, (lo[2] + hi[2]) / 2};
-  const Vec3 size = minus(hi, lo);
-  const double diagonal = std::sqrt(dot(size, size));
-  back_ = unit(kViewDirection);
-  right_ = unit(cross({0, 0, 1}, back_));
-  up_ = cross(back_, right_);
-  const double distance = 2.4 * diagonal;
-  for (std::size_t d = 0; d < 3; ++d) eye_[d] = centre[d] + distance * back_[d];
-  near_ = distance - diagonal;
-  far_ = distance + diagonal;
-  Range horizontal, vertical;
-  for (const Vec3& corner : corners_of(lo, hi)) {
-    const Vec3 p = to_eye(corner);
-    horizontal.add(p[0] / -p[2]);
-    vertical.add(p[1] / -p[2]);
-  }
-  const double width = *horizontal.hi - *horizontal.lo, height = *vertical.hi - *vertical.lo;
-  scale_ = std::min(inner.width() / width, inner.height() / height);
-  axis_x_ = inner.centre().x - scale_ * (*horizontal.hi + *horizontal.lo) / 2;
-  axis_y_ = inner.centre().y + scale_ * (*vertical.hi + *vertical.lo) / 2;
-}
-
-Vec3 Camera::to_eye(const Vec3& point) const {
-  const Vec3 p = minus(point, eye_);
-  return {dot(right_, p), dot(up_, p), dot(back_, p)};
-}
-
-Point Camera::project(const Vec3& point) const {
-  const Vec3 p = to_eye(point);
-  return {axis_x_ + scale_ * p[0] / -p[2], axis_y_ - scale_ * p[1] / -p[2]};
-}
-
-std::array<double, 16> Camera::matrix() const {
-  return {right_[0], up_[0], back_[0], 0, right_[1],          up_[1],          back_[1],          0,
-          right_[2], up_[2], back_[2], 0, -dot(right_, eye_), -dot(up_, eye_), -dot(back_, eye_), 1};
-}
-
-Image render_scene(const std::vector<Ball>& balls, const Vec3& lo, const Vec3& hi, const Camera& camera,
-                   double line_width) {
-  const int width = static_cast<int>(camera.view().width()), height = static_cast<int>(camera.view().height());
-  OsMesaContext context(width * kSamples, height * kSamples);
-  const double overhang = kGroundOverhang * std::max(hi[0] - lo[0], hi[1] - lo[1]);
-  const Vec3 origin = camera.to_eye({0, 0, 0}), light = unit(kToLight);
-  Stage stage{ball_vertices(balls),
-              cast_shadow(balls, light, lo[2], lo[0] - overhang, lo[1] - overhang, hi[0] + overhang, hi[1] + overhang),
-              lo,
-              hi,
-              minus(camera.to_eye({0, 0, 1}), origin),
-              minus(camera.to_eye(light), origin)};
-  stage.texture = shadow_texture(stage.shadow);
-  stage.program = ball_program();
-  set_view(camera, kSamples);
-  glEnable(GL_DEPTH_TEST);
-  glDisable(GL_DITHER);
-
-  stage.draw(true);
-  const std::vector<float> depth = context.depth();
-  const GeometryBuffer geometry = geometry_of(camera, depth, context.pixels());
-  stage.draw(false);
-  // The edges come after the geometry was read: a line casts no occlusion.
-  draw_edges(lo, hi, line_width * kSamples);
-  context.finish();
-  glDeleteTextures(1, &stage.texture);
-  glDeleteProgram(stage.program);
-  const Vec3 size = minus(hi, lo);
+std::array<double, 2> occlusion_radii(const std::vector<Ball>& balls, const Vec3& size) {
   const double longest = std::max({size[0], size[1], size[2]});
   const double ball = median_radius(balls, 0.01 * longest);
-  return shaded(context.pixels(), geometry,
-                open_sky(geometry, {2.5 * ball, std::max(0.08 * longest, 5 * ball)}, camera.scale()));
+  return {2.5 * ball, std::max(0.08 * longest, 5 * ball)};
+}
+
+GroundShadow shadow_of(const std::vector<Ball>& balls, const Vec3& lo, const Vec3& hi) {
+  const double overhang = kGroundOverhang * std::max(hi[0] - lo[0], hi[1] - lo[1]);
+  return cast_shadow(balls, unit(kToLight), lo[2], lo[0] - overhang, lo[1] - overhang, hi[0] + overhang,
+                     hi[1] + overhang);
+}
+
+Window around_all(const std::vector<Window>& windows) {
+  Window all{std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), 0, 0};
+  for (const Window& w : windows)
+    if (!w.is_empty())
+      all = {std::min(all.x0, w.x0), std::min(all.y0, w.y0), std::max(all.x1, w.x1), std::max(all.y1, w.y1)};
+  return all.is_empty() ? Window{} : all;
+}
+
+/// Calls `visit` with both ends of each edge of a box.
+template <class Visit>
+void for_each_edge(const Vec3& lo, const Vec3& hi, Visit visit) {
+  const auto corners = corners_of(lo, hi);
+  for (std::size_t corner = 0; corner < corners.size(); ++corner)
+    for (const std::size_t axis : {1, 2, 4})
+      if (!(corner & axis)) visit(corners[corner], corners[corner | axis]);
+}
+
+}  // namespace
+
+Scene::Scene(const std::vector<Ball>& balls, const Vec3& lower, const Vec3& upper, const Camera& camera,
+             double line_width, int samples)
+    : camera_(camera),
+      lower_(lower),
+      upper_(upper),
+      line_width_(line_width),
+      samples_(samples),
+      occlusion_radii_(occlusion_radii(balls, minus(upper, lower))),
+      ground_(shadow_of(balls, lower, upper)),
+      balls_(seen_balls(balls, camera, samples)),
+      rays_(rays_through(camera, samples)),
+      view_(view_of(balls_, rays_, around_all(balls_.window))) {}
+
+void Scene::draw_room(GlCanvas& canvas) const {
+  const GroundShadow& g = ground_;
+  const std::array<Vec3, 4> corners{
+      {{g.x0, g.y0, lower_[2]}, {g.x1, g.y0, lower_[2]}, {g.x1, g.y1, lower_[2]}, {g.x0, g.y1, lower_[2]}}};
+  std::array<GlCanvas::DistantPoint, 4> seen;
+  for (std::size_t k = 0; k < 4; ++k) seen[k] = {camera_.project(corners[k]), camera_.ahead_of(corners[k])};
+  canvas.clip(camera_.view());
+  canvas.lit_quadrilateral(seen, kGround, g.size, g.light);
+  for_each_edge(lower_, upper_, [&](const Vec3& from, const Vec3& to) {
+    canvas.line(camera_.project(from), camera_.project(to), {kEdge, line_width_});
+  });
+  canvas.unclip();
+}
+
+float Scene::ground_ahead(float to_right, float upwards) const {
+  const Vec3 along = camera_.direction(to_right, upwards), eye = camera_.eye();
+  const double ahead = (lower_[2] - eye[2]) / along[2];
+  if (!(ahead > 0)) return kNowhere;
+  const double x = eye[0] + ahead * along[0], y = eye[1] + ahead * along[1];
+  const bool is_met = x >= ground_.x0 && x <= ground_.x1 && y >= ground_.y0 && y <= ground_.y1;
+  return is_met ? static_cast<float>(ahead) : kNowhere;
+}
+
+Scene::Part Scene::part_in(const TileSamples& tile) const {
+  const int left = static_cast<int>(camera_.view().x0 - tile.box.x0) * samples_;
+  const int top = static_cast<int>(camera_.view().y0 - tile.box.y0) * samples_;
+  const Window& w = view_.window;
+  return {{std::max(w.x0, -left), std::max(w.y0, -top), std::min(w.x1, tile.columns - left),
+           std::min(w.y1, tile.rows - top)},
+          left,
+          top};
+}
+
+void Scene::paint_balls(const TileSamples& tile) const {
+  const Vec3 to_light = minus(camera_.to_eye(unit(kToLight)), camera_.to_eye({0, 0, 0}));
+  const Part part = part_in(tile);
+  if (part.window.is_empty()) return;
+  std::vector<std::uint32_t> lit;
+  for (int y = part.window.y0; y < part.window.y1; ++y) {
+    light_row(balls_, view_, rays_, y, to_light, lit);
+    const float upwards = rays_.y[static_cast<std::size_t>(y)];
+    // A row of the picture is level, so that all its rays meet the plane of the ground equally far ahead.
+    const double plane = (lower_[2] - camera_.eye()[2]) / camera_.direction(0, upwards)[2];
+    for (int x = part.window.x0; x < part.window.x1; ++x) {
+      const float ahead = view_.ahead[view_.at(x, y)];
+      if (ahead == kNowhere) continue;
+      if (plane > 0 && ahead > plane && ground_ahead(rays_.x[static_cast<std::size_t>(x)], upwards) < ahead) continue;
+      std::memcpy(tile.at(x + part.left, y + part.top), &lit[static_cast<std::size_t>(x - view_.window.x0)], 4);
+    }
+  }
+  for_each_edge(lower_, upper_, [&](const Vec3& from, const Vec3& to) { paint_edge(from, to, part, tile); });
+}
+
+/// Paints an edge of the domain where it passes in front of balls.
+void Scene::paint_edge(const Vec3& from, const Vec3& to, const Part& part, const TileSamples& tile) const {
+  const auto sample_of = [&](const Vec3& point) -> std::array<double, 2> {
+    const Point p = camera_.project(point);
+    return {(p.x - camera_.view().x0) * samples_ - 0.5, (p.y - camera_.view().y0) * samples_ - 0.5};
+  };
+  const auto a = sample_of(from), b = sample_of(to);
+  const std::size_t u = std::abs(b[0] - a[0]) > std::abs(b[1] - a[1]) ? 0 : 1, v = 1 - u;  // u: the longer direction
+  if (a[u] == b[u]) return;
+  const double slope = (b[v] - a[v]) / (b[u] - a[u]), half = line_width_ * samples_ / 2 * std::hypot(1, slope);
+  const double near_a = 1 / camera_.ahead_of(from), near_b = 1 / camera_.ahead_of(to);
+  const std::array<int, 2> first{part.window.x0, part.window.y0}, end{part.window.x1, part.window.y1};
+  const int last = std::min(end[u] - 1, static_cast<int>(std::floor(std::max(a[u], b[u]))));
+  for (int i = std::max(first[u], static_cast<int>(std::ceil(std::min(a[u], b[u])))); i <= last; ++i) {
+    const double middle = a[v] + slope * (i - a[u]);
+    const double ahead = 1 / (near_a + (near_b - near_a) * (i - a[u]) / (b[u] - a[u]));
+    const int top = std::min(end[v] - 1, static_cast<int>(std::floor(middle + half)));
+    for (int j = std::max(first[v], static_cast<int>(std::ceil(middle - half))); j <= top; ++j) {
+      const int x = u == 0 ? i : j, y = u == 0 ? j : i;
+      const float ball = view_.ahead[view_.at(x, y)];
+      if (ball != kNowhere && ahead < ball)
+        std::fill_n(tile.at(x + part.left, y + part.top), 3, static_cast<std::uint8_t>(std::lround(255 * kEdge.r)));
+    }
+  }
+}
+
+/// Pixels of the view that balls may darken: theirs, and those within `radius` of them.
+Window Scene::darkened(double radius) const {
+  const Window& w = view_.window;
+  if (w.is_empty()) return {};
+  const Box& view = camera_.view();
+  const int reach =
+      static_cast<int>(std::min(std::ceil(radius * camera_.scale() / camera_.nearest()), kLongestReach * view.width()));
+  const int right = static_cast<int>(view.width()), bottom = static_cast<int>(view.height());
+  return {std::max(0, w.x0 / samples_ - reach), std::max(0, w.y0 / samples_ - reach),
+          std::min(right, w.x1 / samples_ + reach + 1), std::min(bottom, w.y1 / samples_ + reach + 1)};
+}
+
+/// Takes the first sample of each pixel, so that a pixel never mixes two surfaces. Edges are left out: a line casts no
+/// occlusion.
+GeometryBuffer Scene::geometry_in(const Window& pixels) const {
+  GeometryBuffer g(pixels.width(), pixels.height());
+  if (pixels.is_empty()) return g;
+  g.longest_reach = kLongestReach * static_cast<float>(camera_.view().width());
+  g.pixel = static_cast<float>(1 / camera_.scale());
+  const auto samples = static_cast<std::size_t>(samples_);
+  g.left = rays_.x[static_cast<std::size_t>(pixels.x0) * samples];
+  g.top = rays_.y[static_cast<std::size_t>(pixels.y0) * samples];
+  const Vec3 up = minus(camera_.to_eye({0, 0, 1}), camera_.to_eye({0, 0, 0}));
+  std::size_t at = 0;
+  for (int y = 0; y < g.height; ++y)
+    for (int x = 0; x < g.width; ++x, ++at) {
+      const int column = (pixels.x0 + x) * samples_, row = (pixels.y0 + y) * samples_;
+      const float ground = ground_ahead(g.right_of(x), g.up_of(y));
+      const float ball = view_.window.contains(column, row) ? view_.ahead[view_.at(column, row)] : kNowhere;
+      if (ball < ground)
+        g.set(at, ball, normal_at(balls_, view_, rays_, column, row));
+      else if (ground < kNowhere)
+        g.set(at, ground, {static_cast<float>(up[0]), static_cast<float>(up[1]), static_cast<float>(up[2])});
+    }
+  return g;
+}
+
+void Scene::darken(Image& picture) const {
+  const Window pixels = darkened(occlusion_radii_[1]);
+  const std::vector<float> open = open_sky(geometry_in(pixels), occlusion_radii_);
+  const float* light = open.data();
+  const int left = static_cast<int>(camera_.view().x0), top = static_cast<int>(camera_.view().y0);
+  for (int y = pixels.y0; y < pixels.y1; ++y)
+    for (int x = pixels.x0; x < pixels.x1; ++x, ++light) {
+      std::uint8_t* const rgb = picture.at(left + x, top + y);
+      for (int c = 0; c < 3; ++c) rgb[c] = static_cast<std::uint8_t>(std::lround(static_cast<float>(rgb[c]) * *light));
+    }
 }
 
 }  // namespace mpm::render

@@ -1,51 +1,53 @@
 // A perspective view of balls on a ground plane, softly lit.
 #pragma once
 
-#include <array>
 #include <vector>
 
-#include "render/canvas.hpp"
-#include "render/image.hpp"
+#include "render/ambient_occlusion.hpp"
+#include "render/ball_view.hpp"
+#include "render/camera.hpp"
+#include "render/gl_canvas.hpp"
+#include "render/ground_shadow.hpp"
 
 namespace mpm::render {
 
-using Vec3 = std::array<double, 3>;
-
-struct Ball {
-  Vec3 centre;  ///< m, the third axis upwards
-  double radius;
-  Colour colour;
-};
-
-/// Looks at the domain's box from a fixed direction, so that every frame of a film has the same view.
-class Camera {
+/// Balls, ground, soft shadow and the domain's edges, with ambient occlusion. A picture of it is made in three turns.
+class Scene {
  public:
-  /// `lower` and `upper` bound the domain, third axis upwards; `inner` is the rectangle of pixels that the box fills
-  /// but does not leave; `view` is the whole rectangle of the picture that is rendered, in whole pixels.
-  Camera(const Vec3& lower, const Vec3& upper, const Box& inner, const Box& view);
+  /// `lower` and `upper` bound the domain; `line_width` is that of the edges, pixels; `samples` are those that the
+  /// picture has a pixel in each direction.
+  Scene(const std::vector<Ball>& balls, const Vec3& lower, const Vec3& upper, const Camera& camera, double line_width,
+        int samples);
 
-  /// Where a point of space falls on the picture.
-  Point project(const Vec3& point) const;
-  /// Coordinates seen from the eye: x right, y up, -z forward.
-  Vec3 to_eye(const Vec3& point) const;
-  /// The map to_eye as a column-major matrix for OpenGL.
-  std::array<double, 16> matrix() const;
-
-  const Box& view() const { return view_; }
-  double scale() const { return scale_; }            // pixels per unit of tangent
-  Point axis() const { return {axis_x_, axis_y_}; }  // the pixel straight ahead
-  double near_plane() const { return near_; }
-  double far_plane() const { return far_; }
+  /// Draws what the balls stand on and in: ground and edges.
+  void draw_room(GlCanvas& canvas) const;
+  /// Paints the balls over what is drawn, where neither ground nor edges hide them.
+  void paint_balls(const TileSamples& tile) const;
+  /// Darkens what sees little of the sky.
+  void darken(Image& picture) const;
 
  private:
-  Vec3 eye_, right_, up_, back_;
-  Box view_;
-  double scale_ = 1, axis_x_ = 0, axis_y_ = 0, near_ = 0, far_ = 1;
-};
+  /// Samples of the view that lie in a tile, and the tile's column and row of the view's first.
+  struct Part {
+    Window window;
+    int left, top;
+  };
+  Part part_in(const TileSamples& tile) const;
+  /// Metres ahead at which a ray meets the rectangle of the ground; infinite where it does not.
+  float ground_ahead(float to_right, float upwards) const;
+  void paint_edge(const Vec3& from, const Vec3& to, const Part& part, const TileSamples& tile) const;
+  Window darkened(double radius) const;
+  GeometryBuffer geometry_in(const Window& pixels) const;
 
-/// Renders balls, ground, soft shadow and the domain's edges with ambient occlusion; as large as the camera's view.
-/// `line_width` is that of the edges, pixels. Throws std::runtime_error when OpenGL cannot be used.
-Image render_scene(const std::vector<Ball>& balls, const Vec3& lower, const Vec3& upper, const Camera& camera,
-                   double line_width);
+  Camera camera_;
+  Vec3 lower_, upper_;
+  double line_width_;
+  int samples_;
+  std::array<double, 2> occlusion_radii_;
+  GroundShadow ground_;
+  SeenBalls balls_;
+  Rays rays_;
+  BallView view_;
+};
 
 }  // namespace mpm::render

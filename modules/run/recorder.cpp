@@ -204,13 +204,13 @@ render::ParticleFrame Recorder::frame_template() const {
     const BodyState state = simulation_.backend().body_state(body);
     const std::size_t count = state.position.size() / experiment.dimension;
     const double half = 0.5 * experiment.grid.cell_size / experiment.bodies[body].particles_per_cell_axis;
-    frame.half_size.insert(frame.half_size.end(), count, half);
+    frame.half_size.insert(frame.half_size.end(), count, static_cast<float>(half));
     if (experiment.bodies[body].seeding.kind == SeedingKind::lattice) continue;
     const int D = experiment.dimension;
     for (std::size_t p = 0; p < count; ++p) {
       const double around = experiment.axisymmetric() ? 2 * std::numbers::pi * state.position[p * D] : 1;
       frame.half_size[frame.half_size.size() - count + p] =
-          std::pow(state.volume * state.size_of(p) / around, 1.0 / D) / 2;
+          static_cast<float>(std::pow(state.volume * state.size_of(p) / around, 1.0 / D) / 2);
     }
   }
   return frame;
@@ -218,9 +218,9 @@ render::ParticleFrame Recorder::frame_template() const {
 
 void Recorder::draw(render::ParticleFrame frame, const Snapshot& snapshot, std::size_t index,
                     std::pair<double, double> range) const {
-  frame.positions.assign(snapshot.positions.begin(), snapshot.positions.end());
-  frame.values.assign(snapshot.values.begin(), snapshot.values.end());
-  frame.domain_axes.assign(snapshot.domain_axes.begin(), snapshot.domain_axes.end());
+  frame.positions = snapshot.positions;
+  frame.values = snapshot.values;
+  frame.domain_axes = snapshot.domain_axes;
   frame.time = snapshot.time;
   frame.step = snapshot.step;
   if (frame.map == render::ColourMap::diverging) {

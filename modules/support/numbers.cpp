@@ -6,9 +6,22 @@
 
 namespace mpm::support {
 
-void append_shortest(std::string& text, double value) {
+namespace {
+
+template <class Number>
+void append_digits(std::string& text, Number value) {
   std::array<char, 32> digits;
   text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+}
+
+}  // namespace
+
+void append_shortest(std::string& text, double value) {
+  append_digits(text, value);
+}
+
+void append_shortest(std::string& text, float value) {
+  append_digits(text, value);
 }
 
 std::string shortest(double value) {

@@ -10,8 +10,9 @@ namespace mpm::support {
 /// The shortest text that reads back as the same double; "inf", "-inf" and "nan" where it is not finite.
 std::string shortest(double value);
 
-/// Appends shortest(value) to `text`.
+/// Appends shortest(value) to `text`; of a float, the shortest text that reads back as the same float.
 void append_shortest(std::string& text, double value);
+void append_shortest(std::string& text, float value);
 
 /// The number with seventeen significant digits, enough to read the same double back; columns of them are about equally
 /// wide.

@@ -414,17 +414,67 @@ TEST_CASE("a particle is drawn at its true size and place", "[figures]") {
 TEST_CASE("frames in two and three dimensions leave their files", "[figures]") {
   const TemporaryFolder folder;
   const int dimension = GENERATE(2, 3);
-  write_frame(one_particle(dimension), folder / "frame");
+  ParticleFrame frame = one_particle(dimension);
+  frame.half_size = {0.1f};
+  write_frame(frame, folder / "frame");
   CHECK(fs::exists(folder / "frame.svg") == (dimension == 2));
   const auto lines = lines_of(folder / "frame.csv");
   REQUIRE(lines.size() == 2);
   CHECK(lines[0] == (dimension == 2 ? "x (m),y (m),half size (m),body" : "x (m),y (m),z (m),half size (m),body"));
+  CHECK(lines[1] == (dimension == 2 ? "0.5,0.5,0.1,1" : "0.5,0.5,0.5,0.1,1"));
   const Image image = read_png(folder / "frame.png");
   std::size_t orange = 0;
   for (std::size_t i = 0; i < image.rgb.size(); i += 3)
     orange += image.rgb[i] > 100 && image.rgb[i + 2] < image.rgb[i] / 3;
-  CHECK(orange > 2000);
+  CHECK(orange > 300);
   CHECK(is_white(image, 0, 0));
+}
+
+TEST_CASE("many small particles are drawn at their true place, within the outline", "[figures]") {
+  const TemporaryFolder folder;
+  ParticleFrame frame = one_particle(2);
+  frame.positions.clear();
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 100; ++j) {
+      frame.positions.push_back(0.255f + 0.01f * static_cast<float>(i));  // the last quarter is outside of the domain
+      frame.positions.push_back(0.255f + 0.005f * static_cast<float>(j));
+    }
+  frame.half_size.assign(10000, 0.005f);
+  frame.values.assign(10000, 1);
+  frame.width = 1600;
+  frame.height = 1000;
+  write_frame(frame, folder / "frame");
+  const Image image = read_png(folder / "frame.png");
+  int left = image.width, right = 0, top = image.height, bottom = 0;
+  std::size_t count = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width * 29 / 40; ++x) {
+      const auto* p = image.at(x, y);
+      if (p[0] != 0xD5 || p[1] != 0x5E || p[2] != 0x00) continue;
+      left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
+      ++count;
+    }
+  const double width = right - left + 1, height = bottom - top + 1;
+  CHECK(static_cast<double>(count) == Approx(width * height).epsilon(0.001));  // no gap in the rectangle
+  CHECK(width / height == Approx(0.75 / 0.505).epsilon(0.01));
+  // The outline is as wide beside the particles as elsewhere.
+  const auto outline_pixels = [&](int y) {
+    int dark = 0;
+    for (int x = right - 4; x < right + 8; ++x) dark += image.at(x, y)[0] < 60;
+    return dark;
+  };
+  CHECK(outline_pixels(top - 30) > 0);
+  CHECK(outline_pixels((top + bottom) / 2) == outline_pixels(top - 30));
+  CHECK(is_white(image, right + 5, (top + bottom) / 2));
+}
+
+TEST_CASE("a 3-D frame too small for a scene is refused", "[figures]") {
+  const TemporaryFolder folder;
+  ParticleFrame frame = one_particle(3);
+  frame.width = 64;
+  frame.height = 1000;
+  CHECK_THROWS_WITH(write_frame(frame, folder / "frame"),
+                    "a 3-D frame of 64 x 1000 pixels leaves no room for the scene");
 }
 
 TEST_CASE("the same frame gives the same picture", "[figures]") {
@@ -440,7 +490,7 @@ TEST_CASE("frames without a usable particle, and ranges of one value", "[figures
   ParticleFrame frame = one_particle(2);
   frame.map = ColourMap::viridis;
   CHECK_NOTHROW(write_frame(frame, folder / "one_value"));
-  frame.values[0] = std::numeric_limits<double>::quiet_NaN();
+  frame.values[0] = std::numeric_limits<float>::quiet_NaN();
   write_frame(frame, folder / "none");
   CHECK(lines_of(folder / "none.csv").size() == 1);
   CHECK(text_of(folder / "none.svg").find("1 particle not finite, left out") != std::string::npos);

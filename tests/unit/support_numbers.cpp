@@ -18,6 +18,8 @@ TEST_CASE("the shortest text of a double reads back as the same bits", "[support
   std::string text = "x,";
   append_shortest(text, 2.5);
   CHECK(text == "x,2.5");
+  append_shortest(text, 0.1f);  // not 0.10000000149011612, which is the double next to it
+  CHECK(text == "x,2.50.1");
 }
 
 TEST_CASE("seventeen digits, as %.17g of C writes them", "[support]") {
