@@ -93,19 +93,21 @@ TEST_CASE("a body in one grip turns exactly as it is told", "[grips]") {
 TEST_CASE("a bar pulled by grips bears E A strain, the more exactly the finer it is", "[grips]") {
   for (const std::string backend : {"reference", "cpu"}) {
     std::vector<double> errors;
-    for (const int cells : {4, 8}) {
+    for (const int cells : {4, 8, 16}) {
+      if (cells == 16 && backend == "reference") continue;  // slow, and the same to 1e-6 on the grids before
       Scene scene(pulled(cells), {set("/backend", backend), set("/solver/time_step", digits(8e-4 / cells))});
       while (!scene.simulation.finished()) scene.simulation.step();
       const Reaction &left = scene.simulation.backend().reactions()[6],
                      &right = scene.simulation.backend().reactions()[7];
       const double stretch = 1 + 2 * 0.05 * 0.4 / 0.8, force = 0.2 * 500 * (stretch - 1 / stretch);
       INFO(backend << " " << cells << " cells: " << left.force[0] << " " << right.force[0] << " of " << force);
-      CHECK(right.force[0] == Approx(-left.force[0]).epsilon(1e-6));
+      // Which nodes a grip holds is decided anew as particles move, so that rounding grows.
+      CHECK(right.force[0] == Approx(-left.force[0]).epsilon(1e-5));
       errors.push_back(std::abs(right.force[0] / force - 1));
+      // A grip is cut off at nodes: of first order in the cell.
+      if (errors.size() > 1) CHECK(errors.back() < 0.5 * errors[errors.size() - 2]);
     }
-    INFO(errors[0] << " " << errors[1]);
-    CHECK(errors[0] < 0.1);
-    CHECK(errors[1] < 0.7 * errors[0]);
+    CHECK(errors.back() < (backend == "cpu" ? 0.025 : 0.05));
   }
 }
 
