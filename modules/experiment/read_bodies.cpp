@@ -105,8 +105,11 @@ bool ExperimentReader::holds_a_particle(const BodySpecification& body) const {
   const double spacing = grid.cell_size / body.particles_per_cell_axis;
   if (body.seeding.kind != SeedingKind::lattice) {
     double cells = 1;
-    for (int axis = 0; axis < context_.dimension; ++axis)
-      cells *= std::min(upper[axis] - lower[axis], grid.upper[axis] - grid.lower[axis]) / spacing;
+    for (int axis = 0; axis < context_.dimension; ++axis) {
+      const double inside = std::min(upper[axis], grid.upper[axis]) - std::max(lower[axis], grid.lower[axis]);
+      if (!(inside > 0)) return false;
+      cells *= inside / spacing;
+    }
     return cells > most_places || !place_particles({grid, context_.dimension, 0}, body).points.empty();
   }
   std::array<long, 3> first{0, 0, 0}, last{0, 0, 0};

@@ -178,7 +178,7 @@ inline Json ball() {
     "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "mls"},
     "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000}},
     "bodies": [{"name": "ball", "material": "m", "geometry": {"type": "ball", "centre": [0.5, 0.5], "radius": 0.2},
-                "velocity": [0.1, 0.1]}],
+                "seeding": "lattice", "velocity": [0.1, 0.1]}],
     "solver": {"time_step": 0.002, "end_time": 0.1}, "output": {"metrics_every": 5}
   })");
 }
