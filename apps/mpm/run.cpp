@@ -220,12 +220,14 @@ std::string trouble_of_drawing(const Experiment& experiment, Recorder& recorder,
   }
 }
 
-void print_result(const nlohmann::ordered_json& summary, const output::RunFolder& folder) {
-  std::cout << "total energy final/initial ";
+void print_result(const Experiment& experiment, const nlohmann::ordered_json& summary,
+                  const output::RunFolder& folder) {
+  const bool plane = experiment.dimension == 2 && !experiment.axisymmetric();
   if (const auto& total = summary["energy"]["total"]; total.contains("final_over_initial"))
-    std::cout << total["final_over_initial"].get<double>();
+    std::cout << "total energy final/initial " << total["final_over_initial"].get<double>();
   else
-    std::cout << "undefined (no initial energy)";
+    std::cout << "total energy " << total["final"].get<double>() << (plane ? " J/m" : " J")
+              << " at the end, none at the start";
   std::cout << ", " << summary["performance"]["particle_steps_per_second"].get<double>() / 1e6
             << " M particle-steps/s\nreport: "
             << (folder.root() / "report.html").lexically_relative(std::filesystem::current_path()).string()
@@ -291,7 +293,7 @@ Outcome finish(Outcome outcome, nlohmann::ordered_json summary, const Experiment
   }
   write_summary();
   output::write_report(folder.root());
-  print_result(summary, folder);
+  print_result(experiment, summary, folder);
   return outcome;
 }
 

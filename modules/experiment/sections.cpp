@@ -267,7 +267,7 @@ std::vector<Section> seeding_kinds() {
   };
 }
 
-Section tensor_section(std::string doc, std::string unit, bool symmetric, double diagonal) {
+Section tensor_section(std::string doc, const std::string& unit, bool symmetric, double diagonal) {
   Section section{"tensor", std::move(doc), {}};
   for (const char a : {'x', 'y', 'z'})
     for (const char b : {'x', 'y', 'z'})

@@ -55,11 +55,27 @@ Theme theme_for(int width, int height) {
   return {double(width), h, std::max(h / 1000, 0.6), h / 43, h / 43 * 1.4, std::min(h, double(width)) * 0.04};
 }
 
+namespace {
+
+/// The end of the word that begins at `begin`. A unit such as "(10⁻³ m)" is one word.
+std::size_t end_of_word(std::string_view text, std::size_t begin) {
+  constexpr std::size_t longest_unit = 20;
+  const std::size_t end = std::min(text.find_first_of(" \n", begin), text.size());
+  const std::size_t open = text.substr(0, end).rfind('(');
+  if (open == std::string_view::npos || open < begin || text.substr(open, end - open).find(')') != text.npos)
+    return end;
+  const std::size_t close = text.find_first_of(")\n", end);
+  if (close == std::string_view::npos || text[close] == '\n' || close - open > longest_unit) return end;
+  return std::min(text.find_first_of(" \n", close), text.size());
+}
+
+}  // namespace
+
 std::vector<std::string> wrapped(const Canvas& canvas, std::string_view text, double size, double width, bool bold) {
   std::vector<std::string> lines;
   std::string line;
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t end = std::min(text.find_first_of(" \n", i), text.size());
+    const std::size_t end = end_of_word(text, i);
     const std::string word(text.substr(i, end - i));
     const std::string longer = line.empty() ? word : line + " " + word;
     if (!line.empty() && canvas.measure_text(longer, size, bold) > width) {

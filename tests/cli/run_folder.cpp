@@ -524,3 +524,16 @@ TEST_CASE("a frame shows the domains of particles that carry them") {
   CHECK(numbers[5] == 0);
   CHECK(numbers[6] == Approx(numbers[2]).epsilon(1e-6));
 }
+
+TEST_CASE("a run that begins without energy says what it ends with") {
+  const Folder folder;
+  Json scene = ball();
+  scene["bodies"][0]["velocity"] = {0, 0};
+  scene["gravity"] = {0, -1};
+  spill(folder / "scene.json", scene.dump());
+  CHECK(has(call(folder, {"run", "scene.json", "--out", "falls"}).out, "total energy final/initial "));
+  scene.erase("gravity");
+  spill(folder / "scene.json", scene.dump());
+  CHECK(has(call(folder, {"run", "scene.json", "--out", "rests"}).out,
+            "total energy 0 J/m at the end, none at the start"));
+}

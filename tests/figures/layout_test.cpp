@@ -82,6 +82,7 @@ TEST_CASE("wrapped text fits its width and loses no word", "[figures]") {
   }
   CHECK(lines.size() > 1);
   CHECK(all == "one two three four five six seven");
+  CHECK(wrapped(canvas, "displacement (10⁻³ m)", 20, 150) == std::vector<std::string>{"displacement", "(10⁻³ m)"});
 }
 
 TEST_CASE("shortened text fits, and is cut between letters", "[figures]") {

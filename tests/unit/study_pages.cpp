@@ -131,6 +131,31 @@ TEST_CASE("the table of curved bodies in contact is the figure's", "[docs]") {
   }
 }
 
+TEST_CASE("the table of the ledger's errors is the figures'", "[docs]") {
+  const std::map<std::string, std::string> figures{
+      {"scatter", "scatter"},       {"gather", "gather"},    {"internal force", "internal_force"},
+      {"contact", "contact_work"},  {"filter", "filter"},    {"boundary", "boundary"},
+      {"plasticity", "plasticity"}, {"residual", "residual"}};
+  const Cells table = table_after("ledger.md", "differences from N = 1");
+  REQUIRE(table.size() == 23);
+  REQUIRE(table[0] == std::vector<std::string>{"", "exact", "N = 2", "5", "10", "20", "50"});
+  std::string scene;
+  for (std::size_t row = 2; row < table.size(); ++row) {
+    std::string cause = table[row][0];
+    if (const std::size_t colon = cause.find(": "); colon != std::string::npos)
+      scene = cause.substr(0, colon), cause = cause.substr(colon + 2);
+    INFO(scene << ": " << cause);
+    const Cells cells = figure("ledger_" + figures.at(cause));
+    const double exact = value(cells, {scene, "N = 1"}, 2);
+    CHECK(exact == printed(table[row][1]));
+    for (std::size_t k = 2; k < 7; ++k) {
+      const std::string every = k == 2 ? "N = 2" : "N = " + table[0][k];
+      INFO(every);
+      CHECK(value(cells, {scene, every}, 2) - exact == printed(table[row][k]));
+    }
+  }
+}
+
 TEST_CASE("the table of the position updates is the figures'", "[docs]") {
   const Cells one = figure("position_update_one_field"), two = figure("position_update");
   const Cells table = table_after("position_update.md", "lost in %:");
