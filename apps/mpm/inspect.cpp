@@ -4,8 +4,10 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <optional>
 #include <sstream>
 
+#include "backends/make_backend.hpp"
 #include "experiment/diagnostics.hpp"
 #include "experiment/located_json.hpp"
 #include "experiment/schema.hpp"
@@ -13,6 +15,7 @@
 #include "mpm/run_figures.hpp"
 #include "plan/compatibility.hpp"
 #include "plugin/extension_of.hpp"
+#include "run/start_checks.hpp"
 #include "solvers/solver.hpp"
 #include "study/run_study.hpp"
 #include "study/study.hpp"
@@ -133,6 +136,17 @@ std::vector<const Plugin*> matching(const Registry& registry, const std::string&
   return found;
 }
 
+constexpr double most_to_place = 500'000;  ///< particles that are placed in a second or so
+
+/// Places the particles and tries their first moment, as a run would. Returns how many there are; nothing where they are
+/// too many for a check. Throws InputError.
+std::optional<std::size_t> try_start(const Experiment& experiment, const Plan& plan) {
+  if (static_cast<double>(plan.particles) > most_to_place) return {};
+  const Simulation simulation(experiment, backend_factory(1));
+  refuse_impossible_starts(simulation);
+  return simulation.particle_count();
+}
+
 /// Validates a study and the experiment of each of its combinations. One that is refused is no mistake, as in a run of
 /// the study, unless all are.
 int check_study(const RunOptions& options) {
@@ -144,13 +158,16 @@ int check_study(const RunOptions& options) {
   const std::vector<study::Combination> combinations = study::expand(plan);
   std::vector<Problem> refused;
   ReadOptions read = read_options(registry, {});
+  bool started = false;
   for (const study::Combination& combination : combinations) {
     read.overrides = combination.overrides;
     if (plan.bisection)
       read.overrides.push_back(plan.bisection->pointer + "=" +
                                Json(plan.bisection->from * plan.bisection->scale).dump());
     try {
-      make_plan(read_experiment(plan.base, registry, read));
+      const Experiment experiment = read_experiment(plan.base, registry, read);
+      const Plan step = make_plan(experiment);
+      if (!started) try_start(experiment, step), started = true;  // one stands for all: they differ in a few keys
     } catch (const InputError& error) {
       refused.push_back({plan.base.string(), 0, 0, "", combination.name + ": " + study::reason_of(error)});
     }
@@ -180,9 +197,12 @@ int check(const RunOptions& options) {
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const Plan plan = make_plan(experiment);
   refuse_unknown_records(experiment);
+  const std::optional<std::size_t> placed = try_start(experiment, plan);
   std::cout << options.file.string() << ": ok, " << experiment.dimension << "-D, " << experiment.bodies.size()
-            << (experiment.bodies.size() == 1 ? " body" : " bodies") << ", about " << plan.particles << " particles, "
-            << experiment.shape.plugin->id() << " + " << experiment.transfer.plugin->id() << "\n";
+            << (experiment.bodies.size() == 1 ? " body" : " bodies") << ", "
+            << (placed ? std::to_string(*placed) : "about " + std::to_string(plan.particles)) << " particles"
+            << (placed ? "" : " (too many to be placed here)") << ", " << experiment.shape.plugin->id() << " + "
+            << experiment.transfer.plugin->id() << "\n";
   return done;
 }
 

@@ -115,8 +115,11 @@ nlohmann::ordered_json resumed_manifest(const output::RunFolder& folder, const R
   return json;
 }
 
+/// The command that goes on with this run: what is resumed is not replaced.
 std::string resume_command(const RunOptions& options) {
-  return options.command + (options.resume ? "" : " --resume");
+  std::string command = options.command;
+  if (const auto at = command.find(" --replace"); at != std::string::npos) command.erase(at, 10);
+  return command + (options.resume ? "" : " --resume");
 }
 
 Outcome outcome_of(const Failure& failure, const Simulation& simulation) {
@@ -155,6 +158,7 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints&
       simulation.step();
     } catch (const RunFailure& stopped) {
       const Outcome outcome = outcome_of(stopped.failure, simulation);
+      recorder.break_off();
       progress.show(true);
       std::cerr << "the run failed: " << outcome.reason
                 << "\nremedy: " << remedy_for(stopped.failure, simulation.experiment()) << "\n";
@@ -163,6 +167,7 @@ Outcome step_to_the_end(Simulation& simulation, Recorder& recorder, Checkpoints&
       const long step = simulation.steps() + 1;
       const Outcome outcome{run_failed, "failed", failure_text(stopped.imposed, simulation),
                             record_of(stopped.imposed, step)};
+      recorder.break_off();
       progress.show(true);
       std::cerr << "the run failed: " << outcome.reason << "\nremedy: " << impossible_value_remedy << "\n";
       return outcome;

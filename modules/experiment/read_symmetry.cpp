@@ -72,6 +72,9 @@ void ExperimentReader::check_frozen() {
       problem(place, name +
                          "it neither comes near another body nor leaves it, which contact decides by; remove one of "
                          "them");
+    for (const Load& load : experiment_.loads)
+      if (load.type == LoadType::spring && load.body == static_cast<int>(i))
+        problem(place, name + "its springs never stretch; remove one of them");
     if (experiment_.exact)
       problem(place, name + "its particles stay where exact solution " + in_quotes(experiment_.exact->type) +
                          " moves them; remove one of them");

@@ -48,6 +48,8 @@ class Recorder {
 
   /// What the rows so far came to.
   const RunRecord& rows() const { return rows_; }
+  /// Says that the last step failed on its way.
+  void break_off() { rows_.break_off(); }
 
  private:
   struct Snapshot {

@@ -39,6 +39,10 @@ class RunRecord {
   void save(ArchiveWriter& archive) const;
   void restore(ArchiveReader& archive);
 
+  /// Says that the run's last step failed on its way: what is summed over the steps holds a part of it.
+  void break_off() { broken_off_ = true; }
+  bool broken_off() const { return broken_off_; }
+
  private:
   struct Extremes {
     double energy = 0, smallest_J = 1, largest_J = 1, contact_force = 0, penetration = 0;
@@ -51,6 +55,7 @@ class RunRecord {
   Extremes extremes_;
   std::vector<Range> chosen_;
   Watch watch_;
+  bool broken_off_ = false;
 };
 
 }  // namespace mpm::app

@@ -48,7 +48,7 @@ std::string tent_steps(const Evidence& run) {
 }
 
 std::string books(const Evidence& run) {
-  if (!run.simulation.plan().has_ledger()) return "";
+  if (!run.simulation.plan().has_ledger() || run.rows.broken_off()) return "";
   const bool single = run.experiment().precision == Precision::single;
   const Totals& start = run.metrics.initial();
   return warning_of_books(run.simulation.ledger(),

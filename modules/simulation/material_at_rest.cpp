@@ -128,6 +128,7 @@ class StressSolver {
   bool reached(std::size_t p) const {
     double wanted = 0, stiffness = 0, off = 0;
     for (std::size_t k = 0; k < entries_.size(); ++k) {
+      if (!std::isfinite(wanted_[p][entries_[k].of_file]) || !std::isfinite(residuals_[p][k])) return false;
       wanted = std::max(wanted, std::abs(wanted_[p][entries_[k].of_file]));
       off = std::max(off, std::abs(residuals_[p][k]));
       for (std::size_t m = 0; m < entries_.size(); ++m) stiffness = std::max(stiffness, std::abs(slopes_[p][k][m]));

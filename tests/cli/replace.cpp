@@ -147,3 +147,44 @@ TEST_CASE("a study and an experiment are told apart by every verb") {
   CHECK(has(unknown.err, "did you mean \"axes\"?"));
   CHECK(folder.names() == Words{"s.json", "scene.json"});
 }
+
+TEST_CASE("a run that replaced another is resumed by the command that it prints", "[replace]") {
+  const Folder folder;
+  spill(folder / "scene.json", ball().dump());
+  REQUIRE(call(folder, {"run", "scene.json"}).code == 0);
+  const Result stopped = call(folder, {"run", "scene.json", "--replace", "--set", "/solver/max_steps=20"});
+  INFO(stopped.err);
+  CHECK(has(stopped.err, "resume with: ./mpm run scene.json --set /solver/max_steps=20 --resume"));
+}
+
+TEST_CASE("a check tries the first moment: what a run would refuse there, it refuses", "[replace]") {
+  const Folder folder;
+  const auto checked = [&](const Json& scene) {
+    spill(folder / "scene.json", scene.dump(1));
+    return call(folder, {"check", "scene.json"});
+  };
+  const Result good = checked(ball());
+  CHECK(good.out == "scene.json: ok, 2-D, 1 body, 52 particles, bspline_quadratic + mls\n");
+  Json scene = ball();
+  scene["bodies"][0]["velocity"] = {"sqrt(0.1-x)", 0};
+  CHECK(checked(scene).code == 2);
+  CHECK(has(checked(scene).err, "/bodies/0/velocity: is not a finite number"));
+  scene = ball();
+  scene["grips"] = {{{"name", "hand"},
+                     {"body", "ball"},
+                     {"velocity", {0, 0}},
+                     {"where", {{"type", "half_space"}, {"point", {0.1, 0}}, {"normal", {1, 0}}}}}};
+  CHECK(checked(scene).code == 2);
+  CHECK(has(checked(scene).err, "/grips/0/where: holds no particle"));
+  scene = ball();
+  scene["bodies"][0]["frozen"] = true;
+  scene["loads"] = {{{"type", "spring"},
+                     {"body", "ball"},
+                     {"stiffness", {1, 1}},
+                     {"where", {{"type", "half_space"}, {"point", {0.5, 0}}, {"normal", {-1, 0}}}}}};
+  CHECK(has(checked(scene).err, "is frozen: its springs never stretch"));
+  scene = ball();
+  scene["grid"]["cell_size"] = 0.0005;
+  scene["grid"]["domain"] = {{0, 0}, {1, 1}};
+  CHECK(has(checked(scene).out, "particles (too many to be placed here)"));
+}

@@ -140,6 +140,9 @@ TEST_CASE("stress that a material cannot have, and displacements that cannot be,
   CHECK_THAT(
       refused(at_rest(R"("initial_stress": {"xy": 20})", steel)),
       ContainsSubstring("/bodies/0/initial_stress") && ContainsSubstring("material \"m\" this stress at (0.225, "));
+  for (const char* nowhere : {"sqrt(-X)", "1/(X-0.225)"})
+    CHECK_THAT(refused(at_rest(R"("initial_stress": {"xy": ")" + std::string(nowhere) + "\"}", rubber)),
+               ContainsSubstring("/bodies/0/initial_stress") && ContainsSubstring("it is no number"));
   CHECK_THAT(refused(at_rest(R"("initial_displacement": ["-2*X+1", 0])", rubber)),
              ContainsSubstring("/bodies/0/initial_displacement: ") && ContainsSubstring("inside out"));
   CHECK_THAT(refused(at_rest(R"("initial_displacement": ["0.5", 0])", rubber)),
