@@ -34,7 +34,10 @@ struct Cell {
 
 Cell cell_of(const Study& study, const FigureRequest& figure, const Result& result) {
   Cell cell{result.value(figure.value), ""};
-  if (!std::isfinite(cell.value)) cell.note = outcome_words(result);
+  if (!std::isfinite(cell.value)) {
+    cell.note = outcome_words(result);
+    if (cell.note == "bounded") cell.note = "no value";  // the run came to its end without such a number
+  }
   if (!result.flags.empty()) cell.note = "!";
   if (study.bisection && result.outcome.status == Status::failed) cell.note = "none";
   if (study.bisection && figure.value == critical_measure && result.stable && !result.unstable) cell.note = "or more";

@@ -205,6 +205,22 @@ TEST_CASE("a cell of a heat map tells how many of its runs are bounded, and what
   CHECK(has(csv, "0.05,pic,1,J1\n"));
 }
 
+TEST_CASE("a cell of a heat map says that a run which came to its end has no such number") {
+  const Folder folder;
+  Json study = small_study();
+  study["axes"] = {{"/transfer/type", {"pic", "flip"}}, {"/output/ledger", {true, false}}};
+  study["measure"] = {{"gather", {{"value", "/energy/ledger/gather"}}}};
+  study["figures"] = {{{"type", "heat_map"}, {"x", "/transfer/type"}, {"y", "/output/ledger"}, {"value", "gather"}}};
+  study.erase("error");
+  write_inputs(folder, breathing(), study);
+  const Result result = run_study(folder);
+  INFO(result.err);
+  const std::string csv = slurp(folder / "out/figures/heat_map.csv");
+  INFO(csv);
+  CHECK(has(csv, "false,pic,,no value\n"));
+  CHECK(!has(csv, "true,pic,,"));
+}
+
 TEST_CASE("bisection finds the largest stable step") {
   const Folder folder;
   Json study = small_study();

@@ -7,28 +7,16 @@
 #include <random>
 #include <regex>
 
-#include "experiment/expression.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"
+#include "support/formulas.hpp"
 
 using namespace mpm;
+using namespace mpm::test;
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-const ExpressionScope scope{"xyzXYZt", {{"A", 0.25}, {"n", 3.0}}};
-
-VectorExpression one(const std::string& text) {
-  const VectorExpression::Term term = text;
-  return VectorExpression(std::span(&term, 1), scope);
-}
-
-/// A formula's values at positions x, which are the initial ones too.
-std::vector<double> values(const VectorExpression& formula, const std::vector<Vector3>& x, double t = 0.5) {
-  std::vector<double> found(x.size());
-  formula.evaluate(0, x, t, found.data());
-  return found;
-}
 
 /// Units in the last place between two numbers; 0 between two that are both not a number.
 double ulps(double a, double b) {
@@ -82,7 +70,7 @@ TEST_CASE("functions in lanes are within 1 or 1.5 units in the last place", "[ex
       const double near = static_cast<double>(std::numbers::pi_v<long double> / 2 * k);
       if (near <= range.upper && near >= range.lower) points[static_cast<std::size_t>(k)][0] = near;
     }
-    const std::vector<double> found = values(one(range.text), points);
+    const std::vector<double> found = values(formula_of(range.text), points);
     double worst = 0;
     for (std::size_t p = 0; p < points.size(); ++p) {
       const long double exact = range.exact(points[p][0]);
@@ -116,7 +104,7 @@ TEST_CASE("every function and operator has the values of the C library at specia
       texts.push_back(name + (name == "atan2" || name == "pow" || name == "min" || name == "max" ? "(x, y)" : "(x)"));
   }
   for (const std::string& text : texts) {
-    const VectorExpression formula = one(text);
+    const VectorExpression formula = formula_of(text);
     const std::vector<double> found = values(formula, points);
     for (std::size_t p = 0; p < points.size(); ++p) {
       const double expected = formula(points[p], points[p], 0.5)[0];
@@ -133,7 +121,7 @@ TEST_CASE("every function and operator has the values of the C library at specia
 TEST_CASE("a point has the same bits wherever it stands among others", "[expression][formula]") {
   const VectorExpression formula(
       std::vector<VectorExpression::Term>{"sin(3*X)*exp(-y)+t", "log(1+x^2)/cos(y*30)", "pow(abs(x), 1.7)*cos(3*X)"},
-      scope);
+      formula_scope);
   std::vector<Vector3> x(203), X(203), all(203);
   std::mt19937_64 random(9);
   for (std::size_t p = 0; p < x.size(); ++p)
@@ -168,7 +156,7 @@ TEST_CASE("a point has the same bits wherever it stands among others", "[express
 
 TEST_CASE("what is constant, of time alone or common is computed as seldom as can be", "[expression][formula]") {
   const auto costs = [](const std::vector<VectorExpression::Term>& terms) {
-    const VectorExpression formula(terms, scope);
+    const VectorExpression formula(terms, formula_scope);
     return std::pair(formula.operations_at_points(), formula.operations_of_call());
   };
   using Costs = std::pair<std::size_t, std::size_t>;
@@ -185,7 +173,7 @@ TEST_CASE("what is constant, of time alone or common is computed as seldom as ca
 
 TEST_CASE("what is not finite is named with its operation and numbers", "[expression][formula]") {
   const auto why = [](const std::string& text, const Vector3& x, double t = 0) {
-    const auto found = one(text).not_finite(x, x, t);
+    const auto found = formula_of(text).not_finite(x, x, t);
     return found ? found->why : "finite";
   };
   CHECK(why("1 + log(x - 2)", {1.5, 0, 0}) == "\"log(x - 2)\" at character 5 is log(-0.5)");
@@ -196,7 +184,7 @@ TEST_CASE("what is not finite is named with its operation and numbers", "[expres
   CHECK(why("x + 1/0", {1, 0, 0}) == "\"1/0\" at character 5");
   CHECK(why("exp(t)", {0, 0, 0}, 1000) == "\"exp(t)\" at character 1 is exp(1000)");
 
-  const VectorExpression formula(std::vector<VectorExpression::Term>{"x", "sqrt(y)"}, scope);
+  const VectorExpression formula(std::vector<VectorExpression::Term>{"x", "sqrt(y)"}, formula_scope);
   std::vector<Vector3> points(100, Vector3{1, 1, 1}), found(100);
   points[70][1] = points[90][1] = -4;
   CHECK(formula.evaluate(points, points, 0, found) == 70);
@@ -222,7 +210,7 @@ TEST_CASE("the page of the experiment file lists every function, and operators a
     const auto plain = [](const std::string& cell) { return std::regex_replace(cell, std::regex("\\\\\\|"), "|"); };
     const std::string written = plain((*match)[1]), meant = plain((*match)[2]);
     INFO(written << " means " << meant);
-    const VectorExpression a = one(written), b = one(meant);
+    const VectorExpression a = formula_of(written), b = formula_of(meant);
     for (const Vector3& x : points) CHECK(ulps(a(x, x, 1)[0], b(x, x, 1)[0]) <= 1);
     const std::vector<double> first = values(a, points), second = values(b, points);
     for (std::size_t p = 0; p < points.size(); ++p) CHECK(ulps(first[p], second[p]) <= 1);

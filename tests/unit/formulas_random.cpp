@@ -5,27 +5,15 @@
 #include <limits>
 #include <random>
 
-#include "experiment/expression.hpp"
 #include "support/catch.hpp"
+#include "support/formulas.hpp"
 
 using namespace mpm;
+using namespace mpm::test;
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity(), epsilon = std::numeric_limits<double>::epsilon();
-const ExpressionScope scope{"xyzXYZt", {{"A", 0.25}, {"n", 3.0}}};
-
-VectorExpression one(const std::string& text) {
-  const VectorExpression::Term term = text;
-  return VectorExpression(std::span(&term, 1), scope);
-}
-
-/// A formula's values at positions x, which are the initial ones too.
-std::vector<double> values(const VectorExpression& formula, const std::vector<Vector3>& x, double t = 0.5) {
-  std::vector<double> found(x.size());
-  formula.evaluate(0, x, t, found.data());
-  return found;
-}
 
 /// A value with a bound of what rounding may have moved it by.
 struct Bounded {
@@ -224,7 +212,7 @@ TEST_CASE("batches read every formula as muParser does", "[expression][formula]"
     if (text.size() > 1000) continue;
     VectorExpression formula;
     try {
-      formula = one(text);
+      formula = formula_of(text);
     } catch (const ExpressionError&) {
       ++refused;  // a sign after a sign, or a constant that is not finite
       continue;
@@ -254,7 +242,7 @@ TEST_CASE("batches give what muParser gives, to 2 units in the last place an ope
   for (int i = 0; i < 4000; ++i) {
     const Tree tree = trees.make(1 + i % 5);
     if (tree.text.size() > 1500) continue;
-    const VectorExpression formula = one(tree.text);
+    const VectorExpression formula = formula_of(tree.text);
     const std::vector<double> found = values(formula, points);
     for (std::size_t p = 0; p < points.size(); ++p) {
       const Bounded expected = tree.at(points[p], 0.5);

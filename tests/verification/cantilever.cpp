@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "beam_tip.hpp"
 #include "shipped.hpp"
 #include "support/catch.hpp"
 
@@ -99,21 +100,8 @@ Rest settle(double kappa, const std::vector<std::string>& more) {
   const std::vector<double> X = scene.body().position;
   const Totals end = scene.run();
   const std::vector<double> x = scene.body().position;
-  // The end of the middle line is found from the four particles beside it in the last two columns.
   Rest rest{.speed = end.largest_speed, .misfit = neighbour_misfit(X, scene.body())};
-  double last = 0, next = 0;
-  for (std::size_t p = 0; p < X.size(); p += 2) last = std::max(last, X[p]);
-  for (std::size_t p = 0; p < X.size(); p += 2)
-    if (X[p] < last - 1e-9) next = std::max(next, X[p]);
-  double sum[2][2] = {}, count[2] = {};
-  for (std::size_t p = 0; p < X.size(); p += 2) {
-    const int column = X[p] > last - 1e-9 ? 0 : X[p] > next - 1e-9 ? 1 : 2;
-    if (column == 2) continue;
-    sum[column][0] += x[p], sum[column][1] += x[p + 1], count[column] += 1;
-  }
-  const double far = (length - last) / (last - next);
-  double tip[2];
-  for (int c = 0; c < 2; ++c) tip[c] = (1 + far) * sum[0][c] / count[0] - far * sum[1][c] / count[1];
+  const auto tip = end_of_beam(X, x, length).tip;
   rest.x = tip[0] / length, rest.y = -tip[1] / length;
   return rest;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "beam_tip.hpp"
 #include "shipped.hpp"
 #include "support/catch.hpp"
 
@@ -46,25 +47,8 @@ Tip elastica(double k) {
   return {clamp[2], clamp[3], low};
 }
 
-/// The tip of the middle line, from the particles of the last two columns.
 Tip tip_of(const std::vector<double>& X, const std::vector<double>& x) {
-  double last = 0, next = 0;
-  for (std::size_t p = 0; p < X.size(); p += 2) last = std::max(last, X[p]);
-  for (std::size_t p = 0; p < X.size(); p += 2)
-    if (X[p] < last - 1e-9) next = std::max(next, X[p]);
-  double sum[2][2] = {}, count[2] = {};
-  for (std::size_t p = 0; p < X.size(); p += 2) {
-    const int column = X[p] > last - 1e-9 ? 0 : X[p] > next - 1e-9 ? 1 : 2;
-    if (column == 2) continue;
-    for (std::size_t c = 0; c < 2; ++c) sum[column][c] += x[p + c];
-    count[column] += 1;
-  }
-  const double far = (1 - last) / (last - next);
-  double tip[2], way[2];
-  for (int c = 0; c < 2; ++c) {
-    tip[c] = (1 + far) * sum[0][c] / count[0] - far * sum[1][c] / count[1];
-    way[c] = sum[0][c] / count[0] - sum[1][c] / count[1];
-  }
+  const auto [tip, way] = end_of_beam(X, x, 1);
   return {tip[0], -tip[1], -std::atan2(way[1], way[0])};
 }
 
