@@ -64,8 +64,8 @@ void add_study(CLI::App& verb, StudyOptions& options) {
   verb.add_option("--threads", options.threads, "of each run; default 1")->check(CLI::Range(1, 1024));
   verb.footer(
       "Exit codes: 0 all combinations finished, stopped with a reason or were refused; 2 bad input, or every "
-      "combination "
-      "is refused; 4 a run gained energy, left the range of volume ratios, failed an expectation or crashed; 5 the "
+      "combination is refused; 4 a run gained energy, left the range of volume ratios, failed an expectation or "
+      "crashed; 5 the "
       "machine failed; 130 stopped by Ctrl-C. Calling it again runs only what is missing or has changed.");
 }
 

@@ -260,8 +260,7 @@ std::string books(const Json& energy) {
   return "<h3>Books of the ledger</h3><p class=\"soft\">What recorded and measured values differ by: kinetic energy of "
          "the grid against the works of all impulses (J) and mass and momentum of the nodes against those of the "
          "particles (kg, kg m/s) by rounding, stress power against stored and dissipated energy (J) the less the "
-         "shorter "
-         "the step.</p>" +
+         "shorter the step.</p>" +
          table_html(*found);
 }
 

@@ -126,8 +126,7 @@ std::string coarse_contact(const Evidence& run) {
     if (body.particles_per_cell_axis < 2)
       return "body \"" + body.name +
              "\" has one particle a cell and axis where bodies touch: such a surface is known to no better than a "
-             "cell, "
-             "and collisions lose much more energy than with two; set particles_per_cell_axis to 2 or more "
+             "cell, and collisions lose much more energy than with two; set particles_per_cell_axis to 2 or more "
              "(docs/studies/extremes.md#how-many-particles-a-cell)";
   return "";
 }
@@ -136,10 +135,9 @@ std::string sliding_block(const Evidence& run) {
   const BodySpecification* block = finite_block(run.experiment());
   if (!block || !(run.rows.seen().slide > run.experiment().grid.cell_size)) return "";
   return "body \"" + block->name + "\", a finite block, slid " + digits(run.rows.seen().slide) +
-         " m in contact on B-splines: at its corners the normal of averaged volume gradients tilts, and drags it even "
-         "without friction, on a finer grid too; do not measure friction with it, or let it reach through periodic "
-         "walls "
-         "(docs/method.md#contact)";
+         " m in contact on B-splines: at its corners the normal of averaged volume gradients tilts, and drags it "
+         "even without friction, on a finer grid too; do not measure friction with it, or let it reach through "
+         "periodic walls (docs/method.md#contact)";
 }
 
 /// The share of the particles that ended in another cell than they began in.
@@ -172,8 +170,7 @@ std::string crossings(const Evidence& run) {
   return digits(100 * share) +
          " % of the particles ended in another cell than they began in: with the linear shape forces jump where a "
          "particle crosses into another cell, and neither smaller cells nor smaller steps help; take B-splines, GIMP "
-         "or "
-         "CPDI (docs/lessons/2_cell_crossing.md)";
+         "or CPDI (docs/lessons/2_cell_crossing.md)";
 }
 
 std::string loneliness(const Evidence& run) {

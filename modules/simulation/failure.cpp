@@ -19,8 +19,7 @@ constexpr const char* smaller_step =
     "crushed";
 constexpr const char* finite_expressions =
     "check the expressions of the file (velocities, /body_force, /loads, moving walls) at that place and time; where "
-    "they are "
-    "finite, a smaller /solver/courant or /solver/time_step";
+    "they are finite, a smaller /solver/courant or /solver/time_step";
 constexpr const char* finite_force =
     "check that expression: wherever a particle comes and up to /solver/end_time it has to give a finite number; "
     "comparisons and ? : leave points out (x > 0 ? log(x) : 0), max(x, 1e-9) bounds a term";
@@ -177,8 +176,7 @@ std::string remedy_for(const Failure& failure, const Experiment& experiment) {
   if (failure.cause == Cause::inverted && experiment.shape.plugin->id() == "linear")
     return "another shape (/shape/type \"bspline_quadratic\"): with the linear one a particle near a node or between "
            "cells inverts at any step, and smaller steps do not help; where nothing moves far, stiffer material or "
-           "more "
-           "particles a cell";
+           "more particles a cell";
   return entry_of(failure.cause).remedy;
 }
 
