@@ -37,7 +37,8 @@ Vector3 ParticleStep<D, T, Components>::velocity_of_gripped(const Chunk& chunk, 
 /// one that they have now.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_grips(const Chunk& chunk, Work& work, double end) {
-  T told[D * chunk_size<T>], gripped[chunk_size<T>];
+  T told[D * chunk_size<T>];
+  alignas(lane_bytes) T gripped[chunk_size<T>];
   for (std::size_t grip = 0; grip < grips_.size(); ++grip) {
     bool any = false;
     fill_masses(chunk, work);
