@@ -35,8 +35,9 @@ void check_expression(const std::string& text, const ExpressionScope& scope);
 std::vector<std::string> expression_functions();
 
 /// Places of points as arrays of one coordinate each, m; null where there is none, which counts as 0.
+template <class T = double>
 struct PointArrays {
-  std::array<const double*, 3> x{}, X{};
+  std::array<const T*, 3> x{}, X{};
 };
 
 /// Why a formula has no finite value at a point.
@@ -65,8 +66,10 @@ class VectorExpression {
   VectorExpression(std::span<const Term> terms, const ExpressionScope& scope);
 
   Vector3 operator()(const Vector3& x, const Vector3& X, double t) const;
-  /// Evaluates at many points; `result` holds an array a component, null where a component is not wanted.
-  std::size_t evaluate(std::size_t count, const PointArrays& at, double t, const std::array<double*, 3>& result) const;
+  /// Evaluates at many points, in the precision of their places; what depends on t alone is found in double in either.
+  /// `result` holds an array a component, null where a component is not wanted. For double and float.
+  template <class T>
+  std::size_t evaluate(std::size_t count, const PointArrays<T>& at, double t, const std::array<T*, 3>& result) const;
   /// Evaluates at many positions x with initial positions X; `result` is as long as they are.
   std::size_t evaluate(std::span<const Vector3> x, std::span<const Vector3> X, double t,
                        std::span<Vector3> result) const;

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 
 #include "experiment/diagnostics.hpp"
 #include "experiment/expression_formulas.hpp"
@@ -14,21 +16,23 @@ namespace {
 using formula::batch_size;
 
 /// The number of the first value that is not finite.
-int finite_before(const formula::Values& values, int count) {
+template <class T>
+int finite_before(const formula::Values<T>& values, int count) {
   if (values.same_everywhere()) return std::isfinite(values[0]) ? count : 0;
   // The exponent of what is not finite is all ones, and one more carries into the sign.
-  constexpr std::uint64_t exponent = 0x7ff0000000000000, one = 0x0010000000000000;
-  std::uint64_t carried = 0;
-  for (int p = 0; p < count; ++p) carried |= (std::bit_cast<std::uint64_t>(values.values[p]) & exponent) + one;
-  if (carried >> 63 == 0) return count;
+  using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+  constexpr Bits one = Bits(1) << (std::numeric_limits<T>::digits - 1), sign = Bits(1) << (8 * sizeof(T) - 1);
+  Bits carried = 0;
+  for (int p = 0; p < count; ++p) carried |= (std::bit_cast<Bits>(values.values[p]) & (sign - one)) + one;
+  if ((carried & sign) == 0) return count;
   int p = 0;
   while (std::isfinite(values[p])) ++p;
   return p;
 }
 
 /// Calls take(p, value) for each point.
-template <class Take>
-void for_each(const formula::Values& values, int count, Take take) {
+template <class T, class Take>
+void for_each(const formula::Values<T>& values, int count, Take take) {
   if (values.same_everywhere())
     for (int p = 0; p < count; ++p) take(p, values[0]);
   else
@@ -37,26 +41,26 @@ void for_each(const formula::Values& values, int count, Take take) {
 
 /// Runs a program for all points: fill(variable, first, count, to) writes a variable's values, and
 /// take(output, first, count, values) reads those of an output.
-template <class Fill, class Take>
+template <class T, class Fill, class Take>
 std::size_t run(const formula::Program& program, std::uint64_t id, int outputs, std::size_t count, double t, Fill fill,
                 Take take) {
-  thread_local formula::Space space;
+  thread_local formula::Space<T> space;
   // A thread that evaluates one program for chunk after chunk finds what depends on time alone once.
   thread_local std::pair<std::uint64_t, std::uint64_t> found{0, 0};
   if (const std::pair now{id, std::bit_cast<std::uint64_t>(t)}; now != found) program.begin(t, space), found = now;
   std::size_t finite = count;
   for (std::size_t first = 0; first < count; first += batch_size) {
     const int n = static_cast<int>(std::min<std::size_t>(batch_size, count - first));
-    const int lanes = (n + formula::pack_size - 1) / formula::pack_size * formula::pack_size;
+    const int lanes = (n + formula::pack_size<T> - 1) / formula::pack_size<T> * formula::pack_size<T>;
     for (int variable = 0; variable < formula::time_variable; ++variable) {
-      double* const to = program.input(variable, space);
+      T* const to = program.input(variable, space);
       if (!to) continue;
       fill(variable, first, n, to);
       std::fill(to + n, to + lanes, to[n - 1]);  // a full pack does what a part of one would, to the last bit
     }
     formula::Program::run(space, lanes);
     for (int output = 0; output < outputs; ++output) {
-      const formula::Values values = program.output(output, space);
+      const formula::Values<T> values = program.output(output, space);
       take(output, first, n, values);
       if (const int good = finite_before(values, n); good < n) finite = std::min(finite, first + good);
     }
@@ -74,25 +78,30 @@ auto from(std::span<const Vector3> x, std::span<const Vector3> X) {
 
 }  // namespace
 
-std::size_t VectorExpression::evaluate(std::size_t count, const PointArrays& at, double t,
-                                       const std::array<double*, 3>& result) const {
+template <class T>
+std::size_t VectorExpression::evaluate(std::size_t count, const PointArrays<T>& at, double t,
+                                       const std::array<T*, 3>& result) const {
   if (!formulas_) {
     for (std::size_t c = 0; c < 3; ++c)
-      if (result[c]) std::fill_n(result[c], count, constant_[c]);
+      if (result[c]) std::fill_n(result[c], count, static_cast<T>(constant_[c]));
     return count;
   }
-  const auto fill = [&](int variable, std::size_t first, int n, double* to) {
-    if (const double* const values = variable < 3 ? at.x[variable] : at.X[variable - 3])
+  const auto fill = [&](int variable, std::size_t first, int n, T* to) {
+    if (const T* const values = variable < 3 ? at.x[variable] : at.X[variable - 3])
       std::copy_n(values + first, n, to);
     else
-      std::fill_n(to, n, 0.0);
+      std::fill_n(to, n, T(0));
   };
-  return run(formulas_->all, formulas_->id, 3, count, t, fill,
-             [&](int c, std::size_t first, int n, const formula::Values& values) {
-               if (double* const to = result[c])
-                 for_each(values, n, [&](int p, double value) { to[first + p] = value; });
-             });
+  return run<T>(formulas_->all, formulas_->id, 3, count, t, fill,
+                [&](int c, std::size_t first, int n, const formula::Values<T>& values) {
+                  if (T* const to = result[c]) for_each(values, n, [&](int p, T value) { to[first + p] = value; });
+                });
 }
+
+template std::size_t VectorExpression::evaluate(std::size_t, const PointArrays<double>&, double,
+                                                const std::array<double*, 3>&) const;
+template std::size_t VectorExpression::evaluate(std::size_t, const PointArrays<float>&, double,
+                                                const std::array<float*, 3>&) const;
 
 std::size_t VectorExpression::evaluate(std::span<const Vector3> x, std::span<const Vector3> X, double t,
                                        std::span<Vector3> result) const {
@@ -100,10 +109,10 @@ std::size_t VectorExpression::evaluate(std::span<const Vector3> x, std::span<con
     std::fill_n(result.begin(), x.size(), constant_);
     return x.size();
   }
-  return run(formulas_->all, formulas_->id, 3, x.size(), t, from(x, X),
-             [&](int c, std::size_t first, int n, const formula::Values& values) {
-               for_each(values, n, [&](int p, double value) { result[first + p][c] = value; });
-             });
+  return run<double>(formulas_->all, formulas_->id, 3, x.size(), t, from(x, X),
+                     [&](int c, std::size_t first, int n, const formula::Values<double>& values) {
+                       for_each(values, n, [&](int p, double value) { result[first + p][c] = value; });
+                     });
 }
 
 std::size_t VectorExpression::evaluate(int component, std::span<const Vector3> x, std::span<const Vector3> X, double t,
@@ -112,10 +121,11 @@ std::size_t VectorExpression::evaluate(int component, std::span<const Vector3> x
     std::fill_n(result, x.size(), constant_[component]);
     return x.size();
   }
-  return run(formulas_->components[component], formulas_->id + 1 + static_cast<std::uint64_t>(component), 1, x.size(),
-             t, from(x, X), [&](int, std::size_t first, int n, const formula::Values& values) {
-               for_each(values, n, [&](int p, double value) { result[first + p] = value; });
-             });
+  return run<double>(formulas_->components[component], formulas_->id + 1 + static_cast<std::uint64_t>(component), 1,
+                     x.size(), t, from(x, X),
+                     [&](int, std::size_t first, int n, const formula::Values<double>& values) {
+                       for_each(values, n, [&](int p, double value) { result[first + p] = value; });
+                     });
 }
 
 std::size_t VectorExpression::operations_at_points() const {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "experiment/formula_program.hpp"
 #include "kernel/lanes.hpp"
@@ -12,124 +13,203 @@
 namespace mpm::formula {
 namespace {
 
-constexpr int width = lane_bytes / static_cast<int>(sizeof(double));
-static_assert(pack_size % width == 0);
+template <class T>
+inline constexpr int width = Lanes<T>::width;
+static_assert(pack_size<double> % width<double> == 0 && pack_size<float> % width<float> == 0);
 
-typedef double Wide __attribute__((vector_size(lane_bytes)));
-typedef std::uint64_t Bits __attribute__((vector_size(lane_bytes)));
+template <class T>
+using Wide = typename LaneTypes<T>::Vector;
+template <class T>
+using Bits = typename LaneTypes<T>::Bits;
 
-constexpr std::uint64_t sign_bit = std::uint64_t(1) << 63;
+template <class T>
+constexpr bool is_float = sizeof(T) == 4;
+template <class T>
+constexpr int mantissa_bits = is_float<T> ? 23 : 52;
+template <class T>
+constexpr int last_bit = is_float<T> ? 31 : 63;
+template <class T>
+using Bit = std::make_unsigned_t<typename LaneTypes<T>::Integer>;
+template <class T>
+constexpr Bit<T> sign_bit = Bit<T>(1) << last_bit<T>;
 
-inline Wide load(const Values& from, int p) {
-  return *reinterpret_cast<const Wide*>(from.values + (p & from.mask));
+template <class T>
+inline Wide<T> load(const Values<T>& from, int p) {
+  return *reinterpret_cast<const Wide<T>*>(from.values + (p & from.mask));
 }
-inline void store(double* to, Wide value) {
-  *reinterpret_cast<Wide*>(to) = value;
+template <class T>
+inline void store(T* to, Wide<T> value) {
+  *reinterpret_cast<Wide<T>*>(to) = value;
 }
-inline Wide all(double value) {
-  return value - Wide{};
+template <class T>
+inline Wide<T> all(T value) {
+  return value - Wide<T>{};
 }
-inline Wide magnitude(Wide a) {
-  return (Wide)((Bits)a & ~sign_bit);
+template <class T>
+inline Wide<T> magnitude(Wide<T> a) {
+  return (Wide<T>)((Bits<T>)a & ~sign_bit<T>);
 }
-inline Wide one_where(Bits mask) {
-  return (Wide)(mask & (Bits)all(1));
+template <class T>
+inline Wide<T> one_where(Bits<T> mask) {
+  return (Wide<T>)(mask & (Bits<T>)all<T>(1));
 }
-inline Wide choose(Bits mask, Wide yes, Wide no) {
-  return (Wide)((mask & (Bits)yes) | (~mask & (Bits)no));
+template <class T>
+inline Wide<T> choose(Bits<T> mask, Wide<T> yes, Wide<T> no) {
+  return (Wide<T>)((mask & (Bits<T>)yes) | (~mask & (Bits<T>)no));
 }
 
 // ---- functions ------------------------------------------------------------------------------------------------------
-// Polynomials are those of fdlibm (Sun Microsystems, 1993); here for all lanes without a branch, and so in a range that
-// holds almost every argument. The C library does the others.
+// Polynomials are those of fdlibm (Sun Microsystems, 1993), in float those of its float functions (Cygnus Support, 1993);
+// here for all lanes without a branch, and so in a range that holds almost every argument. The C library does the others.
 
 /// Whole numbers are added to this to have them in the low bits.
-constexpr double shifter = 0x1.8p52;
+template <class T>
+constexpr T shifter = is_float<T> ? T(0x1.8p23) : T(0x1.8p52);
 
-constexpr double largest_angle = 12000;  ///< rad, below 2^13 pi / 2
+template <class T>
+constexpr T largest_angle = is_float<T> ? T(800) : T(12000);  ///< rad, below 2^9 and 2^13 quarter turns
 
-/// Sine and cosine for |x| <= largest_angle: pi / 2 in parts of 40 bits, whose multiples up to 2^13 are exact.
-inline void sine_and_cosine(Wide x, Wide& sine, Wide& cosine) {
-  const Wide shifted = x * 0x1.45f306dc9c883p-1 + shifter, n = shifted - shifter;
-  const Bits quadrant = (Bits)shifted;
-  const Wide r = ((x - n * 0x1.921fb54442000p+0) - n * 0x1.a308d31318000p-41) - n * 0x1.8a2e03707344ap-81;
-  const Wide z = r * r;
-  const Wide s =
-      -1.66666666666666324348e-01 +
-      z * (8.33333333332248946124e-03 +
-           z * (-1.98412698298579493134e-04 +
-                z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10))));
-  const Wide c = z * (4.16666666666666019037e-02 +
-                      z * (-1.38888888888741095749e-03 +
-                           z * (2.48015872894767294178e-05 +
-                                z * (-2.75573143513906633035e-07 +
-                                     z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11)))));
-  const Wide half = 0.5 * z, near_one = 1.0 - half;
-  const Wide of_sine = (Wide)((Bits)(r + (z * r) * s) | ((Bits)r & sign_bit));  // also of -0
-  const Wide of_cosine = near_one + (((1.0 - near_one) - half) + z * c);
-  const Bits swapped = -(quadrant & 1);
-  sine = (Wide)((Bits)choose(swapped, of_cosine, of_sine) ^ ((quadrant & 2) << 62));
-  cosine = (Wide)((Bits)choose(swapped, of_sine, of_cosine) ^ (((quadrant + 1) & 2) << 62));
+/// x less n quarter turns, of which the first parts have so few bits that their products with n are exact.
+inline Wide<double> without_turns(Wide<double> x, Wide<double> n) {
+  return ((x - n * 0x1.921fb54442000p+0) - n * 0x1.a308d31318000p-41) - n * 0x1.8a2e03707344ap-81;
+}
+inline Wide<float> without_turns(Wide<float> x, Wide<float> n) {
+  return (((x - n * 0x1.921p+0f) - n * 0x1.f6ap-13f) - n * 0x1.11p-26f) - n * 0x1.68c234p-39f;
 }
 
-constexpr double least_exponent = -708, largest_exponent = 709;
+/// (sin r - r) / r^3 by z = r^2, |r| below an eighth of a turn.
+inline Wide<double> sine_series(Wide<double> z) {
+  return -1.66666666666666324348e-01 +
+         z * (8.33333333332248946124e-03 +
+              z * (-1.98412698298579493134e-04 +
+                   z * (2.75573137070700676789e-06 +
+                        z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10))));
+}
+inline Wide<float> sine_series(Wide<float> z) {
+  return -1.6666667163e-01f + z * (8.3333337680e-03f + z * (-1.9841270114e-04f + z * 2.7557314297e-06f));
+}
+/// cos r - 1 + z / 2 by z = r^2.
+inline Wide<double> cosine_series(Wide<double> z) {
+  return z * (z * (4.16666666666666019037e-02 +
+                   z * (-1.38888888888741095749e-03 +
+                        z * (2.48015872894767294178e-05 +
+                             z * (-2.75573143513906633035e-07 +
+                                  z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11))))));
+}
+inline Wide<float> cosine_series(Wide<float> z) {
+  return z * (z * (4.1666667908e-02f + z * (-1.3888889225e-03f + z * (2.4801587642e-05f - z * 2.7557314297e-07f))));
+}
 
-inline Wide exponential(Wide x) {
-  const Wide shifted = x * 1.44269504088896338700 + shifter, n = shifted - shifter;
-  const Wide high = x - n * 6.93147180369123816490e-01, low = n * 1.90821492927058770002e-10, r = high - low;
-  const Wide t = r * r;
-  const Wide c =
-      r -
-      t * (1.66666666666666019037e-01 +
-           t * (-2.77777777770155933842e-03 +
-                t * (6.61375632143793436117e-05 + t * (-1.65339022054652515390e-06 + t * 4.13813679705723846039e-08))));
-  const Wide y = 1.0 - ((low - (r * c) / (2.0 - c)) - high);
-  return (Wide)((Bits)y + (((Bits)shifted - (Bits)all(shifter)) << 52));
+/// Sine and cosine for |x| <= largest_angle.
+template <class T>
+inline void sine_and_cosine(Wide<T> x, Wide<T>& sine, Wide<T>& cosine) {
+  const Wide<T> shifted = x * T(0x1.45f306dc9c883p-1) + shifter<T>, n = shifted - shifter<T>;
+  const Bits<T> quadrant = (Bits<T>)shifted;
+  const Wide<T> r = without_turns(x, n), z = r * r;
+  const Wide<T> half = T(0.5) * z, near_one = T(1) - half;
+  const Wide<T> of_sine =
+      (Wide<T>)((Bits<T>)(r + (z * r) * sine_series(z)) | ((Bits<T>)r & sign_bit<T>));  // also of -0
+  const Wide<T> of_cosine = near_one + (((T(1) - near_one) - half) + cosine_series(z));
+  const Bits<T> swapped = -(quadrant & 1);
+  constexpr int to_sign = last_bit<T> - 1;
+  sine = (Wide<T>)((Bits<T>)choose<T>(swapped, of_cosine, of_sine) ^ ((quadrant & 2) << to_sign));
+  cosine = (Wide<T>)((Bits<T>)choose<T>(swapped, of_sine, of_cosine) ^ (((quadrant + 1) & 2) << to_sign));
+}
+
+template <class T>
+constexpr T least_exponent = is_float<T> ? T(-87) : T(-708);
+template <class T>
+constexpr T largest_exponent = is_float<T> ? T(88) : T(709);
+
+/// r less the series of r coth(r / 2), by t = r^2, as the exponential needs it.
+inline Wide<double> exponential_series(Wide<double> r, Wide<double> t) {
+  return r - t * (1.66666666666666019037e-01 +
+                  t * (-2.77777777770155933842e-03 +
+                       t * (6.61375632143793436117e-05 +
+                            t * (-1.65339022054652515390e-06 + t * 4.13813679705723846039e-08))));
+}
+inline Wide<float> exponential_series(Wide<float> r, Wide<float> t) {
+  return r - t * (1.6666625440e-01f + t * -2.7667332906e-03f);
+}
+
+template <class T>
+inline Wide<T> exponential(Wide<T> x) {
+  constexpr T ln2_high = is_float<T> ? T(6.9314575195e-01) : T(6.93147180369123816490e-01);
+  constexpr T ln2_low = is_float<T> ? T(1.4286067653e-06) : T(1.90821492927058770002e-10);
+  const Wide<T> shifted = x * T(1.44269504088896338700) + shifter<T>, n = shifted - shifter<T>;
+  const Wide<T> high = x - n * ln2_high, low = n * ln2_low, r = high - low;
+  const Wide<T> c = exponential_series(r, r * r);
+  const Wide<T> y = T(1) - ((low - (r * c) / (T(2) - c)) - high);
+  return (Wide<T>)((Bits<T>)y + (((Bits<T>)shifted - (Bits<T>)all<T>(shifter<T>)) << mantissa_bits<T>));
+}
+
+/// log((1 + s) / (1 - s)) / s - 2 by z = s^2.
+inline Wide<double> logarithm_series(Wide<double> z) {
+  const Wide<double> w = z * z;
+  const Wide<double> odd =
+      w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
+  const Wide<double> even =
+      z * (6.666666666666735130e-01 +
+           w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860510058591e-01)));
+  return odd + even;
+}
+inline Wide<float> logarithm_series(Wide<float> z) {
+  const Wide<float> w = z * z;
+  return w * (4.0000972152e-01f + w * 2.4279078841e-01f) + z * (6.6666662693e-01f + w * 2.8498786688e-01f);
 }
 
 /// The natural logarithm of normal positive numbers.
-inline Wide logarithm(Wide x) {
-  constexpr std::uint64_t one = 0x3ff0000000000000, root_of_half = 0x3fe6a09e00000000;
-  const Bits bits = (Bits)x + (one - root_of_half);
-  const Wide mantissa = (Wide)((bits & 0x000fffffffffffff) + root_of_half);
-  const Wide k = (Wide)((bits >> 52) | 0x4330000000000000) - (0x1p52 + 1023);
-  const Wide f = mantissa - 1.0, s = f / (2.0 + f), z = s * s, w = z * z, half = 0.5 * f * f;
-  const Wide odd = w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
-  const Wide even =
-      z * (6.666666666666735130e-01 +
-           w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860510058591e-01)));
-  const Wide r = odd + even;
-  return k * 6.93147180369123816490e-01 - ((half - (s * (half + r) + k * 1.90821492927058770002e-10)) - f);
+template <class T>
+inline Wide<T> logarithm(Wide<T> x) {
+  constexpr Bit<T> one = is_float<T> ? Bit<T>(0x3f800000) : Bit<T>(0x3ff0000000000000),
+                   root_of_half = is_float<T> ? Bit<T>(0x3f3504f3) : Bit<T>(0x3fe6a09e00000000);
+  constexpr Bit<T> mantissa_mask = (Bit<T>(1) << mantissa_bits<T>)-1;
+  // A whole number in the low bits of this one is added to it.
+  constexpr T base = is_float<T> ? T(0x1p23) : T(0x1p52);
+  constexpr Bit<T> base_bits = is_float<T> ? Bit<T>(0x4b000000) : Bit<T>(0x4330000000000000);
+  constexpr T bias = is_float<T> ? T(127) : T(1023);
+  constexpr T ln2_high = is_float<T> ? T(6.9313812256e-01) : T(6.93147180369123816490e-01);
+  constexpr T ln2_low = is_float<T> ? T(9.0580006145e-06) : T(1.90821492927058770002e-10);
+  const Bits<T> bits = (Bits<T>)x + (one - root_of_half);
+  const Wide<T> mantissa = (Wide<T>)((bits & mantissa_mask) + root_of_half);
+  const Wide<T> k = (Wide<T>)((bits >> mantissa_bits<T>) | base_bits) - (base + bias);
+  const Wide<T> f = mantissa - T(1), s = f / (T(2) + f), half = T(0.5) * f * f, r = logarithm_series(s * s);
+  return k * ln2_high - ((half - (s * (half + r) + k * ln2_low)) - f);
 }
 
 /// The largest whole number not above x.
-inline Wide floor_of(Wide x) {
-  const Bits sign = (Bits)x & sign_bit;
-  const Wide size = magnitude(x);
-  const Wide near = (Wide)((Bits)((size + 0x1p52) - 0x1p52) | sign);
-  const Wide below = near - one_where((Bits)(near > x));
-  return choose((Bits)(size < 0x1p52), (Wide)((Bits)below | sign), x);
+template <class T>
+inline Wide<T> floor_of(Wide<T> x) {
+  constexpr T whole = is_float<T> ? T(0x1p23) : T(0x1p52);  // no number from here on has a fraction
+  const Bits<T> sign = (Bits<T>)x & sign_bit<T>;
+  const Wide<T> size = magnitude<T>(x);
+  const Wide<T> near = (Wide<T>)((Bits<T>)((size + whole) - whole) | sign);
+  const Wide<T> below = near - one_where<T>((Bits<T>)(near > x));
+  return choose<T>((Bits<T>)(size < whole), (Wide<T>)((Bits<T>)below | sign), x);
 }
 
 /// A number as the sum of two, of which the second is what the first has lost.
+template <class T>
 struct Sum {
-  Wide high, low;
+  Wide<T> high, low;
 };
 
-inline Sum product(Sum a, Sum b) {
-  const auto split = [](Wide x) {  // into 26 and 27 bits, whose products are exact (Dekker 1971)
-    const Wide t = x * 134217729.0, high = t - (t - x);
-    return Sum{high, x - high};
+template <class T>
+inline Sum<T> product(Sum<T> a, Sum<T> b) {
+  const auto split = [](Wide<T> x) {  // into halves whose products are exact (Dekker 1971)
+    const Wide<T> t = x * (is_float<T> ? T(4097) : T(134217729)), high = t - (t - x);
+    return Sum<T>{high, x - high};
   };
-  const Wide p = a.high * b.high;
-  const Sum x = split(a.high), y = split(b.high);
-  const Wide lost = ((x.high * y.high - p) + x.high * y.low + x.low * y.high) + x.low * y.low;
-  const Wide low = lost + (a.high * b.low + a.low * b.high), high = p + low;
+  const Wide<T> p = a.high * b.high;
+  const Sum<T> x = split(a.high), y = split(b.high);
+  const Wide<T> lost = ((x.high * y.high - p) + x.high * y.low + x.low * y.high) + x.low * y.low;
+  const Wide<T> low = lost + (a.high * b.low + a.low * b.high), high = p + low;
   return {high, low - (high - p)};
 }
 
-inline Wide whole_power(Wide x, int exponent) {
-  Sum square{x, Wide{}}, result{all(1), Wide{}};
+template <class T>
+inline Wide<T> whole_power(Wide<T> x, int exponent) {
+  Sum<T> square{x, Wide<T>{}}, result{all<T>(1), Wide<T>{}};
   for (unsigned n = static_cast<unsigned>(std::abs(exponent));;) {
     if (n & 1) result = product(result, square);
     n >>= 1;
@@ -137,251 +217,273 @@ inline Wide whole_power(Wide x, int exponent) {
     square = product(square, square);
   }
   if (exponent > 0) return result.high;
-  const Wide inverse = 1.0 / result.high;
+  const Wide<T> inverse = T(1) / result.high;
   return inverse - inverse * (result.low * inverse);
 }
 
 // ---- loops ----------------------------------------------------------------------------------------------------------
 
 /// Calls visit(p) for the first point of every pack.
-template <class Visit>
+template <class T, class Visit>
 inline void for_each_pack(int lanes, Visit visit) {
 #pragma GCC unroll 4
-  for (int p = 0; p < lanes; p += width) visit(p);
+  for (int p = 0; p < lanes; p += width<T>) visit(p);
 }
 
 /// The values of a pack, which are the same for all of them where `same`.
-template <bool same>
-inline Wide get(const Values& values, int p) {
-  return *reinterpret_cast<const Wide*>(values.values + (same ? 0 : p));
+template <bool same, class T>
+inline Wide<T> get(const Values<T>& values, int p) {
+  return *reinterpret_cast<const Wide<T>*>(values.values + (same ? 0 : p));
 }
 
-template <class Function>
-void unary(const Step& step, int lanes) {
-  const Values a = step.of[0];
-  double* const to = step.to;
-  for_each_pack(lanes, [&](int p) { store(to + p, Function{}(get<false>(a, p))); });
+template <class T, class Function>
+void unary(const Step<T>& step, int lanes) {
+  const Values<T> a = step.of[0];
+  T* const to = step.to;
+  for_each_pack<T>(lanes, [&](int p) { store<T>(to + p, Function{}(get<false>(a, p))); });
 }
 
-template <class Function, bool same_a, bool same_b>
-void binary(const Step& step, int lanes) {
-  const Values a = step.of[0], b = step.of[1];
-  double* const to = step.to;
-  for_each_pack(lanes, [&](int p) { store(to + p, Function{}(get<same_a>(a, p), get<same_b>(b, p))); });
+template <class T, class Function, bool same_a, bool same_b>
+void binary(const Step<T>& step, int lanes) {
+  const Values<T> a = step.of[0], b = step.of[1];
+  T* const to = step.to;
+  for_each_pack<T>(lanes, [&](int p) { store<T>(to + p, Function{}(get<same_a>(a, p), get<same_b>(b, p))); });
 }
 
-template <class Function, class Next, bool same_a, bool same_b, bool same_c>
-void chained(const Step& step, int lanes) {
-  const Values a = step.of[0], b = step.of[1], c = step.of[2];
-  double* const to = step.to;
-  for_each_pack(lanes, [&](int p) {
-    store(to + p, Next{}(Function{}(get<same_a>(a, p), get<same_b>(b, p)), get<same_c>(c, p)));
+template <class T, class Function, class Next, bool same_a, bool same_b, bool same_c>
+void chained(const Step<T>& step, int lanes) {
+  const Values<T> a = step.of[0], b = step.of[1], c = step.of[2];
+  T* const to = step.to;
+  for_each_pack<T>(lanes, [&](int p) {
+    store<T>(to + p, Next{}(Function{}(get<same_a>(a, p), get<same_b>(b, p)), get<same_c>(c, p)));
   });
 }
 
 /// Leaves points beyond a range, and what is not a number, to `exact`.
-template <class Function, class Exact>
-void within(const Step& step, int lanes, double lower, double upper, Function function, Exact exact) {
-  const Values a = step.of[0];
-  Bits outside{};
-  for_each_pack(lanes, [&](int p) {
-    const Wide x = get<false>(a, p);
-    outside |= ~((Bits)(x >= lower) & (Bits)(x <= upper));
+template <class T, class Function, class Exact>
+void within(const Step<T>& step, int lanes, T lower, T upper, Function function, Exact exact) {
+  const Values<T> a = step.of[0];
+  Bits<T> outside{};
+  for_each_pack<T>(lanes, [&](int p) {
+    const Wide<T> x = get<false>(a, p);
+    outside |= ~((Bits<T>)(x >= lower) & (Bits<T>)(x <= upper));
     function(x, p);
   });
-  std::uint64_t any = 0;
-  for (int i = 0; i < width; ++i) any |= outside[i];
+  Bit<T> any = 0;
+  for (int i = 0; i < width<T>; ++i) any |= outside[i];
   if (any == 0) return;
   for (int p = 0; p < lanes; ++p)
-    if (const double x = a[p]; !(x >= lower && x <= upper)) exact(x, p);
+    if (const T x = a[p]; !(x >= lower && x <= upper)) exact(static_cast<double>(x), p);
 }
 
-template <bool with_sine, bool with_cosine>
-void circular(const Step& step, int lanes) {
-  double *const to = step.to, *const cosine_to = with_sine ? step.cosine_to : step.to;
-  within(
-      step, lanes, -largest_angle, largest_angle,
-      [&](Wide x, int p) {
-        Wide sine, cosine;
-        sine_and_cosine(x, sine, cosine);
-        if (with_sine) store(to + p, sine);
-        if (with_cosine) store(cosine_to + p, cosine);
+template <class T, bool with_sine, bool with_cosine>
+void circular(const Step<T>& step, int lanes) {
+  T *const to = step.to, *const cosine_to = with_sine ? step.cosine_to : step.to;
+  within<T>(
+      step, lanes, -largest_angle<T>, largest_angle<T>,
+      [&](Wide<T> x, int p) {
+        Wide<T> sine, cosine;
+        sine_and_cosine<T>(x, sine, cosine);
+        if (with_sine) store<T>(to + p, sine);
+        if (with_cosine) store<T>(cosine_to + p, cosine);
       },
       [&](double x, int p) {
-        if (with_sine) to[p] = std::sin(x);
-        if (with_cosine) cosine_to[p] = std::cos(x);
+        if (with_sine) to[p] = static_cast<T>(std::sin(x));
+        if (with_cosine) cosine_to[p] = static_cast<T>(std::cos(x));
       });
 }
 
-void exponential(const Step& step, int lanes) {
-  double* const to = step.to;
-  within(
-      step, lanes, least_exponent, largest_exponent, [&](Wide x, int p) { store(to + p, exponential(x)); },
-      [&](double x, int p) { to[p] = std::exp(x); });
+template <class T>
+void exponentials(const Step<T>& step, int lanes) {
+  T* const to = step.to;
+  within<T>(
+      step, lanes, least_exponent<T>, largest_exponent<T>,
+      [&](Wide<T> x, int p) { store<T>(to + p, exponential<T>(x)); },
+      [&](double x, int p) { to[p] = static_cast<T>(std::exp(x)); });
 }
 
-void logarithm(const Step& step, int lanes) {
-  constexpr double least = std::numeric_limits<double>::min(), largest = std::numeric_limits<double>::max();
-  double* const to = step.to;
-  within(
-      step, lanes, least, largest, [&](Wide x, int p) { store(to + p, logarithm(x)); },
-      [&](double x, int p) { to[p] = std::log(x); });
+template <class T>
+void logarithms(const Step<T>& step, int lanes) {
+  constexpr T least = std::numeric_limits<T>::min(), largest = std::numeric_limits<T>::max();
+  T* const to = step.to;
+  within<T>(
+      step, lanes, least, largest, [&](Wide<T> x, int p) { store<T>(to + p, logarithm<T>(x)); },
+      [&](double x, int p) { to[p] = static_cast<T>(std::log(x)); });
 }
 
 /// Whole powers in lanes, as long as no part of a product is too large or too small to be split.
-void whole_power(const Step& step, int lanes) {
-  constexpr double least = 1e-200, largest = 1e200;
-  double* const to = step.to;
-  for_each_pack(lanes, [&](int p) { store(to + p, whole_power(get<false>(step.of[0], p), step.exponent)); });
+template <class T>
+void whole_powers(const Step<T>& step, int lanes) {
+  constexpr T least = is_float<T> ? T(1e-20) : T(1e-200), largest = is_float<T> ? T(1e20) : T(1e200);
+  T* const to = step.to;
+  for_each_pack<T>(lanes, [&](int p) { store<T>(to + p, whole_power<T>(get<false>(step.of[0], p), step.exponent)); });
   for (int p = 0; p < lanes; ++p)
-    if (const double size = std::abs(to[p]); !(size >= least && size <= largest))
-      to[p] = std::pow(step.of[0][p], step.exponent);
+    if (const T size = std::abs(to[p]); !(size >= least && size <= largest))
+      to[p] = static_cast<T>(std::pow(static_cast<double>(step.of[0][p]), step.exponent));
 }
 
-void square_root(const Step& step, int lanes) {
-  const double* const from = step.of[0].values;
-  double* const __restrict to = step.to;
+template <class T>
+void square_root(const Step<T>& step, int lanes) {
+  const T* const from = step.of[0].values;
+  T* const __restrict to = step.to;
   for (int p = 0; p < lanes; ++p) to[p] = std::sqrt(from[p]);
 }
 
-void alternative(const Step& step, int lanes) {
-  const Values condition = step.of[0], yes = step.of[1], no = step.of[2];
-  for_each_pack(
-      lanes, [&](int p) { store(step.to + p, choose((Bits)(load(condition, p) != 0.0), load(yes, p), load(no, p))); });
+template <class T>
+void alternative(const Step<T>& step, int lanes) {
+  const Values<T> condition = step.of[0], yes = step.of[1], no = step.of[2];
+  for_each_pack<T>(lanes, [&](int p) {
+    store<T>(step.to + p, choose<T>((Bits<T>)(load(condition, p) != T(0)), load(yes, p), load(no, p)));
+  });
 }
 
-void by_library(const Step& step, int lanes) {
-  const Values a = step.of[0], b = step.of[operands(step.operation) > 1 ? 1 : 0];
-  for (int p = 0; p < lanes; ++p) step.to[p] = value_of(step.operation, a[p], b[p], 0);
+template <class T>
+void by_library(const Step<T>& step, int lanes) {
+  const Values<T> a = step.of[0], b = step.of[operands(step.operation) > 1 ? 1 : 0];
+  for (int p = 0; p < lanes; ++p) step.to[p] = static_cast<T>(value_of(step.operation, a[p], b[p], 0));
 }
 
 // ---- choice ---------------------------------------------------------------------------------------------------------
 
-constexpr auto sum = [](Wide x, Wide y) { return x + y; };
-constexpr auto difference = [](Wide x, Wide y) { return x - y; };
-constexpr auto reversed_difference = [](Wide x, Wide y) { return y - x; };
-constexpr auto simple_product = [](Wide x, Wide y) { return x * y; };
-constexpr auto quotient = [](Wide x, Wide y) { return x / y; };
-constexpr auto smaller = [](Wide x, Wide y) { return choose((Bits)(y < x), y, x); };
-constexpr auto larger = [](Wide x, Wide y) { return choose((Bits)(x < y), y, x); };
-constexpr auto less = [](Wide x, Wide y) { return one_where((Bits)(x < y)); };
-constexpr auto greater = [](Wide x, Wide y) { return one_where((Bits)(x > y)); };
-constexpr auto less_or_equal = [](Wide x, Wide y) { return one_where((Bits)(x <= y)); };
-constexpr auto greater_or_equal = [](Wide x, Wide y) { return one_where((Bits)(x >= y)); };
-constexpr auto equal = [](Wide x, Wide y) { return one_where((Bits)(x == y)); };
-constexpr auto unequal = [](Wide x, Wide y) { return one_where((Bits)(x != y)); };
-constexpr auto both = [](Wide x, Wide y) { return one_where((Bits)(x != 0.0) & (Bits)(y != 0.0)); };
-constexpr auto either = [](Wide x, Wide y) { return one_where((Bits)(x != 0.0) | (Bits)(y != 0.0)); };
-constexpr auto negative = [](Wide x) { return -x; };
-constexpr auto size = [](Wide x) { return magnitude(x); };
-constexpr auto whole_below = [](Wide x) { return floor_of(x); };
+/// What instructions do to packs.
+template <class T>
+struct Functions {
+  using W = Wide<T>;
+  using B = Bits<T>;
+  static constexpr auto sum = [](W x, W y) { return x + y; };
+  static constexpr auto difference = [](W x, W y) { return x - y; };
+  static constexpr auto reversed_difference = [](W x, W y) { return y - x; };
+  static constexpr auto simple_product = [](W x, W y) { return x * y; };
+  static constexpr auto quotient = [](W x, W y) { return x / y; };
+  static constexpr auto smaller = [](W x, W y) { return choose<T>((B)(y < x), y, x); };
+  static constexpr auto larger = [](W x, W y) { return choose<T>((B)(x < y), y, x); };
+  static constexpr auto less = [](W x, W y) { return one_where<T>((B)(x < y)); };
+  static constexpr auto greater = [](W x, W y) { return one_where<T>((B)(x > y)); };
+  static constexpr auto less_or_equal = [](W x, W y) { return one_where<T>((B)(x <= y)); };
+  static constexpr auto greater_or_equal = [](W x, W y) { return one_where<T>((B)(x >= y)); };
+  static constexpr auto equal = [](W x, W y) { return one_where<T>((B)(x == y)); };
+  static constexpr auto unequal = [](W x, W y) { return one_where<T>((B)(x != y)); };
+  static constexpr auto both = [](W x, W y) { return one_where<T>((B)(x != T(0)) & (B)(y != T(0))); };
+  static constexpr auto either = [](W x, W y) { return one_where<T>((B)(x != T(0)) | (B)(y != T(0))); };
+  static constexpr auto negative = [](W x) { return -x; };
+  static constexpr auto size = [](W x) { return magnitude<T>(x); };
+  static constexpr auto whole_below = [](W x) { return floor_of<T>(x); };
+};
 
 /// Which of the values of an instruction are the same at all points.
 struct Same {
   bool a, b, c;
 };
 
-template <class Function>
-Work binary_work(Function, Same same) {
-  if (same.a) return &binary<Function, true, false>;
-  return same.b ? &binary<Function, false, true> : &binary<Function, false, false>;
+template <class T, class Function>
+Work<T> binary_work(Function, Same same) {
+  if (same.a) return &binary<T, Function, true, false>;
+  return same.b ? &binary<T, Function, false, true> : &binary<T, Function, false, false>;
 }
 
-template <class Function, class Next>
-Work chained_work(Function, Next, Same same) {
+template <class T, class Function, class Next>
+Work<T> chained_work(Function, Next, Same same) {
   if (same.a)
-    return same.c ? &chained<Function, Next, true, false, true> : &chained<Function, Next, true, false, false>;
+    return same.c ? &chained<T, Function, Next, true, false, true> : &chained<T, Function, Next, true, false, false>;
   if (same.b)
-    return same.c ? &chained<Function, Next, false, true, true> : &chained<Function, Next, false, true, false>;
-  return same.c ? &chained<Function, Next, false, false, true> : &chained<Function, Next, false, false, false>;
+    return same.c ? &chained<T, Function, Next, false, true, true> : &chained<T, Function, Next, false, true, false>;
+  return same.c ? &chained<T, Function, Next, false, false, true> : &chained<T, Function, Next, false, false, false>;
 }
 
-template <class Function>
-Work arithmetic_work(Function function, Then then, Same same) {
+template <class T, class Function>
+Work<T> arithmetic_work(Function function, Then then, Same same) {
+  using F = Functions<T>;
   switch (then) {
     case Then::nothing:
       break;
     case Then::add:
-      return chained_work(function, sum, same);
+      return chained_work<T>(function, F::sum, same);
     case Then::subtract:
-      return chained_work(function, difference, same);
+      return chained_work<T>(function, F::difference, same);
     case Then::subtract_from:
-      return chained_work(function, reversed_difference, same);
+      return chained_work<T>(function, F::reversed_difference, same);
     case Then::multiply:
-      return chained_work(function, simple_product, same);
+      return chained_work<T>(function, F::simple_product, same);
   }
-  return binary_work(function, same);
+  return binary_work<T>(function, same);
 }
 
-Work comparison_work(Operation operation, Same same) {
+template <class T>
+Work<T> comparison_work(Operation operation, Same same) {
+  using F = Functions<T>;
   switch (operation) {
     case Operation::less:
-      return binary_work(less, same);
+      return binary_work<T>(F::less, same);
     case Operation::greater:
-      return binary_work(greater, same);
+      return binary_work<T>(F::greater, same);
     case Operation::less_or_equal:
-      return binary_work(less_or_equal, same);
+      return binary_work<T>(F::less_or_equal, same);
     case Operation::greater_or_equal:
-      return binary_work(greater_or_equal, same);
+      return binary_work<T>(F::greater_or_equal, same);
     case Operation::equal:
-      return binary_work(equal, same);
+      return binary_work<T>(F::equal, same);
     case Operation::unequal:
-      return binary_work(unequal, same);
+      return binary_work<T>(F::unequal, same);
     case Operation::both:
-      return binary_work(both, same);
+      return binary_work<T>(F::both, same);
     case Operation::either:
-      return binary_work(either, same);
+      return binary_work<T>(F::either, same);
     case Operation::choose:
-      return &alternative;
+      return &alternative<T>;
     default:
-      return &by_library;
+      return &by_library<T>;
   }
 }
 
-template <class Function>
-Work unary_work(Function) {
-  return &unary<Function>;
+template <class T, class Function>
+Work<T> unary_work(Function) {
+  return &unary<T, Function>;
 }
 
 }  // namespace
 
-Work work_of(const Instruction& instruction) {
+template <class T>
+Work<T> work_of(const Instruction& instruction) {
+  using F = Functions<T>;
   const auto is_same = [&](int i) { return instruction.of[i].kind != Source::Kind::in_register; };
   const Same same{is_same(0), is_same(1), is_same(2)};
   switch (instruction.operation) {
     case Operation::negate:
-      return unary_work(negative);
+      return unary_work<T>(F::negative);
     case Operation::abs:
-      return unary_work(size);
+      return unary_work<T>(F::size);
     case Operation::floor:
-      return unary_work(whole_below);
+      return unary_work<T>(F::whole_below);
     case Operation::sqrt:
-      return &square_root;
+      return &square_root<T>;
     case Operation::sin:
-      return instruction.and_cosine ? &circular<true, true> : &circular<true, false>;
+      return instruction.and_cosine ? &circular<T, true, true> : &circular<T, true, false>;
     case Operation::cos:
-      return &circular<false, true>;
+      return &circular<T, false, true>;
     case Operation::exp:
-      return &exponential;
+      return &exponentials<T>;
     case Operation::log:
-      return &logarithm;
+      return &logarithms<T>;
     case Operation::whole_power:
-      return &whole_power;
+      return &whole_powers<T>;
     case Operation::add:
-      return arithmetic_work(sum, instruction.then, same);
+      return arithmetic_work<T>(F::sum, instruction.then, same);
     case Operation::subtract:
-      return arithmetic_work(difference, instruction.then, same);
+      return arithmetic_work<T>(F::difference, instruction.then, same);
     case Operation::multiply:
-      return arithmetic_work(simple_product, instruction.then, same);
+      return arithmetic_work<T>(F::simple_product, instruction.then, same);
     case Operation::divide:
-      return binary_work(quotient, same);
+      return binary_work<T>(F::quotient, same);
     case Operation::min:
-      return binary_work(smaller, same);
+      return binary_work<T>(F::smaller, same);
     case Operation::max:
-      return binary_work(larger, same);
+      return binary_work<T>(F::larger, same);
     default:
-      return comparison_work(instruction.operation, same);
+      return comparison_work<T>(instruction.operation, same);
   }
 }
+
+template Work<double> work_of<double>(const Instruction&);
+template Work<float> work_of<float>(const Instruction&);
 
 }  // namespace mpm::formula

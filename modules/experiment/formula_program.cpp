@@ -105,7 +105,7 @@ Program::Program(const Graph& graph, const std::vector<int>& outputs) {
     if (!layout.live[n] || layout.comes_along[n] || place[n].kind != Source::Kind::none) continue;
     if (term.operation == Operation::constant) {
       place[n] = {Source::Kind::constant, static_cast<int>(constants_.size())};
-      std::fill_n(constants_.emplace_back().values, pack_size, term.constant);
+      constants_.push_back(term.constant);
       continue;
     }
     std::array<Source, 3> of;
@@ -125,7 +125,6 @@ Program::Program(const Graph& graph, const std::vector<int>& outputs) {
       if (term.operation == Operation::cos) std::swap(instruction.to, instruction.cosine_to);
       instruction.operation = Operation::sin, instruction.and_cosine = true;
     }
-    instruction.work = work_of(instruction);
     instructions_.push_back(instruction);
     for (const int operand : layout.reads[n]) {
       if (last[operand] != n || place[operand].kind != Source::Kind::in_register) continue;
@@ -137,24 +136,35 @@ Program::Program(const Graph& graph, const std::vector<int>& outputs) {
   registers_ = registers.count();
 }
 
-void Program::begin(double t, Space& space) const {
+template <class T>
+void Program::begin(double t, Space<T>& space) const {
   if (space.registers.size() < static_cast<std::size_t>(registers_)) space.registers.resize(registers_);
-  if (space.of_call.size() < call_instructions_.size()) space.of_call.resize(call_instructions_.size());
+  space.constants.resize(constants_.size());
+  for (std::size_t n = 0; n < constants_.size(); ++n)
+    std::fill_n(space.constants[n].values, pack_size<T>, static_cast<T>(constants_[n]));
+  space.of_call.resize(call_instructions_.size()), space.packs_of_call.resize(call_instructions_.size());
   for (std::size_t n = 0; n < call_instructions_.size(); ++n) {
     const CallInstruction& instruction = call_instructions_[n];
     std::array<double, 3> values{t, 0, 0};
-    for (int i = 0; i < operands(instruction.operation); ++i) values[i] = find(instruction.of[i], space)[0];
-    std::fill_n(space.of_call[n].values, pack_size, value_of(instruction.operation, values[0], values[1], values[2]));
+    for (int i = 0; i < operands(instruction.operation); ++i) {
+      const Source& of = instruction.of[i];
+      values[i] = of.kind == Source::Kind::constant ? constants_[of.index] : space.of_call[of.index];
+    }
+    space.of_call[n] = value_of(instruction.operation, values[0], values[1], values[2]);
+    std::fill_n(space.packs_of_call[n].values, pack_size<T>, static_cast<T>(space.of_call[n]));
   }
   space.steps.clear();
   for (const Instruction& instruction : instructions_)
     space.steps.push_back(
-        {instruction.work,
+        {work_of<T>(instruction),
          instruction.operation,
          instruction.exponent,
          space.registers[instruction.to].values,
          space.registers[instruction.cosine_to].values,
          {find(instruction.of[0], space), find(instruction.of[1], space), find(instruction.of[2], space)}});
 }
+
+template void Program::begin<double>(double, Space<double>&) const;
+template void Program::begin<float>(double, Space<float>&) const;
 
 }  // namespace mpm::formula

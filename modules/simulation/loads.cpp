@@ -205,16 +205,17 @@ Vector3 BodyLoads::acceleration(std::size_t id, const Vector3& x, const Vector3&
   return sum;
 }
 
-void BodyLoads::accelerations(std::size_t count, const std::int32_t* ids, const PointArrays& at, double time,
-                              const std::array<double*, 3>& result, FirstFailure& failures) const {
+template <class T>
+void BodyLoads::accelerations(std::size_t count, const std::int32_t* ids, const PointArrays<T>& at, double time,
+                              const std::array<T*, 3>& result, FirstFailure& failures) const {
   bool good = accelerations_.front().expression->evaluate(count, at, time, result) == count;
   constexpr std::size_t piece = 64;
-  double values[3][piece];
-  const std::array<double*, 3> more{values[0], values[1], values[2]};
-  const auto from = [](const double* array, std::size_t first) { return array ? array + first : nullptr; };
+  T values[3][piece];
+  const std::array<T*, 3> more{values[0], values[1], values[2]};
+  const auto from = [](const T* array, std::size_t first) { return array ? array + first : nullptr; };
   for (std::size_t k = 1; k < accelerations_.size(); ++k)
     for (std::size_t first = 0; first < count; first += piece) {
-      PointArrays here;
+      PointArrays<T> here;
       for (int c = 0; c < dimension_; ++c) here.x[c] = from(at.x[c], first), here.X[c] = from(at.X[c], first);
       const std::size_t n = std::min(piece, count - first);
       good = accelerations_[k].expression->evaluate(n, here, time, more) == n && good;
@@ -231,6 +232,11 @@ void BodyLoads::accelerations(std::size_t count, const std::int32_t* ids, const 
     if (!finite(sum)) note_acceleration(ids ? static_cast<std::size_t>(ids[p]) : p, x, X, time, failures);
   }
 }
+
+template void BodyLoads::accelerations(std::size_t, const std::int32_t*, const PointArrays<double>&, double,
+                                       const std::array<double*, 3>&, FirstFailure&) const;
+template void BodyLoads::accelerations(std::size_t, const std::int32_t*, const PointArrays<float>&, double,
+                                       const std::array<float*, 3>&, FirstFailure&) const;
 
 /// Notes what makes the acceleration of a particle not finite.
 void BodyLoads::note_acceleration(std::size_t id, const Vector3& x, const Vector3& X, double time,

@@ -144,7 +144,7 @@ TEST_CASE("a point has the same bits wherever it stands among others", "[express
   for (std::size_t p = 0; p < x.size(); ++p)
     for (int c = 0; c < 3; ++c) arrays[c].push_back(x[p][c]), arrays[3 + c].push_back(X[p][c]);
   std::vector<double> y(x.size()), alone(x.size());
-  formula.evaluate(
+  formula.evaluate<double>(
       x.size(),
       {{arrays[0].data(), arrays[1].data(), arrays[2].data()}, {arrays[3].data(), arrays[4].data(), arrays[5].data()}},
       0.3, {nullptr, y.data(), nullptr});
@@ -191,6 +191,155 @@ TEST_CASE("what is not finite is named with its operation and numbers", "[expres
   CHECK(std::isnan(found[90][1]));
   CHECK(found[99][1] == 1);
   CHECK(formula.not_finite(points[70], points[70], 0)->component == 1);
+}
+
+// ---- float ----------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Values of a formula of x and y at points in float.
+std::vector<float> float_values(const VectorExpression& formula, const std::vector<float>& x,
+                                const std::vector<float>& y) {
+  std::vector<float> found(x.size());
+  formula.evaluate<float>(x.size(), {{x.data(), y.data(), nullptr}, {}}, 0.5, {found.data(), nullptr, nullptr});
+  return found;
+}
+
+/// How far a float is from a number, in units of the float nearest to it; 0 where both are beyond the range alike.
+double float_ulps(float found, double exact) {
+  const auto nearest = static_cast<float>(exact);
+  if (std::isnan(found) || std::isnan(exact)) return std::isnan(found) && std::isnan(exact) ? 0 : infinity;
+  if (found == nearest) return 0;
+  if (std::isinf(found) || std::isinf(nearest)) return infinity;
+  const float unit = std::nextafter(std::abs(nearest), std::numeric_limits<float>::infinity()) - std::abs(nearest);
+  return std::abs(static_cast<double>(found) - exact) / static_cast<double>(unit);
+}
+
+}  // namespace
+
+TEST_CASE("functions in lanes of float are within 1 or 1.5 units in the last place", "[expression][formula]") {
+  struct Range {
+    const char* text;
+    double lower, upper;
+    double (*exact)(double);
+    double most;
+  };
+  const Range ranges[] = {{"sin(x)", -30, 30, std::sin, 1.5},
+                          {"cos(x)", -30, 30, std::cos, 1.5},
+                          {"sin(x)", -800, 800, std::sin, 1.5},
+                          {"cos(x)", -800, 800, std::cos, 1.5},
+                          {"sin(x)", -1e5, 1e5, std::sin, 1.5},
+                          {"exp(x)", -87, 88, std::exp, 1},
+                          {"exp(x)", -1, 1, std::exp, 1},
+                          {"exp(x)", -104, -86, std::exp, 1},
+                          {"log(x)", 1e-37, 1e38, std::log, 1},
+                          {"log(x)", 0.4, 2.5, std::log, 1},
+                          {"x^5", -3, 3, [](double x) { return x * x * x * x * x; }, 1},
+                          {"x^3", -3, 3, [](double x) { return x * x * x; }, 1.5},
+                          {"x^(-7)", 0.3, 3, [](double x) { return std::pow(x, -7); }, 1.5},
+                          {"x^20", 0.1, 30, [](double x) { return std::pow(x, 20); }, 1}};
+  std::mt19937_64 random(3);
+  for (const Range& range : ranges) {
+    std::vector<float> x(40000);
+    for (float& value : x) {
+      const double u = static_cast<double>(random() >> 11) / 0x1p53;
+      const bool decades = range.upper / range.lower > 1e10;
+      value = static_cast<float>(decades ? std::exp(std::log(range.lower) + u * std::log(range.upper / range.lower))
+                                         : range.lower + u * (range.upper - range.lower));
+    }
+    // The hardest angles are nearest to the multiples of a quarter turn.
+    for (int k = 0; k < 2000; ++k)
+      if (const double near = std::numbers::pi / 2 * k; near <= range.upper && near >= range.lower)
+        x[static_cast<std::size_t>(k)] = static_cast<float>(near);
+    const std::vector<float> found = float_values(formula_of(range.text), x, x);
+    double worst = 0;
+    for (std::size_t p = 0; p < x.size(); ++p)
+      worst = std::max(worst, float_ulps(found[p], range.exact(static_cast<double>(x[p]))));
+    INFO(range.text << " from " << range.lower << " to " << range.upper << " errs by " << worst << " ulp");
+    CHECK(worst <= range.most);
+  }
+}
+
+TEST_CASE("every function and operator has the values of the C library at special floats", "[expression][formula]") {
+  constexpr float tiny = std::numeric_limits<float>::denorm_min(), least = std::numeric_limits<float>::min(),
+                  most = std::numeric_limits<float>::max(), end = std::numeric_limits<float>::infinity();
+  const std::vector<float> special{0.0F,
+                                   -0.0F,
+                                   1.0F,
+                                   -1.0F,
+                                   0.5F,
+                                   -0.5F,
+                                   2.0F,
+                                   3.0F,
+                                   -3.0F,
+                                   tiny,
+                                   -tiny,
+                                   least,
+                                   most,
+                                   -most,
+                                   1e19F,
+                                   -1e19F,
+                                   1e-19F,
+                                   3000.0F,
+                                   3001.0F,
+                                   88.0F,
+                                   89.0F,
+                                   -87.0F,
+                                   -88.0F,
+                                   2.5F,
+                                   -2.5F,
+                                   0x1p22F,
+                                   0x1p23F,
+                                   -0x1p24F,
+                                   end,
+                                   -end,
+                                   std::numeric_limits<float>::quiet_NaN()};
+  std::vector<float> x, y;
+  for (const float a : special)
+    for (const float b : special) x.push_back(a), y.push_back(b);
+  std::vector<std::string> texts{"-x",  "x+y",  "x-y",  "x*y",  "x/y",  "x<y",   "x<=y",
+                                 "x>y", "x>=y", "x==y", "x!=y", "x&&y", "x||y",  "x?y:7",
+                                 "x^2", "x^5",  "x^17", "x^-1", "x^-5", "x^2.5", "sin(x)+0*cos(x)"};
+  for (const std::string& name : expression_functions()) {
+    if (name == "if")
+      texts.emplace_back("if(x, y, 3)");
+    else
+      texts.push_back(name + (name == "atan2" || name == "pow" || name == "min" || name == "max" ? "(x, y)" : "(x)"));
+  }
+  for (const std::string& text : texts) {
+    const VectorExpression formula = formula_of(text);
+    const std::vector<float> found = float_values(formula, x, y);
+    for (std::size_t p = 0; p < x.size(); ++p) {
+      const Vector3 point{static_cast<double>(x[p]), static_cast<double>(y[p]), 0};
+      const double expected = formula(point, point, 0.5)[0];
+      if (float_ulps(found[p], expected) <= 2) continue;
+      if (std::abs(expected) < 4 * static_cast<double>(least) && text.find('^') != std::string::npos)
+        continue;  // its end
+      INFO(text << " at x = " << x[p] << ", y = " << y[p] << " is " << found[p] << ", expected " << expected);
+      CHECK(float_ulps(found[p], expected) <= 2);
+    }
+  }
+}
+
+TEST_CASE("formulas in float find what depends on time alone in double, and the first point that fails",
+          "[expression][formula]") {
+  // A float knows 1e6 t to 1/16 only, so the sine would be wrong in its first digits.
+  const VectorExpression formula(std::vector<VectorExpression::Term>{"x*sin(1e6*t)", "sqrt(y)", "1e30*x*x"},
+                                 formula_scope);
+  std::vector<float> x(100, 2), y(100, 4), first(100), second(100), third(100);
+  const double t = 0.7300001;
+  CHECK(formula.evaluate<float>(100, {{x.data(), y.data(), nullptr}, {}}, t,
+                                {first.data(), second.data(), third.data()}) == 100);
+  CHECK(float_ulps(first[99], 2 * std::sin(1e6 * t)) <= 1);
+  CHECK(second[0] == 2);
+  y[70] = -4, x[63] = 1e10F;  // beyond the largest float, though no double
+  CHECK(formula.evaluate<float>(100, {{x.data(), y.data(), nullptr}, {}}, t,
+                                {first.data(), second.data(), third.data()}) == 63);
+  for (std::size_t count : {1ul, 15ul, 17ul, 65ul}) {  // whatever stands beside a point
+    std::vector<float> part(count);
+    formula.evaluate<float>(count, {{x.data(), y.data(), nullptr}, {}}, t, {part.data(), nullptr, nullptr});
+    CHECK(std::equal(part.begin(), part.end(), first.begin()));
+  }
 }
 
 // ---- the page -------------------------------------------------------------------------------------------------------

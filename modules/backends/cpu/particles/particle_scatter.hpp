@@ -368,28 +368,28 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::add_body_force(const Chunk& chunk, Work& work, double time, double factor) {
   const BodyLoads& loads = *chunk.body.loads;
   const bool asks_x = loads.accelerations_use_position(), asks_X = loads.accelerations_use_initial_position();
-  double x[D][chunk_size<T>], X[D][chunk_size<T>], f[D][chunk_size<T>];
-  PointArrays places;
-  std::array<double*, 3> forces{};
+  T x[D][chunk_size<T>], X[D][chunk_size<T>], f[D][chunk_size<T>];
+  PointArrays<T> places;
+  std::array<T*, 3> forces{};
   for (int a = 0; a < D; ++a) {
     forces[a] = f[a];
     if (asks_x) places.x[a] = x[a];
     if (asks_X) places.X[a] = X[a];
-    for (int p = 0; asks_x && p < chunk.count; ++p) x[a][p] = place_of(chunk, p, a);
+    for (int p = 0; asks_x && p < chunk.count; ++p) x[a][p] = static_cast<T>(place_of(chunk, p, a));
     for (int p = 0; asks_X && p < chunk.count; ++p)
-      X[a][p] = chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
+      X[a][p] = static_cast<T>(chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a]);
   }
   FirstFailure failures;
   loads.accelerations(static_cast<std::size_t>(chunk.count), chunk.ids, places, time, forces, failures);
   note_forces(failures);
-  const double mass = factor * chunk.body.mass;
+  const T mass = static_cast<T>(factor * chunk.body.mass);
   const T* const size = sizes(chunk);
   for (int c = 0; c < D; ++c) {
     T* const b = work.b + c * chunk_size<T>;
     if (size)
-      for (int p = 0; p < chunk.count; ++p) b[p] += static_cast<T>(mass * size[p] * f[c][p]);
+      for (int p = 0; p < chunk.count; ++p) b[p] += mass * size[p] * f[c][p];
     else
-      for (int p = 0; p < chunk.count; ++p) b[p] += static_cast<T>(mass * f[c][p]);
+      for (int p = 0; p < chunk.count; ++p) b[p] += mass * f[c][p];
   }
 }
 
