@@ -155,7 +155,7 @@ class Execution {
       try {
         prepare(task, run);
       } catch (const InputError& error) {
-        task.finish({Status::refused, reason_of(error)}, {});
+        task.finish({Status::refused, reason_of(error, study_, task.overrides())}, {});
         continue;
       }
       if (const auto earlier = runner_.earlier(run)) {
@@ -208,7 +208,7 @@ class Execution {
     for (const Result& result : results_.results) {
       if (result.outcome.reason == last) continue;
       last = result.outcome.reason;
-      problems.push_back({study_.base.string(), 0, 0, "", result.combination.name + ": " + last});
+      problems.push_back({study_.file.string(), 0, 0, "", result.combination.name + ": " + last});
     }
     throw InputError(std::move(problems));
   }
@@ -225,12 +225,29 @@ class Execution {
   std::size_t reported_ = 0;
 };
 
+/// The problem of a value that an override gave, at the place of the study's file where that stands. Those of the base,
+/// and of the command line of the study, are where they are.
+Problem located(Problem problem, const Study& study, const std::vector<std::string>& overrides) {
+  if (problem.line > 0 || (problem.file != "--set" && problem.file != "command line")) return problem;
+  std::size_t longest = 0;
+  for (const std::string& text : overrides) {
+    const std::string pointer = text.substr(0, text.find('='));
+    const bool within = problem.pointer == pointer || problem.pointer.starts_with(pointer + "/");
+    auto found = study.places.find(text);
+    if (found == study.places.end()) found = study.places.find(pointer);
+    if (!within || pointer.size() < longest) continue;
+    longest = pointer.size();
+    problem.file = found == study.places.end() ? "--set" : found->second;
+  }
+  return problem;
+}
+
 }  // namespace
 
-std::string reason_of(const InputError& error) {
+std::string reason_of(const InputError& error, const Study& study, const std::vector<std::string>& overrides) {
   std::string text;
   for (const Problem& problem : error.problems())
-    text += (text.empty() ? "" : "; ") + problem.pointer + (problem.pointer.empty() ? "" : ": ") + problem.message;
+    text += (text.empty() ? "" : "; ") + located(problem, study, overrides).text();
   return text;
 }
 
