@@ -169,8 +169,8 @@ int check_study(const RunOptions& options) {
       const Plan step = make_plan(experiment);
       if (!started) try_start(experiment, step), started = true;  // one stands for all: they differ in a few keys
     } catch (const InputError& error) {
-      refused.push_back({plan.file.string(), 0, 0, "",
-                         combination.name + ": " + study::reason_of(error, plan, read.overrides)});
+      refused.push_back(
+          {plan.file.string(), 0, 0, "", combination.name + ": " + study::reason_of(error, plan, read.overrides)});
     }
   }
   if (refused.size() == combinations.size()) throw InputError(std::move(refused));

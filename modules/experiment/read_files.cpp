@@ -88,8 +88,7 @@ Columns find_columns(const support::Table& table, const fs::path& path, int dime
     bool known = column == columns.volume || column == columns.mass;
     for (const auto* place : columns.place) known = known || column == place;
     if (!known)
-      throw mistake("column " + in_quotes(name) +
-                    " has no meaning here; known are x, y, in 3-D z, volume and mass");
+      throw mistake("column " + in_quotes(name) + " has no meaning here; known are x, y, in 3-D z, volume and mass");
   }
   if (table.rows() == 0) throw mistake("there is no point in the file");
   return columns;
@@ -115,8 +114,9 @@ std::vector<SeededPoint> read_seeded_points(const fs::path& path, int dimension,
   const support::Table table = support::read_csv(path);
   const Columns columns = find_columns(table, path, dimension);
   if (table.last_line_was_cut)
-    throw support::csv_mistake(path, table.lines.back() + 1,
-                               "the last line has no end, so that a part of it may be missing; end it with a line break");
+    throw support::csv_mistake(
+        path, table.lines.back() + 1,
+        "the last line has no end, so that a part of it may be missing; end it with a line break");
   const auto* const amounts = columns.volume ? columns.volume : columns.mass;
   have_volumes = amounts != nullptr;
   std::vector<SeededPoint> points;

@@ -19,8 +19,8 @@ void ExperimentReader::check_axisymmetric() {
                    "axisymmetric scenes are 2-D (x the radius, y the axis); set \"dimension\" to 2");
   check_axis();
   if (experiment_.has_gravity(0))
-    problem(nearest_node(root_, "/gravity"), "gravity cannot pull along the radius (x) of an axisymmetric scene: " +
-                                                 gravity_along_axis());
+    problem(nearest_node(root_, "/gravity"),
+            "gravity cannot pull along the radius (x) of an axisymmetric scene: " + gravity_along_axis());
   for (const MaterialSpecification& material : experiment_.materials) {
     const Plugin* const plugin = material.component.plugin;
     if (plugin && !(plugin->material().traits & MPM_STRAINS_AROUND_AXIS))

@@ -114,7 +114,7 @@ Scale scale_of_family(const std::string& name, const Sizes& sizes) {
   if (has("momentum")) return {sizes.momentum, "sum of m |v|"};
   if (has("moment of inertia")) return {sizes.mass * sizes.length() * sizes.length(), "mass times mean |x|^2"};
   if (has("moment")) return {sizes.over_time(sizes.angular_momentum), "sum of m |x| |v| over the simulated time"};
-  if (has("force")) return {sizes.over_time(sizes.momentum), "sum of m |v| over the simulated time"};
+  if (has("force") || has("reaction")) return {sizes.over_time(sizes.momentum), "sum of m |v| over the simulated time"};
   if (has("velocity") || has("speed")) return {sizes.speed(), "sum of m |v| over the mass"};
   if (has("centre of mass") || has("position") || has("displacement"))
     return {sizes.length(), "mean distance from the origin"};
@@ -127,7 +127,7 @@ Scale scale_of(const std::string& name, double largest, const Sizes& sizes) {
   const Scale family = scale_of_family(name, sizes);
   const bool sums_up = name.find("momentum") != std::string::npos;
   if (sums_up || largest < sizes.rounding * family.size) return family;
-  return {largest, "the largest of its components"};
+  return {largest, "the largest of its components over the run"};
 }
 
 /// The name without the component at its end: "velocity_x" and "contact force x" without theirs.
@@ -135,8 +135,7 @@ std::string without_component(const std::string& name) {
   const std::size_t last = name.find_last_of("_ /");
   if (last == std::string::npos || last == 0) return name;
   const std::string end = name.substr(last + 1);
-  const bool component =
-      !end.empty() && end.size() <= 2 && end.find_first_not_of("xyz") == std::string::npos;
+  const bool component = !end.empty() && end.size() <= 2 && end.find_first_not_of("xyz") == std::string::npos;
   return component ? name.substr(0, last) : name;
 }
 
@@ -146,8 +145,9 @@ std::string without_component(const std::string& name) {
 /// largest and smallest over the run.
 std::string group_of_pointer(std::string pointer) {
   for (const char* moment : {"/initial", "/final", "/smallest", "/largest"})
-    if (const std::size_t at = pointer.find(moment); at != std::string::npos)
-      pointer.erase(at, std::string(moment).size());
+    if (const std::size_t at = pointer.find(moment), end = at + std::string(moment).size();
+        at != std::string::npos && (end == pointer.size() || pointer[end] == '/'))
+      pointer.erase(at, end - at);
   return without_component(pointer);
 }
 
@@ -314,9 +314,11 @@ std::vector<std::string> lines_of(const std::vector<ValueDifference>& values) {
   return lines;
 }
 
-/// Those above the tolerance, the largest first.
+/// Those above the tolerance, the largest first; without books, which no tolerance judges.
 std::vector<NumberDifference> above(std::vector<NumberDifference> numbers, double tolerance) {
-  std::erase_if(numbers, [&](const NumberDifference& one) { return one.relative <= tolerance; });
+  std::erase_if(numbers, [&](const NumberDifference& one) {
+    return one.relative <= tolerance || (tolerance > 0 && is_book(one.name));
+  });
   std::stable_sort(numbers.begin(), numbers.end(),
                    [](const auto& a, const auto& b) { return a.relative > b.relative; });
   return numbers;

@@ -142,7 +142,8 @@ std::vector<Overlap> overlaps_of(const Experiment& experiment) {
   Places places(experiment);
   for (int a = 0; a < static_cast<int>(experiment.bodies.size()); ++a)
     for (int b = a + 1; b < static_cast<int>(experiment.bodies.size()); ++b) {
-      const Box shared = common(bounds_of(experiment, experiment.bodies[a]), bounds_of(experiment, experiment.bodies[b]));
+      const Box shared =
+          common(bounds_of(experiment, experiment.bodies[a]), bounds_of(experiment, experiment.bodies[b]));
       if (!has_volume(experiment, shared)) continue;
       const auto most_may_lie_in = [&](int body) {
         return 2 * count_within(places.of(body), shared, experiment.dimension) > places.of(body).size();
@@ -152,9 +153,8 @@ std::vector<Overlap> overlaps_of(const Experiment& experiment) {
                       places.bins_of(a).count_near(places.of(b), half)};
       const std::size_t first = places.of(a).size(), second = places.of(b).size();
       if (2 * overlap.of_first <= first && 2 * overlap.of_second <= second) continue;
-      overlap.identical =
-          first == second && places.bins_of(a).count_near(places.of(b), same_place) == second &&
-          places.bins_of(b).count_near(places.of(a), same_place) == first;
+      overlap.identical = first == second && places.bins_of(a).count_near(places.of(b), same_place) == second &&
+                          places.bins_of(b).count_near(places.of(a), same_place) == first;
       found.push_back(overlap);
     }
   return found;

@@ -78,12 +78,11 @@ void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
     if (wrong == state.velocity.end()) continue;
     const std::size_t particle = static_cast<std::size_t>(wrong - state.velocity.begin()) / D;
     const Vector3 x = place_of(state, particle, experiment.dimension);
-    const auto found =
-        experiment.bodies[body].velocity.not_finite(x, undeformed_place(experiment, body, particle), 0);
+    const auto found = experiment.bodies[body].velocity.not_finite(x, undeformed_place(experiment, body, particle), 0);
     const int component = static_cast<int>(static_cast<std::size_t>(wrong - state.velocity.begin()) % D);
-    problems.push_back(
-        problem_at(experiment, pointer_of(experiment.bodies[body].pointer + "/velocity", true, component),
-                   not_finite_text(particle_text(experiment, particle, x), found ? found->why : "")));
+    problems.push_back(problem_at(experiment,
+                                  pointer_of(experiment.bodies[body].pointer + "/velocity", true, component),
+                                  not_finite_text(particle_text(experiment, particle, x), found ? found->why : "")));
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }
@@ -113,8 +112,7 @@ std::string failure_text(const Failure& failure, const Simulation& simulation) {
 }
 
 std::string failure_text(const ImposedValue& imposed, const Simulation& simulation) {
-  return "step " + std::to_string(simulation.steps() + 1) + ": " +
-         problem_of(simulation.experiment(), imposed).text();
+  return "step " + std::to_string(simulation.steps() + 1) + ": " + problem_of(simulation.experiment(), imposed).text();
 }
 
 }  // namespace mpm::app

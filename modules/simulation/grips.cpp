@@ -10,7 +10,8 @@ Vector3 velocity_of(const Experiment& experiment, const Grip& grip, const Vector
   const Vector3 velocity = grip.velocity(x, X, time);
   for (std::size_t c = 0; c < 3; ++c)
     if (grip.held[c] && !std::isfinite(velocity[c]))
-      if (auto found = impossible_velocity(experiment, grip.velocity, grip.pointer + "/velocity", grip.held, x, X, time))
+      if (auto found =
+              impossible_velocity(experiment, grip.velocity, grip.pointer + "/velocity", grip.held, x, X, time))
         throw ImposedValueFailure(experiment, std::move(*found));
   return velocity;
 }

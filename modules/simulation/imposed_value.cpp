@@ -69,7 +69,8 @@ std::optional<ImposedValue> look(const Experiment& experiment, const ThermalCond
     }
     return std::nullopt;
   };
-  return look_in_rows(experiment, nodes, [&](int axis) { return condition.value.varies(axis); }, in_row);
+  return look_in_rows(
+      experiment, nodes, [&](int axis) { return condition.value.varies(axis); }, in_row);
 }
 
 /// A velocity that the file gives walls or boxes.
@@ -85,7 +86,8 @@ std::optional<ImposedValue> look(const Experiment& experiment, const ImposedVelo
   const auto in_row = [&](std::span<const Vector3> row) -> std::optional<ImposedValue> {
     values.resize(row.size());
     for (std::size_t n = velocity.value.evaluate(row, row, time, values); n < row.size(); ++n)
-      if (auto found = impossible_velocity(experiment, velocity.value, velocity.pointer, velocity.held, row[n], row[n], time))
+      if (auto found =
+              impossible_velocity(experiment, velocity.value, velocity.pointer, velocity.held, row[n], row[n], time))
         return found;
     return std::nullopt;
   };
@@ -198,8 +200,8 @@ std::optional<ImposedValue> impossible_velocity(const Experiment& experiment, co
 }
 
 Problem problem_of(const Experiment& experiment, const ImposedValue& imposed) {
-  const std::string at = "t = " + number_text(imposed.time) + " s" +
-                         (imposed.position.empty() ? "" : ", " + point_text(imposed.position));
+  const std::string at =
+      "t = " + number_text(imposed.time) + " s" + (imposed.position.empty() ? "" : ", " + point_text(imposed.position));
   return problem_at(experiment, imposed.pointer,
                     std::isfinite(imposed.value) ? "is " + number_text(imposed.value) + " " + imposed.unit +
                                                        ", below 0 " + imposed.unit + ", at " + at

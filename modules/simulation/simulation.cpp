@@ -12,7 +12,10 @@
 namespace mpm {
 
 Simulation::Simulation(const Experiment& experiment, const BackendFactory& make_backend)
-    : experiment_(experiment), plan_(make_plan(experiment)), solver_(solver_of(experiment)), imposes_by_time_(imposes_by_time(experiment)) {
+    : experiment_(experiment),
+      plan_(make_plan(experiment)),
+      solver_(solver_of(experiment)),
+      imposes_by_time_(imposes_by_time(experiment)) {
   for_each_pass(plan_.step, [&](const Pass& pass) {
     if (pass.has(Act::estimate_time_step)) estimate_every_ = pass.every_steps;
   });

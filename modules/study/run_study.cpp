@@ -228,16 +228,18 @@ class Execution {
 /// The problem of a value that an override gave, at the place of the study's file where that stands. Those of the base,
 /// and of the command line of the study, are where they are.
 Problem located(Problem problem, const Study& study, const std::vector<std::string>& overrides) {
-  if (problem.line > 0 || (problem.file != "--set" && problem.file != "command line")) return problem;
+  const bool of_override = problem.line == 0 && (problem.file == "--set" || problem.file == "command line");
   std::size_t longest = 0;
   for (const std::string& text : overrides) {
     const std::string pointer = text.substr(0, text.find('='));
-    const bool within = problem.pointer == pointer || problem.pointer.starts_with(pointer + "/");
+    const bool within = of_override && (problem.pointer == pointer || problem.pointer.starts_with(pointer + "/"));
+    const bool chose = pointer == problem.pointer + "/type";  // what is wrong with a choice is that of its type
+    if (!(within || chose) || pointer.size() < longest) continue;
+    longest = pointer.size();
     auto found = study.places.find(text);
     if (found == study.places.end()) found = study.places.find(pointer);
-    if (!within || pointer.size() < longest) continue;
-    longest = pointer.size();
     problem.file = found == study.places.end() ? "--set" : found->second;
+    problem.line = problem.column = 0;
   }
   return problem;
 }

@@ -91,7 +91,7 @@ struct Study {
   std::vector<std::string> overrides;  ///< from "limits", from "set", then from the command line
   std::vector<Axis> axes;
   std::optional<Bisection> bisection;
-  std::vector<Measure> measures;  ///< the file's, then the built-in ones
+  std::vector<Measure> measures;              ///< the file's, then the built-in ones
   std::map<std::string, std::string> places;  ///< "FILE:LINE:COLUMN" by override, of a bisection by its pointer
   std::string error, cost;                    ///< names of measures; `error` may be empty
   std::vector<FigureRequest> figures;

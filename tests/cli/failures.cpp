@@ -138,8 +138,8 @@ TEST_CASE("3: a load at points that is no number") {
       load["body"] = "ball";
       scene["loads"] = {{{"type", "body_force"}, {"body", "ball"}, {"acceleration", {0, "t"}}}, load};
       INFO(backend << " " << place);
-      fails(scene,
-            {"step 1, t = 0 s: particle ", ") m not a number: ", ": " + place + ": is not a finite number at t = 0 s: \""});
+      fails(scene, {"step 1, t = 0 s: particle ",
+                    ") m not a number: ", ": " + place + ": is not a finite number at t = 0 s: \""});
     }
 }
 
@@ -168,11 +168,14 @@ TEST_CASE("3: walls and boxes that impose what nothing can have, named with the 
   const Json beyond{{"coefficient", 2}, {"temperature", "50*(0.05-t)"}};
   const std::vector<std::pair<Json, std::string>> scenes{
       {wall("temperature", "50*(0.05-t)"), "/grid/boundaries/x_min/temperature" + zero + "(0, 0) m"},
-      {wall("temperature", "sqrt(0.051-t)*300"), "/grid/boundaries/x_min/temperature" + none + "(0, 0) m: \"sqrt(0.051-t)\"" + why + "sqrt(-0.001)"},
-      {wall("heat_flux", "log(0.051-t)"), "/grid/boundaries/x_min/heat_flux" + none + "(0, 0) m: \"log(0.051-t)\"" + why + "log(-0.001)"},
+      {wall("temperature", "sqrt(0.051-t)*300"),
+       "/grid/boundaries/x_min/temperature" + none + "(0, 0) m: \"sqrt(0.051-t)\"" + why + "sqrt(-0.001)"},
+      {wall("heat_flux", "log(0.051-t)"),
+       "/grid/boundaries/x_min/heat_flux" + none + "(0, 0) m: \"log(0.051-t)\"" + why + "log(-0.001)"},
       {wall("convection", beyond), "/grid/boundaries/x_min/convection/temperature" + zero + "(0, 0) m"},
       {box("temperature", "50*(0.05-t)"), "/node_conditions/0/temperature" + zero + "(0.4, 0.4) m"},
-      {box("heating", "log(0.051-t)"), "/node_conditions/0/heating" + none + "(0.4, 0.4) m: \"log(0.051-t)\"" + why + "log(-0.001)"}};
+      {box("heating", "log(0.051-t)"),
+       "/node_conditions/0/heating" + none + "(0.4, 0.4) m: \"log(0.051-t)\"" + why + "log(-0.001)"}};
   for (const auto& [scene, reason] : scenes) {
     const Folder folder;
     const Result result = run_scene(folder, scene);
@@ -189,7 +192,8 @@ TEST_CASE("3: walls and boxes that impose what nothing can have, named with the 
   }
 }
 
-TEST_CASE("3: walls, boxes, grips and gravity without a finite number are named with line, component, time and operation") {
+TEST_CASE(
+    "3: walls, boxes, grips and gravity without a finite number are named with line, component, time and operation") {
   const auto in_space = [](Json scene, int D) {
     if (D == 2) return scene;
     scene["dimension"] = 3;
@@ -206,9 +210,12 @@ TEST_CASE("3: walls, boxes, grips and gravity without a finite number are named 
     const std::string z = D == 2 ? ") m" : ", 0) m";
     Json wall = in_space(ball(), D), box = wall, grip = wall, pull = wall;
     wall["grid"]["boundaries"]["x_min"] = {{"type", "prescribed"}, {"velocity", velocity(root, 0)}};
-    box["node_conditions"] = {{{"type", "prescribed"}, {"lower", corner(0.4)}, {"upper", corner(0.6)},
+    box["node_conditions"] = {{{"type", "prescribed"},
+                               {"lower", corner(0.4)},
+                               {"upper", corner(0.6)},
                                {"velocity", velocity(nullptr, root + " + 0*x")}}};
-    grip["grips"] = {{{"body", "ball"}, {"where", {{"type", "box"}, {"lower", corner(0.4)}, {"upper", corner(0.6)}}},
+    grip["grips"] = {{{"body", "ball"},
+                      {"where", {{"type", "box"}, {"lower", corner(0.4)}, {"upper", corner(0.6)}}},
                       {"velocity", velocity(nullptr, root)}}};
     pull["gravity"] = velocity(0, root);
     struct Case {
@@ -230,8 +237,9 @@ TEST_CASE("3: walls, boxes, grips and gravity without a finite number are named 
         const std::string line = result.err.substr(first, result.err.find('\n', first) - first);
         const int step = pointer == "/gravity/1" ? 27 : 26;  // forces are those of the step's begin
         int row = 0, column = 0;
-        CHECK(std::sscanf(line.c_str(), ("the run failed: step " + std::to_string(step) + ": scene.json:%d:%d: ").c_str(),
-                          &row, &column) == 2);
+        CHECK(std::sscanf(line.c_str(),
+                          ("the run failed: step " + std::to_string(step) + ": scene.json:%d:%d: ").c_str(), &row,
+                          &column) == 2);
         CHECK(row > 1);
         CHECK(has(line, ": " + pointer + at + place));
         CHECK(has(line, why));

@@ -328,21 +328,24 @@ TEST_CASE("2: what a study sets wrongly is named with the study's line, what is 
         refusal("{\"base\": \"scene.json\",\n \"axes\": {\n  \"/transfer/type\": [\"flop\",\n   \"flup\"]}}", verb);
     CHECK(has(axis, "wrong.json: flop: wrong.json:3:22: /transfer/type: unknown transfer \"flop\""));
     CHECK(has(axis, "wrong.json: flup: wrong.json:4:4: /transfer/type: unknown transfer \"flup\""));
-    const std::string within = refusal("{\"base\": \"scene.json\",\n \"set\": {\"/solver\": {\"end_tim\": 1}},\n"
-                                       " \"axes\": {\"/seed\": [1]}}", verb);
-    CHECK(has(within, "wrong.json:2:20: /solver/end_tim: unknown key"));
+    const std::string within = refusal(
+        "{\"base\": \"scene.json\",\n \"set\": {\"/solver\": {\"end_tim\": 1}},\n"
+        " \"axes\": {\"/seed\": [1]}}",
+        verb);
+    CHECK(has(within, "wrong.json:2:21: /solver/end_tim: unknown key"));
     const std::string named = refusal(
         "{\"base\": \"scene.json\",\n \"axes\": {\"way\": {\"values\": [\n"
-        "  {\"label\": \"a\", \"set\": {\"/grid/cell_size\": -1}}]}}}", verb);
-    CHECK(has(named, "wrong.json:3:39: /grid/cell_size: "));
-    const std::string nowhere =
-        refusal("{\"base\": \"scene.json\",\n \"axes\": {\"/gird/cell_size\": [1]}}", verb);
+        "  {\"label\": \"a\", \"set\": {\"/grid/cell_size\": -1}}]}}}",
+        verb);
+    CHECK(has(named, "wrong.json:3:45: /grid/cell_size: "));
+    const std::string nowhere = refusal("{\"base\": \"scene.json\",\n \"axes\": {\"/gird/cell_size\": [1]}}", verb);
     CHECK(has(nowhere, "wrong.json:2:31: /gird/cell_size: "));
     // The plan refuses it, after the file was read.
     const std::string planned = refusal(
         "{\"base\": \"scene.json\",\n \"set\": {\"/shape/type\": \"cpdi\"},\n \"axes\": {\"/transfer/type\":\n"
-        "  [\"polypic\"]}}", verb);
-    CHECK(has(planned, "wrong.json:4:4: /transfer/type: transfer \"polypic\" carries products"));
+        "  [\"polypic\"]}}",
+        verb);
+    CHECK(has(planned, "wrong.json:4:4: /transfer: transfer \"polypic\" carries products"));
     Json base = breathing();
     base["solver"]["courant"] = 7;
     spill(folder / "scene.json", base.dump(1));

@@ -49,34 +49,6 @@ TEST_CASE("loads of every type are read", "[config][loads]") {
   CHECK(read_text(e.resolved.dump()).resolved == e.resolved);
 }
 
-TEST_CASE("a load on the axis alone, and gravity along the radius, are refused with what to write", "[config][loads]") {
-  const auto rod = [](const std::string& more) {
-    return R"({"dimension": 2, "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]], "symmetry": "axisymmetric"},
-      "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "flip"},
-      "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "density": 1000}},
-      "bodies": [{"name": "rod", "material": "m", "geometry": {"type": "box", "lower": [0, 0.2], "upper": [0.4, 0.8]}}],
-      "solver": {"end_time": 1})" +
-           more + "}";
-  };
-  const auto pressed = [&](const std::string& where) {
-    return errors(rod(R"(, "loads": [{"type": "pressure", "body": "rod", "pressure": 10, "where": )" + where + "}]"));
-  };
-  const std::string axis = pressed(R"({"type": "box", "lower": [0, 0.3], "upper": [0.001, 0.7]})");
-  INFO(axis);
-  CHECK(axis.find("/loads/0/where: of the surface of body \"rod\" this region holds the axis alone, where rings have no "
-                  "area") != std::string::npos);
-  CHECK(axis.find("take a region that holds surface at x > 0") != std::string::npos);
-  CHECK(pressed(R"({"type": "box", "lower": [0.39, 0.3], "upper": [0.41, 0.7]})") == "accepted");
-  CHECK(pressed(R"({"type": "half_space", "point": [0, 0.8], "normal": [0, -1]})") == "accepted");
-
-  const auto pulled = [&](const std::string& gravity) { return errors(rod(R"(, "gravity": )" + gravity)); };
-  CHECK(pulled("[-9.81, 0]").find("/gravity: gravity cannot pull along the radius (x) of an axisymmetric scene: write "
-                                  "[0, -9.81], which acts along the axis (y)") != std::string::npos);
-  CHECK(pulled("[1, -9.81]").find("write [0, -9.81], which") != std::string::npos);
-  CHECK(pulled(R"(["t", 0])").find("write [0, \"...\"], the formula as its second component") != std::string::npos);
-  CHECK(pulled("[0, -9.81]") == "accepted");
-}
-
 TEST_CASE("mistakes in loads are named with their place", "[config][loads]") {
   const auto check = [](const std::string& load, const std::string& text) {
     const std::string found = errors(with_loads(load));

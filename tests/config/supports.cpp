@@ -71,8 +71,8 @@ TEST_CASE("names of bodies and fields are words, as paths and headings of result
     for (const std::string key : {"name", "field"}) {
       const std::string found = errors(two_discs, {"/bodies/0/" + key + "=\"" + name + "\""});
       INFO(found);
-      CHECK(found.find("/bodies/0/" + key + ": \"" + name + "\" is no name here: letters, digits and _ alone; write \"") !=
-            std::string::npos);
+      CHECK(found.find("/bodies/0/" + key + ": \"" + name +
+                       "\" is no name here: letters, digits and _ alone; write \"") != std::string::npos);
     }
   CHECK(errors(two_discs, {"/bodies/0/name=a.b"}).find("write \"a_b\"") != std::string::npos);
   CHECK(errors(two_discs, {R"(/bodies/0/name="")"}).find("is no name here") != std::string::npos);
@@ -81,10 +81,12 @@ TEST_CASE("names of bodies and fields are words, as paths and headings of result
 
 TEST_CASE("a probe that never meets a particle is refused", "[config]") {
   const auto probe = [](const std::string& place) {
-    return first_line(errors(two_discs, {R"(/output/probes=[{"name": "p", "quantities": ["pressure"], )" + place + "}]"}));
+    return first_line(
+        errors(two_discs, {R"(/output/probes=[{"name": "p", "quantities": ["pressure"], )" + place + "}]"}));
   };
-  const std::string inside = " the domain, from (0, 0) to (1, 1) m, where no particle ever is; move it inside, or "
-                             "enlarge /grid/domain";
+  const std::string inside =
+      " the domain, from (0, 0) to (1, 1) m, where no particle ever is; move it inside, or "
+      "enlarge /grid/domain";
   const std::string at = "--set: /output/probes/0/";
   CHECK(probe(R"("nearest": [0.5, 1.5])") == at + "nearest: the point lies outside of" + inside);
   CHECK(probe(R"("place": [-0.1, 0.5])") == at + "place: the point lies outside of" + inside);

@@ -106,8 +106,7 @@ TEST_CASE("fields of particles agree with one another and with the state", "[met
 
 TEST_CASE("every state of every material and transfer is a field of particles by its name", "[metrics]") {
   for (const int D : {2, 3})
-    for (const std::string transfer :
-         {"pic", "flip", "apic", "mls", "rpic", "tpic", "aflip", "asflip", "polypic"})
+    for (const std::string transfer : {"pic", "flip", "apic", "mls", "rpic", "tpic", "aflip", "asflip", "polypic"})
       for (const std::string& material : {rubber, metal}) {
         INFO(D << " " << transfer << " " << material);
         Scene scene(block("bspline_quadratic", transfer, material, D));
@@ -128,7 +127,8 @@ TEST_CASE("every state of every material and transfer is a field of particles by
         CHECK(has("affine_velocity") == (state.transfer_state.count("affine_velocity") > 0));
         const bool polynomials = transfer == "polypic";
         CHECK(state.transfer_state.count("polynomial_coefficients") == polynomials);
-        for (const char* name : {"polynomial_11", "polynomial_110", "polynomial_101", "polynomial_011", "polynomial_111"})
+        for (const char* name :
+             {"polynomial_11", "polynomial_110", "polynomial_101", "polynomial_011", "polynomial_111"})
           CHECK(has(name) == (polynomials && (std::string(name).size() == 13) == (D == 2)));
       }
 }

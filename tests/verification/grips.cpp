@@ -158,7 +158,8 @@ TEST_CASE("a grip's velocity that is not finite has its place", "[grips]") {
       scene.run();
       FAIL("the run went on");
     } catch (const std::runtime_error& stopped) {
-      CHECK(std::string(stopped.what()).find(": /grips/0/velocity/0: is not a finite number at t = 0.11 s, (") != std::string::npos);
+      CHECK(std::string(stopped.what()).find(": /grips/0/velocity/0: is not a finite number at t = 0.11 s, (") !=
+            std::string::npos);
     }
   }
 }
