@@ -59,7 +59,7 @@ OrderedJson ExperimentReader::read_grip(const Node& node) {
 /// Refuses a velocity without any component, which would leave the material to itself.
 void ExperimentReader::refuse_nothing_held(const Fields& fields, const std::array<bool, 3>& held,
                                            const std::string& remedy) {
-  if (fields.valid("velocity") &&
+  if (fields.valid("velocity") && context_.dimension > 0 &&
       std::none_of(held.begin(), held.begin() + context_.dimension, [](bool h) { return h; }))
     problem(fields.place("velocity"),
             "holds nothing: every component is null; give one a velocity (0 holds it), or " + remedy);

@@ -8,6 +8,7 @@
 
 #include "experiment/diagnostics.hpp"
 #include "experiment/located_json.hpp"
+#include "solvers/solver.hpp"
 #include "study/bisection.hpp"
 #include "study/runner.hpp"
 
@@ -173,6 +174,7 @@ class Execution {
     ReadOptions read = read_;
     read.overrides = task.overrides();
     const Experiment experiment = read_experiment(study_.base, registry_, read);
+    make_plan(experiment);  // what does not run together is refused here, where the study's lines are known
     run.experiment = experiment.resolved;
     run.key = keys_(experiment);
   }

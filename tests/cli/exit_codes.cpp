@@ -255,6 +255,17 @@ TEST_CASE("2: a load on the axis alone, and gravity along the radius, are refuse
   CHECK(checked(pulled({0, -9.81})).code == 0);
 }
 
+TEST_CASE("2: a grip that holds nothing") {
+  Json scene = ball();
+  scene["grips"] = {{{"body", "ball"}, {"where", scene["bodies"][0]["geometry"]}, {"velocity", {nullptr, nullptr}}}};
+  refused_scene(scene,
+                "/grips/0/velocity: holds nothing: every component is null; give one a velocity (0 holds it), or "
+                "remove the grip");
+  scene["grips"][0]["velocity"][1] = 0;
+  const Folder folder;
+  CHECK(run_scene(folder, scene).code == 0);
+}
+
 TEST_CASE("damping of nothing is refused, and zeros that a study may set are warned of") {
   const Folder folder;
   Json scene = ball();

@@ -55,12 +55,7 @@ TEST_CASE("damping has a rate and a share", "[config]") {
   CHECK(errors(two_discs, {R"(/damping={"viscous": 1})"}).find("is one without damping") != std::string::npos);
 }
 
-TEST_CASE("a grip and a box that hold nothing are refused", "[config]") {
-  const std::string where = R"("where": {"type": "half_space", "point": [0.2, 0.2], "normal": [1, 0]})";
-  CHECK(first_line(errors(two_discs, {R"(/grips=[{"body": "left", )" + where + R"(, "velocity": [null, null]}])"})) ==
-        "--set: /grips/0/velocity: holds nothing: every component is null; give one a velocity (0 holds it), or remove "
-        "the grip");
-  CHECK(errors(two_discs, {R"(/grips=[{"body": "left", )" + where + R"(, "velocity": [null, 0]}])"}) == "accepted");
+TEST_CASE("a box that holds nothing is refused", "[config]") {
   CHECK(first_line(errors(two_discs, {"/node_conditions/1/velocity=[null, null]"})) ==
         "--set: /node_conditions/1/velocity: holds nothing: every component is null; give one a velocity (0 holds it), "
         "or take the type \"thermal\" for a box that holds a temperature alone");
