@@ -18,8 +18,8 @@ int compare(const CompareOptions& options) {
     throw;
   } catch (const support::MachineError&) {
     throw;
-  } catch (const std::runtime_error& error) {  // a table that is damaged
-    throw InputError({Problem{error.what(), 0, 0, "", "a recorded file cannot be read"}});
+  } catch (const std::runtime_error& error) {  // a file that is damaged
+    throw InputError({Problem{"", 0, 0, "", error.what()}});
   }
   if (options.json)
     std::cout << json_of(comparison, options.tolerance).dump(2) << "\n";

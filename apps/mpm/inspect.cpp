@@ -169,7 +169,8 @@ int check_study(const RunOptions& options) {
       const Plan step = make_plan(experiment);
       if (!started) try_start(experiment, step), started = true;  // one stands for all: they differ in a few keys
     } catch (const InputError& error) {
-      refused.push_back({plan.base.string(), 0, 0, "", combination.name + ": " + study::reason_of(error)});
+      refused.push_back(
+          {plan.file.string(), 0, 0, "", combination.name + ": " + study::reason_of(error, plan, read.overrides)});
     }
   }
   if (refused.size() == combinations.size()) throw InputError(std::move(refused));
@@ -203,6 +204,8 @@ int check(const RunOptions& options) {
             << (placed ? std::to_string(*placed) : "about " + std::to_string(plan.particles)) << " particles"
             << (placed ? "" : " (too many to be placed here)") << ", " << experiment.shape.plugin->id() << " + "
             << experiment.transfer.plugin->id() << "\n";
+  if (placed)
+    for (const std::string& warning : start_warnings(experiment)) std::cerr << "warning: " << warning << "\n";
   return done;
 }
 

@@ -206,9 +206,8 @@ Outcome step_or_say_why(Simulation& simulation, Recorder& recorder, Checkpoints&
 
 void draw(const Experiment& experiment, Recorder& recorder, const output::RunFolder& folder) {
   recorder.draw_frames();
-  const std::string run = folder.root().filename().string();
   const RunLabel label{experiment.title.empty() ? experiment.file.stem().string() : experiment.title,
-                       experiment.file.filename().string() + " · run " + run};
+                       experiment.file.filename().string()};  // not the folder: equal experiments have equal pictures
   const support::Table metrics = support::read_csv(folder.root() / "metrics.csv");
   draw_figures(experiment.figures, metrics, label, folder.figures());
   draw_figures(experiment.column_figures, metrics, label, folder.figures());

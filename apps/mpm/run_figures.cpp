@@ -281,9 +281,10 @@ const FigureKind& kind_of(const std::string& name) {
 /// A run folder's name, title and numbers.
 struct RecordedRun {
   std::filesystem::path folder;
-  std::string title, file;
+  std::string title, file;  ///< of the figures; of the folder, which tells runs apart
   Table metrics;
   std::vector<ColumnFigure> column_figures = {};
+  std::string experiment_file = "";  ///< as the run was given it
 };
 
 /// The figures of columns that a run's experiment asks for and its numbers have.
@@ -323,7 +324,11 @@ RecordedRun recorded(const std::filesystem::path& folder) {
       run.title = experiment["title"].get<std::string>();
     if (experiment.is_object()) run.column_figures = column_figures_of(experiment, run.metrics);
   }
-  if (run.title.empty()) run.title = run.folder.filename().string();
+  if (const auto file = run.folder / "manifest.json"; std::filesystem::is_regular_file(file, ignored)) {
+    const auto manifest = nlohmann::json::parse(support::read_file(file), nullptr, false);
+    if (manifest.is_object()) run.experiment_file = manifest.value("experiment_file", "");
+  }
+  if (run.title.empty()) run.title = std::filesystem::path(run.experiment_file).stem().string();
   run.file = run.folder.filename().string();
   return run;
 }
@@ -502,7 +507,7 @@ int figure(const std::vector<std::filesystem::path>& folders, const std::filesys
     std::vector<std::string> names;
     for (const std::string& name : figure_names())
       if (missing_for(name, runs.front().metrics).empty()) names.push_back(name);
-    const RunLabel label{runs.front().title, "run " + runs.front().file};
+    const RunLabel label{runs.front().title, runs.front().experiment_file};
     draw_figures(names, runs.front().metrics, label, target);
     draw_figures(runs.front().column_figures, runs.front().metrics, label, target);
   } else {

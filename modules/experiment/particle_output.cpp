@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/polynomials.hpp"
 #include "experiment/thermal.hpp"
 
 namespace mpm {
@@ -28,7 +29,7 @@ void add_state(const Component& component, std::vector<ParticleField>& fields) {
 }
 
 bool all_components_known(const Experiment& experiment) {
-  return experiment.transfer.plugin != nullptr && !experiment.materials.empty() &&
+  return experiment.shape.plugin != nullptr && experiment.transfer.plugin != nullptr && !experiment.materials.empty() &&
          std::all_of(experiment.materials.begin(), experiment.materials.end(),
                      [](const MaterialSpecification& material) { return material.component.plugin != nullptr; });
 }
@@ -211,6 +212,7 @@ std::vector<ParticleField> particle_fields(const Experiment& experiment) {
       fields.push_back({"melted_fraction", "", Shape::scalar});
   for (const MaterialSpecification& material : experiment.materials) add_state(material.component, fields);
   add_state(experiment.transfer, fields);
+  for (const std::string& name : polynomial_names(experiment)) fields.push_back({name, "m/s", Shape::vector});
   return fields;
 }
 

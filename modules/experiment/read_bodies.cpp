@@ -45,7 +45,7 @@ OrderedJson ExperimentReader::read_body(const Node& node) {
   body.velocity = fields.expression("velocity");
   if (fields.given("temperature")) body.temperature = fields.scalar_expression("temperature");
   body.material = material_index(fields);
-  if (fields.valid("name") && body.name.empty()) problem(fields.place("name"), "a body needs a name");
+  if (fields.valid("name")) check_word(fields, "name");
   for (const BodySpecification& other : experiment_.bodies) {
     if (fields.valid("name") && other.name == body.name) {
       problem(fields.place("name"), "there are two bodies named " + in_quotes(body.name));
@@ -69,9 +69,7 @@ OrderedJson ExperimentReader::read_body(const Node& node) {
   if (fields.given("field") && !experiment_.contact) {
     problem(fields.place("field"), "without \"contact\" all bodies share one velocity field; remove \"field\"");
   }
-  if (fields.given("field") && fields.valid("field") && fields.text("field").empty()) {
-    problem(fields.place("field"), "a field needs a name");
-  }
+  if (fields.given("field") && fields.valid("field")) check_word(fields, "field");
   field_choices_.push_back(fields.given("field") ? fields.text("field") : "");
   experiment_.bodies.push_back(std::move(body));
   return resolved;

@@ -1,5 +1,7 @@
 // Bodies from files: surfaces, pictures, points.
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "experiment/mask.hpp"
 #include "experiment/read_files.hpp"
@@ -70,23 +72,39 @@ struct Columns {
   const std::vector<double>*place[3]{}, *volume = nullptr, *mass = nullptr;
 };
 
-bool find_columns(const support::Table& table, int dimension, Columns& columns, std::string& why) {
+/// Throws what is wrong with the header.
+Columns find_columns(const support::Table& table, const fs::path& path, int dimension) {
   constexpr const char* axes[] = {"x", "y", "z"};
+  const auto mistake = [&](const std::string& what) { return support::csv_mistake(path, 1, what); };
+  Columns columns;
   for (int c = 0; c < dimension; ++c) {
     columns.place[c] = table.find(axes[c]);
-    if (!columns.place[c]) why = std::string("line 1: there is no column ") + in_quotes(axes[c]);
+    if (!columns.place[c]) throw mistake(std::string("there is no column ") + in_quotes(axes[c]));
   }
   columns.volume = table.find("volume"), columns.mass = table.find("mass");
-  if (columns.volume && columns.mass) why = "line 1: columns \"volume\" and \"mass\" say the same twice";
+  if (columns.volume && columns.mass) throw mistake("columns \"volume\" and \"mass\" say the same twice");
   for (const std::string& name : table.header) {
     const std::vector<double>* column = table.find(name);
     bool known = column == columns.volume || column == columns.mass;
     for (const auto* place : columns.place) known = known || column == place;
-    if (!known && why.empty())
-      why = "line 1: column " + in_quotes(name) + " has no meaning here; known are x, y, in 3-D z, volume and mass";
+    if (!known)
+      throw mistake("column " + in_quotes(name) + " has no meaning here; known are x, y, in 3-D z, volume and mass");
   }
-  if (why.empty() && table.rows() == 0) why = "there is no point in it";
-  return why.empty();
+  if (table.rows() == 0) throw mistake("there is no point in the file");
+  return columns;
+}
+
+/// Refuses two points in one place: as two particles they never part.
+void refuse_equal_points(const std::vector<SeededPoint>& points, const support::Table& table, const fs::path& path) {
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return points[a].place < points[b].place; });
+  for (std::size_t k = 1; k < order.size(); ++k)
+    if (points[order[k - 1]].place == points[order[k]].place)
+      throw support::csv_mistake(path, table.lines[order[k]],
+                                 "the point is that of line " + std::to_string(table.lines[order[k - 1]]) +
+                                     " again: two particles in one place never part; remove one of the lines");
 }
 
 }  // namespace
@@ -94,29 +112,32 @@ bool find_columns(const support::Table& table, int dimension, Columns& columns, 
 std::vector<SeededPoint> read_seeded_points(const fs::path& path, int dimension, const GridSpecification& grid,
                                             double density, bool& have_volumes) {
   const support::Table table = support::read_csv(path);
-  Columns columns;
-  std::string why;
-  if (!find_columns(table, dimension, columns, why)) throw std::runtime_error(path.string() + ": " + why);
+  const Columns columns = find_columns(table, path, dimension);
+  if (table.last_line_was_cut)
+    throw support::csv_mistake(
+        path, table.lines.back() + 1,
+        "the last line has no end, so that a part of it may be missing; end it with a line break");
   const auto* const amounts = columns.volume ? columns.volume : columns.mass;
   have_volumes = amounts != nullptr;
   std::vector<SeededPoint> points;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const std::string line = path.string() + ": line " + std::to_string(row + 2) + ": ";
+    const auto mistake = [&](const std::string& what) { return support::csv_mistake(path, table.lines[row], what); };
     SeededPoint point;
     for (int c = 0; c < dimension; ++c) {
       const double x = point.place[c] = (*columns.place[c])[row];
       if (!(x >= grid.lower[c] && x <= grid.upper[c]))
-        throw std::runtime_error(line + "the point lies outside the domain, or is no number");
+        throw mistake("the point lies outside the domain, or is no number");
     }
     if (grid.symmetry == Symmetry::axisymmetric && !(point.place[0] > 0))
-      throw std::runtime_error(line + "the point lies on the axis, where a ring has no volume");
+      throw mistake("the point lies on the axis, where a ring has no volume");
     if (amounts) {
       point.volume = (*amounts)[row] / (columns.mass ? density : 1);
       if (!(point.volume > 0) || !std::isfinite(point.volume))
-        throw std::runtime_error(line + "expected a " + (columns.mass ? "mass" : "volume") + " above 0");
+        throw mistake(std::string("expected a ") + (columns.mass ? "mass" : "volume") + " above 0");
     }
     points.push_back(point);
   }
+  refuse_equal_points(points, table, path);
   return points;
 }
 

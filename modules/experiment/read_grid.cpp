@@ -171,6 +171,7 @@ OrderedJson ExperimentReader::read_node_condition(const Node& node) {
   if (box.type == ConditionType::prescribed) {
     box.held = fields.held("velocity");
     box.velocity = fields.expression("velocity");
+    refuse_nothing_held(fields, box.held, "take the type \"thermal\" for a box that holds a temperature alone");
   }
   OrderedJson resolved = fields.resolved;
   box.thermal = read_thermal_condition(fields, context_, resolved);

@@ -152,7 +152,14 @@ void ExperimentReader::check_loaded_surface(const Load& load, const Node& where)
   const BodySpecification& body = experiment_.bodies[load.body];
   const GridSpecification& grid = experiment_.grid;
   const double spacing = grid.cell_size / std::max(1, body.particles_per_cell_axis);
-  if (!loaded_surface(load, *body.geometry, {grid.lower, grid.upper}, spacing / 2).empty()) return;
+  const Surface loaded = loaded_surface(load, *body.geometry, {grid.lower, grid.upper}, spacing / 2);
+  const auto on_axis = [&](const SurfacePiece& piece) { return piece.point[0] < 1e-9 * spacing; };
+  if (experiment_.axisymmetric() && !loaded.empty() && std::all_of(loaded.begin(), loaded.end(), on_axis))
+    return problem(
+        where, "of the surface of body " + in_quotes(body.name) +
+                   " this region holds the axis alone, where rings have no area, so that the load has nothing to act "
+                   "on; take a region that holds surface at x > 0, or a load of type \"force\" along the axis");
+  if (!loaded.empty()) return;
   problem(where, "none of the surface of body " + in_quotes(body.name) +
                      " lies in this region, so that the load has nothing to act on; a region that holds a face may "
                      "end on it, e.g. {\"type\": \"half_space\", \"point\": a point of the face, \"normal\": into the "

@@ -14,6 +14,13 @@ bool is_word(const std::string& text) {
                                       [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; });
 }
 
+/// The text with _ in place of what a name cannot have.
+std::string as_word(std::string text) {
+  for (char& c : text)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return text;
+}
+
 /// Whether any of them has this name already.
 template <class Named>
 bool taken(const std::vector<Named>& others, const std::string& name) {
@@ -70,11 +77,17 @@ OrderedJson ExperimentReader::read_group(const Node& node) {
   return resolved;
 }
 
+bool ExperimentReader::check_word(const Fields& fields, const char* key) {
+  const std::string& name = fields.text(key);
+  if (is_word(name)) return true;
+  problem(fields.place(key), in_quotes(name) + " is no name here: letters, digits and _ alone" +
+                                 (is_word(as_word(name)) ? "; write " + in_quotes(as_word(name)) : ""));
+  return false;
+}
+
 void ExperimentReader::check_record_name(const Fields& fields, bool is_taken, const char* what) {
   const std::string& name = fields.text("name");
-  if (!is_word(name))
-    problem(fields.place("name"), in_quotes(name) + " is no name here: letters, digits and _ alone");
-  else if (is_taken)
+  if (check_word(fields, "name") && is_taken)
     problem(fields.place("name"), std::string("there are two ") + what + " named " + in_quotes(name));
 }
 
@@ -103,8 +116,59 @@ OrderedJson ExperimentReader::read_probe(const Node& node) {
     probe.point = fields.vector(probe.kind == ProbeKind::nearest ? "nearest" : "place");
   if (probe.kind == ProbeKind::line) read_line(fields.nested("line"), probe, resolved["line"]);
   if (probe.kind == ProbeKind::section) read_section(fields.nested("section"), probe, resolved["section"]);
+  if (grid_good_ && given == 1) check_probe_inside(fields, probe);
   experiment_.output.probes.push_back(std::move(probe));
   return resolved;
+}
+
+/// Refuses a probe that never meets a particle: a point outside of the domain, a line or a section that passes it by.
+void ExperimentReader::check_probe_inside(const Fields& fields, const ProbeSpecification& probe) {
+  const GridSpecification& grid = experiment_.grid;
+  const auto inside = [&](const Vector3& point) {
+    bool good = true;
+    for (int c = 0; c < context_.dimension; ++c) {
+      const double slack = 1e-9 * (grid.upper[c] - grid.lower[c]);
+      good = good && point[c] >= grid.lower[c] - slack && point[c] <= grid.upper[c] + slack;
+    }
+    return good;
+  };
+  const auto refuse = [&](const char* key, const std::string& what) {
+    const auto corner = [&](const Vector3& at) {
+      std::string text = number_text(at[0]);
+      for (int c = 1; c < context_.dimension; ++c) text += ", " + number_text(at[c]);
+      return "(" + text + ")";
+    };
+    problem(fields.place(key), what + " the domain, from " + corner(grid.lower) + " to " + corner(grid.upper) +
+                                   " m, where no particle ever is; move it inside, or enlarge /grid/domain");
+  };
+  switch (probe.kind) {
+    case ProbeKind::nearest:
+    case ProbeKind::place: {
+      const char* const key = probe.kind == ProbeKind::nearest ? "nearest" : "place";
+      if (fields.valid(key) && !inside(probe.point)) refuse(key, "the point lies outside of");
+      return;
+    }
+    case ProbeKind::line: {
+      bool any = probe.count < 1;
+      for (int k = 0; k < probe.count && !any; ++k) {
+        Vector3 point{};
+        for (int c = 0; c < context_.dimension; ++c)
+          point[c] = probe.point[c] + (probe.end[c] - probe.point[c]) * k / std::max(1, probe.count - 1);
+        any = inside(point);
+      }
+      if (!any) refuse("line", "no point of the line lies in");
+      return;
+    }
+    case ProbeKind::section: {
+      double least = 0, most = 0;  // the distances from the plane within the domain
+      for (int c = 0; c < context_.dimension; ++c) {
+        const double low = (grid.lower[c] - probe.point[c]) * probe.normal[c];
+        const double high = (grid.upper[c] - probe.point[c]) * probe.normal[c];
+        least += std::min(low, high), most += std::max(low, high);
+      }
+      if (least > 0 || most < 0) refuse("section", "the section does not meet");
+    }
+  }
 }
 
 void ExperimentReader::read_line(const Fields& fields, ProbeSpecification& probe, OrderedJson& resolved) {

@@ -47,12 +47,22 @@ OrderedJson ExperimentReader::read_grip(const Node& node) {
   grip.body = body_index(fields);
   grip.held = fields.held("velocity");
   grip.velocity = fields.expression("velocity");
+  refuse_nothing_held(fields, grip.held, "remove the grip");
   if (const Node* region = fields.node("where")) grip.region = read_geometry(*region, context_, resolved["where"]);
   if (static_cast<std::size_t>(grip.body) < experiment_.bodies.size() && experiment_.bodies[grip.body].frozen)
     problem(fields.place("body"), "body " + in_quotes(experiment_.bodies[grip.body].name) +
                                       " is frozen: its particles stay in their places; remove one of them");
   experiment_.grips.push_back(std::move(grip));
   return resolved;
+}
+
+/// Refuses a velocity without any component, which would leave the material to itself.
+void ExperimentReader::refuse_nothing_held(const Fields& fields, const std::array<bool, 3>& held,
+                                           const std::string& remedy) {
+  if (fields.valid("velocity") && context_.dimension > 0 &&
+      std::none_of(held.begin(), held.begin() + context_.dimension, [](bool h) { return h; }))
+    problem(fields.place("velocity"),
+            "holds nothing: every component is null; give one a velocity (0 holds it), or " + remedy);
 }
 
 int ExperimentReader::body_index(const Fields& fields) {
@@ -70,6 +80,8 @@ void ExperimentReader::read_damping(const Node* node) {
   if (!node) return;
   const Fields fields(node, damping_section(), context_);
   experiment_.damping = {fields.number("viscous"), fields.number("local"), node->pointer};
+  if (!fields.given("viscous") && !fields.given("local"))
+    problem(*node, "damps nothing: give \"viscous\" (1/s) or \"local\" (a share), or remove \"damping\"");
   resolved_["damping"] = fields.resolved;
 }
 

@@ -18,10 +18,9 @@ void ExperimentReader::check_axisymmetric() {
     return problem(nearest_node(root_, "/grid/symmetry"),
                    "axisymmetric scenes are 2-D (x the radius, y the axis); set \"dimension\" to 2");
   check_axis();
-  const std::string axial = experiment_.gravity_changes[1] ? "..." : number_text(experiment_.gravity[1]);
   if (experiment_.has_gravity(0))
     problem(nearest_node(root_, "/gravity"),
-            "gravity has no radial component in an axisymmetric scene: [0, " + axial + "] acts along the axis");
+            "gravity cannot pull along the radius (x) of an axisymmetric scene: " + gravity_along_axis());
   for (const MaterialSpecification& material : experiment_.materials) {
     const Plugin* const plugin = material.component.plugin;
     if (plugin && !(plugin->material().traits & MPM_STRAINS_AROUND_AXIS))
@@ -41,6 +40,17 @@ void ExperimentReader::check_axisymmetric() {
               "an axisymmetric body has no " + in_quotes(metric) +
                   ": over whole rings it is zero by symmetry and is not recorded");
   }
+}
+
+/// What to write in place of gravity along the radius.
+std::string ExperimentReader::gravity_along_axis() const {
+  const std::string beside =
+      "; a pull along x wants a plane scene (remove /grid/symmetry) or one of \"dimension\" 3, and what "
+      "spins about the axis a /body_force, [\"w^2*x\", 0]";
+  if (experiment_.gravity_changes[0] || experiment_.gravity_changes[1])
+    return "write [0, \"...\"], the formula as its second component, which acts along the axis (y)" + beside;
+  const double axial = experiment_.gravity[1] != 0 ? experiment_.gravity[1] : experiment_.gravity[0];
+  return "write [0, " + number_text(axial) + "], which acts along the axis (y)" + beside;
 }
 
 /// Checks that nothing lies at r < 0, and that nothing passes the axis.

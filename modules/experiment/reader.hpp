@@ -44,6 +44,10 @@ class ExperimentReader {
   void read_line(const Fields& fields, ProbeSpecification& probe, OrderedJson& resolved);
   void read_section(const Fields& fields, ProbeSpecification& probe, OrderedJson& resolved);
   void read_column_figures(const Node* node);
+  void check_probe_inside(const Fields& fields, const ProbeSpecification& probe);
+  /// Whether the text of a key is a name out of letters, digits and _, as headings and paths of results need; else a
+  /// problem is recorded.
+  bool check_word(const Fields& fields, const char* key);
   void check_record_name(const Fields& fields, bool is_taken, const char* what);
   /// The index of a body, or -1 with a problem recorded.
   int body_index(const Node& place, const std::string& name);
@@ -74,10 +78,12 @@ class ExperimentReader {
   void read_grips(const Node* node);
   OrderedJson read_grip(const Node& node);
   int body_index(const Fields& fields);
+  void refuse_nothing_held(const Fields& fields, const std::array<bool, 3>& held, const std::string& remedy);
 
   // read_symmetry.cpp
   void check_axisymmetric();
   void check_axis();
+  std::string gravity_along_axis() const;
   void check_frozen();
 
   // read_seeding.cpp

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "experiment/polynomials.hpp"
 #include "metrics/particle_quantities.hpp"
 
 namespace mpm {
@@ -66,8 +67,9 @@ class Body {
       return;
     }
     const Component& own = experiment_.materials[experiment_.bodies[body_].material].component;
-    if (!plugin_state(*own.plugin, state_.material_state, name, to))
-      plugin_state(*experiment_.transfer.plugin, state_.transfer_state, name, to);
+    if (!plugin_state(*own.plugin, state_.material_state, name, to) &&
+        !plugin_state(*experiment_.transfer.plugin, state_.transfer_state, name, to))
+      coefficients(name, to);
   }
 
   /// F where the material keeps it: row-major in the plane or in space; null else.
@@ -161,6 +163,17 @@ class Body {
       return true;
     }
     return false;
+  }
+
+  /// Takes those of a polynomial beyond the affine ones, which the host keeps for the transfer, all of a particle together.
+  void coefficients(const std::string& name, double* to) const {
+    const std::vector<std::string> names = polynomial_names(experiment_);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) return;
+    const std::vector<double>& values = state_.transfer_state.at(polynomial_coefficients);
+    const std::size_t first = static_cast<std::size_t>(found - names.begin()) * D_, all = names.size() * D_;
+    for (std::size_t p = 0; p < count() && !values.empty(); ++p)
+      for (std::size_t i = 0; i < 3; ++i) to[3 * p + i] = i < D_ ? values[p * all + first + i] : 0;
   }
 
   const Experiment& experiment_;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "experiment/diagnostics.hpp"
+#include "experiment/problem_at.hpp"
 #include "plugin/extension_of.hpp"
 
 namespace mpm {
@@ -68,16 +68,8 @@ std::optional<Refusal> refusal_of(const Mix& mix) {
   return std::nullopt;
 }
 
-int basis_order_of(const Component& transfer) {
-  const auto* polynomials = extension_of<mpm_transfer_polynomials>(*transfer.plugin);
-  return polynomials ? polynomials->order(transfer.parameters.data()) : 0;
-}
-
 void refuse(const Experiment& experiment, const std::string& pointer, const std::string& message) {
-  Problem problem{experiment.file.string(), 0, 0, pointer, message};
-  for (const auto& [known, position] : experiment.positions)
-    if (known == pointer) problem.line = position.first, problem.column = position.second;
-  throw InputError({problem});
+  throw InputError({problem_at(experiment, pointer, message)});
 }
 
 std::vector<Mix> all_mixes(const Registry& registry) {

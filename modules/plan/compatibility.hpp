@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiment/experiment.hpp"
+#include "experiment/polynomials.hpp"
 
 namespace mpm {
 
@@ -20,9 +21,6 @@ struct Mix {
   bool filtered_every_step = true;
   int basis_order = 0;  ///< of the transfer, as its parameters ask for it (mpm_transfer_polynomials)
 };
-
-/// Highest power along an axis of the polynomials beyond affine that the transfer asks for; 0: none.
-int basis_order_of(const Component& transfer);
 
 struct Refusal {
   mpm_kind at;         ///< the component to change

@@ -63,8 +63,7 @@ void take_numbers(Plan& plan, const Experiment& experiment) {
   plan.velocity_fields = experiment.field_count;
   plan.ledger_every = experiment.output.ledger ? experiment.output.ledger_every : 0;
   plan.sample_points = static_cast<int>(shape.sample_points[experiment.dimension - 2]);
-  if (const int order = basis_order_of(experiment.transfer); order > 0)
-    plan.basis_order = std::min(order, static_cast<int>(shape.width) - 1);
+  plan.basis_order = basis_order_of(experiment.transfer, *experiment.shape.plugin);
   plan.basis_functions = basis_functions(experiment.dimension, plan.basis_order);
   const bool moment_is_gradient = shape.second_moment_kind == MPM_MOMENT_IS_GRADIENT;
   const bool affine = transfer.traits & (MPM_GATHERS_AFFINE | MPM_STRAIN_BY_AFFINE | MPM_STRESS_BY_AFFINE);

@@ -27,22 +27,33 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 const std::set<std::string> compared_otherwise{"experiment.json", "manifest.json", "summary.json", "report.html",
                                                "metrics.csv"};
 
+/// The object in a file; an empty one where there is no file, as a run that was killed leaves it.
 Json json_in(const fs::path& file) {
   if (!fs::is_regular_file(file)) return Json::object();
   Json json = Json::parse(support::read_file(file), nullptr, false);
-  return json.is_object() ? json : Json::object();
+  if (!json.is_object())
+    throw std::runtime_error(file.string() + " is damaged: it holds no JSON object; run the experiment again");
+  return json;
 }
 
 double size_of(double a, double b) {
   return std::max(std::abs(a), std::abs(b));
 }
 
-/// The difference of two numbers that are held against a size. Two that are not numbers are the same.
-std::optional<NumberDifference> difference(const std::string& name, double a, double b, double size) {
+/// A size that a number is held against, and what it is.
+struct Scale {
+  double size = 0;
+  std::string name;
+};
+
+/// The difference of two numbers that are held against a scale. Two that are not numbers are the same.
+std::optional<NumberDifference> difference(const std::string& name, double a, double b, const Scale& scale) {
   if (a == b || (std::isnan(a) && std::isnan(b))) return std::nullopt;
-  const double absolute = std::abs(a - b);
+  const double absolute = std::abs(a - b), own = size_of(a, b);
   if (!std::isfinite(absolute)) return NumberDifference{name, a, b, infinity, infinity};
-  return NumberDifference{name, a, b, absolute, absolute / std::max(size, size_of(a, b))};
+  const bool by_itself = !(scale.size > own);
+  const double size = by_itself ? own : scale.size;
+  return NumberDifference{name, a, b, absolute, absolute / size, size, by_itself ? "itself" : scale.name};
 }
 
 /// Whether a number is one of the ledger's books, which are rounding in a program without a fault and so are held
@@ -51,11 +62,18 @@ bool is_book(const std::string& name) {
   return name.starts_with("/energy/books") || name.starts_with("book ");
 }
 
-// ---- summary.json ------------------------------------------------------------------------------------------------
+// ---- scales --------------------------------------------------------------------------------------------------------
 
-/// Sizes of a pair of runs that numbers of a kind are held against.
+/// Numbers of a pair of runs that others are held against.
 struct Sizes {
-  double energy = 0, heat = 0, momentum = 0, angular_momentum = 0;
+  double energy = 0, heat = 0;
+  double momentum = 0, angular_momentum = 0;  ///< sum of m |v|, sum of m |x| |v|
+  double mass = 0, time = 0;
+  double rounding = 1e-9;  ///< what is below this share of the scale of its family is zero but for rounding
+
+  double length() const { return momentum > 0 ? angular_momentum / momentum : 0; }
+  double over_time(double size) const { return time > 0 ? size / time : 0; }
+  double speed() const { return mass > 0 ? momentum / mass : 0; }
 };
 
 double largest_below(const Json* value) {
@@ -68,47 +86,104 @@ double largest_below(const Json* value) {
   return largest;
 }
 
-Sizes sizes_of(const Json& a, const Json& b) {
+Sizes sizes_of(const Json& a, const Json& b, bool in_float) {
   Sizes sizes;
+  if (in_float) sizes.rounding = 1e-4;
   for (const Json* summary : {&a, &b}) {
-    const auto find = [&](const char* path) { return largest_below(output::value_at(*summary, path)); };
+    const auto take = [&](double& size, const char* path) {
+      size = std::max(size, largest_below(output::value_at(*summary, path)));
+    };
     for (const char* path : {"energy.kinetic", "energy.strain", "energy.gravitational", "energy.total"})
-      sizes.energy = std::max(sizes.energy, find(path));
-    for (const char* path : {"heat.content", "heat.latent"}) sizes.heat = std::max(sizes.heat, find(path));
-    sizes.momentum = std::max(sizes.momentum, find("scales.momentum"));
-    sizes.angular_momentum = std::max(sizes.angular_momentum, find("scales.angular_momentum"));
+      take(sizes.energy, path);
+    for (const char* path : {"heat.content", "heat.latent"}) take(sizes.heat, path);
+    take(sizes.momentum, "scales.momentum");
+    take(sizes.angular_momentum, "scales.angular_momentum");
+    take(sizes.mass, "mass");
+    take(sizes.time, "simulated_time");
   }
   return sizes;
 }
 
-/// The largest component of the vector that a pointer's number belongs to; 0 when it belongs to none.
-double vector_size(const Json& summary, const std::string& pointer) {
-  const std::size_t slash = pointer.rfind('/');
-  const std::string key = pointer.substr(slash + 1);
-  return key == "x" || key == "y" || key == "z" ? largest_below(output::value_at(summary, pointer.substr(0, slash)))
-                                                : 0;
+/// The scale of the family of quantities that a name tells of: what momentum, time and mass of the runs make of it. A
+/// name in blanks, as columns have it.
+Scale scale_of_family(const std::string& name, const Sizes& sizes) {
+  const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
+  if (has("angular momentum")) return {sizes.angular_momentum, "sum of m |x| |v|"};
+  if (has("angular velocity"))
+    return {sizes.length() > 0 ? sizes.speed() / sizes.length() : 0, "mean |v| over mean |x|"};
+  if (has("momentum")) return {sizes.momentum, "sum of m |v|"};
+  if (has("moment of inertia")) return {sizes.mass * sizes.length() * sizes.length(), "mass times mean |x|^2"};
+  if (has("moment")) return {sizes.over_time(sizes.angular_momentum), "sum of m |x| |v| over the simulated time"};
+  if (has("force") || has("reaction")) return {sizes.over_time(sizes.momentum), "sum of m |v| over the simulated time"};
+  if (has("velocity") || has("speed")) return {sizes.speed(), "sum of m |v| over the mass"};
+  if (has("centre of mass") || has("position") || has("displacement"))
+    return {sizes.length(), "mean distance from the origin"};
+  return {};
 }
 
-double size_in_summary(const std::string& pointer, const Json& a, const Json& b, const Sizes& sizes) {
+/// The scale of a vector, a tensor or a number of its own: the largest of its components over the runs. One that is zero
+/// but for rounding is held against its family, and so are momenta, which are sums in which much cancels.
+Scale scale_of(const std::string& name, double largest, const Sizes& sizes) {
+  const Scale family = scale_of_family(name, sizes);
+  const bool sums_up = name.find("momentum") != std::string::npos;
+  if (sums_up || largest < sizes.rounding * family.size) return family;
+  return {largest, "the largest of its components over the run"};
+}
+
+/// The name without the component at its end: "velocity_x" and "contact force x" without theirs.
+std::string without_component(const std::string& name) {
+  const std::size_t last = name.find_last_of("_ /");
+  if (last == std::string::npos || last == 0) return name;
+  const std::string end = name.substr(last + 1);
+  const bool component = !end.empty() && end.size() <= 2 && end.find_first_not_of("xyz") == std::string::npos;
+  return component ? name.substr(0, last) : name;
+}
+
+// ---- summary.json ------------------------------------------------------------------------------------------------
+
+/// What a pointer's number is held against together: all components of its vector, at the start, at the end, and the
+/// largest and smallest over the run.
+std::string group_of_pointer(std::string pointer) {
+  for (const char* moment : {"/initial", "/final", "/smallest", "/largest"})
+    if (const std::size_t at = pointer.find(moment), end = at + std::string(moment).size();
+        at != std::string::npos && (end == pointer.size() || pointer[end] == '/'))
+      pointer.erase(at, end - at);
+  return without_component(pointer);
+}
+
+void add_largest(const Json& value, const std::string& pointer, std::map<std::string, double>& largest) {
+  if (value.is_number()) {
+    double& size = largest[group_of_pointer(pointer)];
+    size = std::max(size, std::abs(value.get<double>()));
+  } else if (value.is_object()) {
+    for (const auto& [key, child] : value.items()) add_largest(child, pointer + "/" + key, largest);
+  }
+}
+
+Scale scale_in_summary(const std::string& pointer, const std::map<std::string, double>& largest, const Sizes& sizes) {
   const bool share =
       pointer.find("over_initial") != std::string::npos || pointer.ends_with("gain") || pointer.starts_with("/limits");
-  if (share) return 1;
-  if (pointer.starts_with("/energy")) return sizes.energy;
-  if (pointer.starts_with("/heat") && pointer.find("temperature") == std::string::npos) return sizes.heat;
-  if (pointer.starts_with("/momentum/linear") || pointer == "/contact/momentum_residual") return sizes.momentum;
-  if (pointer.starts_with("/momentum/angular")) return sizes.angular_momentum;
-  return std::max(vector_size(a, pointer), vector_size(b, pointer));
+  if (share) return {1, "one, as a share"};
+  if (pointer.starts_with("/energy")) return {sizes.energy, "the largest energy"};
+  if (pointer.starts_with("/heat") && pointer.find("temperature") == std::string::npos)
+    return {sizes.heat, "the largest heat"};
+  if (pointer.starts_with("/momentum/angular")) return {sizes.angular_momentum, "sum of m |x| |v|"};
+  std::string name = pointer;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  const auto group = largest.find(group_of_pointer(pointer));
+  return scale_of(name, group == largest.end() ? 0 : group->second, sizes);
 }
 
-void compare_summaries(Json a, Json b, RunComparison& result) {
+void compare_summaries(Json a, Json b, const Sizes& sizes, RunComparison& result) {
   for (Json* summary : {&a, &b}) summary->erase("performance");
-  const Sizes sizes = sizes_of(a, b);
+  std::map<std::string, double> largest;
+  for (const Json* summary : {&a, &b}) add_largest(*summary, "", largest);
   for (const output::JsonDifference& found : output::differences(a, b)) {
     const bool numbers = found.first && found.second && found.first->is_number() && found.second->is_number();
     if (!numbers) {
       result.words.push_back({found.pointer, output::short_text(found.first), output::short_text(found.second)});
     } else if (auto one = difference(found.pointer, found.first->get<double>(), found.second->get<double>(),
-                                     size_in_summary(found.pointer, a, b, sizes))) {
+                                     scale_in_summary(found.pointer, largest, sizes))) {
       result.numbers.push_back(std::move(*one));
     }
   }
@@ -122,12 +197,11 @@ std::string group_of(const std::string& header) {
   // In a plane energies are those a metre of depth.
   if (header.ends_with(" (J)") || header.ends_with(" (J/m)"))
     return name.find("heat") == std::string::npos ? "energies" : "heats";
-  const bool component = name.ends_with(" x") || name.ends_with(" y") || name.ends_with(" z");
-  return component ? name.substr(0, name.size() - 2) : name;
+  return without_component(name);
 }
 
-std::map<std::string, double> group_sizes(const Table& a, const Table& b, const Sizes& sizes) {
-  std::map<std::string, double> largest{{"momentum", sizes.momentum}, {"angular momentum", sizes.angular_momentum}};
+std::map<std::string, double> group_sizes(const Table& a, const Table& b) {
+  std::map<std::string, double> largest;
   for (const Table* table : {&a, &b})
     for (std::size_t k = 0; k < table->header.size(); ++k)
       for (const double value : table->columns[k])
@@ -165,13 +239,17 @@ void compare_tables(const Table& a, const Table& b, const Sizes& sizes, RunCompa
   result.only_second = missing_in(b.header, a.header);
   const auto rows = common_rows(a, b);
   result.rows_compared = rows.size();
-  const auto largest = group_sizes(a, b, sizes);
+  const auto largest = group_sizes(a, b);
   for (std::size_t k = 0; k < a.header.size(); ++k) {
     const std::vector<double>* other = b.find(a.header[k]);
     if (!other) continue;
+    const std::string group = group_of(a.header[k]);
+    const Scale scale = group == "energies" ? Scale{largest.at(group), "the largest energy"}
+                        : group == "heats"  ? Scale{largest.at(group), "the largest heat"}
+                                            : scale_of(group, largest.at(group), sizes);
     std::optional<NumberDifference> worst;
     for (const auto& [i, j] : rows) {
-      auto one = difference(a.header[k], a.columns[k][i], (*other)[j], largest.at(group_of(a.header[k])));
+      auto one = difference(a.header[k], a.columns[k][i], (*other)[j], scale);
       if (!one || (worst && !(one->absolute > worst->absolute))) continue;
       one->step = (*a.find("step"))[i];
       one->time = a.find("time") ? (*a.find("time"))[i] : 0;
@@ -236,9 +314,11 @@ std::vector<std::string> lines_of(const std::vector<ValueDifference>& values) {
   return lines;
 }
 
-/// Those above the tolerance, the largest first.
+/// Those above the tolerance, the largest first; without books, which no tolerance judges.
 std::vector<NumberDifference> above(std::vector<NumberDifference> numbers, double tolerance) {
-  std::erase_if(numbers, [&](const NumberDifference& one) { return one.relative <= tolerance; });
+  std::erase_if(numbers, [&](const NumberDifference& one) {
+    return one.relative <= tolerance || (tolerance > 0 && is_book(one.name));
+  });
   std::stable_sort(numbers.begin(), numbers.end(),
                    [](const auto& a, const auto& b) { return a.relative > b.relative; });
   return numbers;
@@ -250,6 +330,7 @@ std::vector<std::string> lines_of(const std::vector<NumberDifference>& numbers) 
     lines.push_back(
         one.name + ": " + exactly(one.first) + " | " + exactly(one.second) + ", differ by " +
         three_digits(one.absolute) + ", relative " + three_digits(one.relative) +
+        (one.held_against.empty() ? "" : " of " + three_digits(one.scale) + " (" + one.held_against + ")") +
         (one.step < 0 ? "" : ", most at step " + exactly(one.step) + ", t = " + three_digits(one.time) + " s"));
   return lines;
 }
@@ -268,7 +349,9 @@ Json json_of(const std::vector<NumberDifference>& numbers) {
                     {"first", one.first},
                     {"second", one.second},
                     {"absolute", one.absolute},
-                    {"relative", one.relative}});
+                    {"relative", one.relative},
+                    {"scale", one.scale},
+                    {"held_against", one.held_against}});
     if (one.step >= 0) list.back()["step"] = one.step, list.back()["time"] = one.time;
   }
   return list;
@@ -300,8 +383,10 @@ RunComparison compare_runs(const fs::path& first, const fs::path& second) {
   for (const output::JsonDifference& found : output::differences(experiment, other))
     result.experiment.push_back({found.pointer, output::short_text(found.first), output::short_text(found.second)});
   const Json summary = json_in(a / "summary.json"), other_summary = json_in(b / "summary.json");
-  compare_summaries(summary, other_summary, result);
-  compare_tables(table_in(a / "metrics.csv"), table_in(b / "metrics.csv"), sizes_of(summary, other_summary), result);
+  const auto in_float = [](const Json& file) { return file.value("precision", "") == "float"; };
+  const Sizes sizes = sizes_of(summary, other_summary, in_float(experiment) || in_float(other));
+  compare_summaries(summary, other_summary, sizes, result);
+  compare_tables(table_in(a / "metrics.csv"), table_in(b / "metrics.csv"), sizes, result);
   compare_files(a, b, result);
   return result;
 }

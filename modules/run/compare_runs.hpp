@@ -20,7 +20,9 @@ struct NumberDifference {
   std::string name;  ///< JSON pointer, or column of metrics.csv
   double first = 0, second = 0;
   double absolute = 0, relative = 0;
-  double step = -1, time = 0;  ///< of a column: where, s
+  double scale = 0;               ///< the size that it is held against
+  std::string held_against = "";  ///< what that size is: "sum of m |v|"; empty where one of the two is not a number
+  double step = -1, time = 0;     ///< of a column: where, s
 };
 
 struct RunComparison {
@@ -40,8 +42,9 @@ struct RunComparison {
   bool equal_within(double tolerance) const;
 };
 
-/// Compares two run folders. A column is held against its largest number, a component against that of its vector, an
-/// energy or heat against the largest of them all, a momentum against the scale that summary.json names. Throws
+/// Compares two run folders. A number is held against the largest of its vector over the runs, an energy or heat against
+/// the largest of them all, a momentum against the scale that summary.json names, and what is zero but for rounding (a
+/// force that cancels by symmetry) against what momentum, mass and time make of its family. Throws
 /// output::FolderRefused for what is no run, support::MachineError and std::runtime_error for what cannot be read.
 RunComparison compare_runs(const std::filesystem::path& first, const std::filesystem::path& second);
 

@@ -193,7 +193,7 @@ render::ParticleFrame Recorder::frame_template() const {
   frame.unit = description.unit;
   frame.cell_size = experiment.grid.cell_size;
   frame.title = experiment.title;
-  frame.footnote = experiment.file.filename().string() + " · run " + folder_.root().filename().string();
+  frame.footnote = experiment.file.filename().string();  // not the folder: equal experiments have equal pictures
   if (description.name == "body") {
     frame.map = render::ColourMap::categorical;
     for (const BodySpecification& body : experiment.bodies) frame.categories.push_back(body.name);

@@ -2,43 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
+#include "run/overlaps.hpp"
 #include "simulation/seeding.hpp"
 
 namespace mpm::app {
 namespace {
-
-/// What is wrong with a particle's initial temperature; an empty string where nothing is.
-std::string trouble_of_temperature(double temperature) {
-  if (!std::isfinite(temperature)) return "is not a finite number";
-  return temperature < 0 ? "is " + number_text(temperature) + " K, below 0 K," : "";
-}
-
-void refuse_impossible_temperatures(const Simulation& simulation) {
-  const Experiment& experiment = simulation.experiment();
-  if (!experiment.has_temperature()) return;
-  const std::size_t D = static_cast<std::size_t>(experiment.dimension);
-  std::vector<Problem> problems;
-  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
-    const BodyState state = simulation.backend().body_state(body);
-    const std::vector<double>& temperature = state.host_state.at("temperature");
-    const auto wrong = std::find_if_not(temperature.begin(), temperature.end(),
-                                        [](double T) { return trouble_of_temperature(T).empty(); });
-    if (wrong == temperature.end()) continue;
-    const std::size_t particle = static_cast<std::size_t>(wrong - temperature.begin());
-    problems.push_back(problem_at(experiment, experiment.bodies[body].pointer + "/temperature",
-                                  trouble_of_temperature(*wrong) + " at particle " + std::to_string(particle) + ", " +
-                                      point_text(std::span(state.position).subspan(particle * D, D))));
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
-}
-
-/// Refuses what formulas impose in the first step and nothing can have.
-void refuse_impossible_values(const Experiment& experiment) {
-  if (const auto imposed = impossible_value(experiment, {}, false))
-    throw InputError({problem_at(experiment, imposed->pointer, text_of(*imposed))});
-}
 
 /// Where a particle is before the initial displacement, m, which a run may not keep.
 Vector3 undeformed_place(const Experiment& experiment, int body, std::size_t particle) {
@@ -51,6 +20,53 @@ Vector3 undeformed_place(const Experiment& experiment, int body, std::size_t par
   return X;
 }
 
+/// A particle for messages: "particle 0, (0.4, 0.3) m".
+std::string particle_text(const Experiment& experiment, std::size_t particle, const Vector3& x) {
+  return "particle " + std::to_string(particle) + ", " + point_text(experiment, x);
+}
+
+Vector3 place_of(const BodyState& state, std::size_t particle, int dimension) {
+  Vector3 x{};
+  std::copy_n(&state.position[particle * static_cast<std::size_t>(dimension)], dimension, x.begin());
+  return x;
+}
+
+void refuse_impossible_temperatures(const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  if (!experiment.has_temperature()) return;
+  std::vector<Problem> problems;
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const BodyState state = simulation.backend().body_state(body);
+    const std::vector<double>& temperature = state.host_state.at("temperature");
+    const auto wrong =
+        std::find_if_not(temperature.begin(), temperature.end(), [](double T) { return std::isfinite(T) && T >= 0; });
+    if (wrong == temperature.end()) continue;
+    const std::size_t particle = static_cast<std::size_t>(wrong - temperature.begin());
+    const Vector3 x = place_of(state, particle, experiment.dimension);
+    const std::string at = particle_text(experiment, particle, x);
+    const auto found =
+        experiment.bodies[body].temperature->not_finite(x, undeformed_place(experiment, body, particle), 0);
+    problems.push_back(problem_at(experiment, experiment.bodies[body].pointer + "/temperature",
+                                  std::isfinite(*wrong) ? "is " + number_text(*wrong) + " K, below 0 K, at " + at
+                                                        : not_finite_text(at, found ? found->why : "")));
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+void refuse_identical_bodies(const Experiment& experiment) {
+  std::vector<Problem> problems;
+  for (const Overlap& overlap : overlaps_of(experiment))
+    if (overlap.identical)
+      problems.push_back(problem_at(experiment, experiment.bodies[overlap.second].pointer, overlap.text(experiment)));
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+/// Refuses what formulas impose in the first step and nothing can have.
+void refuse_impossible_values(const Experiment& experiment) {
+  if (const auto imposed = impossible_value(experiment, {}, false))
+    throw InputError({problem_of(experiment, *imposed)});
+}
+
 void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
   const Experiment& experiment = simulation.experiment();
   const std::size_t D = static_cast<std::size_t>(experiment.dimension);
@@ -61,28 +77,30 @@ void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
                                         [](double component) { return std::isfinite(component); });
     if (wrong == state.velocity.end()) continue;
     const std::size_t particle = static_cast<std::size_t>(wrong - state.velocity.begin()) / D;
-    Vector3 x{};
-    std::copy_n(&state.position[particle * D], D, x.begin());
-    const Vector3 X = undeformed_place(experiment, body, particle);
-    const std::optional<NotFinite> found = experiment.bodies[body].velocity.not_finite(x, X, 0);
-    const std::string why = found ? ": " + found->why : "";
-    problems.push_back(problem_at(experiment, experiment.bodies[body].pointer + "/velocity",
-                                  "is not a finite number at particle " + std::to_string(particle) + ", " +
-                                      point_text(std::span(state.position).subspan(particle * D, D)) + why));
+    const Vector3 x = place_of(state, particle, experiment.dimension);
+    const auto found = experiment.bodies[body].velocity.not_finite(x, undeformed_place(experiment, body, particle), 0);
+    const int component = static_cast<int>(static_cast<std::size_t>(wrong - state.velocity.begin()) % D);
+    problems.push_back(problem_at(experiment,
+                                  pointer_of(experiment.bodies[body].pointer + "/velocity", true, component),
+                                  not_finite_text(particle_text(experiment, particle, x), found ? found->why : "")));
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
 }  // namespace
 
-Problem problem_at(const Experiment& experiment, const std::string& pointer, const std::string& message) {
-  for (const auto& [known, place] : experiment.positions)
-    if (known == pointer && place.first > 0)
-      return {experiment.file.string(), place.first, place.second, pointer, message};
-  return {experiment.where(pointer), 0, 0, pointer, message};
+std::vector<std::string> start_warnings(const Experiment& experiment) {
+  std::vector<std::string> warnings;
+  for (const Overlap& overlap : overlaps_of(experiment)) warnings.push_back(overlap.text(experiment));
+  if (!experiment.damping.pointer.empty() && !experiment.damping.acts())
+    warnings.push_back(experiment.damping.pointer +
+                       " damps nothing, as \"viscous\" and \"local\" are 0: give one of them, or remove it "
+                       "(docs/experiment_file.md#damping)");
+  return warnings;
 }
 
 void refuse_impossible_starts(const Simulation& simulation) {
+  refuse_identical_bodies(simulation.experiment());
   refuse_velocities_that_are_no_numbers(simulation);
   refuse_impossible_temperatures(simulation);
   refuse_impossible_values(simulation.experiment());
@@ -94,7 +112,7 @@ std::string failure_text(const Failure& failure, const Simulation& simulation) {
 }
 
 std::string failure_text(const ImposedValue& imposed, const Simulation& simulation) {
-  return "step " + std::to_string(simulation.steps() + 1) + ": " + imposed.pointer + ": " + text_of(imposed);
+  return "step " + std::to_string(simulation.steps() + 1) + ": " + problem_of(simulation.experiment(), imposed).text();
 }
 
 }  // namespace mpm::app

@@ -7,6 +7,7 @@
 
 #include "experiment/diagnostics.hpp"
 #include "simulation/boundary.hpp"
+#include "simulation/formula_problem.hpp"
 
 namespace mpm {
 namespace {
@@ -98,11 +99,10 @@ Failure force_failure(const Experiment& experiment, const Load* load, int body, 
   if (found) failure.value = found->value;
   failure.name = value.name + (value.is_vector ? " along " + axis_name(failure) : "");
   failure.unit = value.unit;
-  std::string pointer = load ? load->pointer + "/" + value.key : experiment.body_force_pointer;
-  if (value.is_vector) pointer += "/" + std::to_string(failure.axis);
-  const std::string place = experiment.where(pointer);
-  failure.formula = (place.empty() ? "" : place + ": ") + pointer + " is not finite at t = " + number_text(time) + " s";
-  if (found) failure.formula += ": " + found->why;
+  const std::string pointer = load ? load->pointer + "/" + value.key : experiment.body_force_pointer;
+  failure.formula = problem_at(experiment, pointer_of(pointer, value.is_vector, failure.axis),
+                               not_finite_text("t = " + number_text(time) + " s", found ? found->why : ""))
+                        .text();
   return failure;
 }
 

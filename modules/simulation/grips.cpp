@@ -6,12 +6,13 @@
 
 namespace mpm {
 
-Vector3 velocity_of(const Grip& grip, const Vector3& x, const Vector3& X, double time) {
+Vector3 velocity_of(const Experiment& experiment, const Grip& grip, const Vector3& x, const Vector3& X, double time) {
   const Vector3 velocity = grip.velocity(x, X, time);
   for (std::size_t c = 0; c < 3; ++c)
     if (grip.held[c] && !std::isfinite(velocity[c]))
-      throw ImposedValueFailure(
-          {grip.pointer + "/velocity", "velocity", "m/s", velocity[c], time, std::vector<double>(x.begin(), x.end())});
+      if (auto found =
+              impossible_velocity(experiment, grip.velocity, grip.pointer + "/velocity", grip.held, x, X, time))
+        throw ImposedValueFailure(experiment, std::move(*found));
   return velocity;
 }
 

@@ -9,7 +9,7 @@ namespace mpm {
 
 /// The velocity that a grip gives a particle at x that began at X, m/s. Throws ImposedValueFailure where a component that
 /// it holds is not finite.
-Vector3 velocity_of(const Grip& grip, const Vector3& x, const Vector3& X, double time);
+Vector3 velocity_of(const Experiment& experiment, const Grip& grip, const Vector3& x, const Vector3& X, double time);
 
 /// What a grip gives its particles after they have gathered from nodes, of which it may hold only some.
 struct GivenToGripped {

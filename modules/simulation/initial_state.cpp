@@ -1,7 +1,6 @@
 #include "simulation/initial_state.hpp"
 
 #include <cmath>
-#include <sstream>
 
 #include "experiment/diagnostics.hpp"
 #include "plugin/extension_of.hpp"
@@ -11,18 +10,7 @@ namespace mpm {
 
 void refuse_body(const Experiment& experiment, const BodySpecification& body, const std::string& key,
                  const std::string& message) {
-  Problem problem{experiment.file.string(), 0, 0, body.pointer + key, message};
-  for (const auto& [pointer, position] : experiment.positions)
-    if (pointer == problem.pointer) problem.line = position.first, problem.column = position.second;
-  throw InputError({problem});
-}
-
-std::string place_text(const Experiment& experiment, const Vector3& place) {
-  std::ostringstream text;
-  text << "(";
-  for (int c = 0; c < experiment.dimension; ++c) text << (c ? ", " : "") << place[c];
-  text << ") m";
-  return text.str();
+  throw InputError({problem_at(experiment, body.pointer + key, message)});
 }
 
 Vector3 InitialState::undeformed(std::size_t p, std::size_t axis) const {
@@ -56,8 +44,15 @@ void InitialState::differentiate(std::span<const Vector3> X) {
 
 void InitialState::take_given(std::span<const Vector3> X) {
   if (!body_.deformation_gradient) return;
+  static constexpr const char* names[] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
   for (std::size_t p = 0; p < X.size(); ++p)
-    for (std::size_t k = 0; k < 9; ++k) F_[p][k] = (*body_.deformation_gradient)[k](X[p], X[p], 0);
+    for (std::size_t k = 0; k < 9; ++k) {
+      const ScalarExpression& component = (*body_.deformation_gradient)[k];
+      F_[p][k] = component(X[p], X[p], 0);
+      if (!std::isfinite(F_[p][k]))
+        refuse_not_finite(experiment_, body_, {std::string("/initial_deformation_gradient/") + names[k]}, component,
+                          X[p]);
+    }
 }
 
 void InitialState::find(std::span<const Vector3> X, std::span<const Vector3> x, std::span<const double> temperature,
@@ -95,7 +90,7 @@ void InitialState::strain(std::span<const Vector3> X, std::span<const double> te
                 : body_.displacement       ? "/initial_displacement"
                                            : "/initial_stress",
                 "turns a particle of material " + in_quotes(material.name) + " inside out, or is no number, at " +
-                    place_text(experiment_, X[chosen[rest.first_inverted()]]));
+                    point_text(experiment_, X[chosen[rest.first_inverted()]]));
   std::size_t number = 0;
   for (const mpm_state& declared : plugin.state()) {
     const std::size_t components = rest.components(number);
@@ -110,15 +105,21 @@ void InitialState::strain(std::span<const Vector3> X, std::span<const double> te
 
 void InitialState::take_stress(std::span<const Vector3> X, const std::vector<std::size_t>& chosen, MaterialAtRest& rest,
                                std::vector<std::array<double, 9>>& F) const {
+  static constexpr const char* names[] = {"xx", "yy", "zz", "yz", "xz", "xy"};
   std::vector<std::array<double, 6>> stress(chosen.size());
   for (std::size_t k = 0; k < chosen.size(); ++k)
-    for (std::size_t c = 0; c < 6; ++c) stress[k][c] = (*body_.stress)[c](X[chosen[k]], X[chosen[k]], 0);
+    for (std::size_t c = 0; c < 6; ++c) {
+      const Vector3& place = X[chosen[k]];
+      stress[k][c] = (*body_.stress)[c](place, place, 0);
+      if (!std::isfinite(stress[k][c]))
+        refuse_not_finite(experiment_, body_, {std::string("/initial_stress/") + names[c]}, (*body_.stress)[c], place);
+    }
   const std::size_t failed = deform_to_stress(experiment_, rest, stress, F);
   if (failed == chosen.size()) return;
   refuse_body(experiment_, body_, "/initial_stress",
               "no deformation from rest gives material " + in_quotes(experiment_.materials[body_.material].name) +
-                  " this stress at " + place_text(experiment_, X[chosen[failed]]) +
-                  ": it is no number, or the material yields before, or is not stiff enough");
+                  " this stress at " + point_text(experiment_, X[chosen[failed]]) +
+                  ": the material yields before, or is not stiff enough");
 }
 
 }  // namespace mpm

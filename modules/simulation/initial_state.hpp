@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiment/experiment.hpp"
+#include "simulation/formula_problem.hpp"
 
 namespace mpm {
 
@@ -48,7 +49,18 @@ class InitialState {
 /// Throws InputError at a key of a body.
 [[noreturn]] void refuse_body(const Experiment& experiment, const BodySpecification& body, const std::string& key,
                               const std::string& message);
-/// A place for messages: "(0.1, 0.2) m".
-std::string place_text(const Experiment& experiment, const Vector3& place);
+/// A key of a body under which a formula stands, or a list of them.
+struct BodyKey {
+  std::string name;
+  bool is_list = false;
+};
+/// Throws InputError where a formula of the place X that a particle has before it is moved, m, gives no finite number.
+template <class Expression>
+void refuse_not_finite(const Experiment& experiment, const BodySpecification& body, const BodyKey& key,
+                       const Expression& expression, const Vector3& X) {
+  if (const auto found = expression.not_finite(X, X, 0))
+    refuse_body(experiment, body, pointer_of(key.name, key.is_list, found->component),
+                not_finite_text(point_text(experiment, X), found->why));
+}
 
 }  // namespace mpm

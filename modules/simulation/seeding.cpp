@@ -9,6 +9,7 @@
 
 #include "experiment/diagnostics.hpp"
 #include "experiment/places.hpp"
+#include "simulation/formula_problem.hpp"
 #include "simulation/grips.hpp"
 #include "simulation/imposed_value.hpp"
 #include "simulation/initial_state.hpp"
@@ -17,10 +18,7 @@ namespace mpm {
 namespace {
 
 [[noreturn]] void refuse(const Experiment& experiment, const std::string& pointer, const std::string& message) {
-  Problem problem{experiment.file.string(), 0, 0, pointer, message};
-  for (const auto& [known, position] : experiment.positions)
-    if (known == pointer) problem.line = position.first, problem.column = position.second;
-  throw InputError({problem});
+  throw InputError({problem_at(experiment, pointer, message)});
 }
 
 /// Returns the first and last lattice index that may lie inside [lower, upper] on one axis.
@@ -134,7 +132,9 @@ class Seeder {
   void displace() {
     const std::size_t D = static_cast<std::size_t>(experiment_.dimension);
     std::vector<Vector3> u(points_.size());
-    body_.displacement->evaluate(points_, points_, 0, u);
+    const std::size_t finite = body_.displacement->evaluate(points_, points_, 0, u);
+    if (finite < points_.size())
+      refuse_not_finite(experiment_, body_, {"/initial_displacement", true}, *body_.displacement, points_[finite]);
     std::vector<double>& undeformed = field("initial_position", D);
     for (std::size_t p = 0; p < points_.size(); ++p)
       for (std::size_t c = 0; c < D; ++c) undeformed[p * D + c] = points_[p][c], moved_[p][c] += u[p][c];
@@ -147,7 +147,7 @@ class Seeder {
       for (int c = 0; c < experiment_.dimension; ++c)
         if (!(moved_[p][c] >= grid.lower[c] && moved_[p][c] <= grid.upper[c]))
           refuse_body(experiment_, body_, "/initial_displacement",
-                      "moves a particle out of the domain, or nowhere, from " + place_text(experiment_, points_[p]));
+                      "moves a particle out of the domain, from " + point_text(experiment_, points_[p]));
   }
 
   /// Seeds the temperature; a particle warmer than the melting temperature starts melted.
@@ -256,7 +256,7 @@ class Seeder {
                  "holds particles that grip " +
                      in_quotes(experiment_.grips[static_cast<std::size_t>(holder[p]) - 1].name) + " holds too");
         holder[p] = static_cast<double>(k + 1);
-        const Vector3 velocity = velocity_of(grip, moved_[p], x, 0);
+        const Vector3 velocity = velocity_of(experiment_, grip, moved_[p], x, 0);
         for (std::size_t c = 0; c < D; ++c)
           if (grip.held[c]) velocity_[p * D + c] = velocity[c];
       }
@@ -325,7 +325,7 @@ void refuse_impossible_grips(const Experiment& experiment, int body, const Seede
                                                  holder + batch.count);
       });
     } catch (const ImposedValueFailure& failure) {
-      refuse(experiment, failure.imposed.pointer, failure.what());
+      throw InputError({problem_of(experiment, failure.imposed)});
     }
     if (!holds)
       refuse(experiment, grip.pointer + "/where",

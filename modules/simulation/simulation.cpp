@@ -12,7 +12,10 @@
 namespace mpm {
 
 Simulation::Simulation(const Experiment& experiment, const BackendFactory& make_backend)
-    : experiment_(experiment), plan_(make_plan(experiment)), solver_(solver_of(experiment)) {
+    : experiment_(experiment),
+      plan_(make_plan(experiment)),
+      solver_(solver_of(experiment)),
+      imposes_by_time_(imposes_by_time(experiment)) {
   for_each_pass(plan_.step, [&](const Pass& pass) {
     if (pass.has(Act::estimate_time_step)) estimate_every_ = pass.every_steps;
   });
@@ -121,8 +124,7 @@ void Simulation::gather(const Step& step, StepInfo& info) {
 void Simulation::begin(StepInfo& info) {
   if (chosen_) return;
   dt_ = info.dt = time_step_from(time_);
-  if (experiment_.has_temperature() || experiment_.changing_gravity)
-    stop_at_impossible_value(experiment_, {time_, time_ + dt_});
+  if (imposes_by_time_) stop_at_impossible_value(experiment_, {time_, time_ + dt_});
   info.filtered = filter_due();
   chosen_ = true;
 }

@@ -87,6 +87,7 @@ class Simulation {
   const Experiment& experiment_;
   Plan plan_;
   const Solver& solver_;
+  const bool imposes_by_time_;  ///< whether a formula of walls, boxes or gravity has to be looked at in each step
   std::unique_ptr<Backend> backend_;
   double time_ = 0, dt_ = 0, estimate_ = 0, smallest_ = 0, largest_ = 0;
   std::string limited_by_, smallest_limited_by_;

@@ -77,7 +77,7 @@ std::optional<double> number_of(const Node& value) {
 }
 
 std::optional<Choice> pointer_choice(const std::string& pointer, const Node& value, std::optional<double> scale,
-                                     ReadContext& context) {
+                                     StudyContext& context) {
   Choice choice{label_of(value), number_of(value), {}};
   OrderedJson set = json_of(value);
   if (scale) {
@@ -88,11 +88,12 @@ std::optional<Choice> pointer_choice(const std::string& pointer, const Node& val
     set = value.number * *scale;
   }
   choice.overrides.push_back(pointer + "=" + set.dump());
+  context.keep_place(choice.overrides.back(), value);
   return choice;
 }
 
 void read_pointer_values(Axis& axis, const std::string& pointer, const Node& values, const Fields* fields,
-                         ReadContext& context) {
+                         StudyContext& context) {
   axis.pointers = {pointer};
   std::optional<double> scale;
   if (fields && fields->given("scale")) scale = fields->number("scale");
@@ -106,7 +107,7 @@ void read_pointer_values(Axis& axis, const std::string& pointer, const Node& val
   for (std::size_t k = 0; k < std::min(labels.size(), axis.choices.size()); ++k) axis.choices[k].label = labels[k];
 }
 
-void read_named_values(Axis& axis, const Node& values, ReadContext& context) {
+void read_named_values(Axis& axis, const Node& values, StudyContext& context) {
   for (const Node& item : values.items) {
     const Fields fields(&item, choice_section(), context);
     if (!fields.given("set")) continue;
@@ -119,7 +120,7 @@ void read_named_values(Axis& axis, const Node& values, ReadContext& context) {
   axis.pointers.erase(std::unique(axis.pointers.begin(), axis.pointers.end()), axis.pointers.end());
 }
 
-bool is_filled_list(const Node& values, ReadContext& context) {
+bool is_filled_list(const Node& values, StudyContext& context) {
   if (values.type == Node::Type::array && !values.items.empty()) return true;
   context.problem(values, values.type == Node::Type::array
                               ? "the list of values is empty"
@@ -127,7 +128,7 @@ bool is_filled_list(const Node& values, ReadContext& context) {
   return false;
 }
 
-void refuse_equal_labels(const Axis& axis, const Node& values, ReadContext& context) {
+void refuse_equal_labels(const Axis& axis, const Node& values, StudyContext& context) {
   for (std::size_t k = 0; k < axis.choices.size(); ++k)
     for (std::size_t i = 0; i < k; ++i)
       if (axis.choices[i].label == axis.choices[k].label && k < values.items.size())
@@ -136,7 +137,7 @@ void refuse_equal_labels(const Axis& axis, const Node& values, ReadContext& cont
 }
 
 /// Reads an axis in full: an object with "values". `key` is its key in an object of axes, empty in a list.
-std::optional<Axis> read_full_axis(const std::string& key, const Node& node, ReadContext& context) {
+std::optional<Axis> read_full_axis(const std::string& key, const Node& node, StudyContext& context) {
   const bool in_list = key.empty();
   const Fields fields(&node, axis_section(key.starts_with('/'), in_list), context);
   std::string pointer = key.starts_with('/') ? key : "";
@@ -161,7 +162,7 @@ std::optional<Axis> read_full_axis(const std::string& key, const Node& node, Rea
   return axis;
 }
 
-std::optional<Axis> read_axis(const std::string& key, const Node& node, ReadContext& context) {
+std::optional<Axis> read_axis(const std::string& key, const Node& node, StudyContext& context) {
   if (node.type != Node::Type::array) return read_full_axis(key, node, context);
   if (!key.starts_with('/')) {
     context.problem(node,
@@ -177,6 +178,11 @@ std::optional<Axis> read_axis(const std::string& key, const Node& node, ReadCont
 }
 
 }  // namespace
+
+void StudyContext::keep_place(const std::string& override_or_pointer, const Node& value) {
+  places.emplace(override_or_pointer,
+                 file + ":" + std::to_string(value.at.line) + ":" + std::to_string(value.at.column));
+}
 
 OrderedJson json_of(const Node& node) {
   switch (node.type) {
@@ -210,7 +216,7 @@ std::string word_of(const std::string& pointer) {
   return word.empty() ? pointer : word;
 }
 
-bool is_pointer(const std::string& pointer, const Node& at, ReadContext& context) {
+bool is_pointer(const std::string& pointer, const Node& at, StudyContext& context) {
   if (pointer.size() > 1 && pointer[0] == '/' && pointer.find('=') == std::string::npos) return true;
   context.problem(at, in_quotes(pointer) + " is no JSON pointer into an experiment, such as /grid/cell_size");
   return false;
@@ -220,7 +226,7 @@ bool overwrites(const std::string& later, const std::string& earlier) {
   return earlier == later || earlier.starts_with(later + "/");
 }
 
-std::vector<std::string> read_set(const Node& node, ReadContext& context, std::vector<std::string>& pointers) {
+std::vector<std::string> read_set(const Node& node, StudyContext& context, std::vector<std::string>& pointers) {
   std::vector<std::string> overrides;
   if (node.type != Node::Type::object) {
     context.problem(node, "expected an object of values by JSON pointer, got " + describe_value(node));
@@ -230,11 +236,12 @@ std::vector<std::string> read_set(const Node& node, ReadContext& context, std::v
     if (!is_pointer(member.key, member.value, context)) continue;
     pointers.push_back(member.key);
     overrides.push_back(member.key + "=" + json_of(member.value).dump());
+    context.keep_place(overrides.back(), member.value);
   }
   return overrides;
 }
 
-std::vector<Axis> read_axes(const Node& node, ReadContext& context) {
+std::vector<Axis> read_axes(const Node& node, StudyContext& context) {
   std::vector<Axis> axes;
   std::vector<const Node*> places;
   const auto add = [&](const std::string& key, const Node& value) {

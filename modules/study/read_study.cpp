@@ -145,6 +145,7 @@ class StudyReader {
     read_figures(fields.node("figures"));
     refuse_too_many(fields);
     if (!context_.problems.empty()) throw InputError(std::move(context_.problems));
+    study_.places = std::move(context_.places);
     return std::move(study_);
   }
 
@@ -176,6 +177,7 @@ class StudyReader {
     const Fields fields(node, bisection_section(), context_);
     Bisection bisection;
     bisection.pointer = fields.text("pointer");
+    context_.keep_place(bisection.pointer, *node);
     if (fields.given("pointer") && is_pointer(bisection.pointer, *fields.node("pointer"), context_))
       for (const Axis& axis : study_.axes)
         for (const std::string& pointer : axis.pointers)
@@ -305,6 +307,7 @@ class StudyReader {
     for (const Member& member : node->members)
       if (fields.resolved.contains(member.key)) given[member.key] = fields.resolved[member.key];
     study_.overrides.insert(study_.overrides.begin(), "/limits=" + given.dump());
+    context_.keep_place(study_.overrides.front(), *node);
   }
 
   void read_figures(const Node* node) {
@@ -440,7 +443,7 @@ class StudyReader {
   }
 
   const Node& root_;
-  ReadContext context_;
+  StudyContext context_;
   Study study_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "experiment/diagnostics.hpp"
 #include "experiment/located_json.hpp"
+#include "solvers/solver.hpp"
 #include "study/bisection.hpp"
 #include "study/runner.hpp"
 
@@ -155,7 +156,7 @@ class Execution {
       try {
         prepare(task, run);
       } catch (const InputError& error) {
-        task.finish({Status::refused, reason_of(error)}, {});
+        task.finish({Status::refused, reason_of(error, study_, task.overrides())}, {});
         continue;
       }
       if (const auto earlier = runner_.earlier(run)) {
@@ -173,6 +174,7 @@ class Execution {
     ReadOptions read = read_;
     read.overrides = task.overrides();
     const Experiment experiment = read_experiment(study_.base, registry_, read);
+    make_plan(experiment);  // what does not run together is refused here, where the study's lines are known
     run.experiment = experiment.resolved;
     run.key = keys_(experiment);
   }
@@ -208,7 +210,7 @@ class Execution {
     for (const Result& result : results_.results) {
       if (result.outcome.reason == last) continue;
       last = result.outcome.reason;
-      problems.push_back({study_.base.string(), 0, 0, "", result.combination.name + ": " + last});
+      problems.push_back({study_.file.string(), 0, 0, "", result.combination.name + ": " + last});
     }
     throw InputError(std::move(problems));
   }
@@ -225,12 +227,31 @@ class Execution {
   std::size_t reported_ = 0;
 };
 
+/// The problem of a value that an override gave, at the place of the study's file where that stands. Those of the base,
+/// and of the command line of the study, are where they are.
+Problem located(Problem problem, const Study& study, const std::vector<std::string>& overrides) {
+  const bool of_override = problem.line == 0 && (problem.file == "--set" || problem.file == "command line");
+  std::size_t longest = 0;
+  for (const std::string& text : overrides) {
+    const std::string pointer = text.substr(0, text.find('='));
+    const bool within = of_override && (problem.pointer == pointer || problem.pointer.starts_with(pointer + "/"));
+    const bool chose = pointer == problem.pointer + "/type";  // what is wrong with a choice is that of its type
+    if (!(within || chose) || pointer.size() < longest) continue;
+    longest = pointer.size();
+    auto found = study.places.find(text);
+    if (found == study.places.end()) found = study.places.find(pointer);
+    problem.file = found == study.places.end() ? "--set" : found->second;
+    problem.line = problem.column = 0;
+  }
+  return problem;
+}
+
 }  // namespace
 
-std::string reason_of(const InputError& error) {
+std::string reason_of(const InputError& error, const Study& study, const std::vector<std::string>& overrides) {
   std::string text;
   for (const Problem& problem : error.problems())
-    text += (text.empty() ? "" : "; ") + problem.pointer + (problem.pointer.empty() ? "" : ": ") + problem.message;
+    text += (text.empty() ? "" : "; ") + located(problem, study, overrides).text();
   return text;
 }
 

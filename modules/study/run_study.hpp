@@ -30,8 +30,8 @@ struct Shares {
 /// depend on either.
 Shares share_processors(int processors, int jobs, int threads);
 
-/// Why a combination is refused, without the file's name in front of each line: all come from the same one.
-std::string reason_of(const InputError& error);
+/// Why a combination with these overrides is refused, on one line. What the study's file set is located there.
+std::string reason_of(const InputError& error, const Study& study, const std::vector<std::string>& overrides);
 
 /// Makes, runs or takes over every combination. `read` carries what experiments may name; its overrides are not used.
 /// Throws InputError when the base is no JSON, or when every combination is refused, and support::MachineError.

@@ -2,6 +2,7 @@
 // A study as read from its file: which experiments it makes, what it measures of them and what it draws.
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -90,8 +91,9 @@ struct Study {
   std::vector<std::string> overrides;  ///< from "limits", from "set", then from the command line
   std::vector<Axis> axes;
   std::optional<Bisection> bisection;
-  std::vector<Measure> measures;  ///< the file's, then the built-in ones
-  std::string error, cost;        ///< names of measures; `error` may be empty
+  std::vector<Measure> measures;              ///< the file's, then the built-in ones
+  std::map<std::string, std::string> places;  ///< "FILE:LINE:COLUMN" by override, of a bisection by its pointer
+  std::string error, cost;                    ///< names of measures; `error` may be empty
   std::vector<FigureRequest> figures;
 
   const Axis* axis(const std::string& name) const;        ///< null when there is none

@@ -64,22 +64,19 @@ std::optional<double> cell_number(std::string_view cell) {
   return trimmed(cell).empty() ? std::numeric_limits<double>::quiet_NaN() : number_in(cell);
 }
 
-std::runtime_error malformed(const fs::path& path, std::size_t line, const std::string& what) {
-  return std::runtime_error(path.string() + ":" + std::to_string(line) + ": " + what);
-}
-
 void append_cells(Table& table, std::string_view line, const fs::path& path, std::size_t line_number) {
   const std::vector<std::string> cells = split_cells(line);
   if (cells.size() != table.header.size()) {
-    throw malformed(
+    throw csv_mistake(
         path, line_number,
         "this row has " + std::to_string(cells.size()) + " cells, the header " + std::to_string(table.header.size()));
   }
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::optional<double> value = cell_number(cells[i]);
-    if (!value) throw malformed(path, line_number, "'" + cells[i] + "' is not a number");
+    if (!value) throw csv_mistake(path, line_number, "'" + cells[i] + "' is not a number");
     table.columns[i].push_back(*value);
   }
+  table.lines.push_back(line_number);
 }
 
 /// Calls `take` with each line that is not empty and its number. Returns false when the last line has no end and was
@@ -107,6 +104,10 @@ void require_even(const Table& table) {
 }
 
 }  // namespace
+
+std::runtime_error csv_mistake(const fs::path& path, std::size_t line, const std::string& what) {
+  return std::runtime_error(path.string() + ":" + std::to_string(line) + ": " + what);
+}
 
 std::string csv_cell(std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);

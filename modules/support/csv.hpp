@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,12 +60,16 @@ class CsvAppender {
 struct Table {
   std::vector<std::string> header;
   std::vector<std::vector<double>> columns;  ///< one vector a column, all of the same length
+  std::vector<std::size_t> lines;            ///< number of each row's line in the file it was read from, from 1
   bool last_line_was_cut = false;            ///< the last line had no line end and was left out
 
   /// The column of this name, with or without its unit: "time (s)" or "time". nullptr when there is none.
   const std::vector<double>* find(std::string_view name) const;
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
+
+/// A mistake in a table as messages write it: "FILE:LINE: what".
+std::runtime_error csv_mistake(const std::filesystem::path& path, std::size_t line, const std::string& what);
 
 /// Reads a table with one header line. An empty cell is NaN. Throws MachineError when the file cannot be read;
 /// std::runtime_error naming path and line when a row is malformed.

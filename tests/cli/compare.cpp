@@ -117,6 +117,108 @@ TEST_CASE("backends agree within rounding, and their keys are told but not judge
   CHECK(has(result.out, "\nequal within the tolerance of 1e-09\n"));
 }
 
+TEST_CASE("what is zero by symmetry is held against its family, and the scale is said") {
+  const Folder folder;
+  Json scene = ball();  // a ball that falls on the floor: nothing pushes it along x, and nothing turns it
+  scene["bodies"][0]["geometry"]["centre"] = {0.5, 0.25};
+  scene["bodies"][0]["velocity"] = {0, -0.5};
+  scene["output"]["reactions"] = {"y_min"};
+  scene["output"]["bodies"] = true;
+  run_as(folder, scene, "a");
+  fs::copy(folder / "a", folder / "b", fs::copy_options::recursive);
+  Json summary = json_in(folder / "a/summary.json");
+  const double momentum = summary["scales"]["momentum"], time = summary["simulated_time"], mass = summary["mass"];
+  const auto write = [&](const char* run, double force, double velocity) {
+    Json& entry = summary["reaction"]["y_min"];
+    entry["force"]["x"] = force, entry["mean_force"]["x"] = 0, entry["mean_force"]["y"] = 0;
+    for (const char* when : {"initial", "final", "smallest", "largest"})
+      for (const char* name : {"velocity_x", "velocity_y"}) summary["bodies"]["ball"][name][when] = 0;
+    summary["bodies"]["ball"]["velocity_x"]["final"] = velocity;
+    spill(folder / run / "summary.json", summary.dump());
+  };
+  write("a", 1e-15, 2e-17), write("b", -3e-15, -1e-17);
+  const Result within = compare(folder, "a", "b", {"--tolerance", "1e-9"});
+  INFO(within.out);
+  CHECK(within.code == 0);
+  const Json strict = Json::parse(compare(folder, "a", "b", {"--json"}).out);
+  const auto found = [&](const Json& comparison, const std::string& name) -> Json {
+    for (const Json& one : comparison["summary"]["numbers"])
+      if (one["name"] == name) return one;
+    return {};
+  };
+  // The floor pushes along y: that is the scale of its vector. The velocity's whole vector is nothing.
+  const double push = std::abs(summary["reaction"]["y_min"]["force"]["y"].get<double>());
+  REQUIRE(push > 1);
+  const Json force = found(strict, "/reaction/y_min/force/x"),
+             velocity = found(strict, "/bodies/ball/velocity_x/final");
+  CHECK(force["relative"].get<double>() == Approx(4e-15 / push));
+  CHECK(force["held_against"] == "the largest of its components over the run");
+  CHECK(velocity["relative"].get<double>() == Approx(3e-17 / (momentum / mass)));
+  CHECK(velocity["scale"].get<double>() == Approx(momentum / mass));
+  CHECK(velocity["held_against"] == "sum of m |v| over the mass");
+  // A force without any push along y is one of momentum over time.
+  summary["reaction"]["y_min"]["force"]["y"] = 0;
+  write("a", 1e-15, 0), write("b", -3e-15, 0);
+  const Json alone = found(Json::parse(compare(folder, "a", "b", {"--json"}).out), "/reaction/y_min/force/x");
+  CHECK(alone["relative"].get<double>() == Approx(4e-15 / (momentum / time)));
+  CHECK(alone["held_against"] == "sum of m |v| over the simulated time");
+  const Result text = compare(folder, "a", "b");
+  CHECK(has(text.out, "/reaction/y_min/force/x: 1e-15 | -3e-15, differ by 4e-15, relative "));
+  CHECK(has(text.out, " (sum of m |v| over the simulated time)"));
+  // What is small and none the less a number of its own stays one.
+  write("a", 1, 0), write("b", 1.01, 0);
+  const Result other = compare(folder, "a", "b", {"--tolerance", "1e-4"});
+  CHECK(other.code == 4);
+  CHECK(has(other.out, "/reaction/y_min/force/x: 1 | 1.01, differ by 0.01, relative "));
+}
+
+TEST_CASE("a damaged file of a run is bad input, in one line") {
+  const Folder folder;
+  run_as(folder, ball(), "a");
+  fs::copy(folder / "a", folder / "b", fs::copy_options::recursive);
+  for (const char* name : {"summary.json", "experiment.json"}) {
+    const std::string whole = slurp(folder / "b" / name);
+    for (const std::string& text : {whole.substr(0, whole.size() / 2), std::string("[]"), std::string()}) {
+      spill(folder / "b" / name, text);
+      const Result damaged = compare(folder, "a", "b");
+      INFO(damaged.out << damaged.err);
+      CHECK(damaged.code == 2);
+      CHECK(damaged.out.empty());
+      CHECK(has(damaged.err,
+                std::string("b/") + name + " is damaged: it holds no JSON object; run the experiment again\n"));
+      CHECK(std::count(damaged.err.begin(), damaged.err.end(), '\n') == 2);  // and that nothing was compared
+    }
+    spill(folder / "b" / name, whole);
+  }
+  CHECK(compare(folder, "a", "b").code == 0);
+}
+
+TEST_CASE("equal experiments have equal pictures, whatever their folders are called") {
+  const Folder folder;
+  Json scene = ball();
+  scene["figures"] = {"energy", "momentum"};
+  scene["output"]["frames"] = 2;
+  spill(folder / "scene.json", scene.dump());
+  for (const char* run : {"one", "other"})
+    REQUIRE(call(folder, {"run", "scene.json", "--out", run, "--threads", "1"}).code == 0);
+  std::size_t pictures = 0;
+  for (const char* place : {"figures", "frames"})
+    for (const auto& entry : fs::directory_iterator(folder / "one" / place)) {
+      const std::string name = entry.path().filename().string();
+      INFO(name);
+      CHECK(slurp(entry.path()) == slurp(folder / "other" / place / name));
+      ++pictures;
+    }
+  CHECK(pictures > 6);
+  for (const char* run : {"one", "other"})
+    REQUIRE(call(folder, {"figure", run, "--out", std::string(run) + "_drawn"}).code == 0);
+  CHECK(slurp(folder / "one_drawn/energy.svg") == slurp(folder / "other_drawn/energy.svg"));
+  CHECK(slurp(folder / "one_drawn/energy.svg") == slurp(folder / "one/figures/energy.svg"));
+  const Result same = compare(folder, "one", "other");
+  INFO(same.out);
+  CHECK(same.out == "all numbers that both have are the same\nequal\n");
+}
+
 TEST_CASE("rows, columns and words that one run alone has are differences at any tolerance") {
   const Folder folder;
   run_as(folder, ball(), "a");

@@ -1,5 +1,7 @@
 // Exit codes 0, 2 and 4, and the message that comes with each.
 
+#include <cmath>
+
 #include "cli/program.hpp"
 
 using namespace mpm::test;
@@ -132,7 +134,7 @@ TEST_CASE("2: combinations that cannot run") {
   scene = ball();
   scene["bodies"][0]["velocity"] = {"sqrt(x - 0.5)", 0};
   refused_scene(scene,
-                "/bodies/0/velocity: is not a finite number at particle 0, (0.425, 0.325) m: "
+                "/bodies/0/velocity/0: is not a finite number at particle 0, (0.425, 0.325) m: "
                 "\"sqrt(x - 0.5)\" at character 1 is sqrt(-0.075");
   scene["bodies"][0]["initial_displacement"] = {0.1, 0};
   scene["bodies"][0]["velocity"] = {"sqrt(X - 0.5)", 0};  // which began at another place
@@ -143,7 +145,10 @@ TEST_CASE("2: temperatures that nothing can have at the start, in a body, at a w
   for (const char* backend : {"cpu", "reference"}) {
     const Words chosen{"--backend", backend};
     const std::string first = " at particle 0, (0.425, 0.325) m";
-    refused_scene(warm_ball("sqrt(x - 0.5)*300"), "/bodies/0/temperature: is not a finite number" + first, chosen);
+    refused_scene(
+        warm_ball("sqrt(x - 0.5)*300"),
+        "/bodies/0/temperature: is not a finite number" + first + ": \"sqrt(x - 0.5)\" at character 1 is sqrt(-0.075",
+        chosen);
     refused_scene(warm_ball("-100*x"), "/bodies/0/temperature: is -42.5 K, below 0 K," + first, chosen);
   }
   Json scene = warm_ball();
@@ -151,11 +156,126 @@ TEST_CASE("2: temperatures that nothing can have at the start, in a body, at a w
   refused_scene(scene, "/grid/boundaries/x_max/temperature: is -20 K, below 0 K, at t = 0 s, (1, 0.8) m");
   scene = warm_ball();
   scene["grid"]["boundaries"]["y_min"] = {{"type", "slip"}, {"heat_flux", "log(x)"}};
-  refused_scene(scene, "/grid/boundaries/y_min/heat_flux: is not a finite number at t = 0 s, (0, 0) m");
+  refused_scene(scene,
+                "/grid/boundaries/y_min/heat_flux: is not a finite number at t = 0 s, (0, 0) m: \"log(x)\" at "
+                "character 1 is log(0)");
+  scene = ball();
+  scene["grid"]["boundaries"]["y_min"] = {{"type", "prescribed"}, {"velocity", {0, "1/x"}}};
+  refused_scene(scene,
+                "/grid/boundaries/y_min/velocity/1: is not a finite number at t = 0 s, (0, 0) m: \"1/x\" at "
+                "character 1 is 1 / 0");
   scene = warm_ball();
   scene["node_conditions"] = {
       {{"type", "thermal"}, {"lower", {0.2, 0.4}}, {"upper", {0.3, 0.6}}, {"temperature", "200*(x - 0.25)"}}};
   refused_scene(scene, "/node_conditions/0/temperature: is -10 K, below 0 K, at t = 0 s, (0.2, 0.4) m");
+}
+
+TEST_CASE("2: what a body begins in names the operation that gives no number, its line and place") {
+  const auto begins = [](const char* key, const Json& value, const std::string& text) {
+    Json scene = ball();
+    scene["bodies"][0][key] = value;
+    refused_scene(scene, text);
+  };
+  begins(
+      "initial_displacement", {0, "log(X - 0.5)"},
+      "/bodies/0/initial_displacement/1: is not a finite number at (0.425, 0.325) m: \"log(X - 0.5)\" at character 1 "
+      "is log(-0.075");
+  begins("initial_deformation_gradient", {{"xy", "1 + sqrt(Y - 0.5)"}},
+         "/bodies/0/initial_deformation_gradient/xy: is not a finite number at (0.425, 0.325) m: \"sqrt(Y - 0.5)\" at "
+         "character 5 is sqrt(-0.175");
+  begins(
+      "initial_stress", {{"yy", "1/(X - X)"}},
+      "/bodies/0/initial_stress/yy: is not a finite number at (0.425, 0.325) m: \"1/(X - X)\" at character 1 is 1 / 0");
+}
+
+TEST_CASE("2: two bodies of the same particles, and a warning of those that have most of them in one place") {
+  Json scene = two_balls();
+  scene.erase("contact");
+  scene["bodies"][1]["geometry"] = scene["bodies"][0]["geometry"];
+  refused_scene(scene,
+                "/bodies/1: body \"other\" has the particles of body \"ball\" in the very same places, 208 of them; "
+                "move one of them, or remove it");
+  const Folder folder;
+  scene["bodies"][1]["geometry"] = {{"type", "ball"}, {"centre", {0.32, 0.3}}, {"radius", 0.15}};
+  spill(folder / "scene.json", scene.dump());
+  const Result checked = call(folder, {"check", "scene.json"});
+  INFO(checked.err);
+  CHECK(checked.code == 0);
+  CHECK(has(checked.err, "warning: bodies \"ball\" and \"other\" begin in one place: "));
+  int inside = 0;  // the smaller ball lies in the larger one, every particle
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j < 40; ++j) inside += std::hypot((i + 0.5) * 0.025 - 0.32, (j + 0.5) * 0.025 - 0.3) <= 0.15;
+  CHECK(has(checked.err,
+            ", and " + std::to_string(inside) + " of \"other\" in \"ball\", so that the mass is there twice"));
+  const Result ran = call(folder, {"run", "scene.json", "--out", "run"});
+  CHECK(ran.code == 0);
+  CHECK(has(json_in(folder / "run/summary.json")["warnings"].dump(), "begin in one place"));
+  spill(folder / "apart.json", two_balls().dump());
+  CHECK(call(folder, {"check", "apart.json"}).err.empty());
+  // Blocks side by side share a face and no particle.
+  const auto block = [](double x) { return Json{{"type", "box"}, {"lower", {x, 0.3}}, {"upper", {x + 0.2, 0.5}}}; };
+  scene["bodies"][0]["geometry"] = block(0.2), scene["bodies"][1]["geometry"] = block(0.4);
+  spill(folder / "beside.json", scene.dump());
+  CHECK(call(folder, {"check", "beside.json"}).err.empty());
+}
+
+TEST_CASE("2: a load on the axis alone, and gravity along the radius, are refused with what to write") {
+  Json rod = ball();
+  rod["grid"]["symmetry"] = "axisymmetric";
+  rod["transfer"]["type"] = "flip";
+  rod["bodies"][0]["velocity"] = {0, 0};
+  rod["bodies"][0]["geometry"] = {{"type", "box"}, {"lower", {0, 0.2}}, {"upper", {0.4, 0.8}}};
+  const Folder folder;
+  const auto checked = [&](const Json& scene) {
+    spill(folder / "scene.json", scene.dump(1));
+    return call(folder, {"check", "scene.json"});
+  };
+  const auto pressed = [&](const Json& where) {
+    Json scene = rod;
+    scene["loads"] = {{{"type", "pressure"}, {"body", "ball"}, {"pressure", 10}, {"where", where}}};
+    return scene;
+  };
+  refused_scene(
+      pressed({{"type", "box"}, {"lower", {0, 0.3}}, {"upper", {0.001, 0.7}}}),
+      "/loads/0/where: of the surface of body \"ball\" this region holds the axis alone, where rings have no area, "
+      "so that the load has nothing to act on; take a region that holds surface at x > 0, or a load of type "
+      "\"force\" along the axis");
+  CHECK(checked(pressed({{"type", "box"}, {"lower", {0.39, 0.3}}, {"upper", {0.41, 0.7}}})).code == 0);
+  CHECK(checked(pressed({{"type", "half_space"}, {"point", {0, 0.8}}, {"normal", {0, -1}}})).code == 0);
+  const auto pulled = [&](const Json& gravity) {
+    Json scene = rod;
+    scene["gravity"] = gravity;
+    return scene;
+  };
+  const std::string radial = "/gravity: gravity cannot pull along the radius (x) of an axisymmetric scene: write [0, ";
+  refused_scene(pulled({-9.81, 0}), radial + "-9.81], which acts along the axis (y)");
+  refused_scene(pulled({1, -3}), radial + "-3], which acts along the axis (y)");
+  refused_scene(pulled({"t", 0}),
+                radial + "\"...\"], the formula as its second component, which acts along the axis (y)");
+  CHECK(checked(pulled({0, -9.81})).code == 0);
+}
+
+TEST_CASE("2: a grip that holds nothing") {
+  Json scene = ball();
+  scene["grips"] = {{{"body", "ball"}, {"where", scene["bodies"][0]["geometry"]}, {"velocity", {nullptr, nullptr}}}};
+  refused_scene(scene,
+                "/grips/0/velocity: holds nothing: every component is null; give one a velocity (0 holds it), or "
+                "remove the grip");
+  scene["grips"][0]["velocity"][1] = 0;
+  const Folder folder;
+  CHECK(run_scene(folder, scene).code == 0);
+}
+
+TEST_CASE("damping of nothing is refused, and zeros that a study may set are warned of") {
+  const Folder folder;
+  Json scene = ball();
+  scene["damping"] = Json::object();
+  refused_scene(scene, "/damping: damps nothing: give \"viscous\" (1/s) or \"local\" (a share), or remove \"damping\"");
+  scene["damping"] = {{"viscous", 0}};
+  spill(folder / "scene.json", scene.dump());
+  const Result checked = call(folder, {"check", "scene.json"});
+  CHECK(checked.code == 0);
+  CHECK(has(checked.err, "warning: /damping damps nothing, as \"viscous\" and \"local\" are 0"));
 }
 
 TEST_CASE("2: a figure without its numbers, before the run") {

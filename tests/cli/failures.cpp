@@ -121,7 +121,7 @@ TEST_CASE("3: a force that is no number, in the very first step and later") {
           scene["body_force"] = {0, c.force};
         INFO(backend << " " << c.force);
         const std::string place = of_body ? ": /loads/0/acceleration/1" : ": /body_force/1";
-        fails(scene, {c.step, ") m not a number: ", ".json:", place + " is not finite at t = ", c.why});
+        fails(scene, {c.step, ") m not a number: ", ".json:", place + ": is not a finite number at t = ", c.why});
       }
 }
 
@@ -138,8 +138,8 @@ TEST_CASE("3: a load at points that is no number") {
       load["body"] = "ball";
       scene["loads"] = {{{"type", "body_force"}, {"body", "ball"}, {"acceleration", {0, "t"}}}, load};
       INFO(backend << " " << place);
-      fails(scene,
-            {"step 1, t = 0 s: particle ", ") m not a number: ", ": " + place + " is not finite at t = 0 s: \""});
+      fails(scene, {"step 1, t = 0 s: particle ",
+                    ") m not a number: ", ": " + place + ": is not a finite number at t = 0 s: \""});
     }
 }
 
@@ -154,7 +154,7 @@ TEST_CASE("3: a temperature that grows beyond all numbers") {
 
 TEST_CASE("3: walls and boxes that impose what nothing can have, named with the time") {
   const std::string zero = ": is -0.1 K, below 0 K, at t = 0.052 s, ",
-                    none = ": is not a finite number at t = 0.052 s, ";
+                    none = ": is not a finite number at t = 0.052 s, ", why = " at character 1 is ";
   const auto wall = [](const char* name, const Json& value) {
     Json scene = warm_ball();
     scene["grid"]["boundaries"]["x_min"] = {{"type", "slip"}, {name, value}};
@@ -168,23 +168,86 @@ TEST_CASE("3: walls and boxes that impose what nothing can have, named with the 
   const Json beyond{{"coefficient", 2}, {"temperature", "50*(0.05-t)"}};
   const std::vector<std::pair<Json, std::string>> scenes{
       {wall("temperature", "50*(0.05-t)"), "/grid/boundaries/x_min/temperature" + zero + "(0, 0) m"},
-      {wall("temperature", "sqrt(0.051-t)*300"), "/grid/boundaries/x_min/temperature" + none + "(0, 0) m"},
-      {wall("heat_flux", "log(0.051-t)"), "/grid/boundaries/x_min/heat_flux" + none + "(0, 0) m"},
+      {wall("temperature", "sqrt(0.051-t)*300"),
+       "/grid/boundaries/x_min/temperature" + none + "(0, 0) m: \"sqrt(0.051-t)\"" + why + "sqrt(-0.001)"},
+      {wall("heat_flux", "log(0.051-t)"),
+       "/grid/boundaries/x_min/heat_flux" + none + "(0, 0) m: \"log(0.051-t)\"" + why + "log(-0.001)"},
       {wall("convection", beyond), "/grid/boundaries/x_min/convection/temperature" + zero + "(0, 0) m"},
       {box("temperature", "50*(0.05-t)"), "/node_conditions/0/temperature" + zero + "(0.4, 0.4) m"},
-      {box("heating", "log(0.051-t)"), "/node_conditions/0/heating" + none + "(0.4, 0.4) m"}};
+      {box("heating", "log(0.051-t)"),
+       "/node_conditions/0/heating" + none + "(0.4, 0.4) m: \"log(0.051-t)\"" + why + "log(-0.001)"}};
   for (const auto& [scene, reason] : scenes) {
     const Folder folder;
     const Result result = run_scene(folder, scene);
     INFO(reason << "\n" << result.err);
     CHECK(result.code == 3);
-    CHECK(has(result.err, "the run failed: step 26: " + reason + "\nremedy: check that expression"));
+    CHECK(has(result.err, "the run failed: step 26: scene.json:"));
+    CHECK(has(result.err, ": " + reason + "\nremedy: check that expression"));
     const Json outcome = json_in(folder / "run/summary.json")["outcome"];
     CHECK(outcome["cause"] == "impossible value imposed");
     CHECK(outcome["where"]["step"] == 26);
     CHECK(has(reason, outcome["where"]["condition"].get<std::string>() + ": is "));
     CHECK(mpm::support::read_csv(folder / "run/metrics.csv").find("step")->back() == 25);
     check_whole(folder / "run");
+  }
+}
+
+TEST_CASE(
+    "3: walls, boxes, grips and gravity without a finite number are named with line, component, time and operation") {
+  const auto in_space = [](Json scene, int D) {
+    if (D == 2) return scene;
+    scene["dimension"] = 3;
+    scene["grid"]["domain"] = {{0, 0, 0}, {1, 1, 1}};
+    scene["bodies"][0]["geometry"]["centre"] = {0.5, 0.5, 0.5};
+    scene["bodies"][0]["velocity"] = {0.1, 0.1, 0};
+    return scene;
+  };
+  const std::string root = "sqrt(0.051-t)", at = ": is not a finite number at t = 0.052 s",
+                    why = ": \"sqrt(0.051-t)\" at character 1 is sqrt(-0.001";
+  for (const int D : {2, 3}) {
+    const auto velocity = [&](const Json& x, const Json& y) { return D == 2 ? Json{x, y} : Json{x, y, 0}; };
+    const auto corner = [&](double x) { return Json(std::vector<double>(static_cast<std::size_t>(D), x)); };
+    const std::string z = D == 2 ? ") m" : ", 0) m";
+    Json wall = in_space(ball(), D), box = wall, grip = wall, pull = wall;
+    wall["grid"]["boundaries"]["x_min"] = {{"type", "prescribed"}, {"velocity", velocity(root, 0)}};
+    box["node_conditions"] = {{{"type", "prescribed"},
+                               {"lower", corner(0.4)},
+                               {"upper", corner(0.6)},
+                               {"velocity", velocity(nullptr, root + " + 0*x")}}};
+    grip["grips"] = {{{"body", "ball"},
+                      {"where", {{"type", "box"}, {"lower", corner(0.4)}, {"upper", corner(0.6)}}},
+                      {"velocity", velocity(nullptr, root)}}};
+    pull["gravity"] = velocity(0, root);
+    struct Case {
+      const Json& scene;
+      std::string pointer, place;
+    };
+    for (const char* backend : {"cpu", "reference"})
+      for (const auto& [scene, pointer, place] :
+           {Case{wall, "/grid/boundaries/x_min/velocity/0", ", (0, 0" + z},
+            Case{box, "/node_conditions/0/velocity/1", D == 2 ? ", (0.4, 0.4) m" : ", (0.4, 0.4, 0.4) m"},
+            Case{grip, "/grips/0/velocity/1", ", (0.4"}, Case{pull, "/gravity/1", ""}}) {
+        INFO(D << " " << backend << " " << pointer);
+        const Folder folder;
+        const Result result = run_scene(folder, scene, {"--backend", backend});
+        INFO(result.err);
+        CHECK(result.code == 3);
+        const std::size_t first = result.err.find("the run failed: ");
+        REQUIRE(first != std::string::npos);
+        const std::string line = result.err.substr(first, result.err.find('\n', first) - first);
+        const int step = pointer == "/gravity/1" ? 27 : 26;  // forces are those of the step's begin
+        int row = 0, column = 0;
+        CHECK(std::sscanf(line.c_str(),
+                          ("the run failed: step " + std::to_string(step) + ": scene.json:%d:%d: ").c_str(), &row,
+                          &column) == 2);
+        CHECK(row > 1);
+        CHECK(has(line, ": " + pointer + at + place));
+        CHECK(has(line, why));
+        const Json where = json_in(folder / "run/summary.json")["outcome"]["where"];
+        CHECK(where["condition"] == pointer);
+        if (where.contains("position")) CHECK(where["position"].size() == static_cast<std::size_t>(D));
+        check_whole(folder / "run");
+      }
   }
 }
 

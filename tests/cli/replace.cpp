@@ -168,7 +168,7 @@ TEST_CASE("a check tries the first moment: what a run would refuse there, it ref
   Json scene = ball();
   scene["bodies"][0]["velocity"] = {"sqrt(0.1-x)", 0};
   CHECK(checked(scene).code == 2);
-  CHECK(has(checked(scene).err, "/bodies/0/velocity: is not a finite number"));
+  CHECK(has(checked(scene).err, "/bodies/0/velocity/0: is not a finite number"));
   scene = ball();
   scene["grips"] = {{{"name", "hand"},
                      {"body", "ball"},

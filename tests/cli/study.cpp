@@ -1,5 +1,7 @@
 // `mpm study` and `mpm advise`: every combination a run of its own, whatever becomes of it.
 
+#include <regex>
+
 #include "cli/program.hpp"
 #include "support/csv.hpp"
 
@@ -309,6 +311,50 @@ TEST_CASE("a run that is killed is recorded, and run again by the next call") {
   CHECK(still);
 }
 
+TEST_CASE("2: what a study sets wrongly is named with the study's line, what is wrong in its base with the base's") {
+  const Folder folder;
+  write_inputs(folder, breathing(), small_study());
+  const auto refusal = [&](const std::string& study, const Words& verb) {
+    spill(folder / "wrong.json", study);
+    Words words = verb;
+    words.emplace_back("wrong.json");
+    const Result result = call(folder, words);
+    INFO(result.err);
+    CHECK(result.code == 2);
+    return result.err;
+  };
+  for (const Words& verb : {Words{"check"}, Words{"study"}}) {
+    const std::string axis =
+        refusal("{\"base\": \"scene.json\",\n \"axes\": {\n  \"/transfer/type\": [\"flop\",\n   \"flup\"]}}", verb);
+    CHECK(has(axis, "wrong.json: flop: wrong.json:3:22: /transfer/type: unknown transfer \"flop\""));
+    CHECK(has(axis, "wrong.json: flup: wrong.json:4:4: /transfer/type: unknown transfer \"flup\""));
+    const std::string within = refusal(
+        "{\"base\": \"scene.json\",\n \"set\": {\"/solver\": {\"end_tim\": 1}},\n"
+        " \"axes\": {\"/seed\": [1]}}",
+        verb);
+    CHECK(has(within, "wrong.json:2:21: /solver/end_tim: unknown key"));
+    const std::string named = refusal(
+        "{\"base\": \"scene.json\",\n \"axes\": {\"way\": {\"values\": [\n"
+        "  {\"label\": \"a\", \"set\": {\"/grid/cell_size\": -1}}]}}}",
+        verb);
+    CHECK(has(named, "wrong.json:3:45: /grid/cell_size: "));
+    const std::string nowhere = refusal("{\"base\": \"scene.json\",\n \"axes\": {\"/gird/cell_size\": [1]}}", verb);
+    CHECK(has(nowhere, "wrong.json:2:31: /gird/cell_size: "));
+    // The plan refuses it, after the file was read.
+    const std::string planned = refusal(
+        "{\"base\": \"scene.json\",\n \"set\": {\"/shape/type\": \"cpdi\"},\n \"axes\": {\"/transfer/type\":\n"
+        "  [\"polypic\"]}}",
+        verb);
+    CHECK(has(planned, "wrong.json:4:4: /transfer: transfer \"polypic\" carries products"));
+    Json base = breathing();
+    base["solver"]["courant"] = 7;
+    spill(folder / "scene.json", base.dump(1));
+    const std::string of_base = refusal("{\"base\": \"scene.json\", \"axes\": {\"/seed\": [1]}}", verb);
+    CHECK(std::regex_search(of_base, std::regex("1: scene\\.json:[0-9]+:[0-9]+: /solver/courant: ")));
+    spill(folder / "scene.json", breathing().dump(1));
+  }
+}
+
 TEST_CASE("2: studies that cannot be run leave nothing behind") {
   const Folder folder;
   Json study = small_study();
@@ -326,7 +372,8 @@ TEST_CASE("2: studies that cannot be run leave nothing behind") {
   const Result refused = run_study(folder);
   INFO(refused.err);
   CHECK(refused.code == 2);
-  CHECK(has(refused.err, "scene.json: pic: /transfer/typ: unknown key \"typ\"; did you mean \"type\"?"));
+  CHECK(has(refused.err, "s.json: pic: s.json:"));
+  CHECK(has(refused.err, ": /transfer/typ: unknown key \"typ\"; did you mean \"type\"?"));
   CHECK(!fs::exists(folder / "out"));
 
   fs::create_directory(folder / "thesis");

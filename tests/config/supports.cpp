@@ -55,6 +55,44 @@ TEST_CASE("damping has a rate and a share", "[config]") {
   CHECK(errors(two_discs, {R"(/damping={"viscous": 1})"}).find("is one without damping") != std::string::npos);
 }
 
+TEST_CASE("a box that holds nothing is refused", "[config]") {
+  CHECK(first_line(errors(two_discs, {"/node_conditions/1/velocity=[null, null]"})) ==
+        "--set: /node_conditions/1/velocity: holds nothing: every component is null; give one a velocity (0 holds it), "
+        "or take the type \"thermal\" for a box that holds a temperature alone");
+}
+
+TEST_CASE("names of bodies and fields are words, as paths and headings of results need", "[config]") {
+  for (const std::string name : {"a.b", "left disc", "a/b", "a-b", "disc (1)", "a,b"})
+    for (const std::string key : {"name", "field"}) {
+      const std::string found = errors(two_discs, {"/bodies/0/" + key + "=\"" + name + "\""});
+      INFO(found);
+      CHECK(found.find("/bodies/0/" + key + ": \"" + name +
+                       "\" is no name here: letters, digits and _ alone; write \"") != std::string::npos);
+    }
+  CHECK(errors(two_discs, {"/bodies/0/name=a.b"}).find("write \"a_b\"") != std::string::npos);
+  CHECK(errors(two_discs, {R"(/bodies/0/name="")"}).find("is no name here") != std::string::npos);
+  CHECK(errors(two_discs, {"/bodies/0/name=Disc_2"}) == "accepted");
+}
+
+TEST_CASE("a probe that never meets a particle is refused", "[config]") {
+  const auto probe = [](const std::string& place) {
+    return first_line(
+        errors(two_discs, {R"(/output/probes=[{"name": "p", "quantities": ["pressure"], )" + place + "}]"}));
+  };
+  const std::string inside =
+      " the domain, from (0, 0) to (1, 1) m, where no particle ever is; move it inside, or "
+      "enlarge /grid/domain";
+  const std::string at = "--set: /output/probes/0/";
+  CHECK(probe(R"("nearest": [0.5, 1.5])") == at + "nearest: the point lies outside of" + inside);
+  CHECK(probe(R"("place": [-0.1, 0.5])") == at + "place: the point lies outside of" + inside);
+  CHECK(probe(R"("line": {"from": [2, 0], "to": [3, 0]})") == at + "line: no point of the line lies in" + inside);
+  CHECK(probe(R"("section": {"point": [2, 0], "normal": [1, 0]})") ==
+        at + "section: the section does not meet" + inside);
+  CHECK(probe(R"("nearest": [1, 1])") == "accepted");
+  CHECK(probe(R"("line": {"from": [-1, 0.5], "to": [2, 0.5]})") == "accepted");
+  CHECK(probe(R"("section": {"point": [2, 0.5], "normal": [0, 1]})") == "accepted");
+}
+
 TEST_CASE("gravity may be formulas of time", "[config]") {
   const Experiment experiment = read_text(two_discs, {R"J(/gravity=["0.5", "-9.81*min(t/0.1,1)"])J", "/compare=null"});
   CHECK(experiment.gravity == Vector3{0.5, 0, 0});

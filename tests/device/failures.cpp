@@ -91,12 +91,12 @@ TEST_CASE("every backend names the load that is no number, and the first particl
   const Failure pulled = common_failure(text, {"/loads=[" + of_body + "]"});
   CHECK(pulled.cause == Cause::force_not_a_number);
   CHECK(pulled.particle > 0);
-  CHECK(pulled.formula.find(": /loads/0/acceleration/1 is not finite") != std::string::npos);
+  CHECK(pulled.formula.find(": /loads/0/acceleration/1: is not a finite number") != std::string::npos);
   // With a force of all bodies, which is good, and one on the surface, which is not.
   const std::string pressed = R"J({"type": "pressure", "body": "b", )J" + edge + R"J(, "pressure": "1e-9/(Y - Y)"})J";
   const Failure both =
       common_failure(text, {R"J(/body_force=["X", "t"])J", "/loads=[" + of_body + ", " + pressed + "]"});
-  CHECK(both.formula.find(": /loads/1/pressure is not finite at t = 0 s") != std::string::npos);
+  CHECK(both.formula.find(": /loads/1/pressure: is not a finite number at t = 0 s") != std::string::npos);
 }
 
 TEST_CASE("every backend names a temperature that is not a number", "[device][failure]") {

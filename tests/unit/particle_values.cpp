@@ -104,6 +104,70 @@ TEST_CASE("fields of particles agree with one another and with the state", "[met
   }
 }
 
+TEST_CASE("every state of every material and transfer is a field of particles by its name", "[metrics]") {
+  for (const int D : {2, 3})
+    for (const std::string transfer : {"pic", "flip", "apic", "mls", "rpic", "tpic", "aflip", "asflip", "polypic"})
+      for (const std::string& material : {rubber, metal}) {
+        INFO(D << " " << transfer << " " << material);
+        Scene scene(block("bspline_quadratic", transfer, material, D));
+        scene.run();
+        const BodyState state = scene.body();
+        const auto names = scene.experiment.particle_output->fields;
+        const auto n = state.position.size() / static_cast<std::size_t>(D);
+        const auto has = [&](const std::string& name) {
+          return std::find(names.begin(), names.end(), name) != names.end();
+        };
+        for (const auto* states : {&state.material_state, &state.transfer_state})
+          for (const auto& [name, values] : *states) {
+            INFO(name);
+            if (name == "polynomial_coefficients") continue;  // a field each, below
+            CHECK(has(name));
+            CHECK(field(scene, name).size() >= n);
+          }
+        CHECK(has("affine_velocity") == (state.transfer_state.count("affine_velocity") > 0));
+        const bool polynomials = transfer == "polypic";
+        CHECK(state.transfer_state.count("polynomial_coefficients") == polynomials);
+        for (const char* name :
+             {"polynomial_11", "polynomial_110", "polynomial_101", "polynomial_011", "polynomial_111"})
+          CHECK(has(name) == (polynomials && (std::string(name).size() == 13) == (D == 2)));
+      }
+}
+
+TEST_CASE("the coefficient of d_x d_y is the one of a velocity field that has it", "[metrics]") {
+  // Of v = (3 x y, 0, 0) about a particle at x_p the coefficient of d_x d_y is 3 / s, whatever x_p is: in 3-D too.
+  for (const int D : {2, 3})
+    for (const std::string backend : {"cpu", "reference"}) {
+      INFO(D << " " << backend);
+      Json scene = Json::parse(block("bspline_quadratic", "polypic", rubber, D));
+      scene["backend"] = backend;
+      scene["bodies"][0]["velocity"] = D == 2 ? Json{"3*x*y", 0} : Json{"3*x*y", 0, 0};
+      scene["bodies"][0]["geometry"]["upper"] = D == 2 ? Json{1.75, 1.75} : Json{1.75, 1.75, 1.75};
+      scene["bodies"][0]["geometry"]["lower"] = D == 2 ? Json{0.25, 0.25} : Json{0.25, 0.25, 0.25};
+      scene["materials"]["m"]["youngs_modulus"] = 1e-6;
+      scene["solver"]["time_step"] = 1e-6;
+      scene["solver"]["end_time"] = 40e-6;
+      Scene built(scene.dump());
+      built.run();
+      const auto x = particle_positions(built.experiment, {built.body()});
+      const auto c = field(built, D == 2 ? "polynomial_11" : "polynomial_110");
+      REQUIRE(c.size() == x.size());
+      std::size_t inside = 0;
+      for (std::size_t p = 0; p < c.size(); p += 3) {
+        bool whole = true;  // no rim within the stencils
+        for (int a = 0; a < D; ++a) whole = whole && std::abs(x[p + static_cast<std::size_t>(a)] - 1) < 0.3;
+        if (!whole) continue;
+        ++inside;
+        CHECK(c[p] == Approx(3 * 0.25 * 0.25).epsilon(0.02));  // the field is in lengths of cells
+        CHECK(std::abs(c[p + 1]) < 1e-3);
+        CHECK(std::abs(c[p + 2]) < 1e-3);
+      }
+      CHECK(inside >= 16);
+      if (D == 3)
+        for (const char* other : {"polynomial_101", "polynomial_011", "polynomial_111"})
+          for (const double value : {field(built, other)[3 * (c.size() / 6)]}) CHECK(std::abs(value) < 1e-3);
+    }
+}
+
 TEST_CASE("particles of another material have no number where a field is not theirs", "[metrics]") {
   Json scene = Json::parse(block("bspline_quadratic", "flip", rubber, 2));
   scene["materials"]["metal"] = Json::parse(metal);

@@ -471,7 +471,8 @@ class HostRun final : public Backend {
       const Vector3 x = body.vector(position, p);
       Vector3 X = x;
       for (std::size_t c = 0; c < D && !body.initial_position.empty(); ++c) X[c] = body.initial_position[p * D + c];
-      const Vector3 velocity = velocity_of(experiment_.grips[static_cast<std::size_t>(numbers[p]) - 1], x, X, end);
+      const Vector3 velocity =
+          velocity_of(experiment_, experiment_.grips[static_cast<std::size_t>(numbers[p]) - 1], x, X, end);
       for (std::size_t c = 0; c < D; ++c) told[c * body.count + p] = static_cast<T>(velocity[c]);
     }
     for (std::size_t k = 0; k < experiment_.grips.size(); ++k) {

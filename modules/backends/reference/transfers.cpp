@@ -189,7 +189,7 @@ Vector ReferenceBackend::velocity_of_gripped(Particles& body, std::size_t p, dou
   const Grip& grip = experiment_.grips[static_cast<std::size_t>(body.values("grip")(0, p)) - 1];
   const Vector x = body.column(body.position, p);
   const Vector X = plan_.particle_field(0, "initial_position") ? body.column(body.values("initial_position"), p) : x;
-  return to_eigen(velocity_of(grip, as_array(x), as_array(X), time));
+  return to_eigen(velocity_of(experiment_, grip, as_array(x), as_array(X), time));
 }
 
 /// Gives gripped particles the velocity that they are told to have, and lets it move them.

@@ -30,7 +30,7 @@ Vector3 ParticleStep<D, T, Components>::velocity_of_gripped(const Chunk& chunk, 
   Vector3 X = x;
   for (int a = 0; a < D && chunk.body.initial_position; ++a)
     X[a] = chunk.body.initial_position[std::size_t(chunk.ids[p]) * D + a];
-  return velocity_of(scene_.experiment.grips[grip], x, X, time);
+  return velocity_of(scene_.experiment, scene_.experiment.grips[grip], x, X, time);
 }
 
 /// Gives nodes the mass of gripped particles, with the momentum that these are told to have at the end of the step, and the

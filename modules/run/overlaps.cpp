@@ -1,0 +1,174 @@
+#include "run/overlaps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+
+#include "experiment/diagnostics.hpp"
+#include "simulation/seeding.hpp"
+
+namespace mpm::app {
+namespace {
+
+using Points = std::vector<Vector3>;
+
+struct Box {
+  Vector3 lower{}, upper{};
+};
+
+Points places_of(const Experiment& experiment, int body) {
+  const std::size_t D = static_cast<std::size_t>(experiment.dimension);
+  Points points;
+  seed_body(experiment, body).for_each_batch([&](const SeedBatch& batch) {
+    for (std::size_t p = 0; p < batch.count; ++p) {
+      Vector3& x = points.emplace_back();
+      std::copy_n(batch.position + p * D, D, x.begin());
+    }
+  });
+  return points;
+}
+
+/// Where a body that begins as it is drawn lies, within the domain; the domain itself for others.
+Box bounds_of(const Experiment& experiment, const BodySpecification& body) {
+  Box box{experiment.grid.lower, experiment.grid.upper};
+  if (body.deformed() || !body.geometry) return box;
+  const auto [lower, upper] = body.geometry->bounds();
+  for (int c = 0; c < experiment.dimension; ++c)
+    box.lower[c] = std::max(box.lower[c], lower[c]), box.upper[c] = std::min(box.upper[c], upper[c]);
+  return box;
+}
+
+/// What two boxes share; where that is no volume, the upper corner is not above the lower one.
+Box common(const Box& a, const Box& b) {
+  Box box;
+  for (std::size_t c = 0; c < 3; ++c)
+    box.lower[c] = std::max(a.lower[c], b.lower[c]), box.upper[c] = std::min(a.upper[c], b.upper[c]);
+  return box;
+}
+
+bool has_volume(const Experiment& experiment, const Box& box) {
+  for (int c = 0; c < experiment.dimension; ++c)
+    if (!(box.upper[c] - box.lower[c] > 1e-6 * experiment.grid.cell_size)) return false;
+  return true;
+}
+
+std::size_t count_within(const Points& points, const Box& box, int dimension) {
+  return static_cast<std::size_t>(std::count_if(points.begin(), points.end(), [&](const Vector3& x) {
+    bool inside = true;
+    for (int c = 0; c < dimension; ++c) inside = inside && x[c] > box.lower[c] && x[c] < box.upper[c];
+    return inside;
+  }));
+}
+
+/// Particles in bins of the side of their spacing.
+class Bins {
+ public:
+  Bins(const Points& points, int dimension, double spacing) : dimension_(dimension), spacing_(spacing) {
+    for (const Vector3& x : points) bins_[bin_of(x)].push_back(x);
+  }
+  /// Whether a particle lies within a share of the spacing of a point, along every axis.
+  bool any_near(const Vector3& point, double share) const {
+    const double reach = share * spacing_;
+    const Bin middle = bin_of(point);
+    const long deep = dimension_ == 3 ? 1 : 0;
+    for (long i = -1; i <= 1; ++i)
+      for (long j = -1; j <= 1; ++j)
+        for (long k = -deep; k <= deep; ++k) {
+          const auto found = bins_.find(Bin{middle[0] + i, middle[1] + j, middle[2] + k});
+          if (found == bins_.end()) continue;
+          for (const Vector3& x : found->second) {
+            bool near = true;
+            for (int c = 0; c < dimension_; ++c) near = near && std::abs(x[c] - point[c]) < reach;
+            if (near) return true;
+          }
+        }
+    return false;
+  }
+  std::size_t count_near(const Points& points, double share) const {
+    return static_cast<std::size_t>(
+        std::count_if(points.begin(), points.end(), [&](const Vector3& x) { return any_near(x, share); }));
+  }
+
+ private:
+  using Bin = std::array<long, 3>;
+  struct Hash {
+    std::size_t operator()(const Bin& bin) const {
+      std::size_t hash = 0;
+      for (const long at : bin) hash = hash * 1000003u + static_cast<std::size_t>(at);
+      return hash;
+    }
+  };
+  Bin bin_of(const Vector3& x) const {
+    Bin bin{};
+    for (int c = 0; c < dimension_; ++c) bin[c] = static_cast<long>(std::floor(x[c] / spacing_));
+    return bin;
+  }
+
+  int dimension_;
+  double spacing_;
+  std::unordered_map<Bin, Points, Hash> bins_;
+};
+
+/// Bodies with what was found out about them so far.
+class Places {
+ public:
+  explicit Places(const Experiment& experiment) : experiment_(experiment) {}
+  const Points& of(int body) {
+    const auto found = points_.find(body);
+    return found != points_.end() ? found->second : points_.emplace(body, places_of(experiment_, body)).first->second;
+  }
+  const Bins& bins_of(int body) {
+    const auto found = bins_.find(body);
+    if (found != bins_.end()) return found->second;
+    const double spacing = experiment_.grid.cell_size / experiment_.bodies[body].particles_per_cell_axis;
+    return bins_.try_emplace(body, of(body), experiment_.dimension, spacing).first->second;
+  }
+
+ private:
+  const Experiment& experiment_;
+  std::map<int, Points> points_;
+  std::map<int, Bins> bins_;
+};
+
+constexpr double half = 0.5 * (1 - 1e-6);  ///< particles of bodies that touch are half a spacing from the face each
+constexpr double same_place = 1e-6;
+
+}  // namespace
+
+std::vector<Overlap> overlaps_of(const Experiment& experiment) {
+  std::vector<Overlap> found;
+  Places places(experiment);
+  for (int a = 0; a < static_cast<int>(experiment.bodies.size()); ++a)
+    for (int b = a + 1; b < static_cast<int>(experiment.bodies.size()); ++b) {
+      const Box shared =
+          common(bounds_of(experiment, experiment.bodies[a]), bounds_of(experiment, experiment.bodies[b]));
+      if (!has_volume(experiment, shared)) continue;
+      const auto most_may_lie_in = [&](int body) {
+        return 2 * count_within(places.of(body), shared, experiment.dimension) > places.of(body).size();
+      };
+      if (!most_may_lie_in(a) && !most_may_lie_in(b)) continue;
+      Overlap overlap{a, b, places.bins_of(b).count_near(places.of(a), half),
+                      places.bins_of(a).count_near(places.of(b), half)};
+      const std::size_t first = places.of(a).size(), second = places.of(b).size();
+      if (2 * overlap.of_first <= first && 2 * overlap.of_second <= second) continue;
+      overlap.identical = first == second && places.bins_of(a).count_near(places.of(b), same_place) == second &&
+                          places.bins_of(b).count_near(places.of(a), same_place) == first;
+      found.push_back(overlap);
+    }
+  return found;
+}
+
+std::string Overlap::text(const Experiment& experiment) const {
+  const std::string a = in_quotes(experiment.bodies[first].name), b = in_quotes(experiment.bodies[second].name);
+  if (identical)
+    return "body " + b + " has the particles of body " + a + " in the very same places, " + std::to_string(of_first) +
+           " of them; move one of them, or remove it";
+  return "bodies " + a + " and " + b + " begin in one place: " + std::to_string(of_first) + " particles of " + a +
+         " lie in " + b + ", and " + std::to_string(of_second) + " of " + b + " in " + a +
+         ", so that the mass is there twice; move one of them, or cut it out with the geometry \"difference\" "
+         "(docs/experiment_file.md#bodies)";
+}
+
+}  // namespace mpm::app

@@ -1,0 +1,26 @@
+#pragma once
+// Bodies that begin in one place: what was meant to stand side by side counts double there.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.hpp"
+
+namespace mpm::app {
+
+/// How two bodies overlap at the start. A particle lies in another body where it is nearer than half a spacing, along every
+/// axis, to a particle of that.
+struct Overlap {
+  int first = 0, second = 0;                ///< bodies, the first the one that comes first in the file
+  std::size_t of_first = 0, of_second = 0;  ///< particles of each that lie in the other
+  bool identical = false;                   ///< each particle of one is in the place of one of the other
+
+  /// What is wrong, with numbers and remedy.
+  std::string text(const Experiment& experiment) const;
+};
+
+/// The pairs of bodies of which one has most of its particles in the other.
+std::vector<Overlap> overlaps_of(const Experiment& experiment);
+
+}  // namespace mpm::app
