@@ -39,6 +39,13 @@ mpm_fault(${reference}/transfers.cpp
 mpm_fault(${reference}/filter.cpp
           "// the momentum stays that of the velocity kept aside"
           "\n  for_each_node([&](std::size_t i) { velocity_[i] *= ${now}::filter ? 1 + 1e-3 : 1; });")
+mpm_fault(${reference}/transfers.cpp
+          "    gather_moments(body, velocity_);
+    const Array before = body.velocity;"
+          "    gather_moments(body, velocity_);
+    if (${now}::gather) body.gathered_velocity *= 1 - 1e-3;
+    if (${now}::strain) body.velocity_gradient *= 0.99;
+    const Array before = body.velocity;")
 
 # The cpu backend
 set(cpu backends/cpu)
@@ -63,31 +70,46 @@ mpm_fault(${cpu}/grid/grid_filter.hpp
       for (int c = 0; c < D; ++c) motion_at(field, first + k)[c] *= records_ && ${now}::filter ? T(1 + 1e-3) : T(1);
   });
   fill_ghosts(time, false);\n  if (records_) book_filter();")
+mpm_fault(${cpu}/particles/particle_gather.hpp
+          "  gather_chunk(chunk, work, wanted);
+  work.clock.lap(Phase::coefficients);"
+          "  gather_chunk(chunk, work, wanted);
+  for (T& v : work.velocity) v *= ${now}::gather ? T(1 - 1e-3) : T(1);
+  for (T& rate : work.gradient_of_velocity) rate *= ${now}::strain ? T(0.99) : T(1);
+  work.clock.lap(Phase::coefficients);")
 
 # The device's kernels
 set(kernels backends/device/kernels)
 mpm_fault(${kernels}/grid.hpp
           "(velocity[c] - now[c]));\n  });"
           "(velocity[c] - now[c]));
-    for (int c = 0; c < D && MPM_FAULT == 1; ++c)
+    for (int c = 0; c < D && mpm_fault_now() == 1; ++c)
       a.grid.field[N::velocity][c * a.node_count + node] = now[c] + T(0.99) * (velocity[c] - now[c]);\n  });")
 mpm_fault(${kernels}/contact.hpp
           "a.grid, at, given);"
-          "a.grid, at, given * (MPM_FAULT == 2 ? T(0.5) : T(1)));")
+          "a.grid, at, given * (mpm_fault_now() == 2 ? T(0.5) : T(1)));")
 mpm_fault(${kernels}/scatter.hpp
           "mass * s.distance[i];\n        }\n      }\n      add(s.node, values);"
           "mass * s.distance[i];\n        }\n      }
-      if (MPM_FAULT != 3 || p != 0 || s.weight > T(0.2)) add(s.node, values);")
+      if (mpm_fault_now() != 3 || p != 0 || s.weight > T(0.02)) add(s.node, values);")
 mpm_fault(${kernels}/filter.hpp
           "    store(a.grid.field[N::velocity], nodes, node, velocity);\n    if constexpr (N::trial"
-          "    for (int c = 0; c < D && MPM_FAULT == 4; ++c) velocity[c] *= T(1 + 1e-3);
+          "    for (int c = 0; c < D && mpm_fault_now() == 4; ++c) velocity[c] *= T(1 + 1e-3);
     store(a.grid.field[N::velocity], nodes, node, velocity);\n    if constexpr (N::trial")
+mpm_fault(${kernels}/gather.hpp
+          "    const auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::velocity], before);"
+          "    auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::velocity], before);
+    for (int c = 0; c < D && mpm_fault_now() == 5; ++c) moments.velocity[c] *= T(1 - 1e-3);
+    for (int k = 0; k < D * D && mpm_fault_now() == 6; ++k) moments.velocity_gradient(k / D, k % D) *= T(0.99);")
 
 foreach(file ${faulty_files})
   set(text "${text_of_${file}}")
-  if(NOT file MATCHES "/kernels/")
+  if(file MATCHES "/kernels/")  # compiled for the host-run device, which finds the function in this program
+    string(REPLACE "\nnamespace mpm" "\nextern \"C\" int mpm_fault_now();\n\nnamespace mpm" text "${text}")
+  else()
     string(REPLACE "\nnamespace mpm" "\n#include \"faults/injected.hpp\"\n\nnamespace mpm" text "${text}")
   endif()
+  set(text_of_${file} "${text}")
   file(GENERATE OUTPUT ${faulty}/${file} CONTENT "${text}")
 endforeach()
 
@@ -101,7 +123,11 @@ foreach(source ${reference_sources})
   endif()
 endforeach()
 foreach(unit grid particle)
-  target_sources(${program} PRIVATE ${PROJECT_BINARY_DIR}/modules/${cpu}/${unit}_2_double.cpp)
+  foreach(D 2 3)
+    foreach(T float double)
+      target_sources(${program} PRIVATE ${PROJECT_BINARY_DIR}/modules/${cpu}/${unit}_${D}_${T}.cpp)
+    endforeach()
+  endforeach()
 endforeach()
 target_sources(${program} PRIVATE ${PROJECT_SOURCE_DIR}/modules/${cpu}/cpu_backend.cpp)
 
@@ -123,3 +149,4 @@ target_sources(${program} PRIVATE ${PROJECT_SOURCE_DIR}/modules/backends/device/
 set_source_files_properties(${PROJECT_SOURCE_DIR}/modules/backends/device/compose.cpp PROPERTIES
                             COMPILE_DEFINITIONS "MPM_KERNEL_HEADERS=\"${faulty}/kernel_headers.inc\"")
 target_include_directories(${program} BEFORE PRIVATE ${faulty})
+set_target_properties(${program} PROPERTIES ENABLE_EXPORTS ON)

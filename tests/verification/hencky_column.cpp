@@ -10,6 +10,7 @@
 
 #include "shipped.hpp"
 #include "support/catch.hpp"
+#include "support/page.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -126,11 +127,16 @@ TEST_CASE("heights of the Hencky column, and stress errors over four grids", "[c
       "");
   for (const double mark : marks) std::printf(" %.5f", exact_height(mark));
   std::printf("\n");
+  Page page("docs/studies/convergence.md");
+  page.keep_from_to("## Elsewhere in the tests", "They grow with refinement");
   for (const std::string shape :
        {"linear", "gimp", "gimp_contiguous", "b2gimp", "bspline_quadratic", "bspline_cubic", "cpdi"}) {
     std::vector<double> heights;
     const auto errors = errors_on(shape, grids, heights);
     INFO(shape);
+    const auto printed = page.read("| `" + shape + "` | # % | # |");
+    CHECK(100 * errors.back() == printed[0].rounded());
+    CHECK(std::log2(errors[grids.size() - 2] / errors.back()) == printed[1].rounded());
     if (shape == "linear") {
       // Errors grow with refinement: the finer the cells, the more of them are crossed.
       for (std::size_t k = 1; k < grids.size(); ++k) CHECK(errors[k] > errors[k - 1]);
