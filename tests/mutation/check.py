@@ -38,6 +38,9 @@ class FindsMutants(unittest.TestCase):
     def test_template_parameters_of_a_lambda(self):
         self.assertEqual(changes("auto part = [&]<int i>(N<i>) { return a > b; };"), ["> to <="])
 
+    def test_a_declared_reference_is_no_assignment(self):
+        self.assertEqual(changes("struct S {\n  Field& mass_ = field(mass);\n  void f() { x = y; }\n};"), ["drop x ="])
+
     def test_operators_are_no_brackets(self):
         text = "bool operator<(A a, A b) { return a.v < b.v; }\nbool operator>(A a, A b) { return a.v > b.v; }"
         self.assertEqual(changes(text), ["< to >=", "> to <="])
@@ -59,6 +62,8 @@ class WritesThemTogether(unittest.TestCase):
         self.assertFalse(together.refuse("mutant_8:1:3: error: the same once more\n"))
         self.assertEqual(together.numbers(), [7, 9])
         self.assertNotIn("mpm_mutant == 8 ?", together.written())
+        self.assertTrue(together.refuse("unchanged_8:1:3: error: not an integer constant\n"))
+        self.assertEqual(together.numbers(), [7])
 
     def test_an_expression_is_noted_by_one_number(self):
         text = "x = f(a + b) * c;\n"

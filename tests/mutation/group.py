@@ -72,7 +72,7 @@ class Group:
 
     def __init__(self, build, mutants, longest, patience, instantiations, suites, say):
         self.build, self.mutants, self.longest, self.patience = build, mutants, longest, patience
-        self.instantiations, self.say = instantiations, say
+        self.instantiations, self.suites, self.say = instantiations, suites, say
         self.bench = Bench(build, build.work / "group")
         self.texts, self.number_of, self.noted_as = {}, {}, {}
         for file in dict.fromkeys(mutant.file for mutant in mutants):
@@ -104,7 +104,8 @@ class Group:
             source = os.path.relpath(self.build.source_of[name], self.build.tree)
             found = INSTANTIATION.search(name)
             if name.startswith("tests/"):
-                wanted = self.build.test_of(name) and self.includes_one(name, files)
+                test = self.build.test_of(name)
+                wanted = test and test[0] in self.suites and self.includes_one(name, files)
             elif found or "mpm_cpu_backend.dir" in name:
                 wanted = not found or found[1] in self.instantiations
             elif self.build.plugin_of(name) or "/device/" in name or not name.startswith("modules/"):

@@ -205,6 +205,8 @@ def assignment_around(tokens, at):
     left = tokens[first:at]
     if not left or left[0].kind != "name" or any(a.kind == b.kind == "name" for a, b in zip(left, left[1:])):
         return None
+    if any(a.text in ("&", "*") and b.kind == "name" and a.end == b.begin - 1 for a, b in zip(left, left[1:])):
+        return None  # the declaration of a reference
     if tokens[first - 1].kind == "name" and tokens[first - 1].text != "else":
         return None  # the type of a declaration
     if tokens[first - 1].text in (",", "&", "*", ">", "("):

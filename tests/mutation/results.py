@@ -42,8 +42,8 @@ class Results:
         for mutant in mutants:
             self.known.pop(fingerprint(mutant), None)
 
-    def note_sample(self, folders, every, date):
-        self.samples |= {folder: {"every": every, "date": date} for folder in folders}
+    def note_sample(self, folder, every, date):
+        self.samples[folder] = {"every": every, "date": date}
 
     def every(self, folder):
         return self.samples.get(folder, {}).get("every", 1)

@@ -109,11 +109,13 @@ class Together:
             changed, base = ("void()", f"void({base})") if without else (f"({changed})", base)
             written += f'\n#line 1 "mutant_{number}"\nmpm_mutant == {number} ? {changed} :'
         noted = self.spans[begin, end][0]
-        return written + f'\n#line 1 "unchanged"\n((void)(mpm_mutant < 0 && mpm_come_to({noted})), {base}))'
+        return written + f'\n#line 1 "unchanged_{noted}"\n((void)(mpm_mutant < 0 && mpm_come_to({noted})), {base}))'
 
     def refuse(self, output):
         """Takes out the mutants that the compiler's messages name; whether there were any."""
         named = {int(number) for number in re.findall(r"(?m)^mutant_(\d+):\d+:\d+: (?:fatal )?error:", output)}
+        whole = {int(number) for number in re.findall(r"(?m)^unchanged_(\d+):\d+:\d+: (?:fatal )?error:", output)}
+        named |= {number for number, noted in self.expression_of().items() if noted in whole}
         named &= set(self.numbers())
         self.refused |= named
         return bool(named)
