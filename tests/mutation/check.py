@@ -65,6 +65,13 @@ class WritesThemTogether(unittest.TestCase):
         self.assertTrue(together.refuse("unchanged_8:1:3: error: not an integer constant\n"))
         self.assertEqual(together.numbers(), [7])
 
+    def test_constants_are_not_among_them(self):
+        text = "constexpr int size = D + 1;\nconstexpr int f(int x) { return x - 1; }\nx = a ? b : c * d;\n"
+        together = Together(text, mutants_of("file.hpp", text))
+        together.refuse_constants()
+        left = [together.mutants[number - 1].what for number in together.numbers()]
+        self.assertEqual(left, ["- to +", "drop - 1", "1 to 2", "drop x =", "drop * d"])
+
     def test_an_expression_is_noted_by_one_number(self):
         text = "x = f(a + b) * c;\n"
         together = Together(text, mutants_of("file.hpp", text))

@@ -79,6 +79,7 @@ class Group:
             of_file = [mutant for mutant in mutants if mutant.file == file]
             first = len(self.number_of) + 1
             self.texts[file] = Together((build.tree / file).read_text(), of_file, first)
+            self.texts[file].refuse_constants()
             self.number_of |= {mutant: number for number, mutant in enumerate(of_file, first)}
             self.noted_as |= self.texts[file].expression_of()
         words = [SWITCH, *instantiations, *(f"{m.name}\n{m.code}" for m in mutants), *(t.text for t in self.texts.values())]

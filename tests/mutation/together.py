@@ -4,6 +4,7 @@ program is the unchanged one and notes the expressions that it comes to in the f
 
 Some mutants cannot be there, constants of compile time for one; the compiler names them, and they are tried alone."""
 
+import bisect
 import re
 
 from mutants import closing, tokens_of
@@ -74,6 +75,17 @@ class Together:
             if any(b < begin < e < end for b, e in self.spans):  # neither holds the other
                 self.refused.update(self.spans.pop((begin, end)))
 
+    def refuse_constants(self):
+        """Takes out those of declarations that the compiler evaluates, which spares most of its refusals."""
+        tokens = tokens_of(self.text)
+        begins = [token.begin for token in tokens]
+        for number, mutant in enumerate(self.mutants, self.first):
+            at = bisect.bisect_right(begins, mutant.begin) - 1
+            while at >= 0 and tokens[at].text not in (";", "{", "}"):
+                if tokens[at].text in ("constexpr", "alignas", "typedef"):
+                    self.refused.add(number)
+                at -= 1
+
     def numbers(self):
         return [n for n in range(self.first, self.first + len(self.mutants)) if n not in self.refused]
 
@@ -113,8 +125,11 @@ class Together:
 
     def refuse(self, output):
         """Takes out the mutants that the compiler's messages name; whether there were any."""
-        named = {int(number) for number in re.findall(r"(?m)^mutant_(\d+):\d+:\d+: (?:fatal )?error:", output)}
-        whole = {int(number) for number in re.findall(r"(?m)^unchanged_(\d+):\d+:\d+: (?:fatal )?error:", output)}
+        errors = re.findall(r"(?m)^(mutant|unchanged)_(\d+):\d+:\d+: (?:fatal )?error: (.*)", output)
+        # What is no constant any more makes others wrong that use it; they are no mistakes of their own.
+        first = [error for error in errors if "constant" in error[2]] or errors
+        named = {int(number) for where, number, _ in first if where == "mutant"}
+        whole = {int(number) for where, number, _ in first if where == "unchanged"}
         named |= {number for number, noted in self.expression_of().items() if noted in whole}
         named &= set(self.numbers())
         self.refused |= named
