@@ -38,6 +38,10 @@ class FindsMutants(unittest.TestCase):
     def test_template_parameters_of_a_lambda(self):
         self.assertEqual(changes("auto part = [&]<int i>(N<i>) { return a > b; };"), ["> to <="])
 
+    def test_a_declared_function_is_no_call(self):
+        self.assertEqual(changes("float abs(float x) {\n  return abs(x);\n}\nA operator-(A a);\nx = y + min(a, b);"),
+                         ["drop abs", "drop x =", "+ to -", "drop + min(a, b)", "min to max"])  # fmt: skip
+
     def test_a_declared_reference_is_no_assignment(self):
         self.assertEqual(changes("struct S {\n  Field& mass_ = field(mass);\n  void f() { x = y; }\n};"), ["drop x ="])
 

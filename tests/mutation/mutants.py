@@ -162,9 +162,10 @@ def changes_of(text):
         binary = token.kind == "sign" and is_binary(text, token)
         if binary and token.text in OPPOSITE:
             yield token.begin, token.end, OPPOSITE[token.text], f"{token.text} to {OPPOSITE[token.text]}"
-        if token.kind == "name" and token.text in ("min", "max") and after.text == "(":
+        called = after.text == "(" and (before.kind != "name" or before.text in ("return", "else"))  # not declared
+        if token.kind == "name" and token.text in ("min", "max") and called:
             yield token.begin, token.end, OPPOSITE[token.text], f"{token.text} to {OPPOSITE[token.text]}"
-        if token.kind == "name" and token.text == "abs" and after.text == "(":
+        if token.kind == "name" and token.text == "abs" and called:
             yield token.begin, token.end, "", "drop abs"
         if binary and token.text in ("+", "-", "|"):
             behind = tokens[term_end(tokens, at + 1) - 1].end
@@ -172,7 +173,7 @@ def changes_of(text):
         if binary and token.text in ("*", "/"):
             behind = tokens[factor_end(tokens, at + 1) - 1].end
             yield token.begin, behind, "", f"drop {squeezed(text[token.begin : behind])}"
-        if token.text == "-" and not binary and after.begin == token.end and before.text not in (")", "]"):
+        if token.text == "-" and not binary and after.begin == token.end and before.text not in (")", "]", "operator"):
             yield token.begin, token.end, "", f"drop the sign of {squeezed(text[token.end : tokens[factor_end(tokens, at + 1) - 1].end])}"
         if token.kind == "number" and not in_index(tokens, at) and (other := other_number(token.text)):
             if not (after.text == "/" and tokens[at + 2].kind == "number"):  # of a quotient the divisor alone

@@ -126,8 +126,10 @@ class Together:
     def refuse(self, output):
         """Takes out the mutants that the compiler's messages name; whether there were any."""
         errors = re.findall(r"(?m)^(mutant|unchanged)_(\d+):\d+:\d+: (?:fatal )?error: (.*)", output)
-        # What is no constant any more makes others wrong that use it; they are no mistakes of their own.
-        first = [error for error in errors if "constant" in error[2]] or errors
+        # What is no constant or not declared any more makes others wrong that use it, which are no mistakes of their own.
+        own = ("constant", "operands to", "no match for", "invalid operands", "lvalue")
+        syntax = bool(errors) and any(word in errors[0][2] for word in ("expected", "does not name"))
+        first = errors[:1] if syntax else [e for e in errors if any(word in e[2] for word in own)] or errors[:1]
         named = {int(number) for where, number, _ in first if where == "mutant"}
         whole = {int(number) for where, number, _ in first if where == "unchanged"}
         named |= {number for number, noted in self.expression_of().items() if noted in whole}
