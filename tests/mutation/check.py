@@ -70,7 +70,11 @@ class WritesThemTogether(unittest.TestCase):
         self.assertEqual(together.numbers(), [7])
 
     def test_constants_are_not_among_them(self):
-        text = "constexpr int size = D + 1;\nconstexpr int f(int x) { return x - 1; }\nx = a ? b : c * d;\n"
+        text = """constexpr int size = D + 1;
+constexpr int f(int x) { return x - 1; }
+if constexpr (D == 3) x = a ? b : c * d;
+constexpr auto source = [](int i) { return i + 1; };
+"""
         together = Together(text, mutants_of("file.hpp", text))
         together.refuse_constants()
         left = [together.mutants[number - 1].what for number in together.numbers()]

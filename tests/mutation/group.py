@@ -108,7 +108,7 @@ class Group:
                 test = self.build.test_of(name)
                 wanted = test and test[0] in self.suites and self.includes_one(name, files)
             elif found or "mpm_cpu_backend.dir" in name:
-                wanted = not found or found[1] in self.instantiations
+                wanted = found[1] in self.instantiations if found else any(self.instantiations)
             elif self.build.plugin_of(name) or "/device/" in name or not name.startswith("modules/"):
                 wanted = False
             else:

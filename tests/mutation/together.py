@@ -4,7 +4,6 @@ program is the unchanged one and notes the expressions that it comes to in the f
 
 Some mutants cannot be there, constants of compile time for one; the compiler names them, and they are tried alone."""
 
-import bisect
 import re
 
 from mutants import closing, tokens_of
@@ -58,6 +57,24 @@ def expression_around(tokens, mutant):
     return tokens[first].begin, tokens[last].end
 
 
+def declaration_end(tokens, at):
+    """The place where what begins with constexpr ends: before a function's body, behind the condition of an if."""
+    begin, is_given, has_arguments = at, False, False
+    while at + 1 < len(tokens) and tokens[at].text != ";":
+        text = tokens[at].text
+        is_given = is_given or text == "="
+        if text == "{" and has_arguments and not is_given:
+            break
+        if text in ("(", "[", "{"):
+            has_arguments = has_arguments or text == "("
+            is_condition = at == begin + 1 and tokens[begin - 1].text == "if"
+            at = closing(tokens, at)
+            if is_condition:
+                break
+        at += 1
+    return at
+
+
 class Together:
     """The text with all mutants but those that the compiler refused. Numbers count from `first`; a folder that the
     compiler searches holds SWITCH as SWITCH_FILE."""
@@ -78,13 +95,10 @@ class Together:
     def refuse_constants(self):
         """Takes out those of declarations that the compiler evaluates, which spares most of its refusals."""
         tokens = tokens_of(self.text)
-        begins = [token.begin for token in tokens]
-        for number, mutant in enumerate(self.mutants, self.first):
-            at = bisect.bisect_right(begins, mutant.begin) - 1
-            while at >= 0 and tokens[at].text not in (";", "{", "}"):
-                if tokens[at].text in ("constexpr", "alignas", "typedef"):
-                    self.refused.add(number)
-                at -= 1
+        for place, token in enumerate(tokens):
+            if token.text in ("constexpr", "alignas", "typedef"):
+                end = tokens[declaration_end(tokens, place)].begin
+                self.refused.update(n for n, m in enumerate(self.mutants, self.first) if token.begin < m.begin < end)
 
     def numbers(self):
         return [n for n in range(self.first, self.first + len(self.mutants)) if n not in self.refused]
@@ -132,7 +146,12 @@ class Together:
         first = errors[:1] if syntax else [e for e in errors if any(word in e[2] for word in own)] or errors[:1]
         named = {int(number) for where, number, _ in first if where == "mutant"}
         whole = {int(number) for where, number, _ in first if where == "unchanged"}
-        named |= {number for number, noted in self.expression_of().items() if noted in whole}
+        if not named | whole:  # a template that another calls: the compiler then names who called
+            caller = re.search(r"(?m)^(?:mutant|unchanged)_(\d+):", output)
+            whole = {int(caller[1])} if caller else set()
+        noted_as = self.expression_of()
+        whole |= {noted_as[number] for number in whole & noted_as.keys()}
+        named |= {number for number, noted in noted_as.items() if noted in whole}
         named &= set(self.numbers())
         self.refused |= named
         return bool(named)
