@@ -124,12 +124,6 @@ class DeviceScene {
   Metrics metrics;
 };
 
-/// The scale of a field that only some scenes hold: temperatures of those in these tests are some 30 K.
-inline double scale_of(const std::string& field, double h) {
-  if (field == "temperature") return 30;
-  return field.rfind(temperature_state, 0) == 0 ? 30 / h : 1;
-}
-
 /// Largest difference of two bodies' states, each value over the scene's scale of it.
 inline double state_difference(const Experiment& experiment, const BodyState& expected, BodyState found) {
   const double speed = 1.5, h = experiment.grid.cell_size;  // scales of the scenes in parity.hpp

@@ -1,7 +1,7 @@
 // Temperature on the host-run device: against the reference backend, and against what no program is needed to know.
 
 #include "device/device_support.hpp"
-#include "experiment/thermal.hpp"
+#include "parity/heat_scenes.hpp"
 #include "support/heat_solutions.hpp"
 #include "support/results.hpp"
 
@@ -9,84 +9,6 @@ using namespace mpm;
 using namespace mpm::test;
 
 namespace {
-
-const std::vector<std::string> orders{"last", "first", "modified_last", "averaged"};
-// The diffusivity of all solids here is 0.05 m^2/s: heat crosses half a cell in 14 steps.
-const std::string conducts = R"("conductivity": 500, "heat_capacity": 10)";
-const std::string elastic = R"("type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000)";
-const std::string plastic =
-    R"("type": "von_mises", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000, "yield_stress": 60)";
-/// Latent heat is that of 1 K, so that particles melt and freeze in 14 steps.
-const std::string melts = R"(, "phase_change": {"temperature": 22, "latent_heat": 10,
-    "melted": {"conductivity": 200, "heat_capacity": 15, "youngs_modulus": 600)";
-
-std::string material(const std::string& plugin, const std::string& more = "") {
-  return "{" + plugin + R"(, "thermal": {)" + conducts + more + "}}";
-}
-
-/// The bodies of a mix with temperatures between 10 K and 40 K that change from place to place.
-Mix warm(Mix mix) {
-  if (mix.material == Mix{}.material) mix.material = material(elastic);
-  mix.overrides.push_back(set("/bodies/0/temperature", "\"20+30*(x-0.3)-20*(y-0.4)\""));
-  mix.overrides.push_back(set("/bodies/1/temperature", "\"25+10*sin(9*x)*cos(7*y)\""));
-  return mix;
-}
-Mix warm_and_close(int dimension) {
-  Mix mix;
-  mix.dimension = dimension, mix.close = true;
-  return warm(mix);
-}
-/// Walls of every kind: held at a temperature, a flux, convection; the others let no heat through.
-std::string boundaries(int dimension, const std::string& type) {
-  std::string text = R"({"all": ")" + type + R"(", "x_min": {"type": ")" + type +
-                     R"(", "temperature": "30+10*y-20*t"}, "x_max": {"type": ")" + type +
-                     R"(", "heat_flux": "9000+2000*y+9000*t"}, "y_min": {"type": ")" + type +
-                     R"(", "convection": {"coefficient": 900, "temperature": "60+9*x-99*t"}})";
-  if (dimension == 3)
-    text += R"(, "z_min": {"type": ")" + type + R"(", "temperature": "35-x"}, "z_max": {"type": ")" + type +
-            R"(", "convection": {"coefficient": 500, "temperature": "5"}})";
-  return text + "}";
-}
-std::string transfer_named(const std::string& id) {
-  return "{\"type\": \"" + id + "\"}";
-}
-
-/// Overrides that run a mix on the reference backend.
-std::vector<std::string> on_reference(const Mix& mix) {
-  std::vector<std::string> overrides = mix.overrides;
-  for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
-  return overrides;
-}
-/// Whether the program takes the mix.
-bool is_accepted(const Mix& mix) {
-  try {
-    const Experiment experiment = experiment_from(mix.text(), on_reference(mix));
-    const Plan plan = make_plan(experiment);
-    return !refusal_of_temperature(*experiment.transfer.plugin, plan.basis_order);
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
-template <class AnyScene>
-std::vector<double> heat_ledger_values(const AnyScene& scene) {
-  const HeatLedger l = scene.simulation.backend().heat_ledger();
-  return {l.scatter, l.images, l.gather, l.walls, l.flux, l.convection, l.boxes, l.dissipation};
-}
-
-/// The heat that the particles hold beyond 0 K, without what they have melted with, J.
-template <class AnyScene>
-double heat_content(const AnyScene& scene) {
-  double sum = 0;
-  for (int body = 0; body < static_cast<int>(scene.experiment.bodies.size()); ++body) {
-    const BodyState state = scene.body(body);
-    const Thermal& thermal = *scene.experiment.materials[scene.experiment.bodies[body].material].thermal;
-    const std::vector<double>& temperature = state.host_state.at("temperature");
-    for (std::size_t p = 0; p < temperature.size(); ++p)
-      sum += state.mass * state.size_of(p) * thermal.solid.heat_capacity * temperature[p];
-  }
-  return sum;
-}
 
 /// Checks what check_on_device does, and the heat ledger too. Returns the reference's rows over its heat content.
 std::vector<double> check_heat(const Mix& mix, const std::vector<std::string>& precisions = {"double"}) {

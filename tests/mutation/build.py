@@ -56,7 +56,7 @@ class Build:
         self.must("ninja", "-C", self.folder, *(["-j", jobs] if jobs else []), *TARGETS)
 
     def read(self):
-        """Learns what there is, and runs every test once that was never timed."""
+        """Learns what there is."""
         self.compile_of = {}
         for entry in json.loads((self.folder / "compile_commands.json").read_text()):
             words = shlex.split(entry["command"])
@@ -68,7 +68,6 @@ class Build:
             self.say("mutation: only the suites", *self.suites, "are built and tried")
         programs = ["mpm", *(f"test_{suite}" for suite in self.suites)]
         self.links = {program: self.link_of(f"bin/{program}") for program in programs}
-        self.read_tests()
 
     def must(self, *command):
         words = [str(word) for word in command]
@@ -105,7 +104,7 @@ class Build:
     # ---- tests -------------------------------------------------------------------------------------------------
 
     def read_tests(self):
-        """The quick tests and the processor time that each takes on the unchanged program."""
+        """The quick tests and the processor time that each takes on the unchanged program: runs those never timed."""
         kept = self.work / "times.json"
         times = json.loads(kept.read_text()) if kept.is_file() else {}
         self.tests = []

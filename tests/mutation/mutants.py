@@ -42,6 +42,12 @@ class Mutant:
         return text[: self.begin] + self.replacement + text[self.end :]
 
 
+def folder_of(mutant):
+    """modules/kind, of a backend modules/backends/name."""
+    parts = mutant.file.split("/")
+    return "/".join(parts[: 3 if parts[1] == "backends" else 2])
+
+
 @dataclass(frozen=True)
 class Token:
     kind: str
@@ -58,7 +64,7 @@ def blanked(text, pattern):
 def code_only(text):
     """The text without what is no arithmetic: comments, strings, the preprocessor's lines, static assertions, the
     tables of parameters and state fields with their words."""
-    text = blanked(text, r'//[^\n]*|/\*[\s\S]*?\*/|"(?:\\.|[^"\\\n])*"')
+    text = blanked(text, r'//[^\n]*|/\*[\s\S]*?\*/|R"(\w*)\([\s\S]*?\)\1"|"(?:\\.|[^"\\\n])*"')
     text = blanked(text, r"(?m)^[ \t]*#(?:[^\n]*\\\n)*[^\n]*")
     text = blanked(text, r"\bstatic_assert\([^;]*;|\busing [^;]*;")
     return blanked(text, r"static constexpr mpm_(?:parameter|state) [^;]*;")
@@ -67,13 +73,22 @@ def code_only(text):
 def closing(tokens, at):
     """The place of the bracket that closes the one at `at`."""
     pairs = {"(": ")", "[": "]", "{": "}", "<": ">"}
-    depth, opening, close = 0, tokens[at].text, pairs[tokens[at].text]
-    for place in range(at, len(tokens)):
+    opening, close = tokens[at].text, pairs[tokens[at].text]
+    depth, place = 1, at
+    while depth > 0:
+        place += 1
+        if place == len(tokens):
+            raise ValueError("a bracket is never closed")
         text = tokens[place].text
-        depth += (text == opening) - (text == close) - (2 if close == ">" and text == ">>" else 0)
-        if depth <= 0:
-            return place
-    raise ValueError("a bracket is never closed")
+        if opening == "<" and text in ("(", "[", "{"):  # a lambda may be an argument and compare
+            place = closing(tokens, place)
+        elif text == opening and (opening != "<" or tokens[place - 1].end == tokens[place].begin):
+            depth += 1
+        elif text == close:
+            depth -= 1
+        elif opening == "<" and text == ">>":
+            depth -= 2
+    return place
 
 
 def tokens_of(text):
@@ -84,10 +99,11 @@ def tokens_of(text):
     while place < len(found):
         token = found[place]
         before = found[place - 1] if place else None
-        touches = before is not None and before.kind == "name" and before.end == token.begin
-        if token.text == "<" and before is not None and (touches or before.text == "template"):
+        touches = before is not None and before.end == token.begin and before.text != "operator"
+        named = touches and (before.kind == "name" or before.text == "]")
+        if token.text == "<" and (named or before is not None and before.text == "template"):
             place = closing(found, place)
-            if touches:  # the arguments belong to the name
+            if touches:  # the arguments belong to the name, the parameters to the lambda
                 kept[-1] = replace(kept[-1], end=found[place].end)
         else:
             kept.append(token)
@@ -146,9 +162,10 @@ def changes_of(text):
         binary = token.kind == "sign" and is_binary(text, token)
         if binary and token.text in OPPOSITE:
             yield token.begin, token.end, OPPOSITE[token.text], f"{token.text} to {OPPOSITE[token.text]}"
-        if token.kind == "name" and token.text in ("min", "max") and after.text == "(":
+        called = after.text == "(" and (before.kind != "name" or before.text in ("return", "else"))  # not declared
+        if token.kind == "name" and token.text in ("min", "max") and called:
             yield token.begin, token.end, OPPOSITE[token.text], f"{token.text} to {OPPOSITE[token.text]}"
-        if token.kind == "name" and token.text == "abs" and after.text == "(":
+        if token.kind == "name" and token.text == "abs" and called:
             yield token.begin, token.end, "", "drop abs"
         if binary and token.text in ("+", "-", "|"):
             behind = tokens[term_end(tokens, at + 1) - 1].end
@@ -156,7 +173,7 @@ def changes_of(text):
         if binary and token.text in ("*", "/"):
             behind = tokens[factor_end(tokens, at + 1) - 1].end
             yield token.begin, behind, "", f"drop {squeezed(text[token.begin : behind])}"
-        if token.text == "-" and not binary and after.begin == token.end and before.text not in (")", "]"):
+        if token.text == "-" and not binary and after.begin == token.end and before.text not in (")", "]", "operator"):
             yield token.begin, token.end, "", f"drop the sign of {squeezed(text[token.end : tokens[factor_end(tokens, at + 1) - 1].end])}"
         if token.kind == "number" and not in_index(tokens, at) and (other := other_number(token.text)):
             if not (after.text == "/" and tokens[at + 2].kind == "number"):  # of a quotient the divisor alone
@@ -189,6 +206,8 @@ def assignment_around(tokens, at):
     left = tokens[first:at]
     if not left or left[0].kind != "name" or any(a.kind == b.kind == "name" for a, b in zip(left, left[1:])):
         return None
+    if any(a.text in ("&", "*") and b.kind == "name" and a.end == b.begin - 1 for a, b in zip(left, left[1:])):
+        return None  # the declaration of a reference
     if tokens[first - 1].kind == "name" and tokens[first - 1].text != "else":
         return None  # the type of a declaration
     if tokens[first - 1].text in (",", "&", "*", ">", "("):

@@ -3,13 +3,10 @@
 from collections import Counter
 from pathlib import Path
 
+from mutants import folder_of
 from results import Result
 
-BEGIN, END = "<!-- written by tests/mutation/run --page: begin -->", "<!-- end -->"
-
-
-def folder_of(mutant):
-    return "/".join(Path(mutant.file).parts[:2])
+BEGIN, END = "<!-- written by tests/mutation/run --page: {part} -->", "<!-- end of {part} -->"
 
 
 def what_became(mutant, results, equivalents):
@@ -42,7 +39,7 @@ def with_reasons(mutants, results, equivalents):
     """The survivors, those without a reason first; equal reasons of one file stand together."""
     unexplained = [m for m in mutants if what_became(m, results, equivalents) == Result.SURVIVED]
     lines = ["No mutant survived without a reason."] if not unexplained else ["Survived without a reason:", ""]
-    lines += [f"- `{m.name}`: `{m.code}`" for m in unexplained]
+    lines += [f"- `{m.name}`: `{m.code}` ({results.of(m).check or 'all quick tests'})" for m in unexplained]
     groups = {}
     for m in mutants:
         if what_became(m, results, equivalents) == "equivalent":
@@ -60,14 +57,27 @@ def escaped(code):
     return code.replace("|", "\\|")
 
 
-def write(path, mutants, results, equivalents):
+def samples(mutants, results):
+    """Which part of each folder's mutants was tried, and when."""
+    sentences = []
+    for folder in dict.fromkeys(folder_of(mutant) for mutant in mutants):
+        every, count = results.every(folder), sum(folder_of(m) == folder for m in mutants)
+        part = "all" if every == 1 else f"a sample, each {every}-th of every file"
+        sentences.append(f"`{folder}` {results.date(folder)}: {count} mutants ({part}).")
+    return "  \n".join(sentences)
+
+
+def write(path, part, mutants, results, equivalents):
+    """Writes a part of the page between its two marks."""
+    begin, end = BEGIN.format(part=part), END.format(part=part)
     text = path.read_text()
-    head, _, rest = text.partition(BEGIN)
-    _, _, tail = rest.partition(END)
-    total = len(mutants)
+    head, found, rest = text.partition(begin)
+    _, ended, tail = rest.partition(end)
+    if not found or not ended:
+        raise SystemExit(f"{path}: the marks {begin} and {end} are missing")
     by_hand = [
-        f"Run of {results.date}, {total} mutants.",
+        samples(mutants, results),
         table(mutants, results, equivalents),
         with_reasons(mutants, results, equivalents),
     ]
-    path.write_text(head + BEGIN + "\n\n" + "\n\n".join(by_hand) + "\n\n" + END + tail)
+    path.write_text(head + begin + "\n\n" + "\n\n".join(by_hand) + "\n\n" + end + tail)

@@ -35,11 +35,21 @@ class Results:
     def __init__(self, path):
         self.path = path
         kept = json.loads(path.read_text()) if path.is_file() else {}
-        self.date = kept.get("date", "")
+        self.samples = kept.get("samples", {})  # by folder: which part of its mutants was tried, and when
         self.known = {key: Result(**value) for key, value in kept.get("results", {}).items()}
 
-    def clear(self):
-        self.known = {}
+    def clear(self, mutants):
+        for mutant in mutants:
+            self.known.pop(fingerprint(mutant), None)
+
+    def note_sample(self, folder, every, date):
+        self.samples[folder] = {"every": every, "date": date}
+
+    def every(self, folder):
+        return self.samples.get(folder, {}).get("every", 1)
+
+    def date(self, folder):
+        return self.samples.get(folder, {}).get("date", "")
 
     def of(self, mutant):
         return self.known.get(fingerprint(mutant))
@@ -50,7 +60,7 @@ class Results:
 
     def save(self):
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        kept = {"date": self.date, "results": {key: asdict(value) for key, value in self.known.items()}}
+        kept = {"samples": self.samples, "results": {key: asdict(value) for key, value in self.known.items()}}
         self.path.with_suffix(".new").write_text(json.dumps(kept, indent=1))
         self.path.with_suffix(".new").replace(self.path)
 
@@ -92,7 +102,7 @@ class Equivalents:
                 continue
             if key in by_key:
                 result = results.of(by_key[key])
-                if result.status not in (Result.SURVIVED, Result.SAME_CODE):
+                if result and result.status not in (Result.SURVIVED, Result.SAME_CODE):
                     yield f"{by_key[key].name} is {result.text()}"
 
     def unknown(self, mutants):

@@ -1,5 +1,6 @@
 """All mutants of one file in one text, which takes one compilation in place of hundreds: an expression E with a mutant
-E' becomes (mpm_mutant == 5 ? (E') : (E)), and the environment's MPM_MUTANT says which one the program is.
+E' becomes (mpm_mutant == 5 ? (E') : (E)), and the environment's MPM_MUTANT says which one the program is. With -1 the
+program is the unchanged one and notes the expressions that it comes to in the file MPM_MUTANT_SEEN, a byte for each.
 
 Some mutants cannot be there, constants of compile time for one; the compiler names them, and they are tried alone."""
 
@@ -8,12 +9,30 @@ import re
 from mutants import closing, tokens_of
 
 ASSIGNMENTS = ("=", "+=", "-=", "*=", "/=")
+SWITCH_FILE = "mpm_mutant_switch.hpp"
 SWITCH = """#pragma once
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
 #include <cstdlib>
 inline const int mpm_mutant = [] {
   const char* number = std::getenv("MPM_MUTANT");
   return number ? std::atoi(number) : 0;
 }();
+inline unsigned char* mpm_open_seen() {
+  const char* path = std::getenv("MPM_MUTANT_SEEN");
+  const int file = path ? open(path, O_RDWR) : -1;
+  if (file < 0) return nullptr;
+  const long size = lseek(file, 0, SEEK_END);
+  void* bytes = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  close(file);
+  return bytes == MAP_FAILED ? nullptr : static_cast<unsigned char*>(bytes);
+}
+inline bool mpm_come_to(int number) {
+  static unsigned char* const seen = mpm_open_seen();
+  if (seen) seen[number] = 1;
+  return true;
+}
 """
 
 
@@ -38,27 +57,62 @@ def expression_around(tokens, mutant):
     return tokens[first].begin, tokens[last].end
 
 
-class Together:
-    """The text with all mutants but those that the compiler refused. Numbers count from 1."""
+def declaration_end(tokens, at):
+    """The place where what begins with constexpr ends: before a function's body, behind the condition of an if."""
+    begin, is_given, has_arguments = at, False, False
+    while at + 1 < len(tokens) and tokens[at].text != ";":
+        text = tokens[at].text
+        is_given = is_given or text == "="
+        if text == "{" and has_arguments and not is_given:
+            break
+        if text in ("(", "[", "{"):
+            has_arguments = has_arguments or text == "("
+            is_condition = at == begin + 1 and tokens[begin - 1].text == "if"
+            at = closing(tokens, at)
+            if is_condition:
+                break
+        at += 1
+    return at
 
-    def __init__(self, text, mutants):
-        self.text, self.mutants, self.refused = text, mutants, set()
+
+class Together:
+    """The text with all mutants but those that the compiler refused. Numbers count from `first`; a folder that the
+    compiler searches holds SWITCH as SWITCH_FILE."""
+
+    def __init__(self, text, mutants, first=1):
+        self.text, self.mutants, self.first, self.refused = text, mutants, first, set()
         tokens = tokens_of(text)
         self.spans = {}
-        for number, mutant in enumerate(mutants, 1):
+        for number, mutant in enumerate(mutants, first):
             try:
                 self.spans.setdefault(expression_around(tokens, mutant), []).append(number)
             except (IndexError, ValueError):
                 self.refused.add(number)
+        for begin, end in list(self.spans):
+            if any(b < begin < e < end for b, e in self.spans):  # neither holds the other
+                self.refused.update(self.spans.pop((begin, end)))
+
+    def refuse_constants(self):
+        """Takes out those of declarations that the compiler evaluates, which spares most of its refusals."""
+        tokens = tokens_of(self.text)
+        for place, token in enumerate(tokens):
+            if token.text in ("constexpr", "alignas", "typedef"):
+                end = tokens[declaration_end(tokens, place)].begin
+                self.refused.update(n for n, m in enumerate(self.mutants, self.first) if token.begin < m.begin < end)
 
     def numbers(self):
-        return [number for number in range(1, len(self.mutants) + 1) if number not in self.refused]
+        return [n for n in range(self.first, self.first + len(self.mutants)) if n not in self.refused]
+
+    def expression_of(self):
+        """For each number the first number of its expression, which is the one that the program notes."""
+        return {n: numbers[0] for numbers in self.spans.values() for n in numbers}
 
     def written(self):
         spans = sorted(((b, e, [n for n in numbers if n not in self.refused]) for (b, e), numbers in self.spans.items()),
                        key=lambda span: (span[0], -span[1]))  # fmt: skip
         text, _ = self.rendered(0, len(self.text), [span for span in spans if span[2]])
-        return SWITCH + text.replace("#pragma once", "", 1)
+        include, guard = f'#include "{SWITCH_FILE}"\n', "#pragma once\n"
+        return text.replace(guard, guard + include, 1) if guard in text else include + text
 
     def rendered(self, begin, end, spans):
         """The text from `begin` to `end` with those of `spans` that lie in it, and the spans behind it."""
@@ -75,15 +129,29 @@ class Together:
     def chosen(self, begin, end, numbers, base):
         written = "("
         for number in numbers:
-            m = self.mutants[number - 1]
+            m = self.mutants[number - self.first]
             changed = self.text[begin : m.begin] + m.replacement + self.text[m.end : end]
             without = (begin, end) == (m.begin, m.end) and not m.replacement  # a whole assignment
             changed, base = ("void()", f"void({base})") if without else (f"({changed})", base)
             written += f'\n#line 1 "mutant_{number}"\nmpm_mutant == {number} ? {changed} :'
-        return written + f'\n#line 1 "unchanged"\n({base}))'
+        noted = self.spans[begin, end][0]
+        return written + f'\n#line 1 "unchanged_{noted}"\n((void)(mpm_mutant < 0 && mpm_come_to({noted})), {base}))'
 
     def refuse(self, output):
         """Takes out the mutants that the compiler's messages name; whether there were any."""
-        named = {int(number) for number in re.findall(r"(?m)^mutant_(\d+):\d+:\d+: (?:fatal )?error:", output)}
+        errors = re.findall(r"(?m)^(mutant|unchanged)_(\d+):\d+:\d+: (?:fatal )?error: (.*)", output)
+        # What is no constant or not declared any more makes others wrong that use it, which are no mistakes of their own.
+        own = ("constant", "operands to", "no match for", "invalid operands", "lvalue")
+        syntax = bool(errors) and any(word in errors[0][2] for word in ("expected", "does not name"))
+        first = errors[:1] if syntax else [e for e in errors if any(word in e[2] for word in own)] or errors[:1]
+        named = {int(number) for where, number, _ in first if where == "mutant"}
+        whole = {int(number) for where, number, _ in first if where == "unchanged"}
+        if not named | whole:  # a template that another calls: the compiler then names who called
+            caller = re.search(r"(?m)^(?:mutant|unchanged)_(\d+):", output)
+            whole = {int(caller[1])} if caller else set()
+        noted_as = self.expression_of()
+        whole |= {noted_as[number] for number in whole & noted_as.keys()}
+        named |= {number for number, noted in noted_as.items() if noted in whole}
+        named &= set(self.numbers())
         self.refused |= named
         return bool(named)

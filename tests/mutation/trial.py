@@ -12,7 +12,7 @@ from pathlib import Path
 
 from build import environment, limited_to
 from results import Result
-from together import Together
+from together import SWITCH, SWITCH_FILE, Together
 
 FIRST_LOOK = "-O1"  # checks of the plugin alone run on a build that is made faster
 # What test-plugin has done already; what tests the checks themselves; what compares a plugin with its own text.
@@ -228,6 +228,7 @@ class Shared:
         changed.parent.parent.mkdir(parents=True)
         shutil.copytree((self.build.tree / self.file).parent, changed.parent)
         changed.write_text(self.text.written())
+        (self.bench.folder / "overlay/modules" / SWITCH_FILE).write_text(SWITCH)
 
     def make_plugin(self):
         """Makes the plugin without the mutants that the compiler refuses here; whether it then does as the program."""

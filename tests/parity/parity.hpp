@@ -165,6 +165,12 @@ inline void compare_means(const Scene& reference, const Scene& cpu, double epsil
   }
 }
 
+/// The scale of a field that only some scenes hold: temperatures of those in these tests are some 30 K.
+inline double scale_of(const std::string& field, double h) {
+  if (field == "temperature") return 30;
+  return field.rfind(temperature_state, 0) == 0 ? 30 / h : 1;
+}
+
 inline void compare_states(const Scene& reference, const Scene& cpu, double epsilon, const Tolerance& allowed) {
   const double speed = 1.5, h = reference.experiment.grid.cell_size;  // scales of the scenes above
   for (int body = 0; body < static_cast<int>(reference.experiment.bodies.size()); ++body) {
@@ -180,6 +186,9 @@ inline void compare_states(const Scene& reference, const Scene& cpu, double epsi
     REQUIRE(expected.material_state.size() == found.material_state.size());
     for (const auto& [name, values] : expected.material_state)  // strains and stretches are of order 1
       CHECK(difference(values, found.material_state.at(name), 1.0) <= allowed.material * epsilon);
+    REQUIRE(expected.host_state.size() == found.host_state.size());
+    for (const auto& [name, values] : expected.host_state)
+      CHECK(difference(values, found.host_state.at(name), scale_of(name, h)) <= allowed.material * epsilon);
     CHECK(difference(expected.domain, found.domain, h) <= allowed.material * epsilon);
     CHECK(difference(expected.corners, found.corners, h) <= allowed.material * epsilon);
     CHECK(difference(expected.second_moment, found.second_moment, h * h) <= allowed.material * epsilon);
@@ -200,6 +209,27 @@ std::vector<double> ledger_values(const AnyScene& scene) {
 inline double ledger_difference(const std::vector<double>& expected, const std::vector<double>& found, double energy) {
   for (const double entry : expected) energy = std::max(energy, std::abs(entry));
   return energy == 0 && expected == found ? 0 : difference(expected, found, energy);
+}
+
+template <class AnyScene>
+std::vector<double> heat_ledger_values(const AnyScene& scene) {
+  const HeatLedger l = scene.simulation.backend().heat_ledger();
+  return {l.scatter, l.images, l.gather, l.walls, l.flux, l.convection, l.boxes, l.dissipation};
+}
+
+/// The heat that the particles hold beyond 0 K, without what they have melted with, J; zero of a scene without heat.
+template <class AnyScene>
+double heat_content(const AnyScene& scene) {
+  double sum = 0;
+  for (int body = 0; body < static_cast<int>(scene.experiment.bodies.size()); ++body) {
+    const BodyState state = scene.body(body);
+    const auto& thermal = scene.experiment.materials[scene.experiment.bodies[body].material].thermal;
+    if (!thermal) continue;
+    const std::vector<double>& temperature = state.host_state.at("temperature");
+    for (std::size_t p = 0; p < temperature.size(); ++p)
+      sum += state.mass * state.size_of(p) * thermal->solid.heat_capacity * temperature[p];
+  }
+  return sum;
 }
 
 /// Passes and norms of the filter's last loop; `scale` is that of sqrt(m) v.
@@ -263,6 +293,11 @@ inline void check_parity(const Mix& mix) {
   };
   Scene reference(text, on("reference", "double"));
   const Totals end = reference.run();
+  const auto check_residual = [&](const Scene& scene, double epsilon) {
+    const double momentum = reference.metrics.initial().mass * 1.5;
+    CHECK(scene.simulation.backend().contact_record().momentum_residual <= 1e2 * epsilon * momentum);
+  };
+  check_residual(reference, std::numeric_limits<double>::epsilon());
   for (const std::string precision : {"double", "float"}) {
     INFO(precision);
     const double epsilon =
@@ -281,7 +316,9 @@ inline void check_parity(const Mix& mix) {
     CHECK(difference(contact_values(reference, force), contact_values(cpu, force), 1.0) <= allowed.ledger * epsilon);
     const double norm = std::sqrt(start.mass) * 1.5;
     CHECK(difference(filter_values(reference, norm), filter_values(cpu, norm), 1.0) <= allowed.ledger * epsilon);
-    CHECK(cpu.simulation.backend().contact_record().momentum_residual <= 1e2 * epsilon * start.mass * 1.5);
+    check_residual(cpu, epsilon);
+    if (const double content = heat_content(reference); content > 0)
+      CHECK(difference(heat_ledger_values(reference), heat_ledger_values(cpu), content) <= allowed.ledger * epsilon);
   }
 }
 

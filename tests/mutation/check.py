@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""Checks of the script that makes mutants: what it finds in a text, and that it finds its way in every file."""
+
+import sys
+import unittest
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from group import KINDS
+from mutants import mutants_of, tokens_of
+from together import Together
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def changes(text):
+    return [mutant.what for mutant in mutants_of("file.hpp", text + "\n")]
+
+
+class FindsMutants(unittest.TestCase):
+    def test_comparison_in_a_template_argument(self):
+        text = "v = shuffled<[](int lane) { return lane < half ? lane : width + lane; }>(a, b) + c;"
+        self.assertEqual([token.text for token in tokens_of(text)],
+                         ["v", "=", "shuffled", "(", "a", ",", "b", ")", "+", "c", ";"])  # fmt: skip
+        self.assertEqual(changes(text), ["drop v =", "+ to -", "drop + c"])
+
+    def test_a_string_of_many_lines_is_no_code(self):
+        self.assertEqual(changes('f(R"(a - b\nsum_{j<m}" c - d)", e - g);'), ["- to +", "drop - g"])
+
+    def test_call_in_a_template_argument(self):
+        self.assertEqual(changes("f(halves<wide(a < b)>(c), d - e);"), ["- to +", "drop - e"])
+
+    def test_template_arguments_in_one_another(self):
+        self.assertEqual(changes("f(A<B<C<3>>, 2>(), d - e);"), ["- to +", "drop - e"])
+
+    def test_template_parameters_of_a_lambda(self):
+        self.assertEqual(changes("auto part = [&]<int i>(N<i>) { return a > b; };"), ["> to <="])
+
+    def test_a_declared_function_is_no_call(self):
+        self.assertEqual(changes("float abs(float x) {\n  return abs(x);\n}\nA operator-(A a);\nx = y + min(a, b);"),
+                         ["drop abs", "drop x =", "+ to -", "drop + min(a, b)", "min to max"])  # fmt: skip
+
+    def test_a_declared_reference_is_no_assignment(self):
+        self.assertEqual(changes("struct S {\n  Field& mass_ = field(mass);\n  void f() { x = y; }\n};"), ["drop x ="])
+
+    def test_operators_are_no_brackets(self):
+        text = "bool operator<(A a, A b) { return a.v < b.v; }\nbool operator>(A a, A b) { return a.v > b.v; }"
+        self.assertEqual(changes(text), ["< to >=", "> to <="])
+
+    def test_brackets_that_never_close_are_refused(self):
+        with self.assertRaises(ValueError):
+            changes("f(A<B(c), d - e);")
+
+
+class WritesThemTogether(unittest.TestCase):
+    def test_each_by_its_number(self):
+        text = "#pragma once\nx = a + b;\n"
+        mutants = mutants_of("file.hpp", text)
+        together = Together(text, mutants, first=7)
+        self.assertEqual(together.numbers(), [7, 8, 9])
+        for number in together.numbers():
+            self.assertIn(f"mpm_mutant == {number} ?", together.written())
+        self.assertTrue(together.refuse("mutant_8:1:3: error: not usable in a constant expression\n"))
+        self.assertFalse(together.refuse("mutant_8:1:3: error: the same once more\n"))
+        self.assertEqual(together.numbers(), [7, 9])
+        self.assertNotIn("mpm_mutant == 8 ?", together.written())
+        self.assertTrue(together.refuse("unchanged_8:1:3: error: not an integer constant\n"))
+        self.assertEqual(together.numbers(), [7])
+
+    def test_constants_are_not_among_them(self):
+        text = """constexpr int size = D + 1;
+constexpr int f(int x) { return x - 1; }
+if constexpr (D == 3) x = a ? b : c * d;
+constexpr auto source = [](int i) { return i + 1; };
+"""
+        together = Together(text, mutants_of("file.hpp", text))
+        together.refuse_constants()
+        left = [together.mutants[number - 1].what for number in together.numbers()]
+        self.assertEqual(left, ["- to +", "drop - 1", "1 to 2", "drop x =", "drop * d"])
+
+    def test_an_expression_is_noted_by_one_number(self):
+        text = "x = f(a + b) * c;\n"
+        together = Together(text, mutants_of("file.hpp", text))
+        for number, noted in together.expression_of().items():
+            self.assertIn(f"mpm_come_to({noted})", together.written(), number)
+
+    def test_every_file_of_the_backends_and_what_they_share(self):
+        for path in [path for kind in KINDS for path in (ROOT / "modules" / kind).rglob("*.[hc]pp")]:
+            with self.subTest(path.relative_to(ROOT).as_posix()):
+                text = path.read_text()
+                Together(text, mutants_of(path.name, text)).written()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,256 @@
+"""The mutants of kernels, operators and backends, of many files in one build. All plugins and instantiations include
+these files; the build holds the mutants only in the few objects that find most of them. Which test comes to which
+expression is noted once, so that a mutant is tried by the cases alone that come to it."""
+
+import hashlib
+import json
+import os
+import re
+import resource
+import shutil
+import subprocess
+from collections import Counter
+
+from build import environment, hash_of
+from results import Result
+from together import SWITCH, SWITCH_FILE, Together
+from trial import NOT_OF_THE_PROGRAM, Bench, Refused
+
+KINDS = ("backends", "kernel", "operators")
+SUITES = ["parity", "unit", "conformance", "verification", "config"]
+INSTANTIATION = re.compile(r"_([23]_(?:float|double))\.cpp\.o$")
+FIRST_ALONE = 2  # a mutant that is refused among the others is compiled alone where it changes no more objects than that
+
+
+def cases_of(build, suites):
+    """The quick cases of the suites."""
+    cases = []
+    for suite in [suite for suite in SUITES if suite in suites and suite in build.suites]:
+        for path in sorted((build.tree / "tests" / suite).glob("*.cpp")):
+            if f"{suite}.{path.stem}" in NOT_OF_THE_PROGRAM:
+                continue
+            listed = subprocess.run([build.folder / "bin" / f"test_{suite}", "-#", "--list-test-names-only",
+                                     f"[#{path.stem}]~[slow]"], cwd=build.folder, env=environment(),
+                                    capture_output=True, text=True)  # fmt: skip
+            text = path.read_text()
+            cases += [Case(suite, path.stem, name, text) for name in listed.stdout.split("\n") if name.strip()]
+    return cases
+
+
+class Case:
+    """A quick case with what is known of it: how long it takes and which expressions it comes to. One that takes longer
+    than --longest is broken off there, and what it checks before that counts."""
+
+    def __init__(self, suite, file, name, text):
+        self.suite, self.file, self.title = suite, file, name
+        self.name = f"{suite}.{file}"
+        self.key = f"{self.name} {hash_of(text)} {name}"
+        self.seconds, self.comes_to, self.usable, self.broken_off = None, frozenset(), None, False
+        self.kills, self.tries = Counter(), Counter()
+
+    def learn(self, kept):
+        self.seconds, self.usable, self.broken_off = kept["seconds"], kept["usable"], kept["broken_off"]
+        self.comes_to = frozenset(kept["comes_to"])
+
+    def learnt(self):
+        return {"seconds": self.seconds, "usable": self.usable, "broken_off": self.broken_off,
+                "comes_to": sorted(self.comes_to)}  # fmt: skip
+
+    @property
+    def call(self):
+        # Signs that Catch would read as its own.
+        return [re.sub(r'([\\,\[\]"*~])', r"\\\1", self.title), "--abort"]
+
+    def promise(self, file):
+        """How likely it kills a mutant of a file, for a second of processor time."""
+        chance = (self.kills[file] + 0.2 * self.kills.total() + 0.2) / (self.tries[file] + 0.2 * self.tries.total() + 1)
+        return chance / ((0.5 if self.seconds is None else self.seconds) + 0.05)
+
+
+class Group:
+    """`mutants` are all of the build, whether or not they are tried in this call: objects once made serve again."""
+
+    def __init__(self, build, mutants, longest, patience, instantiations, suites, say):
+        self.build, self.mutants, self.longest, self.patience = build, mutants, longest, patience
+        self.instantiations, self.suites, self.say = instantiations, suites, say
+        self.bench = Bench(build, build.work / "group")
+        self.texts, self.number_of, self.noted_as = {}, {}, {}
+        for file in dict.fromkeys(mutant.file for mutant in mutants):
+            of_file = [mutant for mutant in mutants if mutant.file == file]
+            first = len(self.number_of) + 1
+            self.texts[file] = Together((build.tree / file).read_text(), of_file, first)
+            self.texts[file].refuse_constants()
+            self.number_of |= {mutant: number for number, mutant in enumerate(of_file, first)}
+            self.noted_as |= self.texts[file].expression_of()
+        words = [SWITCH, *instantiations, *(f"{m.name}\n{m.code}" for m in mutants), *(t.text for t in self.texts.values())]
+        self.kept = build.work / "kept" / hashlib.sha256("\n".join(words).encode()).hexdigest()[:16]
+        self.kept.mkdir(parents=True, exist_ok=True)
+        self.objects = self.chosen_objects(set(self.texts))
+        self.make()
+        self.programs = {}
+        self.cases = cases_of(build, suites)
+        self.known = self.kept / "cases.json"
+        kept = json.loads(self.known.read_text()) if self.known.is_file() else {}
+        for case in self.cases:
+            if case.key in kept:
+                case.learn(kept[case.key])
+
+    # ---- the build ---------------------------------------------------------------------------------------------
+
+    def chosen_objects(self, files):
+        """Of what is made from the files: libraries that include one in their own text, the cpu backend in the chosen
+        dimensions and precisions, tests that include one in their own text."""
+        chosen = []
+        for name in sorted(set().union(*(self.build.objects_of.get(file, ()) for file in files))):
+            source = os.path.relpath(self.build.source_of[name], self.build.tree)
+            found = INSTANTIATION.search(name)
+            if name.startswith("tests/"):
+                test = self.build.test_of(name)
+                wanted = test and test[0] in self.suites and self.includes_one(name, files)
+            elif found or "mpm_cpu_backend.dir" in name:
+                wanted = found[1] in self.instantiations if found else any(self.instantiations)
+            elif self.build.plugin_of(name) or "/device/" in name or not name.startswith("modules/"):
+                wanted = False
+            else:
+                wanted = source in files or "mpm_reference_backend.dir" in name or self.includes_one(name, files)
+            if wanted and "modules/bench" not in name:
+                chosen.append(name)
+        return chosen
+
+    def includes_one(self, name, files):
+        text = (self.build.folder / self.build.source_of[name]).read_text()
+        return any(f'#include "{file.removeprefix("modules/")}"' in text for file in files)
+
+    def make(self):
+        """Compiles the objects, without the mutants that the compiler refuses here. An object made before a refusal
+        holds that mutant as well, but no program is told to be it."""
+        state = self.kept / "refused.json"
+        if state.is_file():
+            refused = set(json.loads(state.read_text()))
+            for text in self.texts.values():
+                text.refused |= refused & set(text.numbers())
+        for name in self.objects:
+            while not self.path_of(name).is_file():
+                self.write_texts(self.bench.folder / "overlay", {file: t.written() for file, t in self.texts.items()})
+                output = self.compile(name, self.path_of(name), self.bench.folder / "overlay")
+                if output is None:
+                    self.say(f"mutation: made {os.path.basename(name)}")
+                    break
+                if not any([text.refuse(output) for text in self.texts.values()]):
+                    raise Refused(output)
+                refused = {n for m, n in self.number_of.items() if n not in self.texts[m.file].numbers()}
+                self.say(f"mutation: {len(refused)} of {len(self.mutants)} mutants are refused among the others")
+                state.write_text(json.dumps(sorted(refused)))
+
+    def path_of(self, name):
+        return self.kept / name.replace("/", "_")
+
+    def write_texts(self, overlay, texts):
+        shutil.rmtree(overlay, ignore_errors=True)
+        for file, text in texts.items():
+            changed = overlay / file
+            if not changed.parent.is_dir():  # neighbours come along: they are included by their names alone
+                shutil.copytree((self.build.tree / file).parent, changed.parent, dirs_exist_ok=True)
+        for file, text in texts.items():
+            (overlay / file).write_text(text)
+        (overlay / "modules" / SWITCH_FILE).write_text(SWITCH)
+
+    def compile(self, name, out, overlay):
+        """The compiler's messages where it refuses."""
+        words = [word for word in self.build.compile_of[name] if word != "-Werror"]
+        source = self.build.source_of[name]
+        own = overlay / os.path.relpath(source, self.build.tree)
+        words[words.index("-o") + 1] = str(out.with_suffix(".new"))
+        words[words.index("-c") + 1] = str(own) if own.is_file() else source
+        words.insert(1, f"-I{overlay / 'modules'}")
+        code, output = self.bench.run([*words, "-w", "-O1"], 900)
+        if code != 0:
+            return output
+        out.with_suffix(".new").replace(out)
+        return None
+
+    def program_of(self, suite, changed=None):
+        """A suite's program with the changed objects before all others: what several define is taken from the first."""
+        known = {name: str(self.path_of(name)) for name in self.objects} if changed is None else changed
+        if changed is None and suite in self.programs:
+            return self.programs[suite]
+        program = f"test_{suite}"
+        own = {n: p for n, p in known.items() if not self.build.test_of(n) or self.build.test_of(n)[0] == suite}
+        words = [own.get(word, word) for word in self.build.links[program]]
+        out = self.bench.folder / "bin" / f"{program}_changed{'' if changed is None else '_alone'}"
+        words[words.index("-o") + 1] = str(out)
+        words = [words[0], *own.values(), *(word for word in words[1:] if word not in own.values())]
+        code, output = self.bench.run(words, 300)
+        if code != 0:
+            raise Refused(output)
+        if changed is None:
+            self.programs[suite] = out
+        return out
+
+    # ---- one mutant --------------------------------------------------------------------------------------------
+
+    def spent(self):
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return used.ru_utime + used.ru_stime
+
+    def look_at(self, case):
+        """Runs the unchanged program once: whether the case passes, how long it takes, what it comes to."""
+        seen = self.bench.folder / "seen"
+        seen.write_bytes(bytes(len(self.mutants) + 1))
+        before = self.spent()
+        code, _ = self.bench.run([self.program_of(case.suite), *case.call], self.longest,
+                                 MPM_MUTANT="-1", MPM_MUTANT_SEEN=str(seen))  # fmt: skip
+        case.seconds, case.broken_off, case.usable = self.spent() - before, code is None, code in (0, None)
+        case.comes_to = frozenset(n for n, byte in enumerate(seen.read_bytes()) if byte)
+        self.known.write_text(json.dumps({case.key: case.learnt() for case in self.cases if case.usable is not None}))
+
+    def result(self, mutant):
+        """What became of a mutant; none where it can only be compiled alone and changes too many objects."""
+        number = self.number_of[mutant]
+        if number not in self.texts[mutant.file].numbers():
+            return self.result_alone(mutant)
+        return self.tried(mutant, number, self.program_of, self.noted_as[number])
+
+    def result_alone(self, mutant):
+        objects = [name for name in self.chosen_objects({mutant.file}) if not self.build.test_of(name)]
+        if len(objects) > FIRST_ALONE:
+            return None
+        overlay = self.bench.folder / "overlay"
+        self.write_texts(overlay, {mutant.file: mutant.applied(self.texts[mutant.file].text)})
+        changed = {}
+        for number, name in enumerate(objects):
+            changed[name] = str(self.bench.folder / f"alone_{number}.o")
+            if self.compile(name, self.bench.folder / f"alone_{number}.o", overlay) is not None:
+                return Result(Result.UNCOMPILED)
+        programs = {}
+
+        def program_of(suite):
+            if suite not in programs:
+                programs[suite] = self.program_of(suite, changed)
+            return programs[suite]
+
+        return self.tried(mutant, 0, program_of, None)
+
+    def tried(self, mutant, number, program_of, noted):
+        begin, left, came = self.spent(), list(self.cases), 0
+        while left:
+            case = max(left, key=lambda case: case.promise(mutant.file))
+            left.remove(case)
+            if case.usable is None:
+                before = self.spent()
+                self.look_at(case)
+                begin += self.spent() - before
+            if not case.usable or noted is not None and noted not in case.comes_to:
+                continue
+            came += 1
+            most = self.longest if case.broken_off else 3 * case.seconds + 1
+            code, _ = self.bench.run([program_of(case.suite), *case.call], most, MPM_MUTANT=str(number))
+            case.tries[mutant.file] += 1
+            if code is None and case.broken_off:
+                code = 0
+            if code != 0:
+                case.kills[mutant.file] += 1
+                return Result(Result.TIMED_OUT if code is None else Result.KILLED, case.name, case.title)
+            if self.spent() - begin > self.patience:
+                return Result(Result.SURVIVED, check=f"by {came} cases, {len(left)} not tried")
+        return Result(Result.SURVIVED, check=f"by {came} cases, all that come to it" if came else "no case comes to it")
