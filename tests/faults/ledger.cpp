@@ -64,14 +64,14 @@ Books run(const std::string& backend, Fault fault, const std::string& material =
   const bool on_device = backend == "device";
   options.overrides = {"/backend=" + (on_device ? "reference" : backend), "/precision=double"};
   Experiment experiment = read_experiment_text(scene(material, filtered), "test.json", components(), options);
-  if (on_device) experiment.backend = "device";
-  const auto on_host = [&](const Experiment& e, const Plan& plan, const std::vector<SeededBody>& bodies) {
+  if (on_device) experiment.backend = "cuda";
+  device::DeviceSetup setup = device_setup();
+  setup.compile = [&](const device::Composition& composition, const std::string&) {
     device::HostCompiler compiler;
     compiler.options = {"-O1", "-DMPM_FAULT=" + std::to_string(static_cast<int>(fault))};
-    const device::HostDevice device(device::compose(device::choice_of(e, plan)), compiler);
-    return device::make_host_run(e, plan, bodies, device, {});
+    return compiler.compile(composition);
   };
-  Simulation simulation(experiment, on_device ? BackendFactory(on_host) : backend_factory(1));
+  Simulation simulation(experiment, on_device ? device_factory(setup) : backend_factory(1));
   const Metrics metrics(simulation);
   while (!simulation.finished()) simulation.step();
   injected = Fault::none;
