@@ -1,5 +1,6 @@
 // The composed text itself: what is in it, how it is named, and what is refused.
 
+#include "backends/device/device.hpp"
 #include "backends/device/drivers/nvrtc.hpp"
 #include "device/device_support.hpp"
 
@@ -91,22 +92,25 @@ TEST_CASE("a functor that includes what a device cannot see is refused with its 
                              std::string(plugins().find(MPM_SHAPE, "bspline_quadratic")->descriptor->source);
     const OddShape odd(text.c_str());
     choice.shape = &odd.plugin;
-    CHECK_NOTHROW(device::HostDevice(device::compose(choice)));
+    CHECK_NOTHROW(device::HostCompiler{}.compile(device::compose(choice)));
   }
 }
 
 TEST_CASE("the host-run device says what a compiler refuses and where", "[device]") {
   device::Composition broken{"a broken one", "#line 7 \"shape plugin odd\"\nint f() { return nowhere; }\n", "", {}};
-  CHECK_THROWS_WITH(device::HostDevice(broken), ContainsSubstring("a broken one") &&
-                                                    ContainsSubstring("shape plugin odd:7") &&
-                                                    ContainsSubstring("nowhere"));
+  CHECK_THROWS_WITH(device::HostCompiler{}.compile(broken), ContainsSubstring("a broken one") &&
+                                                                ContainsSubstring("shape plugin odd:7") &&
+                                                                ContainsSubstring("nowhere"));
   device::HostCompiler none;
   none.program = "no-such-compiler";
-  CHECK_THROWS_WITH(device::HostDevice(broken, none), ContainsSubstring("apt install g++"));
+  CHECK_THROWS_WITH(none.compile(broken), ContainsSubstring("apt install g++"));
 }
 
 TEST_CASE("the host-run device names a phase that a composition lacks", "[device]") {
-  const device::HostDevice found = Devices::shared().of(usual_choice());
-  CHECK_THROWS_WITH(found.run("contact", device::Arguments<double>{}, 1, {}),
+  const device::Composition composition = device::compose(usual_choice());
+  const device::DeviceSetup setup = device_setup();
+  device::Device device(*setup.driver, setup.number);
+  device.load(Programs::shared().of(composition), composition.name);
+  CHECK_THROWS_WITH(device.launch("contact", device::Arguments<double>{}, 1, 1),
                     ContainsSubstring("no phase \"contact\""));
 }

@@ -238,7 +238,7 @@ TEST_CASE("particles keep what is added to the plan's list on the host-run devic
       plan.fields.push_back(stretch);
     }
     Simulation run(experiment, [&](const Experiment& e, const Plan&, const std::vector<SeededBody>& seeds) {
-      return device::make_host_run(e, plan, seeds, Devices::shared().of(device::choice_of(e, plan)), {});
+      return device::make_device_backend(e, plan, seeds, device_setup());
     });
     DeviceScene plain(mix.text(), precision);
     for (int k = 0; k < 9; ++k) run.step(), plain.simulation.step();

@@ -1,4 +1,4 @@
-// Scenes run through the host-run device and through the reference backend, compared value by value.
+// Scenes run through the host driver of the device backend and through the reference backend, compared value by value.
 #pragma once
 
 #include <future>
@@ -6,7 +6,9 @@
 #include <mutex>
 #include <set>
 
-#include "backends/device/host_run.hpp"
+#include "backends/device/drivers/host_compiler.hpp"
+#include "backends/device/drivers/host_driver.hpp"
+#include "backends/device/make_device_backend.hpp"
 #include "parity/parity.hpp"
 
 namespace mpm::test {
@@ -53,14 +55,14 @@ inline Mix mix_with(const Plugin& plugin, int dimension) {
   return mix;
 }
 
-/// An experiment on the device. No file names this backend: it is chosen afterwards, and so is float, which the
-/// reference backend has not.
+/// An experiment on the device. It is read as one of the reference backend, whose refusals the scenes share; so float,
+/// which that has not, is chosen afterwards.
 inline Experiment device_experiment(const std::string& text, const std::string& precision,
                                     std::vector<std::string> overrides = {}) {
   for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
   Experiment experiment = experiment_from(text, overrides);
   if (precision == "float") experiment.precision = Precision::single;
-  experiment.backend = "device";
+  experiment.backend = "cuda";
   return experiment;
 }
 
@@ -69,28 +71,27 @@ inline device::Choice device_choice_of(const Experiment& experiment) {
 }
 
 /// Compiled compositions, each once a process.
-class Devices {
+class Programs {
  public:
-  static Devices& shared() {
-    static Devices devices;
-    return devices;
+  static Programs& shared() {
+    static Programs programs;
+    return programs;
   }
-  device::HostDevice of(const device::Choice& choice) {
-    const device::Composition composition = device::compose(choice);
+  std::string of(const device::Composition& composition) {
     {
       const std::lock_guard lock(mutex_);
-      if (const auto found = devices_.find(composition.hash); found != devices_.end()) return found->second;
+      if (const auto found = images_.find(composition.hash); found != images_.end()) return found->second;
     }
     device::HostCompiler compiler;
     compiler.options = {"-O1", "-Wall", "-Wextra", "-Werror"};
-    device::HostDevice made(composition, compiler);
+    std::string made = compiler.compile(composition);
     const std::lock_guard lock(mutex_);
-    return devices_.emplace(composition.hash, made).first->second;
+    return images_.emplace(composition.hash, std::move(made)).first->second;
   }
   /// Compiles several compositions at once, two side by side.
   void prepare(const std::vector<device::Choice>& choices) {
     const auto every_second = [&](std::size_t first) {
-      for (std::size_t k = first; k < choices.size(); k += 2) of(choices[k]);
+      for (std::size_t k = first; k < choices.size(); k += 2) of(device::compose(choices[k]));
     };
     std::future<void> other = std::async(std::launch::async, every_second, 1);
     every_second(0);
@@ -99,20 +100,41 @@ class Devices {
 
  private:
   std::mutex mutex_;
-  std::map<std::string, device::HostDevice> devices_;
+  std::map<std::string, std::string> images_;  ///< by the composition's hash
 };
+
+/// The way in which teams run on the host.
+struct TeamShape {
+  int lanes = 32;
+  bool backwards = false;
+};
+
+/// The host's devices of these suites: number 0 runs lanes forwards, number 1 backwards.
+inline void use_usual_devices() {
+  device::set_host_devices({{"host", 0, false}, {"host, backwards", 0, true}});
+}
+
+inline device::DeviceSetup device_setup(const TeamShape& team = {}) {
+  static std::once_flag once;
+  std::call_once(once, use_usual_devices);
+  return {
+      &device::host_driver(), team.backwards ? 1 : 0, team.lanes,
+      [](const device::Composition& composition, const std::string&) { return Programs::shared().of(composition); }};
+}
+
+inline BackendFactory device_factory(const device::DeviceSetup& setup = device_setup()) {
+  return [setup](const Experiment& e, const Plan& plan, const std::vector<SeededBody>& bodies) {
+    return device::make_device_backend(e, plan, bodies, setup);
+  };
+}
 
 /// A scene on the host-run device.
 class DeviceScene {
  public:
-  DeviceScene(const std::string& text, const std::string& precision, const device::TeamShape& team = {},
+  DeviceScene(const std::string& text, const std::string& precision, const TeamShape& team = {},
               const std::vector<std::string>& overrides = {})
       : experiment(device_experiment(text, precision, overrides)),
-        simulation(experiment,
-                   [team](const Experiment& e, const Plan& plan, const std::vector<SeededBody>& bodies) {
-                     return device::make_host_run(e, plan, bodies, Devices::shared().of(device::choice_of(e, plan)),
-                                                  team);
-                   }),
+        simulation(experiment, device_factory(device_setup(team))),
         metrics(simulation) {}
   void run() {
     while (!simulation.finished()) simulation.step();

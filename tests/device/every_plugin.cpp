@@ -18,7 +18,7 @@ void prepare(const std::vector<Mix>& mixes, const std::vector<std::string>& in =
       const device::Choice choice = device_choice_of(device_experiment(mix.text(), precision));
       if (texts.insert(device::compose(choice).hash).second) choices.push_back(choice);
     }
-  Devices::shared().prepare(choices);
+  Programs::shared().prepare(choices);
 }
 
 void check_every_pair(int dimension) {

@@ -40,7 +40,7 @@ void prepare(const std::vector<Mix>& mixes, const std::string& precision = "doub
     const device::Choice choice = device_choice_of(device_experiment(mix.text(), precision, mix.overrides));
     if (texts.insert(device::compose(choice).hash).second) choices.push_back(choice);
   }
-  Devices::shared().prepare(choices);
+  Programs::shared().prepare(choices);
 }
 
 /// A box of matter at rest that fills a domain of 0.8 m x 0.4 m.
@@ -197,7 +197,7 @@ TEST_CASE("lanes in any number and order carry the same heat on the host-run dev
   mix.more = R"(, "node_conditions": [{"type": "thermal", "heating": 900, "lower": [0.2, 0.2], "upper": [0.5, 0.4]}])";
   DeviceScene scene(mix.text(), "double", {}, mix.overrides);
   scene.run();
-  for (const device::TeamShape team : {device::TeamShape{1, false}, {17, true}, {256, true}}) {
+  for (const TeamShape team : {TeamShape{1, false}, {17, true}, {256, true}}) {
     DeviceScene other(mix.text(), "double", team, mix.overrides);
     other.run();
     CHECK(scene_difference(scene, other) < 1e3 * 0x1p-52);

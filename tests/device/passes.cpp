@@ -172,7 +172,7 @@ TEST_CASE("teams of any size and order give the same result", "[device]") {
     const std::string text = mix.text();
     DeviceScene one(text, "double", {1, false});
     one.run();
-    for (const device::TeamShape team : {device::TeamShape{1, true}, {3, false}, {32, true}, {256, true}}) {
+    for (const TeamShape team : {TeamShape{1, true}, {3, false}, {32, true}, {256, true}}) {
       DeviceScene many(text, "double", team);
       many.run();
       INFO(dimension << "-D, " << team.lanes << " lanes" << (team.backwards ? ", backwards" : ""));

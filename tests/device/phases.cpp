@@ -1,5 +1,6 @@
 // Single phases on arrays made by hand, where a run would not reach them.
 
+#include "backends/device/device.hpp"
 #include "device/device_support.hpp"
 #include "operators/edges.hpp"
 
@@ -20,7 +21,6 @@ struct SmallGrid {
   SmallGrid(int cells, const std::vector<Field>& fields) : nodes((cells + 7) * 8) {
     for (const Field& field : fields) {
       arrays.emplace_back(field.components * nodes);
-      a.grid.field[arrays.size() - 1] = arrays.back().data();
       of[field.id] = arrays.back().data();
     }
     mass = of.at("mass"), momentum = of.at("momentum"), velocity = of.at("velocity");
@@ -33,7 +33,27 @@ struct SmallGrid {
       a.cells[c] = c == 0 ? cells : 1, a.padding[c] = 3, a.extent[c] = a.cells[c] + 7;
       for (int side = 0; side < 2; ++side) a.walls[c][side] = wall_slip;
     }
-    a.grid.folded = folded.data();
+  }
+  /// Runs a phase on copies on a device, and takes these back.
+  void run(const device::Choice& choice, const std::string& phase, int teams, const TeamShape& team) {
+    const device::DeviceSetup setup = device_setup(team);
+    device::Device device(*setup.driver, setup.number);
+    const device::Composition composition = device::compose(choice);
+    device.load(Programs::shared().of(composition), composition.name);
+    std::vector<device::DeviceArray<double>> copies;
+    for (const std::vector<double>& array : arrays) {
+      copies.emplace_back(device, "a field").upload(array);
+      a.grid.field[copies.size() - 1] = copies.back().data();
+    }
+    device::DeviceArray<int> folds(device, "folds");
+    folds.upload(folded);
+    a.grid.folded = folds.data();
+    device.launch(phase, a, teams, team.lanes);
+    for (std::size_t k = 0; k < copies.size(); ++k) {
+      const std::vector<double> values = copies[k].download();
+      std::copy(values.begin(), values.end(), arrays[k].begin());
+    }
+    folded = folds.download();
   }
   int node(int i, int j) const { return (j + 3) * a.extent[0] + i + 3; }
 };
@@ -58,11 +78,10 @@ Field summed_field(const std::string& id, int components, AtWall at_wall, Folded
 }  // namespace
 
 TEST_CASE("in a domain of one cell ghosts fold from wall to wall until they are inside", "[device]") {
-  const device::HostDevice device = Devices::shared().of(usual_choice());
   SmallGrid grid(1, usual_choice().node_fields);
   for (const int axis : {0, 1}) {
     grid.a.axis = axis;
-    device.run("fold_masses", grid.a, 3, {3, axis == 1});
+    grid.run(usual_choice(), "fold_masses", 3, {3, axis == 1});
   }
   double total = 0;
   for (int j = -3; j <= 4; ++j)
@@ -85,7 +104,7 @@ TEST_CASE("in a domain of one cell ghosts fold from wall to wall until they are 
     }
   for (const int axis : {1, 0}) {
     grid.a.axis = axis;
-    device.run("fill_velocities", grid.a, 3, {3, false});
+    grid.run(usual_choice(), "fill_velocities", 3, {3, false});
   }
   for (int j = -3; j <= 4; ++j)
     for (int i = -3; i <= 4; ++i) {
@@ -103,7 +122,6 @@ TEST_CASE("nodes clear and fold what is added to the plan's list on the host-run
   plan.fields.push_back(summed_field("couple", 2, AtWall::vector, Folded::with_force));
   plan.fields.push_back(summed_field("normal", 2, AtWall::slip, Folded::with_mass));
   const device::Choice choice = device::choice_of(experiment, plan);
-  const device::HostDevice device = Devices::shared().of(choice);
   SmallGrid grid(8, choice.node_fields);
   grid.a.walls[0][1] = wall_stick;
   for (std::vector<double>& array : grid.arrays) std::fill(array.begin(), array.end(), 3.0);
@@ -113,14 +131,14 @@ TEST_CASE("nodes clear and fold what is added to the plan's list on the host-run
   const auto value = [&](const std::string& id, int component, int i) {
     return grid.of.at(id)[component * grid.nodes + grid.node(i, 1)];
   };
-  device.run("clear", grid.a, grid.nodes, {1, false});
+  grid.run(choice, "clear", grid.nodes, {1, false});
   for (const std::string id : {"heat", "couple", "normal", "mass", "momentum"}) CHECK(value(id, 0, 2) == 0);
   CHECK(value("couple", 1, 2) == 0);
 
   all("mass", 0, 1), all("heat", 0, 1);
   for (const std::string id : {"couple", "normal"}) all(id, 0, 1), all(id, 1, 2);
-  device.run("fold_masses", grid.a, 3, {3, false});
-  device.run("fold_forces", grid.a, 3, {3, false});
+  grid.run(choice, "fold_masses", 3, {3, false});
+  grid.run(choice, "fold_forces", 3, {3, false});
   for (const int i : {1, 7}) {
     INFO("node " << i << " of 8");
     CHECK(value("heat", 0, i) == 2);

@@ -56,7 +56,7 @@ Experiment read(const std::string& text, const Machine& machine, std::vector<std
   options.overrides = overrides;
   Experiment experiment = read_experiment_text(text, "test.json", components(), options);
   if (on_device) {
-    experiment.backend = "device";
+    experiment.backend = "cuda";
     if (machine.precision == "float") experiment.precision = Precision::single;
   }
   return experiment;
@@ -88,9 +88,7 @@ class Run {
  private:
   static BackendFactory factory(const Machine& machine) {
     if (machine.backend != "device") return backend_factory(1);
-    return [](const Experiment& e, const Plan& plan, const std::vector<SeededBody>& bodies) {
-      return device::make_host_run(e, plan, bodies, Devices::shared().of(device::choice_of(e, plan)), {});
-    };
+    return device_factory();
   }
 };
 

@@ -97,13 +97,10 @@ Books run(const Variant& variant, Fault fault, Kind kind = Kind::pressed_and_fil
   Experiment experiment =
       read_experiment_text(scene(variant.dimension, material, kind), "test.json", components(), options);
   if (on_device) {
-    experiment.backend = "device";
+    experiment.backend = "cuda";
     if (variant.precision == "float") experiment.precision = Precision::single;
   }
-  const auto on_host = [](const Experiment& e, const Plan& plan, const std::vector<SeededBody>& bodies) {
-    return device::make_host_run(e, plan, bodies, Devices::shared().of(device::choice_of(e, plan)), {});
-  };
-  Simulation simulation(experiment, on_device ? BackendFactory(on_host) : backend_factory(1));
+  Simulation simulation(experiment, on_device ? device_factory() : backend_factory(1));
   const Metrics metrics(simulation);
   while (!simulation.finished()) simulation.step();
   injected = Fault::none;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "backends/device/kernels/arguments.hpp"
+#include "backends/device/device.hpp"
 #include "experiment/experiment.hpp"
 
 namespace mpm::device {
@@ -64,12 +64,13 @@ template <class T>
 class Conditions {
  public:
   /// `scene` holds cells, extent, padding and the number of nodes.
-  Conditions(const Experiment& experiment, const Arguments<T>& scene) : experiment_(experiment) {
+  Conditions(Device& device, const Experiment& experiment, const Arguments<T>& scene)
+      : experiment_(experiment), device_boxes_(device, "the conditions") {
     for (int axis = 0; axis < experiment.dimension; ++axis)
       for (int side = 0; side < 2; ++side) {
         const FaceCondition& face = experiment.faces[axis][side];
         if (!face.velocity) continue;
-        moving_.push_back({&*face.velocity, nodes_of_wall(scene, axis, side), {}});
+        moving_.push_back({&*face.velocity, nodes_of_wall(scene, axis, side), {}, {device, "the conditions"}});
         walls_.push_back({axis, side, moving_.size() - 1});
       }
     for (std::size_t k = 0; k < experiment.boxes.size(); ++k) {
@@ -85,21 +86,29 @@ class Conditions {
       boxes_.push_back(box);
       supports_.push_back(support_of_box(static_cast<int>(k)));
       moving_of_box_.push_back(condition.velocity ? moving_.size() : none);
-      if (condition.velocity) moving_.push_back({&*condition.velocity, *nodes, {}});
+      if (condition.velocity) moving_.push_back({&*condition.velocity, *nodes, {}, {device, "the conditions"}});
     }
   }
 
   /// The supports that the scene's boxes are.
   const std::vector<int>& supports() const { return supports_; }
 
-  /// Evaluates velocities at a time, s, and points the scene to them.
-  void evaluate(double time, Arguments<T>& scene) {
+  /// Evaluates velocities at a time, s, and points the scene to them on the device, and `on_host` to those that the
+  /// host keeps.
+  void evaluate(double time, Arguments<T>& scene, Arguments<T>& on_host) {
     for (Moving& moving : moving_) evaluate(moving, time);
     time_ = time;
-    for (const auto& [axis, side, number] : walls_) scene.wall_velocity[axis][side] = moving_[number].velocity.data();
-    for (std::size_t k = 0; k < boxes_.size(); ++k)
-      boxes_[k].velocity = moving_of_box_[k] == none ? nullptr : moving_[moving_of_box_[k]].velocity.data();
-    scene.boxes = boxes_.data(), scene.box_count = static_cast<int>(boxes_.size());
+    for (const auto& [axis, side, number] : walls_) {
+      scene.wall_velocity[axis][side] = moving_[number].on_device.data();
+      on_host.wall_velocity[axis][side] = moving_[number].velocity.data();
+    }
+    if (device_boxes_.count() != boxes_.size()) {  // what moves has its place from its first evaluation on
+      point_boxes([](const Moving& moving) { return moving.on_device.data(); });
+      device_boxes_.upload(boxes_);
+    }
+    point_boxes([](const Moving& moving) { return moving.velocity.data(); });
+    scene.boxes = device_boxes_.data(), on_host.boxes = boxes_.data();
+    scene.box_count = on_host.box_count = static_cast<int>(boxes_.size());
   }
 
  private:
@@ -108,12 +117,19 @@ class Conditions {
     const VectorExpression* formula;
     NodeRange nodes;
     std::vector<T> velocity;
+    DeviceArray<T> on_device;
   };
   struct MovingWall {
     int axis, side;
     std::size_t number;
   };
   static constexpr std::size_t none = ~std::size_t{0};
+
+  template <class Velocity>
+  void point_boxes(Velocity velocity) {
+    for (std::size_t k = 0; k < boxes_.size(); ++k)
+      boxes_[k].velocity = moving_of_box_[k] == none ? nullptr : velocity(moving_[moving_of_box_[k]]);
+  }
 
   void evaluate(Moving& moving, double time) {
     if (!moving.velocity.empty() && (!moving.formula->uses_time() || time == time_)) return;
@@ -125,6 +141,7 @@ class Conditions {
     for (int c = 0; c < D; ++c)
       for (std::size_t n = 0; n < values.size(); ++n)
         moving.velocity[static_cast<std::size_t>(c) * values.size() + n] = static_cast<T>(values[n][c]);
+    moving.on_device.upload(moving.velocity);
   }
 
   const Experiment& experiment_;
@@ -132,6 +149,7 @@ class Conditions {
   std::vector<Moving> moving_;
   std::vector<MovingWall> walls_;
   std::vector<Box<T>> boxes_;
+  DeviceArray<Box<T>> device_boxes_;
   std::vector<int> supports_;
   std::vector<std::size_t> moving_of_box_;
 };

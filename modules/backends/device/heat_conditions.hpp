@@ -11,16 +11,17 @@ template <class T>
 class HeatConditions {
  public:
   /// `scene` holds cells, extent, padding and the number of nodes.
-  HeatConditions(const Experiment& experiment, const Arguments<T>& scene) : experiment_(experiment) {
+  HeatConditions(Device& device, const Experiment& experiment, const Arguments<T>& scene)
+      : experiment_(experiment), shares_(device, "the walls' shares of heat"), device_boxes_(device, "the conditions") {
     for (int axis = 0; axis < experiment.dimension; ++axis)
       for (int side = 0; side < 2; ++side) {
         const FaceCondition& face = experiment.faces[axis][side];
         if (holds_temperature(face) || passes_heat(face))
-          walls_.push_back({axis, side, {&face.thermal, nodes_of_wall(scene, axis, side), {}}});
+          walls_.push_back({axis, side, {&face.thermal, nodes_of_wall(scene, axis, side), {device, "the conditions"}}});
       }
     if (!exchanging_axes().empty()) {
       const WallWeights weights = wall_weights(experiment);
-      shares_.assign(weights.shares.begin(), weights.shares.end());
+      shares_.upload(std::vector<T>(weights.shares.begin(), weights.shares.end()));
       beyond_ = static_cast<T>(experiment.grid.cell_size * weights.beyond);
     }
     for (const BoxCondition& condition : experiment.boxes) {
@@ -29,13 +30,13 @@ class HeatConditions {
       HeatBox<T> box{};
       for (int c = 0; c < 3; ++c) box.lower[c] = nodes->lower[c], box.upper[c] = nodes->upper[c];
       boxes_.push_back(box);
-      values_of_box_.push_back({&condition.thermal, *nodes, {}});
+      values_of_box_.push_back({&condition.thermal, *nodes, {device, "the conditions"}});
     }
   }
 
   /// Evaluates temperatures, fluxes and powers at a time, s, and points the scene to them.
   void evaluate(double time, Arguments<T>& scene) {
-    scene.wall_shares = shares_.data(), scene.wall_share_count = static_cast<int>(shares_.size());
+    scene.wall_shares = shares_.data(), scene.wall_share_count = static_cast<int>(shares_.count());
     scene.wall_beyond = beyond_;
     for (Wall& wall : walls_) {
       const T* const values = wall.at.evaluate(experiment_, time);
@@ -47,7 +48,8 @@ class HeatConditions {
     for (std::size_t k = 0; k < boxes_.size(); ++k)
       (values_of_box_[k].holds() ? boxes_[k].temperature : boxes_[k].power) =
           values_of_box_[k].evaluate(experiment_, time);
-    scene.heat_boxes = boxes_.data(), scene.heat_box_count = static_cast<int>(boxes_.size());
+    if (device_boxes_.count() != boxes_.size()) device_boxes_.upload(boxes_);  // values keep their place
+    scene.heat_boxes = device_boxes_.data(), scene.heat_box_count = static_cast<int>(boxes_.size());
   }
 
   /// Whether a wall's mirror images change the heat of the nodes.
@@ -73,17 +75,17 @@ class HeatConditions {
   struct Values {
     const ThermalCondition* condition;
     NodeRange nodes;
-    std::vector<T> values;
+    DeviceArray<T> values;
     double time = 0;
 
     bool holds() const { return condition->exchange == HeatExchange::fixed_temperature; }
     const T* evaluate(const Experiment& experiment, double now) {
-      if (!values.empty() && (now == time || !condition->value.uses_time())) return values.data();
+      if (values.count() > 0 && (now == time || !condition->value.uses_time())) return values.data();
       time = now;
       const std::vector<Vector3> positions = nodes.positions(experiment);
       std::vector<double> found(positions.size());
       condition->value.evaluate(positions, now, found.data());
-      values.assign(found.begin(), found.end());
+      values.upload(std::vector<T>(found.begin(), found.end()));
       return values.data();
     }
   };
@@ -93,10 +95,11 @@ class HeatConditions {
   };
 
   const Experiment& experiment_;
-  std::vector<T> shares_;
+  DeviceArray<T> shares_;
   T beyond_ = 0;
   std::vector<Wall> walls_;
   std::vector<HeatBox<T>> boxes_;
+  DeviceArray<HeatBox<T>> device_boxes_;
   std::vector<Values> values_of_box_;
 };
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "backends/device/conditions.hpp"
-#include "backends/device/host_arrays.hpp"
+#include "backends/device/device_arrays.hpp"
 #include "backends/device/kernels/grid.hpp"
 #include "simulation/reaction_impulse.hpp"
 
@@ -13,14 +13,14 @@ namespace mpm::device {
 template <class T>
 class NotedReactions {
  public:
-  /// `scene` is that of the run, where walls and boxes point to what they give as it was evaluated last.
+  /// `scene` is that of the run, where walls and boxes point to what they give as it was evaluated last, on the host.
   NotedReactions(const Experiment& experiment, const Arguments<T>& scene, ReactionImpulse& reactions, int fields)
       : experiment_(experiment), scene_(scene), reactions_(reactions) {
     if (reactions.asked()) folded_mass_.resize(fields, std::vector<T>(scene.node_count));
   }
 
   /// Repeats on copies of its momenta and masses how a field was folded along an axis: ghosts come in the same order.
-  void fold_momenta(int field, const VelocityField<T>& now, int axis, std::vector<T> momentum, std::vector<T> mass) {
+  void fold_momenta(int field, NodesOnHost<T>& now, int axis, std::vector<T> momentum, std::vector<T> mass) {
     for_each_fold(now, axis, false, [&](const Fold& fold) {
       folded_mass_[field][fold.ghost] = mass[fold.ghost];
       reactions_.mirror(places(fold), vector(momentum, fold.ghost), image(momentum, fold, mass[fold.ghost], false));
@@ -29,14 +29,14 @@ class NotedReactions {
     });
   }
   /// The same of the sum of all forces.
-  void fold_forces(const VelocityField<T>& now, int axis, std::vector<T> force) {
+  void fold_forces(NodesOnHost<T>& now, int axis, std::vector<T> force) {
     for_each_fold(now, axis, false, [&](const Fold& fold) {
       reactions_.mirror_force(places(fold), vector(force, fold.ghost), image(force, fold, T(0), true));
       add_image(force, fold, T(0), true);
     });
   }
   /// The same of a filter's projection.
-  void fold_projection(int field, const VelocityField<T>& now, int axis, std::vector<T> projection, bool at_rest) {
+  void fold_projection(int field, NodesOnHost<T>& now, int axis, std::vector<T> projection, bool at_rest) {
     for_each_fold(now, axis, false, [&](const Fold& fold) {
       const T mass = folded_mass_[field][fold.ghost];
       reactions_.mirror_projection(places(fold), vector(projection, fold.ghost),
@@ -45,8 +45,8 @@ class NotedReactions {
     });
   }
   /// Notes what particles gather from the ghosts of an increment, by walls along an axis.
-  void gather_increment(int field, const VelocityField<T>& now, int axis) {
-    const T* const increment = now.arrays.of("increment");
+  void gather_increment(int field, NodesOnHost<T>& now, int axis) {
+    const T* const increment = now.of("increment");
     for_each_fold(now, axis, true, [&](const Fold& fold) {
       const double mass = folded_mass_[field][fold.ghost];
       reactions_.beyond_projection(places(fold), vector(increment, fold.mirror, mass),
@@ -54,8 +54,8 @@ class NotedReactions {
     });
   }
   /// Notes the same of the velocity, and of its change by the forces.
-  void gather(int field, const VelocityField<T>& now, int axis) {
-    const T *const velocity = now.arrays.of("velocity"), *const before = now.arrays.of("velocity_before");
+  void gather(int field, NodesOnHost<T>& now, int axis) {
+    const T *const velocity = now.of("velocity"), *const before = now.of("velocity_before");
     for_each_fold(now, axis, true, [&](const Fold& fold) {
       const double mass = folded_mass_[field][fold.ghost];
       const auto change = [&](int node) {
@@ -70,9 +70,9 @@ class NotedReactions {
   }
 
   /// Notes what each support is about to give a field's nodes: they hold one after another, walls before boxes, and the
-  /// last counts; all decide by the velocity as it is. `supports` are those of the scene's boxes; grips are as in Arguments.
-  void hold(const VelocityField<T>& now, const std::vector<int>& supports, const std::vector<GripArrays<T>>& grips,
-            bool at_end) {
+  /// last counts; all decide by the velocity as it is. `supports` are those of the scene's boxes.
+  void hold(NodesOnHost<T>& now, const std::vector<int>& supports, bool at_end) {
+    const std::vector<GripArrays<T>> grips = now.grips(experiment_);
     const int count = static_cast<int>(grips.size());
     experiment_.dimension == 2 ? hold_in<2>(now, supports, grips.data(), count, at_end)
                                : hold_in<3>(now, supports, grips.data(), count, at_end);
@@ -80,9 +80,9 @@ class NotedReactions {
 
  private:
   template <int D>
-  void hold_in(const VelocityField<T>& now, const std::vector<int>& supports, const GripArrays<T>* grips,
-               int grip_count, bool at_end) {
-    const T *const mass = now.arrays.of("mass"), *const velocities = now.arrays.of("velocity");
+  void hold_in(NodesOnHost<T>& now, const std::vector<int>& supports, const GripArrays<T>* grips, int grip_count,
+               bool at_end) {
+    const T *const mass = now.of("mass"), *const velocities = now.of("velocity");
     for (int node = 0; node < scene_.node_count; ++node) {
       if (!(mass[node] > T(0))) continue;
       int at[D];
@@ -120,12 +120,12 @@ class NotedReactions {
 
   /// Calls visit(fold) for the ghosts that walls along this axis have folded in this step.
   template <class Visit>
-  void for_each_fold(const VelocityField<T>& now, int axis, bool filling, Visit visit) const {
+  void for_each_fold(NodesOnHost<T>& now, int axis, bool filling, Visit visit) const {
     Arguments<T> a = scene_;
     a.axis = axis;
     for (int line = 0; line < a.node_count / a.extent[axis]; ++line)
       for_each_fold_of_line(a, line, !filling, false, [&](const Fold& fold) {
-        if (now.folded[fold.ghost] >> axis & 1) visit(fold);
+        if (now.folded()[fold.ghost] >> axis & 1) visit(fold);
       });
   }
   T wall_momentum(const Fold& fold, int c, T mass, bool at_rest) const {

@@ -1,6 +1,5 @@
-#include "backends/device/drivers/host_device.hpp"
+#include "backends/device/drivers/host_compiler.hpp"
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -8,7 +7,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
+#include <filesystem>
 
 #include "support/files.hpp"
 
@@ -69,27 +68,28 @@ std::vector<std::string> HostCompiler::all_options() const {
   return all;
 }
 
-HostDevice::HostDevice(const Composition& composition, const HostCompiler& compiler) : name_(composition.name) {
+std::string HostCompiler::compile(const Composition& composition) const {
   const ScratchFolder folder;
   const std::filesystem::path source = folder.path() / "composition.cpp", library = folder.path() / "composition.so",
                               log = folder.path() / "messages.txt";
-  support::write_atomically(source, composition.text);
-  std::vector<std::string> words{compiler.program};
-  for (const std::string& option : compiler.all_options()) words.push_back(option);
+  support::write_atomically(source, composition.text, support::Durability::of_program);
+  std::vector<std::string> words{program};
+  for (const std::string& option : all_options()) words.push_back(option);
   for (const std::string& word : {source.string(), std::string("-o"), library.string(), std::string("-lm")})
     words.push_back(word);
   if (const int status = run_program(words, log); status != 0)
-    throw CompilerError("\"" + compiler.program + "\" does not compile the composition " + name_ + " (status " +
+    throw CompilerError("\"" + program + "\" does not compile the composition " + composition.name + " (status " +
                         std::to_string(status) + "):\n" + support::read_file(log));
-  void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) throw CompilerError("the compiled composition " + name_ + " cannot be loaded: " + dlerror());
-  library_ = std::shared_ptr<void>(handle, dlclose);
+  return support::read_file(library);
 }
 
-void* HostDevice::entry(const std::string& phase) const {
-  void* function = dlsym(library_.get(), ("mpm_" + phase).c_str());
-  if (!function) throw std::logic_error("the composition " + name_ + " has no phase \"" + phase + "\"");
-  return function;
+std::string HostCompiler::version() const {
+  const ScratchFolder folder;
+  const std::filesystem::path log = folder.path() / "messages.txt";
+  if (const int status = run_program({program, "--version"}, log); status != 0)
+    throw CompilerError("\"" + program + " --version\" ends with status " + std::to_string(status));
+  const std::string text = support::read_file(log);
+  return text.substr(0, text.find('\n'));
 }
 
 }  // namespace mpm::device

@@ -1,0 +1,163 @@
+#include "backends/device/device_backend.hpp"
+
+#include <stdexcept>
+
+#include "backends/device/kernels/sums.hpp"  // largest_team
+#include "backends/device/memory.hpp"
+#include "simulation/boundary.hpp"
+
+namespace mpm::device {
+namespace {
+
+/// The scene without what lies on the device.
+template <class T>
+Arguments<T> described(const Experiment& experiment) {
+  const GridSpecification& grid = experiment.grid;
+  Arguments<T> scene{};
+  scene.cell_size = static_cast<T>(grid.cell_size);
+  scene.inverse_cell_size = static_cast<T>(1 / grid.cell_size);
+  scene.node_count = 1;
+  for (int c = 0; c < 3; ++c) {
+    const bool used = c < experiment.dimension;
+    scene.lower[c] = static_cast<T>(grid.lower[c]);
+    scene.gravity_has_potential[c] = experiment.gravity_has_potential(c);
+    scene.cells[c] = used ? grid.cells[c] : 0;
+    scene.padding[c] = used ? grid_padding_of(experiment.shape.plugin->shape()) : 0;
+    scene.extent[c] = scene.cells[c] + 1 + 2 * scene.padding[c];
+    scene.node_count *= scene.extent[c];
+    for (int side = 0; side < 2; ++side)
+      scene.walls[c][side] = used ? static_cast<int>(experiment.faces[c][side].type) : wall_free;
+  }
+  return scene;
+}
+
+std::unique_ptr<Device> open(const DeviceSetup& setup) {
+  if (setup.lanes < 1 || setup.lanes > largest_team)
+    throw std::invalid_argument("a team has 1 to " + std::to_string(largest_team) + " lanes");
+  return std::make_unique<Device>(*setup.driver, setup.number);
+}
+
+}  // namespace
+
+template <class T>
+DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, const std::vector<SeededBody>& seeded,
+                                const DeviceSetup& setup)
+    : experiment_(experiment),
+      plan_(plan),
+      device_(open(setup)),
+      lanes_(setup.lanes),
+      scene_(described<T>(experiment)),
+      on_host_(scene_),
+      shape_parameters_(*device_, "the shape's parameters"),
+      transfer_parameters_(*device_, "the transfer's parameters"),
+      filter_parameters_(*device_, "the filter's parameters"),
+      contact_parameters_(*device_, "the parameters of contact"),
+      first_failed_(*device_, "the failed particle"),
+      ignored_failures_(*device_, "the failed particle"),
+      partial_sums_(*device_, "sums"),
+      conditions_(*device_, experiment, scene_),
+      pairs_(*device_, experiment, plan.resolves_contact() ? static_cast<std::size_t>(scene_.node_count) : 0),
+      contact_impulse_(experiment),
+      reactions_(experiment),
+      noted_(experiment, on_host_, reactions_, experiment.field_count) {
+  const auto node_count = static_cast<std::size_t>(scene_.node_count);
+  refuse_what_does_not_fit(*device_, experiment, plan, seeded, node_count);
+  const Composition composition = compose(choice_of(experiment, plan));
+  device_->load(setup.compile(composition, device_->architecture()), composition.name);
+
+  const auto give = [](DeviceArray<double>& array, const Component& component) {
+    array.upload(component.parameters);
+    return array.data();
+  };
+  scene_.shape_parameters = give(shape_parameters_, experiment.shape);
+  scene_.transfer_parameters = give(transfer_parameters_, experiment.transfer);
+  if (experiment.filter) scene_.filter_parameters = give(filter_parameters_, *experiment.filter);
+  if (experiment.contact) scene_.contact_parameters = give(contact_parameters_, *experiment.contact);
+  first_failed_.upload({INT_MAX}), ignored_failures_.upload({INT_MAX});
+  scene_.first_failed = first_failed_.data();
+
+  if (experiment.has_temperature()) heat_conditions_.emplace(*device_, experiment, scene_);
+  for (std::size_t body = 0; body < seeded.size(); ++body) {
+    bodies_.emplace_back(*device_, experiment, plan, static_cast<int>(body), seeded[body]);
+    loads_.emplace_back(experiment, static_cast<int>(body), seeded[body]);
+  }
+  for (int field = 0; field < experiment.field_count; ++field)
+    fields_.emplace_back(*device_, experiment, plan, node_count);
+  for (int axis = 0; axis < experiment.dimension; ++axis) (periodic(axis) ? images_ : walls_).push_back(axis);
+}
+
+template <class T>
+std::uint64_t DeviceBackend<T>::particle_bytes() const {
+  std::uint64_t sum = 0;
+  for (const Body<T>& body : bodies_) sum += body.arrays.bytes();
+  return sum;
+}
+template <class T>
+std::uint64_t DeviceBackend<T>::grid_bytes() const {
+  std::uint64_t sum = 0;
+  for (const VelocityField<T>& field : fields_) sum += field.bytes();
+  return sum;
+}
+
+template <class T>
+void DeviceBackend<T>::execute(const Pass& pass, const StepInfo& step) {
+  scene_.dt = static_cast<T>(step.dt);
+  accounted_ = plan_.accounts_at(step.step);
+  notes_reactions_ = reactions_.asked() && !pass.remap();
+  switch (pass.operators.front().act) {
+    case Act::estimate_time_step:
+      return estimate_time_step();
+    case Act::sort:
+    case Act::sort_ahead:
+      return;  // the scatter sorts
+    case Act::clear:
+      return for_each_field("clear", nodes());
+    case Act::scatter_momentum:
+    case Act::scatter_force:
+      return scatter(pass, step);
+    case Act::divide:
+      return momentum_to_velocity(pass, step);
+    case Act::accelerate:
+      return apply_forces(step);
+    case Act::gather:
+      return gather(pass, step);
+    case Act::strain:
+      return strain(pass);
+    case Act::move:
+      return move();
+    case Act::begin_filter:
+      return begin_filter(pass);
+    case Act::project:
+      return project(pass, step);
+    case Act::update_filter:
+      return update_filter(pass, step);
+    case Act::end_filter:
+      return end_filter(pass, step);
+    case Act::divide_heat:
+      return heat_to_temperature();
+    case Act::conduct:
+      return conduct();
+    case Act::heat:
+      return warm(step);
+    case Act::change_phase:
+      return change_phase();
+    case Act::restore_velocity:
+      return restore_velocity(pass);
+    case Act::add_correction:
+      return add_correction(pass, step);
+    default:  // the other acts share a visit with one of these
+      throw std::logic_error("the device does not execute pass \"" + pass.name() + "\"");
+  }
+}
+
+template class DeviceBackend<float>;
+template class DeviceBackend<double>;
+
+std::unique_ptr<Backend> make_device_backend(const Experiment& experiment, const Plan& plan,
+                                             const std::vector<SeededBody>& seeded, const DeviceSetup& setup) {
+  if (experiment.precision == Precision::single)
+    return std::make_unique<DeviceBackend<float>>(experiment, plan, seeded, setup);
+  return std::make_unique<DeviceBackend<double>>(experiment, plan, seeded, setup);
+}
+
+}  // namespace mpm::device

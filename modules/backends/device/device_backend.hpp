@@ -1,0 +1,258 @@
+#pragma once
+// The backend of a device executes the passes of a plan as launches of a composition's phases, through a driver's table:
+// libcuda's, or the host's. Particles and nodes stay on the device; formulas, contact geometry, sorting and what
+// supports give are the host's, which reads and writes the arrays that these need.
+
+#include <array>
+#include <climits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backends/device/conditions.hpp"
+#include "backends/device/contact_pairs.hpp"
+#include "backends/device/device.hpp"
+#include "backends/device/device_arrays.hpp"
+#include "backends/device/heat_conditions.hpp"
+#include "backends/device/make_device_backend.hpp"
+#include "backends/device/noted_reactions.hpp"
+#include "simulation/contact_impulse.hpp"
+#include "simulation/loads.hpp"
+
+namespace mpm::device {
+
+/// Settings of phases over the grid beside the scene.
+struct Manner {
+  bool remap = false, after_forces = false, walls_at_rest = false;
+};
+
+/// The reasons for which a phase reports particles.
+enum class Checks { stencil, temperature, deformation, position };
+
+/// The part of contact that goes to the ledger and to the record.
+enum class Recorded { nothing, before_forces, after_forces, filter };
+
+/// The heat that a pair of rows of the ledger takes, J.
+using HeatOfTwo = std::array<double, 2>;
+
+/// Its methods are defined by physics, one file each beside this one.
+template <class T>
+class DeviceBackend final : public Backend {
+ public:
+  DeviceBackend(const Experiment& experiment, const Plan& plan, const std::vector<SeededBody>& seeded,
+                const DeviceSetup& setup);
+
+  std::string_view name() const override { return "cuda"; }
+  void execute(const Pass& pass, const StepInfo& step) override;
+
+  TimeStepLimit time_step_limit() const override { return limit_; }
+  const Ledger& ledger() const override { return ledger_; }
+  HeatLedger heat_ledger() const override { return heat_ledger_; }
+  const ContactRecord& contact_record() const override { return contact_; }
+  const std::vector<PairRecord>& contact_pairs() const override { return contact_impulse_.pairs(); }
+  const FilterRecord& filter_record() const override { return filter_; }
+  const std::vector<Reaction>& reactions() const override { return reactions_.reactions(); }
+  bool scattered() const override { return false; }
+  void measure_phases(bool on) override { device_->measure(on); }
+  std::map<std::string, double> phase_seconds() const override { return device_->seconds(); }
+
+  std::uint64_t particle_bytes() const override;
+  std::uint64_t grid_bytes() const override;
+
+  // ---- checkpoint.cpp
+  void save(ArchiveWriter& archive) const override;
+  void restore(ArchiveReader& archive) override;
+  BodyState body_state(int index) const override;
+
+ private:
+  // ---- launches.cpp
+  Arguments<T> arguments_of(const VelocityField<T>& field, const Manner& manner) const;
+  Arguments<T> arguments_of(const Body<T>& body) const;
+  void point_to(Arguments<T>& a, const VelocityField<T>& field) const;
+  void launch(const std::string& phase, const Arguments<T>& a, int indices);
+  void launch_teams(const std::string& phase, const Arguments<T>& a, int teams);
+  /// Runs one phase over `indices` of every field's grid.
+  void for_each_field(const std::string& phase, int indices, const Manner& manner = {});
+  /// Runs one phase of folds along the lines of every one of these axes.
+  void for_each_axis(const std::string& phase, const std::vector<int>& axes, const Manner& manner = {});
+  /// The axes in the order of folding: periodic images come before walls. Ghosts are filled in the reverse order.
+  std::vector<int> folded_axes() const;
+  std::vector<int> filled_axes() const;
+  /// Runs a phase that makes `count` sums in teams, and adds up in order what the teams have summed.
+  std::vector<double> sums(const std::string& phase, Arguments<T> a, int indices, std::size_t count);
+  double sum_over_nodes(const std::string& phase);
+  double sum_over_particles(const std::string& phase, const Body<T>& body);
+  /// Runs a phase over a body's particles, or over its blocks, and stops the run where it reports a particle.
+  void run(const std::string& phase, const Arguments<T>& a, const Body<T>& body, Checks checks);
+  void run_blocks(const std::string& phase, const Arguments<T>& a, const Body<T>& body);
+  void stop_where_failed(const Body<T>& body, Checks checks);
+  void run_material(const std::string& phase, const Body<T>& body);
+  void run_material(const std::string& phase, const Arguments<T>& a, const Body<T>& body);
+  void run_strain(const Pass& pass, Body<T>& body);
+
+  // ---- failures.cpp: a phase reports only the particle; what is wrong with it stands in its arrays
+  Failure failure_of(Cause cause, const Body<T>& body, int p) const;
+  std::optional<Failure> position_not_a_number(const Body<T>& body, int p) const;
+  Failure failed_temperature(const Body<T>& body, int p) const;
+  Failure failed_deformation(const Body<T>& body, int p) const;
+  Failure failed_stencil(const Body<T>& body, int p) const;
+  /// Reports the first of the axes beyond which the particle is; the test is that of the phase "move".
+  Failure failed_position(const Body<T>& body, int p) const;
+
+  // ---- particles.cpp: passes over particles
+  void estimate_time_step();
+  void scatter(const Pass& pass, const StepInfo& step);
+  static void add(std::array<double, 4>& sum, double sign, const std::array<double, 4>& values);
+  void gather(const Pass& pass, const StepInfo& step);
+  void strain(const Pass& pass);
+  void move();
+
+  // ---- loads.cpp: loads and grips
+  /// Evaluates what gripped particles are told for the end of the step, and lets nodes know of them.
+  void scatter_grips(Body<T>& body, double end);
+  /// Sums what grips gave a body's particles in the gather; returns the energy of it, J.
+  double note_gripped(const Body<T>& body, const StepInfo& step);
+  /// Evaluates the loads of a body at its particles, and scatters each kind into its own field. Throws RunFailure where
+  /// one is not finite.
+  void scatter_loads(Body<T>& body, Arguments<T> a, double time);
+  void evaluate_body_force(Body<T>& body, const BodyLoads& loads, double time, FirstFailure& failures);
+  void evaluate_loads(Body<T>& body, const BodyLoads& loads, ExternalForce kind, double time, FirstFailure& failures);
+
+  // ---- conditions.cpp: from momenta to velocities, and what supports give
+  void momentum_to_velocity(const Pass& pass, const StepInfo& step);
+  void apply_forces(const StepInfo& step);
+  static std::vector<T> sum_of_forces(const VelocityField<T>& field);
+  void fold_momenta(const Manner& manner);
+  void fold_forces();
+  void fold_projection(bool at_rest);
+  void impose_conditions(const Manner& manner);
+  void note_gathered_increment();
+  /// Records what particles take from the supports when they gather the velocity as it is now.
+  void record_reactions(const StepInfo& step);
+  void damp(const StepInfo& step);
+
+  // ---- ledger.cpp: whoever gives a node an impulse notes it; works are booked when a stage of the step ends
+  void account_for_impulses();
+  void begin_stage(bool records);
+  /// Books a work on the nodes.
+  void book(double Ledger::*row, double work);
+  /// Books what folding at walls gave the nodes, and the work of walls on what lies beyond them.
+  void book_folds();
+  void book_impulses();
+  /// Books the works of a filter's loop, and what they do not explain of the kinetic energy.
+  void book_filter();
+  /// The works of the stresses' forces and of gravity at the velocity of now, J.
+  std::array<double, 2> power_of_forces();
+  /// Books what strain by the velocity of now stores less than by v+ before any filter.
+  void book_strain(double Ledger::*row, double share);
+  double power_of_filter();
+  void book_material(Body<T>& body);
+  double energy_of_particles();
+
+  // ---- heat.cpp
+  /// Finds temperatures before the step's heat, those of ghosts too.
+  void heat_to_temperature();
+  /// Imposes what walls and boxes hold, as evaluated last; returns the heat that each gives by it.
+  HeatOfTwo impose_temperature();
+  /// Fills ghosts; returns the heat by which they exceed their mirrors, at walls held at a temperature and at others.
+  HeatOfTwo fill_temperature();
+  HeatOfTwo sum_over_lines(const char* phase, VelocityField<T>& field, int axis);
+  void conduct();
+  /// Finds temperatures after the step's heat.
+  void warm(const StepInfo& step);
+  void warm_box(int box, double dt);
+  void change_phase();
+
+  // ---- contact.cpp
+  /// Applies the law to every pair of fields.
+  void resolve_contact(const StepInfo& step, Recorded recorded);
+  /// Records the force that particles take when they gather the velocity as it is now.
+  void record_force(const StepInfo& step);
+
+  // ---- filter.cpp
+  double increment_norm();
+  void keep_unfiltered();
+  void begin_filter(const Pass& pass);
+  /// The first increment is a velocity, which a moving wall mirrors about its own; later ones are differences.
+  void project(const Pass& pass, const StepInfo& step);
+  void update_filter(const Pass& pass, const StepInfo& step);
+  void keep_free_velocity(const Manner& manner);
+  void measure_constraints();
+  /// Applies conditions, contact and conditions again to the grid's velocity without what they have added so far; of
+  /// ledger and records the contact force alone changes.
+  void constrain_velocity(const Pass& pass, const StepInfo& step);
+  void restore_velocity(const Pass& pass);
+  void end_filter(const Pass& pass, const StepInfo& step);
+  void add_correction(const Pass& pass, const StepInfo& step);
+
+  // ---- checkpoint.cpp
+  /// The second moments of a body's particles, which are made where they are asked for, m^2. A particle without a
+  /// stencil has none: the next pass that needs it says so.
+  std::vector<double> second_moments(const Body<T>& body) const;
+
+  // ---- small helpers
+  bool periodic(int axis) const { return scene_.walls[axis][0] == wall_periodic; }
+  int nodes() const { return scene_.node_count; }
+  int vectors() const { return experiment_.dimension * scene_.node_count; }
+  int lines_along(int axis) const { return nodes() / scene_.extent[axis]; }
+  /// Runs a phase that makes this many sums.
+  template <std::size_t count = 1>
+  std::array<double, count> sum(const std::string& phase, const Arguments<T>& a, int indices) {
+    const std::vector<double> found = sums(phase, a, indices, count);
+    std::array<double, count> all{};
+    std::copy_n(found.begin(), count, all.begin());
+    return all;
+  }
+  /// Calls visit(field, number) for what a checkpoint holds, in order.
+  template <class Visit>
+  static void for_each_saved(const Body<T>& body, Visit visit) {
+    for (int number = 0; number < static_cast<int>(body.arrays.fields().size()); ++number) {
+      const Field& field = body.arrays.fields()[static_cast<std::size_t>(number)];
+      if (field.lifetime == Lifetime::saved) visit(field, number);
+    }
+  }
+  /// The time of the walls' velocity: that of v- before the forces, of v+ after them.
+  static double time_of(const Pass& pass, const StepInfo& step) {
+    return pass.stage == Stage::after_forces ? step.time + step.dt : step.time;
+  }
+
+  const Experiment& experiment_;
+  const Plan& plan_;
+  std::unique_ptr<Device> device_;  ///< outlives the arrays on it
+  int lanes_;
+  Arguments<T> scene_;    ///< what all launches share; its pointers are the device's
+  Arguments<T> on_host_;  ///< the same with what conditions give on the host, for NotedReactions
+  DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_;
+  DeviceArray<int> first_failed_, ignored_failures_;
+  DeviceArray<double> partial_sums_;
+  Conditions<T> conditions_;
+  std::optional<HeatConditions<T>> heat_conditions_;  ///< empty in scenes without temperature
+  std::vector<Body<T>> bodies_;
+  std::vector<BodyLoads> loads_;  ///< of each body
+  std::vector<VelocityField<T>> fields_;
+  std::vector<int> images_, walls_;  ///< axes with periodic images, and those with walls
+  ContactPairs<T> pairs_;
+  TimeStepLimit limit_;
+  Ledger ledger_;
+  HeatLedger heat_ledger_;
+  bool accounted_ = false;  ///< the ledger takes its entries from the step under way
+  ContactRecord contact_;
+  ContactImpulse contact_impulse_;
+  ReactionImpulse reactions_;
+  NotedReactions<T> noted_;
+  bool notes_reactions_ = false;  ///< the pass under way notes what supports give
+  FilterRecord filter_;
+  double scattered_energy_ = 0;           ///< kinetic energy of the grid as scattered, images summed, J
+  double energy_after_ = 0;               ///< kinetic energy of the grid when particles gather from it, J
+  double works_ = 0;                      ///< works on the grid since the scatter, J
+  std::array<double, 2> lumped_power_{};  ///< works of the stresses' forces and of gravity at v+ before any filter, J
+  double early_share_ = 0;                ///< share of the step's strain that came before the forces
+  double energy_before_move_ = 0;         ///< kinetic energy of the particles after the gather, J
+  double scattered_heat_ = 0;             ///< heat of the particles that the step's scatter began with, J
+  double heat_of_images_ = 0;  ///< heat that folding has given the grid at walls that do something with heat, J
+  HeatOfTwo beyond_{};         ///< see fill_temperature, before the step's heat
+  double heat_after_ = 0;      ///< heat of the grid when particles gather from it, J
+};
+
+}  // namespace mpm::device

@@ -1,0 +1,526 @@
+#include "backends/device/drivers/host_driver.hpp"
+
+#include <dlfcn.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+
+#include "support/files.hpp"
+
+namespace mpm::device {
+
+struct OpaqueStream {
+  ContextHandle context;
+  std::vector<std::function<void()>> waiting;
+};
+
+struct OpaqueEvent {
+  StreamHandle stream = nullptr;
+  bool reached = false;
+  std::chrono::steady_clock::time_point when;
+};
+
+struct OpaqueFunction {
+  using Entry = void (*)(const void* arguments, int teams, int lanes, bool backwards);
+  Entry entry;
+};
+
+struct OpaqueModule {
+  void* library;
+  std::map<std::string, OpaqueFunction> functions;
+  ~OpaqueModule() { dlclose(library); }
+};
+
+struct FreeMemory {
+  void operator()(unsigned char* memory) const { std::free(memory); }
+};
+struct Allocation {
+  std::unique_ptr<unsigned char, FreeMemory> memory;
+  std::size_t bytes;
+};
+
+struct OpaqueContext {
+  HostDevice device;
+  int users = 0;
+  std::uint64_t bytes = 0;
+  std::map<std::uintptr_t, Allocation> allocations;  ///< by host address
+  std::map<StreamHandle, std::unique_ptr<OpaqueStream>> streams;
+  DriverResult lost = driver_success;  ///< what every call returns from now on
+};
+
+namespace {
+
+// ---- the state of the process --------------------------------------------------------------------------------------
+
+struct Failure {
+  std::string function;
+  long call;
+  DriverResult result;
+};
+
+struct Host {
+  std::mutex mutex;  ///< guards all of this and of the contexts; kernels run outside it
+  std::vector<HostDevice> devices{HostDevice{}};
+  std::map<int, std::unique_ptr<OpaqueContext>> contexts;  ///< of the devices in use
+  std::map<std::string, long> calls;
+  std::vector<Failure> failures;
+};
+
+Host& host() {
+  static Host* const state = new Host;  // outlives whatever static objects still hold a device when the process ends
+  return *state;
+}
+thread_local ContextHandle current = nullptr;
+
+bool loses_the_device(DriverResult result) {
+  return (result >= driver_illegal_address && result <= driver_launch_failed) || result == driver_device_unavailable;
+}
+
+/// Counts a call, and lets it fail where a test wants that or the device is lost. Call it with the state locked.
+DriverResult begin(const char* function) {
+  Host& state = host();
+  const bool alive = std::any_of(state.contexts.begin(), state.contexts.end(),
+                                 [](const auto& context) { return context.second.get() == current; });
+  if (!alive) current = nullptr;  // another thread has given the device back
+  ++state.calls[function];
+  DriverResult result = driver_success;
+  for (Failure& failure : state.failures)
+    if (failure.function == function && --failure.call == 0) result = failure.result;
+  std::erase_if(state.failures, [](const Failure& failure) { return failure.call <= 0; });
+  if (current && current->lost) return current->lost;
+  if (current && loses_the_device(result)) current->lost = result;
+  return result;
+}
+
+/// Begins a function that needs a context.
+#define MPM_BEGIN(function)            \
+  std::unique_lock lock(host().mutex); \
+  if (const DriverResult failed = begin(#function)) return failed;
+#define MPM_BEGIN_IN_CONTEXT(function) \
+  MPM_BEGIN(function)                  \
+  if (!current) return driver_invalid_context;
+
+std::uint64_t memory_of(const HostDevice& device) {
+  return device.memory
+             ? device.memory
+             : static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+bool is_device(int number) {
+  return number >= 0 && number < static_cast<int>(host().devices.size());
+}
+
+// ---- addresses -----------------------------------------------------------------------------------------------------
+
+// A device pointer is the host's address with these bits above it, which no address of the processor has. As a number
+// it is a signalling NaN that no arithmetic makes, so that pointers are told from data wherever they lie.
+constexpr DevicePointer tag = 0x7ff7ull << 48, tag_bits = 0xffffull << 48;
+
+/// The memory behind `bytes` bytes from a device pointer; null where they are not all in one allocation.
+unsigned char* memory_at(DevicePointer pointer, std::size_t bytes) {
+  if ((pointer & tag_bits) != tag) return nullptr;
+  const auto address = static_cast<std::uintptr_t>(pointer & ~tag_bits);
+  auto found = current->allocations.upper_bound(address);
+  if (found == current->allocations.begin()) return nullptr;
+  --found;
+  const std::size_t offset = address - found->first;
+  if (offset > found->second.bytes || bytes > found->second.bytes - offset) return nullptr;
+  return found->second.memory.get() + offset;
+}
+
+/// Puts addresses in place of device pointers in a block of 8-byte words.
+void translate(std::vector<std::uint64_t>& words) {
+  for (std::uint64_t& word : words)
+    if ((word & tag_bits) == tag)
+      if (unsigned char* const memory = memory_at(word, 0)) word = reinterpret_cast<std::uintptr_t>(memory);
+}
+
+/// Whether a word is an address of this process that is in use. Small numbers and most data are told by their bits.
+bool is_host_address(std::uint64_t word) {
+  constexpr std::uint64_t lowest = 1ull << 32;
+  // Room between the members of a struct may hold anything, but hardly a whole address beside its members' zeros.
+  if (word < lowest || word >= 1ull << 47 || word % 4 != 0 || (word & 0xffffff) == 0) return false;
+  const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  unsigned char ignored = 0;
+  return mincore(reinterpret_cast<void*>(word / page * page), page, &ignored) == 0;
+}
+
+std::vector<std::uint64_t> words_of(const void* from, std::size_t bytes) {
+  std::vector<std::uint64_t> words((bytes + 7) / 8);
+  if (bytes > 0) std::memcpy(words.data(), from, bytes);
+  return words;
+}
+
+// ---- queues --------------------------------------------------------------------------------------------------------
+
+/// Runs what waits in a stream, in order.
+void run(StreamHandle stream, std::unique_lock<std::mutex>& lock) {
+  std::vector<std::function<void()>> operations;
+  operations.swap(stream->waiting);
+  lock.unlock();
+  for (const auto& operation : operations) operation();
+  lock.lock();
+}
+void run_all(std::unique_lock<std::mutex>& lock) {
+  std::vector<StreamHandle> streams;
+  for (const auto& [handle, stream] : current->streams) streams.push_back(handle);
+  for (const StreamHandle stream : streams) run(stream, lock);
+}
+
+bool is_stream(StreamHandle stream) {
+  return current->streams.count(stream) > 0;
+}
+
+// ---- the functions -------------------------------------------------------------------------------------------------
+
+DriverResult cuInit(unsigned) {
+  MPM_BEGIN(cuInit)
+  return host().devices.empty() ? driver_no_device : driver_success;
+}
+
+DriverResult cuDriverGetVersion(int* version) {
+  MPM_BEGIN(cuDriverGetVersion)
+  *version = 12000;
+  return driver_success;
+}
+
+struct Words {
+  DriverResult result;
+  const char *name, *text;
+};
+constexpr Words words_of_results[] = {
+    {driver_success, "CUDA_SUCCESS", "no error"},
+    {driver_invalid_value, "CUDA_ERROR_INVALID_VALUE", "invalid argument"},
+    {driver_out_of_memory, "CUDA_ERROR_OUT_OF_MEMORY", "out of memory"},
+    {driver_not_initialized, "CUDA_ERROR_NOT_INITIALIZED", "initialization error"},
+    {driver_device_unavailable, "CUDA_ERROR_DEVICE_UNAVAILABLE", "the device is busy or unavailable"},
+    {driver_no_device, "CUDA_ERROR_NO_DEVICE", "no device is detected"},
+    {driver_invalid_device, "CUDA_ERROR_INVALID_DEVICE", "invalid device ordinal"},
+    {driver_invalid_image, "CUDA_ERROR_INVALID_IMAGE", "the kernel image is invalid"},
+    {driver_invalid_context, "CUDA_ERROR_INVALID_CONTEXT", "invalid device context"},
+    {driver_no_binary_for_device, "CUDA_ERROR_NO_BINARY_FOR_GPU", "no kernel image is available for the device"},
+    {driver_unsupported_ptx_version, "CUDA_ERROR_UNSUPPORTED_PTX_VERSION", "made by an unsupported toolchain"},
+    {driver_invalid_handle, "CUDA_ERROR_INVALID_HANDLE", "invalid resource handle"},
+    {driver_not_found, "CUDA_ERROR_NOT_FOUND", "named symbol not found"},
+    {driver_illegal_address, "CUDA_ERROR_ILLEGAL_ADDRESS", "an illegal memory access was encountered"},
+    {driver_launch_out_of_resources, "CUDA_ERROR_LAUNCH_OUT_OF_RESOURCES", "too many resources requested for launch"},
+    {driver_launch_failed, "CUDA_ERROR_LAUNCH_FAILED", "unspecified launch failure"},
+    {driver_system_driver_mismatch, "CUDA_ERROR_SYSTEM_DRIVER_MISMATCH", "versions of the driver do not agree"}};
+
+const Words* find_words(DriverResult result) {
+  const auto found = std::find_if(std::begin(words_of_results), std::end(words_of_results),
+                                  [&](const Words& words) { return words.result == result; });
+  return found == std::end(words_of_results) ? nullptr : found;
+}
+DriverResult cuGetErrorName(DriverResult result, const char** name) {
+  const Words* const found = find_words(result);
+  *name = found ? found->name : nullptr;
+  return found ? driver_success : driver_invalid_value;
+}
+DriverResult cuGetErrorString(DriverResult result, const char** text) {
+  const Words* const found = find_words(result);
+  *text = found ? found->text : nullptr;
+  return found ? driver_success : driver_invalid_value;
+}
+
+DriverResult cuDeviceGetCount(int* count) {
+  MPM_BEGIN(cuDeviceGetCount)
+  *count = static_cast<int>(host().devices.size());
+  return driver_success;
+}
+DriverResult cuDeviceGet(DeviceNumber* device, int ordinal) {
+  MPM_BEGIN(cuDeviceGet)
+  if (!is_device(ordinal)) return driver_invalid_device;
+  *device = ordinal;
+  return driver_success;
+}
+DriverResult cuDeviceGetName(char* name, int length, DeviceNumber device) {
+  MPM_BEGIN(cuDeviceGetName)
+  if (!is_device(device) || length < 1) return driver_invalid_device;
+  const std::string& full = host().devices[static_cast<std::size_t>(device)].name;
+  const std::size_t fits = std::min(full.size(), static_cast<std::size_t>(length) - 1);
+  std::memcpy(name, full.data(), fits);
+  name[fits] = 0;
+  return driver_success;
+}
+DriverResult cuDeviceTotalMem_v2(std::size_t* bytes, DeviceNumber device) {
+  MPM_BEGIN(cuDeviceTotalMem_v2)
+  if (!is_device(device)) return driver_invalid_device;
+  *bytes = memory_of(host().devices[static_cast<std::size_t>(device)]);
+  return driver_success;
+}
+DriverResult cuDeviceGetAttribute(int* value, int attribute, DeviceNumber device) {
+  MPM_BEGIN(cuDeviceGetAttribute)
+  if (!is_device(device)) return driver_invalid_device;
+  *value = attribute == attribute_most_shared_memory ? 48 * 1024 : attribute == attribute_multiprocessors ? 1 : 0;
+  return driver_success;
+}
+
+DriverResult cuDevicePrimaryCtxRetain(ContextHandle* context, DeviceNumber device) {
+  MPM_BEGIN(cuDevicePrimaryCtxRetain)
+  if (!is_device(device)) return driver_invalid_device;
+  std::unique_ptr<OpaqueContext>& found = host().contexts[device];
+  if (!found) {
+    found = std::make_unique<OpaqueContext>();
+    found->device = host().devices[static_cast<std::size_t>(device)];
+  }
+  ++found->users;
+  *context = found.get();
+  return driver_success;
+}
+DriverResult cuDevicePrimaryCtxRelease_v2(DeviceNumber device) {
+  std::unique_lock lock(host().mutex);
+  ++host().calls["cuDevicePrimaryCtxRelease_v2"];
+  const auto found = host().contexts.find(device);
+  if (found == host().contexts.end()) return driver_invalid_device;
+  if (--found->second->users > 0) return driver_success;
+  if (current == found->second.get()) current = nullptr;
+  host().contexts.erase(found);  // a lost device is as new for the next user
+  return driver_success;
+}
+DriverResult cuCtxSetCurrent(ContextHandle context) {
+  std::unique_lock lock(host().mutex);
+  current = context;
+  return begin("cuCtxSetCurrent");
+}
+
+DriverResult cuMemGetInfo_v2(std::size_t* free, std::size_t* total) {
+  MPM_BEGIN_IN_CONTEXT(cuMemGetInfo_v2)
+  *total = memory_of(current->device);
+  *free = *total - current->bytes;
+  return driver_success;
+}
+DriverResult cuMemAlloc_v2(DevicePointer* pointer, std::size_t bytes) {
+  MPM_BEGIN_IN_CONTEXT(cuMemAlloc_v2)
+  if (bytes == 0) return driver_invalid_value;
+  if (bytes > memory_of(current->device) - current->bytes) return driver_out_of_memory;
+  constexpr std::size_t line = 256;
+  auto* const memory = static_cast<unsigned char*>(std::aligned_alloc(line, (bytes + line - 1) / line * line));
+  if (!memory) return driver_out_of_memory;
+  std::memset(memory, 0xff, bytes);
+  const auto address = reinterpret_cast<std::uintptr_t>(memory);
+  current->allocations[address] = {std::unique_ptr<unsigned char, FreeMemory>(memory), bytes};
+  current->bytes += bytes;
+  *pointer = tag | address;
+  return driver_success;
+}
+DriverResult cuMemFree_v2(DevicePointer pointer) {
+  MPM_BEGIN_IN_CONTEXT(cuMemFree_v2)
+  const auto found = current->allocations.find(static_cast<std::uintptr_t>(pointer & ~tag_bits));
+  if ((pointer & tag_bits) != tag || found == current->allocations.end()) return driver_invalid_value;
+  run_all(lock);  // what waits may still use it
+  current->bytes -= found->second.bytes;
+  current->allocations.erase(found);
+  return driver_success;
+}
+
+DriverResult cuMemcpyHtoDAsync_v2(DevicePointer to, const void* from, std::size_t bytes, StreamHandle stream) {
+  MPM_BEGIN_IN_CONTEXT(cuMemcpyHtoDAsync_v2)
+  unsigned char* const memory = memory_at(to, bytes);
+  if (!memory) return driver_invalid_value;
+  if (!is_stream(stream)) return driver_invalid_handle;
+  std::vector<std::uint64_t> words = words_of(from, bytes);  // pageable memory is free when a copy from it returns
+  translate(words);
+  stream->waiting.emplace_back([=, words = std::move(words)] { std::memcpy(memory, words.data(), bytes); });
+  return driver_success;
+}
+DriverResult cuMemcpyDtoHAsync_v2(void* to, DevicePointer from, std::size_t bytes, StreamHandle stream) {
+  MPM_BEGIN_IN_CONTEXT(cuMemcpyDtoHAsync_v2)
+  const unsigned char* const memory = memory_at(from, bytes);
+  if (!memory) return driver_invalid_value;
+  if (!is_stream(stream)) return driver_invalid_handle;
+  stream->waiting.emplace_back([=] { std::memcpy(to, memory, bytes); });
+  return driver_success;
+}
+DriverResult cuMemcpyDtoDAsync_v2(DevicePointer to, DevicePointer from, std::size_t bytes, StreamHandle stream) {
+  MPM_BEGIN_IN_CONTEXT(cuMemcpyDtoDAsync_v2)
+  unsigned char *const target = memory_at(to, bytes), *const source = memory_at(from, bytes);
+  if (!target || !source) return driver_invalid_value;
+  if (!is_stream(stream)) return driver_invalid_handle;
+  stream->waiting.emplace_back([=] { std::memmove(target, source, bytes); });
+  return driver_success;
+}
+DriverResult cuMemsetD8Async(DevicePointer to, unsigned char value, std::size_t bytes, StreamHandle stream) {
+  MPM_BEGIN_IN_CONTEXT(cuMemsetD8Async)
+  unsigned char* const memory = memory_at(to, bytes);
+  if (!memory) return driver_invalid_value;
+  if (!is_stream(stream)) return driver_invalid_handle;
+  stream->waiting.emplace_back([=] { std::memset(memory, value, bytes); });
+  return driver_success;
+}
+
+DriverResult cuStreamCreate(StreamHandle* stream, unsigned) {
+  MPM_BEGIN_IN_CONTEXT(cuStreamCreate)
+  auto made = std::make_unique<OpaqueStream>();
+  made->context = current;
+  *stream = made.get();
+  current->streams[*stream] = std::move(made);
+  return driver_success;
+}
+DriverResult cuStreamDestroy_v2(StreamHandle stream) {
+  MPM_BEGIN_IN_CONTEXT(cuStreamDestroy_v2)
+  if (!is_stream(stream)) return driver_invalid_handle;
+  run(stream, lock);
+  current->streams.erase(stream);
+  return driver_success;
+}
+DriverResult cuStreamSynchronize(StreamHandle stream) {
+  MPM_BEGIN_IN_CONTEXT(cuStreamSynchronize)
+  if (!is_stream(stream)) return driver_invalid_handle;
+  run(stream, lock);
+  return driver_success;
+}
+
+DriverResult cuEventCreate(EventHandle* event, unsigned) {
+  MPM_BEGIN_IN_CONTEXT(cuEventCreate)
+  *event = new OpaqueEvent;
+  return driver_success;
+}
+DriverResult cuEventDestroy_v2(EventHandle event) {
+  MPM_BEGIN_IN_CONTEXT(cuEventDestroy_v2)
+  run_all(lock);  // a record may wait
+  delete event;
+  return driver_success;
+}
+DriverResult cuEventRecord(EventHandle event, StreamHandle stream) {
+  MPM_BEGIN_IN_CONTEXT(cuEventRecord)
+  if (!event || !is_stream(stream)) return driver_invalid_handle;
+  event->stream = stream, event->reached = false;
+  stream->waiting.emplace_back([=] { event->when = std::chrono::steady_clock::now(), event->reached = true; });
+  return driver_success;
+}
+DriverResult cuEventElapsedTime(float* milliseconds, EventHandle start, EventHandle end) {
+  MPM_BEGIN_IN_CONTEXT(cuEventElapsedTime)
+  if (!start || !end || !start->reached || !end->reached) return driver_invalid_handle;
+  *milliseconds = std::chrono::duration<float, std::milli>(end->when - start->when).count();
+  return driver_success;
+}
+
+/// The length of an ELF image, whose table of sections ends it as linkers write it; 0 for anything else.
+std::size_t length_of_image(const void* image) {
+  const auto* const bytes = static_cast<const unsigned char*>(image);
+  if (!image || std::memcmp(bytes, "\177ELF\2", 5) != 0) return 0;
+  std::uint64_t table = 0;
+  std::uint16_t entry = 0, count = 0;
+  std::memcpy(&table, bytes + 0x28, 8), std::memcpy(&entry, bytes + 0x3a, 2), std::memcpy(&count, bytes + 0x3c, 2);
+  return table + static_cast<std::size_t>(entry) * count;
+}
+
+/// Loads a shared library from its bytes; null where it cannot be loaded.
+void* load_library(std::string_view bytes) {
+  std::string folder = (std::filesystem::temp_directory_path() / "mpm_device_XXXXXX").string();
+  if (!mkdtemp(folder.data())) return nullptr;
+  void* library = nullptr;
+  try {
+    const std::filesystem::path file = std::filesystem::path(folder) / "module.so";
+    support::write_atomically(file, bytes, support::Durability::of_program);
+    library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  } catch (const std::exception&) {
+    library = nullptr;
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+  return library;
+}
+
+DriverResult cuModuleLoadData(ModuleHandle* module, const void* image) {
+  MPM_BEGIN_IN_CONTEXT(cuModuleLoadData)
+  const std::size_t length = length_of_image(image);
+  if (length == 0) return driver_invalid_image;
+  void* const library = load_library({static_cast<const char*>(image), length});
+  if (!library) return driver_invalid_image;
+  *module = new OpaqueModule{library, {}};
+  return driver_success;
+}
+DriverResult cuModuleUnload(ModuleHandle module) {
+  MPM_BEGIN_IN_CONTEXT(cuModuleUnload)
+  run_all(lock);  // launches may wait
+  delete module;
+  return driver_success;
+}
+DriverResult cuModuleGetFunction(FunctionHandle* function, ModuleHandle module, const char* name) {
+  MPM_BEGIN_IN_CONTEXT(cuModuleGetFunction)
+  void* const entry = dlsym(module->library, name);
+  if (!entry) return driver_not_found;
+  OpaqueFunction& made = module->functions[name];
+  made.entry = reinterpret_cast<OpaqueFunction::Entry>(entry);
+  *function = &made;
+  return driver_success;
+}
+
+DriverResult cuLaunchKernel(FunctionHandle function, unsigned grid_x, unsigned grid_y, unsigned grid_z,
+                            unsigned block_x, unsigned block_y, unsigned block_z, unsigned, StreamHandle stream, void**,
+                            void** extra) {
+  MPM_BEGIN_IN_CONTEXT(cuLaunchKernel)
+  if (!function || !is_stream(stream)) return driver_invalid_handle;
+  if (grid_x < 1 || grid_y != 1 || grid_z != 1 || block_x < 1 || block_x > 1024 || block_y != 1 || block_z != 1)
+    return driver_invalid_value;
+  const void* block = nullptr;
+  std::size_t bytes = 0;
+  for (void** key = extra; key && *key != launch_parameter_end; key += 2) {
+    if (*key == launch_parameter_buffer) block = key[1];
+    if (*key == launch_parameter_size) bytes = *static_cast<const std::size_t*>(key[1]);
+  }
+  if (!block || bytes > 4096) return driver_invalid_value;  // a kernel of CUDA before 12.1 takes at most 4096 bytes
+  std::vector<std::uint64_t> words = words_of(block, bytes);
+  if (std::any_of(words.begin(), words.end(), is_host_address)) return current->lost = driver_illegal_address;
+  translate(words);
+  stream->waiting.emplace_back([=, backwards = current->device.backwards, words = std::move(words)] {
+    function->entry(words.data(), static_cast<int>(grid_x), static_cast<int>(block_x), backwards);
+  });
+  return driver_success;
+}
+
+#undef MPM_BEGIN
+#undef MPM_BEGIN_IN_CONTEXT
+
+}  // namespace
+
+const Driver& host_driver() {
+#define MPM_NAME(name, parameters) name,
+  static const Driver table{MPM_DRIVER_FUNCTIONS(MPM_NAME)};
+#undef MPM_NAME
+  return table;
+}
+
+void set_host_devices(std::vector<HostDevice> devices) {
+  const std::lock_guard lock(host().mutex);
+  if (!host().contexts.empty()) throw std::logic_error("a device of the host driver is in use");
+  host().devices = std::move(devices);
+}
+
+void fail_on_host(const std::string& function, long call, DriverResult result) {
+#define MPM_WORD(name, parameters) #name,
+  static const std::vector<std::string> names{MPM_DRIVER_FUNCTIONS(MPM_WORD)};
+#undef MPM_WORD
+  if (std::find(names.begin(), names.end(), function) == names.end() || call < 1)
+    throw std::logic_error("the driver's table has no " + function);
+  const std::lock_guard lock(host().mutex);
+  host().failures.push_back({function, call, result});
+}
+void forget_failures_on_host() {
+  const std::lock_guard lock(host().mutex);
+  host().failures.clear();
+}
+
+long calls_on_host(const std::string& function) {
+  const std::lock_guard lock(host().mutex);
+  return host().calls[function];
+}
+std::uint64_t bytes_on_host(int device) {
+  const std::lock_guard lock(host().mutex);
+  const auto found = host().contexts.find(device);
+  return found == host().contexts.end() ? 0 : found->second->bytes;
+}
+
+}  // namespace mpm::device

@@ -1,0 +1,110 @@
+#include "backends/device/device_backend.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace mpm::device {
+
+template <class T>
+double DeviceBackend<T>::increment_norm() {
+  return std::sqrt(sum_over_nodes("increment_norm"));
+}
+
+template <class T>
+void DeviceBackend<T>::keep_unfiltered() {
+  for_each_field("keep_unfiltered", vectors());
+  contact_impulse_.keep();
+  reactions_.keep();
+}
+
+template <class T>
+void DeviceBackend<T>::begin_filter(const Pass& pass) {
+  for_each_field("begin_filter", vectors());
+  if (pass.has(Act::keep_velocity)) keep_unfiltered();
+  filter_.iterations = 0;
+  filter_.first_norm = filter_.last_norm = increment_norm();
+  begin_stage(accounted_ && pass.stage == Stage::after_forces);
+}
+
+template <class T>
+void DeviceBackend<T>::project(const Pass& pass, const StepInfo& step) {
+  conditions_.evaluate(time_of(pass, step), scene_, on_host_);
+  for_each_field("clear_projection", vectors());
+  for (Body<T>& body : bodies_) run_blocks("project", arguments_of(body), body);
+  note_gathered_increment();
+  fold_projection(filter_.iterations > 0);
+}
+
+template <class T>
+void DeviceBackend<T>::update_filter(const Pass& pass, const StepInfo& step) {
+  for_each_field("update_filter", nodes());
+  if (notes_reactions_) reactions_.take_projection(static_cast<int>(filter_.iterations + 1));
+  if (experiment_.filter_schedule.constrain_always) {
+    constrain_velocity(pass, step);
+    for_each_field("correct_increment", vectors());
+  }
+  filter_.take_norm(increment_norm(), 4500.0 * static_cast<double>(std::numeric_limits<T>::epsilon()));
+  for_each_axis("fill_increments", filled_axes());
+}
+
+template <class T>
+void DeviceBackend<T>::keep_free_velocity(const Manner& manner) {
+  if (plan_.node_field("velocity_of_constraints")) for_each_field("keep_free_velocity", vectors(), manner);
+}
+
+template <class T>
+void DeviceBackend<T>::measure_constraints() {
+  if (plan_.node_field("velocity_of_constraints")) for_each_field("measure_constraints", vectors());
+}
+
+template <class T>
+void DeviceBackend<T>::constrain_velocity(const Pass& pass, const StepInfo& step) {
+  conditions_.evaluate(time_of(pass, step), scene_, on_host_);
+  scene_.grips_at_end = pass.stage != Stage::before_forces;
+  if (plan_.node_field("velocity_of_constraints")) {
+    for_each_field("take_free_velocity", vectors());
+    if (notes_reactions_) reactions_.take_back();
+  }
+  impose_conditions({});
+  if (plan_.resolves_contact()) {
+    resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::filter);
+    if (pass.stage == Stage::after_forces) record_force(step);
+    impose_conditions({});
+  }
+  measure_constraints();
+}
+
+template <class T>
+void DeviceBackend<T>::restore_velocity(const Pass& pass) {
+  const bool keeps = pass.has(Act::keep_correction);
+  if (accounted_ && !keeps) ledger_.filtered_strain -= early_share_ * power_of_filter();
+  contact_impulse_.restore(keeps);
+  reactions_.restore(keeps);
+  for_each_field(keeps ? "keep_correction" : "restore_velocity", vectors());
+}
+
+template <class T>
+void DeviceBackend<T>::end_filter(const Pass& pass, const StepInfo& step) {
+  conditions_.evaluate(time_of(pass, step), scene_, on_host_);
+  if (!experiment_.filter_schedule.constrain_always) constrain_velocity(pass, step);
+  for_each_axis("fill_velocities", filled_axes());
+  if (scene_.records) book_filter();
+  if (pass.stage == Stage::after_forces) record_reactions(step);
+}
+
+template <class T>
+void DeviceBackend<T>::add_correction(const Pass& pass, const StepInfo& step) {
+  begin_stage(accounted_);
+  for_each_field("add_correction", vectors());
+  contact_impulse_.add_correction();
+  reactions_.add_correction();
+  constrain_velocity(pass, step);
+  for_each_axis("fill_velocities", filled_axes());
+  if (accounted_) book_filter();
+  record_reactions(step);
+}
+
+template class DeviceBackend<float>;
+template class DeviceBackend<double>;
+
+}  // namespace mpm::device
