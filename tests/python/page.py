@@ -69,7 +69,7 @@ def after(words, k=0):
 
 
 def pattern_of(sentence):
-    return re.escape(one_line(sentence)).replace(r"\#", r"(-?[0-9]+(?:\.[0-9]+)?)")
+    return re.escape(one_line(sentence)).replace(r"\#", r"(?<![0-9.])(-?[0-9]+(?:\.[0-9]+)?)")
 
 
 def check_numbers(listed):
