@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdio>
 
-#include "plugin/extension_of.hpp"
+#include "solvers/solver.hpp"
 
 namespace mpm::app {
 namespace {
@@ -14,33 +14,80 @@ constexpr std::array rows{TentStep{2, "pic", "", 0.086}, TentStep{2, "pic", "xpi
                           TentStep{2, "polypic", "", 0}, TentStep{3, "flip", "", 0},
                           TentStep{3, "polypic", "", 0}};
 
+constexpr std::array collision_rows{TentCollisions{StressUpdate::last, "flip", "", {4, 2, 4, 1}},
+                                    TentCollisions{StressUpdate::last, "aflip", "", {5, 2, 1, 1}},
+                                    TentCollisions{StressUpdate::last, "asflip", "", {5, 4, 2, 0}},
+                                    TentCollisions{StressUpdate::last, "polypic", "", {0, 0, 0, 0}},
+                                    TentCollisions{StressUpdate::last, "pic", "fmpm", {3, 0, 0, 0}},
+                                    TentCollisions{StressUpdate::last, "pic", "xpic", {5, 5, 2, 0}},
+                                    TentCollisions{StressUpdate::first, "polypic", "", {0, 0, 0, 0}},
+                                    TentCollisions{StressUpdate::modified_last, "asflip", "", {4, 4, 3, 2}},
+                                    TentCollisions{StressUpdate::modified_last, "apic", "", {5, 5, 1, 2}},
+                                    TentCollisions{StressUpdate::modified_last, "mls", "", {5, 5, 1, 2}},
+                                    TentCollisions{StressUpdate::modified_last, "tpic", "", {5, 5, 1, 2}},
+                                    TentCollisions{StressUpdate::modified_last, "polypic", "", {1, 0, 0, 0}},
+                                    TentCollisions{StressUpdate::averaged, "aflip", "", {4, 5, 3, 2}},
+                                    TentCollisions{StressUpdate::averaged, "asflip", "", {3, 3, 3, 2}},
+                                    TentCollisions{StressUpdate::averaged, "apic", "", {5, 4, 5, 2}},
+                                    TentCollisions{StressUpdate::averaged, "mls", "", {5, 4, 5, 2}},
+                                    TentCollisions{StressUpdate::averaged, "tpic", "", {5, 4, 5, 2}},
+                                    TentCollisions{StressUpdate::averaged, "polypic", "", {0, 0, 1, 0}},
+                                    TentCollisions{StressUpdate::averaged, "pic", "fmpm", {4, 4, 3, 0}}};
+
+/// What the study of largest steps found of a scheme that takes a longer step, else "".
+std::string what_it_stood(int dimension, std::string_view transfer, std::string_view filter, StressUpdate update,
+                          double taken) {
+  if (update != StressUpdate::last) return "";
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const TentStep& now) {
+    return now.dimension == dimension && now.filter == filter && now.transfer == transfer;
+  });
+  if (row == rows.end() || taken <= row->largest) return "";
+  char largest[32];
+  std::snprintf(largest, sizeof largest, "%.3g", row->largest);
+  return " stood " + (row->largest > 0 ? "courant " + std::string(largest) + " at most" : std::string("no step")) +
+         " in the study of largest steps";
+}
+
+/// How many of five collisions were bounded at the step that is taken, where that is fewer than half, else "".
+std::string what_collisions_did(std::string_view transfer, std::string_view filter, StressUpdate update, double taken) {
+  const auto row = std::find_if(collision_rows.begin(), collision_rows.end(), [&](const TentCollisions& now) {
+    return now.update == update && now.filter == filter && now.transfer == transfer;
+  });
+  if (row == collision_rows.end()) return "";
+  std::size_t k = 0;
+  while (k + 1 < TentCollisions::steps.size() && TentCollisions::steps[k + 1] <= taken * (1 + 1e-9)) ++k;
+  if (row->bounded[k] > 2) return "";
+  char text[120];
+  std::snprintf(text, sizeof text, " was bounded in %d of five collisions at courant %g, in %d at %g", row->bounded[k],
+                TentCollisions::steps[k], row->bounded[0], TentCollisions::steps[0]);
+  return text;
+}
+
 }  // namespace
 
 std::span<const TentStep> tent_steps() {
   return rows;
 }
 
+std::span<const TentCollisions> tent_collisions() {
+  return collision_rows;
+}
+
 std::string warning_of_tent_steps(const Experiment& experiment) {
-  if (experiment.shape.plugin->id() != "linear" || experiment.solver.time_step ||
-      experiment.solver.stress_update != StressUpdate::last)
-    return "";
-  const std::string_view filter = experiment.filter ? experiment.filter->plugin->id() : std::string_view();
-  const auto row = std::find_if(rows.begin(), rows.end(), [&](const TentStep& now) {
-    return now.dimension == experiment.dimension && now.filter == filter &&
-           now.transfer == experiment.transfer.plugin->id();
-  });
-  if (row == rows.end()) return "";
-  double taken = experiment.solver.courant;
-  if (const auto* limits = extension_of<mpm_shape_courant_limit>(*experiment.shape.plugin))
-    taken = std::min(taken, limits->limit[experiment.dimension - 2][MPM_GRID_VELOCITY]);
-  if (taken <= row->largest) return "";
-  char largest[32];
-  std::snprintf(largest, sizeof largest, "%.3g", row->largest);
-  return "shape \"linear\" with transfer \"" + std::string(row->transfer) + "\"" +
-         (filter.empty() ? "" : " and filter \"" + std::string(filter) + "\"") + " stood " +
-         (row->largest > 0 ? "courant " + std::string(largest) + " at most" : "no step") +
-         " in the study of largest steps: a particle without neighbours near a node may make it unstable at any step; "
-         "take another shape, or /solver/stress_update \"modified_last\" (docs/studies/extremes.md)";
+  if (experiment.shape.plugin->id() != "linear" || experiment.solver.time_step) return "";
+  const std::string_view filter = experiment.filter ? experiment.filter->plugin->id() : std::string_view(),
+                         transfer = experiment.transfer.plugin->id();
+  const StressUpdate update = experiment.solver.stress_update;
+  constexpr double speed = 1;
+  const double taken = solver_of(experiment).limit(experiment, {speed}).seconds * speed / experiment.grid.cell_size;
+  const std::string stood = what_it_stood(experiment.dimension, transfer, filter, update, taken),
+                    met = experiment.dimension == 2 ? what_collisions_did(transfer, filter, update, taken) : "";
+  if (stood.empty() && met.empty()) return "";
+  return "shape \"linear\" with transfer \"" + std::string(transfer) + "\"" +
+         (filter.empty() ? "" : " and filter \"" + std::string(filter) + "\"") + stood +
+         (stood.empty() || met.empty() ? "" : " and") + met +
+         ": a particle without neighbours near a node may make it unstable at any step; take another shape, or "
+         "/solver/stress_update \"modified_last\" with transfer \"pic\", \"flip\" or \"rpic\" (docs/studies/extremes.md)";
 }
 
 }  // namespace mpm::app

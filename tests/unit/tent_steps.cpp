@@ -22,14 +22,15 @@ std::string warning(std::vector<std::string> settings) {
 
 const std::string tents = R"(/shape={"type": "linear"})", aflip = R"(/transfer={"type": "aflip"})";
 
+/// Transfer and filter of the studies' schemes.
+const std::map<std::string, std::pair<std::string, std::string>> schemes{
+    {"PIC", {"pic", ""}},         {"FLIP", {"flip", ""}},       {"AFLIP", {"aflip", ""}},    {"ASFLIP", {"asflip", ""}},
+    {"APIC", {"apic", ""}},       {"MLS", {"mls", ""}},         {"TPIC", {"tpic", ""}},      {"RPIC", {"rpic", ""}},
+    {"PolyPIC", {"polypic", ""}}, {"FMPM(4)", {"pic", "fmpm"}}, {"XPIC(4)", {"pic", "xpic"}}};
+
 }  // namespace
 
 TEST_CASE("the schemes that tents are warned with are those that the study found below the limit", "[largest_step]") {
-  const std::map<std::string, std::pair<std::string, std::string>> schemes{
-      {"PIC", {"pic", ""}},         {"FLIP", {"flip", ""}},      {"AFLIP", {"aflip", ""}},
-      {"ASFLIP", {"asflip", ""}},   {"APIC", {"apic", ""}},      {"MLS", {"mls", ""}},
-      {"TPIC", {"tpic", ""}},       {"RPIC", {"rpic", ""}},      {"PolyPIC", {"polypic", ""}},
-      {"FMPM(4)", {"pic", "fmpm"}}, {"XPIC(4)", {"pic", "xpic"}}};
   constexpr double limit = 0.1;
   std::size_t found = 0;
   for (const auto& [dimension, name] : {std::pair{2, "largest_step"}, std::pair{3, "largest_step_3d"}})
@@ -47,6 +48,60 @@ TEST_CASE("the schemes that tents are warned with are those that the study found
       ++found;
     }
   CHECK(found == app::tent_steps().size());
+}
+
+TEST_CASE("the collisions that tents are warned with are those that the study counted", "[largest_step]") {
+  std::size_t found = 0;
+  for (const auto& [number, update] :
+       {std::pair{1, StressUpdate::last}, std::pair{2, StressUpdate::first}, std::pair{3, StressUpdate::modified_last},
+        std::pair{4, StressUpdate::averaged}}) {
+    std::map<std::string, std::map<double, int>> bounded;
+    for (const auto& row :
+         support::read_csv_cells(MPM_SOURCE_DIR "/figures/studies/tent_steps_" + std::to_string(number) + ".csv"))
+      if (schemes.count(row[0])) bounded[row[0]][std::stod(row[1])] = row[2].empty() ? 0 : std::stoi(row[2]);
+    REQUIRE(bounded.size() == schemes.size());
+    for (const auto& [name, counts] : bounded) {
+      INFO(number << " " << name);
+      const auto& [transfer, filter] = schemes.at(name);
+      const app::TentCollisions* listed = nullptr;
+      for (const app::TentCollisions& now : app::tent_collisions())
+        if (now.update == update && now.transfer == transfer && now.filter == filter) listed = &now;
+      int least = 5;
+      for (std::size_t k = 0; k < app::TentCollisions::steps.size(); ++k) {
+        const int count = counts.at(app::TentCollisions::steps[k]);
+        least = std::min(least, count);
+        if (listed != nullptr) CHECK(listed->bounded[k] == count);
+      }
+      CHECK((listed != nullptr) == (least <= 2));
+      found += listed != nullptr;
+    }
+  }
+  CHECK(found == app::tent_collisions().size());
+}
+
+// USF and MUSL with what carries no gradient strain by what particles carry.
+TEST_CASE("tents stand every default step by USF and MUSL with what carries no gradient", "[largest_step]") {
+  for (const int number : {2, 3})
+    for (const auto& row :
+         support::read_csv_cells(MPM_SOURCE_DIR "/figures/studies/tent_steps_" + std::to_string(number) + ".csv"))
+      for (const char* scheme : {"PIC", "FLIP", "RPIC", "XPIC(4)", "FMPM(4)"})
+        if (row[0] == scheme && std::stod(row[1]) <= (row[0] == "FMPM(4)" ? 0.2 : 0.3)) {
+          INFO(number << " " << scheme << " " << row[1]);
+          CHECK(row[2] == "5");
+        }
+}
+
+TEST_CASE("tents are warned of by how many collisions were bounded, at the step that is taken", "[largest_step]") {
+  const std::string of_flip = warning({tents, R"(/transfer={"type": "flip"})"});
+  INFO(of_flip);
+  CHECK(of_flip.find(R"(with transfer "flip" was bounded in 1 of five collisions at courant 0.1, in 4 at 0.0125)") !=
+        std::string::npos);
+  CHECK(warning({tents, R"(/transfer={"type": "flip"})", set("/solver/courant", "0.06")}).empty());
+  const std::string of_mls = warning({tents, R"(/transfer={"type": "mls"})", set("/solver/stress_update", "averaged")});
+  INFO(of_mls);
+  CHECK(of_mls.find("in 2 of five collisions") != std::string::npos);
+  CHECK(warning({tents, R"(/transfer={"type": "pic"})", R"(/filter={"type": "fmpm", "order": 4})"})
+            .find("in 0 of five collisions at courant 0.05, in 3 at 0.0125") != std::string::npos);
 }
 
 TEST_CASE("tents with a scheme that stood no step are warned of by name", "[largest_step]") {
