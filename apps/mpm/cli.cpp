@@ -7,6 +7,7 @@
 #include <iostream>
 #include <new>
 
+#include "backends/device/program.hpp"
 #include "experiment/diagnostics.hpp"
 #include "metrics/exact.hpp"
 #include "metrics/particle_quantities.hpp"
@@ -23,7 +24,7 @@ constexpr const char* footer =
 invalid (what, where and when is printed; results so far are kept), or test-plugin found a plugin that fails, crashes
 or hangs; 4 an expectation in "compare" failed, or the run broke a limit: it gained more than 1 % of energy out of
 nothing, or a volume ratio J left 0.1 to 10 (flagged by name; other limits under "limits"), or compare found numbers
-that differ; 5 the machine failed (disk, memory); 130 stopped by Ctrl-C at a step
+that differ; 5 the machine failed (disk, memory, device); 130 stopped by Ctrl-C at a step
 boundary, everything written.
 A run that was stopped, killed or had no room on the disk goes on from its last checkpoint with --resume.
 Plugins are found in the build tree and in the folders of MPM_PLUGIN_PATH.)";
@@ -32,7 +33,7 @@ void add_experiment(CLI::App& verb, RunOptions& options) {
   verb.add_option("FILE", options.file, "experiment file (JSON, comments allowed)")->required();
   verb.add_option("--set", options.overrides, "/json/pointer=value: replaces a value of the file; may be repeated")
       ->allow_extra_args(false);
-  verb.add_option("--backend", options.backend, "reference or cpu, in place of the file's");
+  verb.add_option("--backend", options.backend, "reference, cpu or cuda, in place of the file's");
 }
 
 void add_bench(CLI::App& verb, BenchOptions& options, std::string& point) {
@@ -217,6 +218,13 @@ int run_command_line(int argc, char** argv) {
           "of the cpu backend, at most one a processor; default all processors that it may use; results do not depend "
           "on it")
       ->check(CLI::Range(1, 1024));
+  run_verb
+      ->add_option("--device", options.device,
+                   "of backend cuda: the number of a device (mpm list --devices), or host, which runs the device's "
+                   "kernels on the processor; default what MPM_DEVICE says, else 0")
+      ->check([](const std::string& word) {
+        return device::names_device(word) ? "" : "expected \"host\" or the number of a device, got \"" + word + "\"";
+      });
   run_verb->add_flag("--resume", options.resume,
                      "goes on with the unfinished run in the run folder, from its last checkpoint, bit for bit; with "
                      "the same FILE, --set and --backend");
@@ -246,7 +254,16 @@ int run_command_line(int argc, char** argv) {
   list_verb->add_flag("--json", json, "as JSON");
   bool combinations = false;
   list_verb->add_flag("--combinations", combinations, "which components run together, and which are refused and why");
-  list_verb->callback([&] { code = guarded([&] { return combinations ? list_combinations(json) : list(json); }); });
+  bool devices = false;
+  list_verb->add_flag("--devices", devices, "the devices of backend cuda instead, or what is missing for one");
+  list_verb->callback([&] {
+    code = guarded([&] { return devices ? list_devices() : combinations ? list_combinations(json) : list(json); });
+  });
+
+  auto* cache_verb = app.add_subcommand("cache", "the compiled kernels that are kept for later runs on a device");
+  bool clear = false;
+  cache_verb->add_flag("--clear", clear, "removes them");
+  cache_verb->callback([&] { code = guarded([&] { return cache(clear); }, "not all were removed"); });
 
   auto* describe_verb = app.add_subcommand("describe", "one plugin's manual, parameters, state and citation");
   describe_verb->add_option("ID", id, "id, or kind/id where two kinds share an id")->required();

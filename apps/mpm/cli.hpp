@@ -27,6 +27,7 @@ struct RunOptions {
   std::optional<std::string> backend;
   std::filesystem::path out;  ///< empty: runs/<name of the file>
   int threads = 0;            ///< 0: all processors
+  std::string device;         ///< of backend "cuda"; empty: what MPM_DEVICE says
   bool resume = false;        ///< goes on with the unfinished run in `out`
   bool replace = false;       ///< whatever run `out` holds is replaced
   std::string command;        ///< as typed, for the manifest
@@ -80,6 +81,10 @@ int check(const RunOptions& options);
 void refuse_study(const std::filesystem::path& file, const std::string& verb);
 int plan(const RunOptions& options, bool json, const std::string& graph);
 int list(bool json);
+/// Prints the devices of backend "cuda", and what is missing for one.
+int list_devices();
+/// Prints how many compiled programs are kept and where, or removes them.
+int cache(bool clear);
 /// Prints which components run together and which are refused, generated from the same function that refuses.
 int list_combinations(bool json);
 int describe(const std::string& id, bool json);

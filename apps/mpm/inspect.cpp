@@ -7,6 +7,9 @@
 #include <optional>
 #include <sstream>
 
+#include "backends/device/cache.hpp"
+#include "backends/device/device.hpp"
+#include "backends/device/program.hpp"
 #include "backends/make_backend.hpp"
 #include "experiment/diagnostics.hpp"
 #include "experiment/located_json.hpp"
@@ -142,7 +145,7 @@ constexpr double most_to_place = 500'000;  ///< particles that are placed in a s
 /// too many for a check. Throws InputError.
 std::optional<std::size_t> try_start(const Experiment& experiment, const Plan& plan) {
   if (static_cast<double>(plan.particles) > most_to_place) return {};
-  const Simulation simulation(experiment, backend_factory(1));
+  const Simulation simulation(experiment, unstepped_backend_factory());
   refuse_impossible_starts(simulation);
   return simulation.particle_count();
 }
@@ -222,6 +225,26 @@ int plan(const RunOptions& options, bool json, const std::string& graph) {
     std::cout << plan.to_json().dump(2) << "\n";
   else
     std::cout << plan.to_text();
+  return done;
+}
+
+int list_devices() {
+  std::cout << device::device_list();
+  return done;
+}
+
+int cache(bool clear) {
+  const device::ProgramCache cache = device::ProgramCache::of_user();
+  if (cache.folder().empty()) {
+    std::cout << "compiled programs are not kept: MPM_CACHE is empty, or there is no home folder\n";
+    return done;
+  }
+  const auto [programs, bytes] = clear ? cache.clear() : cache.contents();
+  const auto words = [](std::uint64_t size) { return device::bytes_in_words(static_cast<double>(size)); };
+  std::cout << cache.folder().string() << (clear ? ": removed " : ": ") << programs
+            << (programs == 1 ? " program, " : " programs, ") << words(bytes);
+  if (!clear) std::cout << " of at most " << words(cache.most_bytes());
+  std::cout << "\n";
   return done;
 }
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "backends/device/device.hpp"
 #include "backends/make_backend.hpp"
 #include "experiment/diagnostics.hpp"
 #include "mpm/cli.hpp"
@@ -194,6 +195,12 @@ Outcome step_or_say_why(Simulation& simulation, Recorder& recorder, Checkpoints&
                         const RunOptions& options) {
   try {
     return step_to_the_end(simulation, recorder, checkpoints, options);
+  } catch (const device::DeviceError& error) {
+    recorder.break_off();  // the step may be half done: no checkpoint is made of it
+    std::cerr << "the device failed: " << error.what() << "\n";
+    const Outcome outcome{machine_failed, "failed", error.what()};
+    say_how_to_resume(outcome, checkpoints, options);
+    return outcome;
   } catch (const support::MachineError& error) {
     std::cerr << "the machine failed: " << error.what() << "\n";
     // The step is whole, and what could not be recorded of it is recorded when the run is resumed.
@@ -309,7 +316,7 @@ struct Threads {
 /// The threads asked for, but at most one for each processor that the process may use: more would only wait for one
 /// another's.
 Threads threads_for(const Experiment& experiment, const RunOptions& options) {
-  if (experiment.backend == "reference") return {};
+  if (experiment.backend != "cpu") return {};
   const int processors = support::available_processors();
   if (options.threads > processors)
     std::cerr << "--threads " << options.threads << ": this process may use " << processors
@@ -331,7 +338,7 @@ int run(const RunOptions& options) {
   if (options.resume)
     if (const auto code = already_finished(experiment, open_to_resume(place))) return *code;
   const auto [threads, find_number] = threads_for(experiment, options);
-  Simulation simulation(experiment, backend_factory(threads, find_number));
+  Simulation simulation(experiment, backend_factory(threads, find_number, options.device));
   const Metrics metrics(simulation);  // metrics are those of step 0, also when the run goes on from a later one
   refuse_impossible_starts(simulation);
 

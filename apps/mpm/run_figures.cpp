@@ -469,7 +469,7 @@ void refuse_unknown_records(const Experiment& experiment) {
                    !experiment.column_figures.empty() || !experiment.output.probes.empty() ||
                    !experiment.output.groups.empty();
   if (!any) return;
-  const RecordNames names = record_names(experiment, backend_factory(1));
+  const RecordNames names = record_names(experiment, unstepped_backend_factory());
   std::vector<Problem> problems = unknown_records(experiment, names);
   Table columns;
   columns.header = names.columns;

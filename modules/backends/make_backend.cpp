@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "backends/device/make_device_backend.hpp"
+#include "backends/device/program.hpp"
+
 namespace mpm {
 namespace {
 
@@ -17,11 +20,21 @@ int useful_threads(int wanted, const std::vector<SeededBody>& bodies) {
 
 }  // namespace
 
-BackendFactory backend_factory(int threads, bool find_number) {
-  return [threads, find_number](const Experiment& experiment, const Plan& plan, std::vector<SeededBody> bodies) {
-    if (experiment.backend == "reference") return make_reference_backend(experiment, plan, std::move(bodies));
-    const int workers = useful_threads(threads, bodies);  // results do not depend on their number
-    return make_cpu_backend(experiment, plan, std::move(bodies), workers, find_number);
+BackendFactory backend_factory(int threads, bool find_number, const std::string& device) {
+  return
+      [threads, find_number, device](const Experiment& experiment, const Plan& plan, std::vector<SeededBody> bodies) {
+        if (experiment.backend == "reference") return make_reference_backend(experiment, plan, std::move(bodies));
+        if (experiment.backend == "cuda")
+          return device::make_device_backend(experiment, plan, bodies, device::setup_for(device));
+        const int workers = useful_threads(threads, bodies);  // results do not depend on their number
+        return make_cpu_backend(experiment, plan, std::move(bodies), workers, find_number);
+      };
+}
+
+BackendFactory unstepped_backend_factory() {
+  return [](const Experiment& experiment, const Plan& plan, std::vector<SeededBody> bodies) {
+    if (experiment.backend == "cpu") return make_cpu_backend(experiment, plan, std::move(bodies), 1);
+    return make_reference_backend(experiment, plan, std::move(bodies));
   };
 }
 

@@ -34,7 +34,7 @@ struct ReadOptions {
   std::optional<std::string> backend;  ///< as --backend gave it; it wins over the file
   std::vector<ExactDescription> exact;
   std::vector<SolverDescription> solvers;  ///< the first is meant where a file names none
-  std::vector<std::string> backends{"reference", "cpu"};
+  std::vector<std::string> backends{"reference", "cpu", "cuda"};
   std::vector<std::string> figures;            ///< valid figure names; empty: any
   std::vector<std::string> colour_quantities;  ///< valid for output/colour_by; empty: any
 };

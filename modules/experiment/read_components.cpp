@@ -29,6 +29,13 @@ void ExperimentReader::check_capability(const Plugin& plugin, mpm_kind kind, con
                        std::to_string(dimension) + "-D");
   }
   if (!capability_known_) return;
+  if (experiment_.backend == "cuda") {  // a device compiles the functor's text
+    if (!descriptor.source || !*descriptor.source)
+      problem(place, name +
+                         " carries no text of its functor, which backend \"cuda\" compiles; build it with "
+                         "mpm_add_plugin(... HEADER file)");
+    return;
+  }
   const bool reference = experiment_.backend == "reference", single = experiment_.precision == Precision::single;
   const int wanted = reference ? MPM_SCALAR_DOUBLE : single ? MPM_LANES_FLOAT : MPM_LANES_DOUBLE;
   if (!(descriptor.precisions & (1u << wanted))) {

@@ -65,7 +65,8 @@ Section experiment_section(const ReadOptions& options) {
               parameter("precision", Type::choice, "", "Arithmetic of particles and grid.")
                   .of({"double", "float"})
                   .standard("double"),
-              parameter("backend", Type::choice, "", "What computes: the plain reference or the fast cpu backend.")
+              parameter("backend", Type::choice, "",
+                        "What computes: the plain reference, the fast cpu backend, or cuda, a GPU.")
                   .of(options.backends)
                   .standard("cpu"),
               parameter("seed", Type::integer, "", "Seed of the random jitter of particles.")

@@ -118,7 +118,7 @@ TEST_CASE("2: verbs and options") {
   refused(folder, {"run", "scene.json", "--set", "/solver/end_tim=1"}, "end_time");
   refused(folder, {"run", "scene.json", "--set", "nonsense"}, "--set");
   refused(folder, {"run", "scene.json", "--backend", "gpu"},
-          "--backend: /backend: expected one of \"reference\", \"cpu\", got \"gpu\"");
+          "--backend: /backend: expected one of \"reference\", \"cpu\", \"cuda\", got \"gpu\"");
 }
 
 TEST_CASE("2: combinations that cannot run") {

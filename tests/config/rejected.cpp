@@ -88,8 +88,8 @@ TEST_CASE("float is refused on the reference backend, where it was asked for", "
   CHECK(errors_with(single, chosen) == "--backend: /backend: " + reason);
   chosen.backend = "cdua";
   CHECK(errors_with(two_discs, chosen) ==
-        "--backend: /backend: expected one of \"reference\", \"cpu\", got \"cdua\"; "
-        "did you mean \"cpu\"?");
+        "--backend: /backend: expected one of \"reference\", \"cpu\", \"cuda\", got \"cdua\"; "
+        "did you mean \"cuda\"?");
 }
 
 TEST_CASE("the domain is a whole number of cells", "[config]") {

@@ -42,6 +42,10 @@ bool opens_group(const std::string& line) {
          line.find("#if") != std::string::npos;
 }
 
+std::string name_in_messages(const Plugin& plugin) {
+  return std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))) + " plugin " + std::string(plugin.id());
+}
+
 /// Puts texts one after another, each header once and before the first text that includes it.
 class Text {
  public:
@@ -54,8 +58,7 @@ class Text {
     add_lines(text, path, /*functor=*/false);
   }
   void add_functor(const Plugin& plugin) {
-    const std::string name =
-        std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))) + " plugin " + std::string(plugin.id());
+    const std::string name = name_in_messages(plugin);
     if (!done_.insert(name).second) return;
     if (!plugin.descriptor->source || !*plugin.descriptor->source)
       throw ComposeError(name + " carries no text of its functor; build it with mpm_add_plugin(... HEADER file)");
@@ -322,8 +325,12 @@ Composition compose(const Choice& choice) {
     if (plugin) text.add_functor(*plugin);
   for (const Plugin* plugin : choice.materials) text.add_functor(*plugin);
   text.add(scene_text(choice));
-  Composition composition{choice.name(), text.str(), "", entry_names(choice)};
+  Composition composition{choice.name(), text.str(), "", entry_names(choice), {}};
   composition.hash = support::sha256(composition.text);
+  std::vector<const Plugin*> chosen{choice.shape, choice.transfer, choice.filter, choice.contact};
+  chosen.insert(chosen.end(), choice.materials.begin(), choice.materials.end());
+  for (const Plugin* plugin : chosen)
+    if (plugin) composition.plugins.emplace_back(name_in_messages(*plugin), plugin->file.string());
   return composition;
 }
 

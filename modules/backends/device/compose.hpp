@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "backends/device/fields.hpp"
@@ -37,10 +38,11 @@ class ComposeError : public std::runtime_error {
 };
 
 struct Composition {
-  std::string name;                  ///< name of the choice
-  std::string text;                  ///< C++17 without any #include
-  std::string hash;                  ///< SHA-256 of the text, hexadecimal
-  std::vector<std::string> entries;  ///< extern "C" names, one a phase
+  std::string name;                                            ///< name of the choice
+  std::string text;                                            ///< C++17 without any #include
+  std::string hash;                                            ///< SHA-256 of the text, hexadecimal
+  std::vector<std::string> entries;                            ///< extern "C" names, one a phase
+  std::vector<std::pair<std::string, std::string>> plugins{};  ///< name in compiler messages, and file
 };
 
 /// Composes the text of a choice. Throws ComposeError.

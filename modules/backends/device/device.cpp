@@ -1,15 +1,15 @@
 #include "backends/device/device.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstring>
 
 namespace mpm::device {
 namespace {
 
 constexpr const char* go_on =
-    "; what was written is kept, and a run with a checkpoint goes on with --resume, with --backend cpu also without "
-    "the "
-    "device";
+    "; what was written is kept, and a run with a checkpoint goes on with --resume, also with --device host";
 
 /// What to do about a result.
 std::string remedy_for(DriverResult result) {
@@ -152,9 +152,18 @@ void Device::copy_in(DevicePointer to, const void* from, std::size_t bytes) {
   make_current();
   check(driver_.cuMemcpyHtoDAsync_v2(to, from, bytes, stream_), "to take a copy");
 }
-void Device::copy_out(void* to, DevicePointer from, std::size_t bytes) {
+void Device::read(void* to, DevicePointer from, std::size_t bytes) {
   make_current();
-  check(driver_.cuMemcpyDtoHAsync_v2(to, from, bytes, stream_), "to give a copy");
+  landing_.resize(std::max(landing_.size(), bytes));
+  check(driver_.cuMemcpyDtoHAsync_v2(landing_.data(), from, bytes, stream_), "to give a copy");
+  try {
+    synchronise();
+  } catch (...) {
+    abandoned_.push_back(std::move(landing_));
+    landing_.clear();
+    throw;
+  }
+  std::memcpy(to, landing_.data(), bytes);
 }
 void Device::copy(DevicePointer to, DevicePointer from, std::size_t bytes) {
   make_current();

@@ -42,10 +42,8 @@ class Device {
   DevicePointer allocate(std::size_t bytes, const std::string& what);
   void free(DevicePointer pointer) noexcept;
 
-  // What follows waits in the stream. Sources of copies in may be changed at once; targets of copies out hold nothing
-  // before `synchronise`.
+  // What follows waits in the stream. Sources of copies in may be changed at once.
   void copy_in(DevicePointer to, const void* from, std::size_t bytes);
-  void copy_out(void* to, DevicePointer from, std::size_t bytes);
   void copy(DevicePointer to, DevicePointer from, std::size_t bytes);
   void fill(DevicePointer to, unsigned char byte, std::size_t bytes);
 
@@ -56,6 +54,9 @@ class Device {
     static_assert(sizeof(Arguments<T>) <= 4096, "a kernel takes at most 4096 bytes of parameters");
     launch(phase, &arguments, sizeof arguments, teams, lanes);
   }
+
+  /// Waits for a copy out. Throws DeviceError as `synchronise` does.
+  void read(void* to, DevicePointer from, std::size_t bytes);
 
   /// Waits for all of it. Throws DeviceError where a launch failed or the device is lost.
   void synchronise();
@@ -88,6 +89,8 @@ class Device {
   std::vector<Timed> timed_;
   std::vector<EventHandle> events_;  ///< those free for use
   std::map<std::string, double> seconds_;
+  std::vector<unsigned char> landing_;                 ///< where copies out arrive
+  std::vector<std::vector<unsigned char>> abandoned_;  ///< of copies that were never waited for, and may still arrive
 };
 
 /// What a driver's devices are, for `mpm list --devices`.
@@ -146,8 +149,7 @@ class DeviceArray {
   std::vector<T> download() const { return download(0, count_); }
   std::vector<T> download(std::size_t first, std::size_t count) const {
     std::vector<T> values(count);
-    if (count > 0) device_->copy_out(values.data(), pointer_ + first * sizeof(T), count * sizeof(T));
-    device_->synchronise();
+    if (count > 0) device_->read(values.data(), pointer_ + first * sizeof(T), count * sizeof(T));
     return values;
   }
   /// Copies within the array, on the device.

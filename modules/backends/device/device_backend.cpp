@@ -31,10 +31,14 @@ Arguments<T> described(const Experiment& experiment) {
   return scene;
 }
 
-std::unique_ptr<Device> open(const DeviceSetup& setup) {
+/// Opens the device, unless it has too little memory free.
+std::unique_ptr<Device> open(const DeviceSetup& setup, const Experiment& experiment, const Plan& plan,
+                             const std::vector<SeededBody>& seeded, std::size_t nodes) {
   if (setup.lanes < 1 || setup.lanes > largest_team)
     throw std::invalid_argument("a team has 1 to " + std::to_string(largest_team) + " lanes");
-  return std::make_unique<Device>(*setup.driver, setup.number);
+  auto device = std::make_unique<Device>(*setup.driver, setup.number);
+  refuse_what_does_not_fit(*device, experiment, plan, seeded, nodes);
+  return device;
 }
 
 }  // namespace
@@ -44,10 +48,10 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
                                 const DeviceSetup& setup)
     : experiment_(experiment),
       plan_(plan),
-      device_(open(setup)),
-      lanes_(setup.lanes),
       scene_(described<T>(experiment)),
       on_host_(scene_),
+      device_(open(setup, experiment, plan, seeded, static_cast<std::size_t>(scene_.node_count))),
+      lanes_(setup.lanes),
       shape_parameters_(*device_, "the shape's parameters"),
       transfer_parameters_(*device_, "the transfer's parameters"),
       filter_parameters_(*device_, "the filter's parameters"),
@@ -60,8 +64,6 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
       contact_impulse_(experiment),
       reactions_(experiment),
       noted_(experiment, on_host_, reactions_, experiment.field_count) {
-  const auto node_count = static_cast<std::size_t>(scene_.node_count);
-  refuse_what_does_not_fit(*device_, experiment, plan, seeded, node_count);
   const Composition composition = compose(choice_of(experiment, plan));
   device_->load(setup.compile(composition, device_->architecture()), composition.name);
 
@@ -82,7 +84,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
     loads_.emplace_back(experiment, static_cast<int>(body), seeded[body]);
   }
   for (int field = 0; field < experiment.field_count; ++field)
-    fields_.emplace_back(*device_, experiment, plan, node_count);
+    fields_.emplace_back(*device_, experiment, plan, static_cast<std::size_t>(scene_.node_count));
   for (int axis = 0; axis < experiment.dimension; ++axis) (periodic(axis) ? images_ : walls_).push_back(axis);
 }
 

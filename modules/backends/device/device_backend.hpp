@@ -219,10 +219,10 @@ class DeviceBackend final : public Backend {
 
   const Experiment& experiment_;
   const Plan& plan_;
+  Arguments<T> scene_;              ///< what all launches share; its pointers are the device's
+  Arguments<T> on_host_;            ///< the same with what conditions give on the host, for NotedReactions
   std::unique_ptr<Device> device_;  ///< outlives the arrays on it
   int lanes_;
-  Arguments<T> scene_;    ///< what all launches share; its pointers are the device's
-  Arguments<T> on_host_;  ///< the same with what conditions give on the host, for NotedReactions
   DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_;
   DeviceArray<int> first_failed_, ignored_failures_;
   DeviceArray<double> partial_sums_;

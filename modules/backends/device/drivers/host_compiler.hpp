@@ -2,18 +2,18 @@
 // The system's C++ compiler turns a composition into a program of the host driver: a shared library, whose bytes are
 // handed to cuModuleLoadData as those of a cubin are. The text is the very same that a GPU's compiler sees.
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "backends/device/compose.hpp"
+#include "support/files.hpp"
 
 namespace mpm::device {
 
 /// Thrown when a compiler is missing or refuses a composition; the message names the composition and holds the
 /// compiler's words, which name plugin, file and line.
-class CompilerError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
+class CompilerError : public support::MachineError {
+  using support::MachineError::MachineError;
 };
 
 struct HostCompiler {

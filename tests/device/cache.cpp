@@ -1,0 +1,136 @@
+// Programs of compositions, and the cache that keeps them.
+
+#include "backends/device/cache.hpp"
+
+#include <cstdlib>
+#include <fstream>
+
+#include "backends/device/program.hpp"
+#include "device/device_support.hpp"
+#include "support/files.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The cache of this process lies in a folder for the time of a test.
+struct CacheIn {
+  explicit CacheIn(const fs::path& folder) { setenv("MPM_CACHE", folder.c_str(), 1); }
+  ~CacheIn() { unsetenv("MPM_CACHE"); }
+};
+
+/// A compiler that counts, and gives what it was told to.
+struct Counting final : device::Compiler {
+  std::string name = "one";
+  mutable int times = 0;
+  std::string identity(const std::string&) const override { return name; }
+  std::string compile(const device::Composition& composition, const std::string& architecture) const override {
+    ++times;
+    return "program of " + composition.name + " for " + architecture;
+  }
+};
+
+/// A compiler that refuses a functor's text.
+struct Refusing final : device::Compiler {
+  std::string identity(const std::string&) const override { return "refusing"; }
+  std::string compile(const device::Composition& composition, const std::string&) const override {
+    return device::HostCompiler{}.compile(composition);
+  }
+};
+
+fs::path only_file_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  REQUIRE(files.size() == 1);
+  return files[0];
+}
+
+}  // namespace
+
+TEST_CASE("a program is compiled once for its text, compiler and architecture", "[device][cache]") {
+  const TemporaryFolder folder;
+  const CacheIn here(folder / "cache");
+  const device::Composition composition{"a scene", "text", "hash of text", {}, {}};
+  Counting compiler;
+  CHECK(device::program_of(composition, compiler, "sm_90") == "program of a scene for sm_90");
+  CHECK(device::program_of(composition, compiler, "sm_90") == "program of a scene for sm_90");
+  CHECK(compiler.times == 1);
+  CHECK(device::program_of(composition, compiler, "sm_80") == "program of a scene for sm_80");
+  CHECK(compiler.times == 2);
+  compiler.name = "another version";
+  device::program_of(composition, compiler, "sm_90");
+  CHECK(compiler.times == 3);
+  device::Composition other = composition;
+  other.hash = "hash of another text";
+  device::program_of(other, compiler, "sm_90");
+  CHECK(compiler.times == 4);
+  CHECK(device::ProgramCache::of_user().contents().programs == 4);
+}
+
+TEST_CASE("a program in the cache that is damaged is compiled again", "[device][cache]") {
+  const TemporaryFolder folder;
+  const CacheIn here(folder / "cache");
+  const device::Composition composition{"a scene", "text", "hash of text", {}, {}};
+  const Counting compiler;
+  const std::string program = device::program_of(composition, compiler, "sm_90");
+  const fs::path file = only_file_in(folder / "cache");
+  const std::string whole = support::read_file(file);
+  std::string changed = whole;
+  changed.back() ^= 1;
+  for (const std::string& damaged : {changed, whole.substr(0, whole.size() - 1), whole.substr(0, 10), std::string()}) {
+    std::ofstream(file, std::ios::binary) << damaged;
+    const int before = compiler.times;
+    CHECK(device::program_of(composition, compiler, "sm_90") == program);
+    CHECK(compiler.times == before + 1);
+    CHECK(support::read_file(file) == whole);
+  }
+}
+
+TEST_CASE("the cache drops what was used longest ago", "[device][cache]") {
+  const TemporaryFolder folder;
+  const device::ProgramCache cache(folder / "cache", 1000);
+  const std::string program(300, 'x');  // and 64 bytes of its hash
+  for (const std::string key : {"a", "b"}) cache.keep(key, program);
+  const auto now = fs::file_time_type::clock::now();
+  fs::last_write_time(folder / "cache/a.program", now - std::chrono::hours(2));
+  fs::last_write_time(folder / "cache/b.program", now - std::chrono::hours(1));
+  CHECK(cache.find("a") == program);  // which is a use
+  cache.keep("c", program);
+  CHECK(cache.find("a") == program);
+  CHECK(!cache.find("b"));
+  CHECK(cache.find("c") == program);
+  CHECK(cache.contents().bytes == 728);
+  cache.keep("large", std::string(2000, 'x'));
+  CHECK(!cache.find("large"));
+  CHECK(cache.clear().programs == 2);
+  CHECK(cache.contents().programs == 0);
+}
+
+TEST_CASE("without a folder for it nothing is kept, and nothing fails", "[device][cache]") {
+  const device::Composition composition{"a scene", "text", "hash of text", {}, {}};
+  for (const std::string folder : {"", "/proc/no/such/folder"}) {
+    const CacheIn here(folder);
+    const Counting compiler;
+    for (int k = 0; k < 2; ++k) CHECK(device::program_of(composition, compiler, "sm_90").size() > 10);
+    CHECK(compiler.times == 2);
+  }
+}
+
+TEST_CASE("a functor that does not compile is said with its plugin, its line and its file", "[device][cache]") {
+  const CacheIn nowhere("");
+  mpm_descriptor descriptor = *plugins().find(MPM_SHAPE, "bspline_quadratic")->descriptor;
+  const std::string text =
+      "#include \"kernel/functor.hpp\"\n" + std::string("int wrong() { return nowhere; }\n") + descriptor.source;
+  descriptor.source = text.c_str();
+  Plugin odd;
+  odd.descriptor = &descriptor, odd.file = "/somewhere/shape_odd.so";
+  device::Choice choice = device_choice_of(device_experiment(Mix{}.text(), "double"));
+  choice.shape = &odd;
+  CHECK_THROWS_WITH(
+      device::program_of(device::compose(choice), Refusing{}, "host"),
+      ContainsSubstring("shape plugin bspline_quadratic:2") && ContainsSubstring("nowhere") &&
+          ContainsSubstring("the text of shape plugin bspline_quadratic comes from /somewhere/shape_odd.so"));
+}

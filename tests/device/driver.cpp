@@ -1,0 +1,223 @@
+// The launch layer on the host driver: what its memory and its streams are like, and what is said when the driver refuses.
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "backends/device/device.hpp"
+#include "device/device_support.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+/// Other devices for the time of a test.
+struct OtherDevices {
+  explicit OtherDevices(std::vector<device::HostDevice> devices) {
+    device_setup();  // so that the usual ones are not set later
+    device::set_host_devices(std::move(devices));
+  }
+  ~OtherDevices() { use_usual_devices(); }
+};
+
+/// A failure that does not outlive its test.
+struct Injected {
+  Injected(const std::string& function, long call, device::DriverResult result) {
+    device::fail_on_host(function, call, result);
+  }
+  ~Injected() { device::forget_failures_on_host(); }
+};
+
+std::string usual_scene() {
+  Mix mix;
+  mix.contact = R"({"type": "coulomb", "friction": 0.2})", mix.close = true;
+  return mix.text();
+}
+
+/// What a run of the usual scene is stopped by; empty where nothing stops it.
+std::string message_of_run(const device::DeviceSetup& setup = device_setup()) {
+  const Experiment experiment = device_experiment(usual_scene(), "double");
+  try {
+    Simulation simulation(experiment, device_factory(setup));
+    while (!simulation.finished()) simulation.step();
+    simulation.backend().body_state(0);
+  } catch (const device::DeviceError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("memory of the host driver starts as NaN, and its addresses are none of the host's", "[device][driver]") {
+  const device::DeviceSetup setup = device_setup();
+  device::Device device(*setup.driver, 0);
+  const device::DeviceArray<double> array(device, "an array", 100);
+  for (const double value : array.download()) CHECK(std::isnan(value));
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGSEGV, SIG_DFL);
+    const volatile double value = *const_cast<const volatile double*>(array.data());
+    _exit(value == 0 ? 0 : 1);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK(!(WIFEXITED(status) && WEXITSTATUS(status) <= 1));
+}
+
+TEST_CASE("copies of the host driver wait for a synchronisation and then come in order", "[device][driver]") {
+  const device::DeviceSetup setup = device_setup();
+  device::Device device(*setup.driver, 0);
+  device::DeviceArray<int> array(device, "an array", 3);
+  std::vector<int> values{1, 2, 3}, found(3, -1);
+  device::StreamHandle stream = nullptr;
+  REQUIRE(setup.driver->cuStreamCreate(&stream, 0) == device::driver_success);
+  const auto pointer = static_cast<device::DevicePointer>(reinterpret_cast<std::uintptr_t>(array.data()));
+  CHECK(setup.driver->cuMemcpyHtoDAsync_v2(pointer, values.data(), 12, stream) == device::driver_success);
+  values = {7, 8, 9};  // the source is free at once
+  CHECK(setup.driver->cuMemcpyDtoHAsync_v2(found.data(), pointer, 12, stream) == device::driver_success);
+  CHECK(setup.driver->cuMemsetD8Async(pointer, 0, 4, stream) == device::driver_success);
+  CHECK(found == std::vector<int>{-1, -1, -1});
+  CHECK(setup.driver->cuStreamSynchronize(stream) == device::driver_success);
+  CHECK(found == std::vector<int>{1, 2, 3});
+  CHECK(array.download() == std::vector<int>{0, 2, 3});
+  CHECK(setup.driver->cuStreamDestroy_v2(stream) == device::driver_success);
+  CHECK_THROWS_WITH(device.read(found.data(), pointer + 4, 12), ContainsSubstring("CUDA_ERROR_INVALID_VALUE"));
+}
+
+TEST_CASE("a launch that is handed an address of the host fails, and the device is lost", "[device][driver]") {
+  const device::DeviceSetup setup = device_setup();
+  const device::Composition composition = device::compose(device_choice_of(device_experiment(usual_scene(), "double")));
+  std::vector<double> mass(1000);
+  {
+    device::Device device(*setup.driver, 0);
+    device.load(Programs::shared().of(composition), composition.name);
+    device::Arguments<double> arguments{};
+    arguments.grid.field[0] = mass.data();
+    CHECK_THROWS_WITH(device.launch("clear", arguments, 1, 1),
+                      ContainsSubstring("\"clear\"") && ContainsSubstring("CUDA_ERROR_ILLEGAL_ADDRESS"));
+    CHECK_THROWS_WITH(device.synchronise(), ContainsSubstring("CUDA_ERROR_ILLEGAL_ADDRESS"));
+  }
+  device::Device anew(*setup.driver, 0);
+  CHECK_NOTHROW(anew.synchronise());
+}
+
+TEST_CASE("a run gives its memory back", "[device][driver]") {
+  {
+    DeviceScene scene(usual_scene(), "double");
+    CHECK(device::bytes_on_host(0) >= scene.simulation.backend().particle_bytes());
+  }
+  CHECK(device::bytes_on_host(0) == 0);
+}
+
+TEST_CASE("a run that does not fit on its device is refused before it begins", "[device][driver]") {
+  const OtherDevices small({{"a small one", 50000, false}});
+  const long compiled = device::calls_on_host("cuModuleLoadData");
+  const std::string message = message_of_run();
+  INFO(message);
+  CHECK(has(message, "on device a small one, which has 48.8 KiB free"));
+  CHECK(has(message, "most is taken by"));
+  CHECK(has(message, " of the nodes ("));
+  CHECK(has(message, "KiB"));
+  CHECK(has(message, "--backend cpu"));
+  CHECK(device::calls_on_host("cuModuleLoadData") == compiled);
+}
+
+TEST_CASE("memory that runs out all the same is said with what is asked and free", "[device][driver]") {
+  DeviceScene(usual_scene(), "double");  // compiles
+  const Injected failure("cuMemAlloc_v2", 20, device::driver_out_of_memory);
+  const std::string message = message_of_run();
+  INFO(message);
+  CHECK(has(message, "device 0 (host) failed to give "));
+  CHECK(has(message, " free: CUDA_ERROR_OUT_OF_MEMORY"));
+  CHECK(has(message, "--set /precision=float"));
+}
+
+TEST_CASE("whichever function of the driver fails, a run stops with its name and gives its memory back",
+          "[device][driver]") {
+  CHECK(message_of_run().empty());
+  const std::vector<std::string> functions{"cuDeviceGetCount",     "cuDeviceGet",         "cuDeviceGetName",
+                                           "cuDeviceGetAttribute", "cuDriverGetVersion",  "cuCtxSetCurrent",
+                                           "cuMemGetInfo_v2",      "cuMemAlloc_v2",       "cuMemcpyHtoDAsync_v2",
+                                           "cuMemcpyDtoHAsync_v2", "cuMemsetD8Async",     "cuDevicePrimaryCtxRetain",
+                                           "cuStreamCreate",       "cuStreamSynchronize", "cuModuleLoadData",
+                                           "cuModuleGetFunction",  "cuLaunchKernel"};
+  for (const std::string& function : functions)
+    for (const device::DriverResult result : {device::driver_launch_failed, device::driver_not_initialized}) {
+      INFO(function << " " << result);
+      const Injected failure(function, 1, result);
+      const std::string message = message_of_run();
+      INFO(message);
+      CHECK(has(message,
+                result == device::driver_launch_failed ? "CUDA_ERROR_LAUNCH_FAILED" : "CUDA_ERROR_NOT_INITIALIZED"));
+      CHECK(device::bytes_on_host(0) == 0);
+    }
+  for (const long call : {30, 500}) {
+    INFO("call " << call);
+    const Injected failure("cuLaunchKernel", call, device::driver_launch_out_of_resources);
+    CHECK(has(message_of_run(), "failed to launch the phase \""));
+    CHECK(device::bytes_on_host(0) == 0);
+  }
+  CHECK(message_of_run().empty());
+}
+
+TEST_CASE("a driver that is too old for the program is said with its version", "[device][driver]") {
+  const Injected failure("cuModuleLoadData", 1, device::driver_no_binary_for_device);
+  const std::string message = message_of_run();
+  INFO(message);
+  CHECK(has(message, "the driver is of CUDA 12.0"));
+  CHECK(has(message, "CUDA_ERROR_NO_BINARY_FOR_GPU"));
+  CHECK(has(message, "install a newer driver"));
+}
+
+TEST_CASE("a program that is none is refused", "[device][driver]") {
+  device::DeviceSetup setup = device_setup();
+  setup.compile = [](const device::Composition&, const std::string&) { return std::string("no program at all"); };
+  CHECK(has(message_of_run(setup), "CUDA_ERROR_INVALID_IMAGE"));
+}
+
+TEST_CASE("devices are counted from 0, and one that is not there is refused", "[device][driver]") {
+  device::DeviceSetup setup = device_setup();
+  {
+    const OtherDevices two({{"one", 0, false}, {"another", 0, false}});
+    setup.number = 1;
+    const Experiment experiment = device_experiment(usual_scene(), "double");
+    const Simulation simulation(experiment, device_factory(setup));
+    CHECK(device::bytes_on_host(0) == 0);
+    CHECK(device::bytes_on_host(1) > 0);
+    setup.number = 2;
+    CHECK(has(message_of_run(setup), "there is no device 2: the driver lists 2 devices, from number 0"));
+    const auto all = device::devices_of(device::host_driver());
+    REQUIRE(all.size() == 2);
+    CHECK(all[1].name == "another");
+    CHECK(all[1].bytes > 0);
+  }
+  const OtherDevices none({});
+  setup.number = 0;
+  const std::string message = message_of_run(setup);
+  CHECK(has(message, "the driver lists no device"));
+  CHECK(has(message, "--backend cpu"));
+}
+
+TEST_CASE("phases are timed by events of the device", "[device][driver]") {
+  DeviceScene scene(usual_scene(), "double");
+  Backend& backend = scene.simulation.backend();
+  CHECK(backend.phase_seconds().empty());
+  backend.measure_phases(true);
+  scene.simulation.step();
+  scene.body(0);  // waits for the step's end
+  const auto seconds = backend.phase_seconds();
+  for (const std::string phase : {"scatter", "gather", "move", "contact", "stress_0"}) {
+    REQUIRE(seconds.count(phase) == 1);
+    CHECK(seconds.at(phase) > 0);
+  }
+  backend.measure_phases(false);
+  scene.simulation.step();
+  CHECK(backend.phase_seconds() == seconds);
+}
