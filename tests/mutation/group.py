@@ -19,7 +19,6 @@ from trial import NOT_OF_THE_PROGRAM, Bench, Refused
 KINDS = ("backends", "kernel", "operators")
 SUITES = ["parity", "unit", "conformance", "verification", "config"]
 INSTANTIATION = re.compile(r"_([23]_(?:float|double))\.cpp\.o$")
-FIRST_ALONE = 2  # a mutant that is refused among the others is compiled alone where it changes no more objects than that
 
 
 def cases_of(build, suites):
@@ -70,9 +69,9 @@ class Case:
 class Group:
     """`mutants` are all of the build, whether or not they are tried in this call: objects once made serve again."""
 
-    def __init__(self, build, mutants, longest, patience, instantiations, suites, say):
+    def __init__(self, build, mutants, longest, patience, instantiations, suites, alone, say):
         self.build, self.mutants, self.longest, self.patience = build, mutants, longest, patience
-        self.instantiations, self.suites, self.say = instantiations, suites, say
+        self.instantiations, self.suites, self.alone, self.say = instantiations, suites, alone, say
         self.bench = Bench(build, build.work / "group")
         self.texts, self.number_of, self.noted_as = {}, {}, {}
         for file in dict.fromkeys(mutant.file for mutant in mutants):
@@ -213,7 +212,7 @@ class Group:
 
     def result_alone(self, mutant):
         objects = [name for name in self.chosen_objects({mutant.file}) if not self.build.test_of(name)]
-        if len(objects) > FIRST_ALONE:
+        if len(objects) > self.alone:
             return None
         overlay = self.bench.folder / "overlay"
         self.write_texts(overlay, {mutant.file: mutant.applied(self.texts[mutant.file].text)})

@@ -73,6 +73,16 @@ const char* slabs = R"J({
   "gravity": [0, -1],
   "solver": {"time_step": 1e-4, "end_time": 1e-4}})J";
 
+/// A contact law without an impulse that calls the area which it is given dissipated energy.
+void book_area(const void*, const mpm_contact_batch* batch) {
+  for (std::uint32_t i = 0; i < batch->count; ++i) {
+    for (std::uint32_t c = 0; c < batch->dimension; ++c)
+      static_cast<double*>(batch->impulse)[c * batch->stride + i] = 0;
+    static_cast<double*>(batch->dissipated)[i] = static_cast<const double*>(batch->area)[i];
+    batch->status[i] = MPM_SLIPS;
+  }
+}
+
 }  // namespace
 
 // Particles are points: what the squares or cubes of side l that they stand for have about their own centres, m l^2 / 6
@@ -186,6 +196,24 @@ TEST_CASE("slabs that press on each other touch at every node between them", "[m
       }
       CHECK(touching > 50);
     }
+}
+
+// No law of the sandbox reads the area yet. Nairn (2013), CMES 92:271, eq. 26: sqrt(2 (V_a + V_b) min(V_a, V_b)) / h.
+// A node between two slabs has h^2 / 2 of either, and so its share h of the interface.
+TEST_CASE("the areas of the nodes between two slabs add up to the interface", "[metrics][contact]") {
+  mpm_contact table{};
+  for (const mpm_precision precision : {MPM_LANES_DOUBLE, MPM_SCALAR_DOUBLE}) table.apply[precision][0] = book_area;
+  for (const std::string& backend : backends) {
+    INFO(backend);
+    Experiment experiment = experiment_from(slabs, {set("/backend", backend), set("/shape/type", "linear")});
+    mpm_descriptor descriptor = *experiment.contact->plugin->descriptor;
+    descriptor.kind_table = &table;
+    const Plugin law{&descriptor, "test"};
+    experiment.contact->plugin = &law;
+    Simulation simulation(experiment, backend_factory(1));
+    simulation.step();
+    CHECK(simulation.ledger().friction == Approx(1).epsilon(1e-12));  // the interface is 1 m long
+  }
 }
 
 // A force of 3 and 4 m/s^2 that the exact solution does not know moves every particle by a t (t + dt) / 2.
