@@ -196,7 +196,7 @@ Outcome step_or_say_why(Simulation& simulation, Recorder& recorder, Checkpoints&
   try {
     return step_to_the_end(simulation, recorder, checkpoints, options);
   } catch (const device::DeviceError& error) {
-    recorder.break_off();  // the step may be half done: no checkpoint is made of it
+    recorder.lose_state();  // and the step may be half done: no checkpoint is made of it
     std::cerr << "the device failed: " << error.what() << "\n";
     const Outcome outcome{machine_failed, "failed", error.what()};
     say_how_to_resume(outcome, checkpoints, options);

@@ -50,6 +50,8 @@ class Recorder {
   const RunRecord& rows() const { return rows_; }
   /// Says that the last step failed on its way.
   void break_off() { rows_.break_off(); }
+  /// Says that the device has failed in the last step or after it: its particles can no longer be read.
+  void lose_state() { rows_.break_off(), rows_.lose_state(); }
 
  private:
   struct Snapshot {

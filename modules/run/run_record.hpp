@@ -42,6 +42,9 @@ class RunRecord {
   /// Says that the run's last step failed on its way: what is summed over the steps holds a part of it.
   void break_off() { broken_off_ = true; }
   bool broken_off() const { return broken_off_; }
+  /// Says that the particles can no longer be read: their device has failed.
+  void lose_state() { state_lost_ = true; }
+  bool state_lost() const { return state_lost_; }
 
  private:
   struct Extremes {
@@ -56,6 +59,7 @@ class RunRecord {
   std::vector<Range> chosen_;
   Watch watch_;
   bool broken_off_ = false;
+  bool state_lost_ = false;
 };
 
 }  // namespace mpm::app

@@ -165,7 +165,7 @@ double share_in_other_cells(const Simulation& simulation) {
 
 std::string crossings(const Evidence& run) {
   constexpr double many = 0.1;
-  if (run.experiment().shape.plugin->id() != "linear") return "";
+  if (run.experiment().shape.plugin->id() != "linear" || run.rows.state_lost()) return "";
   const double share = share_in_other_cells(run.simulation);
   if (!(share > many)) return "";
   return digits(100 * share) +
@@ -175,6 +175,7 @@ std::string crossings(const Evidence& run) {
 }
 
 std::string loneliness(const Evidence& run) {
+  if (run.rows.state_lost()) return "";
   const std::size_t alone = lone_particles(run.simulation);
   if (alone == 0) return "";
   return std::to_string(alone) + " of " + std::to_string(run.simulation.particle_count()) +
