@@ -58,26 +58,29 @@ def escaped(code):
 
 
 def samples(mutants, results):
-    """Which part of each folder's mutants was tried, and when."""
+    """How many of each folder's mutants were tried, and when."""
     sentences = []
     for folder in dict.fromkeys(folder_of(mutant) for mutant in mutants):
-        every, count = results.every(folder), sum(folder_of(m) == folder for m in mutants)
-        part = "all" if every == 1 else f"a sample, each {every}-th of every file"
-        sentences.append(f"`{folder}` {results.date(folder)}: {count} mutants ({part}).")
-    return "  \n".join(sentences)
+        of_folder = [mutant for mutant in mutants if folder_of(mutant) == folder]
+        tried = sum(results.of(mutant) is not None for mutant in of_folder)
+        words = "all" if tried == len(of_folder) else f"{tried} of" if tried else "none of the"
+        date = f", {results.dates[folder]}" if folder in results.dates else ""
+        sentences.append(f"- `{folder}`: {words} {len(of_folder)} mutants{date}")
+    return "Tried were\n\n" + "\n".join(sentences)
 
 
 def write(path, part, mutants, results, equivalents):
-    """Writes a part of the page between its two marks."""
+    """Writes a part of the page between its two marks: all mutants' number, and what became of those that were tried."""
     begin, end = BEGIN.format(part=part), END.format(part=part)
     text = path.read_text()
     head, found, rest = text.partition(begin)
     _, ended, tail = rest.partition(end)
     if not found or not ended:
         raise SystemExit(f"{path}: the marks {begin} and {end} are missing")
+    tried = [mutant for mutant in mutants if results.of(mutant)]
     by_hand = [
         samples(mutants, results),
-        table(mutants, results, equivalents),
-        with_reasons(mutants, results, equivalents),
+        table(tried, results, equivalents),
+        with_reasons(tried, results, equivalents),
     ]
     path.write_text(head + begin + "\n\n" + "\n\n".join(by_hand) + "\n\n" + end + tail)

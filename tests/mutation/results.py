@@ -35,21 +35,12 @@ class Results:
     def __init__(self, path):
         self.path = path
         kept = json.loads(path.read_text()) if path.is_file() else {}
-        self.samples = kept.get("samples", {})  # by folder: which part of its mutants was tried, and when
+        self.dates = kept.get("dates", {})  # of the last call for a folder
         self.known = {key: Result(**value) for key, value in kept.get("results", {}).items()}
 
     def clear(self, mutants):
         for mutant in mutants:
             self.known.pop(fingerprint(mutant), None)
-
-    def note_sample(self, folder, every, date):
-        self.samples[folder] = {"every": every, "date": date}
-
-    def every(self, folder):
-        return self.samples.get(folder, {}).get("every", 1)
-
-    def date(self, folder):
-        return self.samples.get(folder, {}).get("date", "")
 
     def of(self, mutant):
         return self.known.get(fingerprint(mutant))
@@ -60,7 +51,7 @@ class Results:
 
     def save(self):
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        kept = {"samples": self.samples, "results": {key: asdict(value) for key, value in self.known.items()}}
+        kept = {"dates": self.dates, "results": {key: asdict(value) for key, value in self.known.items()}}
         self.path.with_suffix(".new").write_text(json.dumps(kept, indent=1))
         self.path.with_suffix(".new").replace(self.path)
 
