@@ -87,7 +87,8 @@ std::string warning_of_tent_steps(const Experiment& experiment) {
          (filter.empty() ? "" : " and filter \"" + std::string(filter) + "\"") + stood +
          (stood.empty() || met.empty() ? "" : " and") + met +
          ": a particle without neighbours near a node may make it unstable at any step; take another shape, or "
-         "/solver/stress_update \"modified_last\" with transfer \"pic\", \"flip\" or \"rpic\" (docs/studies/extremes.md)";
+         "/solver/stress_update \"modified_last\" with transfer \"pic\", \"flip\" or \"rpic\" "
+         "(docs/studies/extremes.md)";
 }
 
 }  // namespace mpm::app

@@ -94,4 +94,4 @@ constexpr auto source = [](int i) { return i + 1; };
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=sys.argv[:1])  # the test of ctest names the source folder

@@ -341,7 +341,7 @@ TEST_CASE("what axisymmetric scenes cannot have is refused by name and reason", 
     check_refused({set("/grid/boundaries/x_min", type)}, "/grid/boundaries/x_min", "its condition is \"slip\"");
   check_refused({set("/grid/boundaries/x_min", "periodic"), set("/grid/boundaries/x_max", "periodic")},
                 "/grid/boundaries/x_min", "not periodic along its radius");
-  check_refused({set("/gravity", "[1, 0]")}, "/gravity", "no radial component");
+  check_refused({set("/gravity", "[1, 0]")}, "/gravity", "cannot pull along the radius");
   CHECK(refusal({set("/gravity", "[0, -1]")}).empty());
   check_refused(
       {R"(/compare={"exact": {"type": "rigid_rotation", "angular_velocity": 1, "centre_x": 0, "centre_y": 0}})"},

@@ -18,7 +18,7 @@ std::string stack(const std::string& contact, const std::string& shape, double l
   const std::string weight = "-5*(1-cos(pi*t/0.5))*(t<0.5)-10*(t>=0.5)";
   std::string bodies;
   for (int k = 0; k < 3; ++k)
-    bodies += std::string(k ? "," : "") + R"({"name": "block )" + std::to_string(k + 1) +
+    bodies += std::string(k ? "," : "") + R"({"name": "block_)" + std::to_string(k + 1) +
               R"(", "material": "m", "geometry": {"type": "box", "lower": [0, )" + digits(0.25 * k) +
               R"(], "upper": [0.5, )" + digits(0.25 * (k + 1)) + "]}}";
   return R"({"dimension": 2, "backend": "cpu", "grid": {"cell_size": 0.05, "domain": [[0, 0], [0.5, 1.25]],
