@@ -96,7 +96,7 @@ Device::~Device() {
   // A device that is lost refuses all of this; its memory goes with the context.
   driver_.cuCtxSetCurrent(context_);
   for (const Timed& timed : timed_) driver_.cuEventDestroy_v2(timed.start), driver_.cuEventDestroy_v2(timed.end);
-  for (const EventHandle event : events_) driver_.cuEventDestroy_v2(event);
+  for (EventHandle event : events_) driver_.cuEventDestroy_v2(event);
   if (module_) driver_.cuModuleUnload(module_);
   driver_.cuStreamDestroy_v2(stream_);
   driver_.cuDevicePrimaryCtxRelease_v2(device_);
@@ -186,7 +186,7 @@ FunctionHandle Device::function(const std::string& phase) {
 
 void Device::launch(const std::string& phase, const void* arguments, std::size_t bytes, int teams, int lanes) {
   make_current();
-  const FunctionHandle entry = function(phase);
+  FunctionHandle entry = function(phase);
   if (teams < 1) return;
   void* block[] = {launch_parameter_buffer, const_cast<void*>(arguments), launch_parameter_size, &bytes,
                    launch_parameter_end};

@@ -122,6 +122,7 @@ class DeviceArray {
   std::size_t count() const { return count_; }
   std::uint64_t bytes() const { return room_ * sizeof(T); }
   /// The device's address, which the host must not follow; null where there is nothing.
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): CUDA gives addresses as numbers, kernels take pointers
   T* data() const { return reinterpret_cast<T*>(static_cast<std::uintptr_t>(pointer_)); }
 
   void resize(std::size_t count) {

@@ -48,8 +48,10 @@ enum : int {
 
 /// The keys of cuLaunchKernel's last argument, by which parameters are handed over as one block.
 inline void* const launch_parameter_end = nullptr;
+// NOLINTBEGIN(performance-no-int-to-ptr): CUDA names these two by numbers
 inline void* const launch_parameter_buffer = reinterpret_cast<void*>(1);
 inline void* const launch_parameter_size = reinterpret_cast<void*>(2);
+// NOLINTEND(performance-no-int-to-ptr)
 
 /// Calls X(name, (parameters)) for every function; all return a DriverResult.
 #define MPM_DRIVER_FUNCTIONS(X)                                                                                      \

@@ -153,6 +153,7 @@ bool is_host_address(std::uint64_t word) {
   if (word < lowest || word >= 1ull << 47 || word % 4 != 0 || (word & 0xffffff) == 0) return false;
   const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
   unsigned char ignored = 0;
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): the word is only asked for, nothing is read there
   return mincore(reinterpret_cast<void*>(word / page * page), page, &ignored) == 0;
 }
 
@@ -175,7 +176,7 @@ void run(StreamHandle stream, std::unique_lock<std::mutex>& lock) {
 void run_all(std::unique_lock<std::mutex>& lock) {
   std::vector<StreamHandle> streams;
   for (const auto& [handle, stream] : current->streams) streams.push_back(handle);
-  for (const StreamHandle stream : streams) run(stream, lock);
+  for (StreamHandle stream : streams) run(stream, lock);
 }
 
 bool is_stream(StreamHandle stream) {
