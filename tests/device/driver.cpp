@@ -130,7 +130,7 @@ TEST_CASE("a run that does not fit on its device is refused before it begins", "
 }
 
 TEST_CASE("memory that runs out all the same is said with what is asked and free", "[device][driver]") {
-  DeviceScene(usual_scene(), "double");  // compiles
+  const DeviceScene compiled(usual_scene(), "double");  // compiles
   const Injected failure("cuMemAlloc_v2", 20, device::driver_out_of_memory);
   const std::string message = message_of_run();
   INFO(message);

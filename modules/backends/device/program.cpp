@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <utility>
 
 #include "backends/device/cache.hpp"
 #include "backends/device/device.hpp"
@@ -65,7 +66,7 @@ std::string seconds_since(std::chrono::steady_clock::time_point start) {
 DeviceSetup setup_with(const Driver& driver, int number, std::shared_ptr<const Compiler> compiler) {
   DeviceSetup setup;
   setup.driver = &driver, setup.number = number;
-  setup.compile = [compiler](const Composition& composition, const std::string& architecture) {
+  setup.compile = [compiler = std::move(compiler)](const Composition& composition, const std::string& architecture) {
     return program_of(composition, *compiler, architecture);
   };
   return setup;
