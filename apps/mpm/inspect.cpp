@@ -141,13 +141,17 @@ std::vector<const Plugin*> matching(const Registry& registry, const std::string&
 
 constexpr double most_to_place = 500'000;  ///< particles that are placed in a second or so
 
-/// Places the particles and tries their first moment, as a run would. Returns how many there are; nothing where they are
-/// too many for a check. Throws InputError.
-std::optional<std::size_t> try_start(const Experiment& experiment, const Plan& plan) {
+struct Start {
+  std::size_t particles;
+  std::vector<std::string> warnings;
+};
+
+/// Places the particles and tries their first moment, as a run would; nothing where they are too many for a check. Throws
+/// InputError.
+std::optional<Start> try_start(const Experiment& experiment, const Plan& plan) {
   if (static_cast<double>(plan.particles) > most_to_place) return {};
   const Simulation simulation(experiment, unstepped_backend_factory());
-  refuse_impossible_starts(simulation);
-  return simulation.particle_count();
+  return Start{simulation.particle_count(), check_start(simulation)};
 }
 
 /// Validates a study and the experiment of each of its combinations. One that is refused is no mistake, as in a run of
@@ -201,14 +205,14 @@ int check(const RunOptions& options) {
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const Plan plan = make_plan(experiment);
   refuse_unknown_records(experiment);
-  const std::optional<std::size_t> placed = try_start(experiment, plan);
+  const std::optional<Start> placed = try_start(experiment, plan);
   std::cout << options.file.string() << ": ok, " << experiment.dimension << "-D, " << experiment.bodies.size()
             << (experiment.bodies.size() == 1 ? " body" : " bodies") << ", "
-            << (placed ? std::to_string(*placed) : "about " + std::to_string(plan.particles)) << " particles"
+            << (placed ? std::to_string(placed->particles) : "about " + std::to_string(plan.particles)) << " particles"
             << (placed ? "" : " (too many to be placed here)") << ", " << experiment.shape.plugin->id() << " + "
             << experiment.transfer.plugin->id() << "\n";
   if (placed)
-    for (const std::string& warning : start_warnings(experiment)) std::cerr << "warning: " << warning << "\n";
+    for (const std::string& warning : placed->warnings) std::cerr << "warning: " << warning << "\n";
   return done;
 }
 

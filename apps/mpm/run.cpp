@@ -340,7 +340,7 @@ int run(const RunOptions& options) {
   const auto [threads, find_number] = threads_for(experiment, options);
   Simulation simulation(experiment, backend_factory(threads, find_number, options.device));
   const Metrics metrics(simulation);  // metrics are those of step 0, also when the run goes on from a later one
-  refuse_impossible_starts(simulation);
+  std::vector<std::string> warnings = check_start(simulation);
 
   const StopOnSignal signals;
   // The file may lie in the folder that is replaced.
@@ -367,7 +367,9 @@ int run(const RunOptions& options) {
   const double wall = std::chrono::duration<double>(Clock::now() - start).count();
   nlohmann::ordered_json summary = summarise(simulation, metrics, recorder.rows(), wall, earlier);
   summary["performance"]["particle_file_seconds"] = recorder.particle_file_seconds();
-  if (!checkpoints.trouble().empty()) summary["warnings"].push_back(checkpoints.trouble());
+  for (const auto& warning : summary["warnings"]) warnings.push_back(warning.get<std::string>());
+  if (!checkpoints.trouble().empty()) warnings.push_back(checkpoints.trouble());
+  summary["warnings"] = warnings;
   const Outcome outcome = finish(stepped, std::move(summary), experiment, recorder, folder);
   if (outcome.exit_code == done || outcome.exit_code == expectation_failed) checkpoints.remove();
   return outcome.exit_code;

@@ -130,7 +130,7 @@ class Stepper {
         simulation_(*experiment_,
                     backend_factory(threads > 0 ? threads : support::available_processors(), threads <= 0)),
         metrics_(simulation_) {
-    refuse_impossible_starts(simulation_);
+    (void)check_start(simulation_);
   }
 
   /// Takes steps until the end, at most so many; a Ctrl-C ends it between two steps.

@@ -1,12 +1,11 @@
 #include "run/overlaps.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <unordered_map>
 
 #include "experiment/diagnostics.hpp"
+#include "simulation/point_bins.hpp"
 #include "simulation/seeding.hpp"
 
 namespace mpm::app {
@@ -62,53 +61,33 @@ std::size_t count_within(const Points& points, const Box& box, int dimension) {
   }));
 }
 
-/// Particles in bins of the side of their spacing.
+/// The particles of a body in bins of the side of their spacing.
 class Bins {
  public:
-  Bins(const Points& points, int dimension, double spacing) : dimension_(dimension), spacing_(spacing) {
-    for (const Vector3& x : points) bins_[bin_of(x)].push_back(x);
+  Bins(const Points& points, int dimension, double spacing)
+      : dimension_(dimension), spacing_(spacing), bins_(dimension, spacing) {
+    for (const Vector3& x : points) bins_.add(x, x);
   }
-  /// Whether a particle lies within a share of the spacing of a point, along every axis.
-  bool any_near(const Vector3& point, double share) const {
-    const double reach = share * spacing_;
-    const Bin middle = bin_of(point);
-    const long deep = dimension_ == 3 ? 1 : 0;
-    for (long i = -1; i <= 1; ++i)
-      for (long j = -1; j <= 1; ++j)
-        for (long k = -deep; k <= deep; ++k) {
-          const auto found = bins_.find(Bin{middle[0] + i, middle[1] + j, middle[2] + k});
-          if (found == bins_.end()) continue;
-          for (const Vector3& x : found->second) {
-            bool near = true;
-            for (int c = 0; c < dimension_; ++c) near = near && std::abs(x[c] - point[c]) < reach;
-            if (near) return true;
-          }
-        }
-    return false;
-  }
+  /// How many of the points have a particle within a share of the spacing, along every axis.
   std::size_t count_near(const Points& points, double share) const {
     return static_cast<std::size_t>(
-        std::count_if(points.begin(), points.end(), [&](const Vector3& x) { return any_near(x, share); }));
+        std::count_if(points.begin(), points.end(), [&](const Vector3& x) { return any_near(x, share * spacing_); }));
   }
 
  private:
-  using Bin = std::array<long, 3>;
-  struct Hash {
-    std::size_t operator()(const Bin& bin) const {
-      std::size_t hash = 0;
-      for (const long at : bin) hash = hash * 1000003u + static_cast<std::size_t>(at);
-      return hash;
-    }
-  };
-  Bin bin_of(const Vector3& x) const {
-    Bin bin{};
-    for (int c = 0; c < dimension_; ++c) bin[c] = static_cast<long>(std::floor(x[c] / spacing_));
-    return bin;
+  bool any_near(const Vector3& point, double reach) const {
+    bool any = false;
+    bins_.for_each_near(point, [&](const Vector3& x) {
+      bool near = true;
+      for (int c = 0; c < dimension_; ++c) near = near && std::abs(x[c] - point[c]) < reach;
+      any = any || near;
+    });
+    return any;
   }
 
   int dimension_;
   double spacing_;
-  std::unordered_map<Bin, Points, Hash> bins_;
+  PointBins<Vector3> bins_;
 };
 
 /// Bodies with what was found out about them so far.

@@ -53,12 +53,19 @@ void refuse_impossible_temperatures(const Simulation& simulation) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-void refuse_identical_bodies(const Experiment& experiment) {
+/// Warns of bodies that begin in one place. Throws InputError where two are the same.
+std::vector<std::string> look_for_overlaps(const Experiment& experiment) {
+  std::vector<std::string> warnings;
   std::vector<Problem> problems;
-  for (const Overlap& overlap : overlaps_of(experiment))
+  for (const Overlap& overlap : overlaps_of(experiment)) {
+    const std::string text = overlap.text(experiment);
     if (overlap.identical)
-      problems.push_back(problem_at(experiment, experiment.bodies[overlap.second].pointer, overlap.text(experiment)));
+      problems.push_back(problem_at(experiment, experiment.bodies[overlap.second].pointer, text));
+    else
+      warnings.push_back(text);
+  }
   if (!problems.empty()) throw InputError(std::move(problems));
+  return warnings;
 }
 
 /// Refuses what formulas impose in the first step and nothing can have.
@@ -89,21 +96,17 @@ void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
 
 }  // namespace
 
-std::vector<std::string> start_warnings(const Experiment& experiment) {
-  std::vector<std::string> warnings;
-  for (const Overlap& overlap : overlaps_of(experiment)) warnings.push_back(overlap.text(experiment));
+std::vector<std::string> check_start(const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  std::vector<std::string> warnings = look_for_overlaps(experiment);
+  refuse_velocities_that_are_no_numbers(simulation);
+  refuse_impossible_temperatures(simulation);
+  refuse_impossible_values(experiment);
   if (!experiment.damping.pointer.empty() && !experiment.damping.acts())
     warnings.push_back(experiment.damping.pointer +
                        " damps nothing, as \"viscous\" and \"local\" are 0: give one of them, or remove it "
                        "(docs/experiment_file.md#damping)");
   return warnings;
-}
-
-void refuse_impossible_starts(const Simulation& simulation) {
-  refuse_identical_bodies(simulation.experiment());
-  refuse_velocities_that_are_no_numbers(simulation);
-  refuse_impossible_temperatures(simulation);
-  refuse_impossible_values(simulation.experiment());
 }
 
 std::string failure_text(const Failure& failure, const Simulation& simulation) {

@@ -11,12 +11,10 @@
 
 namespace mpm::app {
 
-/// What is legal and yet does not do what it seems to: bodies that begin in one place, damping of nothing.
-std::vector<std::string> start_warnings(const Experiment& experiment);
-
-/// Throws InputError where a particle begins with a velocity or a temperature that cannot be, where a formula of the
-/// first step imposes one, and where two bodies are the same.
-void refuse_impossible_starts(const Simulation& simulation);
+/// Looks at a run before its first step. Throws InputError where a particle begins with a velocity or a temperature that
+/// cannot be, where a formula of the first step imposes one, and where two bodies are the same. Returns warnings of what is
+/// legal and yet does not do what it seems to: bodies that begin in one place, damping of nothing.
+std::vector<std::string> check_start(const Simulation& simulation);
 
 /// Why and where a simulation stopped: "step 3, t = 0.1 s: particle 4 of body "b" at (2, 0) m left the domain".
 std::string failure_text(const Failure& failure, const Simulation& simulation);

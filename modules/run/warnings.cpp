@@ -208,7 +208,7 @@ std::string early_contact(const Evidence& run) {
 std::vector<std::string> warnings_of(const Simulation& simulation, const Metrics& metrics, const RunRecord& rows,
                                      const Json& summary) {
   const Evidence run{simulation, metrics, rows, summary};
-  std::vector<std::string> all = start_warnings(simulation.experiment());
+  std::vector<std::string> all;
   for (const auto warning : {rim_steps, coarse_contact, early_contact, sliding_block, tent_steps, crossings, loneliness,
                              numerical_loss, unexplained_loss, books, images, filter_growth, few_entries})
     if (const std::string text = warning(run); !text.empty()) all.push_back(text);

@@ -5,7 +5,8 @@
 #include <map>
 #include <numbers>
 #include <numeric>
-#include <unordered_map>
+
+#include "simulation/point_bins.hpp"
 
 namespace mpm {
 namespace {
@@ -16,13 +17,9 @@ constexpr double pi = std::numbers::pi;
 class Neighbourhood {
  public:
   Neighbourhood(int dimension, double spacing, const Surface& pieces, const SeededBody& seeds)
-      : dimension_(dimension), spacing_(spacing), seeds_(seeds) {
-    for (const SurfacePiece& piece : pieces)
-      for_each_bin_around(piece.point, [&](const Bin& bin) { bins_.try_emplace(bin); });
-    for_each_particle([&](const Particle& particle) {
-      const auto found = bins_.find(bin_of(particle.x));
-      if (found != bins_.end()) found->second.push_back(particle);
-    });
+      : dimension_(dimension), spacing_(spacing), seeds_(seeds), bins_(dimension, 2 * spacing) {
+    for (const SurfacePiece& piece : pieces) bins_.open_around(piece.point);
+    for_each_particle([&](const Particle& particle) { bins_.add_where_open(particle.x, particle); });
   }
 
   struct Particle {
@@ -34,9 +31,7 @@ class Neighbourhood {
     std::vector<Particle> found;
     double least = 1e300;
     const auto look = [&](const Particle& particle) { compare(particle, point, found, least); };
-    for_each_bin_around(point, [&](const Bin& bin) {
-      for (const Particle& particle : bins_.at(bin)) look(particle);
-    });
+    bins_.for_each_near(point, look);
     if (found.empty()) {  // a corner that no particle is near
       if (all_.empty()) for_each_particle([&](const Particle& particle) { all_.push_back(particle); });
       for (const Particle& particle : all_) look(particle);
@@ -45,27 +40,6 @@ class Neighbourhood {
   }
 
  private:
-  using Bin = std::array<long, 3>;
-  struct Hash {
-    std::size_t operator()(const Bin& bin) const {
-      std::size_t hash = 0;
-      for (const long at : bin) hash = hash * 1000003u + static_cast<std::size_t>(at);
-      return hash;
-    }
-  };
-  Bin bin_of(const Vector3& x) const {
-    Bin bin{};
-    for (int c = 0; c < dimension_; ++c) bin[c] = static_cast<long>(std::floor(x[c] / (2 * spacing_)));
-    return bin;
-  }
-  template <class Visit>
-  void for_each_bin_around(const Vector3& point, Visit&& visit) const {
-    const Bin middle = bin_of(point);
-    const long deep = dimension_ == 3 ? 1 : 0;
-    for (long i = -1; i <= 1; ++i)
-      for (long j = -1; j <= 1; ++j)
-        for (long k = -deep; k <= deep; ++k) visit(Bin{middle[0] + i, middle[1] + j, middle[2] + k});
-  }
   template <class Visit>
   void for_each_particle(Visit&& visit) const {
     const std::size_t D = static_cast<std::size_t>(dimension_);
@@ -89,7 +63,7 @@ class Neighbourhood {
   int dimension_;
   double spacing_;
   const SeededBody& seeds_;
-  std::unordered_map<Bin, std::vector<Particle>, Hash> bins_;
+  PointBins<Particle> bins_;
   mutable std::vector<Particle> all_;  ///< filled where a point is far from every particle: seeding again is slow
 };
 

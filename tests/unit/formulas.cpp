@@ -27,6 +27,21 @@ double ulps(double a, double b) {
   return std::abs(a - b) / unit;
 }
 
+/// A formula of x and y for each function and operator.
+std::vector<std::string> texts_of_all_operations() {
+  std::vector<std::string> texts{"-x",    "x+y",  "x-y",  "x*y",  "x/y",   "x^y",  "x<y",
+                                 "x<=y",  "x>y",  "x>=y", "x==y", "x!=y",  "x&&y", "x||y",
+                                 "x?y:7", "x^2",  "x^3",  "x^4",  "x^5",   "x^17", "x^0",
+                                 "x^1",   "x^-1", "x^-5", "x^64", "x^2.5", "x^65", "sin(x)+0*cos(x)"};
+  for (const std::string& name : expression_functions()) {
+    if (name == "if")
+      texts.emplace_back("if(x, y, 3)");
+    else
+      texts.push_back(name + (name == "atan2" || name == "pow" || name == "min" || name == "max" ? "(x, y)" : "(x)"));
+  }
+  return texts;
+}
+
 bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
@@ -93,17 +108,7 @@ TEST_CASE("every function and operator has the values of the C library at specia
   std::vector<Vector3> points;
   for (const double a : special)
     for (const double b : special) points.push_back({a, b, 0});
-  std::vector<std::string> texts{"-x",    "x+y",  "x-y",  "x*y",  "x/y",   "x^y",  "x<y",
-                                 "x<=y",  "x>y",  "x>=y", "x==y", "x!=y",  "x&&y", "x||y",
-                                 "x?y:7", "x^2",  "x^3",  "x^4",  "x^5",   "x^17", "x^0",
-                                 "x^1",   "x^-1", "x^-5", "x^64", "x^2.5", "x^65", "sin(x)+0*cos(x)"};
-  for (const std::string& name : expression_functions()) {
-    if (name == "if")
-      texts.emplace_back("if(x, y, 3)");
-    else
-      texts.push_back(name + (name == "atan2" || name == "pow" || name == "min" || name == "max" ? "(x, y)" : "(x)"));
-  }
-  for (const std::string& text : texts) {
+  for (const std::string& text : texts_of_all_operations()) {
     const VectorExpression formula = formula_of(text);
     const std::vector<double> found = values(formula, points);
     for (std::size_t p = 0; p < points.size(); ++p) {
@@ -297,16 +302,7 @@ TEST_CASE("every function and operator has the values of the C library at specia
   std::vector<float> x, y;
   for (const float a : special)
     for (const float b : special) x.push_back(a), y.push_back(b);
-  std::vector<std::string> texts{"-x",  "x+y",  "x-y",  "x*y",  "x/y",  "x<y",   "x<=y",
-                                 "x>y", "x>=y", "x==y", "x!=y", "x&&y", "x||y",  "x?y:7",
-                                 "x^2", "x^5",  "x^17", "x^-1", "x^-5", "x^2.5", "sin(x)+0*cos(x)"};
-  for (const std::string& name : expression_functions()) {
-    if (name == "if")
-      texts.emplace_back("if(x, y, 3)");
-    else
-      texts.push_back(name + (name == "atan2" || name == "pow" || name == "min" || name == "max" ? "(x, y)" : "(x)"));
-  }
-  for (const std::string& text : texts) {
+  for (const std::string& text : texts_of_all_operations()) {
     const VectorExpression formula = formula_of(text);
     const std::vector<float> found = float_values(formula, x, y);
     for (std::size_t p = 0; p < x.size(); ++p) {
