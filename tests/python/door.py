@@ -99,6 +99,16 @@ class Door(unittest.TestCase):
             self.assertEqual(run.experiment["title"], "A block")
             self.assertEqual(mpm.Run(run.folder).summary, run.summary)
 
+    def test_as_many_steps_are_taken_as_are_asked_for(self):
+        simulation = mpm.load(SCENE).start()
+        simulation.step()
+        self.assertEqual(simulation.steps, 1)
+        simulation.step(3)
+        self.assertEqual(simulation.steps, 4)
+        length = simulation.time / 4  # all steps of this scene are as long
+        simulation.run_until(9.5 * length)
+        self.assertEqual(simulation.steps, 10)
+
     def test_a_run_that_fails_says_where_why_and_what_to_do(self):
         bad = scene()
         bad["grid"]["boundaries"] = {"all": "free"}
