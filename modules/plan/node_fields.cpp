@@ -186,11 +186,11 @@ void contact_fields(FieldList& fields) {
   if (!fields.plan.resolves_contact()) return;
   const int D = fields.experiment.dimension;
   const std::string& contact = fields.experiment.contact->pointer;
-  const std::string normal = contact + "/normal \"average_volume_gradient\"";
+  const std::string normal = contact + "/normal \"" + fields.experiment.contact_normal + "\"";
   fields.summed("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, normal);
   fields.summed("volume", "m^3", 1, AtWall::even, Folded::with_mass, normal, "volume_gradient");
   fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass,
-                contact + "/detection \"approach_and_position\"");
+                contact + "/detection \"" + fields.experiment.contact_detection + "\"");
 }
 
 /// What nodes get from the particles of each grip: the momentum that these have as they are told at the end of the step,

@@ -104,15 +104,21 @@ std::string who_reads_initial_position(const Experiment& experiment, int body) {
   return "";
 }
 
-void load_fields(FieldList& fields, int body) {
-  const std::string pointer = fields.experiment.loaded_at_points(body);
-  if (pointer.empty()) return;
-  const int D = fields.experiment.dimension;
+/// What follows a particle's deformation beside its material: loaded points, and surfaces that meet.
+void deformation_fields(FieldList& fields, int body) {
+  const Experiment& experiment = fields.experiment;
+  const std::string loaded = experiment.loaded_at_points(body);
+  const bool meets = experiment.contact && experiment.contact_detection == "particle_surfaces" &&
+                     !(experiment.shape.plugin->descriptor->needs & MPM_NEEDS_DOMAIN);
+  if (loaded.empty() && !meets) return;
+  const int D = experiment.dimension;
   fields
       .of_particles(body, "deformation", "", D * D,
-                    fields.experiment.bodies[body].deformed() ? First::seeded : First::identity,
-                    pointer + ": loaded points and normals move with the particle")
-      .name = "deformation gradient for loads";
+                    experiment.bodies[body].deformed() ? First::seeded : First::identity,
+                    !loaded.empty()
+                        ? loaded + ": loaded points and normals move with the particle"
+                        : experiment.contact->pointer + "/detection \"particle_surfaces\": how far a particle extends")
+      .name = "deformation gradient";
 }
 
 void output_fields(FieldList& fields, int body) {
@@ -190,7 +196,7 @@ void shape_fields(FieldList& fields, int body) {
 void declare_particle_fields(FieldList& fields) {
   for (int body = 0; body < static_cast<int>(fields.experiment.bodies.size()); ++body)
     for (const auto declare : {body_fields, transfer_fields, material_fields, temperature_fields, backend_fields,
-                               size_fields, grip_fields, load_fields, output_fields, move_fields, shape_fields})
+                               size_fields, grip_fields, deformation_fields, output_fields, move_fields, shape_fields})
       declare(fields, body);
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 // The geometry of two velocity fields that meet at a node: shared normal, separation, area. All backends use it.
+// Normal and separation follow from sums over nodes, or from the particles that the node sees (contact_points.hpp).
 
 #include <algorithm>
 #include <cmath>
 
 #include "simulation/contact_detection.hpp"
+#include "simulation/contact_points.hpp"
 
 namespace mpm {
 
@@ -33,30 +35,59 @@ bool meet(Scalar mass_a, Scalar mass_b, bool weld) {
   return weld || std::min(mass_a, mass_b) >= contact_prescreen * (static_cast<double>(mass_a) + mass_b);
 }
 
-/// Finds the normal by the shared average volume gradient (Nairn 2013, CMES 92:271), the separation by inverted edge
-/// models, and the area as sqrt(2 V_total min V) / h (Nairn 2013, eq. 26).
-inline ContactGeometry contact_geometry(const ContactFieldNode& a, const ContactFieldNode& b, const EdgeModel& edge_a,
-                                        const EdgeModel& edge_b, double cell_size, int dimension) {
-  ContactGeometry result;
-  double norm = 0;
-  for (int i = 0; i < dimension; ++i) {
-    result.normal[i] = a.volume_gradient[i] - b.volume_gradient[i];
-    norm += result.normal[i] * result.normal[i];
+/// How a pair of fields meets at a node, by the scene's choice of normal and detection.
+class PairGeometry {
+ public:
+  explicit PairGeometry(const Experiment& experiment) : experiment_(experiment), edges_(edge_models(experiment)) {}
+
+  /// The geometry of fields a < b at a node. `points` holds the particles near it where the scene asks for them.
+  ContactGeometry operator()(const ContactPoints& points, const std::array<int, 3>& node, int field_a, int field_b,
+                             const ContactFieldNode& a, const ContactFieldNode& b) const {
+    ContactGeometry result;
+    SeparatedPair pair;
+    if (points.needed() && !(pair = points.pair(node, field_a, field_b)).found) return result;
+    Vector3 normal = pair.normal;
+    if (!(points.gives_normal() && pair.parted) && !average_gradient(a, b, normal)) return result;
+    std::copy(normal.begin(), normal.end(), result.normal);
+    result.separation = points.gives_separation()
+                            ? points.separation(node, field_a, field_b, normal)
+                            : by_position(edges_[static_cast<std::size_t>(field_a)],
+                                          edges_[static_cast<std::size_t>(field_b)], a, b, normal);
+    const double h = experiment_.grid.cell_size;
+    result.area = std::sqrt(2 * (a.volume + b.volume) * std::min(a.volume, b.volume)) / h;  // Nairn 2013, eq. 26
+    result.valid = true;
+    return result;
   }
-  norm = std::sqrt(norm);
-  if (!(norm > 0)) return result;
-  double position_a = 0, position_b = 0;
-  for (int i = 0; i < dimension; ++i) {
-    result.normal[i] /= norm;
-    position_a += a.mass_position[i] * result.normal[i];
-    position_b += b.mass_position[i] * result.normal[i];
+
+ private:
+  /// The shared average volume gradient (Nairn 2013, CMES 92:271); false where there is none.
+  bool average_gradient(const ContactFieldNode& a, const ContactFieldNode& b, Vector3& normal) const {
+    double norm = 0;
+    for (int i = 0; i < experiment_.dimension; ++i) {
+      normal[static_cast<std::size_t>(i)] = a.volume_gradient[i] - b.volume_gradient[i];
+      norm += normal[static_cast<std::size_t>(i)] * normal[static_cast<std::size_t>(i)];
+    }
+    norm = std::sqrt(norm);
+    if (!(norm > 0)) return false;
+    for (double& component : normal) component /= norm;
+    return true;
   }
-  const double surface_a = edge_a.edge(position_a / (a.mass * cell_size));
-  const double surface_b = -edge_b.edge(-position_b / (b.mass * cell_size));
-  result.separation = (surface_b - surface_a) * cell_size;
-  result.area = std::sqrt(2 * (a.volume + b.volume) * std::min(a.volume, b.volume)) / cell_size;
-  result.valid = true;
-  return result;
-}
+  /// The separation by edge models that are inverted at the mean positions of mass.
+  double by_position(const EdgeModel& edge_a, const EdgeModel& edge_b, const ContactFieldNode& a,
+                     const ContactFieldNode& b, const Vector3& normal) const {
+    const double h = experiment_.grid.cell_size;
+    double position_a = 0, position_b = 0;
+    for (int i = 0; i < experiment_.dimension; ++i) {
+      position_a += a.mass_position[i] * normal[static_cast<std::size_t>(i)];
+      position_b += b.mass_position[i] * normal[static_cast<std::size_t>(i)];
+    }
+    const double surface_a = edge_a.edge(position_a / (a.mass * h)),
+                 surface_b = -edge_b.edge(-position_b / (b.mass * h));
+    return (surface_b - surface_a) * h;
+  }
+
+  const Experiment& experiment_;
+  const std::vector<EdgeModel> edges_;
+};
 
 }  // namespace mpm

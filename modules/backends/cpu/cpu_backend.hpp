@@ -60,6 +60,8 @@ class CpuBackend final : public Backend, NamedChannels {
   }
   std::vector<Body<D, T>> make_bodies(std::vector<SeededBody>& seeds);
   void measure_rings(Particles<D, T>& particles) const;
+  void show_particles(ContactPoints& points) const;
+  double half_side(std::size_t body, double size) const;
   void sort_all();
   void sort_when_moved();
   void sort_between(const StepInfo& step);
@@ -123,7 +125,44 @@ CpuBackend<D, T, Components>::CpuBackend(const Experiment& experiment, const Pla
   std::vector<Body<D, T>> bodies = make_bodies(seeds);
   particle_step_ = std::make_unique<Step>(scene_, grid_, particles_, std::move(bodies));
   grid_step_ = std::make_unique<GridStep<D, T>>(scene_, grid_, ledger_, heat_ledger_, contact_, filter_, reactions_);
+  grid_step_->show_particles_by([this](ContactPoints& points) { show_particles(points); });
   sort_all();
+}
+
+/// Adds the particles of blocks near nodes where bodies meet.
+template <int D, class T, class Components>
+void CpuBackend<D, T, Components>::show_particles(ContactPoints& points) const {
+  constexpr double drift = 1;  // cells: particles are sorted before they are farther from their block
+  for (std::size_t body = 0; body < particles_.size(); ++body) {
+    const Particles<D, T>& particles = particles_[body];
+    const bool by_domain = particles.domain >= 0;
+    const int sides = by_domain ? particles.domain : particles.deformation;
+    for (const Block<D>& block : particles.blocks) {
+      Vector3 low{}, high{};
+      for (int axis = 0; axis < D; ++axis)
+        low[axis] = cells_from_corner(scene_.domain, block, axis, 0.0) - drift,
+        high[axis] = low[axis] + block_side<D> + 2 * drift;
+      if (!points.sees(low, high)) continue;
+      for_each_chunk<T>(block, [&](std::uint32_t chunk, int count) {
+        const T* const values = particles.chunk(chunk);
+        for (int p = 0; p < count; ++p) {
+          Vector3 x{};
+          for (int axis = 0; axis < D; ++axis)
+            x[axis] = cells_from_corner(scene_.domain, block, axis, values[axis * chunk_size<T> + p]);
+          const double size =
+              particles.size < 0 || scene_.axisymmetric ? 1.0 : values[particles.size * chunk_size<T> + p];
+          points.add(field_of_body_[body], x, sides < 0 ? nullptr : values + sides * chunk_size<T> + p, chunk_size<T>,
+                     by_domain ? 1.0 : half_side(body, size));
+        }
+      });
+    }
+  }
+}
+
+/// Half the side of a particle's undeformed square or cube, cells; of its section in axisymmetric scenes.
+template <int D, class T, class Components>
+double CpuBackend<D, T, Components>::half_side(std::size_t body, double size) const {
+  return 0.5 * std::pow(particle_step_->bodies()[body].volume * size, 1.0 / D) / scene_.domain.cell_size;
 }
 
 template <int D, class T, class Components>

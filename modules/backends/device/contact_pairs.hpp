@@ -39,7 +39,8 @@ class ContactPairs {
   /// Without contact there are no nodes.
   ContactPairs(Device& device, const Experiment& experiment, std::size_t nodes)
       : experiment_(experiment),
-        edges_(edge_models(experiment)),
+        geometry_(experiment),
+        points_(experiment),
         nodes_(nodes),
         active_on_device_(device, "contact", nodes),
         status_on_device_(device, "contact", nodes),
@@ -63,7 +64,7 @@ class ContactPairs {
       active_[node] = 0;
       if (!meet(of_a.mass, of_b.mass, weld)) continue;
       const ContactGeometry geometry =
-          contact_geometry(of_a, of_b, edges_[a], edges_[b], experiment_.grid.cell_size, D);
+          geometry_(points_, {}, static_cast<int>(a), static_cast<int>(b), of_a, of_b);
       if (!geometry.valid && !weld) continue;
       active_[node] = 1;
       for (int c = 0; c < D; ++c)
@@ -117,7 +118,8 @@ class ContactPairs {
   }
 
   const Experiment& experiment_;
-  std::vector<EdgeModel> edges_;
+  PairGeometry geometry_;
+  ContactPoints points_;
   std::size_t nodes_;
   DeviceArray<int> active_on_device_, status_on_device_;
   DeviceArray<T> normal_on_device_, separation_on_device_, area_on_device_, impulse_on_device_, unbalanced_on_device_,

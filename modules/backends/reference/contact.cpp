@@ -21,9 +21,10 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
   const bool weld = law.plugin->contact().traits & MPM_BYPASSES_DETECTION;
   const int D = experiment_.dimension;
   if (!meet(mass_[a], mass_[b], weld)) return {};
-  const EdgeModel &edge_a = edges_[grid_.velocity_field_of(a)], &edge_b = edges_[grid_.velocity_field_of(b)];
-  const ContactGeometry geometry =
-      contact_geometry(contact_view(a), contact_view(b), edge_a, edge_b, experiment_.grid.cell_size, D);
+  const std::size_t node = a % grid_.node_count();
+  const Eigen::Vector3i& at = grid_.coordinates(node);
+  const ContactGeometry geometry = pair_geometry_(contact_points_, {at[0], at[1], at[2]}, grid_.velocity_field_of(a),
+                                                  grid_.velocity_field_of(b), contact_view(a), contact_view(b));
   if (!geometry.valid && !weld) return {};
 
   // The pair is repeated over a full lane so that the plugin may compute whole lanes.
@@ -59,7 +60,35 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
   return result;
 }
 
+/// Shows the particles to all nodes where fields meet.
+void ReferenceBackend::find_contact_points() {
+  contact_points_.begin();
+  for_each_pair([&](std::size_t a, std::size_t b) {
+    const Eigen::Vector3i& at = grid_.coordinates(a);
+    if (mass_[a] > 0 && mass_[b] > 0) contact_points_.open({at[0], at[1], at[2]});
+  });
+  const int D = experiment_.dimension;
+  for (Particles& body : bodies_) {
+    const char* const sides = plan_.particle_field(body.number(), "domain")        ? "domain"
+                              : plan_.particle_field(body.number(), "deformation") ? "deformation"
+                                                                                   : nullptr;
+    for (std::size_t p = 0; p < body.count(); ++p) {
+      Vector3 x = as_array(body.column(body.position, p));
+      for (int axis = 0; axis < D; ++axis)
+        x[axis] = (x[axis] - experiment_.grid.lower[axis]) / experiment_.grid.cell_size;
+      const Matrix matrix = sides ? body.matrix(body.values(sides), p) : Matrix(Matrix::Zero());
+      std::array<double, 9> values{};
+      for (int i = 0; i < D; ++i)
+        for (int k = 0; k < D; ++k) values[D * i + k] = matrix(i, k);
+      const bool domain = sides && sides == std::string_view("domain");
+      contact_points_.add(body.field(), x, sides ? values.data() : nullptr, 1, domain ? 1.0 : body.half_side(p));
+    }
+  }
+  contact_points_.find(0, contact_points_.node_count());
+}
+
 void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, bool remap) {
+  if (contact_points_.needed() && !after_forces && !remap) find_contact_points();
   if (after_forces) contact_ = {};
   Vector total_impulse = Vector::Zero(), total_change = Vector::Zero();
   double dissipated = 0;

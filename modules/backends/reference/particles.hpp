@@ -1,6 +1,7 @@
 #pragma once
 // The particles of one body in the reference backend, and their calls over the plugin boundary.
 
+#include <cmath>
 #include <deque>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,11 @@ class Particles {
   int field() const { return field_; }
   double mass(std::size_t p) const { return mass_ * size(p); }
   double volume(std::size_t p) const { return volume_ * size(p); }
+  /// Half the side of a particle's undeformed square or cube, cells; of its section in axisymmetric scenes.
+  double half_side(std::size_t p) const {
+    const double size = axisymmetric() ? 1.0 : this->size(p);
+    return 0.5 * std::pow(volume_ * size, 1.0 / experiment_.dimension) / experiment_.grid.cell_size;
+  }
   bool axisymmetric() const { return experiment_.axisymmetric(); }
   bool frozen() const { return frozen_; }
   std::uint64_t bytes() const;

@@ -9,12 +9,7 @@ namespace reference {
 
 ReferenceBackend::ReferenceBackend(const Experiment& experiment, const Plan& plan,
                                    const std::vector<SeededBody>& seeded)
-    : experiment_(experiment),
-      plan_(plan),
-      grid_(experiment, plan),
-      edges_(edge_models(experiment)),
-      impulse_(experiment),
-      reactions_(experiment) {
+    : experiment_(experiment), plan_(plan), grid_(experiment, plan), impulse_(experiment), reactions_(experiment) {
   for (std::size_t body = 0; body < seeded.size(); ++body) {
     bodies_.emplace_back(experiment, plan, static_cast<int>(body), seeded[body]);
     loads_.emplace_back(experiment, static_cast<int>(body), seeded[body]);

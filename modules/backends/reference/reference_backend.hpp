@@ -91,6 +91,7 @@ class ReferenceBackend final : public Backend {
   std::optional<PairResult> resolve_pair(std::size_t a, std::size_t b, const Vector& momentum_a,
                                          const Vector& momentum_b, double dt) const;
   ContactFieldNode contact_view(std::size_t i) const;
+  void find_contact_points();
   /// Applies the law to all pairs of fields in order; conditions are imposed again and win.
   void resolve_contact(const StepInfo& step, bool after_forces, bool remap = false);
   /// Records the force that particles take when they gather the velocity as it is now.
@@ -202,7 +203,8 @@ class ReferenceBackend final : public Backend {
   VectorField& capacity_position_ = grid_.vector("capacity_position");
   const WallWeights wall_weights_ = plan_.node_field("heated_volume") ? wall_weights(experiment_) : WallWeights();
   std::deque<Particles> bodies_;
-  std::vector<EdgeModel> edges_;
+  const PairGeometry pair_geometry_{experiment_};
+  ContactPoints contact_points_{experiment_};
   TimeStepLimit limit_;
   Ledger ledger_;
   HeatLedger heat_ledger_;

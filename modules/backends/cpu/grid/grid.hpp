@@ -88,9 +88,10 @@ class Grid {
     return slot < 0 ? -1 : slot * block_nodes + node_in_block<D>(node);
   }
 
-  Vector3 position_of(std::uint32_t node) const {
-    return scene_.domain.node_position(node_at<D>(found_[node / block_nodes], static_cast<int>(node % block_nodes)), D);
+  std::array<int, 3> coordinates_of(std::uint32_t node) const {
+    return node_at<D>(found_[node / block_nodes], static_cast<int>(node % block_nodes));
   }
+  Vector3 position_of(std::uint32_t node) const { return scene_.domain.node_position(coordinates_of(node), D); }
 
   std::vector<FaceNodes>& faces() { return faces_; }
   const std::vector<BoxNodes>& boxes() const { return boxes_; }

@@ -135,7 +135,7 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
         const Q &va = of_a.motion[node], &vb = of_b.motion[node];
         if (!meet(va[3], vb[3], weld)) continue;
         const ContactGeometry geometry =
-            contact_geometry(of_a.at(node), of_b.at(node), edges_[a], edges_[b], scene_.domain.cell_size, D);
+            pair_geometry_(contact_points_, grid_.coordinates_of(first + node), a, b, of_a.at(node), of_b.at(node));
         if (geometry.valid || weld) batch.add(first + node, va, vb, geometry);
       }
       if (batch.count == 0) continue;
@@ -144,8 +144,23 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
     }
 }
 
+/// Shows the particles to all nodes where fields meet.
+template <int D, class T>
+void GridStep<D, T>::find_contact_points() {
+  contact_points_.begin();
+  for (const std::uint32_t slot : grid_.shared_slots())
+    for (std::uint32_t node = slot * block_nodes; node < (slot + 1) * block_nodes; ++node) {
+      int present = 0;
+      for (int field = 0; field < grid_.fields(); ++field) present += motion_at(field, node)[3] > 0;
+      if (present > 1) contact_points_.open(grid_.coordinates_of(node));
+    }
+  show_particles_(contact_points_);
+  scene_.team->for_each(contact_points_.node_count(), 4, [&](std::size_t i, int) { contact_points_.find(i, i + 1); });
+}
+
 template <int D, class T>
 void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
+  if (contact_points_.needed() && recorded == Recorded::before_forces) find_contact_points();
   const auto& slots = grid_.shared_slots();
   const std::size_t pairs = impulse_.pairs().size();
   std::vector<ContactSums> sums(slots.size());

@@ -2,6 +2,7 @@
 // GridStep executes the passes on nodes: folding at the domain's edges, conditions, forces, contact; and their ledger.
 
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -27,6 +28,8 @@ class GridStep : NamedChannels {
   void momentum_to_velocity(bool remap, const StepInfo& step);
   /// Computes v+ = v- + dt f / m with conditions, contact after the forces, increments, ghosts.
   void apply_forces(const StepInfo& step);
+  /// Sets what adds the particles to nodes where bodies meet, in scenes whose contact looks at them.
+  void show_particles_by(std::function<void(ContactPoints&)> show) { show_particles_ = std::move(show); }
   /// The records of pairs of fields, which go into checkpoints.
   std::vector<PairRecord>& contact_pairs() { return impulse_.pairs(); }
   const std::vector<PairRecord>& contact_pairs() const { return impulse_.pairs(); }
@@ -173,6 +176,7 @@ class GridStep : NamedChannels {
   struct ContactBatch;
   struct ContactField;
   void resolve_contact(const StepInfo& step, Recorded recorded);
+  void find_contact_points();
   /// Records the force that particles take when they gather the velocity as it is now.
   void record_force(const StepInfo& step);
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
@@ -187,7 +191,9 @@ class GridStep : NamedChannels {
   ContactImpulse impulse_;
   FilterRecord& filter_;
   ReactionImpulse& reactions_;
-  const std::vector<EdgeModel> edges_;
+  const PairGeometry pair_geometry_;
+  ContactPoints contact_points_;
+  std::function<void(ContactPoints&)> show_particles_;
   std::array<std::vector<Channel>, 3> folded_;  ///< [when]
   struct Signs {
     Q of;

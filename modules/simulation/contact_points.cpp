@@ -1,0 +1,198 @@
+#include "simulation/contact_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/boundary.hpp"
+#include "simulation/contact_impulse.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double least_reach = 1.5;  // cells: two rows of particles and more of each body, also with tents
+constexpr int cube_side = 4;         // cells
+
+/// A number for three coordinates; those of a domain's nodes differ in the lowest 21 bits.
+std::uint64_t key_of(const std::array<int, 3>& at) {
+  std::uint64_t key = 0;
+  for (const int coordinate : at) key = key << 21 | (static_cast<std::uint64_t>(coordinate) & 0x1fffff);
+  return key;
+}
+
+/// A weld joins fields wherever they meet and looks at no surface.
+bool looks(const Experiment& experiment) {
+  return experiment.contact && !(experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION);
+}
+
+int cube_of(double x) {
+  return static_cast<int>(std::floor(x / cube_side));
+}
+
+/// Calls visit for all triples from `low` to `high`, both included.
+template <class Visit>
+void for_each_triple(const std::array<int, 3>& low, const std::array<int, 3>& high, Visit&& visit) {
+  std::array<int, 3> at{};
+  for (at[0] = low[0]; at[0] <= high[0]; ++at[0])
+    for (at[1] = low[1]; at[1] <= high[1]; ++at[1])
+      for (at[2] = low[2]; at[2] <= high[2]; ++at[2]) visit(at);
+}
+
+}  // namespace
+
+ContactPoints::ContactPoints(const Experiment& experiment)
+    : experiment_(experiment),
+      dimension_(experiment.dimension),
+      fields_(experiment.field_count),
+      gives_normal_(looks(experiment) && experiment.contact_normal == "widest_gap"),
+      gives_separation_(looks(experiment) && experiment.contact_detection == "particle_surfaces") {
+  const mpm_shape& shape = experiment.shape.plugin->shape();
+  by_domain_ = shape.form == MPM_NODE_LIST;
+  reach_ = by_domain_ ? shape.reach : std::max(least_reach, 0.5 * shape.width);
+}
+
+void ContactPoints::begin() {
+  found_.clear(), cubes_.clear();
+  places_.clear(), semi_sides_.clear();
+  count_ = 0;
+}
+
+void ContactPoints::open(const std::array<int, 3>& node) {
+  for (int axis = 0; axis < dimension_; ++axis) {
+    const int beyond = node[axis] < 0 ? 0 : node[axis] > experiment_.grid.cells[axis] ? 1 : -1;
+    if (beyond >= 0 && has_images(experiment_.faces[axis][beyond].type)) return;  // its image is what counts
+  }
+  if (!found_.try_emplace(key_of(node), static_cast<std::uint32_t>(count_)).second) return;
+  if (count_ == nodes_.size()) nodes_.emplace_back();
+  Node& opened = nodes_[count_++];
+  opened.at = node;
+  opened.particles.resize(static_cast<std::size_t>(fields_));
+  for (auto& of_field : opened.particles) of_field.clear();
+  opened.pairs.assign(static_cast<std::size_t>(fields_ * (fields_ - 1) / 2), {});
+  std::array<int, 3> low{}, high{};
+  for (int axis = 0; axis < dimension_; ++axis)
+    low[axis] = cube_of(node[axis] - farthest_seen()), high[axis] = cube_of(node[axis] + farthest_seen());
+  for_each_triple(low, high, [&](const std::array<int, 3>& cube) { cubes_.insert(key_of(cube)); });
+}
+
+/// How far from a node its particles may lie, for a first choice; domains that are larger than a cell are rare.
+double ContactPoints::farthest_seen() const {
+  return by_domain_ ? reach_ + 2 : reach_;
+}
+
+bool ContactPoints::sees(const Vector3& low, const Vector3& high) const {
+  if (count_ == 0) return false;
+  std::array<int, 3> first{}, last{};
+  for (int axis = 0; axis < dimension_; ++axis) {
+    if (near_face(axis, low[axis], high[axis])) return true;  // an image may be seen
+    first[axis] = cube_of(low[axis]), last[axis] = cube_of(high[axis]);
+  }
+  bool seen = false;
+  for_each_triple(first, last, [&](const std::array<int, 3>& cube) { seen = seen || cubes_.count(key_of(cube)) > 0; });
+  return seen;
+}
+
+bool ContactPoints::near_face(int axis, double low, double high) const {
+  const auto& faces = experiment_.faces[axis];
+  return (has_images(faces[0].type) && low < farthest_seen()) ||
+         (has_images(faces[1].type) && high > experiment_.grid.cells[axis] - farthest_seen());
+}
+
+/// Walls that fold mirror what lies before them, as their ghosts do with the masses.
+void ContactPoints::add(int field, const Vector3& x, const SemiSides& semi_sides) {
+  std::vector<std::pair<Vector3, SemiSides>> images{{x, semi_sides}};
+  for (int axis = 0; axis < dimension_; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const ConditionType type = experiment_.faces[axis][side].type;
+      const double wall = side ? experiment_.grid.cells[axis] : 0.0;
+      const double reach = by_domain_ ? reach_of(semi_sides, axis) : reach_;
+      if (!has_images(type) || std::abs(x[axis] - wall) >= reach) continue;
+      for (std::size_t i = 0, known = images.size(); i < known; ++i) {
+        auto image = images[i];
+        if (image.first[axis] != x[axis]) continue;  // beyond the other wall of this axis
+        if (type == ConditionType::periodic) {
+          image.first[axis] += side ? -experiment_.grid.cells[axis] : experiment_.grid.cells[axis];
+        } else {
+          image.first[axis] = 2 * wall - x[axis];
+          for (int k = 0; k < dimension_; ++k) image.second[static_cast<std::size_t>(3 * axis + k)] *= -1;
+        }
+        images.push_back(image);
+      }
+    }
+  for (const auto& [place, sides] : images) add_image(field, place, sides);
+}
+
+double ContactPoints::reach_of(const SemiSides& semi_sides, int axis) const {
+  double reach = reach_;
+  for (int k = 0; by_domain_ && k < dimension_; ++k)
+    reach += std::abs(semi_sides[static_cast<std::size_t>(3 * axis + k)]);
+  return std::max(reach, least_reach);
+}
+
+void ContactPoints::add_image(int field, const Vector3& x, const SemiSides& semi_sides) {
+  std::array<int, 3> low{}, high{};
+  for (int axis = 0; axis < dimension_; ++axis) {
+    const double reach = reach_of(semi_sides, axis);
+    low[axis] = static_cast<int>(std::floor(x[axis] - reach)) + 1;
+    high[axis] = static_cast<int>(std::ceil(x[axis] + reach)) - 1;
+  }
+  bool kept = false;
+  const auto number = static_cast<std::uint32_t>(places_.size());
+  for_each_triple(low, high, [&](const std::array<int, 3>& at) {
+    const auto seen_by = found_.find(key_of(at));
+    if (seen_by == found_.end()) return;
+    nodes_[seen_by->second].particles[static_cast<std::size_t>(field)].push_back(number);
+    kept = true;
+  });
+  if (!kept) return;
+  places_.push_back(x);
+  if (gives_separation_) semi_sides_.push_back(semi_sides);
+}
+
+void ContactPoints::find(std::size_t first, std::size_t end) {
+  for (std::size_t i = first; i < end; ++i)
+    for (int a = 0; a < fields_; ++a)
+      for (int b = a + 1; b < fields_; ++b) nodes_[i].pairs[pair_index(a, b, fields_)] = separate(nodes_[i], a, b);
+}
+
+SeparatedPair ContactPoints::separate(const Node& node, int a, int b) const {
+  const auto cloud = [&](int field) {
+    return PointCloud{places_.data(), node.particles[static_cast<std::size_t>(field)]};
+  };
+  SeparatedPair pair;
+  pair.found = cloud(a).size() > 0 && cloud(b).size() > 0;
+  const SeparatingPlane plane = widest_gap(cloud(a), cloud(b), dimension_);
+  if (plane.found) pair.parted = true, pair.normal = plane.normal;
+  return pair;
+}
+
+/// Half of what a particle, an ellipsoid with these semi-sides as conjugate radii, extends along a unit normal, cells.
+double ContactPoints::extent(std::uint32_t particle, const Vector3& normal) const {
+  const SemiSides& sides = semi_sides_[particle];
+  double squared = 0;
+  for (int k = 0; k < dimension_; ++k) {
+    double along = 0;
+    for (int i = 0; i < dimension_; ++i) along += normal[i] * sides[static_cast<std::size_t>(3 * i + k)];
+    squared += along * along;
+  }
+  return std::sqrt(squared);
+}
+
+double ContactPoints::separation(const std::array<int, 3>& at, int a, int b, const Vector3& normal) const {
+  const Node& node = nodes_[found_.at(key_of(at))];
+  const auto along = [&](std::uint32_t p) {
+    return places_[p][0] * normal[0] + places_[p][1] * normal[1] + places_[p][2] * normal[2];
+  };
+  double surface_a = -std::numeric_limits<double>::infinity(), surface_b = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t p : node.particles[static_cast<std::size_t>(a)])
+    surface_a = std::max(surface_a, along(p) + extent(p, normal));
+  for (const std::uint32_t p : node.particles[static_cast<std::size_t>(b)])
+    surface_b = std::min(surface_b, along(p) - extent(p, normal));
+  return (surface_b - surface_a) * experiment_.grid.cell_size;
+}
+
+SeparatedPair ContactPoints::pair(const std::array<int, 3>& node, int a, int b) const {
+  const auto found = found_.find(key_of(node));
+  return found == found_.end() ? SeparatedPair() : nodes_[found->second].pairs[pair_index(a, b, fields_)];
+}
+
+}  // namespace mpm

@@ -1,0 +1,92 @@
+#pragma once
+// The particles that a node sees of the bodies that meet there, and what follows from their places: the normal that two
+// bodies share and the gap between their surfaces. Positions do not move within a step: all is found once a step, when
+// the masses of the nodes are known, and holds for every stage of it.
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "experiment/experiment.hpp"
+#include "simulation/separation.hpp"
+
+namespace mpm {
+
+/// What the particles near a node say of a pair of bodies.
+struct SeparatedPair {
+  bool found = false;   ///< both bodies have particles near the node
+  bool parted = false;  ///< a plane lies between them; else their particles are mixed
+  Vector3 normal{};     ///< unit, from a to b; where parted
+};
+
+class ContactPoints {
+ public:
+  explicit ContactPoints(const Experiment& experiment);
+
+  /// Whether the scene's normal or its detection looks at particles.
+  bool needed() const { return gives_normal_ || gives_separation_; }
+  bool gives_normal() const { return gives_normal_; }
+  bool gives_separation() const { return gives_separation_; }
+
+  /// Forgets the nodes and particles of the last step.
+  void begin();
+  /// Says that two bodies or more have mass at a node, by its coordinates.
+  void open(const std::array<int, 3>& node);
+  /// Whether any of these nodes may see a particle with low <= x <= high, in cells from the domain's corner.
+  bool sees(const Vector3& low, const Vector3& high) const;
+  /// Adds a particle of a velocity field, with its images beyond walls and periodic faces: its place in cells from the
+  /// domain's corner, and a matrix, row-major, whose columns times `factor` are the semi-sides of its domain in cells:
+  /// the domain itself, or the deformation gradient with half the undeformed side. Null where nobody asks for it
+  /// (needs_domain).
+  template <class T>
+  void add(int field, const Vector3& x, const T* matrix, std::size_t stride, double factor) {
+    SemiSides semi_sides{};
+    for (int i = 0; matrix && i < dimension_; ++i)
+      for (int k = 0; k < dimension_; ++k)
+        semi_sides[static_cast<std::size_t>(3 * i + k)] =
+            factor * static_cast<double>(matrix[static_cast<std::size_t>(i * dimension_ + k) * stride]);
+    add(field, x, semi_sides);
+  }
+  /// Finds the planes of all pairs at the nodes [first, end) of `node_count`, once all particles are there. Any thread
+  /// may call it for nodes of its own.
+  void find(std::size_t first, std::size_t end);
+  std::size_t node_count() const { return count_; }
+
+  /// What was found for a pair of fields; nothing at nodes that were not opened.
+  SeparatedPair pair(const std::array<int, 3>& node, int a, int b) const;
+  /// The gap between the surfaces of a pair's particles along a unit normal from a to b, m, negative where they overlap,
+  /// at a node where both have particles.
+  double separation(const std::array<int, 3>& node, int a, int b, const Vector3& normal) const;
+
+ private:
+  struct Node {
+    std::array<int, 3> at{};
+    std::vector<std::vector<std::uint32_t>> particles;  ///< [field], numbers among all
+    std::vector<SeparatedPair> pairs;                   ///< [pair_index]
+  };
+  using SemiSides = std::array<double, 9>;  ///< cells, row-major, columns are vectors
+
+  void add(int field, const Vector3& x, const SemiSides& semi_sides);
+  void add_image(int field, const Vector3& x, const SemiSides& semi_sides);
+  double reach_of(const SemiSides& semi_sides, int axis) const;
+  double extent(std::uint32_t particle, const Vector3& normal) const;
+  SeparatedPair separate(const Node& node, int a, int b) const;
+  double farthest_seen() const;
+  bool near_face(int axis, double low, double high) const;
+
+  const Experiment& experiment_;
+  const int dimension_, fields_;
+  bool gives_normal_, gives_separation_;
+  bool by_domain_;                                          ///< how far a particle is seen depends on its domain
+  double reach_;                                            ///< cells, of its weights
+  std::unordered_map<std::uint64_t, std::uint32_t> found_;  ///< numbers of the nodes that were opened
+  std::unordered_set<std::uint64_t> cubes_;                 ///< cubes of cells that these may see into
+  std::vector<Node> nodes_;                                 ///< the first count_ are this step's
+  std::size_t count_ = 0;
+  std::vector<Vector3> places_;  ///< cells
+  std::vector<SemiSides> semi_sides_;
+};
+
+}  // namespace mpm
