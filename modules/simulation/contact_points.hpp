@@ -56,8 +56,8 @@ class ContactPoints {
 
   /// What was found for a pair of fields; nothing at nodes that were not opened.
   SeparatedPair pair(const std::array<int, 3>& node, int a, int b) const;
-  /// The gap between the surfaces of a pair's particles along a unit normal from a to b, m, negative where they overlap,
-  /// at a node where both have particles.
+  /// The gap between the surfaces of a pair's particles along a unit normal from a to b, m, less a millionth of a cell
+  /// for rounding; negative where they overlap. At a node where both have particles.
   double separation(const std::array<int, 3>& node, int a, int b, const Vector3& normal) const;
 
  private:

@@ -81,13 +81,25 @@ TEST_CASE("the edge model gives the mean of its rows, and finds the edge back", 
 TEST_CASE("normal, separation and area of a flat interface", "[contact]") {
   // For two half spaces that touch at a node the means are at -27/64 and 27/64 cell, the gradients opposite, and each
   // has half a cell of volume.
-  const EdgeModel model(shape("bspline_quadratic"), 2);
   const double h = 0.1;
+  const Experiment experiment = test::experiment_from(R"({"title": "touch", "dimension": 2,
+    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]}, "shape": {"type": "bspline_quadratic"},
+    "transfer": {"type": "apic"}, "contact": {"type": "coulomb"},
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1, "poisson_ratio": 0.3, "density": 1}},
+    "bodies": [{"name": "a", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0.2], "upper": [0.5, 0.5]}},
+               {"name": "b", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0.5], "upper": [0.5, 0.8]}}],
+    "solver": {"end_time": 1}})");
+  const ContactPoints points(experiment);
+  REQUIRE_FALSE(points.needed());
+  const auto contact_geometry = [&, find = PairGeometry(experiment)](const ContactFieldNode& a,
+                                                                     const ContactFieldNode& b) {
+    return find(points, {5, 5, 0}, 0, 1, a, b);
+  };
   ContactFieldNode a, b;
   a.mass = 2, b.mass = 3, a.volume = b.volume = 0.5 * h * h;
   a.volume_gradient[1] = h, b.volume_gradient[1] = -h;
   a.mass_position[1] = -27.0 / 64 * h * a.mass, b.mass_position[1] = 27.0 / 64 * h * b.mass;
-  const ContactGeometry touching = contact_geometry(a, b, model, model, h, 2);
+  const ContactGeometry touching = contact_geometry(a, b);
   REQUIRE(touching.valid);
   CHECK(touching.normal[0] == 0);
   CHECK(touching.normal[1] == Approx(1));
@@ -99,8 +111,8 @@ TEST_CASE("normal, separation and area of a flat interface", "[contact]") {
     const double edge_a = -0.1, edge_b = edge_a + gap;
     a.mass_position[1] = mean_of_rows("bspline_quadratic", 2, edge_a) * h * a.mass;
     b.mass_position[1] = -mean_of_rows("bspline_quadratic", 2, -edge_b) * h * b.mass;
-    CHECK(contact_geometry(a, b, model, model, h, 2).separation == Approx(gap * h).margin(1e-4 * h));
+    CHECK(contact_geometry(a, b).separation == Approx(gap * h).margin(1e-4 * h));
   }
   a.volume_gradient[1] = b.volume_gradient[1] = h;
-  CHECK_FALSE(contact_geometry(a, b, model, model, h, 2).valid);
+  CHECK_FALSE(contact_geometry(a, b).valid);
 }

@@ -43,18 +43,21 @@ TEST_CASE("a slip wall is the plane of symmetry of two bodies in contact", "[con
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string shape : {"linear", "bspline_quadratic", "gimp", "cpdi"})
       for (const std::string transfer : {"flip", "apic"})
-        for (const bool filtered : {false, true}) {
+        for (const auto& [filtered, normal] : std::vector<std::pair<bool, std::string>>{
+                 {false, ""}, {true, ""}, {false, "widest_gap"}, {false, "surfaces"}}) {
           if (filtered && transfer == "flip") continue;
           std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
                                           set("/transfer/type", transfer)};
           if (filtered) common.emplace_back(R"(/filter={"type": "fmpm", "order": 3})");
+          if (normal == "widest_gap") common.emplace_back("/contact/normal=widest_gap");
+          if (normal == "surfaces") common.emplace_back("/contact/detection=particle_surfaces");
           std::vector<std::string> upper = common;
           upper.insert(upper.end(),
                        {"/grid/domain=[[0,0],[3,0.8]]", R"(/grid/boundaries={"all":"free","y_min":"slip"})",
                         "/bodies/0/geometry/lower=[1,0]", "/bodies/1/geometry/lower=[1.55,0]"});
           Scene full(whole, common), half(whole, upper);
           full.run_steps(20), half.run_steps(20);
-          INFO(backend << " " << shape << " " << transfer << (filtered ? " fmpm" : ""));
+          INFO(backend << " " << shape << " " << transfer << (filtered ? " fmpm " : " ") << normal);
           CHECK(full.simulation.backend().contact_record().nodes > 0);
           for (const int body : {0, 1})
             CHECK(largest_difference_of_upper_half(full.body(body), half.body(body)) < 1e-10);

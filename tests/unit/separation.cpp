@@ -1,0 +1,137 @@
+// The plane with the widest gap between two clouds of points: no other direction has a wider one.
+
+#include "simulation/separation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+#include "support/catch.hpp"
+
+using namespace mpm;
+
+namespace {
+
+double along(const Vector3& n, const Vector3& x) {
+  return n[0] * x[0] + n[1] * x[1] + n[2] * x[2];
+}
+
+/// Two clouds, and the gap between them along any direction from a to b.
+struct Clouds {
+  std::vector<Vector3> a, b;
+
+  double gap(const Vector3& normal) const {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vector3& x : a) high = std::max(high, along(normal, x));
+    for (const Vector3& x : b) low = std::min(low, along(normal, x));
+    return low - high;
+  }
+  SeparatingPlane plane(int dimension) const {
+    std::vector<Vector3> all = a;
+    all.insert(all.end(), b.begin(), b.end());
+    std::vector<std::uint32_t> numbers(all.size());
+    std::iota(numbers.begin(), numbers.end(), 0);
+    const std::span<const std::uint32_t> every(numbers);
+    return widest_gap({all.data(), every.first(a.size())}, {all.data(), every.subspan(a.size())}, dimension);
+  }
+};
+
+Vector3 direction(std::mt19937& random, int dimension) {
+  std::normal_distribution<double> normal;
+  Vector3 n{};
+  double squared = 0;
+  for (int c = 0; c < dimension; ++c) n[c] = normal(random), squared += n[c] * n[c];
+  for (double& component : n) component /= std::sqrt(squared);
+  return n;
+}
+
+/// Points on both sides of a plane, at least half of `apart` from it.
+Clouds beside_plane(std::mt19937& random, int dimension, const Vector3& normal, double apart, int count) {
+  std::uniform_real_distribution<double> place(-2, 2);
+  Clouds clouds;
+  while (static_cast<int>(std::min(clouds.a.size(), clouds.b.size())) < count) {
+    Vector3 x{};
+    for (int c = 0; c < dimension; ++c) x[c] = place(random);
+    const double side = along(normal, x);
+    if (std::abs(side) < 0.5 * apart) continue;
+    (side < 0 ? clouds.a : clouds.b).push_back(x);
+  }
+  return clouds;
+}
+
+}  // namespace
+
+TEST_CASE("no direction has a wider gap than the plane that is found", "[separation]") {
+  std::mt19937 random(7);
+  for (const int dimension : {2, 3})
+    for (const double apart : {1.0, 0.1, 1e-3})
+      for (int scene = 0; scene < 40; ++scene) {
+        const Vector3 between = direction(random, dimension);
+        const Clouds clouds = beside_plane(random, dimension, between, apart, 3 + scene);
+        const SeparatingPlane found = clouds.plane(dimension);
+        REQUIRE(found.found);
+        CHECK(std::hypot(found.normal[0], found.normal[1], found.normal[2]) == Approx(1).epsilon(1e-12));
+        CHECK(clouds.gap(found.normal) == Approx(found.gap).epsilon(1e-9));
+        CHECK(found.gap >= clouds.gap(between) * (1 - 1e-12));
+        double widest = 0;
+        for (int k = 0; k < 400; ++k) {  // all around, and close beside what was found
+          Vector3 n = direction(random, dimension);
+          const double share = k % 2 ? 1 : std::pow(0.5, k % 40);
+          for (int c = 0; c < 3; ++c) n[c] = (1 - share) * found.normal[c] + share * n[c];
+          const double length = std::hypot(n[0], n[1], n[2]);
+          for (double& component : n) component /= length;
+          widest = std::max(widest, clouds.gap(n));
+        }
+        CHECK(widest <= found.gap * (1 + 1e-9));
+      }
+}
+
+TEST_CASE("exchanged clouds have the opposite normal", "[separation]") {
+  std::mt19937 random(8);
+  for (const int dimension : {2, 3}) {
+    const Clouds clouds = beside_plane(random, dimension, direction(random, dimension), 0.4, 30);
+    const SeparatingPlane one = clouds.plane(dimension), other = Clouds{clouds.b, clouds.a}.plane(dimension);
+    for (int c = 0; c < 3; ++c) CHECK(one.normal[c] == Approx(-other.normal[c]).margin(1e-9));
+    CHECK(one.gap == Approx(other.gap).epsilon(1e-12));
+  }
+}
+
+// Rows of particles, two a cell, as they are about the end of a block that rests on a wider one.
+TEST_CASE("rows of particles have the normal across them, at the end of a block too", "[separation]") {
+  for (const double turned : {0.0, 17.0, 30.0, 45.0})
+    for (const double end : {-0.75, -0.25, 0.25, 5.0}) {
+      const double c = std::cos(turned * std::numbers::pi / 180), s = std::sin(turned * std::numbers::pi / 180);
+      Clouds clouds;
+      for (double x = -1.25; x < 1.5; x += 0.5)
+        for (const double y : {0.25, 0.75, 1.25}) {
+          clouds.a.push_back({c * x + s * y, s * x - c * y, 0});
+          if (x <= end) clouds.b.push_back({c * x - s * y, s * x + c * y, 0});
+        }
+      const SeparatingPlane found = clouds.plane(2);
+      REQUIRE(found.found);
+      CHECK(found.normal[0] == Approx(-s).margin(1e-12));
+      CHECK(found.normal[1] == Approx(c).margin(1e-12));
+      CHECK(found.gap == Approx(0.5).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("clouds that mix, or of which one is empty, have no plane", "[separation]") {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(-1, 1);
+  for (const int dimension : {2, 3}) {
+    Clouds mixed;
+    for (int k = 0; k < 20; ++k)
+      for (std::vector<Vector3>* cloud : {&mixed.a, &mixed.b})
+        cloud->push_back({place(random), place(random), dimension == 3 ? place(random) : 0});
+    CHECK_FALSE(mixed.plane(dimension).found);
+    CHECK_FALSE(Clouds{mixed.a, {}}.plane(dimension).found);
+    CHECK_FALSE(Clouds{{}, mixed.b}.plane(dimension).found);
+    CHECK_FALSE(Clouds{{{0, 0, 0}}, {{0, 0, 0}}}.plane(dimension).found);  // one place
+  }
+  // A point inside a ring of others.
+  Clouds ring{{{0.1, 0.2, 0}}, {}};
+  for (int k = 0; k < 12; ++k) ring.b.push_back({std::cos(k * 0.5236), std::sin(k * 0.5236), 0});
+  CHECK_FALSE(ring.plane(2).found);
+}
