@@ -136,9 +136,9 @@ std::string sliding_block(const Evidence& run) {
   const BodySpecification* block = finite_block(run.experiment());
   if (!block || !(run.rows.seen().slide > run.experiment().grid.cell_size)) return "";
   return "body \"" + block->name + "\", a finite block, slid " + digits(run.rows.seen().slide) +
-         " m in contact on B-splines: at its corners the normal of averaged volume gradients tilts, and drags it "
-         "even without friction, on a finer grid too; do not measure friction with it, or let it reach through "
-         "periodic walls (docs/method.md#contact)";
+         " m in contact on B-splines: at its ends the normal of averaged volume gradients tilts, and drags it even "
+         "without friction, on a finer grid too; take \"normal\": \"widest_gap\" in \"contact\" "
+         "(docs/contact.md#a-block-that-ends-and-the-widest-gap)";
 }
 
 /// The share of the particles that ended in another cell than they began in.

@@ -37,7 +37,7 @@ class Watch {
 };
 
 /// The body with corners that slides at the cost of a wrong drag where its shape is a B-spline: one whose surface is not
-/// curved and that does not reach through the domain; null where there is none.
+/// curved and that does not reach through the domain. Null where there is none, or its ends do not tilt the normal.
 const BodySpecification* finite_block(const Experiment& experiment);
 
 }  // namespace mpm::app

@@ -69,10 +69,9 @@ void ContactPoints::open(const std::array<int, 3>& node) {
   opened.particles.resize(static_cast<std::size_t>(fields_));
   for (auto& of_field : opened.particles) of_field.clear();
   opened.pairs.assign(static_cast<std::size_t>(fields_ * (fields_ - 1) / 2), {});
-  std::array<int, 3> low{}, high{};
-  for (int axis = 0; axis < dimension_; ++axis)
-    low[axis] = cube_of(node[axis] - farthest_seen()), high[axis] = cube_of(node[axis] + farthest_seen());
-  for_each_triple(low, high, [&](const std::array<int, 3>& cube) { cubes_.insert(key_of(cube)); });
+  std::array<int, 3> cube{};
+  for (int axis = 0; axis < dimension_; ++axis) cube[axis] = cube_of(node[axis]);
+  cubes_[key_of(cube)].push_back(static_cast<std::uint32_t>(count_ - 1));
 }
 
 /// How far from a node its particles may lie, for a first choice; domains that are larger than a cell are rare.
@@ -80,33 +79,66 @@ double ContactPoints::farthest_seen() const {
   return by_domain_ ? reach_ + 2 : reach_;
 }
 
-bool ContactPoints::sees(const Vector3& low, const Vector3& high) const {
+bool ContactPoints::look_around(const Vector3& low, const Vector3& high) {
+  near_.clear();
   if (count_ == 0) return false;
+  bool images = false;
   std::array<int, 3> first{}, last{};
   for (int axis = 0; axis < dimension_; ++axis) {
-    if (near_face(axis, low[axis], high[axis])) return true;  // an image may be seen
-    first[axis] = cube_of(low[axis]), last[axis] = cube_of(high[axis]);
+    images = images || near_face(axis, low[axis], high[axis], true);
+    first[axis] = cube_of(low[axis] - farthest_seen()), last[axis] = cube_of(high[axis] + farthest_seen());
   }
-  bool seen = false;
-  for_each_triple(first, last, [&](const std::array<int, 3>& cube) { seen = seen || cubes_.count(key_of(cube)) > 0; });
-  return seen;
+  const auto may_see = [&](std::uint32_t node) {
+    for (int axis = 0; axis < dimension_; ++axis) {
+      const double at = nodes_[node].at[axis];
+      if (at < low[axis] - farthest_seen() || at > high[axis] + farthest_seen()) return false;
+    }
+    return true;
+  };
+  for_each_triple(first, last, [&](const std::array<int, 3>& cube) {
+    if (const auto found = cubes_.find(key_of(cube)); found != cubes_.end())
+      std::copy_if(found->second.begin(), found->second.end(), std::back_inserter(near_), may_see);
+  });
+  return images || !near_.empty();
 }
 
-bool ContactPoints::near_face(int axis, double low, double high) const {
-  const auto& faces = experiment_.faces[axis];
-  return (has_images(faces[0].type) && low < farthest_seen()) ||
-         (has_images(faces[1].type) && high > experiment_.grid.cells[axis] - farthest_seen());
+/// Whether an image beyond a face of an axis may be seen of what lies between low and high.
+bool ContactPoints::near_face(int axis, double low, double high, bool periodic) const {
+  const auto counts = [&](int side) {
+    const ConditionType type = experiment_.faces[axis][side].type;
+    return has_images(type) && (type == ConditionType::periodic) == periodic;
+  };
+  return (counts(0) && low < farthest_seen()) || (counts(1) && high > experiment_.grid.cells[axis] - farthest_seen());
 }
 
-/// Walls that fold mirror what lies before them, as their ghosts do with the masses.
+/// Walls that fold mirror what lies before them, as their ghosts do with the masses. Who sees a mirror image sees the
+/// particle too, which is nearer.
 void ContactPoints::add(int field, const Vector3& x, const SemiSides& semi_sides) {
+  const auto number = static_cast<std::uint32_t>(places_.size());
+  Vector3 reach{};
+  for (int axis = 0; axis < dimension_; ++axis) reach[axis] = reach_of(semi_sides, axis);
+  bool seen = false;
+  for (const std::uint32_t node : near_) {
+    bool near = true;
+    for (int axis = 0; axis < dimension_; ++axis)
+      near = near && std::abs(nodes_[node].at[axis] - x[axis]) < reach[axis];
+    if (!near) continue;
+    nodes_[node].particles[static_cast<std::size_t>(field)].push_back(number);
+    seen = true;
+  }
+  if (seen) keep(x, semi_sides);
+  for (int axis = 0; axis < dimension_; ++axis)
+    if (near_face(axis, x[axis], x[axis], true) || (seen && near_face(axis, x[axis], x[axis], false)))
+      return add_images(field, x, semi_sides);
+}
+
+void ContactPoints::add_images(int field, const Vector3& x, const SemiSides& semi_sides) {
   std::vector<std::pair<Vector3, SemiSides>> images{{x, semi_sides}};
   for (int axis = 0; axis < dimension_; ++axis)
     for (int side = 0; side < 2; ++side) {
       const ConditionType type = experiment_.faces[axis][side].type;
       const double wall = side ? experiment_.grid.cells[axis] : 0.0;
-      const double reach = by_domain_ ? reach_of(semi_sides, axis) : reach_;
-      if (!has_images(type) || std::abs(x[axis] - wall) >= reach) continue;
+      if (!has_images(type) || std::abs(x[axis] - wall) >= reach_of(semi_sides, axis)) continue;
       for (std::size_t i = 0, known = images.size(); i < known; ++i) {
         auto image = images[i];
         if (image.first[axis] != x[axis]) continue;  // beyond the other wall of this axis
@@ -119,7 +151,12 @@ void ContactPoints::add(int field, const Vector3& x, const SemiSides& semi_sides
         images.push_back(image);
       }
     }
-  for (const auto& [place, sides] : images) add_image(field, place, sides);
+  for (std::size_t i = 1; i < images.size(); ++i) add_image(field, images[i].first, images[i].second);
+}
+
+void ContactPoints::keep(const Vector3& x, const SemiSides& semi_sides) {
+  places_.push_back(x);
+  if (gives_separation_) semi_sides_.push_back(semi_sides);
 }
 
 double ContactPoints::reach_of(const SemiSides& semi_sides, int axis) const {
@@ -144,9 +181,7 @@ void ContactPoints::add_image(int field, const Vector3& x, const SemiSides& semi
     nodes_[seen_by->second].particles[static_cast<std::size_t>(field)].push_back(number);
     kept = true;
   });
-  if (!kept) return;
-  places_.push_back(x);
-  if (gives_separation_) semi_sides_.push_back(semi_sides);
+  if (kept) keep(x, semi_sides);
 }
 
 void ContactPoints::find(std::size_t first, std::size_t end) {

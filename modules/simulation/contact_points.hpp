@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "experiment/experiment.hpp"
@@ -34,8 +33,9 @@ class ContactPoints {
   void begin();
   /// Says that two bodies or more have mass at a node, by its coordinates.
   void open(const std::array<int, 3>& node);
-  /// Whether any of these nodes may see a particle with low <= x <= high, in cells from the domain's corner.
-  bool sees(const Vector3& low, const Vector3& high) const;
+  /// Looks for the nodes that may see a particle with low <= x <= high, in cells from the domain's corner: those that
+  /// are added next must lie there. False where no node may.
+  bool look_around(const Vector3& low, const Vector3& high);
   /// Adds a particle of a velocity field, with its images beyond walls and periodic faces: its place in cells from the
   /// domain's corner, and a matrix, row-major, whose columns times `factor` are the semi-sides of its domain in cells:
   /// the domain itself, or the deformation gradient with half the undeformed side. Null where nobody asks for it
@@ -69,12 +69,14 @@ class ContactPoints {
   using SemiSides = std::array<double, 9>;  ///< cells, row-major, columns are vectors
 
   void add(int field, const Vector3& x, const SemiSides& semi_sides);
+  void add_images(int field, const Vector3& x, const SemiSides& semi_sides);
+  void keep(const Vector3& x, const SemiSides& semi_sides);
   void add_image(int field, const Vector3& x, const SemiSides& semi_sides);
   double reach_of(const SemiSides& semi_sides, int axis) const;
   double extent(std::uint32_t particle, const Vector3& normal) const;
   SeparatedPair separate(const Node& node, int a, int b) const;
   double farthest_seen() const;
-  bool near_face(int axis, double low, double high) const;
+  bool near_face(int axis, double low, double high, bool periodic) const;
 
   const Experiment& experiment_;
   const int dimension_, fields_;
@@ -82,8 +84,9 @@ class ContactPoints {
   bool by_domain_;                                          ///< how far a particle is seen depends on its domain
   double reach_;                                            ///< cells, of its weights
   std::unordered_map<std::uint64_t, std::uint32_t> found_;  ///< numbers of the nodes that were opened
-  std::unordered_set<std::uint64_t> cubes_;                 ///< cubes of cells that these may see into
-  std::vector<Node> nodes_;                                 ///< the first count_ are this step's
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cubes_;  ///< the nodes in cubes of cells
+  std::vector<std::uint32_t> near_;                                      ///< nodes that look_around has found
+  std::vector<Node> nodes_;                                              ///< the first count_ are this step's
   std::size_t count_ = 0;
   std::vector<Vector3> places_;  ///< cells
   std::vector<SemiSides> semi_sides_;

@@ -17,11 +17,12 @@ namespace {
 constexpr double h = 0.1;
 
 /// Two bodies on a grid of 10 by 10 cells; what is asked of contact stands in `contact`.
-Experiment scene(const std::string& contact, const std::string& boundaries = R"({"all": "free"})") {
-  return experiment_from(R"({"title": "touch", "dimension": 2,
+Experiment scene(const std::string& contact, const std::string& boundaries = R"({"all": "free"})",
+                 const std::string& more = "") {
+  return experiment_from("{" + more + R"("title": "touch", "dimension": 2,
     "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]], "boundaries": )" +
                          boundaries + R"(},
-    "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"}, "contact": {"type": "coulomb", )" +
+    "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"}, "contact": {)" +
                          contact + R"(},
     "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1, "poisson_ratio": 0.3, "density": 1}},
     "bodies": [{"name": "a", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0.2], "upper": [0.5, 0.5]}},
@@ -29,7 +30,7 @@ Experiment scene(const std::string& contact, const std::string& boundaries = R"(
     "solver": {"end_time": 1}})");
 }
 
-const std::string both = R"("normal": "widest_gap", "detection": "particle_surfaces")";
+const std::string both = R"("type": "coulomb", "normal": "widest_gap", "detection": "particle_surfaces")";
 const double round_particle[4] = {1, 0, 0, 1};
 
 /// A node's view of particles given as places in cells, two a cell and axis.
@@ -42,6 +43,7 @@ struct View {
     points.open(node);
   }
   void add(int field, double x, double y, const double* matrix = round_particle) {
+    points.look_around({x, y, 0}, {x, y, 0});
     points.add(field, {x, y, 0}, matrix, 1, 0.25);
   }
   SeparatedPair pair() {
@@ -58,13 +60,13 @@ TEST_CASE("a node sees the particles less than a cell and a half away", "[contac
     View view(experiment, {5, 5, 0});
     view.add(0, 5.1, 4.9), view.add(1, 5 + away, 5.2);
     CHECK(view.pair().found == (away < 1.5));
-    CHECK(view.points.sees({5, 5, 0}, {5, 5, 0}));
-    CHECK_FALSE(view.points.sees({8.5, 8.5, 0}, {9.5, 9.5, 0}));
+    CHECK(view.points.look_around({5, 5, 0}, {5, 5, 0}));
+    CHECK_FALSE(view.points.look_around({8.5, 8.5, 0}, {9.5, 9.5, 0}));
   }
   View unasked(experiment, {5, 5, 0});
   CHECK_FALSE(unasked.points.pair({6, 5, 0}, 0, 1).found);
-  CHECK_FALSE(ContactPoints(scene(R"("friction": 0)")).needed());
-  CHECK_FALSE(ContactPoints(scene(R"("normal": "widest_gap")")).gives_separation());
+  CHECK_FALSE(ContactPoints(scene(R"("type": "coulomb")")).needed());
+  CHECK_FALSE(ContactPoints(scene(R"("type": "coulomb", "normal": "widest_gap")")).gives_separation());
 }
 
 TEST_CASE("a node at a periodic face sees the particles at the other", "[contact_points]") {
@@ -74,7 +76,7 @@ TEST_CASE("a node at a periodic face sees the particles at the other", "[contact
   REQUIRE(pair.parted);
   CHECK(pair.normal[0] == Approx(1));
   CHECK(view.points.separation(view.node, 0, 1, pair.normal) == Approx(-1e-6 * h).margin(1e-14));
-  CHECK(view.points.sees({9, 4, 0}, {10, 6, 0}));
+  CHECK(view.points.look_around({9, 4, 0}, {10, 6, 0}));
 }
 
 TEST_CASE("a node at a wall sees the mirror of what lies before it", "[contact_points]") {
@@ -131,4 +133,25 @@ TEST_CASE("a sheared particle extends as its ellipsoid does, and its mirror imag
     const double surface_b = wall == "free" ? 0.6 * 0.3 + 0.8 * 5.3 - leans : -0.6 * 0.3 + 0.8 * 5.3 - leans_back;
     CHECK(view.points.separation(view.node, 0, 1, across) == Approx((surface_b - surface_a - 1e-6) * h).margin(1e-12));
   }
+}
+
+TEST_CASE("a normal or detection that nobody would look at is refused by name", "[contact_points]") {
+  const auto refusal = [](const std::string& contact, const std::string& more = "") -> std::string {
+    try {
+      scene(contact, R"({"all": "free"})", more);
+      return "accepted";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  CHECK(refusal(R"("type": "coulomb", "normal": "widest_gap")") == "accepted");
+  CHECK_THAT(refusal(R"("type": "stick", "normal": "widest_gap")"),
+             ContainsSubstring(
+                 R"(/contact/normal: "stick" joins bodies at every node that they share and looks at no normal)"));
+  CHECK_THAT(refusal(R"("type": "stick", "detection": "particle_surfaces")"),
+             ContainsSubstring("/contact/detection: "));
+  CHECK(refusal(R"("type": "stick", "normal": "average_volume_gradient")") == "accepted");
+  for (const std::string key : {R"("normal": "widest_gap")", R"("detection": "particle_surfaces")"})
+    CHECK_THAT(refusal(R"("type": "coulomb", )" + key, R"("backend": "cuda",)"),
+               ContainsSubstring(R"(backend "cuda" does not look at the particles of a node)"));
 }

@@ -101,6 +101,9 @@ TEST_CASE("a finite block that slides on B-splines is warned of", "[warnings]") 
   };
   CHECK(only(warned(sliding("bspline_quadratic", "[0.4, 0.5]", "[0.8, 0.8]", "[2, -0.1]")),
              "body \"block\", a finite block, slid "));
+  CHECK(warned(sliding("bspline_quadratic", "[0.4, 0.5]", "[0.8, 0.8]", "[2, -0.1]"), Json::object(),
+               {"/contact/normal=widest_gap"})
+            .empty());
   CHECK(warned(sliding("gimp", "[0.4, 0.5]", "[0.8, 0.8]", "[2, -0.1]")).empty());
   CHECK(warned(sliding("bspline_quadratic", "[0.4, 0.5]", "[0.8, 0.8]", "[0, -1]")).empty());  // it hits and stays
   CHECK(warned(sliding("bspline_quadratic", "[0, 0.5]", "[2, 0.8]", "[0, -0.1]")).empty());    // it has no corners

@@ -142,16 +142,20 @@ void CpuBackend<D, T, Components>::show_particles(ContactPoints& points) const {
       for (int axis = 0; axis < D; ++axis)
         low[axis] = cells_from_corner(scene_.domain, block, axis, 0.0) - drift,
         high[axis] = low[axis] + block_side<D> + 2 * drift;
-      if (!points.sees(low, high)) continue;
+      if (!points.look_around(low, high)) continue;
       for_each_chunk<T>(block, [&](std::uint32_t chunk, int count) {
         const T* const values = particles.chunk(chunk);
         for (int p = 0; p < count; ++p) {
           Vector3 x{};
           for (int axis = 0; axis < D; ++axis)
             x[axis] = cells_from_corner(scene_.domain, block, axis, values[axis * chunk_size<T> + p]);
+          if (sides < 0) {
+            points.add(field_of_body_[body], x, static_cast<const T*>(nullptr), 0, 0);
+            continue;
+          }
           const double size =
               particles.size < 0 || scene_.axisymmetric ? 1.0 : values[particles.size * chunk_size<T> + p];
-          points.add(field_of_body_[body], x, sides < 0 ? nullptr : values + sides * chunk_size<T> + p, chunk_size<T>,
+          points.add(field_of_body_[body], x, values + sides * chunk_size<T> + p, chunk_size<T>,
                      by_domain ? 1.0 : half_side(body, size));
         }
       });

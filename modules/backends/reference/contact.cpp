@@ -81,6 +81,7 @@ void ReferenceBackend::find_contact_points() {
       for (int i = 0; i < D; ++i)
         for (int k = 0; k < D; ++k) values[D * i + k] = matrix(i, k);
       const bool domain = sides && sides == std::string_view("domain");
+      if (!contact_points_.look_around(x, x)) continue;
       contact_points_.add(body.field(), x, sides ? values.data() : nullptr, 1, domain ? 1.0 : body.half_side(p));
     }
   }
