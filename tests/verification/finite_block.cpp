@@ -7,6 +7,7 @@
 
 #include "support/catch.hpp"
 #include "support/scene.hpp"
+#include "verification/shipped.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -199,4 +200,50 @@ TEST_CASE("with the average volume gradient the same block is slowed down, the m
                shorter = slide(0, 0, {average, set("/solver/courant", "0.1")}).acceleration;
   CHECK(longer < 0.75 * exact(0));
   CHECK(shorter < 0.8 * longer);
+}
+
+// Our own numbers (docs/contact.md): what friction does to a soft block that is half as high as it is long.
+TEST_CASE("a high block close to sticking rocks, whatever the step and the cells, and friction stays mu N",
+          "[friction][finite]") {
+  for (const std::vector<std::string>& finer :
+       {std::vector<std::string>{}, {set("/solver/courant", "0.1")}, {set("/grid/cell_size", "0.025")}}) {
+    std::vector<std::string> settings = turned(0);
+    settings.insert(settings.end(),
+                    {set("/contact/friction", "0.5"), set("/transfer/type", "flip"), set("/solver/end_time", "0.4")});
+    settings.insert(settings.end(), finer.begin(), finer.end());
+    Scene scene(slope, settings);
+    struct Third {
+      double least = 1e9, most = 0, pressing = 0, rubbing = 0;
+    } early, late;
+    while (!scene.simulation.finished()) {
+      scene.simulation.step();
+      const Vector3& force = scene.simulation.backend().contact_record().force;  // on the slope
+      const double time = scene.simulation.time(), dt = scene.simulation.last_time_step();
+      if (time < 0.15) continue;
+      Third& third = time < 0.25 ? early : late;
+      if (time > 0.25 && time < 0.3) continue;
+      third.least = std::min(third.least, -force[1]), third.most = std::max(third.most, -force[1]);
+      third.pressing -= force[1] * dt, third.rubbing += force[0] * dt;
+    }
+    INFO((finer.empty() ? "" : finer[0]) << ": " << early.most - early.least << " and " << late.most - late.least
+                                         << " N");
+    CHECK(late.most - late.least > 1.5 * (early.most - early.least));
+    CHECK(early.rubbing / early.pressing == Approx(0.5).epsilon(0.03));
+    CHECK(late.rubbing / late.pressing == Approx(0.5).epsilon(0.03));
+  }
+}
+
+// Our own numbers (docs/contact.md): the normal of curved bodies was not what was wrong, and changes little.
+TEST_CASE("the widest gap changes the peak force of two spheres by less than four per cent", "[friction][finite]") {
+  for (const std::string place : {"1.025", "1.0421875"}) {
+    const auto peak = [&](const std::string& normal) {
+      ShippedScene scene("studies/hertz_spheres.json",
+                         {set("/contact/normal", normal), "/bodies/0/geometry/of/0/centre/1=-" + place,
+                          "/bodies/1/geometry/of/0/centre/1=" + place});
+      double force = 0;
+      scene.run([&] { force = std::max(force, std::abs(scene.simulation.backend().contact_record().force[1])); });
+      return force;
+    };
+    CHECK(peak("widest_gap") == Approx(peak("average_volume_gradient")).epsilon(0.04));
+  }
 }
