@@ -47,12 +47,14 @@ class PairGeometry {
     SeparatedPair pair;
     if (points.needed() && !(pair = points.pair(node, field_a, field_b)).found) return result;
     Vector3 normal = pair.normal;
-    if (!(points.gives_normal() && pair.parted) && !average_gradient(a, b, normal)) return result;
+    const bool by_gap = points.gives_normal() && pair.parted;
+    if (!by_gap && !average_gradient(a, b, normal)) return result;
     std::copy(normal.begin(), normal.end(), result.normal);
-    result.separation = points.gives_separation()
-                            ? points.separation(node, field_a, field_b, normal)
-                            : by_position(edges_[static_cast<std::size_t>(field_a)],
-                                          edges_[static_cast<std::size_t>(field_b)], a, b, normal);
+    if (!points.gives_separation())
+      result.separation = by_position(edges_[static_cast<std::size_t>(field_a)],
+                                      edges_[static_cast<std::size_t>(field_b)], a, b, normal);
+    else
+      result.separation = by_gap ? pair.separation : points.separation(node, field_a, field_b, normal);
     const double h = experiment_.grid.cell_size;
     result.area = std::sqrt(2 * (a.volume + b.volume) * std::min(a.volume, b.volume)) / h;  // Nairn 2013, eq. 26
     result.valid = true;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double least_reach = 1.5;  // cells: two rows of particles and more of each body, also with tents
 constexpr int cube_side = 4;         // cells
-constexpr double rounding = 1e-6;    // cells: bodies that are seeded face to face touch, in float too
+constexpr std::uint32_t nobody = ~0u;
+constexpr double rounding = 1e-6;  // cells: bodies that are seeded face to face touch, in float too
 
 /// A number for three coordinates; those of a domain's nodes differ in the lowest 21 bits.
 std::uint64_t key_of(const std::array<int, 3>& at) {
@@ -68,38 +69,41 @@ void ContactPoints::open(const std::array<int, 3>& node) {
   opened.at = node;
   opened.particles.resize(static_cast<std::size_t>(fields_));
   for (auto& of_field : opened.particles) of_field.clear();
-  opened.pairs.assign(static_cast<std::size_t>(fields_ * (fields_ - 1) / 2), {});
+  opened.pairs.assign(pair_index(fields_ - 2, fields_ - 1, fields_) + 1, {});
   std::array<int, 3> cube{};
   for (int axis = 0; axis < dimension_; ++axis) cube[axis] = cube_of(node[axis]);
   cubes_[key_of(cube)].push_back(static_cast<std::uint32_t>(count_ - 1));
 }
 
-/// How far from a node its particles may lie, for a first choice; domains that are larger than a cell are rare.
+/// How far from a node the particles may lie that it sees, cells.
 double ContactPoints::farthest_seen() const {
-  return by_domain_ ? reach_ + 2 : reach_;
+  return by_domain_ ? list_grid_padding : reach_;
 }
 
 bool ContactPoints::look_around(const Vector3& low, const Vector3& high) {
-  near_.clear();
+  window_.nodes.clear();
   if (count_ == 0) return false;
-  bool images = false;
+  bool images = false, any = false;
   std::array<int, 3> first{}, last{};
+  std::size_t size = 1;
   for (int axis = 0; axis < dimension_; ++axis) {
     images = images || near_face(axis, low[axis], high[axis], true);
-    first[axis] = cube_of(low[axis] - farthest_seen()), last[axis] = cube_of(high[axis] + farthest_seen());
+    window_.low[axis] = static_cast<int>(std::floor(low[axis] - farthest_seen()));
+    window_.high[axis] = static_cast<int>(std::ceil(high[axis] + farthest_seen()));
+    first[axis] = cube_of(window_.low[axis]), last[axis] = cube_of(window_.high[axis]);
+    size *= window_.side(axis);
   }
-  const auto may_see = [&](std::uint32_t node) {
-    for (int axis = 0; axis < dimension_; ++axis) {
-      const double at = nodes_[node].at[axis];
-      if (at < low[axis] - farthest_seen() || at > high[axis] + farthest_seen()) return false;
-    }
-    return true;
-  };
   for_each_triple(first, last, [&](const std::array<int, 3>& cube) {
-    if (const auto found = cubes_.find(key_of(cube)); found != cubes_.end())
-      std::copy_if(found->second.begin(), found->second.end(), std::back_inserter(near_), may_see);
+    const auto found = cubes_.find(key_of(cube));
+    if (found == cubes_.end()) return;
+    for (const std::uint32_t node : found->second) {
+      if (!window_.holds(nodes_[node].at)) continue;
+      if (!any) window_.nodes.assign(size, nobody);
+      window_.nodes[window_.place(nodes_[node].at)] = node;
+      any = true;
+    }
   });
-  return images || !near_.empty();
+  return images || any;
 }
 
 /// Whether an image beyond a face of an axis may be seen of what lies between low and high.
@@ -117,15 +121,19 @@ void ContactPoints::add(int field, const Vector3& x, const SemiSides& semi_sides
   const auto number = static_cast<std::uint32_t>(places_.size());
   Vector3 reach{};
   for (int axis = 0; axis < dimension_; ++axis) reach[axis] = reach_of(semi_sides, axis);
-  bool seen = false;
-  for (const std::uint32_t node : near_) {
-    bool near = true;
-    for (int axis = 0; axis < dimension_; ++axis)
-      near = near && std::abs(nodes_[node].at[axis] - x[axis]) < reach[axis];
-    if (!near) continue;
-    nodes_[node].particles[static_cast<std::size_t>(field)].push_back(number);
-    seen = true;
+  std::array<int, 3> low{}, high{};
+  for (int axis = 0; axis < dimension_; ++axis) {
+    low[axis] = std::max(window_.low[axis], static_cast<int>(std::floor(x[axis] - reach[axis])) + 1);
+    high[axis] = std::min(window_.high[axis], static_cast<int>(std::ceil(x[axis] + reach[axis])) - 1);
   }
+  bool seen = false;
+  if (!window_.nodes.empty())
+    for_each_triple(low, high, [&](const std::array<int, 3>& at) {
+      const std::uint32_t node = window_.nodes[window_.place(at)];
+      if (node == nobody) return;
+      nodes_[node].particles[static_cast<std::size_t>(field)].push_back(number);
+      seen = true;
+    });
   if (seen) keep(x, semi_sides);
   for (int axis = 0; axis < dimension_; ++axis)
     if (near_face(axis, x[axis], x[axis], true) || (seen && near_face(axis, x[axis], x[axis], false)))
@@ -146,7 +154,8 @@ void ContactPoints::add_images(int field, const Vector3& x, const SemiSides& sem
           image.first[axis] += side ? -experiment_.grid.cells[axis] : experiment_.grid.cells[axis];
         } else {
           image.first[axis] = 2 * wall - x[axis];
-          for (int k = 0; k < dimension_; ++k) image.second[static_cast<std::size_t>(3 * axis + k)] *= -1;
+          for (int k = 0; k < dimension_; ++k)
+            image.second[3 * static_cast<std::size_t>(axis) + static_cast<std::size_t>(k)] *= -1;
         }
         images.push_back(image);
       }
@@ -162,7 +171,7 @@ void ContactPoints::keep(const Vector3& x, const SemiSides& semi_sides) {
 double ContactPoints::reach_of(const SemiSides& semi_sides, int axis) const {
   double reach = reach_;
   for (int k = 0; by_domain_ && k < dimension_; ++k)
-    reach += std::abs(semi_sides[static_cast<std::size_t>(3 * axis + k)]);
+    reach += std::abs(semi_sides[3 * static_cast<std::size_t>(axis) + static_cast<std::size_t>(k)]);
   return std::max(reach, least_reach);
 }
 
@@ -197,7 +206,9 @@ SeparatedPair ContactPoints::separate(const Node& node, int a, int b) const {
   SeparatedPair pair;
   pair.found = cloud(a).size() > 0 && cloud(b).size() > 0;
   const SeparatingPlane plane = widest_gap(cloud(a), cloud(b), dimension_);
-  if (plane.found) pair.parted = true, pair.normal = plane.normal;
+  if (!plane.found) return pair;
+  pair.parted = true, pair.normal = plane.normal;
+  if (gives_separation_) pair.separation = separation(node, a, b, pair.normal);
   return pair;
 }
 
@@ -207,14 +218,18 @@ double ContactPoints::extent(std::uint32_t particle, const Vector3& normal) cons
   double squared = 0;
   for (int k = 0; k < dimension_; ++k) {
     double along = 0;
-    for (int i = 0; i < dimension_; ++i) along += normal[i] * sides[static_cast<std::size_t>(3 * i + k)];
+    for (int i = 0; i < dimension_; ++i)
+      along += normal[i] * sides[3 * static_cast<std::size_t>(i) + static_cast<std::size_t>(k)];
     squared += along * along;
   }
   return std::sqrt(squared);
 }
 
 double ContactPoints::separation(const std::array<int, 3>& at, int a, int b, const Vector3& normal) const {
-  const Node& node = nodes_[found_.at(key_of(at))];
+  return separation(nodes_[found_.at(key_of(at))], a, b, normal);
+}
+
+double ContactPoints::separation(const Node& node, int a, int b, const Vector3& normal) const {
   const auto along = [&](std::uint32_t p) {
     return places_[p][0] * normal[0] + places_[p][1] * normal[1] + places_[p][2] * normal[2];
   };

@@ -15,9 +15,10 @@ namespace mpm {
 
 /// What the particles near a node say of a pair of bodies.
 struct SeparatedPair {
-  bool found = false;   ///< both bodies have particles near the node
-  bool parted = false;  ///< a plane lies between them; else their particles are mixed
-  Vector3 normal{};     ///< unit, from a to b; where parted
+  bool found = false;     ///< both bodies have particles near the node
+  bool parted = false;    ///< a plane lies between them; else their particles are mixed
+  Vector3 normal{};       ///< unit, from a to b; where parted
+  double separation = 0;  ///< ContactPoints::separation along this normal; where parted, and particles' surfaces count
 };
 
 class ContactPoints {
@@ -45,8 +46,7 @@ class ContactPoints {
     SemiSides semi_sides{};
     for (int i = 0; matrix && i < dimension_; ++i)
       for (int k = 0; k < dimension_; ++k)
-        semi_sides[static_cast<std::size_t>(3 * i + k)] =
-            factor * static_cast<double>(matrix[static_cast<std::size_t>(i * dimension_ + k) * stride]);
+        semi_sides[3 * i + k] = factor * static_cast<double>(matrix[(i * dimension_ + k) * stride]);
     add(field, x, semi_sides);
   }
   /// Finds the planes of all pairs at the nodes [first, end) of `node_count`, once all particles are there. Any thread
@@ -66,6 +66,22 @@ class ContactPoints {
     std::vector<std::vector<std::uint32_t>> particles;  ///< [field], numbers among all
     std::vector<SeparatedPair> pairs;                   ///< [pair_index]
   };
+  /// The nodes around a place, each by its coordinates: what look_around has found.
+  struct Window {
+    std::array<int, 3> low{}, high{};
+    std::vector<std::uint32_t> nodes;  ///< their numbers; empty where there is none at all
+
+    std::size_t side(int axis) const { return static_cast<std::size_t>(high[axis]) - low[axis] + 1; }
+    bool holds(const std::array<int, 3>& at) const {
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (at[axis] < low[axis] || at[axis] > high[axis]) return false;
+      return true;
+    }
+    std::size_t place(const std::array<int, 3>& at) const {
+      const auto from = [&](int axis) { return static_cast<std::size_t>(at[axis] - low[axis]); };
+      return (from(0) * side(1) + from(1)) * side(2) + from(2);
+    }
+  };
   using SemiSides = std::array<double, 9>;  ///< cells, row-major, columns are vectors
 
   void add(int field, const Vector3& x, const SemiSides& semi_sides);
@@ -75,6 +91,7 @@ class ContactPoints {
   double reach_of(const SemiSides& semi_sides, int axis) const;
   double extent(std::uint32_t particle, const Vector3& normal) const;
   SeparatedPair separate(const Node& node, int a, int b) const;
+  double separation(const Node& node, int a, int b, const Vector3& normal) const;
   double farthest_seen() const;
   bool near_face(int axis, double low, double high, bool periodic) const;
 
@@ -85,8 +102,8 @@ class ContactPoints {
   double reach_;                                            ///< cells, of its weights
   std::unordered_map<std::uint64_t, std::uint32_t> found_;  ///< numbers of the nodes that were opened
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cubes_;  ///< the nodes in cubes of cells
-  std::vector<std::uint32_t> near_;                                      ///< nodes that look_around has found
-  std::vector<Node> nodes_;                                              ///< the first count_ are this step's
+  Window window_;
+  std::vector<Node> nodes_;  ///< the first count_ are this step's
   std::size_t count_ = 0;
   std::vector<Vector3> places_;  ///< cells
   std::vector<SemiSides> semi_sides_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace mpm {
@@ -92,27 +93,63 @@ Nearest reduce(Simplex& simplex) {
   return best;
 }
 
-/// The point of a cloud farthest along a direction.
-Vector3 farthest(const PointCloud& cloud, const Vector3& along, double sign) {
-  std::size_t best = 0;
-  double reach = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (const double at = sign * dot(cloud[i], along); at > reach) reach = at, best = i;
-  return cloud[best];
-}
+/// The points of a cloud side by side, so that all are looked at in lanes. The tail repeats the first.
+class Row {
+ public:
+  void take(const PointCloud& cloud) {
+    size_ = (cloud.size() + lanes - 1) / lanes * lanes;
+    values_.resize(3 * size_), places_.resize(size_);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Vector3& x = cloud[i < cloud.size() ? i : 0];
+      for (std::size_t c = 0; c < 3; ++c) values_[c * size_ + i] = x[c];
+    }
+  }
+  Vector3 operator[](std::size_t i) const { return {values_[i], values_[size_ + i], values_[2 * size_ + i]}; }
+
+  /// About their middle: a first guess alone depends on it.
+  Vector3 middle() const {
+    Vector3 sum{};
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < size_; ++i) sum[c] += values_[c * size_ + i];
+    for (double& component : sum) component /= static_cast<double>(size_);
+    return sum;
+  }
+  /// The point farthest along a direction, the first of several.
+  Vector3 farthest(const Vector3& along) {
+    std::array<double, lanes> most;
+    most.fill(-std::numeric_limits<double>::infinity());
+    const double *const x = values_.data(), *const y = x + size_, *const z = y + size_;
+    for (std::size_t i = 0; i < size_; i += lanes)
+      for (std::size_t k = 0; k < lanes; ++k) {
+        const double at = along[0] * x[i + k] + along[1] * y[i + k] + along[2] * z[i + k];
+        places_[i + k] = at;
+        most[k] = at > most[k] ? at : most[k];
+      }
+    const double reach = *std::max_element(most.begin(), most.end());
+    return (*this)[static_cast<std::size_t>(std::find(places_.begin(), places_.end(), reach) - places_.begin())];
+  }
+
+ private:
+  static constexpr std::size_t lanes = 8;
+  std::size_t size_ = 0;
+  std::vector<double> values_, places_;
+};
 
 }  // namespace
 
 SeparatingPlane widest_gap(const PointCloud& a, const PointCloud& b, int dimension) {
   if (a.size() == 0 || b.size() == 0) return {};
   constexpr int most_rounds = 100;
-  constexpr double rounding = 1e-12;  // of the squared distance
+  constexpr double rounding = 1e-12;   // of the squared distance
+  static thread_local Row of_a, of_b;  // their memory is kept from node to node
+  of_a.take(a), of_b.take(b);
+  const Vector3 apart = difference(of_b.middle(), of_a.middle());
   Simplex simplex;
-  simplex.corners[simplex.size++] = difference(b[0], a[0]);
+  simplex.corners[simplex.size++] = difference(of_b.farthest(difference({}, apart)), of_a.farthest(apart));
   Nearest nearest{simplex.corners[0], dot(simplex.corners[0], simplex.corners[0])};
   double scale = nearest.squared;
   for (int round = 0; round < most_rounds; ++round) {
-    const Vector3 next = difference(farthest(b, nearest.point, -1), farthest(a, nearest.point, 1));
+    const Vector3 next = difference(of_b.farthest(difference({}, nearest.point)), of_a.farthest(nearest.point));
     scale = std::max(scale, dot(next, next));
     if (nearest.squared <= rounding * scale) return {};  // the hulls meet
     if (nearest.squared - dot(nearest.point, next) <= rounding * nearest.squared || simplex.has(next)) break;
