@@ -1,5 +1,6 @@
 // docs/verification.md names the files that hold its cases, and docs/verified.md the cases themselves: none is missing there,
 // none is named that does not exist.
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <regex>
@@ -49,6 +50,53 @@ TEST_CASE("every file of verification is in the catalogue of cases", "[docs]") {
     CAPTURE(name);
     CHECK(names.count(name) == 1);
   }
+}
+
+namespace {
+
+/// A positive number without its power of ten, from 1 to below 10.
+double mantissa(double value) {
+  return value / std::pow(10.0, std::floor(std::log10(value)));
+}
+
+/// The mantissas of all numbers in the texts of the tests, and of what they lack to 1.
+std::set<double> numbers_of_the_tests() {
+  static const std::regex number("[0-9]*\\.[0-9]+|[0-9]+");
+  std::set<double> found;
+  for (const auto& entry : fs::recursive_directory_iterator(source / "tests")) {
+    if (entry.path().extension() != ".cpp" && entry.path().extension() != ".hpp") continue;
+    const std::string text = mpm::support::read_file(entry.path());
+    for (std::sregex_iterator match(text.begin(), text.end(), number), end; match != end; ++match) {
+      const double value = std::stod(match->str());
+      if (value > 0) found.insert(mantissa(value));
+      if (value > 0 && value < 1) found.insert(mantissa(1 - value));
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+// Numbers of five digits and more: shorter ones stand everywhere.
+TEST_CASE("the numbers in the tables of the catalogue of cases are numbers of the tests", "[docs]") {
+  const std::set<double> of_tests = numbers_of_the_tests();
+  std::istringstream page(mpm::support::read_file(source / "docs/verification.md"));
+  const std::regex number("[0-9]+\\.[0-9]+"), zeros("^0*\\.?0*|0+$|\\.");
+  int compared = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (!line.starts_with('|')) continue;
+    for (std::sregex_iterator match(line.begin(), line.end(), number), end; match != end; ++match) {
+      const std::string digits = std::regex_replace(match->str(), zeros, "");
+      if (digits.size() < 5 || match->str() == "2604.07307") continue;  // the latter of arXiv
+      const double printed = mantissa(std::stod(match->str()));
+      const double half = 0.5000001 * std::pow(10.0, 1 - static_cast<double>(digits.size()));
+      INFO(match->str() << " in " << line.substr(0, 60));
+      const auto nearest = of_tests.lower_bound(printed - half);
+      CHECK((nearest != of_tests.end() && *nearest <= printed + half));
+      ++compared;
+    }
+  }
+  CHECK(compared > 120);
 }
 
 namespace {
