@@ -117,11 +117,11 @@ TEST_CASE("the numbers of the benchmarks' page are those of its tables", "[docs]
 
   const std::string growth = "Growth (3-D", memory = "peak / state";
   CHECK(number(growth, {"1e7 particles"}, memory) < number(growth, {"1e6 particles"}, memory));
-  says("holds less memory than of 10⁶, and costs # times as much time; of 10⁵ it costs # times as much",
+  says("takes less memory than with 10⁶, and # times the time of a step; with 10⁵ it takes # times the time",
        {number(growth, {"1e7 particles"}, "cost / 1e6"), number(growth, {"1e5 particles"}, "cost / 1e6")});
   page.add_given({"(23 November 2026, two cores of a virtual machine",
                   "with AMD's Zen 5 and AVX-512, no GPU; float, 3-D,", "The aim of 90 million",
-                  "Of 10⁷ particles each"});
+                  "With 10⁷ particles a particle"});
   CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
 }
 
