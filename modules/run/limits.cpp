@@ -42,7 +42,9 @@ bool judge(const Limit& limit, const Json& summary, Json& entry) {
 
 std::string why_no_loss_is_judged(const Experiment& experiment, const Json& summary) {
   const std::string reason = why_no_change_is_judged(experiment, summary);
-  return !reason.empty() || experiment.output.ledger ? reason : "not recorded: /output/ledger is false";
+  if (!reason.empty()) return reason;
+  if (!experiment.output.ledger) return "not recorded: /output/ledger is false";
+  return output::value_at(summary, "energy.total.unexplained_loss") ? "" : "not recorded: the last step failed";
 }
 
 std::string per_cent(double share) {

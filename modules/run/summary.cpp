@@ -54,11 +54,12 @@ void put_ledger(Json& json, const std::vector<ValueRow>& rows) {
   }
 }
 
-/// What an isolated scene gained at most, and lost in the end, as shares of the energy that it could have lost.
+/// What an isolated scene gained at most, and lost in the end, as shares of the energy that it could have lost. Of a run
+/// whose last step failed on its way there is no loss: the ledger holds a part of that step, the energies nothing of it.
 void add_changes(const Simulation& simulation, const Metrics& metrics, const RunRecord& recorder, double scale,
                  Json& total) {
   total["gain"] = (recorder.largest_total_energy() - metrics.initial().total_energy()) / scale;
-  if (!simulation.plan().has_ledger()) return;
+  if (!simulation.plan().has_ledger() || recorder.broken_off()) return;
   total["numerical_loss"] = -numerical_gain(simulation.ledger()) / scale;
   total["unexplained_loss"] = -metrics.ledger_residual(recorder.latest()) / scale;
 }
@@ -74,20 +75,20 @@ Json energy(const Simulation& simulation, const Metrics& metrics, const RunRecor
     json["total"]["largest_over_initial"] = recorder.largest_total_energy() / start.total_energy();
   if (const double scale = available_energy(simulation.experiment(), start); scale > 0)
     add_changes(simulation, metrics, recorder, scale, json["total"]);
-  if (!simulation.plan().has_ledger()) return json;
+  if (!simulation.plan().has_ledger() || recorder.broken_off()) return json;
   put_ledger(json, metrics.ledger_rows(end));
   for (const ValueRow& row : metrics.book_rows()) json["books"][key_of(row)] = row.value;
   if (const int every = simulation.plan().ledger_every; every > 1) json["ledger_every"] = every;
   return json;
 }
 
-Json heat(const Metrics& metrics, const Totals& end) {
-  const Totals& start = metrics.initial();
+Json heat(const Metrics& metrics, const RunRecord& recorder) {
+  const Totals &start = metrics.initial(), &end = recorder.latest();
   Json json{{"content", change(start.heat_content, end.heat_content)},
             {"latent", change(start.latent_heat, end.latent_heat)},
             {"lowest_temperature", end.lowest_temperature},
             {"highest_temperature", end.highest_temperature}};
-  put_ledger(json, metrics.heat_ledger_rows(end));
+  if (!recorder.broken_off()) put_ledger(json, metrics.heat_ledger_rows(end));
   return json;
 }
 
@@ -169,7 +170,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const RunRe
   if (const std::string limiting = simulation.limiting_particle(); !limiting.empty())
     json["limiting_particle"] = limiting;
   json["energy"] = energy(simulation, metrics, recorder);
-  if (experiment.has_temperature()) json["heat"] = heat(metrics, end);
+  if (experiment.has_temperature()) json["heat"] = heat(metrics, recorder);
   // A ratio of roundings says nothing: spin counts against mass, speed and size of the domain.
   const double size = experiment.grid.upper[0] - experiment.grid.lower[0];
   const double scale_of_spin = start.mass * start.largest_speed * size;

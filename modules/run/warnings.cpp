@@ -66,7 +66,8 @@ std::string images(const Evidence& run) {
   const auto any = [&](auto is) {
     return std::any_of(std::begin(faces), std::end(faces), [&](auto& sides) { return is(sides[0]) || is(sides[1]); });
   };
-  if (!run.simulation.plan().has_heat_ledger() || any([](auto& face) { return holds_temperature(face); })) return "";
+  if (!run.simulation.plan().has_heat_ledger() || run.rows.broken_off()) return "";
+  if (any([](auto& face) { return holds_temperature(face); })) return "";
   if (!any([](auto& face) { return face.thermal.exchange == HeatExchange::convection; })) return "";
   const HeatLedger& heat = run.simulation.backend().heat_ledger();
   const double share = (heat.scatter + heat.images + heat.gather) / std::abs(heat.convection);

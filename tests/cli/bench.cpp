@@ -110,6 +110,16 @@ TEST_CASE("bench --quick measures every section", "[bench]") {
       CHECK(is_rate(*row));
       CHECK(is_rate(*row, "over_best"));
     }
+  // What is counted and not timed does not depend on the machine: the page has the same.
+  const std::string tables = slurp(fs::path(MPM_SOURCE_DIR) / "docs/benchmarks/tables.md");
+  CHECK(sections["required"]["required"].size() >= 12);
+  for (const Json& row : sections["required"]["required"]) {
+    std::string cells = "| " + row["scene"].get<std::string>() + " |";
+    for (const char* key : {"bytes_per_particle", "bytes_per_node", "passes", "calls"})
+      cells += " " + std::to_string(row[key].get<long>()) + " |";
+    INFO(cells << " (mpm bench required; docs/benchmarks/tables.md)");
+    CHECK(has(tables, cells));
+  }
   for (const char* section : {"standard", "options", "growth", "busy"})
     for (const Json& target : sections[section]["targets"]) {
       INFO(target.dump());

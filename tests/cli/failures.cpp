@@ -88,6 +88,30 @@ TEST_CASE("3: an inverted particle") {
   }
 }
 
+// The particle that inverts takes part in the step's ledger and strain before anyone looks at it. What the last rows of the
+// run hold is told, and no sum with a part of the step that failed.
+TEST_CASE("3: no loss and no ledger are told of a step that failed on its way") {
+  const Folder folder;
+  const std::string lesson = (fs::path(MPM_SOURCE_DIR) / "experiments/lessons/spinning_disc_apic.json").string();
+  const Result result =
+      call(folder, {"run", lesson, "--set", "/shape/type=linear", "--set", "/figures=[]", "--set", "/output/frames=0",
+                    "--set", R"(/limits={"unexplained_loss": 0.1})", "--out", "run"});
+  INFO(result.err);
+  REQUIRE(result.code == 3);
+  CHECK(has(result.err, "inverted"));
+  CHECK_FALSE(has(result.err, "of the energy"));
+  const Json summary = json_in(folder / "run/summary.json"), &energy = summary["energy"];
+  CHECK(std::abs(energy["total"]["final_over_initial"].get<double>() - 1) < 0.01);  // of the rows that are whole
+  for (const char* part : {"ledger", "books"}) CHECK_FALSE(energy.contains(part));
+  for (const char* loss : {"numerical_loss", "unexplained_loss"}) CHECK_FALSE(energy["total"].contains(loss));
+  CHECK(summary["flags"].empty());
+  bool found = false;
+  for (const Json& limit : summary["limits"])
+    if (limit["metric"] == "energy.total.unexplained_loss")
+      found = limit["not_judged"] == "not recorded: the last step failed";
+  CHECK(found);
+}
+
 TEST_CASE("3: a particle that leaves the domain") {
   Json scene = ball();
   scene["grid"]["boundaries"]["all"] = "free";

@@ -180,3 +180,18 @@ TEST_CASE("every number of the pages of studies is one of a figure, or given", "
   CHECK(pages > 0);
   CHECK(numbers > 10 * pages);
 }
+
+TEST_CASE("beside the command of a study stands how many runs it has", "[docs]") {
+  const std::regex call("mpm study experiments/([a-z0-9_/]+)\\.json[^#\n]*# ([0-9]+) (?:runs|combinations)");
+  int calls = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(MPM_SOURCE_DIR "/docs")) {
+    if (entry.path().extension() != ".md") continue;
+    const std::string page = support::read_file(entry.path());
+    for (std::sregex_iterator match(page.begin(), page.end(), call), end; match != end; ++match) {
+      INFO(entry.path().filename() << ": " << match->str());
+      CHECK(runs_of((*match)[1]) == std::stod((*match)[2]));
+      ++calls;
+    }
+  }
+  CHECK(calls >= 12);
+}

@@ -1,0 +1,137 @@
+// docs/benchmarks/index.md says what docs/benchmarks/tables.md holds: a bench that is run anew cannot leave the words behind.
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/files.hpp"
+#include "support/page.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+using Cells = std::vector<std::string>;
+
+/// The table below the first heading of tables.md that begins with these words, its header first.
+std::vector<Cells> table(const std::string& heading) {
+  std::istringstream page(support::read_file(MPM_SOURCE_DIR "/docs/benchmarks/tables.md"));
+  std::vector<Cells> rows;
+  bool below = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("#")) {
+      if (below) break;
+      below = line.starts_with("### " + heading);
+    }
+    if (!below || !line.starts_with("| ")) continue;
+    Cells cells;
+    for (std::size_t from = 2, bar; (bar = line.find(" |", from)) != std::string::npos; from = bar + 3)
+      cells.push_back(line.substr(from, bar - from));
+    rows.push_back(cells);
+  }
+  if (rows.size() < 2) throw std::runtime_error("docs/benchmarks/tables.md has no table below " + heading);
+  return rows;
+}
+
+/// The numbers of one column in the rows that begin with these cells ("*": any cell).
+std::vector<double> numbers(const std::string& heading, const Cells& first, const std::string& column) {
+  const std::vector<Cells> rows = table(heading);
+  const auto at = std::find(rows[0].begin(), rows[0].end(), column) - rows[0].begin();
+  std::vector<double> found;
+  for (auto row = rows.begin() + 1; row != rows.end(); ++row) {
+    const auto same = [](const std::string& wanted, const std::string& cell) {
+      return wanted == "*" || wanted == cell;
+    };
+    if (std::equal(first.begin(), first.end(), row->begin(), same) && row->at(at) != "-")
+      found.push_back(std::stod(row->at(at)));
+  }
+  if (found.empty()) throw std::runtime_error("no number below " + heading + " in the column " + column);
+  return found;
+}
+double number(const std::string& heading, const Cells& first, const std::string& column) {
+  const auto found = numbers(heading, first, column);
+  if (found.size() != 1) throw std::runtime_error("several numbers below " + heading + " in the column " + column);
+  return found[0];
+}
+double cube(const std::string& motion, const std::string& precision, int threads, const std::string& column) {
+  return number("Standard scenes", {"cube_3d", motion, "neo_hookean", precision, std::to_string(threads)}, column);
+}
+double cost(const std::string& option) {
+  return number("What an option costs", {"cube_3d", option}, "cost / standard");
+}
+
+}  // namespace
+
+TEST_CASE("the numbers of the benchmarks' page are those of its tables", "[docs]") {
+  Page page("docs/benchmarks/index.md");
+  page.keep_from_to("What they say", "A target that is missed");
+  const auto says = [&](const std::string& sentence, const std::vector<double>& values) {
+    INFO(sentence);
+    const auto printed = page.read(sentence);
+    REQUIRE(printed.size() == values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) CHECK(values[k] == printed[k].rounded());
+    page.add_measured(sentence);
+  };
+  const std::string rate = "rate (M/s)", baseline = "/ baseline", rest = "/ rest", peak = "of FMA peak (%)",
+                    one = "/ 1 thread";
+  says("| one thread, float: million particle-steps a second; over the baseline | #; # | #; # | # |",
+       {cube("rest", "float", 1, rate), cube("rest", "float", 1, baseline), cube("deforming", "float", 1, rate),
+        cube("deforming", "float", 1, baseline), cube("deforming", "float", 1, rest)});
+  says("| one thread, double | #; # | #; # | # |",
+       {cube("rest", "double", 1, rate), cube("rest", "double", 1, baseline), cube("deforming", "double", 1, rate),
+        cube("deforming", "double", 1, baseline), cube("deforming", "double", 1, rest)});
+  says("| share of the multiply-add peak, float; double | # %; # % | # %; # % |",
+       {cube("rest", "float", 1, peak), cube("rest", "double", 1, peak), cube("deforming", "float", 1, peak),
+        cube("deforming", "double", 1, peak)});
+  says("| two threads over one, float; double | #; # | #; # |",
+       {cube("rest", "float", 2, one), cube("rest", "double", 2, one), cube("deforming", "float", 2, one),
+        cube("deforming", "double", 2, one)});
+  says("with two threads: # million at rest (# GFLOP/s), # deforming",
+       {cube("rest", "float", 2, rate), cube("rest", "float", 2, "GFLOP/s"), cube("deforming", "float", 2, rate)});
+
+  const auto lines = numbers("Standard scenes", {"cube_3d"}, "line (ns)");
+  says("(column \"line\": # to # ns in the cube's rows)",
+       {*std::min_element(lines.begin(), lines.end()), *std::max_element(lines.begin(), lines.end())});
+
+  const std::string parts = "Where the time goes", deforming = "cube_3d deforming float";
+  double whole = 0;
+  const std::vector<Cells> rows = table(parts);
+  for (auto row = rows.begin() + 1; row != rows.end(); ++row)
+    if (row->front().starts_with("pass ")) whole += number(parts, {row->front()}, deforming);
+  says("sorting takes # ns of #, and the scatter # in place of #,",
+       {number(parts, {"pass sort"}, deforming), whole, number(parts, {"phase scatter"}, deforming),
+        number(parts, {"phase scatter"}, "cube_3d rest float")});
+
+  const auto plugins = numbers("Plugins against", {"*"}, "time with plugins / compiled in");
+  says("Plugins cost at most # %", {100 * (*std::max_element(plugins.begin(), plugins.end()) - 1)});
+  says("Gradients cost # times MLS", {cost("apic")});
+  says("cubic B-splines # times quadratic ones, CPDI # times (# million a second), PolyPIC # times",
+       {cost("bspline_cubic"), cost("cpdi"), number("What an option costs", {"cube_3d", "cpdi"}, rate),
+        cost("polypic")});
+  says("The ledger costs # % where it is entered in every eighth step (`ledger_every`), and # % where",
+       {100 * (cost("ledger of every 8th step") - 1), 100 * (cost("ledger") - 1)});
+
+  const std::string growth = "Growth (3-D", memory = "peak / state";
+  CHECK(number(growth, {"1e7 particles"}, memory) < number(growth, {"1e6 particles"}, memory));
+  says("takes less memory than with 10⁶, and # times the time of a step; with 10⁵ it takes # times the time",
+       {number(growth, {"1e7 particles"}, "cost / 1e6"), number(growth, {"1e5 particles"}, "cost / 1e6")});
+  page.add_given({"(23 November 2026, two cores of a virtual machine",
+                  "with AMD's Zen 5 and AVX-512, no GPU; float, 3-D,", "The aim of 90 million",
+                  "With 10⁷ particles a particle"});
+  CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
+}
+
+TEST_CASE("the page of decisions has the instructions of the ledger that the benchmarks' tables have", "[docs]") {
+  const Page page("docs/design/decisions.md");
+  const auto instructions = [](const std::string& scene) {
+    return number("What is paid", {scene}, "instructions a particle-step");
+  };
+  const auto printed = page.read("(`./mpm bench required`: # beside # a particle)");
+  CHECK(instructions("+ ledger") == printed[0].rounded());
+  CHECK(instructions("base") == printed[1].rounded());
+  CHECK(instructions("+ ledger, not due") == page.read("(# in a step that is not due)").front().rounded());
+}
