@@ -7,6 +7,7 @@
 #include <iostream>
 #include <new>
 
+#include "backends/device/device_plan.hpp"
 #include "backends/device/program.hpp"
 #include "experiment/diagnostics.hpp"
 #include "metrics/exact.hpp"
@@ -36,6 +37,16 @@ void add_experiment(CLI::App& verb, RunOptions& options) {
   verb.add_option("--backend", options.backend, "reference, cpu or cuda, in place of the file's");
 }
 
+void add_device(CLI::App& verb, std::string& device) {
+  verb.add_option(
+          "--device", device,
+          "of backend cuda: the number of a device (mpm list --devices), or host, which runs the device's kernels "
+          "on the processor; default what MPM_DEVICE says, else 0")
+      ->check([](const std::string& word) {
+        return device::names_device(word) ? "" : "expected \"host\" or the number of a device, got \"" + word + "\"";
+      });
+}
+
 void add_bench(CLI::App& verb, BenchOptions& options, std::string& point) {
   verb.add_option("SECTION", options.sections, "what to measure; default all");
   verb.footer("Sections:\n" + bench_section_list() +
@@ -50,6 +61,12 @@ void add_bench(CLI::App& verb, BenchOptions& options, std::string& point) {
                 "rates of one thread by the processor's time, not the wall's: for a busy machine");
   verb.add_option("--out", options.out, "folder for bench.json, tables as CSV, report.md and the roofline figure");
   verb.add_flag("--strict", options.strict, "exit code 4 when a target is missed");
+  verb.add_option("--backend", options.backend, "cpu (the default), or cuda: the standard scenes on a device")
+      ->check(CLI::IsMember({"cpu", "cuda"}));
+  add_device(verb, options.device);
+  verb.add_flag(
+      "--predict", options.predict,
+      "of backend cuda: counts bytes and operations, and predicts from them and from occupancy; needs no device");
   verb.add_option("--point", point, "of the program itself: one point of the section growth")->group("");
 }
 
@@ -204,7 +221,7 @@ int run_command_line(int argc, char** argv) {
   std::filesystem::path specification, figure_out;
   std::string kind;
   std::filesystem::path plugin_file, plugin_folder;
-  double seconds = 60;
+  double seconds = 120;
   bool verbose = false;
   int code = done;
 
@@ -218,16 +235,11 @@ int run_command_line(int argc, char** argv) {
           "of the cpu backend, at most one a processor; default all processors that it may use; results do not depend "
           "on it")
       ->check(CLI::Range(1, 1024));
-  run_verb
-      ->add_option("--device", options.device,
-                   "of backend cuda: the number of a device (mpm list --devices), or host, which runs the device's "
-                   "kernels on the processor; default what MPM_DEVICE says, else 0")
-      ->check([](const std::string& word) {
-        return device::names_device(word) ? "" : "expected \"host\" or the number of a device, got \"" + word + "\"";
-      });
+  add_device(*run_verb, options.device);
   run_verb->add_flag("--resume", options.resume,
                      "goes on with the unfinished run in the run folder, from its last checkpoint, bit for bit; with "
-                     "the same FILE, --set and --backend");
+                     "the same FILE and --set. With another --backend it goes on from the same state, with that "
+                     "backend's rounding");
   auto* replace = run_verb->add_flag(
       "--replace", options.replace,
       "replaces whatever run the run folder holds. Without it a finished run of the same experiment is replaced, "
@@ -248,7 +260,20 @@ int run_command_line(int argc, char** argv) {
   std::string graph;
   plan_verb->add_option("--graph", graph, "writes the step as a picture (SVG): operators, fields, loops, and who asked")
       ->type_name("OUT.svg");
-  plan_verb->callback([&] { code = guarded([&] { return plan(options, json, graph); }); });
+  std::string architecture = device::multiprocessors().back().architecture;
+  plan_verb
+      ->add_option(
+          "--architecture", architecture,
+          "of backend cuda: what its kernels are compiled for to see what they take (sm_80 or sm_90, by default "
+          "sm_90); nothing is run")
+      ->check([](const std::string& word) {
+        try {
+          return device::multiprocessor(word), std::string();
+        } catch (const std::invalid_argument& error) {
+          return std::string(error.what());
+        }
+      });
+  plan_verb->callback([&] { code = guarded([&] { return plan(options, json, graph, architecture); }); });
 
   auto* list_verb = app.add_subcommand("list", "every plugin found, by kind");
   list_verb->add_flag("--json", json, "as JSON");
@@ -305,8 +330,12 @@ int run_command_line(int argc, char** argv) {
   std::string point;
   auto* bench_verb = app.add_subcommand("bench", "measure the speed on the standard scenes (docs/benchmarks)");
   add_bench(*bench_verb, bench_options, point);
-  bench_verb->callback(
-      [&] { code = guarded([&] { return point.empty() ? bench(bench_options) : bench_point(point); }); });
+  bench_verb->callback([&] {
+    code = guarded([&] {
+      if (!point.empty()) return bench_point(point);
+      return bench_options.backend == "cuda" ? bench_device(bench_options) : bench(bench_options);
+    });
+  });
 
   auto* new_verb = app.add_subcommand("new", "write a project for a plugin of your own, with an experiment and a test");
   new_verb->add_option("KIND", kind, "shape, transfer, filter, contact or material")->required();
@@ -317,11 +346,15 @@ int run_command_line(int argc, char** argv) {
 
   auto* test_verb = app.add_subcommand("test-plugin", "run the conformance suite on a plugin's file");
   test_verb->add_option("FILE", plugin_file, "the plugin, KIND_ID.so")->required();
-  test_verb->add_option("--seconds", seconds, "time after which a plugin counts as hung; default 60")
+  test_verb->add_option("--seconds", seconds, "time after which a plugin counts as hung; default 120")
       ->check(CLI::Range(0.1, 86400.0));
   test_verb->add_flag("--verbose", verbose, "every check, not only those that failed");
   test_verb->add_flag("--json", json, "as JSON; a number that is not finite is null");
-  test_verb->callback([&] { code = guarded([&] { return test_plugin(plugin_file, seconds, verbose, json); }); });
+  bool no_device = false;
+  test_verb->add_flag("--no-device", no_device,
+                      "leaves out the functor's text in the device's kernels, which a compiler of the system compiles");
+  test_verb->callback(
+      [&] { code = guarded([&] { return test_plugin(plugin_file, seconds, verbose, json, !no_device); }); });
 
   // A limit on file size is then an error of writing, with its message, like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);

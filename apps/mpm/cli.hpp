@@ -42,7 +42,9 @@ struct BenchOptions {
   int threads = 0;              ///< threads of the parallel contenders; 0: all processors
   bool processor_time = false;  ///< contenders of one thread by the processor's time: for a busy machine
   std::filesystem::path out;
-  std::string command;  ///< command as typed
+  std::string command;                  ///< command as typed
+  std::string backend = "cpu", device;  ///< device: of backend "cuda", as in RunOptions
+  bool predict = false;                 ///< of backend "cuda": count and predict alone
 };
 
 struct StudyOptions {
@@ -79,7 +81,8 @@ int run(const RunOptions& options);
 int check(const RunOptions& options);
 /// Throws InputError where the file is a study, with the verb that takes it in place of `verb`.
 void refuse_study(const std::filesystem::path& file, const std::string& verb);
-int plan(const RunOptions& options, bool json, const std::string& graph);
+/// `architecture` is what the kernels of backend "cuda" are compiled for, "sm_90".
+int plan(const RunOptions& options, bool json, const std::string& graph, const std::string& architecture);
 int list(bool json);
 /// Prints the devices of backend "cuda", and what is missing for one.
 int list_devices();
@@ -91,10 +94,14 @@ int describe(const std::string& id, bool json);
 int schema();
 /// Writes a project for a plugin of `kind` into `folder`, which must be empty or missing. Throws InputError.
 int new_plugin(const std::string& kind, const std::string& id, const std::filesystem::path& folder);
-/// Runs the conformance suite on a plugin's file in a process of its own, for at most `seconds`.
-int test_plugin(const std::filesystem::path& file, double seconds, bool verbose, bool json);
+/// Runs the conformance suite on a plugin's file in a process of its own, for at most `seconds`; `with_device` also its
+/// functor in the device's kernels.
+int test_plugin(const std::filesystem::path& file, double seconds, bool verbose, bool json, bool with_device);
 /// Measures speed on the standard scenes. Throws InputError for a section that does not exist.
 int bench(const BenchOptions& options);
+/// The same for backend "cuda": counts of the standard scenes, what follows for some GPUs, and, unless
+/// options.predict, times. Throws DeviceError.
+int bench_device(const BenchOptions& options);
 /// The sections, one line each, for the help.
 std::string bench_section_list();
 /// Runs the child process of a point of the section `growth`: answers questions on standard input.

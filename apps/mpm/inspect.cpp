@@ -9,6 +9,7 @@
 
 #include "backends/device/cache.hpp"
 #include "backends/device/device.hpp"
+#include "backends/device/device_plan.hpp"
 #include "backends/device/program.hpp"
 #include "backends/make_backend.hpp"
 #include "experiment/diagnostics.hpp"
@@ -216,7 +217,7 @@ int check(const RunOptions& options) {
   return done;
 }
 
-int plan(const RunOptions& options, bool json, const std::string& graph) {
+int plan(const RunOptions& options, bool json, const std::string& graph, const std::string& architecture) {
   refuse_study(options.file, "plan");
   const Registry registry = load_registry();
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
@@ -225,10 +226,18 @@ int plan(const RunOptions& options, bool json, const std::string& graph) {
     const std::string title = experiment.title.empty() ? options.file.stem().string() : experiment.title;
     support::write_atomically(graph, plan.to_svg("One step of: " + title));
     std::cout << graph << "\n";
-  } else if (json)
-    std::cout << plan.to_json().dump(2) << "\n";
-  else
-    std::cout << plan.to_text();
+    return done;
+  }
+  std::optional<device::DevicePlan> on_device;
+  if (experiment.backend == "cuda")
+    on_device = device::device_plan(experiment, plan, device::multiprocessor(architecture));
+  if (json) {
+    Json document = plan.to_json();
+    if (on_device) document["device"] = on_device->to_json();
+    std::cout << document.dump(2) << "\n";
+  } else {
+    std::cout << plan.to_text() << (on_device ? on_device->to_text() : "");
+  }
   return done;
 }
 

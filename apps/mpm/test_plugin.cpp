@@ -16,6 +16,7 @@
 #include "conformance/conformance.hpp"
 #include "experiment/diagnostics.hpp"
 #include "mpm/cli.hpp"
+#include "mpm/test_plugin_device.hpp"
 #include "support/file_descriptor.hpp"
 #include "support/files.hpp"
 
@@ -42,7 +43,7 @@ Json message_of(const ConformanceFinding& finding) {
           {"bound", finding.bound}, {"detail", finding.detail}, {"text", to_string(finding)}};
 }
 
-void load_and_check(const fs::path& file, int pipe) {
+void load_and_check(const fs::path& file, bool with_device, int pipe) {
   say(pipe, {{"running", "loading the file"}});
   Registry registry;
   try {
@@ -58,17 +59,22 @@ void load_and_check(const fs::path& file, int pipe) {
            say(pipe, {{"running", group}});
          }))
       say(pipe, {{"finding", message_of(finding)}});
+    if (with_device)
+      for (const ConformanceFinding& finding : check_plugin_on_device(plugin, [&](std::string_view group) {
+             say(pipe, {{"running", group}});
+           }))
+        say(pipe, {{"finding", message_of(finding)}});
   }
   say(pipe, {{"done", true}});
 }
 
-[[noreturn]] void child(const fs::path& file, int pipe) {
+[[noreturn]] void child(const fs::path& file, bool with_device, int pipe) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // an endless loop does not outlive the program
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);  // what a plugin prints is not part of the result
   try {
-    load_and_check(file, pipe);
+    load_and_check(file, with_device, pipe);
   } catch (const std::exception& error) {
     say(pipe, {{"threw", error.what()}});
   } catch (...) {
@@ -136,7 +142,7 @@ std::string place(const Verdict& verdict) {
   return verdict.plugins.empty() ? verdict.running : verdict.plugins.back().name() + ": " + verdict.running;
 }
 
-Verdict watch(const fs::path& file, double seconds) {
+Verdict watch(const fs::path& file, double seconds, bool with_device) {
   int ends[2];
   if (::pipe(ends) != 0) throw support::MachineError::from_errno("open a pipe for", file, errno);
   const support::FileDescriptor reading(ends[0]);
@@ -144,7 +150,7 @@ Verdict watch(const fs::path& file, double seconds) {
   std::cout.flush();
   const pid_t id = ::fork();
   if (id < 0) throw support::MachineError::from_errno("start a process for", file, errno);
-  if (id == 0) child(file, ends[1]);
+  if (id == 0) child(file, with_device, ends[1]);
   writing.close();
 
   Verdict verdict;
@@ -210,10 +216,10 @@ void print(const Verdict& verdict, bool verbose) {
 
 }  // namespace
 
-int test_plugin(const fs::path& file, double seconds, bool verbose, bool json) {
+int test_plugin(const fs::path& file, double seconds, bool verbose, bool json, bool with_device) {
   std::error_code error;
   if (!fs::exists(file, error)) throw PluginError("plugin " + file.string() + ": there is no such file");
-  const Verdict verdict = watch(file, seconds);
+  const Verdict verdict = watch(file, seconds, with_device);
   if (json) std::cout << json_of(file, verdict).dump(2) << "\n";
   if (verdict.outcome == "refused") {
     std::cerr << verdict.message << "\n";

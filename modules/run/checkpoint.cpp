@@ -34,9 +34,14 @@ Json as_written(const Json& value) {
   return Json::parse(value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-Json without_free_keys(const Json& experiment) {
+/// What may change beside these when a run is resumed: the state is the same, and each backend has its own rounding.
+constexpr const char* free_when_resumed = "/backend";
+
+Json without_free_keys(const Json& experiment, bool resumed) {
   Json kept = as_written(experiment);
-  for (const char* key : free_keys) {
+  std::vector<const char*> keys(std::begin(free_keys), std::end(free_keys));
+  if (resumed) keys.push_back(free_when_resumed);
+  for (const char* key : keys) {
     const Json::json_pointer pointer(key);
     if (!kept.contains(pointer)) continue;
     Json& parent = kept.at(pointer.parent_pointer());
@@ -150,8 +155,8 @@ Json identity_of(const Experiment& experiment) {
   return identity;
 }
 
-std::optional<ExperimentDifference> difference_to(const Experiment& experiment, const Json& recorded) {
-  const Json now = without_free_keys(experiment.resolved), then = without_free_keys(recorded);
+std::optional<ExperimentDifference> difference_to(const Experiment& experiment, const Json& recorded, bool resumed) {
+  const Json now = without_free_keys(experiment.resolved, resumed), then = without_free_keys(recorded, resumed);
   const auto found = output::differences(now, then);
   if (found.empty()) return std::nullopt;
   return ExperimentDifference{found.front().pointer, output::short_text(found.front().first),
@@ -159,11 +164,11 @@ std::optional<ExperimentDifference> difference_to(const Experiment& experiment, 
 }
 
 void refuse_other_experiment(const Experiment& experiment, const Json& recorded, const output::RunFolder& folder) {
-  const auto difference = difference_to(experiment, recorded);
+  const auto difference = difference_to(experiment, recorded, /*resumed=*/true);
   if (!difference) return;
   const std::string message = "is " + difference->now + ", and " + difference->then + " in the run in " +
                               folder.root().string() +
-                              ": a run is resumed with the experiment, --set and --backend that it was started with (" +
+                              ": a run is resumed with the experiment and --set that it was started with (" +
                               (folder.root() / "experiment.json").string() + " holds them all), " + start_anew;
   Problem problem{experiment.where(difference->pointer), 0, 0, difference->pointer, message};
   for (const auto& [known, place] : experiment.positions)

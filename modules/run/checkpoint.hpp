@@ -26,8 +26,9 @@ struct ExperimentDifference {
   std::string pointer, now, then;
 };
 /// Nothing where they are the same. Titles, figures, expectations, the film, max_steps and the cadence of checkpoints
-/// may differ: they change no number.
-std::optional<ExperimentDifference> difference_to(const Experiment& experiment, const nlohmann::ordered_json& recorded);
+/// may differ: they change no number. Where the run is `resumed` the backend may differ too.
+std::optional<ExperimentDifference> difference_to(const Experiment& experiment, const nlohmann::ordered_json& recorded,
+                                                  bool resumed = false);
 
 /// Refuses a run whose experiment is another one than `recorded` (a resolved experiment), naming the first difference
 /// as JSON pointer (difference_to). Throws InputError.

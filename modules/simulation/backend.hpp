@@ -356,8 +356,9 @@ class Backend {
   /// next step then scatters as usual.
   virtual bool scattered() const = 0;
 
-  /// Saves everything that a later step depends on, in the backend's own order and precision, so that a restored one
-  /// goes on bit for bit. `restore` wants a backend of the same experiment, plan and seeds, and throws ArchiveError.
+  /// Saves everything that a later step depends on (simulation/saved_state.hpp). `restore` wants a backend of the same
+  /// experiment and seeds, and throws ArchiveError. The backend that has saved it goes on bit for bit, another one with
+  /// its own rounding.
   virtual void save(ArchiveWriter& archive) const = 0;
   virtual void restore(ArchiveReader& archive) = 0;
 

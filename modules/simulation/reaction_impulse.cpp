@@ -123,11 +123,4 @@ void ReactionImpulse::give_particles(int support, const GivenToGripped& given, d
   }
 }
 
-void ReactionImpulse::save(ArchiveWriter& archive) const {
-  if (asked()) archive.put("reactions", record_);
-}
-void ReactionImpulse::restore(ArchiveReader& archive) {
-  if (asked()) archive.get("reactions", record_.data(), record_.size());
-}
-
 }  // namespace mpm

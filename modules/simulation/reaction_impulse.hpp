@@ -95,8 +95,8 @@ class ReactionImpulse {
   void give_particles(int support, const GivenToGripped& given, double dt);
 
   const std::vector<Reaction>& reactions() const { return record_; }
-  void save(ArchiveWriter& archive) const;
-  void restore(ArchiveReader& archive);
+  /// Goes on from a saved record, of as many supports.
+  void resume(std::vector<Reaction> record) { record_ = std::move(record); }
 
  private:
   /// Takes `from` away at the ghost and gives `to` at the mirror; the other way round with `outward`.

@@ -3,6 +3,7 @@
 #include "cli/program.hpp"
 
 #include "backends/device/drivers/cuda.hpp"
+#include "backends/device/drivers/nvrtc.hpp"
 #include "support/csv.hpp"
 
 using namespace mpm::test;
@@ -79,8 +80,53 @@ TEST_CASE("float and backend cuda need no device to be checked and planned") {
     const Result result = with_cache(folder, {verb, "scene.json", "--backend", "cuda", "--set", "/precision=float"});
     INFO(result.err);
     CHECK(result.code == 0);
+    if (verb == "check") CHECK(!fs::exists(folder / "cache"));
   }
-  CHECK(!fs::exists(folder / "cache"));
+}
+
+TEST_CASE("plan shows what a scene takes of a device, or what is missing to know it") {
+  const Folder folder;
+  spill(folder / "scene.json", small_ball().dump());
+  const Result plan = with_cache(folder, {"plan", "scene.json", "--backend", "cuda", "--architecture", "sm_80"});
+  INFO(plan.out);
+  CHECK(plan.code == 0);
+  CHECK(has(plan.out, "On a device: 2-D "));
+  CHECK(has(plan.out, " bytes a particle\n"));
+  CHECK(has(plan.out, "    stress                              4     32 B   within a step\n"));
+  CHECK(has(plan.out, " kernels"));
+  const Json json =
+      Json::parse(with_cache(folder, {"plan", "scene.json", "--backend", "cuda", "--json"}).out)["device"];
+  double bytes = 0;
+  for (const Json& field : json["memory"]) bytes += field["body"] == 0 ? field["bytes"].get<double>() : 0;
+  CHECK(json["bodies"][0]["bytes_per_particle"] == bytes);
+  std::string why;
+  if (mpm::device::Nvrtc::find(why)) {
+    CHECK(has(plan.out, "compiles them for sm_80 (nothing was run)"));
+    CHECK(json["architecture"] == "sm_90");
+    CHECK(json["kernels"].size() == json["kernel_count"]);
+  } else {
+    CHECK(has(plan.out, "what they take is not known: NVRTC was not found"));
+    CHECK(has(json["missing"], "install"));
+  }
+  CHECK(!has(with_cache(folder, {"plan", "scene.json"}).out, "On a device"));
+  const Result other = with_cache(folder, {"plan", "scene.json", "--backend", "cuda", "--architecture", "sm_75"});
+  CHECK(other.code == 2);
+  CHECK(has(other.err, "there are sm_80, sm_90"));
+}
+
+TEST_CASE("bench on a device says what it cannot do") {
+  const Folder folder;
+  const auto refused = [&](const Words& words, int code, const std::string& part) {
+    const Result result = with_cache(folder, words);
+    INFO(result.err);
+    CHECK(result.code == code);
+    CHECK(has(result.err, part));
+  };
+  refused({"bench", "--backend", "cuda", "--device", "host"}, 2, "add --quick, or --predict for the counts");
+  refused({"bench", "standard", "--backend", "cuda", "--device", "host"}, 2, "backend cuda has no sections");
+  refused({"bench", "--backend", "gpu"}, 2, "--backend");
+  std::string why;
+  if (!mpm::device::cuda_driver(why)) refused({"bench", "--backend", "cuda"}, 5, "needs NVIDIA's driver");
 }
 
 TEST_CASE("5: a device that is not there") {

@@ -266,7 +266,7 @@ TEST_CASE("another number of threads goes on with the same bits") {
   scene["grid"]["cell_size"] = 0.02;
   for (Json& body : scene["bodies"]) body["particles_per_cell_axis"] = 4;
   scene["solver"] = {{"time_step", 0.001}, {"end_time", 0.03}};
-  scene["output"].erase("frames");
+  scene["output"].erase("frames"), scene["output"].erase("vtk");
   scene["output"].erase("particles");
   scene["output"]["vtk"] = false;
   spill(folder / "scene.json", scene.dump(1));
@@ -409,6 +409,36 @@ TEST_CASE("a checkpoint of another program, plugin or experiment is refused by n
                  {"is whole but holds another state than this program keeps"});
 }
 
+TEST_CASE("a run goes on with another backend from the same state") {
+  const Folder folder;
+  Json scene = meeting();
+  scene["output"].erase("frames"), scene["output"].erase("vtk");
+  spill(folder / "scene.json", scene.dump(1));
+  const auto end_of = [&](const std::string& place) {
+    return json_in(folder / (place + "/run/summary.json"))["energy"]["total"]["final"].get<double>();
+  };
+  must_end_with(0, run_in(folder, "whole"));
+  const int steps = json_in(folder / "whole/run/summary.json")["steps"];
+  const Words cuda{"--resume", "--backend", "cuda", "--device", "host"}, cpu{"--resume", "--backend", "cpu"},
+      reference{"--resume", "--backend", "reference"};
+  run_until(folder, "parts", steps / 4);
+  run_until(folder, "parts", steps / 2, cuda);
+  run_until(folder, "parts", 3 * steps / 4, reference);
+  must_end_with(0, run_in(folder, "parts", cpu));
+  CHECK(json_in(folder / "parts/run/summary.json")["performance"]["resumed_from_step"] ==
+        Json{steps / 4, steps / 2, 3 * steps / 4});
+  CHECK(std::abs(end_of("parts") / end_of("whole") - 1) < 1e-11);
+  CHECK(files_below(folder / "parts/run") == files_below(folder / "whole/run"));
+  const Json manifest = json_in(folder / "parts/run/manifest.json");
+  REQUIRE(manifest["resumed"].size() == 3);
+  CHECK(has(manifest["resumed"][0]["command"], "--backend cuda --device host"));
+
+  // Without --resume it is another run: what it would replace has other numbers.
+  const Result anew = run_in(folder, "parts", {"--backend", "reference"});
+  CHECK(anew.code == 2);
+  CHECK(has(anew.err, "/backend is \"cpu\" there, and \"reference\" here"));
+}
+
 TEST_CASE("another experiment is refused, with the first difference") {
   const Folder folder;
   spill(folder / "scene.json", meeting().dump(1));
@@ -420,7 +450,6 @@ TEST_CASE("another experiment is refused, with the first difference") {
   refused_with({"--set", "/bodies/1/velocity=[-2, -1]"}, {"/bodies/1/velocity/0: is -2", "and -1", "--set"});
   refused_with({"--set", "/output/metrics_every=4"}, {"/output/metrics_every: is 4, and 3 in the run in"});
   refused_with({"--set", "/precision=float"}, {"/precision: is \"float\", and \"double\""});
-  refused_with({"--backend", "reference"}, {"/backend: is \"reference\", and \"cpu\""});
   Json changed = meeting();
   changed["contact"]["friction"] = 0.4;
   spill(folder / "scene.json", changed.dump(1));

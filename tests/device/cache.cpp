@@ -2,12 +2,17 @@
 
 #include "backends/device/cache.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
 #include <cstdlib>
 #include <fstream>
 
 #include "backends/device/program.hpp"
 #include "device/device_support.hpp"
 #include "support/files.hpp"
+#include "support/hash.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace mpm;
@@ -40,6 +45,46 @@ struct Refusing final : device::Compiler {
     return device::HostCompiler{}.compile(composition);
   }
 };
+
+/// A compiler of large programs, whose bytes take a while to be written.
+struct Large final : device::Compiler {
+  std::string identity(const std::string&) const override { return "large"; }
+  std::string compile(const device::Composition&, const std::string&) const override {
+    std::string program(8 << 20, '\0');
+    for (std::size_t k = 0; k < program.size(); ++k) program[k] = static_cast<char>(k * k >> 7);
+    return program;
+  }
+};
+
+/// Runs `body` in so many processes, all of which begin at once, and calls look() here until they have ended; returns how
+/// many of them ended with code 0.
+template <class Body, class Look>
+int processes_at_once(int count, Body body, Look look) {
+  std::array<int, 2> gate{};
+  REQUIRE(pipe(gate.data()) == 0);
+  std::vector<pid_t> children;
+  for (int k = 0; k < count; ++k) {
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+      close(gate[1]);
+      char ignored = 0;
+      const bool opened = read(gate[0], &ignored, 1) == 0;  // the end of the pipe
+      _exit(opened && body() ? 0 : 1);
+    }
+    children.push_back(child);
+  }
+  close(gate[0]), close(gate[1]);
+  int succeeded = 0;
+  for (const pid_t child : children) {
+    int status = 0;
+    pid_t ended = 0;
+    while ((ended = waitpid(child, &status, WNOHANG)) == 0) look();
+    REQUIRE(ended == child);
+    succeeded += WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
+  return succeeded;
+}
 
 fs::path only_file_in(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -107,6 +152,36 @@ TEST_CASE("the cache drops what was used longest ago", "[device][cache]") {
   CHECK(!cache.find("large"));
   CHECK(cache.clear().programs == 2);
   CHECK(cache.contents().programs == 0);
+}
+
+TEST_CASE("several processes may fill one cache at once", "[device][cache]") {
+  const TemporaryFolder folder;
+  const CacheIn here(folder / "cache");
+  const device::Composition composition{"a scene", "text", "hash of text", {}, {}};
+  const Large compiler;
+  const std::string program = compiler.compile(composition, "");
+  constexpr int count = 8;
+  for (int round = 0; round < 3; ++round) {
+    fs::remove_all(folder / "cache");
+    bool whole = true;  // whenever an entry is there
+    const auto fill = [&] {
+      for (int k = 0; k < 4; ++k)
+        if (device::program_of(composition, compiler, "sm_90") != program) return false;
+      return true;
+    };
+    const auto look = [&] {
+      std::error_code gone;
+      for (const auto& entry : fs::directory_iterator(folder / "cache", gone))
+        if (entry.path().extension() == ".program")
+          whole = whole && fs::file_size(entry.path(), gone) == program.size() + 64;
+    };
+    CHECK(processes_at_once(count, fill, look) == count);
+    CHECK(whole);
+    const std::string kept = support::read_file(only_file_in(folder / "cache"));
+    CHECK(kept.size() == program.size() + 64);
+    CHECK(kept.substr(64) == program);
+    CHECK(kept.substr(0, 64) == support::sha256(program));
+  }
 }
 
 TEST_CASE("without a folder for it nothing is kept, and nothing fails", "[device][cache]") {

@@ -103,22 +103,28 @@ class Programs {
   std::map<std::string, std::string> images_;  ///< by the composition's hash
 };
 
-/// The way in which teams run on the host.
+/// The way in which teams run on the host: how many lanes they have, and in which order these are taken (HostDevice).
 struct TeamShape {
   int lanes = 32;
-  bool backwards = false;
+  unsigned order = upwards;
+
+  static constexpr unsigned upwards = 0, downwards = 1;
+  static constexpr unsigned shuffled(unsigned seed) { return 2 + seed % 2; }
 };
 
-/// The host's devices of these suites: number 0 runs lanes forwards, number 1 backwards.
+/// The host's devices of these suites: each takes lanes in the order of its number, the last two shuffled by a seed.
 inline void use_usual_devices() {
-  device::set_host_devices({{"host", 0, false}, {"host, backwards", 0, true}});
+  device::set_host_devices({{"host", 0, TeamShape::upwards},
+                            {"host, backwards", 0, TeamShape::downwards},
+                            {"host, shuffled", 0, 20},
+                            {"host, shuffled otherwise", 0, 311}});
 }
 
 inline device::DeviceSetup device_setup(const TeamShape& team = {}) {
   static std::once_flag once;
   std::call_once(once, use_usual_devices);
   return {
-      &device::host_driver(), team.backwards ? 1 : 0, team.lanes,
+      &device::host_driver(), static_cast<int>(team.order), team.lanes,
       [](const device::Composition& composition, const std::string&) { return Programs::shared().of(composition); }};
 }
 

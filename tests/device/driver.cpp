@@ -109,11 +109,13 @@ TEST_CASE("a launch that is handed an address of the host fails, and the device 
 }
 
 TEST_CASE("a run gives its memory back", "[device][driver]") {
+  const std::uint64_t left = device::bytes_left_on_host();
   {
     DeviceScene scene(usual_scene(), "double");
     CHECK(device::bytes_on_host(0) >= scene.simulation.backend().particle_bytes());
   }
   CHECK(device::bytes_on_host(0) == 0);
+  CHECK(device::bytes_left_on_host() == left);  // and it did so itself, not the end of the context
 }
 
 TEST_CASE("a run that does not fit on its device is refused before it begins", "[device][driver]") {
@@ -142,6 +144,7 @@ TEST_CASE("memory that runs out all the same is said with what is asked and free
 TEST_CASE("whichever function of the driver fails, a run stops with its name and gives its memory back",
           "[device][driver]") {
   CHECK(message_of_run().empty());
+  const std::uint64_t left = device::bytes_left_on_host();
   const std::vector<std::string> functions{"cuDeviceGetCount",     "cuDeviceGet",         "cuDeviceGetName",
                                            "cuDeviceGetAttribute", "cuDriverGetVersion",  "cuCtxSetCurrent",
                                            "cuMemGetInfo_v2",      "cuMemAlloc_v2",       "cuMemcpyHtoDAsync_v2",
@@ -157,6 +160,7 @@ TEST_CASE("whichever function of the driver fails, a run stops with its name and
       CHECK(has(message,
                 result == device::driver_launch_failed ? "CUDA_ERROR_LAUNCH_FAILED" : "CUDA_ERROR_NOT_INITIALIZED"));
       CHECK(device::bytes_on_host(0) == 0);
+      CHECK(device::bytes_left_on_host() == left);
     }
   for (const long call : {30, 500}) {
     INFO("call " << call);

@@ -5,55 +5,10 @@
 #include <atomic>
 #include <thread>
 
-#include "device/device_support.hpp"
+#include "device/covering.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
-
-namespace {
-
-/// Mixes that hold every plugin at least once: the k-th of each kind together, or apart where these are refused.
-std::vector<Mix> every_plugin_once(int dimension) {
-  const auto shapes = plugins().of_kind(MPM_SHAPE), transfers = plugins().of_kind(MPM_TRANSFER),
-             filters = plugins().of_kind(MPM_FILTER), contacts = plugins().of_kind(MPM_CONTACT),
-             materials = plugins().of_kind(MPM_MATERIAL);
-  const std::size_t most =
-      std::max({shapes.size(), transfers.size(), filters.size(), contacts.size(), materials.size()});
-  std::vector<Mix> mixes;
-  for (std::size_t k = 0; k < most; ++k) {
-    const Plugin *const shape = shapes[k % shapes.size()], *const transfer = transfers[k % transfers.size()],
-                        *const material = materials[k % materials.size()];
-    Mix mix = mix_with(*shape, dimension);
-    mix.transfer = device_choice(*transfer), mix.material = device_choice(*material);
-    if (k < filters.size()) mix.filter = device_choice(*filters[k]);
-    if (k < contacts.size()) mix.contact = device_choice(*contacts[k]);
-    if (!is_refused(mix)) {
-      mixes.push_back(mix);
-      continue;
-    }
-    for (const Plugin* plugin : {shape, transfer, material}) mixes.push_back(mix_with(*plugin, dimension));
-    if (k < filters.size()) mixes.push_back(mix_with(*filters[k], dimension));
-    if (k < contacts.size()) mixes.push_back(mix_with(*contacts[k], dimension));
-  }
-  return mixes;
-}
-
-/// Everything that has to do with temperature at once, where shared memory is fullest: in three dimensions with contact.
-Mix warm_mix(int dimension, const std::string& transfer) {
-  Mix mix;
-  mix.dimension = dimension, mix.transfer = transfer, mix.contact = R"({"type": "coulomb", "friction": 0.2})";
-  mix.material = R"({"type": "von_mises", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000,
-    "yield_stress": 60, "thermal": {"conductivity": 500, "heat_capacity": 10, "dissipation_to_heat": 0.9,
-    "phase_change": {"temperature": 22, "latent_heat": 10, "melted": {"youngs_modulus": 600}}}})";
-  mix.boundaries = R"({"all": "slip", "x_min": {"type": "slip", "temperature": 30},
-    "x_max": {"type": "slip", "heat_flux": 9000},
-    "y_min": {"type": "slip", "convection": {"coefficient": 900, "temperature": 60}}})";
-  mix.more = std::string(R"(, "body_force": [1, 2)") + (dimension == 3 ? ", 3]" : "]");
-  mix.overrides = {set("/bodies/0/temperature", "20"), set("/bodies/1/temperature", "25")};
-  return mix;
-}
-
-}  // namespace
 
 TEST_CASE("every plugin compiles to machine code with NVRTC where it is installed", "[device]") {
   std::string why;

@@ -170,12 +170,17 @@ TEST_CASE("teams of any size and order give the same result", "[device]") {
     mix.contact = R"({"type": "coulomb", "friction": 0.2})", mix.close = true;
     mix.boundaries = R"({"all": "slip", "x_min": "periodic", "x_max": "periodic"})";
     const std::string text = mix.text();
-    DeviceScene one(text, "double", {1, false});
+    DeviceScene one(text, "double", {1});
     one.run();
-    for (const TeamShape team : {TeamShape{1, true}, {3, false}, {32, true}, {256, true}}) {
+    for (const TeamShape team : {TeamShape{1, TeamShape::downwards},
+                                 {3, TeamShape::upwards},
+                                 {32, TeamShape::downwards},
+                                 {32, TeamShape::shuffled(0)},
+                                 {256, TeamShape::downwards},
+                                 {96, TeamShape::shuffled(1)}}) {
       DeviceScene many(text, "double", team);
       many.run();
-      INFO(dimension << "-D, " << team.lanes << " lanes" << (team.backwards ? ", backwards" : ""));
+      INFO(dimension << "-D, " << team.lanes << " lanes in order " << team.order);
       CHECK(scene_difference(one, many) <= 1e2 * 0x1p-52);
     }
   }
@@ -201,7 +206,7 @@ TEST_CASE("a particle that cannot go on stops a run on the host-run device", "[d
 
 TEST_CASE("the host-run device refuses a team that shared memory has no room for", "[device]") {
   const Mix mix = mix_with(plugin(MPM_TRANSFER, "pic"), 2);
-  CHECK_THROWS_WITH(DeviceScene(mix.text(), "double", {257, false}), ContainsSubstring("256 lanes"));
+  CHECK_THROWS_WITH(DeviceScene(mix.text(), "double", {257}), ContainsSubstring("256 lanes"));
 }
 
 TEST_CASE("axisymmetric scenes and frozen bodies on the host-run device", "[device][axisymmetric]") {

@@ -76,8 +76,18 @@ class CpuBackend final : public Backend, NamedChannels {
   /// Books the stored energy that goes with a phase.
   void account_for_phases(double lost) { ledger_.material += lost, ledger_.stored -= lost; }
   void wake_for_ledger(long step);
-  std::string signature() const;
-  void restore_particles(ArchiveReader& archive, Particles<D, T>& particles);
+
+  // ---- cpu_state.hpp
+  template <class Visit>
+  void for_each_particle(int body, Visit visit) const;
+  std::vector<double> positions(int body) const;
+  std::size_t count(int body) const;
+  std::string name_of_arrangement() const;
+  std::vector<char> arrangement() const;
+  void restore_body(ArchiveReader& archive, int body, ArchiveReader* arrangement);
+  void take_arrangement(ArchiveReader& arrangement, Particles<D, T>& particles, std::size_t count);
+  void arrange_anew(Particles<D, T>& particles, const std::vector<double>& position);
+  static std::vector<T*> lanes_by_seeding(Particles<D, T>& particles, std::size_t count);
 
   Scene<D, T> scene_;
   Grid<D, T> grid_;
@@ -423,166 +433,6 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
 }
 
 template <int D, class T, class Components>
-BodyState CpuBackend<D, T, Components>::body_state(int index) const {
-  const Particles<D, T>& particles = particles_[index];
-  const Body<D, T>& body = particle_step_->bodies()[index];
-  std::size_t n = 0;
-  for (const Block<D>& block : particles.blocks) n += block.count;
-  BodyState state;
-  state.volume = body.volume;
-  state.mass = body.mass;
-  // It visits every particle by visit(block, values of its lane, index of seeding).
-  const auto each = [&](auto&& visit) {
-    for (const Block<D>& block : particles.blocks)
-      for_each_chunk<T>(block, [&](std::uint32_t chunk, int count) {
-        for (int p = 0; p < count; ++p)
-          visit(block, particles.chunk(chunk) + p, static_cast<std::size_t>(particles.ids(chunk)[p]));
-      });
-  };
-  for (const StoredField& stored : particles.fields) {
-    if (stored.field->lifetime != Lifetime::saved || stored.first == Particles<D, T>::position) continue;
-    const int place = stored.first - Particles<D, T>::velocity, components = stored.field->components;
-    if (place < particles.motion_components && !motion_kept_) continue;
-    const double unit = stored.field->unit == "cells" ? scene_.domain.cell_size : 1.0;
-    std::vector<double>& out = state.of(*stored.field);
-    out.resize(n * components);
-    each([&](const Block<D>&, const T* values, std::size_t id) {
-      for (int c = 0; c < components; ++c) out[id * components + c] = unit * values[(stored.first + c) * chunk_size<T>];
-    });
-  }
-  for (const Field& field : scene_.plan.fields)
-    if (field.of_particles_of(index) && field.lifetime == Lifetime::seeded) state.of(field) = body.seeded.at(field.id);
-  state.position.resize(n * D);
-  each([&](const Block<D>& block, const T* values, std::size_t id) {
-    for (int a = 0; a < D; ++a)
-      state.position[id * D + a] =
-          scene_.domain.lower[a] +
-          scene_.domain.cell_size * cells_from_corner(scene_.domain, block, a, values[a * chunk_size<T>]);
-  });
-  if (scene_.plan.stencil.second_moment) state.second_moment = particle_step_->second_moments(index);
-  return state;
-}
-
-/// Names what a saved state fits, as storage differs between dimensions, precisions and layouts.
-template <int D, class T, class Components>
-std::string CpuBackend<D, T, Components>::signature() const {
-  return "cpu " + std::to_string(D) + "-D of " + std::to_string(sizeof(T)) + " bytes, chunks of " +
-         std::to_string(chunk_size<T>);
-}
-
-template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::save(ArchiveWriter& archive) const {
-  archive.put("backend", signature());
-  archive.put("drift", particle_step_->drift());
-  archive.put("last_drift", particle_step_->last_drift());
-  archive.put("ledger", ledger_);
-  if (scene_.plan.has_heat_ledger()) archive.put("heat_ledger", heat_ledger_);
-  archive.put("contact", contact_);
-  archive.put("contact_pairs", grid_step_->contact_pairs());
-  archive.put("filter", filter_);
-  reactions_.save(archive);
-  archive.put("speed", limit_.speed);
-  archive.put("wave_speed", limit_.wave_speed);
-  archive.put("limiting_body", limit_.body);
-  archive.put("limiting_particle", limit_.particle);
-  for (const Particles<D, T>& particles : particles_) {
-    archive.put("components", particles.components);
-    archive.put("chunks", particles.chunks);
-    std::vector<std::int32_t> blocks;
-    for (const Block<D>& block : particles.blocks) {
-      for (const auto& triple : {block.at, block.first_active, block.last_active})
-        blocks.insert(blocks.end(), triple.begin(), triple.end());
-      blocks.push_back(static_cast<std::int32_t>(block.first_chunk));
-      blocks.push_back(static_cast<std::int32_t>(block.count));
-    }
-    archive.put("blocks", blocks);
-    for (const auto& units : particles.units) archive.put("units", units);
-    for (std::uint32_t i = 0; i < particles.chunks; ++i) {
-      archive.put("identities", particles.ids(i), chunk_size<T>);
-      archive.put("values", particles.chunk(i), std::size_t(particles.components) * chunk_size<T>);
-    }
-  }
-}
-
-/// Restores all but the grid, which is built for the same blocks in the same order, so that its sums are the same.
-template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::restore(ArchiveReader& archive) {
-  std::string written;
-  archive.get("backend", written);
-  if (written != signature())
-    throw ArchiveError("the state is of backend \"" + written + "\", not of \"" + signature() + "\"");
-  double drift = 0, last_drift = 0;
-  archive.get("drift", drift);
-  archive.get("last_drift", last_drift);
-  archive.get("ledger", ledger_);
-  if (scene_.plan.has_heat_ledger()) archive.get("heat_ledger", heat_ledger_);
-  archive.get("contact", contact_);
-  archive.get("contact_pairs", grid_step_->contact_pairs());
-  archive.get("filter", filter_);
-  reactions_.restore(archive);
-  archive.get("speed", limit_.speed);
-  archive.get("wave_speed", limit_.wave_speed);
-  archive.get("limiting_body", limit_.body);
-  archive.get("limiting_particle", limit_.particle);
-  for (Particles<D, T>& particles : particles_) restore_particles(archive, particles);
-  grid_.rebuild(particles_, field_of_body_);
-  particle_step_->set_drift(drift, last_drift);
-  particle_step_->forget_failed_forces();
-  scattered_ = false;
-  motion_kept_ = true;
-}
-
-template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::restore_particles(ArchiveReader& archive, Particles<D, T>& particles) {
-  int components = 0;
-  std::size_t before = 0, count = 0;
-  std::vector<std::int32_t> numbers;
-  for (const Block<D>& block : particles.blocks) before += block.count;
-  archive.get("components", components);
-  if (components != particles.components) throw ArchiveError("particles carry other attributes");
-  archive.get("chunks", particles.chunks);
-  archive.get("blocks", numbers);
-  constexpr std::size_t of_block = 11;
-  if (numbers.size() % of_block != 0) throw ArchiveError("value \"blocks\" has another length");
-  particles.blocks.clear();
-  for (std::size_t i = 0; i < numbers.size(); i += of_block) {
-    Block<D> block;
-    const std::int32_t* next = numbers.data() + i;
-    for (auto* const triple : {&block.at, &block.first_active, &block.last_active})
-      for (auto& value : *triple) value = *next++;
-    block.first_chunk = static_cast<std::uint32_t>(next[0]);
-    block.count = static_cast<std::uint32_t>(next[1]);
-    const std::uint64_t chunks = (std::uint64_t(block.count) + chunk_size<T> - 1) / chunk_size<T>;
-    if (block.count == 0 || block.first_chunk + chunks > particles.chunks)
-      throw ArchiveError("value \"blocks\" is not of these particles");
-    count += block.count;
-    particles.blocks.push_back(block);
-  }
-  if (count != before || particles.chunks > count) throw ArchiveError("it holds another number of particles");
-  for (auto& units : particles.units) {
-    archive.get("units", units);
-    for (const Unit& unit : units)
-      if (unit.first > unit.last || unit.last > particles.blocks.size())
-        throw ArchiveError("value \"units\" is not of these particles");
-  }
-  particles.order = ordered_units<D>(particles.units, particles.blocks, scene_.threads);
-  for (std::byte* const place : particles.places) particles.pool.give(place);
-  particles.pool.reserve(particles.chunks);
-  particles.places.resize(particles.chunks);
-  for (std::uint32_t i = 0; i < particles.chunks; ++i) {
-    particles.places[i] = particles.pool.take();
-    archive.get("identities", particles.ids(i), chunk_size<T>);
-    archive.get("values", particles.chunk(i), std::size_t(components) * chunk_size<T>);
-  }
-  for (const Block<D>& block : particles.blocks)
-    for_each_chunk<T>(block, [&](std::uint32_t chunk, int lanes) {
-      for (int lane = 0; lane < lanes; ++lane)
-        if (particles.ids(chunk)[lane] < 0 || std::size_t(particles.ids(chunk)[lane]) >= count)
-          throw ArchiveError("value \"identities\" is not of these particles");
-    });
-}
-
-template <int D, class T, class Components>
 std::uint64_t CpuBackend<D, T, Components>::particle_bytes() const {
   std::uint64_t total = sort_space_.bytes();
   for (const auto& particles : particles_)
@@ -594,3 +444,5 @@ std::uint64_t CpuBackend<D, T, Components>::particle_bytes() const {
 }
 
 }  // namespace mpm::cpu
+
+#include "backends/cpu/cpu_state.hpp"  // IWYU pragma: keep

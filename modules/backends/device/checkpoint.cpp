@@ -1,47 +1,42 @@
 #include "backends/device/device_backend.hpp"
+#include "simulation/saved_state.hpp"
 
 namespace mpm::device {
 
 template <class T>
 void DeviceBackend<T>::save(ArchiveWriter& archive) const {
-  for (const Body<T>& body : bodies_)
-    for_each_saved(body, [&](const Field& field, int number) {
-      const std::vector<T> values = body.arrays.read(number);
-      archive.put(field.id, values.data(), values.size());
-    });
-  archive.put("ledger", ledger_);
-  if (plan_.has_heat_ledger()) archive.put("heat ledger", heat_ledger_);
-  archive.put("contact", contact_);
-  archive.put("contact_pairs", contact_impulse_.pairs());
-  archive.put("filter", filter_);
-  reactions_.save(archive);
-  archive.put("limit speeds", std::array{limit_.speed, limit_.wave_speed});
-  archive.put("limit particle", std::array<std::uint64_t, 2>{static_cast<std::uint64_t>(limit_.body), limit_.particle});
+  save_records(archive, *this);
+  save_arrangement(archive);
+  for (std::size_t index = 0; index < bodies_.size(); ++index) {
+    const FieldArrays<T>& arrays = bodies_[index].arrays;
+    save_particles(archive, plan_, static_cast<int>(index), arrays.index_major(arrays.number("position")),
+                   [&](const Field& field) {
+                     const std::vector<double> values = arrays.index_major(arrays.number(field));
+                     return std::vector<T>(values.begin(), values.end());
+                   });
+  }
 }
 
 template <class T>
 void DeviceBackend<T>::restore(ArchiveReader& archive) {
-  for (Body<T>& body : bodies_) {
-    for_each_saved(body, [&](const Field& field, int number) {
-      std::vector<T> values(body.arrays.size(number));
-      archive.get(field.id, values.data(), values.size());
-      body.arrays.write(number, values);
-    });
+  SavedRecords records = restore_records(archive, *this);
+  restore_arrangement(archive);  // blocks are made anew in every step
+  ledger_ = records.ledger, heat_ledger_ = records.heat_ledger;
+  contact_ = records.contact, contact_impulse_.pairs() = std::move(records.contact_pairs);
+  filter_ = records.filter, limit_ = records.limit;
+  reactions_.resume(std::move(records.reactions));
+  for (std::size_t index = 0; index < bodies_.size(); ++index) {
+    FieldArrays<T>& arrays = bodies_[index].arrays;
+    restore_particles<T>(
+        archive, plan_, static_cast<int>(index), arrays.count(), static_cast<std::size_t>(experiment_.dimension),
+        [&](const std::vector<double>& position) { arrays.take(arrays.number("position"), position); },
+        [&](const Field& field, const std::vector<T>& values) {
+          arrays.take(arrays.number(field), {values.begin(), values.end()});
+        });
     // A step strains its domains further from where the last one left them.
-    if (const int strained = body.number("strained_domain"); strained >= 0)
-      body.arrays.copy(strained, body.number("domain"));
+    if (const int strained = arrays.number("strained_domain"); strained >= 0)
+      arrays.copy(strained, arrays.number("domain"));
   }
-  archive.get("ledger", ledger_);
-  if (plan_.has_heat_ledger()) archive.get("heat ledger", heat_ledger_);
-  archive.get("contact", contact_);
-  archive.get("contact_pairs", contact_impulse_.pairs());
-  archive.get("filter", filter_);
-  reactions_.restore(archive);
-  std::array<double, 2> speeds{};
-  std::array<std::uint64_t, 2> particle{};
-  archive.get("limit speeds", speeds);
-  archive.get("limit particle", particle);
-  limit_ = {speeds[0], speeds[1], static_cast<int>(particle[0]), particle[1]};
 }
 
 template <class T>

@@ -204,7 +204,7 @@ class DeviceBackend final : public Backend {
     std::copy_n(found.begin(), count, all.begin());
     return all;
   }
-  /// Calls visit(field, number) for what a checkpoint holds, in order.
+  /// Calls visit(field, number) for the fields that last from one step to the next, in order.
   template <class Visit>
   static void for_each_saved(const Body<T>& body, Visit visit) {
     for (int number = 0; number < static_cast<int>(body.arrays.fields().size()); ++number) {

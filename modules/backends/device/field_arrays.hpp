@@ -33,6 +33,7 @@ class FieldArrays {
   std::size_t count() const { return count_; }
   std::uint64_t bytes() const { return values_.bytes(); }
   int number(std::string_view id) const { return number_of(fields_, id); }
+  int number(const Field& field) const { return number_of(fields_, field.id, field.origin); }
 
   /// The device's array of a field by its number; null for -1.
   T* of(int number) const { return number < 0 ? nullptr : values_.data() + first(number); }

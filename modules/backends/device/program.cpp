@@ -14,12 +14,14 @@
 #include "backends/device/drivers/host_compiler.hpp"
 #include "backends/device/drivers/host_driver.hpp"
 #include "backends/device/drivers/nvrtc.hpp"
+#include "backends/device/resources.hpp"
 
 namespace mpm::device {
 namespace {
 
 class CompilerOfHost final : public Compiler {
  public:
+  explicit CompilerOfHost(bool records = false) { compiler_.records = records; }
   std::string identity(const std::string&) const override {
     std::string all = compiler_.program + "\n" + compiler_.version();
     for (const std::string& option : compiler_.all_options()) all += "\n" + option;
@@ -72,6 +74,12 @@ DeviceSetup setup_with(const Driver& driver, int number, std::shared_ptr<const C
   return setup;
 }
 
+/// What --device names, else what MPM_DEVICE does, else device 0.
+std::string chosen_device(const std::string& device) {
+  const char* const variable = std::getenv("MPM_DEVICE");
+  return !device.empty() ? device : variable && *variable ? variable : "0";
+}
+
 }  // namespace
 
 std::string program_of(const Composition& composition, const Compiler& compiler, const std::string& architecture) {
@@ -100,9 +108,12 @@ bool names_device(const std::string& word) {
                                std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isdigit(c); }));
 }
 
+bool is_host_device(const std::string& device) {
+  return chosen_device(device) == host_name;
+}
+
 DeviceSetup setup_for(const std::string& device) {
-  const char* const variable = std::getenv("MPM_DEVICE");
-  const std::string chosen = !device.empty() ? device : variable && *variable ? variable : "0";
+  const std::string chosen = chosen_device(device);
   if (!names_device(chosen))
     throw DeviceError((device.empty() ? "MPM_DEVICE" : "--device") +
                       std::string(": expected \"host\" or the number of ") + "a device, got \"" + chosen +
@@ -116,8 +127,12 @@ DeviceSetup setup_for(const std::string& device) {
     throw DeviceError("backend \"cuda\" compiles its kernels for the scene, and " + why +
                       "; or use --backend cpu, or --device host to run the device's kernels on the processor");
   DeviceSetup setup = setup_with(*driver, std::atoi(chosen.c_str()), std::make_shared<CompilerOfCuda>(*nvrtc));
-  setup.lanes = 128;
+  setup.lanes = lanes_of_gpu;
   return setup;
+}
+
+DeviceSetup recording_setup() {
+  return setup_with(host_driver(), 0, std::make_shared<CompilerOfHost>(/*records=*/true));
 }
 
 std::string device_list() {

@@ -26,6 +26,12 @@ std::string program_of(const Composition& composition, const Compiler& compiler,
 /// DeviceError for another word, and where NVIDIA's driver or compiler is missing: it says where they were looked for.
 DeviceSetup setup_for(const std::string& device);
 
+/// The host's device number 0 with programs that tell it of every access (drivers/race_recorder.hpp).
+DeviceSetup recording_setup();
+
+/// Whether this is the host's device, by the word or by MPM_DEVICE.
+bool is_host_device(const std::string& device);
+
 /// Whether a word may stand after --device.
 bool names_device(const std::string& word);
 

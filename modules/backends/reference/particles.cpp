@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "plugin/extension_of.hpp"
+#include "simulation/saved_state.hpp"
 
 namespace mpm::reference {
 
@@ -381,13 +382,14 @@ double Particles::kinetic_energy() const {
   return sum;
 }
 
+std::vector<double> Particles::particle_major(const Array& array) const {
+  std::vector<double> values(count_ * array.rows());
+  for (std::size_t p = 0; p < count_; ++p)
+    for (Eigen::Index c = 0; c < array.rows(); ++c) values[p * array.rows() + c] = array(c, p);
+  return values;
+}
+
 BodyState Particles::state() const {
-  const auto particle_major = [&](const Array& array) {
-    std::vector<double> values(count_ * array.rows());
-    for (std::size_t p = 0; p < count_; ++p)
-      for (Eigen::Index c = 0; c < array.rows(); ++c) values[p * array.rows() + c] = array(c, p);
-    return values;
-  };
   BodyState result;
   for (const Stored& stored : fields_) {
     const Field& declared = *stored.declared;
@@ -405,15 +407,20 @@ BodyState Particles::state() const {
 }
 
 void Particles::save(ArchiveWriter& archive) const {
-  for (const auto& [declared, values] : fields_)
-    if (declared->lifetime == Lifetime::saved)
-      archive.put(declared->id, values.data(), static_cast<std::size_t>(values.size()));
+  save_particles(archive, plan_, body_, particle_major(position),
+                 [&](const Field& field) { return particle_major(values(field.id, field.origin)); });
 }
 
 void Particles::restore(ArchiveReader& archive) {
-  for (auto& [declared, values] : fields_)
-    if (declared->lifetime == Lifetime::saved)
-      archive.get(declared->id, values.data(), static_cast<std::size_t>(values.size()));
+  const auto take = [&](Array& array, const std::vector<double>& particle_major) {
+    for (std::size_t p = 0; p < count_; ++p)
+      for (Eigen::Index c = 0; c < array.rows(); ++c) array(c, p) = particle_major[p * array.rows() + c];
+    pad(array);
+  };
+  restore_particles<double>(
+      archive, plan_, body_, count_, static_cast<std::size_t>(dimension_),
+      [&](const std::vector<double>& found) { take(position, found); },
+      [&](const Field& field, const std::vector<double>& found) { take(values(field.id, field.origin), found); });
 }
 
 }  // namespace mpm::reference

@@ -112,6 +112,7 @@ class Particles {
   Array& work(int components) { return work_.emplace_back(make(components)); }
   std::deque<Stored> start_fields() const;
   void seed(const SeedBatch& batch);
+  std::vector<double> particle_major(const Array& array) const;
   double half_size() const;  ///< half a side of the undeformed particle's box, cells
   /// The state of the transfer or the material, in declared order.
   std::vector<void*> state_of(Origin plugin);

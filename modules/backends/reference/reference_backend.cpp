@@ -1,5 +1,7 @@
 #include "backends/reference/reference_backend.hpp"
 
+#include "simulation/saved_state.hpp"
+
 #include <cmath>
 
 #include "kernel/corner_domain.hpp"
@@ -150,33 +152,22 @@ void ReferenceBackend::keep_inside(Vector& x, int body, std::size_t p) const {
   }
 }
 
-// ---- saving: particles in the order of seeding; the grid is scattered again -----------------------------------------
+// ---- saving: the grid is scattered again --------------------------------------------------------------------------
 
 void ReferenceBackend::save(ArchiveWriter& archive) const {
+  save_records(archive, *this);
+  save_arrangement(archive);
   for (const Particles& body : bodies_) body.save(archive);
-  archive.put("ledger", ledger_);
-  archive.put("contact", contact_);
-  archive.put("contact_pairs", impulse_.pairs());
-  archive.put("filter", filter_);
-  reactions_.save(archive);
-  if (plan_.has_heat_ledger()) archive.put("heat ledger", heat_ledger_);
-  archive.put("limit speeds", std::array{limit_.speed, limit_.wave_speed});
-  archive.put("limit particle", std::array<std::uint64_t, 2>{static_cast<std::uint64_t>(limit_.body), limit_.particle});
 }
 
 void ReferenceBackend::restore(ArchiveReader& archive) {
+  SavedRecords records = restore_records(archive, *this);
+  ledger_ = records.ledger, heat_ledger_ = records.heat_ledger;
+  contact_ = records.contact, impulse_.pairs() = std::move(records.contact_pairs);
+  filter_ = records.filter, limit_ = records.limit;
+  reactions_.resume(std::move(records.reactions));
+  restore_arrangement(archive);  // particles keep the order of seeding
   for (Particles& body : bodies_) body.restore(archive);
-  archive.get("ledger", ledger_);
-  archive.get("contact", contact_);
-  archive.get("contact_pairs", impulse_.pairs());
-  archive.get("filter", filter_);
-  reactions_.restore(archive);
-  if (plan_.has_heat_ledger()) archive.get("heat ledger", heat_ledger_);
-  std::array<double, 2> speeds{};
-  std::array<std::uint64_t, 2> particle{};
-  archive.get("limit speeds", speeds);
-  archive.get("limit particle", particle);
-  limit_ = {speeds[0], speeds[1], static_cast<int>(particle[0]), particle[1]};
 }
 
 }  // namespace reference

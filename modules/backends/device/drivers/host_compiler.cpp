@@ -50,8 +50,8 @@ int run_program(const std::vector<std::string>& words, const std::filesystem::pa
   const int error = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error)
-    throw CompilerError("no C++ compiler: cannot start \"" + words[0] + "\": " + std::strerror(error) +
-                        "; install g++ (Debian: apt install g++)");
+    throw MissingCompiler("no C++ compiler: cannot start \"" + words[0] + "\": " + std::strerror(error) +
+                          "; install g++ (Debian: apt install g++)");
   int status = 0;
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR) return -1;
@@ -62,24 +62,30 @@ int run_program(const std::vector<std::string>& words, const std::filesystem::pa
 
 std::vector<std::string> HostCompiler::all_options() const {
   // The text sees the compiler's own functions only, as it does with NVRTC.
-  std::vector<std::string> all{"-std=c++17", "-DMPM_DEVICE_PASS=1", "-nostdinc",         "-nostdinc++", "-shared",
+  std::vector<std::string> all{"-std=c++17", "-DMPM_DEVICE_PASS=1", "-nostdinc",         "-nostdinc++",
                                "-fPIC",      "-fno-math-errno",     "-fno-trapping-math"};
   all.insert(all.end(), options.begin(), options.end());
+  // The compiler alone is told of it: the composition has what the linker would take from the sanitizer's library.
+  if (records) all.insert(all.end(), {"-DMPM_RECORD=1", "-fsanitize=thread"});
   return all;
 }
 
 std::string HostCompiler::compile(const Composition& composition) const {
   const ScratchFolder folder;
-  const std::filesystem::path source = folder.path() / "composition.cpp", library = folder.path() / "composition.so",
-                              log = folder.path() / "messages.txt";
+  const std::filesystem::path source = folder.path() / "composition.cpp", object = folder.path() / "composition.o",
+                              library = folder.path() / "composition.so", log = folder.path() / "messages.txt";
   support::write_atomically(source, composition.text, support::Durability::of_program);
+  const auto call = [&](std::vector<std::string> words, const std::filesystem::path& from, const char* option,
+                        const std::filesystem::path& to) {
+    words.insert(words.end(), {option, from.string(), "-o", to.string(), "-lm"});
+    if (const int status = run_program(words, log); status != 0)
+      throw CompilerError("\"" + program + "\" does not compile the composition " + composition.name + " (status " +
+                          std::to_string(status) + "):\n" + support::read_file(log));
+  };
   std::vector<std::string> words{program};
   for (const std::string& option : all_options()) words.push_back(option);
-  for (const std::string& word : {source.string(), std::string("-o"), library.string(), std::string("-lm")})
-    words.push_back(word);
-  if (const int status = run_program(words, log); status != 0)
-    throw CompilerError("\"" + program + "\" does not compile the composition " + composition.name + " (status " +
-                        std::to_string(status) + "):\n" + support::read_file(log));
+  call(words, source, "-c", object);
+  call({program}, object, "-shared", library);
   return support::read_file(library);
 }
 

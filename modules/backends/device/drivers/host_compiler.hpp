@@ -16,11 +16,17 @@ class CompilerError : public support::MachineError {
   using support::MachineError::MachineError;
 };
 
+/// Thrown when there is no such compiler.
+class MissingCompiler : public CompilerError {
+  using CompilerError::CompilerError;
+};
+
 struct HostCompiler {
   std::string program = "c++";  ///< GCC or Clang, found on PATH
   std::vector<std::string> options{"-O1"};
+  bool records = false;  ///< the program tells the driver of every access (drivers/race_recorder.hpp), which is slow
 
-  /// All options that are handed to the program, but no files.
+  /// All options that are handed to the program for compiling, but no files.
   std::vector<std::string> all_options() const;
 
   /// The bytes of the shared library. It is made in a scratch folder, which is removed before this returns. Throws

@@ -8,15 +8,14 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
 
+#include "backends/device/drivers/host_library.hpp"
 #include "backends/device/drivers/host_results.hpp"
-#include "support/files.hpp"
 
 namespace mpm::device {
 
@@ -32,7 +31,8 @@ struct OpaqueEvent {
 };
 
 struct OpaqueFunction {
-  using Entry = void (*)(const void* arguments, int teams, int lanes, bool backwards);
+  using Entry = void (*)(const void* arguments, int teams, int lanes, unsigned order);
+  std::string name;
   Entry entry;
 };
 
@@ -56,7 +56,8 @@ struct OpaqueContext {
   std::uint64_t bytes = 0;
   std::map<std::uintptr_t, Allocation> allocations;  ///< by host address
   std::map<StreamHandle, std::unique_ptr<OpaqueStream>> streams;
-  DriverResult lost = driver_success;  ///< what every call returns from now on
+  std::shared_ptr<RaceRecorder> recorder;  ///< null where the device records no accesses
+  DriverResult lost = driver_success;      ///< what every call returns from now on
 };
 
 namespace {
@@ -73,7 +74,10 @@ struct Host {
   std::mutex mutex;  ///< guards all of this and of the contexts; kernels run outside it
   std::vector<HostDevice> devices{HostDevice{}};
   std::map<int, std::unique_ptr<OpaqueContext>> contexts;  ///< of the devices in use
+  std::map<int, std::shared_ptr<RaceRecorder>> recorders;  ///< of the devices that record, since they were set
   std::map<std::string, long> calls;
+  std::uint64_t copied = 0;  ///< bytes, both ways
+  std::uint64_t left = 0;    ///< bytes that nobody freed before the last user of a device left
   std::vector<Failure> failures;
 };
 
@@ -236,6 +240,11 @@ DriverResult cuDevicePrimaryCtxRetain(ContextHandle* context, DeviceNumber devic
   if (!found) {
     found = std::make_unique<OpaqueContext>();
     found->device = host().devices[static_cast<std::size_t>(device)];
+    if (found->device.records) {
+      std::shared_ptr<RaceRecorder>& recorder = host().recorders[device];
+      if (!recorder) recorder = std::make_shared<RaceRecorder>();
+      found->recorder = recorder;
+    }
   }
   ++found->users;
   *context = found.get();
@@ -248,7 +257,8 @@ DriverResult cuDevicePrimaryCtxRelease_v2(DeviceNumber device) {
   if (found == host().contexts.end()) return driver_invalid_device;
   if (--found->second->users > 0) return driver_success;
   if (current == found->second.get()) current = nullptr;
-  host().contexts.erase(found);  // a lost device is as new for the next user
+  if (!found->second->lost) host().left += found->second->bytes;  // a lost device refuses to take memory back
+  host().contexts.erase(found);                                   // a lost device is as new for the next user
   return driver_success;
 }
 DriverResult cuCtxSetCurrent(ContextHandle context) {
@@ -274,6 +284,7 @@ DriverResult cuMemAlloc_v2(DevicePointer* pointer, std::size_t bytes) {
   const auto address = reinterpret_cast<std::uintptr_t>(memory);
   current->allocations[address] = {std::unique_ptr<unsigned char, FreeMemory>(memory), bytes};
   current->bytes += bytes;
+  if (current->recorder) current->recorder->add_memory(address, bytes);
   *pointer = tag | address;
   return driver_success;
 }
@@ -283,6 +294,7 @@ DriverResult cuMemFree_v2(DevicePointer pointer) {
   if ((pointer & tag_bits) != tag || found == current->allocations.end()) return driver_invalid_value;
   run_all(lock);  // what waits may still use it
   current->bytes -= found->second.bytes;
+  if (current->recorder) current->recorder->remove_memory(found->first);
   current->allocations.erase(found);
   return driver_success;
 }
@@ -292,6 +304,7 @@ DriverResult cuMemcpyHtoDAsync_v2(DevicePointer to, const void* from, std::size_
   unsigned char* const memory = memory_at(to, bytes);
   if (!memory) return driver_invalid_value;
   if (!is_stream(stream)) return driver_invalid_handle;
+  host().copied += bytes;
   std::vector<std::uint64_t> words = words_of(from, bytes);  // pageable memory is free when a copy from it returns
   translate(words);
   stream->waiting.emplace_back([=, words = std::move(words)] { std::memcpy(memory, words.data(), bytes); });
@@ -302,6 +315,7 @@ DriverResult cuMemcpyDtoHAsync_v2(void* to, DevicePointer from, std::size_t byte
   const unsigned char* const memory = memory_at(from, bytes);
   if (!memory) return driver_invalid_value;
   if (!is_stream(stream)) return driver_invalid_handle;
+  host().copied += bytes;
   stream->waiting.emplace_back([=] { std::memcpy(to, memory, bytes); });
   return driver_success;
 }
@@ -369,39 +383,14 @@ DriverResult cuEventElapsedTime(float* milliseconds, EventHandle start, EventHan
   return driver_success;
 }
 
-/// The length of an ELF image, whose table of sections ends it as linkers write it; 0 for anything else.
-std::size_t length_of_image(const void* image) {
-  const auto* const bytes = static_cast<const unsigned char*>(image);
-  if (!image || std::memcmp(bytes, "\177ELF\2", 5) != 0) return 0;
-  std::uint64_t table = 0;
-  std::uint16_t entry = 0, count = 0;
-  std::memcpy(&table, bytes + 0x28, 8), std::memcpy(&entry, bytes + 0x3a, 2), std::memcpy(&count, bytes + 0x3c, 2);
-  return table + static_cast<std::size_t>(entry) * count;
-}
-
-/// Loads a shared library from its bytes; null where it cannot be loaded.
-void* load_library(std::string_view bytes) {
-  std::string folder = (std::filesystem::temp_directory_path() / "mpm_device_XXXXXX").string();
-  if (!mkdtemp(folder.data())) return nullptr;
-  void* library = nullptr;
-  try {
-    const std::filesystem::path file = std::filesystem::path(folder) / "module.so";
-    support::write_atomically(file, bytes, support::Durability::of_program);
-    library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  } catch (const std::exception&) {
-    library = nullptr;
-  }
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
-  return library;
-}
-
 DriverResult cuModuleLoadData(ModuleHandle* module, const void* image) {
   MPM_BEGIN_IN_CONTEXT(cuModuleLoadData)
   const std::size_t length = length_of_image(image);
   if (length == 0) return driver_invalid_image;
   void* const library = load_library({static_cast<const char*>(image), length});
   if (!library) return driver_invalid_image;
+  if (void* const wants = dlsym(library, "mpm_access_recorder"))
+    *static_cast<AccessRecorder**>(wants) = access_recorder();
   *module = new OpaqueModule{library, {}};
   return driver_success;
 }
@@ -416,6 +405,7 @@ DriverResult cuModuleGetFunction(FunctionHandle* function, ModuleHandle module, 
   void* const entry = dlsym(module->library, name);
   if (!entry) return driver_not_found;
   OpaqueFunction& made = module->functions[name];
+  made.name = name;
   made.entry = reinterpret_cast<OpaqueFunction::Entry>(entry);
   *function = &made;
   return driver_success;
@@ -438,8 +428,9 @@ DriverResult cuLaunchKernel(FunctionHandle function, unsigned grid_x, unsigned g
   std::vector<std::uint64_t> words = words_of(block, bytes);
   if (std::any_of(words.begin(), words.end(), is_host_address)) return current->lost = driver_illegal_address;
   translate(words);
-  stream->waiting.emplace_back([=, backwards = current->device.backwards, words = std::move(words)] {
-    function->entry(words.data(), static_cast<int>(grid_x), static_cast<int>(block_x), backwards);
+  stream->waiting.emplace_back([=, context = current, words = std::move(words)] {
+    const Recording recording(context->recorder.get(), function->name, words);
+    function->entry(words.data(), static_cast<int>(grid_x), static_cast<int>(block_x), context->device.order);
   });
   return driver_success;
 }
@@ -460,6 +451,7 @@ void set_host_devices(std::vector<HostDevice> devices) {
   const std::lock_guard lock(host().mutex);
   if (!host().contexts.empty()) throw std::logic_error("a device of the host driver is in use");
   host().devices = std::move(devices);
+  host().recorders.clear();
 }
 
 void fail_on_host(const std::string& function, long call, DriverResult result) {
@@ -484,6 +476,21 @@ std::uint64_t bytes_on_host(int device) {
   const std::lock_guard lock(host().mutex);
   const auto found = host().contexts.find(device);
   return found == host().contexts.end() ? 0 : found->second->bytes;
+}
+
+std::uint64_t bytes_left_on_host() {
+  const std::lock_guard lock(host().mutex);
+  return host().left;
+}
+std::uint64_t bytes_copied_on_host() {
+  const std::lock_guard lock(host().mutex);
+  return host().copied;
+}
+RaceRecorder& recorder_on_host(int device) {
+  const std::lock_guard lock(host().mutex);
+  const auto found = host().recorders.find(device);
+  if (found == host().recorders.end()) throw std::logic_error("no recording device of that number has been used");
+  return *found->second;
 }
 
 }  // namespace mpm::device

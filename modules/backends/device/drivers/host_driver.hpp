@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "backends/device/drivers/driver.hpp"
+#include "backends/device/drivers/race_recorder.hpp"
 
 namespace mpm::device {
 
@@ -20,7 +21,10 @@ namespace mpm::device {
 struct HostDevice {
   std::string name = "host";
   std::uint64_t memory = 0;  ///< bytes; 0: as many as the machine has
-  bool backwards = false;    ///< lanes and teams run in reverse order: results must agree to the rounding of sums
+  /// The order of lanes and teams: 0 upwards, 1 downwards, any other number shuffles by it as a seed. Results must agree
+  /// to the rounding of sums.
+  unsigned order = 0;
+  bool records = false;  ///< accesses of programs that tell them (HostCompiler::records) are looked at
 };
 
 /// The table of the host driver. It is the same for the whole process, as libcuda's is.
@@ -40,5 +44,14 @@ void forget_failures_on_host();
 long calls_on_host(const std::string& function);
 /// The bytes that are allocated on a device now; 0 while nobody uses it.
 std::uint64_t bytes_on_host(int device);
+
+/// The bytes that were never freed on devices whose last user has left, of the whole process: a driver takes them back
+/// with the context, and hides by that that they were forgotten. Lost devices do not count.
+std::uint64_t bytes_left_on_host();
+/// The bytes that were copied between the host and its devices so far, both ways.
+std::uint64_t bytes_copied_on_host();
+
+/// What a device that records has seen since set_host_devices. Throws std::logic_error where it has not been used.
+RaceRecorder& recorder_on_host(int device);
 
 }  // namespace mpm::device

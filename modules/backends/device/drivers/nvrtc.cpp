@@ -73,14 +73,15 @@ std::vector<std::string> Nvrtc::options(std::string_view architecture) {
   return {"--gpu-architecture=" + std::string(architecture), "-std=c++17", "-default-device", "-DMPM_DEVICE_PASS=1"};
 }
 
-Cubin Nvrtc::compile(const Composition& composition, std::string_view architecture) const {
+Cubin Nvrtc::compile(const Composition& composition, std::string_view architecture, bool verbose) const {
   Cubin cubin;
   Functions::Program program = nullptr;
   if (const int error = functions_->create(&program, composition.text.c_str(), "composition.cu", 0, nullptr, nullptr)) {
     cubin.log = std::string("nvrtcCreateProgram: ") + functions_->words(error);
     return cubin;
   }
-  const std::vector<std::string> words = options(architecture);
+  std::vector<std::string> words = options(architecture);
+  if (verbose) words.emplace_back("--ptxas-options=-v");
   std::vector<const char*> pointers;
   for (const std::string& word : words) pointers.push_back(word.c_str());
   const int error = functions_->compile(program, static_cast<int>(pointers.size()), pointers.data());

@@ -30,8 +30,9 @@ class Nvrtc {
   /// All options for an architecture that is given as "sm_90".
   static std::vector<std::string> options(std::string_view architecture);
 
-  /// Compiles to machine code of that architecture. Several threads may call it at once.
-  Cubin compile(const Composition& composition, std::string_view architecture) const;
+  /// Compiles to machine code of that architecture; with `verbose` the log says what each kernel takes of the device
+  /// (backends/device/resources.hpp). Several threads may call it at once.
+  Cubin compile(const Composition& composition, std::string_view architecture, bool verbose = false) const;
 
  private:
   struct Functions;

@@ -215,7 +215,7 @@ MPM_HD void exchange_at_walls(const Team& team, const Arguments<typename Scene::
   int stride = 1;
   for (int c = 0; c < axis; ++c) stride *= a.extent[c];
   sum_over<2>(team, a, a.node_count / extent, [&](int line, double* sums) {
-    if constexpr (N::heated_volume >= 0)
+    if constexpr (N::heated_volume >= 0) {  // NVRTC 13 loses its way where the loop stands here without braces
       for (int side = 0; side < 2; ++side) {
         const WallHeat<T>& wall = a.wall_heat[axis][side];
         if (!wall.value) continue;
@@ -236,6 +236,7 @@ MPM_HD void exchange_at_walls(const Team& team, const Arguments<typename Scene::
           sums[wall.coefficient > T(0) ? 1 : 0] += rate;
         }
       }
+    }
   });
 }
 

@@ -3,6 +3,7 @@
 // ends when all lanes have ended it. On the GPU a lane is a thread and the end a barrier; on the host a lane is one
 // turn of a loop. A kernel keeps nothing in local variables from one phase to the next: what must last is in memory.
 
+#include "backends/device/kernels/recording.hpp"
 #include "kernel/config.hpp"
 
 namespace mpm::device {
@@ -43,10 +44,32 @@ class Team {
 
 #else
 
+// The order in which the host takes the lanes of a team, and the teams: any other number shuffles them by it as a seed.
+inline constexpr unsigned order_upwards = 0, order_downwards = 1;
+
+/// The k-th of `count` in an order. A shuffle is a Feistel network over the numbers below the next power of four, whose
+/// way is walked on until it is below `count`.
+inline int in_order(int k, int count, unsigned order) {
+  if (order == order_upwards) return k;
+  if (order == order_downwards) return count - 1 - k;
+  unsigned half = 1;
+  while (half < 15 && (1u << 2 * half) < static_cast<unsigned>(count)) ++half;
+  const unsigned mask = (1u << half) - 1;
+  unsigned at = static_cast<unsigned>(k);
+  do {
+    for (unsigned round = 0; round < 4; ++round) {
+      const unsigned low = at & mask, high = at >> half;
+      const unsigned mixed = (low + order * 0x9e3779b9u + round * 0x85ebca6bu) * 0xc2b2ae35u;
+      at = low << half | ((high ^ mixed >> 16) & mask);
+    }
+  } while (at >= static_cast<unsigned>(count));
+  return static_cast<int>(at);
+}
+
 class Team {
  public:
-  Team(void* shared, int block, int lanes, bool backwards)
-      : shared_(shared), block_(block), lanes_(lanes), backwards_(backwards) {}
+  Team(void* shared, int block, int lanes, unsigned order)
+      : shared_(shared), block_(block), lanes_(lanes), order_(order) {}
   int block() const { return block_; }
   int lanes() const { return lanes_; }
   template <class T>
@@ -55,30 +78,43 @@ class Team {
   }
   template <class Phase>
   void for_each_lane(Phase phase) const {
-    for (int k = 0; k < lanes_; ++k) phase(backwards_ ? lanes_ - 1 - k : k);
+    for (int k = 0; k < lanes_; ++k) {
+      const int lane = in_order(k, lanes_, order_);
+      begin_lane(lane);
+      phase(lane);
+    }
+    end_phase();
   }
   template <class T>
   static void add(T* to, T value) {
+    const SharedAccess noted;
     *to += value;
   }
   static void lower(int* to, int value) {
+    const SharedAccess noted;
     if (value < *to) *to = value;
   }
 
  private:
   void* shared_;
   int block_, lanes_;
-  bool backwards_;
+  unsigned order_;
 };
 
-/// Makes the entry on the host: teams run one after another, upwards or downwards like the lanes in them. Shared memory
-/// starts as NaN, so that what a kernel reads before it has written it shows.
+/// Shared memory starts as NaN, so that what a kernel reads before it has written it shows.
+MPM_UNRECORDED inline void forget(unsigned char* shared, int bytes) {
+  for (int k = 0; k < bytes; ++k) shared[k] = 0xff;
+}
+
+/// Makes the entry on the host: teams run one after another, in an order like the lanes in them.
 #define MPM_DEVICE_ENTRY(name, kernel, scalars)                                                                \
-  extern "C" void name(const mpm::device::Arguments<Scene::Scalar>* a, int teams, int lanes, bool backwards) { \
+  extern "C" void name(const mpm::device::Arguments<Scene::Scalar>* a, int teams, int lanes, unsigned order) { \
     alignas(16) unsigned char shared[sizeof(Scene::Scalar) * (scalars)];                                       \
     for (int k = 0; k < teams; ++k) {                                                                          \
-      for (unsigned char& byte : shared) byte = 0xff;                                                          \
-      mpm::device::kernel(mpm::device::Team(shared, backwards ? teams - 1 - k : k, lanes, backwards), *a);     \
+      const int team = mpm::device::in_order(k, teams, order);                                                 \
+      mpm::device::forget(shared, static_cast<int>(sizeof shared));                                            \
+      mpm::device::begin_team(team, shared, sizeof shared);                                                    \
+      mpm::device::kernel(mpm::device::Team(shared, team, lanes, order), *a);                                  \
     }                                                                                                          \
   }
 
