@@ -64,7 +64,7 @@ inline std::vector<Mix> every_kernel(int dimension) {
   loaded.stress_update = "averaged";
   loaded.boundaries =
       flat ? R"({"all": "slip", "x_max": "stick", "y_min": {"type": "prescribed", "velocity": ["0.1+t", 0]}})"
-           : R"({"all": "slip", "x_min": "periodic", "x_max": "periodic", "y_max": "separate"})";
+           : R"({"all": "slip", "x_max": "stick", "y_max": "separate"})";
   const auto of = [&](const char* in_plane, const char* in_space) { return std::string(flat ? in_plane : in_space); };
   const auto beyond = [](const std::string& point, const std::string& normal) {
     return R"({"type": "half_space", "point": )" + point + R"(, "normal": )" + normal + "}";
@@ -82,6 +82,10 @@ inline std::vector<Mix> every_kernel(int dimension) {
                 beyond(of("[0.22, 0]", "[0.22, 0, 0]"), of("[1, 0]", "[1, 0, 0]")) + R"J(, "velocity": )J" +
                 of("[\"1.2+t\", null]", "[\"1.2+t\", null, \"X\"]") + "}]";
   mixes.push_back(loaded);
+  Mix periodic;
+  periodic.dimension = dimension, periodic.boundaries = R"({"all": "slip", "x_min": "periodic", "x_max": "periodic"})";
+  periodic.close = true, periodic.transfer = R"({"type": "flip"})";
+  mixes.push_back(periodic);
   if (flat) {
     Mix rings;
     rings.overrides = {set("/grid/symmetry", "axisymmetric"), set("/gravity", "[0, -1.3]")};
