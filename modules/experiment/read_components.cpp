@@ -107,18 +107,12 @@ void ExperimentReader::read_components(const Fields& fields) {
 
 /// Refuses a choice of normal or detection that nobody would look at.
 void ExperimentReader::check_contact(const Fields& fields) {
-  if (!experiment_.contact->plugin) return;
-  const bool weld = experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION;
   for (const char* key : {"normal", "detection"}) {
-    const bool usual = fields.choice(key) == 0;  // the first is the default
-    if (weld && fields.given(key) && !usual)
+    if (!fields.given(key) || !fields.valid(key) || fields.choice(key) == 0) continue;  // the first is the default
+    if (experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION)
       problem(fields.place(key), in_quotes(experiment_.contact->plugin->id()) +
                                      " joins bodies at every node that they share and looks at no " + key +
                                      "; remove it");
-    else if (experiment_.backend == "cuda" && !usual)
-      problem(fields.place(key),
-              "backend \"cuda\" does not look at the particles of a node; choose \"cpu\" or the default " +
-                  std::string(key));
   }
 }
 

@@ -55,8 +55,19 @@ class ContactPairs {
         separation_(nodes),
         area_(nodes) {}
 
+  /// The particles near nodes where fields meet, which `find` looks at where the scene asks for them.
+  ContactPoints& points() { return points_; }
+  /// The coordinates of a node.
+  std::array<int, 3> coordinates(std::size_t node, const Arguments<T>& scene) const {
+    std::array<int, 3> at{};
+    auto rest = static_cast<int>(node);
+    for (int c = 0; c < experiment_.dimension; rest /= scene.extent[c], ++c)
+      at[c] = rest % scene.extent[c] - scene.padding[c];
+    return at;
+  }
   /// Finds normal, separation and area at every node that two fields share (simulation/contact_pair.hpp).
-  void find(const ContactFields<T>& first, std::size_t a, const ContactFields<T>& second, std::size_t b) {
+  void find(const ContactFields<T>& first, std::size_t a, const ContactFields<T>& second, std::size_t b,
+            const Arguments<T>& scene) {
     const bool weld = experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION;
     const int D = experiment_.dimension;
     for (std::size_t node = 0; node < nodes_; ++node) {
@@ -64,7 +75,7 @@ class ContactPairs {
       active_[node] = 0;
       if (!meet(of_a.mass, of_b.mass, weld)) continue;
       const ContactGeometry geometry =
-          geometry_(points_, {}, static_cast<int>(a), static_cast<int>(b), of_a, of_b);
+          geometry_(points_, coordinates(node, scene), static_cast<int>(a), static_cast<int>(b), of_a, of_b);
       if (!geometry.valid && !weld) continue;
       active_[node] = 1;
       for (int c = 0; c < D; ++c)

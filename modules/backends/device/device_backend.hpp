@@ -167,6 +167,7 @@ class DeviceBackend final : public Backend {
   // ---- contact.cpp
   /// Applies the law to every pair of fields.
   void resolve_contact(const StepInfo& step, Recorded recorded);
+  void find_contact_points(const std::vector<ContactFields<T>>& found);
   /// Records the force that particles take when they gather the velocity as it is now.
   void record_force(const StepInfo& step);
 

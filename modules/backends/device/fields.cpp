@@ -65,14 +65,13 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   if (!experiment.grips.empty())
     for (const char* id : {"told_velocity", "gathered_velocity"}) work(id, "m/s", D);
   if (gives_loads(plan)) work("load_force", "N", D);
-  if (!experiment.loaded_at_points().empty()) {
-    work("load_moment", "N m", D * D);
-    // All bodies have the same numbers, those too that no load needs it of.
-    if (const Field* const deformation = plan.particle_field(body, "deformation"))
-      fields.push_back(*deformation);
-    else
-      work("deformation", "", D * D);
-  }
+  const bool loaded = !experiment.loaded_at_points().empty();
+  if (loaded) work("load_moment", "N m", D * D);
+  // All bodies have the same numbers, those too that no load needs it of.
+  if (const Field* const deformation = plan.particle_field(body, "deformation"))
+    fields.push_back(*deformation);
+  else if (loaded)
+    work("deformation", "", D * D);
   if (plan.stencil.second_moment) work("second_moment", "cells^2", D * D);
   // All bodies have the same numbers: those whose particles are equal have the size 1, and those that cannot melt are
   // solid all along.

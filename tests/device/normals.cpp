@@ -1,0 +1,28 @@
+// Contact whose normal or detection looks at particles, on the host-run device.
+
+#include "device/device_support.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+TEST_CASE("normals and surfaces of particles on the host-run device", "[device][normals]") {
+  const std::string gap = R"({"type": "coulomb", "friction": 0.2, "normal": "widest_gap"})",
+                    surfaces = R"({"type": "coulomb", "detection": "particle_surfaces"})",
+                    both = R"({"type": "coulomb", "normal": "widest_gap", "detection": "particle_surfaces"})";
+  for (const int dimension : {2, 3})
+    for (const std::string& contact : {gap, both}) {
+      Mix mix;
+      mix.dimension = dimension, mix.contact = contact;
+      check_on_device(mix);
+    }
+  Mix domains;
+  domains.shape = R"({"type": "cpdi"})", domains.contact = surfaces;
+  check_on_device(domains);
+  Mix rings;
+  rings.contact = both, rings.overrides = {"/grid/symmetry=axisymmetric", "/gravity=[0, -1.3]"};
+  check_on_device(rings);
+  Mix walls;
+  walls.contact = both, walls.close = true;
+  walls.boundaries = R"({"all": "separate", "x_min": "periodic", "x_max": "periodic"})";
+  check_on_device(walls);
+}
