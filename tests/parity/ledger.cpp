@@ -38,6 +38,14 @@ std::vector<Mix> mixes() {
     mix.filter.clear();
     mix.more = dimension == 2 ? R"J(, "body_force": ["2*sin(3*X)+t", "x-Y*y"])J" : "";
     all.push_back(mix);
+    mix.more.clear(), mix.contact.clear();
+    for (const std::string shape : {"gimp", "cpdi"}) {  // their particles' affine energy changes as they move
+      mix.shape = "{\"type\": \"" + shape + "\"}";
+      all.push_back(mix);
+    }
+    mix.shape = Mix().shape, mix.stress_update = "first";
+    mix.filter = R"({"type": "fmpm", "order": 2})";  // strains by the velocity before the filter
+    all.push_back(mix);
   }
   return all;
 }

@@ -88,6 +88,14 @@ TEST_CASE("the counter counts operations", "[bench]") {
   using S = Counted<float>;
   const S a = 1, b = 2, c = 3;
   CHECK(count_operations([&] { (void)((a + b) * c / b - sqrt(a)); }) == 5);
+  CHECK(((a + b) * c / b - sqrt(a)).value == 3.5f);  // and computes
+  S sum = a;
+  CHECK(count_operations([&] { sum += b, sum -= a, sum *= c; }) == 3);
+  CHECK(sum.value == 6);
+  CHECK((-c).value == -3);
+  CHECK((a <= b && a <= a && !(b <= a) && b >= a && b >= b && !(a >= b) && a == a && a != b));
+  // A count within another leaves that one as it was.
+  CHECK(count_operations([&] { (void)(a + b), count_operations([&] { (void)(a * b + c * a); }), (void)(a - b); }) == 2);
   CHECK(count_operations([&] { (void)max(abs(-a), floor(b)); }) == 0);
   CHECK(count_operations([&] { (void)log(a); }) == 19);
   CHECK(count_operations([&] { (void)log(Counted<double>(1)); }) == 33);

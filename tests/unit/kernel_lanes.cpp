@@ -115,3 +115,44 @@ TEMPLATE_TEST_CASE("lanes select, min, max, abs and masks", "", float, double) {
   x[Pack::width - 1] = 1;
   CHECK(mpm::any(Pack::load(x) > TestType(0)));
 }
+
+TEMPLATE_TEST_CASE("lanes compare as their numbers do, with packs and with a number", "", float, double) {
+  using Pack = mpm::Lanes<TestType>;
+  alignas(64) TestType x[Pack::width];
+  for (int i = 0; i < Pack::width; ++i) x[i] = static_cast<TestType>(i % 3);  // below, at and above 1
+  const Pack pack = Pack::load(x), ones(TestType(1)), yes(TestType(1)), no(TestType(0));
+  for (int i = 0; i < Pack::width; ++i) {
+    CHECK((select(pack < ones, yes, no)[i] == 1) == (x[i] < 1));
+    CHECK((select(pack > ones, yes, no)[i] == 1) == (x[i] > 1));
+    CHECK((select(pack <= ones, yes, no)[i] == 1) == (x[i] <= 1));
+    CHECK((select(pack >= ones, yes, no)[i] == 1) == (x[i] >= 1));
+    CHECK((select(pack < TestType(1), yes, no)[i] == 1) == (x[i] < 1));
+    CHECK((select(pack > TestType(1), yes, no)[i] == 1) == (x[i] > 1));
+    CHECK((select(pack <= TestType(1), yes, no)[i] == 1) == (x[i] <= 1));
+    CHECK((select(pack >= TestType(1), yes, no)[i] == 1) == (x[i] >= 1));
+  }
+}
+
+TEMPLATE_TEST_CASE("lanes add, subtract, multiply and divide, with packs and with a number", "", float, double) {
+  using Pack = mpm::Lanes<TestType>;
+  const TestType two(2);
+  const Pack a(TestType(6)), b(TestType(3));
+  const auto is = [](const Pack& found, double value) {
+    for (int i = 0; i < Pack::width; ++i)
+      if (found[i] != static_cast<TestType>(value)) return false;
+    return true;
+  };
+  CHECK(is(a + b, 9));
+  CHECK(is(a - b, 3));
+  CHECK(is(a * b, 18));
+  CHECK(is(a / b, 2));
+  CHECK(is(a + two, 8));
+  CHECK(is(a - two, 4));
+  CHECK(is(a * two, 12));
+  CHECK(is(a / two, 3));
+  CHECK(is(two + a, 8));
+  CHECK(is(two - a, -4));
+  CHECK(is(two * a, 12));
+  CHECK(is(two / b, 2.0 / 3));
+  CHECK(is(-a, -6));
+}

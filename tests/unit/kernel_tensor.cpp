@@ -71,6 +71,22 @@ TEST_CASE("left Cauchy-Green tensor and its plane-strain zz") {
   for (int k = 0; k < 4; ++k) CHECK(plane.s[k] == expected_plane[k]);
 }
 
+TEST_CASE("a plane deformation has a stretch of its own across the plane") {
+  using Plane = Deformation<2, double>;
+  const Plane rest = Plane::identity();
+  const double expected[] = {1, 0, 0, 1};
+  for (int k = 0; k < 4; ++k) CHECK(rest.plane.m[k] == expected[k]);
+  CHECK(rest.zz == 1);
+  const Sym2 b = left_cauchy_green(Plane{Mat2{{1, 2, 3, 4}}, 3});
+  const double expected_b[] = {5, 25, 9, 11};
+  for (int k = 0; k < 4; ++k) CHECK(b.s[k] == expected_b[k]);
+  // F <- (I + dt L) F, across the plane as within it.
+  const Plane next = advanced(Plane{Mat2{{1, 0.5, 0, 2}}, 3}, Plane{Mat2{{0, 1, 2, 0}}, 0.4}, 0.25);
+  const double expected_next[] = {1, 1, 0.5, 2.25};
+  for (int k = 0; k < 4; ++k) CHECK(next.plane.m[k] == expected_next[k]);
+  CHECK(next.zz == Approx(3.3));
+}
+
 TEST_CASE("a step advances the deformation gradient by (I + dt L) F") {
   const Mat2 F{{1, 0.5, 0, 2}}, L{{0, 1, 2, 0}};
   const Mat2 r = advanced(F, L, 0.25);

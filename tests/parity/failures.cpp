@@ -1,0 +1,71 @@
+// Where a particle cannot go on, the reference and the cpu backend stop in the same step, at the same particle.
+
+#include "parity/parity.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+/// A box in a domain of 60 x 4 cells of 1 m that moves as it was thrown, without stress.
+std::string thrown(const std::string& boundaries, const std::string& lower, const std::string& upper,
+                   const std::string& velocity, const std::string& solver) {
+  return R"({"title": "thrown", "dimension": 2, "grid": {"cell_size": 1, "domain": [[0, 0], [60, 4]],
+    "boundaries": )" +
+         boundaries + R"(}, "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"}, "materials":
+    {"m": {"type": "neo_hookean", "youngs_modulus": 1e-9, "poisson_ratio": 0, "density": 1}},
+    "bodies": [{"name": "b", "material": "m", "geometry": {"type": "box", "lower": )" +
+         lower + ", \"upper\": " + upper + "}, \"velocity\": " + velocity + R"(}], "solver": )" + solver +
+         R"(, "output": {"ledger": false}})";
+}
+
+struct Stop {
+  Failure failure;
+  long step;
+};
+
+/// What both backends stop with.
+Stop stop_of(const std::string& text) {
+  INFO(text);
+  std::vector<Stop> stops;
+  for (const std::string backend : {"reference", "cpu"}) {
+    Scene scene(text, {set("/backend", backend), "/precision=double"});
+    try {
+      while (!scene.simulation.finished()) scene.simulation.step();
+    } catch (const RunFailure& stopped) {
+      stops.push_back({stopped.failure, scene.simulation.steps()});
+    }
+  }
+  REQUIRE(stops.size() == 2);
+  CHECK(stops[0].failure.cause == stops[1].failure.cause);
+  CHECK(stops[0].failure.particle == stops[1].failure.particle);
+  CHECK(stops[0].failure.axis == stops[1].failure.axis);
+  CHECK(stops[0].step == stops[1].step);
+  return stops[0];
+}
+
+}  // namespace
+
+// A separating wall lets particles half a cell through. The face across from it does not: the particle that begins at
+// 1.25 m from it and moves 0.1 m a step is beyond it after 13 steps.
+TEST_CASE("a face lets through what its own condition says, not that of the face across", "[parity][failure]") {
+  const std::string solver = R"({"time_step": 0.1, "end_time": 10})";
+  for (const std::string open : {"x_min", "x_max"}) {
+    const bool down = open == "x_min";
+    const Stop stop = stop_of(thrown(R"({"all": "separate", ")" + open + R"(": "free"})", down ? "[1, 1]" : "[57, 1]",
+                                     down ? "[3, 3]" : "[59, 3]", down ? "[-1, 0]" : "[1, 0]", solver));
+    CHECK(stop.failure.cause == Cause::left_domain);
+    CHECK(stop.failure.axis == 0);
+    CHECK(stop.failure.value == Approx(down ? -0.05 : 60.05).epsilon(1e-9));
+    CHECK(stop.step == 12);  // complete ones
+  }
+}
+
+// Its velocity has a gradient that takes the first step's deformation beyond the largest number.
+TEST_CASE("a deformation that is no number is told from one that is inside out", "[parity][failure]") {
+  const std::string free = R"({"all": "free"})",
+                    solver = R"({"time_step": 10, "end_time": 100, "stress_update": "first"})";
+  CHECK(stop_of(thrown(free, "[1, 1]", "[3, 3]", R"(["5e307*x", 0])", solver)).failure.cause ==
+        Cause::deformation_not_a_number);
+  CHECK(stop_of(thrown(free, "[1, 1]", "[3, 3]", R"(["-5*x", 0])", solver)).failure.cause == Cause::inverted);
+}
