@@ -123,6 +123,12 @@ std::string Device::architecture() const {
   return architecture_of(driver_, device_);
 }
 
+int Device::multiprocessors() const {
+  int count = 0;
+  check(driver_.cuDeviceGetAttribute(&count, attribute_multiprocessors, device_), "to tell its multiprocessors");
+  return count;
+}
+
 void Device::load(const std::string& image, const std::string& program) {
   make_current();
   program_ = program;

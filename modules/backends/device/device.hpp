@@ -32,6 +32,7 @@ class Device {
 
   const std::string& name() const { return name_; }  ///< as the driver calls it
   std::uint64_t free_bytes() const;
+  int multiprocessors() const;
   /// The architecture of machine code, "sm_90".
   std::string architecture() const;
 

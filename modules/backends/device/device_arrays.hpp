@@ -29,13 +29,15 @@ struct Body {
   DeviceArray<double> parameters, melted_parameters;  ///< of all particles, and of the melted ones where it melts
   Blocks blocks;
 
-  Body(Device& device, const Experiment& experiment, const Plan& plan, int index, const SeededBody& seeded)
+  /// `scene` holds cells and padding.
+  Body(Device& device, const Experiment& experiment, const Plan& plan, const Arguments<T>& scene, int index,
+       const SeededBody& seeded)
       : dimension(experiment.dimension),
         arrays(device, "the particles of " + experiment.bodies[index].name, particle_fields(experiment, plan, index),
                seeded.count()),
         parameters(device, "the parameters of a material"),
         melted_parameters(device, "the parameters of a melted material"),
-        blocks(device, experiment.bodies[index].name) {
+        blocks(device, experiment.bodies[index].name, scene, experiment.dimension, seeded.count()) {
     const BodySpecification& body = experiment.bodies[index];
     frozen = body.frozen;
     material = &experiment.materials[body.material].component;

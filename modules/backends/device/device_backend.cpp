@@ -31,6 +31,9 @@ Arguments<T> described(const Experiment& experiment) {
   return scene;
 }
 
+/// The teams at work on blocks that one multiprocessor may hold: as many as the limits of its threads allow.
+constexpr int teams_of_multiprocessor = 32;
+
 /// Opens the device, unless it has too little memory free.
 std::unique_ptr<Device> open(const DeviceSetup& setup, const Experiment& experiment, const Plan& plan,
                              const std::vector<SeededBody>& seeded, std::size_t nodes) {
@@ -52,6 +55,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
       on_host_(scene_),
       device_(open(setup, experiment, plan, seeded, static_cast<std::size_t>(scene_.node_count))),
       lanes_(setup.lanes),
+      teams_(setup.teams > 0 ? setup.teams : teams_of_multiprocessor * device_->multiprocessors()),
       shape_parameters_(*device_, "the shape's parameters"),
       transfer_parameters_(*device_, "the transfer's parameters"),
       filter_parameters_(*device_, "the filter's parameters"),
@@ -80,7 +84,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
 
   if (experiment.has_temperature()) heat_conditions_.emplace(*device_, experiment, scene_);
   for (std::size_t body = 0; body < seeded.size(); ++body) {
-    bodies_.emplace_back(*device_, experiment, plan, static_cast<int>(body), seeded[body]);
+    bodies_.emplace_back(*device_, experiment, plan, scene_, static_cast<int>(body), seeded[body]);
     loads_.emplace_back(experiment, static_cast<int>(body), seeded[body]);
   }
   for (int field = 0; field < experiment.field_count; ++field)

@@ -1,6 +1,6 @@
 #pragma once
 // The backend of a device executes the passes of a plan as launches of a composition's phases, through a driver's table:
-// libcuda's, or the host's. Particles and nodes stay on the device; formulas, contact geometry, sorting and what
+// libcuda's, or the host's. Particles and nodes stay on the device; formulas, contact geometry and what
 // supports give are the host's, which reads and writes the arrays that these need.
 
 #include <array>
@@ -86,6 +86,7 @@ class DeviceBackend final : public Backend {
   /// Runs a phase over a body's particles, or over its blocks, and stops the run where it reports a particle.
   void run(const std::string& phase, const Arguments<T>& a, const Body<T>& body, Checks checks);
   void run_blocks(const std::string& phase, const Arguments<T>& a, const Body<T>& body);
+  void launch_blocks(const std::string& phase, Arguments<T> a, const Body<T>& body);
   void stop_where_failed(const Body<T>& body, Checks checks);
   void run_material(const std::string& phase, const Body<T>& body);
   void run_material(const std::string& phase, const Arguments<T>& a, const Body<T>& body);
@@ -102,6 +103,8 @@ class DeviceBackend final : public Backend {
 
   // ---- particles.cpp: passes over particles
   void estimate_time_step();
+  /// Puts a body's particles into their blocks, where any has left its own.
+  void sort(const Body<T>& body);
   void scatter(const Pass& pass, const StepInfo& step);
   static void add(std::array<double, 4>& sum, double sign, const std::array<double, 4>& values);
   void gather(const Pass& pass, const StepInfo& step);
@@ -222,7 +225,7 @@ class DeviceBackend final : public Backend {
   Arguments<T> scene_;              ///< what all launches share; its pointers are the device's
   Arguments<T> on_host_;            ///< the same with what conditions give on the host, for NotedReactions
   std::unique_ptr<Device> device_;  ///< outlives the arrays on it
-  int lanes_;
+  int lanes_, teams_;               ///< of a team, and at work on blocks at once
   DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_;
   DeviceArray<int> first_failed_, ignored_failures_;
   DeviceArray<double> partial_sums_;

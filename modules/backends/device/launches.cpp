@@ -100,8 +100,14 @@ void DeviceBackend<T>::run(const std::string& phase, const Arguments<T>& a, cons
 
 template <class T>
 void DeviceBackend<T>::run_blocks(const std::string& phase, const Arguments<T>& a, const Body<T>& body) {
-  launch_teams(phase, a, body.blocks.count());
+  launch_blocks(phase, a, body);
   stop_where_failed(body, Checks::stencil);
+}
+
+template <class T>
+void DeviceBackend<T>::launch_blocks(const std::string& phase, Arguments<T> a, const Body<T>& body) {
+  a.teams = std::min(teams_, body.blocks.most(body.arrays.count()));
+  launch_teams(phase, a, a.teams);
 }
 
 template <class T>

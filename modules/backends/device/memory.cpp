@@ -24,7 +24,7 @@ std::vector<Taken> taken_by_fields(const Experiment& experiment, const Plan& pla
     const std::string owner = "the particles of " + experiment.bodies[body].name;
     const double count = static_cast<double>(seeded[body].count());
     add(particle_fields(experiment, plan, static_cast<int>(body)), owner, count);
-    all.push_back({"order", owner, count * sizeof(int)});
+    all.push_back({"blocks", owner, 2 * count * sizeof(int)});
   }
   const double all_nodes = static_cast<double>(nodes) * experiment.field_count;
   add(node_fields(experiment, plan), "the nodes", all_nodes);

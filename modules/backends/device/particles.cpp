@@ -21,6 +21,21 @@ void DeviceBackend<T>::estimate_time_step() {
 }
 
 template <class T>
+void DeviceBackend<T>::sort(const Body<T>& body) {
+  const Arguments<T> a = arguments_of(body);
+  const BlockArrays& blocks = body.blocks.table();
+  launch("find_blocks", a, body.count);
+  launch("clear_counts", a, blocks.table);
+  launch("count_particles", a, body.count);
+  launch_teams("sum_chunks", a, body.blocks.chunks());
+  launch_teams("scan_chunks", a, 1);
+  launch_teams("number_blocks", a, body.blocks.chunks());
+  launch("place_particles", a, body.count);
+  launch_blocks("order_blocks", a, body);
+  launch_teams("end_sort", a, 1);
+}
+
+template <class T>
 void DeviceBackend<T>::scatter(const Pass& pass, const StepInfo& step) {
   const bool enters = pass.has(Act::scatter_momentum) && !pass.remap();  // the step begins
   const bool force = pass.has(Act::scatter_force);
@@ -30,7 +45,7 @@ void DeviceBackend<T>::scatter(const Pass& pass, const StepInfo& step) {
   std::array<double, 4> unbalanced{};  // momentum and mass
   if (heat) scattered_heat_ = 0;
   for (Body<T>& body : bodies_) {
-    if (enters) body.blocks.sort(scene_, body.arrays.read("position"), body.dimension);
+    if (enters) sort(body);
     if (force || heat || pass.has(Act::scatter_contact)) run_material("stress", body);  // with the volume ratio
     Arguments<T> a = arguments_of(body);
     a.momentum = pass.has(Act::scatter_momentum), a.force = force;

@@ -81,11 +81,16 @@ struct HeatBox {
   const T* power;          ///< [node of the box, x first], W, that its nodes share by their mass; null where none comes
 };
 
-/// The work of a scatter: the particles of block k are order[block_begin[k] .. block_begin[k + 1]).
+/// The blocks of cells that a body's particles are in. The particles of the k-th block that has any are
+/// order[begin[k] .. begin[k + 1]), in the order of their indices (kernels/sorting.hpp).
 struct BlockArrays {
-  const int* cell;   ///< [block][3], first cell
-  const int* begin;  ///< [blocks + 1]
-  const int* order;  ///< particle indices, block after block
+  int lower[3], extent[3], table;  ///< all blocks that the grid has, ghosts too: the first one, how many, their product
+  int* block;                      ///< [particle] number in the table
+  int *count, *next;               ///< [table] particles, and where the next one of them goes
+  int *chunk, *before_chunk;       ///< [chunk of the table][2] particles and blocks with any, in it and before it
+  int* in_order;                   ///< [1] 0 where a particle has left its block since the last sort
+  int* active;                     ///< [1] blocks with particles
+  int *cell, *begin, *order;       ///< [block with particles][3] first cell; [blocks with particles + 1]; [particle]
 };
 
 template <class T>
@@ -114,6 +119,7 @@ struct Arguments {
   NodeArrays<T> grid, other;
   ContactArrays<T> contact;
   BlockArrays blocks;
+  int teams;             ///< that share the blocks with particles
   double* partial_sums;  ///< [team][sum]
   int* first_failed;     ///< smallest index of a particle that cannot go on; count where there is none
   // These say how it works.

@@ -38,7 +38,7 @@ MPM_HD void project(const Team& team, const Arguments<typename Scene::Scalar>& a
   constexpr int D = Scene::dimension;
   T* channel[D];
   for (int c = 0; c < D; ++c) channel[c] = a.grid.field[N::projection] + c * a.node_count;
-  scatter_block<D, D>(team, a, channel, [&](int p, auto add) {
+  scatter_blocks<D, D>(team, a, channel, [&](int p, auto add) {
     const Stencil<Scene> stencil(a, p);
     if (!stencil.inside()) return Team::lower(a.first_failed, p);
     const T mass = of_size<Scene>(a.particles, a.particles.mass, p);

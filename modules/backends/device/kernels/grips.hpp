@@ -21,7 +21,7 @@ MPM_HD void scatter_grip(const Team& team, const Arguments<typename Scene::Scala
     for (int c = 0; c < D; ++c)
       channel[c] = grip.momentum + c * a.node_count, channel[D + c] = grip.before + c * a.node_count;
     channel[2 * D] = grip.mass;
-    scatter_block<D, 2 * D + 1>(team, a, channel, [&](int p, auto add) {
+    scatter_blocks<D, 2 * D + 1>(team, a, channel, [&](int p, auto add) {
       if (int(a.particles.field[P::grip][p]) != a.grip + 1) return;
       const Stencil<Scene> stencil(a, p);
       if (!stencil.inside()) return Team::lower(a.first_failed, p);

@@ -74,7 +74,7 @@ MPM_HD void scatter_heat(const Team& team, const Arguments<typename Scene::Scala
     channel[2] = a.grid.field[N::heated_volume], channel[3] = a.grid.field[N::volume_conductivity];
   if constexpr (N::capacity_position >= 0)
     for (int c = 0; c < D; ++c) channel[4 + c] = a.grid.field[N::capacity_position] + c * a.node_count;
-  scatter_block<D, channels>(team, a, channel, [&](int p, auto add) {
+  scatter_blocks<D, channels>(team, a, channel, [&](int p, auto add) {
     const Stencil<Scene> stencil(a, p);
     if (!stencil.inside()) return Team::lower(a.first_failed, p);
     const ParticleArrays<T>& particles = a.particles;
@@ -114,7 +114,7 @@ MPM_HD void conduct(const Team& team, const Arguments<typename Scene::Scalar>& a
   using N = typename Scene::Node;
   constexpr int D = Scene::dimension;
   T* channel[1] = {a.grid.field[N::heat_rate]};
-  scatter_block<D, 1>(team, a, channel, [&](int p, auto add) {
+  scatter_blocks<D, 1>(team, a, channel, [&](int p, auto add) {
     const Stencil<Scene> stencil(a, p);
     if (!stencil.inside()) return Team::lower(a.first_failed, p);
     const T* const temperature = a.grid.field[N::temperature];

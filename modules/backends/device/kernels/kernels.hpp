@@ -14,8 +14,10 @@
 #include "backends/device/kernels/ledger.hpp"
 #include "backends/device/kernels/material.hpp"
 #include "backends/device/kernels/scatter.hpp"
+#include "backends/device/kernels/sorting.hpp"
 
 #define MPM_DEVICE_ENTRIES                                                           \
+  MPM_DEVICE_SORT_ENTRIES                                                            \
   MPM_DEVICE_ENTRY(mpm_clear, clear<Scene>, 1)                                       \
   MPM_DEVICE_ENTRY(mpm_scatter, scatter<Scene>, mpm::device::scatter_scalars<Scene>) \
   MPM_DEVICE_ENTRY(mpm_weigh, weigh<Scene>, 1)                                       \
@@ -30,6 +32,17 @@
   MPM_DEVICE_ENTRY(mpm_gather, gather<Scene>, 1)                                     \
   MPM_DEVICE_ENTRY(mpm_move, move<Scene>, 1)                                         \
   MPM_DEVICE_ENTRY(mpm_second_moments, second_moments<Scene>, 1)
+
+#define MPM_DEVICE_SORT_ENTRIES                                                               \
+  MPM_DEVICE_ENTRY(mpm_find_blocks, find_blocks<Scene>, 1)                                    \
+  MPM_DEVICE_ENTRY(mpm_clear_counts, clear_counts<Scene>, 1)                                  \
+  MPM_DEVICE_ENTRY(mpm_count_particles, count_particles<Scene>, 1)                            \
+  MPM_DEVICE_ENTRY(mpm_sum_chunks, sum_chunks<Scene>, mpm::device::scan_scalars<Scene>)       \
+  MPM_DEVICE_ENTRY(mpm_scan_chunks, scan_chunks<Scene>, mpm::device::scan_scalars<Scene>)     \
+  MPM_DEVICE_ENTRY(mpm_number_blocks, number_blocks<Scene>, mpm::device::scan_scalars<Scene>) \
+  MPM_DEVICE_ENTRY(mpm_place_particles, place_particles<Scene>, 1)                            \
+  MPM_DEVICE_ENTRY(mpm_order_blocks, order_blocks<Scene>, 1)                                  \
+  MPM_DEVICE_ENTRY(mpm_end_sort, end_sort<Scene>, 1)
 
 #define MPM_DEVICE_LOAD_ENTRIES \
   MPM_DEVICE_ENTRY(mpm_scatter_load, scatter_load<Scene>, mpm::device::load_scalars<Scene>)

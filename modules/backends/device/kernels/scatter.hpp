@@ -25,18 +25,19 @@ struct Tile {
   }
 };
 
-/// Sums over the particles of the team's block. `contribute(p, add)` calls add(node, values[Channels]); `channel[k]` is
-/// the grid's array of channel k, or null where nothing is given to it.
+/// Sums over the particles of each block. `contribute(p, add)` calls add(node, values[Channels]); `channel[k]` is the
+/// grid's array of channel k, or null where nothing is given to it.
 template <int D, int Channels, class T, class Contribute>
-MPM_HD void scatter_block(const Team& team, const Arguments<T>& a, T* const* channel, Contribute contribute) {
+MPM_HD void scatter_block(const Team& team, const Arguments<T>& a, int block, T* const* channel,
+                          Contribute& contribute) {
   T* const tile = team.template shared<T>();
-  const int* const first_cell = a.blocks.cell + 3 * team.block();
+  const int* const first_cell = a.blocks.cell + 3 * block;
   team.for_each_lane([&](int lane) {
     for (int k = lane; k < Channels * Tile<D>::nodes; k += team.lanes()) tile[k] = T(0);
   });
   team.for_each_lane([&](int lane) {
-    const int end = a.blocks.begin[team.block() + 1];
-    for (int i = a.blocks.begin[team.block()] + lane; i < end; i += team.lanes())
+    const int end = a.blocks.begin[block + 1];
+    for (int i = a.blocks.begin[block] + lane; i < end; i += team.lanes())
       contribute(a.blocks.order[i], [&](const int* node, const T* values) {
         const int at = Tile<D>::index(first_cell, node);
         for (int k = 0; k < Channels; ++k)
@@ -54,6 +55,10 @@ MPM_HD void scatter_block(const Team& team, const Arguments<T>& a, T* const* cha
         Team::add(channel[k] + node_index<D>(a, node), value);
       }
   });
+}
+template <int D, int Channels, class T, class Contribute>
+MPM_HD void scatter_blocks(const Team& team, const Arguments<T>& a, T* const* channel, Contribute contribute) {
+  for_each_block(team, a, [&](int block) { scatter_block<D, Channels>(team, a, block, channel, contribute); });
 }
 
 template <class Scene>
@@ -92,7 +97,7 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
   constexpr int D = Scene::dimension;
   T* channel[Scene::scattered];
   find_channels<Scene>(a, channel);
-  scatter_block<D, Scene::scattered>(team, a, channel, [&](int p, auto add) {
+  scatter_blocks<D, Scene::scattered>(team, a, channel, [&](int p, auto add) {
     const Stencil<Scene> stencil(a, p);
     if (!stencil.inside()) return Team::lower(a.first_failed, p);
     const ParticleArrays<T>& particles = a.particles;
@@ -155,7 +160,7 @@ MPM_HD void scatter_load(const Team& team, const Arguments<typename Scene::Scala
   constexpr int D = Scene::dimension;
   T* channel[D];
   for (int c = 0; c < D; ++c) channel[c] = a.grid.field[a.load_field] + c * a.node_count;
-  scatter_block<D, D>(team, a, channel, [&](int p, auto add) {
+  scatter_blocks<D, D>(team, a, channel, [&](int p, auto add) {
     const Stencil<Scene> stencil(a, p);
     if (!stencil.inside()) return Team::lower(a.first_failed, p);
     const int stride = a.particles.stride;
