@@ -4,6 +4,7 @@
 
 #include "backends/device/make_device_backend.hpp"
 #include "backends/device/program.hpp"
+#include "experiment/device_settings.hpp"
 
 namespace mpm {
 namespace {
@@ -24,8 +25,11 @@ BackendFactory backend_factory(int threads, bool find_number, const std::string&
   return
       [threads, find_number, device](const Experiment& experiment, const Plan& plan, std::vector<SeededBody> bodies) {
         if (experiment.backend == "reference") return make_reference_backend(experiment, plan, std::move(bodies));
-        if (experiment.backend == "cuda")
-          return device::make_device_backend(experiment, plan, bodies, device::setup_for(device));
+        if (experiment.backend == "cuda") {
+          device::DeviceSetup setup = device::setup_for(device);
+          setup.deterministic = sums_deterministically(experiment);
+          return device::make_device_backend(experiment, plan, bodies, setup);
+        }
         const int workers = useful_threads(threads, bodies);  // results do not depend on their number
         return make_cpu_backend(experiment, plan, std::move(bodies), workers, find_number);
       };

@@ -1,5 +1,6 @@
 // Particles are sorted into blocks on the device; the expected order is that of a stable sort on the host.
 
+#include <climits>
 #include <numeric>
 #include <random>
 
@@ -49,7 +50,8 @@ class Sorted {
         team_(team),
         setup_(device_setup(team)),
         device_(*setup_.driver, setup_.number),
-        position_(device_, "positions", dimension * count) {
+        position_(device_, "positions", dimension * count),
+        stop_(device_, "the failed particle") {
     Mix mix;
     mix.dimension = dimension;
     const device::Choice choice = device_choice_of(device_experiment(mix.text(), "double"));
@@ -62,6 +64,8 @@ class Sorted {
     a_.particles.field[device::number_of(choice.particle_fields, "position")] = position_.data();
     a_.blocks = blocks_->table();
     a_.teams = teams;
+    stop_.upload(std::vector<int>(device::stop_numbers, INT_MAX));
+    a_.stop = stop_.data();
   }
 
   Order sort(const std::vector<double>& x) {
@@ -112,6 +116,7 @@ class Sorted {
   device::DeviceSetup setup_;
   device::Device device_;
   device::DeviceArray<double> position_;
+  device::DeviceArray<int> stop_;
   device::Arguments<double> a_{};
   std::optional<device::Blocks> blocks_;
 };

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "simulation/contact_pair.hpp"
+#include "operators/contact_geometry.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 

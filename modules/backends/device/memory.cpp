@@ -29,9 +29,6 @@ std::vector<Taken> taken_by_fields(const Experiment& experiment, const Plan& pla
   const double all_nodes = static_cast<double>(nodes) * experiment.field_count;
   add(node_fields(experiment, plan), "the nodes", all_nodes);
   all.push_back({"folded", "the nodes", all_nodes * sizeof(int)});
-  if (plan.resolves_contact())
-    all.push_back({"contact", "the nodes",
-                   static_cast<double>(nodes) * ((3 + 3 * experiment.dimension) * scalar + 2 * sizeof(int))});
   return all;
 }
 

@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "backends/reference/particles.hpp"
+#include "operators/contact_geometry.hpp"
+#include "simulation/contact_detection.hpp"
 #include "simulation/contact_impulse.hpp"
-#include "simulation/contact_pair.hpp"
 #include "simulation/loads.hpp"
 
 namespace mpm::reference {

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "backends/cpu/grid/grid.hpp"
+#include "operators/contact_geometry.hpp"
 #include "operators/edges.hpp"
 #include "operators/filter.hpp"
 #include "operators/motion.hpp"
+#include "simulation/contact_detection.hpp"
 #include "simulation/contact_impulse.hpp"
-#include "simulation/contact_pair.hpp"
 #include "simulation/loads.hpp"
 #include "simulation/reaction_impulse.hpp"
 #include "simulation/wall_heat.hpp"

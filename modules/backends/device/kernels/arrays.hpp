@@ -3,6 +3,7 @@
 
 #include "backends/device/kernels/arguments.hpp"
 #include "backends/device/kernels/fields.hpp"
+#include "backends/device/kernels/stopping.hpp"
 #include "backends/device/kernels/team.hpp"
 #include "kernel/functor.hpp"
 

@@ -4,7 +4,6 @@
 // of their indices: the outcome follows from the positions alone, whatever the order of lanes. All phases after the first
 // have nothing to do while every particle is in the block of the sort before.
 
-#include "backends/device/kernels/counters.hpp"
 #include "backends/device/kernels/stencil.hpp"
 #include "backends/device/kernels/sums.hpp"
 
@@ -158,7 +157,7 @@ template <class Scene>
 MPM_HD void place_particles(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   if (is_in_order(a.blocks)) return;
   for_each_index(team, a.particles.count,
-                 [&](int p) { a.blocks.order[take_number(a.blocks.next + a.blocks.block[p])] = p; });
+                 [&](int p) { a.blocks.order[Team::take_number(a.blocks.next + a.blocks.block[p])] = p; });
 }
 
 /// Puts the particles of each block in the order of their indices, by a bitonic network of a team.

@@ -29,6 +29,8 @@ class Team {
     atomicAdd(to, value);
   }
   MPM_HD static void lower(int* to, int value) { atomicMin(to, value); }
+  /// Raises a counter by one and returns its value before; which lane gets which depends on their order.
+  MPM_HD static int take_number(int* counter) { return atomicAdd(counter, 1); }
 
  private:
   void* shared_;
@@ -64,6 +66,7 @@ class Team {
   static void lower(int* to, int value) {
     if (value < *to) *to = value;
   }
+  static int take_number(int* counter) { return (*counter)++; }
 
  private:
   void* shared_;

@@ -1,12 +1,29 @@
 #pragma once
 // The geometry of two velocity fields that meet at a node: shared normal, separation, area. All backends use it.
 
-#include <algorithm>
-#include <cmath>
-
-#include "simulation/contact_detection.hpp"
+#include "kernel/math.hpp"
 
 namespace mpm {
+
+/// A monotone table by which the mean position of a body's particles near a node tells where its edge is, both in cells
+/// (simulation/contact_detection.hpp).
+struct EdgeTable {
+  const double *edges, *means;
+  int count;
+
+  /// The edge that gives this mean. Means outside the table give its ends.
+  MPM_HD double edge(double mean) const {
+    if (mean <= means[0]) return edges[0];
+    if (mean >= means[count - 1]) return edges[count - 1];
+    int lower = 0, upper = count - 1;  // means[lower] <= mean < means[upper]
+    while (upper - lower > 1) {
+      const int middle = (lower + upper) / 2;
+      (means[middle] > mean ? upper : lower) = middle;
+    }
+    const double share = (mean - means[lower]) / (means[upper] - means[lower]);
+    return edges[lower] + share * (edges[upper] - edges[lower]);
+  }
+};
 
 /// The values of the contact channels at one node for one field.
 struct ContactFieldNode {
@@ -28,22 +45,23 @@ inline constexpr double contact_prescreen = 1e-5;
 
 /// Whether a law is asked about two fields with these masses at a node.
 template <class Scalar>
-bool meet(Scalar mass_a, Scalar mass_b, bool weld) {
+MPM_HD bool meet(Scalar mass_a, Scalar mass_b, bool weld) {
   if (!(mass_a > 0) || !(mass_b > 0)) return false;
-  return weld || std::min(mass_a, mass_b) >= contact_prescreen * (static_cast<double>(mass_a) + mass_b);
+  return weld || min(mass_a, mass_b) >= contact_prescreen * (static_cast<double>(mass_a) + mass_b);
 }
 
 /// Finds the normal by the shared average volume gradient (Nairn 2013, CMES 92:271), the separation by inverted edge
-/// models, and the area as sqrt(2 V_total min V) / h (Nairn 2013, eq. 26).
-inline ContactGeometry contact_geometry(const ContactFieldNode& a, const ContactFieldNode& b, const EdgeModel& edge_a,
-                                        const EdgeModel& edge_b, double cell_size, int dimension) {
+/// models, and the area as sqrt(2 V_total min V) / h (Nairn 2013, eq. 26). An edge has edge(mean position in cells).
+template <class Edge>
+MPM_HD ContactGeometry contact_geometry(const ContactFieldNode& a, const ContactFieldNode& b, const Edge& edge_a,
+                                        const Edge& edge_b, double cell_size, int dimension) {
   ContactGeometry result;
   double norm = 0;
   for (int i = 0; i < dimension; ++i) {
     result.normal[i] = a.volume_gradient[i] - b.volume_gradient[i];
     norm += result.normal[i] * result.normal[i];
   }
-  norm = std::sqrt(norm);
+  norm = sqrt(norm);
   if (!(norm > 0)) return result;
   double position_a = 0, position_b = 0;
   for (int i = 0; i < dimension; ++i) {
@@ -54,7 +72,7 @@ inline ContactGeometry contact_geometry(const ContactFieldNode& a, const Contact
   const double surface_a = edge_a.edge(position_a / (a.mass * cell_size));
   const double surface_b = -edge_b.edge(-position_b / (b.mass * cell_size));
   result.separation = (surface_b - surface_a) * cell_size;
-  result.area = std::sqrt(2 * (a.volume + b.volume) * std::min(a.volume, b.volume)) / cell_size;
+  result.area = sqrt(2 * (a.volume + b.volume) * min(a.volume, b.volume)) / cell_size;
   result.valid = true;
   return result;
 }
