@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "support/catch.hpp"
 #include "support/scene.hpp"
@@ -34,10 +35,11 @@ const double round_particle[4] = {1, 0, 0, 1};
 
 /// A node's view of particles given as places in cells, two a cell and axis.
 struct View {
+  const Experiment experiment;  // which the points refer to
   ContactPoints points;
   std::array<int, 3> node;
 
-  View(const Experiment& experiment, const std::array<int, 3>& at) : points(experiment), node(at) {
+  View(Experiment given, const std::array<int, 3>& at) : experiment(std::move(given)), points(experiment), node(at) {
     points.begin();
     points.open(node);
   }
