@@ -116,15 +116,17 @@ bool ContactPoints::near_face(int axis, double low, double high, bool periodic) 
 }
 
 /// Walls that fold mirror what lies before them, as their ghosts do with the masses. Who sees a mirror image sees the
-/// particle too, which is nearer.
+/// particle too, which is nearer. Beside a periodic face nodes are asked for by their coordinates: they may lie at either
+/// end of the domain, outside the window.
 void ContactPoints::add(int field, const Vector3& x, const SemiSides& semi_sides) {
+  for (int axis = 0; axis < dimension_; ++axis)
+    if (near_face(axis, x[axis], x[axis], true)) return add_images(field, x, semi_sides, true);
   const auto number = static_cast<std::uint32_t>(places_.size());
-  Vector3 reach{};
-  for (int axis = 0; axis < dimension_; ++axis) reach[axis] = reach_of(semi_sides, axis);
   std::array<int, 3> low{}, high{};
   for (int axis = 0; axis < dimension_; ++axis) {
-    low[axis] = std::max(window_.low[axis], static_cast<int>(std::floor(x[axis] - reach[axis])) + 1);
-    high[axis] = std::min(window_.high[axis], static_cast<int>(std::ceil(x[axis] + reach[axis])) - 1);
+    const double reach = reach_of(semi_sides, axis);
+    low[axis] = std::max(window_.low[axis], static_cast<int>(std::floor(x[axis] - reach)) + 1);
+    high[axis] = std::min(window_.high[axis], static_cast<int>(std::ceil(x[axis] + reach)) - 1);
   }
   bool seen = false;
   if (!window_.nodes.empty())
@@ -134,13 +136,14 @@ void ContactPoints::add(int field, const Vector3& x, const SemiSides& semi_sides
       nodes_[node].particles[static_cast<std::size_t>(field)].push_back(number);
       seen = true;
     });
-  if (seen) keep(x, semi_sides);
+  if (!seen) return;
+  keep(x, semi_sides);
   for (int axis = 0; axis < dimension_; ++axis)
-    if (near_face(axis, x[axis], x[axis], true) || (seen && near_face(axis, x[axis], x[axis], false)))
-      return add_images(field, x, semi_sides);
+    if (near_face(axis, x[axis], x[axis], false)) return add_images(field, x, semi_sides, false);
 }
 
-void ContactPoints::add_images(int field, const Vector3& x, const SemiSides& semi_sides) {
+/// Adds the images of a particle, and itself where it is not there yet.
+void ContactPoints::add_images(int field, const Vector3& x, const SemiSides& semi_sides, bool with_itself) {
   std::vector<std::pair<Vector3, SemiSides>> images{{x, semi_sides}};
   for (int axis = 0; axis < dimension_; ++axis)
     for (int side = 0; side < 2; ++side) {
@@ -160,7 +163,7 @@ void ContactPoints::add_images(int field, const Vector3& x, const SemiSides& sem
         images.push_back(image);
       }
     }
-  for (std::size_t i = 1; i < images.size(); ++i) add_image(field, images[i].first, images[i].second);
+  for (std::size_t i = with_itself ? 0 : 1; i < images.size(); ++i) add_image(field, images[i].first, images[i].second);
 }
 
 void ContactPoints::keep(const Vector3& x, const SemiSides& semi_sides) {
@@ -191,6 +194,10 @@ void ContactPoints::add_image(int field, const Vector3& x, const SemiSides& semi
     kept = true;
   });
   if (kept) keep(x, semi_sides);
+}
+
+double ContactPoints::half_side(double volume) const {
+  return 0.5 * std::pow(volume, 1.0 / dimension_) / experiment_.grid.cell_size;
 }
 
 void ContactPoints::find(std::size_t first, std::size_t end) {

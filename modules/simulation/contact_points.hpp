@@ -49,6 +49,9 @@ class ContactPoints {
         semi_sides[3 * i + k] = factor * static_cast<double>(matrix[(i * dimension_ + k) * stride]);
     add(field, x, semi_sides);
   }
+  /// Half the side of an undeformed square or cube of this volume, m^D, in cells: the factor of a deformation gradient. In
+  /// axisymmetric scenes it is that of a ring's section.
+  double half_side(double volume) const;
   /// Finds the planes of all pairs at the nodes [first, end) of `node_count`, once all particles are there. Any thread
   /// may call it for nodes of its own.
   void find(std::size_t first, std::size_t end);
@@ -85,7 +88,7 @@ class ContactPoints {
   using SemiSides = std::array<double, 9>;  ///< cells, row-major, columns are vectors
 
   void add(int field, const Vector3& x, const SemiSides& semi_sides);
-  void add_images(int field, const Vector3& x, const SemiSides& semi_sides);
+  void add_images(int field, const Vector3& x, const SemiSides& semi_sides, bool with_itself);
   void keep(const Vector3& x, const SemiSides& semi_sides);
   void add_image(int field, const Vector3& x, const SemiSides& semi_sides);
   double reach_of(const SemiSides& semi_sides, int axis) const;

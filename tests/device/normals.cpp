@@ -21,6 +21,9 @@ TEST_CASE("normals and surfaces of particles on the host-run device", "[device][
   Mix rings;
   rings.contact = both, rings.overrides = {"/grid/symmetry=axisymmetric", "/gravity=[0, -1.3]"};
   check_on_device(rings);
+  Mix sizes;
+  sizes.contact = surfaces, sizes.overrides = {"/bodies/0/seeding=partial", "/bodies/1/seeding=partial"};
+  check_on_device(sizes);
   Mix walls;
   walls.contact = both, walls.close = true;
   walls.boundaries = R"({"all": "separate", "x_min": "periodic", "x_max": "periodic"})";

@@ -70,6 +70,10 @@ TEST_CASE("a node sees the particles less than a cell and a half away", "[contac
   CHECK_FALSE(ContactPoints(scene(R"("type": "coulomb", "normal": "widest_gap")")).gives_separation());
 }
 
+TEST_CASE("half the side of a particle is that of its square or cube, in cells", "[contact_points]") {
+  CHECK(ContactPoints(scene(both)).half_side(0.0025) == Approx(0.25));  // 0.05 m of cells of 0.1 m
+}
+
 TEST_CASE("a node at a periodic face sees the particles at the other", "[contact_points]") {
   View view(scene(both, R"({"x_min": "periodic", "x_max": "periodic", "y_min": "free", "y_max": "free"})"), {0, 5, 0});
   view.add(0, 9.75, 5), view.add(1, 0.25, 5);
@@ -78,6 +82,25 @@ TEST_CASE("a node at a periodic face sees the particles at the other", "[contact
   CHECK(pair.normal[0] == Approx(1));
   CHECK(view.points.separation(view.node, 0, 1, pair.normal) == Approx(-1e-6 * h).margin(1e-14));
   CHECK(view.points.look_around({9, 4, 0}, {10, 6, 0}));
+}
+
+// A particle of a block at the upper face may have drifted over it since it was sorted, and is at the lower one then.
+TEST_CASE("a node at a periodic face sees a particle that was looked for at the other", "[contact_points]") {
+  const Experiment experiment =
+      scene(both, R"({"x_min": "periodic", "x_max": "periodic", "y_min": "free", "y_max": "free"})");
+  ContactPoints points(experiment);
+  points.begin();
+  for (const int x : {0, 9}) points.open({x, 5, 0});
+  for (const auto& [field, y] : {std::pair{0, 4.75}, {1, 5.25}}) {
+    points.look_around({7, 4, 0}, {11, 6, 0});
+    points.add(field, {0.25, y, 0}, round_particle, 1, 0.25);
+  }
+  points.find(0, points.node_count());
+  for (const int x : {0, 9}) {
+    INFO(x);
+    REQUIRE(points.pair({x, 5, 0}, 0, 1).parted);
+    CHECK(points.pair({x, 5, 0}, 0, 1).normal[1] == Approx(1));
+  }
 }
 
 TEST_CASE("a node at a wall sees the mirror of what lies before it", "[contact_points]") {

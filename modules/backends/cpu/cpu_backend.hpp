@@ -61,7 +61,6 @@ class CpuBackend final : public Backend, NamedChannels {
   std::vector<Body<D, T>> make_bodies(std::vector<SeededBody>& seeds);
   void measure_rings(Particles<D, T>& particles) const;
   void show_particles(ContactPoints& points) const;
-  double half_side(std::size_t body, double size) const;
   void sort_all();
   void sort_when_moved();
   void sort_between(const StepInfo& step);
@@ -166,17 +165,11 @@ void CpuBackend<D, T, Components>::show_particles(ContactPoints& points) const {
           const double size =
               particles.size < 0 || scene_.axisymmetric ? 1.0 : values[particles.size * chunk_size<T> + p];
           points.add(field_of_body_[body], x, values + sides * chunk_size<T> + p, chunk_size<T>,
-                     by_domain ? 1.0 : half_side(body, size));
+                     by_domain ? 1.0 : points.half_side(particle_step_->bodies()[body].volume * size));
         }
       });
     }
   }
-}
-
-/// Half the side of a particle's undeformed square or cube, cells; of its section in axisymmetric scenes.
-template <int D, class T, class Components>
-double CpuBackend<D, T, Components>::half_side(std::size_t body, double size) const {
-  return 0.5 * std::pow(particle_step_->bodies()[body].volume * size, 1.0 / D) / scene_.domain.cell_size;
 }
 
 template <int D, class T, class Components>

@@ -28,8 +28,8 @@ void DeviceBackend<T>::find_contact_points(const std::vector<ContactFields<T>>& 
         x[c] = (x[c] - experiment_.grid.lower[c]) / experiment_.grid.cell_size;
       if (!points.look_around(x, x)) continue;
       const double volume = double(body.volume) * (size.empty() || experiment_.axisymmetric() ? 1.0 : double(size[p]));
-      const double half = 0.5 * std::pow(volume, 1.0 / experiment_.dimension) / experiment_.grid.cell_size;
-      points.add(body.field, x, sides.empty() ? nullptr : sides.data() + p, n, by_domain ? 1.0 : half);
+      points.add(body.field, x, sides.empty() ? nullptr : sides.data() + p, n,
+                 by_domain ? 1.0 : points.half_side(volume));
     }
   }
   points.find(0, points.node_count());

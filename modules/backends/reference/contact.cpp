@@ -82,7 +82,8 @@ void ReferenceBackend::find_contact_points() {
         for (int k = 0; k < D; ++k) values[D * i + k] = matrix(i, k);
       const bool domain = sides && sides == std::string_view("domain");
       if (!contact_points_.look_around(x, x)) continue;
-      contact_points_.add(body.field(), x, sides ? values.data() : nullptr, 1, domain ? 1.0 : body.half_side(p));
+      contact_points_.add(body.field(), x, sides ? values.data() : nullptr, 1,
+                          domain ? 1.0 : contact_points_.half_side(body.volume_of_section(p)));
     }
   }
   contact_points_.find(0, contact_points_.node_count());

@@ -1,7 +1,6 @@
 #pragma once
 // The particles of one body in the reference backend, and their calls over the plugin boundary.
 
-#include <cmath>
 #include <deque>
 #include <string_view>
 #include <vector>
@@ -31,11 +30,8 @@ class Particles {
   int field() const { return field_; }
   double mass(std::size_t p) const { return mass_ * size(p); }
   double volume(std::size_t p) const { return volume_ * size(p); }
-  /// Half the side of a particle's undeformed square or cube, cells; of its section in axisymmetric scenes.
-  double half_side(std::size_t p) const {
-    const double size = axisymmetric() ? 1.0 : this->size(p);
-    return 0.5 * std::pow(volume_ * size, 1.0 / experiment_.dimension) / experiment_.grid.cell_size;
-  }
+  /// The volume of a particle as it was seeded, or in axisymmetric scenes the area of its section.
+  double volume_of_section(std::size_t p) const { return axisymmetric() ? volume_ : volume(p); }
   bool axisymmetric() const { return experiment_.axisymmetric(); }
   bool frozen() const { return frozen_; }
   std::uint64_t bytes() const;
