@@ -295,6 +295,18 @@ int run_command_line(int argc, char** argv) {
   describe_verb->add_flag("--json", json, "as JSON");
   describe_verb->callback([&] { code = guarded([&] { return describe(id, json); }); });
 
+  std::string shape = "bspline_quadratic";
+  int particles = 2;
+  std::filesystem::path stem;
+  auto* offset_verb = app.add_subcommand(
+      "contact-offset", "how far apart a node sees two bodies that touch, which contact detection accounts for");
+  offset_verb->add_option("SHAPE", shape, "shape function; default bspline_quadratic");
+  offset_verb->add_option("--particles", particles, "particles a cell and axis; default 2")->check(CLI::Range(1, 64));
+  offset_verb
+      ->add_option("--figure", stem, "draws it as well: STEM.png, STEM.svg and STEM.csv, in a folder that exists")
+      ->type_name("STEM");
+  offset_verb->callback([&] { code = guarded([&] { return contact_offset(shape, particles, stem); }); });
+
   auto* schema_verb = app.add_subcommand("schema", "print the JSON Schema of experiment files, for editors");
   schema_verb->callback([&] { code = guarded([&] { return schema(); }); });
 

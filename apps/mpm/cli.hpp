@@ -91,6 +91,9 @@ int cache(bool clear);
 /// Prints which components run together and which are refused, generated from the same function that refuses.
 int list_combinations(bool json);
 int describe(const std::string& id, bool json);
+/// Prints the contact offset of a shape function, and draws it where `figure` names files, without their extension.
+/// Throws PluginError where there is no such shape.
+int contact_offset(const std::string& shape, int particles, const std::filesystem::path& figure);
 int schema();
 /// Writes a project for a plugin of `kind` into `folder`, which must be empty or missing. Throws InputError.
 int new_plugin(const std::string& kind, const std::string& id, const std::filesystem::path& folder);

@@ -8,7 +8,69 @@ namespace mpm {
 namespace {
 constexpr int samples_per_cell = 256;
 constexpr double reach = 4;  // cells, which is beyond the support of every shape
+
+/// Weights of a list, which has no axes: rows of 2-D particles, summed over the line of nodes at zero.
+std::vector<double> list_weights(const Component& component, const Row& row, const std::vector<double>& rows) {
+  const mpm_shape& shape = component.plugin->shape();
+  const double half = row.half_side, semi_side = row.half_side * row.stretch;
+  const std::size_t n = (rows.size() + MPM_LANES - 1) / MPM_LANES * MPM_LANES, capacity = shape.capacity[0];
+  std::vector<double> position(2 * n, rows.empty() ? 0.0 : rows.back()), half_size(2 * n, half), domain(4 * n, 0.0),
+      corners(8 * n), weight(capacity * n);
+  std::vector<std::int32_t> count(n), node(capacity * 2 * n);
+  std::copy(rows.begin(), rows.end(), position.begin());
+  std::fill(position.begin() + static_cast<std::ptrdiff_t>(n), position.end(), half);
+  for (const std::size_t diagonal : {0u, 3u})
+    std::fill_n(domain.begin() + diagonal * n, n, diagonal == 0 ? semi_side : half);
+  for (std::size_t k = 0; k < 8; ++k)
+    std::fill_n(corners.begin() + static_cast<std::ptrdiff_t>(k * n), n,
+                (k / 2 >> k % 2 & 1 ? 1 : -1) * (k % 2 == 0 ? semi_side : half));
+  mpm_list_batch batch{};
+  batch.count = batch.stride = static_cast<std::uint32_t>(n);
+  batch.dimension = 2;
+  batch.capacity = shape.capacity[0];
+  batch.position = position.data();
+  batch.half_size = half_size.data();
+  batch.domain = domain.data();
+  if (shape.sample_points[0] > 0) batch.samples = corners.data();
+  batch.node_count = count.data();
+  batch.node = node.data();
+  batch.weight = weight.data();
+  shape.evaluate_list[MPM_SCALAR_DOUBLE][0](component.parameters.data(), &batch);
+  std::vector<double> at_node(rows.size(), 0.0);
+  for (std::size_t p = 0; p < rows.size(); ++p)
+    for (int k = 0; k < count[p]; ++k)
+      if (node[(2 * k) * n + p] == 0) at_node[p] += weight[k * n + p];
+  return at_node;
+}
+
 }  // namespace
+
+std::vector<double> row_weights(const Component& component, const Row& row, const std::vector<double>& rows) {
+  const mpm_shape& shape = component.plugin->shape();
+  if (shape.form == MPM_NODE_LIST) return list_weights(component, row, rows);
+  const std::size_t n = (rows.size() + MPM_LANES - 1) / MPM_LANES * MPM_LANES;
+  std::vector<double> position(n, rows.empty() ? 0.0 : rows.back()), offset(n), weight(n * shape.width);
+  std::vector<std::int32_t> base(n);
+  std::copy(rows.begin(), rows.end(), position.begin());
+  const std::vector<double> half_size(n, row.half_side);
+  const std::vector<double> domain(n, row.half_side * row.stretch);  // the 1-D domain is one semi-side
+  mpm_shape_batch batch{};
+  batch.count = batch.stride = static_cast<std::uint32_t>(n);
+  batch.dimension = 1;
+  batch.position = position.data();
+  batch.half_size = half_size.data();
+  batch.domain = domain.data();
+  batch.base = base.data();
+  batch.offset = offset.data();
+  batch.weight = weight.data();
+  shape.evaluate[MPM_SCALAR_DOUBLE](component.parameters.data(), &batch);
+  std::vector<double> at_node(rows.size(), 0.0);
+  for (std::size_t p = 0; p < rows.size(); ++p) {
+    const int node = -base[p];  // position in the stencil of the node at zero
+    if (node >= 0 && node < static_cast<int>(shape.width)) at_node[p] = weight[node * n + p];
+  }
+  return at_node;
+}
 
 EdgeModel::EdgeModel(const Component& shape, int particles_per_cell_axis)
     : shape_(shape), rows_per_cell_(particles_per_cell_axis) {
@@ -30,70 +92,11 @@ EdgeModel::EdgeModel(const Component& shape, int particles_per_cell_axis)
   if (edges_.size() < 2) throw std::invalid_argument("the shape has no support to build an edge model from");
 }
 
-/// Weights of a list, which has no axes: rows of undeformed 2-D particles, summed over the line of nodes at zero.
-std::vector<double> EdgeModel::list_weights(const std::vector<double>& rows) const {
-  const mpm_shape& shape = shape_.plugin->shape();
-  const std::size_t n = (rows.size() + MPM_LANES - 1) / MPM_LANES * MPM_LANES, capacity = shape.capacity[0];
-  std::vector<double> position(2 * n, rows.empty() ? 0.0 : rows.back()), half_size(2 * n, 0.5 / rows_per_cell_),
-      domain(4 * n, 0.0), corners(8 * n), weight(capacity * n);
-  std::vector<std::int32_t> count(n), node(capacity * 2 * n);
-  std::copy(rows.begin(), rows.end(), position.begin());
-  std::fill(position.begin() + static_cast<std::ptrdiff_t>(n), position.end(), 0.5 / rows_per_cell_);
-  for (const std::size_t diagonal : {0u, 3u}) std::fill_n(domain.begin() + diagonal * n, n, 0.5 / rows_per_cell_);
-  for (std::size_t k = 0; k < 8; ++k)
-    std::fill_n(corners.begin() + static_cast<std::ptrdiff_t>(k * n), n,
-                (k / 2 >> k % 2 & 1 ? 0.5 : -0.5) / rows_per_cell_);
-  mpm_list_batch batch{};
-  batch.count = batch.stride = static_cast<std::uint32_t>(n);
-  batch.dimension = 2;
-  batch.capacity = shape.capacity[0];
-  batch.position = position.data();
-  batch.half_size = half_size.data();
-  batch.domain = domain.data();
-  if (shape.sample_points[0] > 0) batch.samples = corners.data();
-  batch.node_count = count.data();
-  batch.node = node.data();
-  batch.weight = weight.data();
-  shape.evaluate_list[MPM_SCALAR_DOUBLE][0](shape_.parameters.data(), &batch);
-  std::vector<double> at_node(rows.size(), 0.0);
-  for (std::size_t p = 0; p < rows.size(); ++p)
-    for (int k = 0; k < count[p]; ++k)
-      if (node[(2 * k) * n + p] == 0) at_node[p] += weight[k * n + p];
-  return at_node;
-}
-
-std::vector<double> EdgeModel::weights(const std::vector<double>& rows) const {
-  const mpm_shape& shape = shape_.plugin->shape();
-  if (shape.form == MPM_NODE_LIST) return list_weights(rows);
-  const std::size_t n = (rows.size() + MPM_LANES - 1) / MPM_LANES * MPM_LANES;
-  std::vector<double> position(n, rows.empty() ? 0.0 : rows.back()), offset(n), weight(n * shape.width);
-  std::vector<std::int32_t> base(n);
-  std::copy(rows.begin(), rows.end(), position.begin());
-  const std::vector<double> half_size(n, 0.5 / rows_per_cell_);
-  const std::vector<double> domain(n, 0.5 / rows_per_cell_);  // the 1-D domain is one semi-side
-  mpm_shape_batch batch{};
-  batch.count = batch.stride = static_cast<std::uint32_t>(n);
-  batch.dimension = 1;
-  batch.position = position.data();
-  batch.half_size = half_size.data();
-  batch.domain = domain.data();
-  batch.base = base.data();
-  batch.offset = offset.data();
-  batch.weight = weight.data();
-  shape.evaluate[MPM_SCALAR_DOUBLE](shape_.parameters.data(), &batch);
-  std::vector<double> at_node(rows.size(), 0.0);
-  for (std::size_t p = 0; p < rows.size(); ++p) {
-    const int node = -base[p];  // position in the stencil of the node at zero
-    if (node >= 0 && node < static_cast<int>(shape.width)) at_node[p] = weight[node * n + p];
-  }
-  return at_node;
-}
-
 double EdgeModel::mean_position(double edge) const {
   std::vector<double> rows;
   for (int k = 0; k < 2 * static_cast<int>(reach) * rows_per_cell_; ++k)
     rows.push_back(edge - (k + 0.5) / rows_per_cell_);
-  const std::vector<double> w = weights(rows);
+  const std::vector<double> w = row_weights(shape_, {0.5 / rows_per_cell_}, rows);
   double sum = 0, moment = 0;
   for (std::size_t p = 0; p < rows.size(); ++p) sum += w[p], moment += w[p] * rows[p];
   return moment / sum;

@@ -7,6 +7,14 @@
 
 namespace mpm {
 
+/// A row of particles parallel to an edge.
+struct Row {
+  double half_side = 0.25;  ///< of the undeformed particle, cells
+  double stretch = 1;       ///< how much longer the particle's domain has become across the edge
+};
+/// The weight of a node at zero for each of these places of rows, in cells.
+std::vector<double> row_weights(const Component& shape, const Row& row, const std::vector<double>& places);
+
 /// A body occupies x < e on one axis, and its particle rows lie 1/(2n), 3/(2n), ... cells inside the edge (n a cell). A
 /// node at 0 sees the mass-weighted mean position of the rows in its support. That mean grows with e, so that it
 /// determines e without a fitted constant. Positions and edges are in cells.
@@ -24,8 +32,6 @@ class EdgeModel {
 
  private:
   std::vector<double> edges_, means_;  ///< monotone table
-  std::vector<double> weights(const std::vector<double>& rows) const;
-  std::vector<double> list_weights(const std::vector<double>& rows) const;
   Component shape_;
   int rows_per_cell_;
 };
