@@ -16,16 +16,10 @@ namespace mpm::test {
 /// A plugin as its choice in an experiment. A required parameter that is not named here stops the suite: give it a
 /// value fit for these scenes.
 inline std::string device_choice(const Plugin& plugin) {
-  static const std::map<std::string, double> values{{"youngs_modulus", 1000}, {"poisson_ratio", 0.3},
-                                                    {"density", 1000},        {"yield_stress", 60},
-                                                    {"friction_angle", 0.6},  {"order", 3}};
   std::string text = "{\"type\": \"" + std::string(plugin.id()) + "\"";
   for (const mpm_parameter& parameter : plugin.parameters()) {
     if (!(parameter.flags & MPM_REQUIRED)) continue;
-    const auto found = values.find(parameter.name);
-    if (found == values.end())
-      throw std::runtime_error(std::string("tests/device: no value for the required parameter ") + parameter.name);
-    text += ", \"" + found->first + "\": " + digits(found->second);
+    text += std::string(", \"") + parameter.name + "\": " + digits(required_value(parameter));
   }
   if (plugin.descriptor->kind == MPM_FILTER) text += ", \"every_steps\": 2";
   return text + "}";

@@ -93,6 +93,38 @@ TEST_CASE("a block that friction holds leans and stays", "[friction]") {
   }
 }
 
+// With mu(v) = mu_k + (mu_s - mu_k) exp(-v / v_d) a block obeys dv/dt = A - B exp(-v / v_d), A = g (sin - mu_k cos), B =
+// g (mu_s - mu_k) cos: exp(v / v_d) grows by A / v_d and loses B / v_d, from 1 at rest. A weight that grows over a time T
+// has acted for T / 2 when it is there.
+TEST_CASE("a block slides as its friction falls or rises with the speed", "[friction]") {
+  constexpr double decay = 0.5, grown = 0.2;
+  const auto exact = [](double kinetic, double at_rest, double time) {
+    const double A = g * (sine - kinetic * cosine), B = g * (at_rest - kinetic) * cosine;
+    return decay * std::log(B / A + (1 - B / A) * std::exp(A * (time - grown / 2) / decay));
+  };
+  const auto slide_with = [](double kinetic, double at_rest, std::vector<std::string> settings) {
+    const std::string grows = "*(0.5*(1-cos(pi*t/0.2))*(t<0.2)+(t>=0.2))";
+    settings.insert(settings.end(),
+                    {"/gravity=[0, 0]", "/body_force=[\"4.905" + grows + "\", \"-8.495709211" + grows + "\"]",
+                     R"(/contact={"type": "velocity_dependent_friction", "friction": )" + digits(kinetic) +
+                         R"(, "static_friction": )" + digits(at_rest) + R"(, "decay_speed": 0.5})"});
+    return slide("0", settings);
+  };
+  const auto check = [&](double kinetic, double at_rest, const std::vector<std::string>& settings) {
+    const Slide found = slide_with(kinetic, at_rest, settings);
+    INFO("friction " << at_rest << " to " << kinetic << ": " << found.velocity << " m/s");
+    CHECK(found.velocity == Approx(exact(kinetic, at_rest, found.time)).epsilon(0.005));
+  };
+  for (const std::string transfer : {"pic", "flip", "apic"})
+    for (const std::string courant : {"0.3", "0.1", "0.03"}) {
+      INFO(transfer << " courant " << courant);
+      const std::vector<std::string> settings{set("/transfer/type", transfer), set("/solver/courant", courant)};
+      check(0.1, 0.4, settings);
+      check(0.4, 0.1, settings);
+    }
+  check(0.1, 0.4, {set("/backend", "reference"), set("/solver/courant", "0.1")});
+}
+
 // The weight is a body force, whose work the ledger sums: heights mean nothing on a periodic domain.
 TEST_CASE("a sliding block turns mu N times its way to heat", "[friction][ledger]") {
   for (const std::string backend : {"reference", "cpu"})
