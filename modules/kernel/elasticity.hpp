@@ -54,7 +54,7 @@ MPM_HD double bulk_modulus(double youngs_modulus, double poisson_ratio) {
   return youngs_modulus / (3 * (1 - 2 * poisson_ratio));
 }
 
-/// rho0 c^2 of the fastest wave in a split Neo-Hookean solid (Simo & Hughes 1998, eq. 9.2.6 contracted with n n n n):
+/// rho0 c^2 of the fastest wave along the axes of b, split Neo-Hookean (Simo & Hughes 1998, eq. 9.2.6 with n n n n):
 /// longitudinal K J^2 u'' + mu (5/9 tr b - 1/3 n.b.n), or shear mu n.b.n, whichever is larger. `b` is isochoric.
 template <int D, class S>
 MPM_HD S split_tangent(VolumetricEnergy form, scalar_of<S> mu, scalar_of<S> bulk, const Sym<D, S>& b, S J) {

@@ -14,25 +14,34 @@ constexpr std::array rows{TentStep{2, "pic", "", 0.086}, TentStep{2, "pic", "xpi
                           TentStep{2, "polypic", "", 0}, TentStep{3, "flip", "", 0},
                           TentStep{3, "polypic", "", 0}};
 
-constexpr std::array collision_rows{TentCollisions{StressUpdate::last, "flip", "", {4, 2, 4, 1}},
-                                    TentCollisions{StressUpdate::last, "aflip", "", {5, 2, 1, 1}},
-                                    TentCollisions{StressUpdate::last, "asflip", "", {5, 4, 2, 0}},
-                                    TentCollisions{StressUpdate::last, "polypic", "", {0, 0, 0, 0}},
-                                    TentCollisions{StressUpdate::last, "pic", "fmpm", {3, 0, 0, 0}},
-                                    TentCollisions{StressUpdate::last, "pic", "xpic", {5, 5, 2, 0}},
-                                    TentCollisions{StressUpdate::first, "polypic", "", {0, 0, 0, 0}},
-                                    TentCollisions{StressUpdate::modified_last, "asflip", "", {4, 4, 3, 2}},
-                                    TentCollisions{StressUpdate::modified_last, "apic", "", {5, 5, 1, 2}},
-                                    TentCollisions{StressUpdate::modified_last, "mls", "", {5, 5, 1, 2}},
-                                    TentCollisions{StressUpdate::modified_last, "tpic", "", {5, 5, 1, 2}},
-                                    TentCollisions{StressUpdate::modified_last, "polypic", "", {1, 0, 0, 0}},
-                                    TentCollisions{StressUpdate::averaged, "aflip", "", {4, 5, 3, 2}},
-                                    TentCollisions{StressUpdate::averaged, "asflip", "", {3, 3, 3, 2}},
-                                    TentCollisions{StressUpdate::averaged, "apic", "", {5, 4, 5, 2}},
-                                    TentCollisions{StressUpdate::averaged, "mls", "", {5, 4, 5, 2}},
-                                    TentCollisions{StressUpdate::averaged, "tpic", "", {5, 4, 5, 2}},
-                                    TentCollisions{StressUpdate::averaged, "polypic", "", {0, 0, 1, 0}},
-                                    TentCollisions{StressUpdate::averaged, "pic", "fmpm", {4, 4, 3, 0}}};
+constexpr std::array collision_rows{TentCollisions{2, StressUpdate::last, "flip", "", {4, 2, 4, 1}},
+                                    TentCollisions{2, StressUpdate::last, "aflip", "", {5, 2, 1, 1}},
+                                    TentCollisions{2, StressUpdate::last, "asflip", "", {5, 4, 2, 0}},
+                                    TentCollisions{2, StressUpdate::last, "polypic", "", {0, 0, 0, 0}},
+                                    TentCollisions{2, StressUpdate::last, "pic", "fmpm", {3, 0, 0, 0}},
+                                    TentCollisions{2, StressUpdate::last, "pic", "xpic", {5, 5, 2, 0}},
+                                    TentCollisions{2, StressUpdate::first, "polypic", "", {0, 0, 0, 0}},
+                                    TentCollisions{2, StressUpdate::modified_last, "asflip", "", {4, 4, 3, 2}},
+                                    TentCollisions{2, StressUpdate::modified_last, "apic", "", {5, 5, 1, 2}},
+                                    TentCollisions{2, StressUpdate::modified_last, "mls", "", {5, 5, 1, 2}},
+                                    TentCollisions{2, StressUpdate::modified_last, "tpic", "", {5, 5, 1, 2}},
+                                    TentCollisions{2, StressUpdate::modified_last, "polypic", "", {1, 0, 0, 0}},
+                                    TentCollisions{2, StressUpdate::averaged, "aflip", "", {4, 5, 3, 2}},
+                                    TentCollisions{2, StressUpdate::averaged, "asflip", "", {3, 3, 3, 2}},
+                                    TentCollisions{2, StressUpdate::averaged, "apic", "", {5, 4, 5, 2}},
+                                    TentCollisions{2, StressUpdate::averaged, "mls", "", {5, 4, 5, 2}},
+                                    TentCollisions{2, StressUpdate::averaged, "tpic", "", {5, 4, 5, 2}},
+                                    TentCollisions{2, StressUpdate::averaged, "polypic", "", {0, 0, 1, 0}},
+                                    TentCollisions{2, StressUpdate::averaged, "pic", "fmpm", {4, 4, 3, 0}},
+                                    TentCollisions{3, StressUpdate::last, "aflip", "", {5, 4, 4, 2}},
+                                    TentCollisions{3, StressUpdate::last, "asflip", "", {5, 5, 3, 0}},
+                                    TentCollisions{3, StressUpdate::last, "polypic", "", {0, 0, 0, 0}},
+                                    TentCollisions{3, StressUpdate::last, "pic", "fmpm", {4, 4, 3, 1}},
+                                    TentCollisions{3, StressUpdate::last, "pic", "xpic", {5, 5, 3, 2}},
+                                    TentCollisions{3, StressUpdate::first, "polypic", "", {0, 0, 1, 0}},
+                                    TentCollisions{3, StressUpdate::modified_last, "polypic", "", {1, 0, 1, 1}},
+                                    TentCollisions{3, StressUpdate::averaged, "polypic", "", {0, 3, 1, 0}},
+                                    TentCollisions{3, StressUpdate::averaged, "pic", "fmpm", {4, 3, 4, 1}}};
 
 /// What the study of largest steps found of a scheme that takes a longer step, else "".
 std::string what_it_stood(int dimension, std::string_view transfer, std::string_view filter, StressUpdate update,
@@ -49,9 +58,10 @@ std::string what_it_stood(int dimension, std::string_view transfer, std::string_
 }
 
 /// How many of five collisions were bounded at the step that is taken, where that is fewer than half, else "".
-std::string what_collisions_did(std::string_view transfer, std::string_view filter, StressUpdate update, double taken) {
+std::string what_collisions_did(int dimension, std::string_view transfer, std::string_view filter, StressUpdate update,
+                                double taken) {
   const auto row = std::find_if(collision_rows.begin(), collision_rows.end(), [&](const TentCollisions& now) {
-    return now.update == update && now.filter == filter && now.transfer == transfer;
+    return now.dimension == dimension && now.update == update && now.filter == filter && now.transfer == transfer;
   });
   if (row == collision_rows.end()) return "";
   std::size_t k = 0;
@@ -81,7 +91,7 @@ std::string warning_of_tent_steps(const Experiment& experiment) {
   constexpr double speed = 1;
   const double taken = solver_of(experiment).limit(experiment, {speed}).seconds * speed / experiment.grid.cell_size;
   const std::string stood = what_it_stood(experiment.dimension, transfer, filter, update, taken),
-                    met = experiment.dimension == 2 ? what_collisions_did(transfer, filter, update, taken) : "";
+                    met = what_collisions_did(experiment.dimension, transfer, filter, update, taken);
   if (stood.empty() && met.empty()) return "";
   return "shape \"linear\" with transfer \"" + std::string(transfer) + "\"" +
          (filter.empty() ? "" : " and filter \"" + std::string(filter) + "\"") + stood +

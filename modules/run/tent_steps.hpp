@@ -19,10 +19,12 @@ struct TentStep {
 };
 std::span<const TentStep> tent_steps();
 
-/// A scheme that on the shape "linear" in 2-D failed in three or more of five collisions at one of these steps
-/// (figures/studies/tent_steps_1.csv to tent_steps_4.csv, which tests/unit/tent_steps.cpp compares).
+/// A scheme that on the shape "linear" failed in three or more of five collisions at one of these steps
+/// (figures/studies/tent_steps_1.csv to tent_steps_4.csv, and tent_steps_3d_1.csv to tent_steps_3d_4.csv, which
+/// tests/unit/tent_steps.cpp compares).
 struct TentCollisions {
   static constexpr std::array steps{0.0125, 0.025, 0.05, 0.1};  ///< Courant numbers
+  int dimension;
   StressUpdate update;
   std::string_view transfer, filter;  ///< ids; filter "" where there is none
   std::array<int, 4> bounded;         ///< of five collisions, at each of the steps

@@ -69,6 +69,12 @@ TEST_CASE("what is asked for has columns, a place in the summary, figures and fi
   const Json& mass = summary["bodies"]["ball"]["mass"];
   CHECK(mass["initial"] == mass["largest"]);
   CHECK(summary["probes"]["tip"]["velocity_x"]["initial"].get<double>() == Approx(1));
+  const std::vector<double>& speed = *table.find("body other velocity x");
+  const Json& range = summary["bodies"]["other"]["velocity_x"];
+  const auto [smallest, largest] = std::minmax_element(speed.begin(), speed.end());
+  CHECK(*smallest < *largest);
+  CHECK(range["smallest"].get<double>() == Approx(*smallest));
+  CHECK(range["largest"].get<double>() == Approx(*largest));
   CHECK(summary["probes"]["nowhere"]["pressure"]["largest"].is_null());  // there is no material
   for (const char* file :
        {"figures/ball_speeds.png", "figures/ball_speeds.svg", "figures/energy.png", "probes/line.csv"})

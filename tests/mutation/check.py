@@ -45,6 +45,10 @@ class FindsMutants(unittest.TestCase):
     def test_a_declared_reference_is_no_assignment(self):
         self.assertEqual(changes("struct S {\n  Field& mass_ = field(mass);\n  void f() { x = y; }\n};"), ["drop x ="])
 
+    def test_what_is_default_or_returned_is_no_assignment(self):
+        text = "struct S {\n  S() = default;\n  S& operator+=(S b) { return *this = *this + b; }\n};"
+        self.assertEqual(changes(text), ["+ to -", "drop + b"])
+
     def test_operators_are_no_brackets(self):
         text = "bool operator<(A a, A b) { return a.v < b.v; }\nbool operator>(A a, A b) { return a.v > b.v; }"
         self.assertEqual(changes(text), ["< to >=", "> to <="])

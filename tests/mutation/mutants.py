@@ -178,7 +178,7 @@ def changes_of(text):
         if token.kind == "number" and not in_index(tokens, at) and (other := other_number(token.text)):
             if not (after.text == "/" and tokens[at + 2].kind == "number"):  # of a quotient the divisor alone
                 yield token.begin, token.end, other, f"{token.text} to {other}"
-        if token.text == "=" and binary:
+        if token.text == "=" and binary and after.text not in ("default", "delete"):
             statement = assignment_around(tokens, at)
             if statement:
                 begin, end = tokens[statement[0]].begin, tokens[statement[1]].begin
@@ -204,7 +204,7 @@ def assignment_around(tokens, at):
         while tokens[first - 1].text in (".", "->"):
             first -= 2
     left = tokens[first:at]
-    if not left or left[0].kind != "name" or any(a.kind == b.kind == "name" for a, b in zip(left, left[1:])):
+    if not left or left[0].kind != "name" or left[0].text == "return" or any(a.kind == b.kind == "name" for a, b in zip(left, left[1:])):
         return None
     if any(a.text in ("&", "*") and b.kind == "name" and a.end == b.begin - 1 for a, b in zip(left, left[1:])):
         return None  # the declaration of a reference

@@ -36,13 +36,14 @@ def table(mutants, results, equivalents):
 
 
 def with_reasons(mutants, results, equivalents):
-    """The survivors, those without a reason first; equal reasons of one file stand together."""
+    """The survivors, those without a reason first, then all that have one, tried or not; equal reasons of one file stand
+    together."""
     unexplained = [m for m in mutants if what_became(m, results, equivalents) == Result.SURVIVED]
     lines = ["No mutant survived without a reason."] if not unexplained else ["Survived without a reason:", ""]
     lines += [f"- `{m.name}`: `{m.code}` ({results.of(m).check or 'all quick tests'})" for m in unexplained]
     groups = {}
     for m in mutants:
-        if what_became(m, results, equivalents) == "equivalent":
+        if equivalents.reason(m) and what_became(m, results, equivalents) in ("equivalent", "not tried"):
             groups.setdefault((m.file, equivalents.reason(m)), []).append(m)
     if groups:
         lines += ["", "| file | line | changes | why no test can see them |", "|---|---|---|---|"]
@@ -81,6 +82,6 @@ def write(path, part, mutants, results, equivalents):
     by_hand = [
         samples(mutants, results),
         table(tried, results, equivalents),
-        with_reasons(tried, results, equivalents),
+        with_reasons(mutants, results, equivalents),
     ]
     path.write_text(head + begin + "\n\n" + "\n\n".join(by_hand) + "\n\n" + end + tail)

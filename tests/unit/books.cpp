@@ -40,6 +40,9 @@ TEST_CASE("books that are off by more than rounding are warned of, each by its o
     CHECK(warns_of(row.book, std::nan(""), row.words));
     CHECK(!warns_of(row.book, 0.999 * row.bound, row.words));
   }
+  Ledger both;  // books of energies add up, whatever their signs
+  both.grid_book = 0.6 * 6400 * eps * 5, both.filter_book = -both.grid_book;
+  CHECK(!app::warning_of_books(both, scales).empty());
   CHECK(!warns_of(&Ledger::material_book, 1, "fault"));  // it falls with the step, and is no rounding
 }
 

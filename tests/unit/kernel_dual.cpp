@@ -152,6 +152,20 @@ TEST_CASE("the rotation nearest to a matrix changes as differences say, however 
   }
 }
 
+TEST_CASE("the rotation of a matrix in the plane turns as the angle does") {
+  // R of F = ((a, b), (c, d)) turns by the angle of (a + d, c - b), and so does its derivative.
+  const Mat<2, double> F{{1.3, -0.4, 0.9, 0.7}}, dF{{0.2, 0.5, -0.3, 0.8}};
+  const double x = 1.3 + 0.7, y = 0.9 + 0.4, dx = 0.2 + 0.8, dy = -0.3 - 0.5;
+  const double length = std::hypot(x, y), rate = (x * dy - y * dx) / (length * length);
+  const Mat<2, X> R = nearest_rotation(along(F, dF));
+  CHECK(R(0, 0).value == Approx(x / length));
+  CHECK(R(1, 0).value == Approx(y / length));
+  CHECK(R(0, 0).derivative == Approx(-rate * y / length));
+  CHECK(R(0, 1).derivative == Approx(-rate * x / length));
+  CHECK(R(1, 0).derivative == Approx(rate * x / length));
+  CHECK(R(1, 1).derivative == Approx(-rate * y / length));
+}
+
 TEST_CASE("functions of equal singular values have their derivative") {
   // The derivative of ln V at F = a I is dF_sym / a, although the directions of the stretches turn without limit.
   for (const double a : {1.0, 0.4, 1e-6, 1e6}) {  // values that are put apart by a share of themselves

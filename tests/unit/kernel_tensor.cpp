@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/functor.hpp"
 #include "kernel/tensor.hpp"
 #include "support/catch.hpp"
 
@@ -85,6 +86,9 @@ TEST_CASE("a plane deformation has a stretch of its own across the plane") {
   const double expected_next[] = {1, 1, 0.5, 2.25};
   for (int k = 0; k < 4; ++k) CHECK(next.plane.m[k] == expected_next[k]);
   CHECK(next.zz == Approx(3.3));
+  ElasticState<Plane> state{Plane{Mat2{{1, 0.5, 0, 2}}, 3}};  // and a solid that keeps F alone does so
+  CHECK(ElasticSolid::advance(0, Plane{Mat2{{0, 1, 2, 0}}, 0.4}, 0.25, state) == 0);
+  for (int k = 0; k < 4; ++k) CHECK(state.deformation_gradient.plane.m[k] == expected_next[k]);
 }
 
 TEST_CASE("a step advances the deformation gradient by (I + dt L) F") {

@@ -191,3 +191,34 @@ TEST_CASE("the pairs of three stacked blocks carry what lies above them", "[chos
   CHECK(now["pair b1 b2 force y"] == Approx(-2 * block_weight).epsilon(1e-3));
   CHECK(now["pair b2 b3 force y"] == Approx(-block_weight).epsilon(1e-3));
 }
+
+// The walls of one cell strain all of it alike, s = 1 + v dt / h a step. Uniaxial stretch s of the neo-Hookean solid: Cauchy
+// stresses (mu (s^2 - 1) + lambda ln s) / s along it and lambda ln s / s across.
+TEST_CASE("extremes of pressure and von Mises stress are those of two solids in one stretch", "[chosen]") {
+  const std::string cell = R"J({"dimension": 2, "grid": {"cell_size": 0.5, "domain": [[0, 0], [0.5, 0.5]],
+      "boundaries": {"x_min": "slip", "x_max": {"type": "prescribed", "velocity": [0.2, 0]}, "y_min": "slip", "y_max": "slip"}},
+    "shape": {"type": "linear"}, "transfer": {"type": "pic"},
+    "materials": {"soft": {"type": "neo_hookean", "youngs_modulus": 100, "poisson_ratio": 0.3, "density": 1000},
+                  "stiff": {"type": "neo_hookean", "youngs_modulus": 300, "poisson_ratio": 0.2, "density": 1000}},
+    "bodies": [{"name": "a", "material": "soft", "geometry": {"type": "box", "lower": [0, 0], "upper": [0.5, 0.25]}},
+               {"name": "b", "material": "stiff", "geometry": {"type": "box", "lower": [0, 0.25], "upper": [0.5, 0.5]}}],
+    "solver": {"time_step": 0.01, "end_time": 0.5}, "output": {"bodies": ["a"], "groups": [
+      {"name": "both", "where": {"type": "half_space", "point": [0.5, 0], "normal": [1, 0]}}]}})J";
+  const double s = std::pow(1 + 0.2 * 0.01 / 0.5, 50);
+  const auto pressure = [&](double E, double nu) {
+    return -(E / (2 * (1 + nu)) * (s * s - 1) + 3 * E * nu / ((1 + nu) * (1 - 2 * nu)) * std::log(s)) / (3 * s);
+  };
+  const auto von_mises = [&](double E, double nu) { return E / (2 * (1 + nu)) * (s * s - 1) / s; };
+  for (const std::string backend : {"reference", "cpu"}) {
+    INFO(backend);
+    Scene scene(cell, {set("/backend", backend)});
+    scene.run();
+    Numbers now = chosen(scene.metrics);
+    CHECK(now["body a smallest pressure"] == Approx(pressure(100, 0.3)).epsilon(1e-10));
+    CHECK(now["body a largest pressure"] == Approx(pressure(100, 0.3)).epsilon(1e-10));
+    CHECK(now["body a largest von Mises stress"] == Approx(von_mises(100, 0.3)).epsilon(1e-10));
+    CHECK(now["group both smallest pressure"] == Approx(pressure(300, 0.2)).epsilon(1e-10));
+    CHECK(now["group both largest pressure"] == Approx(pressure(100, 0.3)).epsilon(1e-10));
+    CHECK(now["group both largest von Mises stress"] == Approx(von_mises(300, 0.2)).epsilon(1e-10));
+  }
+}

@@ -154,27 +154,50 @@ TEST_CASE("the limit of USAVG lies within half of what the study measured", "[la
   CHECK(rows == 7);
 }
 
-// The study's rows are the least of three orders, so what one of them stands may be more. No study measured the orders in
-// 3-D; there as in 2-D no order stands less than USL.
+// The study's rows in 2-D are the least of three orders, so what one of them stands may be more.
 TEST_CASE("where only what particles carry strains, the limit lies within the study's measured steps",
           "[largest_step]") {
-  const auto limit_of = [](int dimension, const std::string& shape, const Scheme& scheme, const std::string& update) {
-    return courant_of(shipped(scene_of(dimension), settings(dimension, shape, scheme, update, 2)));
-  };
   int rows = 0;
-  for (const Row& row : measured("largest_step_orders"))
-    for (const Scheme& scheme : {schemes[0], schemes[7]}) {  // PIC and RPIC replace the velocity and carry no gradient
-      if (row.scheme != scheme.name) continue;
-      for (const std::string update : {"first", "modified_last"}) {
-        const double limit = limit_of(2, row.shape, scheme, update);
+  for (const auto& [dimension, name, these] :
+       {std::tuple{2, "largest_step_orders", std::vector<std::string>{"first", "modified_last"}},
+        std::tuple{3, "largest_step_orders_3d_1", std::vector<std::string>{"first"}},
+        std::tuple{3, "largest_step_orders_3d_2", std::vector<std::string>{"modified_last"}}})
+    for (const Row& row : measured(name))
+      for (const Scheme& scheme :
+           {schemes[0], schemes[7]}) {  // PIC and RPIC replace the velocity and carry no gradient
+        if (row.scheme != scheme.name) continue;
+        for (const std::string& update : these) {
+          const double limit =
+              courant_of(shipped(scene_of(dimension), settings(dimension, row.shape, scheme, update, 2)));
+          INFO(dimension << "-D " << row.shape << " " << scheme.name << " " << update << ": measured " << row.largest
+                         << ", limit " << limit);
+          CHECK(limit <= row.largest);
+          CHECK(limit * 1.8 >= row.largest);
+        }
+        ++rows;
+      }
+  CHECK(rows == 3 * 14);
+}
+
+// The study lets a gain of 10 % pass, as the energies are those of different times, and the limits are those of USL but
+// where only what particles carry strains.
+TEST_CASE("in 3-D no order of the stress update has a limit above what the study measured", "[largest_step]") {
+  int rows = 0;
+  for (const auto& [name, update] :
+       {std::pair{"largest_step_orders_3d_1", "first"}, std::pair{"largest_step_orders_3d_2", "modified_last"},
+        std::pair{"largest_step_orders_3d_3", "averaged"}})
+    for (const Row& row : measured(name))
+      for (const Scheme& scheme : schemes) {
+        if (row.scheme != scheme.name) continue;
+        const double limit = courant_of(shipped(scene_of(3), settings(3, row.shape, scheme, update, 2)));
         INFO(row.shape << " " << scheme.name << " " << update << ": measured " << row.largest << ", limit " << limit);
         CHECK(limit <= row.largest);
-        CHECK(limit * 1.8 >= row.largest);
-        CHECK(limit_of(3, row.shape, scheme, update) >= limit_of(3, row.shape, scheme, "last"));
+        // USF with kept or filtered velocities is held for its energy, not for its stability.
+        const bool is_held = update == std::string("first") && (limit == Approx(0.12) || *scheme.filter);
+        if (!is_held) CHECK(limit * 2.6 >= row.largest);
+        ++rows;
       }
-      ++rows;
-    }
-  CHECK(rows == 14);
+  CHECK(rows == 3 * (5 * 11 + 2 * 10));
 }
 
 // USF with kept velocities gains energy in proportion to the step.
@@ -185,13 +208,15 @@ TEST_CASE("at the default courant only tents and USF with kept velocities shorte
         for (const std::string& update : updates) {
           if (is_refused(shape, scheme)) continue;
           INFO(dimension << "-D " << shape << " " << scheme.name << " " << update);
+          const double kept = dimension == 2 ? 0.2 : 0.12;
           const bool keeps = std::string(scheme.transfer).ends_with("flip") || scheme.filter == xpic;
           const double courant =
               courant_of(shipped(scene_of(dimension), settings(dimension, shape, scheme, update, 0.3)));
-          CHECK(courant == Approx(scheme.filter == fmpm ? 0.15 : update == "first" && keeps ? 0.2 : 0.3));
+          CHECK(courant == Approx(scheme.filter == fmpm ? 0.15 : update == "first" && keeps ? kept : 0.3));
         }
-  const std::map<std::string, double> flip{{"last", 0.1}, {"first", 0.2}, {"modified_last", 0.3}, {"averaged", 0.1}};
-  for (const int dimension : {2, 3})
+  std::map<std::string, double> flip{{"last", 0.1}, {"first", 0.2}, {"modified_last", 0.3}, {"averaged", 0.1}};
+  for (const int dimension : {2, 3}) {
+    if (dimension == 3) flip["first"] = 0.12;
     for (const std::string& update : updates) {
       INFO(dimension << "-D " << update);
       const auto linear = [&](const Scheme& scheme) {
@@ -200,6 +225,7 @@ TEST_CASE("at the default courant only tents and USF with kept velocities shorte
       CHECK(linear(schemes[1]) == Approx(flip.at(update)));
       CHECK(linear(schemes[4]) == Approx(0.1));
     }
+  }
 }
 
 TEST_CASE("at the default courant the study's discs are stable", "[largest_step]") {
@@ -218,7 +244,7 @@ TEST_CASE("every combination is stable at the default courant and at the limit o
 TEST_CASE("every combination is stable in 3-D at the default courant and at the limit", "[largest_step][slow]") {
   for (const std::string& shape : smooth)
     for (const Scheme& scheme : schemes)
-      for (const std::string update : {"last", "modified_last"})
+      for (const std::string& update : updates)
         for (const double courant : {0.3, 2.0}) check_bounded(3, shape, scheme, update, courant);
 }
 

@@ -53,7 +53,7 @@ struct B2Gimp {
   static constexpr unsigned needs = MPM_NEEDS_HALF_SIZE;
   static constexpr mpm_second_moment second_moment_kind = MPM_MOMENT_PER_PARTICLE;  ///< 1/4 + l^2/3
   /// Measured: docs/studies/extremes.md, "How long a step".
-  static constexpr double courant_limits[2][3] = {{1, 0.65, 1.4}, {0.64, 0.31, 1}};
+  static constexpr double courant_limits[2][3] = {{1, 0.65, 1.4}, {0.64, 0.31, 1.4}};
 #endif
 };
 

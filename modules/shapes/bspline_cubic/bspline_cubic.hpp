@@ -38,7 +38,7 @@ struct BsplineCubic {
 #if MPM_HOST
   static constexpr mpm_second_moment second_moment_kind = MPM_MOMENT_CONSTANT;
   /// Measured: docs/studies/extremes.md, "How long a step".
-  static constexpr double courant_limits[2][3] = {{1.15, 0.8, 1.5}, {0.8, 0.36, 1}};
+  static constexpr double courant_limits[2][3] = {{1.15, 0.8, 1.5}, {0.8, 0.36, 1.5}};
 #endif
 };
 

@@ -35,7 +35,7 @@ struct BsplineQuadratic {
 #if MPM_HOST
   static constexpr mpm_second_moment second_moment_kind = MPM_MOMENT_CONSTANT;
   /// Measured: docs/studies/extremes.md, "How long a step".
-  static constexpr double courant_limits[2][3] = {{0.9, 0.58, 1.4}, {0.64, 0.31, 1}};
+  static constexpr double courant_limits[2][3] = {{0.9, 0.58, 1.4}, {0.64, 0.31, 1.4}};
 #endif
 };
 

@@ -58,7 +58,7 @@ struct Cpdi2 {
 #if MPM_HOST
   static constexpr mpm_second_moment second_moment_kind = MPM_MOMENT_PER_PARTICLE;
   /// Measured: docs/studies/extremes.md, "How long a step".
-  static constexpr double courant_limits[2][3] = {{0.76, 0.57, 0.8}, {0.56, 0.31, 0.8}};
+  static constexpr double courant_limits[2][3] = {{0.76, 0.57, 0.8}, {0.56, 0.31, 1}};
 #endif
 };
 

@@ -46,7 +46,7 @@ struct Gimp {
   static constexpr unsigned needs = MPM_NEEDS_HALF_SIZE;
   static constexpr mpm_second_moment second_moment_kind = MPM_MOMENT_PER_PARTICLE;
   /// Measured: docs/studies/extremes.md, "How long a step".
-  static constexpr double courant_limits[2][3] = {{0.575, 0.42, 1}, {0.46, 0.34, 0.8}};
+  static constexpr double courant_limits[2][3] = {{0.575, 0.42, 1}, {0.46, 0.34, 1}};
 #endif
 };
 

@@ -70,7 +70,7 @@ struct GimpContiguous {
                            "What stretches the box along an axis: the diagonal of F, or of the stretch U in F = R U."),
   };
   /// Measured: docs/studies/extremes.md, "How long a step".
-  static constexpr double courant_limits[2][3] = {{0.575, 0.42, 1}, {0.44, 0.34, 0.8}};
+  static constexpr double courant_limits[2][3] = {{0.575, 0.42, 1}, {0.44, 0.34, 1}};
 #endif
 };
 

@@ -59,9 +59,11 @@ StepLimit spring_limit(const Experiment& experiment) {
   return limit;
 }
 
-/// USF with velocities that particles keep gains energy in proportion to the step: two colliding discs 1 % at this
-/// Courant number, whatever the shape (docs/studies/extremes.md, "How long a step").
-constexpr double kept_first_limit = 0.2;
+/// USF with velocities that particles keep gains energy in proportion to the step: two colliding discs 1 % at the first of
+/// these Courant numbers, two balls at the second, whatever the shape (docs/studies/extremes.md, "How long a step").
+constexpr double kept_first_limit[2] = {0.2, 0.12};
+/// The same of balls by USF with a filter that replaces velocities; FMPM divides it by the root of its order.
+constexpr double filtered_first_limit = 0.4;
 
 /// The largest Courant number that a combination stands, and what sets it.
 struct CourantLimit {
@@ -84,8 +86,13 @@ CourantLimit courant_limit(const Experiment& experiment) {
                                                                                 : MPM_GRID_VELOCITY;
     limit = {shape->limit[experiment.dimension - 2][strains], "shape"};
   }
-  if (update == StressUpdate::first && keeps && kept_first_limit < limit.number)
-    limit = {kept_first_limit, "stress update"};
+  const auto hold_to = [&](double number) {
+    if (update == StressUpdate::first && number < limit.number) limit = {number, "stress update"};
+  };
+  if (keeps)
+    hold_to(kept_first_limit[experiment.dimension - 2]);
+  else if (experiment.filter && experiment.dimension == 3)
+    hold_to(filtered_first_limit);
   return limit;
 }
 

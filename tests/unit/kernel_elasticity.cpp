@@ -1,0 +1,55 @@
+// Volumetric energies and moduli of isotropic elasticity.
+
+#include "kernel/elasticity.hpp"
+
+#include <cmath>
+
+#include "kernel/dual.hpp"
+#include "support/catch.hpp"
+
+using namespace mpm;
+
+TEST_CASE("volumetric energies have their values, and the pressure and the tangent are their derivatives") {
+  const double ln2 = std::log(2.0);
+  const auto energy = [](VolumetricEnergy form, double J) { return volumetric_energy(form, J); };
+  CHECK(energy(VolumetricEnergy::logarithmic, 2) == Approx(ln2 * ln2 / 2));
+  CHECK(energy(VolumetricEnergy::quadratic, 2) == Approx(0.5));
+  CHECK(energy(VolumetricEnergy::simo, 2) == Approx((1.5 - ln2) / 2));
+  for (const VolumetricEnergy form :
+       {VolumetricEnergy::logarithmic, VolumetricEnergy::quadratic, VolumetricEnergy::simo})
+    for (const double at : {0.4, 1.0, 1.7}) {
+      INFO(static_cast<int>(form) << " " << at);
+      const Dual<double> J(at, 1);
+      const double slope = volumetric_energy(form, J).derivative;
+      CHECK(volumetric_stress(form, at) == Approx(at * slope).margin(1e-12));
+      const Dual<double> pressure = volumetric_stress(form, J) / J;  // u'
+      CHECK(volumetric_tangent(form, at) == Approx(at * at * pressure.derivative));
+    }
+}
+
+TEST_CASE("moduli of Young's modulus and Poisson's ratio") {
+  CHECK(shear_modulus(1000, 0.3) == Approx(384.615384615));
+  CHECK(lame_lambda(1000, 0.3) == Approx(576.923076923));
+  CHECK(bulk_modulus(1000, 0.3) == Approx(833.333333333));
+}
+
+TEST_CASE("the fastest wave of a split Neo-Hookean solid") {
+  // At rest that of K + 4/3 mu; beyond J = e the logarithmic energy pushes no more, and shear is faster.
+  using Sym3 = Sym<3, double>;
+  const Sym3 rest = Sym3::identity();
+  for (const VolumetricEnergy form :
+       {VolumetricEnergy::logarithmic, VolumetricEnergy::quadratic, VolumetricEnergy::simo})
+    CHECK(split_tangent<3>(form, 300, 700, rest, 1.0) == Approx(700 + 400));
+  CHECK(split_tangent<3>(VolumetricEnergy::logarithmic, 300, 700, rest, 20.0) == Approx(300));
+  // Flattened along x by s, isochoric b = (s^2, 1/s, 1/s), where the bounds of the eigenvalues are exact: the fastest wave
+  // runs along the smallest one, mu (5/9 tr b - s^2/3).
+  Sym3 b = Sym3::identity();
+  b.s[0] = 0.25, b.s[1] = b.s[2] = 2;
+  CHECK(split_tangent<3>(VolumetricEnergy::quadratic, 300, 700, b, 1.0) ==
+        Approx(700 + 300 * (5 * 4.25 / 9 - 0.25 / 3)));
+  // Stretched to (4, 1/2, 1/2) the largest eigenvalue is exact, which is that of shear waves, and the bound of the
+  // smallest is below zero, so that the longitudinal wave comes out faster than it is.
+  b.s[0] = 4, b.s[1] = b.s[2] = 0.5;
+  CHECK(split_tangent<3>(VolumetricEnergy::quadratic, 300, 0, b, 1.0) == Approx(300 * 4));
+  CHECK(split_tangent<3>(VolumetricEnergy::quadratic, 300, 700, b, 1.0) >= 700 + 300 * (25.0 / 9 - 0.5 / 3));
+}
