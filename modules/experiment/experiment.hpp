@@ -201,6 +201,7 @@ struct FilterSchedule {
   double every_time = 0;         ///< s
   double every_courant = 0;      ///< cells that the fastest wave crosses
   bool constrain_always = true;  ///< conditions and contact act on every increment, else at the end only
+  bool takes_back = true;        ///< with every increment one-sided laws answer anew, else what they gave stays
   bool moves_by_mean = false;    ///< particles move with the mean of their velocities, else with the gathered one
   double tolerance = 0;          ///< the loop ends when |increment| <= tolerance |first|, mass norms; 0: never
 };

@@ -78,7 +78,8 @@ void ExperimentReader::read_filter_schedule(const Fields& fields) {
   if (fields.given("every_steps")) schedule.every_steps = fields.integer("every_steps");
   if (fields.given("every_time")) schedule.every_time = fields.number("every_time");
   if (fields.given("every_courant")) schedule.every_courant = fields.number("every_courant");
-  schedule.constrain_always = fields.choice("constraints") == 0;
+  schedule.constrain_always = fields.choice("constraints") != 2;
+  schedule.takes_back = fields.choice("constraints") == 0;
   schedule.moves_by_mean = fields.choice("position_update") == 1;
   schedule.tolerance = fields.number("tolerance");
 }

@@ -75,7 +75,7 @@ void filter_fields(FieldList& fields) {
   }
   const Operator* keeps = fields.plan.find(Act::keep_velocity);
   if (keeps) fields.of_nodes("unfiltered_velocity", "m/s", D, keeps->because);
-  if (!constrains_always || !(fields.plan.resolves_contact() || experiment.separates())) return;
+  if (!experiment.filter_schedule.takes_back || !(fields.plan.resolves_contact() || experiment.separates())) return;
   const std::string because = filter + ": an increment may take back what a one-sided law gave";
   fields.of_nodes("velocity_of_constraints", "m/s", D, because).name = "velocity that conditions and contact added";
   if (keeps)

@@ -87,7 +87,7 @@ std::string filter_growth(const Evidence& run) {
   if (!(growth > 1 + 1e-9)) return "";
   return "the filter's increment grew by a factor of up to " + digits(growth, 6) +
          " in one pass: its loop no longer contracts, because constraints or negative weights broke it; filter with "
-         "fewer passes or with /filter/constraints \"at_end\" (docs/method.md#filters)";
+         "a lower order (docs/studies/filtered_contact.md)";
 }
 
 std::string few_entries(const Evidence& run) {

@@ -46,7 +46,7 @@ TEST_CASE("walls that move on the host-run device", "[device]") {
   mix.boundaries = moving_wall(3);
   check_on_device(mix);
   // A filter's first increment is a velocity, which a moving wall mirrors about its own; the others are differences.
-  for (const std::string constraints : {"every_increment", "at_end"})
+  for (const std::string constraints : {"every_increment", "kept_impulses", "at_end"})
     for (const std::string filter : {"fmpm", "xpic"}) {
       Mix filtered = close_mix(2);
       filtered.boundaries = moving_wall(2);

@@ -80,7 +80,7 @@ TEST_CASE("lists of nodes that reach beyond a block's tile on the host-run devic
 TEST_CASE("filters with walls, contact, every schedule and order on the host-run device", "[device]") {
   REQUIRE(plugins().of_kind(MPM_FILTER).size() >= 2);
   for (const Plugin* filter : plugins().of_kind(MPM_FILTER))
-    for (const std::string constraints : {"every_increment", "at_end"})
+    for (const std::string constraints : {"every_increment", "kept_impulses", "at_end"})
       for (const std::string& order : orders) {
         Mix mix = mix_with(plugin(MPM_CONTACT, "coulomb"), 2);
         std::string choice = device_choice(*filter);

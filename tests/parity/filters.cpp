@@ -48,7 +48,7 @@ TEST_CASE("parity of filters with contact", "[parity]") {
       for (const std::string& contact : variants(MPM_CONTACT))
         for (const std::string transfer : {R"({"type": "flip"})", R"({"type": "apic"})"})
           for (const std::string& filter : filters(transfer))
-            for (const std::string constraints : {"every_increment", "at_end"}) {
+            for (const std::string constraints : {"every_increment", "kept_impulses", "at_end"}) {
               Mix mix;
               mix.dimension = dimension;
               mix.shape = "{\"type\": \"" + shape + "\"}";

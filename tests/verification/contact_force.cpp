@@ -74,6 +74,7 @@ TEST_CASE("the recorded contact force integrates to the momentum that the bodies
   const std::vector<std::string> filters{"",
                                          R"({"type": "fmpm", "order": 2})",
                                          R"({"type": "fmpm", "order": 4})",
+                                         R"({"type": "fmpm", "order": 4, "constraints": "kept_impulses"})",
                                          R"({"type": "fmpm", "order": 4, "constraints": "at_end"})",
                                          R"({"type": "fmpm", "order": 3, "every_steps": 3})",
                                          R"({"type": "xpic", "order": 3})"};

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "support/catch.hpp"
+#include "support/csv.hpp"
 #include "support/files.hpp"
 #include "support/page.hpp"
 #include "support/scene.hpp"
@@ -219,5 +220,27 @@ TEST_CASE(
     std::vector<std::string> settings = ten;
     settings.emplace_back("/filter/constraints=at_end");
     CHECK(gain_of_discs(2 << k, settings) == late.at(k).rounded());
+  }
+}
+
+// The proposition of docs/studies/filtered_contact.md. What is taken back is the mean of a collision of the consistent mass
+// matrix; what is kept gains as the study's figure says.
+TEST_CASE("impulses that a filter's loop keeps gain energy, those that it takes back do not",
+          "[energy_gain][contact][filters][docs]") {
+  const auto figure = mpm::support::read_csv_cells(MPM_SOURCE_DIR "/figures/studies/filtered_contact_map_2.csv");
+  const std::vector<std::string> ten{set("/grid/cell_size", "0.002"), set("/solver/time_step", "4e-7")};
+  for (const int order : {2, 8}) {
+    const auto row = std::find_if(figure.begin(), figure.end(), [&](const std::vector<std::string>& cells) {
+      return cells[0] == "discs" && cells[1] == std::to_string(order);
+    });
+    REQUIRE(row != figure.end());
+    for (const std::string backend : {"cpu", "reference"}) {
+      INFO("order " << order << " " << backend);
+      std::vector<std::string> settings = ten;
+      settings.push_back(set("/backend", backend));
+      CHECK(gain_of_discs(order, settings) < 1e-9);
+      settings.emplace_back("/filter/constraints=kept_impulses");
+      CHECK(gain_of_discs(order, settings) == Approx(std::stod((*row)[2])).epsilon(1e-6));
+    }
   }
 }

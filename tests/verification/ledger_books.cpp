@@ -27,7 +27,8 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const std::string update : {"last", "first", "modified_last", "averaged"})
     for (const std::string filter :
-         {"", R"({"type": "fmpm", "order": 3})", R"({"type": "fmpm", "order": 3, "constraints": "at_end"})",
+         {"", R"({"type": "fmpm", "order": 3})", R"({"type": "fmpm", "order": 3, "constraints": "kept_impulses"})",
+          R"({"type": "fmpm", "order": 3, "constraints": "at_end"})",
           R"({"type": "fmpm", "order": 2, "every_steps": 3})", R"({"type": "xpic", "order": 3})"}) {
       all.push_back({"apic", filter, coulomb, update, R"({"all": "slip"})"});
       all.push_back({"flip", filter, coulomb, update, R"({"all": "separate"})", true});

@@ -69,6 +69,7 @@ Balance balance(const std::string& text, const std::vector<std::string>& overrid
 const std::vector<std::string> filters{"",
                                        R"({"type": "fmpm", "order": 2})",
                                        R"({"type": "fmpm", "order": 4})",
+                                       R"({"type": "fmpm", "order": 4, "constraints": "kept_impulses"})",
                                        R"({"type": "fmpm", "order": 4, "constraints": "at_end"})",
                                        R"({"type": "fmpm", "order": 3, "every_steps": 3})",
                                        R"({"type": "xpic", "order": 3})"};
