@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "experiment/device_settings.hpp"
 #include "experiment/particle_output.hpp"
 #include "experiment/reader.hpp"
 #include "experiment/thermal.hpp"
@@ -69,6 +70,7 @@ Experiment ExperimentReader::read() {
   resolved_ = fields.resolved;
   if (!experiment_.resolved.is_null()) resolved_["constants"] = experiment_.resolved;
   read_header(fields);
+  read_device(fields.node("device"), experiment_, context_, resolved_);
   read_grid(fields.node("grid"));
   read_node_conditions(fields.node("node_conditions"));
   read_components(fields);

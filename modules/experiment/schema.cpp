@@ -1,4 +1,5 @@
 #include "experiment/schema.hpp"
+#include "experiment/device_settings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -189,6 +190,7 @@ Json definitions(const ComponentLookup& components, const ReadOptions& options) 
   all["solver"] = choice_schema(solver_kinds(options), true);
   all["output"] = section_schema(output_section(options));
   all["grips"] = list_of(section_schema(grip_section()));
+  all["device"] = section_schema(device_section());
   all["damping"] = section_schema(damping_section());
   all["compare"] = section_schema(compare_section());
   all["limits"] = section_schema(limits_section());

@@ -72,6 +72,7 @@ Section experiment_section(const ReadOptions& options) {
                         "What computes: the plain reference, the fast cpu backend, or cuda, a GPU.")
                   .of(options.backends)
                   .standard("cpu"),
+              nested("device", "how a device works", "device"),
               parameter("seed", Type::integer, "", "Seed of the random jitter of particles.")
                   .from(0)
                   .to(4294967295.0)

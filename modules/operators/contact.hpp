@@ -6,6 +6,9 @@
 
 namespace mpm {
 
+/// What a law says of a pair, in the order of mpm_contact_status, which simulation/contact_impulse.hpp checks.
+enum : int { contact_apart = 0, contact_sticks, contact_slips };
+
 /// One component of the momentum that a law is told of.
 template <class S>
 MPM_HD S momentum_of(S velocity, S mass) {

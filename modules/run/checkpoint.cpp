@@ -35,12 +35,12 @@ Json as_written(const Json& value) {
 }
 
 /// What may change beside these when a run is resumed: the state is the same, and each backend has its own rounding.
-constexpr const char* free_when_resumed = "/backend";
+constexpr const char* free_when_resumed[] = {"/backend", "/device"};
 
 Json without_free_keys(const Json& experiment, bool resumed) {
   Json kept = as_written(experiment);
   std::vector<const char*> keys(std::begin(free_keys), std::end(free_keys));
-  if (resumed) keys.push_back(free_when_resumed);
+  if (resumed) keys.insert(keys.end(), std::begin(free_when_resumed), std::end(free_when_resumed));
   for (const char* key : keys) {
     const Json::json_pointer pointer(key);
     if (!kept.contains(pointer)) continue;

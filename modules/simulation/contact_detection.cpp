@@ -102,14 +102,6 @@ double EdgeModel::mean_position(double edge) const {
   return moment / sum;
 }
 
-double EdgeModel::edge(double mean) const {
-  if (mean <= means_.front()) return edges_.front();
-  if (mean >= means_.back()) return edges_.back();
-  const auto upper = std::upper_bound(means_.begin(), means_.end(), mean) - means_.begin();
-  const double share = (mean - means_[upper - 1]) / (means_[upper] - means_[upper - 1]);
-  return edges_[upper - 1] + share * (edges_[upper] - edges_[upper - 1]);
-}
-
 double EdgeModel::contact_offset(double edge) const {
   return -mean_position(-edge) - mean_position(edge);
 }

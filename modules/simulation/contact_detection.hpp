@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "experiment/experiment.hpp"
+#include "operators/contact_geometry.hpp"
 
 namespace mpm {
 
@@ -26,7 +27,9 @@ class EdgeModel {
   /// The mean position of the rows for an edge at `edge`.
   double mean_position(double edge) const;
   /// The inverse: the edge that gives this mean. Means outside the model's range give its ends.
-  double edge(double mean_position) const;
+  double edge(double mean_position) const { return table().edge(mean_position); }
+  /// The table of the inverse, which lives as long as the model.
+  EdgeTable table() const { return {edges_.data(), means_.data(), static_cast<int>(edges_.size())}; }
   /// The distance between the means of two bodies that touch with their common edge at `edge`: the contact offset.
   double contact_offset(double edge) const;
 

@@ -7,9 +7,13 @@
 #include <vector>
 
 #include "experiment/experiment.hpp"
+#include "operators/contact.hpp"
 #include "simulation/backend.hpp"
 
 namespace mpm {
+
+static_assert(static_cast<int>(MPM_APART) == contact_apart && static_cast<int>(MPM_STICKS) == contact_sticks &&
+              static_cast<int>(MPM_SLIPS) == contact_slips);
 
 /// The shares of the grid's velocity and of its increment in the velocity that a gather gives a particle,
 /// v <- ... + of_velocity sum w v+ + of_increment sum w (v+ - v-): 1 and 0 for APIC, 0 and 1 for FLIP.

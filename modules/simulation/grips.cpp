@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "operators/supports.hpp"
 #include "simulation/imposed_value.hpp"
 
 namespace mpm {
@@ -17,15 +18,7 @@ Vector3 velocity_of(const Experiment& experiment, const Grip& grip, const Vector
 }
 
 void GivenToGripped::add(double mass, const Vector3& x, const Vector3& from, const Vector3& to) {
-  Vector3 given{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    given[c] = mass * (to[c] - from[c]);
-    impulse[c] += given[c];
-    energy += 0.5 * given[c] * (to[c] + from[c]);
-  }
-  moment[0] += x[1] * given[2] - x[2] * given[1];
-  moment[1] += x[2] * given[0] - x[0] * given[2];
-  moment[2] += x[0] * given[1] - x[1] * given[0];
+  add_given_to_particle(impulse.data(), moment.data(), energy, mass, x.data(), from.data(), to.data());
 }
 
 void GivenToGripped::add(const GivenToGripped& other) {

@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <string>
 
+#include "operators/supports.hpp"
 #include "plugin/abi.h"
 #include "plugin/registry.hpp"
 
 namespace mpm {
 namespace {
-
-Vector3 moment_of(const Vector3& x, const Vector3& f) {
-  return {x[1] * f[2] - x[2] * f[1], x[2] * f[0] - x[0] * f[2], x[0] * f[1] - x[1] * f[0]};
-}
 
 /// Asks the scene's filter for the velocity that one pass adds where the projection is 1 and the increment 0.
 double share_of_projection(const Component& filter, int dimension, int iteration) {
@@ -34,11 +31,12 @@ double share_of_projection(const Component& filter, int dimension, int iteration
 
 void SupportImpulses::add(int support, const Vector3& place, const Vector3& impulse, double factor) {
   Sum& sum = sums_[static_cast<std::size_t>(support)];
-  const Vector3 moment = moment_of(place, impulse);
-  for (std::size_t c = 0; c < 3; ++c) {
-    sum.impulse[c] += factor * impulse[c];
-    sum.moment[c] += factor * moment[c];
-  }
+  add_impulse(sum.impulse.data(), sum.moment.data(), place.data(), impulse.data(), factor);
+}
+
+void SupportImpulses::add_sum(int support, const Vector3& impulse, const Vector3& moment) {
+  Sum& sum = sums_[static_cast<std::size_t>(support)];
+  for (std::size_t c = 0; c < 3; ++c) sum.impulse[c] += impulse[c], sum.moment[c] += moment[c];
 }
 
 void SupportImpulses::add(const SupportImpulses& other, double factor) {
@@ -62,6 +60,11 @@ ReactionImpulse::ReactionImpulse(const Experiment& experiment) : experiment_(exp
 void ReactionImpulse::begin_step() {
   for (SupportImpulses* sums : {&mirrored_, &held_, &forces_, &before_}) sums->clear();
   for (std::size_t k = 0; k < record_.size(); ++k) impulse_before_[k] = record_[k].impulse;
+}
+
+void ReactionImpulse::add(GivenBySupport what, int support, const Vector3& impulse, const Vector3& moment) {
+  SupportImpulses* const sums[] = {&held_, &mirrored_, &forces_, &projected_, &gathered_, &gathered_increment_};
+  sums[static_cast<std::size_t>(what)]->add_sum(support, impulse, moment);
 }
 
 void ReactionImpulse::keep_before() {

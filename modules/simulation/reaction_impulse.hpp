@@ -17,6 +17,8 @@ class SupportImpulses {
   explicit SupportImpulses(std::size_t count = 0) : sums_(count) {}
   void clear() { sums_.assign(sums_.size(), {}); }
   void add(int support, const Vector3& place, const Vector3& impulse, double factor = 1);
+  /// Adds an impulse with its moment.
+  void add_sum(int support, const Vector3& impulse, const Vector3& moment);
   void add(const SupportImpulses& other, double factor = 1);
   std::size_t size() const { return sums_.size(); }
   Vector3 impulse(std::size_t support) const { return sums_[support].impulse; }
@@ -35,6 +37,10 @@ struct MirroredPlaces {
   Vector3 ghost{}, mirror{};  ///< m
 };
 
+/// What a backend may sum by itself: what nodes are given where they are held, the three that are mirrored and, where
+/// particles gather from ghosts, the velocity and its change by the forces.
+enum class GivenBySupport { held, mirrored, force, projection, beyond, beyond_increment };
+
 /// The impulses of all supports through the parts of one step.
 ///  A wall mirrors what lies beyond it: it takes a ghost's momentum away and gives the image to the mirror (`mirror`,
 ///  `mirror_force`, `mirror_projection`). Particles gather from ghosts again, so the wall takes the mirror's velocity of
@@ -48,6 +54,8 @@ class ReactionImpulse {
   bool asked() const { return !record_.empty(); }
 
   void begin_step();
+  /// Adds what a backend has summed of one support instead of noting it node by node.
+  void add(GivenBySupport what, int support, const Vector3& impulse, const Vector3& moment);
   /// A node at x is given an impulse, kg m/s.
   void hold(int support, const Vector3& x, const Vector3& impulse) { held_.add(support, x, impulse); }
   /// A ghost's momentum, or force (N), is taken away and its image given to the mirror.

@@ -439,6 +439,23 @@ TEST_CASE("a run goes on with another backend from the same state") {
   CHECK(has(anew.err, "/backend is \"cpu\" there, and \"reference\" here"));
 }
 
+TEST_CASE("a run with deterministic sums of a device goes on without them, and on a backend that has none") {
+  const Folder folder;
+  Json scene = meeting();
+  scene["output"].erase("frames"), scene["output"].erase("vtk");
+  scene["backend"] = "cuda", scene["device"] = {{"sums", "deterministic"}};
+  spill(folder / "scene.json", scene.dump(1));
+  const Words host{"--device", "host"}, fast{"--resume", "--device", "host", "--set", "/device/sums=fast"};
+  run_until(folder, "parts", 10, host);
+  run_until(folder, "parts", 20, fast);
+  const Words refused{"--resume", "--backend", "cpu"};
+  const Result kept = run_in(folder, "parts", refused);
+  CHECK(kept.code == 2);
+  CHECK(has(kept.err, "\"device\" says how backend \"cuda\" works, and the backend is \"cpu\""));
+  must_end_with(0, run_in(folder, "parts", {"--resume", "--backend", "cpu", "--set", "/device=null"}));
+  CHECK(json_in(folder / "parts/run/summary.json")["performance"]["resumed_from_step"] == Json{10, 20});
+}
+
 TEST_CASE("another experiment is refused, with the first difference") {
   const Folder folder;
   spill(folder / "scene.json", meeting().dump(1));

@@ -35,7 +35,7 @@ inline mpm_descriptor descriptor(const char* id, mpm_kind kind, std::uint32_t di
           dimensions, precisions, 0,
           parameters, count,      count * 8,
           nullptr,    0,          0,
-          nullptr,    "",         "",
+          nullptr,    "Functor",  "// what backend cuda would compile",
           nullptr};
 }
 

@@ -47,8 +47,8 @@ inline Mix warm_mix(int dimension, const std::string& transfer) {
 }
 
 /// Scenes that launch between them every kernel that there is (kernels/kernels.hpp): all plugins, temperature with melting,
-/// loads at points, springs, grips, boxes of conditions, moving and periodic walls, both filters' loops, contact, the
-/// ledger, rings, polynomials, lists, domains, and the orders of the stress update.
+/// loads at points, springs, grips, boxes of conditions, moving and periodic walls, both filters' loops, contact, by
+/// particles too, the ledger, rings, polynomials, lists, domains, the orders of the stress update, and deterministic sums.
 inline std::vector<Mix> every_kernel(int dimension) {
   std::vector<Mix> mixes = every_plugin_once(dimension);
   const bool flat = dimension == 2;
@@ -86,6 +86,10 @@ inline std::vector<Mix> every_kernel(int dimension) {
   periodic.dimension = dimension, periodic.boundaries = R"({"all": "slip", "x_min": "periodic", "x_max": "periodic"})";
   periodic.close = true, periodic.transfer = R"({"type": "flip"})";
   mixes.push_back(periodic);
+  Mix exact = loaded;
+  exact.contact = R"({"type": "coulomb", "normal": "widest_gap", "detection": "particle_surfaces"})";
+  exact.overrides.push_back(deterministic_sums);
+  mixes.push_back(exact);
   if (flat) {
     Mix rings;
     rings.overrides = {set("/grid/symmetry", "axisymmetric"), set("/gravity", "[0, -1.3]")};

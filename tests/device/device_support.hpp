@@ -49,12 +49,17 @@ inline Mix mix_with(const Plugin& plugin, int dimension) {
   return mix;
 }
 
-/// An experiment on the device. It is read as one of the reference backend, whose refusals the scenes share; so float,
-/// which that has not, is chosen afterwards.
+/// The override that asks for deterministic sums.
+inline const std::string deterministic_sums = "/device/sums=deterministic";
+
+/// An experiment on the device. It is read as one of the reference backend, whose refusals the scenes share; so float and
+/// the section of the device, which that has not, are chosen afterwards.
 inline Experiment device_experiment(const std::string& text, const std::string& precision,
                                     std::vector<std::string> overrides = {}) {
+  const bool deterministic = std::erase(overrides, deterministic_sums) > 0;
   for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
   Experiment experiment = experiment_from(text, overrides);
+  if (deterministic) experiment.resolved["device"]["sums"] = "deterministic";
   if (precision == "float") experiment.precision = Precision::single;
   experiment.backend = "cuda";
   return experiment;
@@ -193,6 +198,7 @@ inline void check_on_device(const Mix& mix, const std::vector<std::string>& prec
   INFO(mix.name());
   const std::string text = mix.text();
   std::vector<std::string> overrides = mix.overrides;
+  std::erase(overrides, deterministic_sums);
   for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
   Scene reference(text, overrides);
   while (!reference.simulation.finished()) reference.simulation.step();

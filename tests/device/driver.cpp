@@ -143,14 +143,21 @@ TEST_CASE("memory that runs out all the same is said with what is asked and free
 
 TEST_CASE("whichever function of the driver fails, a run stops with its name and gives its memory back",
           "[device][driver]") {
+  const long before = device::calls_on_host("cuLaunchKernel");
   CHECK(message_of_run().empty());
   const std::uint64_t left = device::bytes_left_on_host();
-  const std::vector<std::string> functions{"cuDeviceGetCount",     "cuDeviceGet",         "cuDeviceGetName",
-                                           "cuDeviceGetAttribute", "cuDriverGetVersion",  "cuCtxSetCurrent",
-                                           "cuMemGetInfo_v2",      "cuMemAlloc_v2",       "cuMemcpyHtoDAsync_v2",
-                                           "cuMemcpyDtoHAsync_v2", "cuMemsetD8Async",     "cuDevicePrimaryCtxRetain",
-                                           "cuStreamCreate",       "cuStreamSynchronize", "cuModuleLoadData",
-                                           "cuModuleGetFunction",  "cuLaunchKernel"};
+  const long launches = device::calls_on_host("cuLaunchKernel") - before;
+  const std::vector<std::string> functions{"cuDeviceGetCount",     "cuDeviceGet",
+                                           "cuDeviceGetName",      "cuDeviceGetAttribute",
+                                           "cuDriverGetVersion",   "cuCtxSetCurrent",
+                                           "cuMemGetInfo_v2",      "cuMemAlloc_v2",
+                                           "cuMemcpyHtoDAsync_v2", "cuMemcpyDtoHAsync_v2",
+                                           "cuMemsetD8Async",      "cuDevicePrimaryCtxRetain",
+                                           "cuStreamCreate",       "cuStreamSynchronize",
+                                           "cuModuleLoadData",     "cuModuleGetFunction",
+                                           "cuLaunchKernel",       "cuStreamBeginCapture_v2",
+                                           "cuStreamEndCapture",   "cuGraphInstantiateWithFlags",
+                                           "cuGraphLaunch"};
   for (const std::string& function : functions)
     for (const device::DriverResult result : {device::driver_launch_failed, device::driver_not_initialized}) {
       INFO(function << " " << result);
@@ -162,7 +169,7 @@ TEST_CASE("whichever function of the driver fails, a run stops with its name and
       CHECK(device::bytes_on_host(0) == 0);
       CHECK(device::bytes_left_on_host() == left);
     }
-  for (const long call : {30, 500}) {
+  for (const long call : {launches / 10, launches - 1}) {
     INFO("call " << call);
     const Injected failure("cuLaunchKernel", call, device::driver_launch_out_of_resources);
     CHECK(has(message_of_run(), "failed to launch the phase \""));

@@ -1,6 +1,9 @@
 // Single phases on arrays made by hand, where a run would not reach them.
 
+#include <climits>
+
 #include "backends/device/device.hpp"
+#include "backends/device/kernels/stopping.hpp"
 #include "device/device_support.hpp"
 #include "operators/edges.hpp"
 
@@ -48,6 +51,9 @@ struct SmallGrid {
     device::DeviceArray<int> folds(device, "folds");
     folds.upload(folded);
     a.grid.folded = folds.data();
+    device::DeviceArray<int> stop(device, "the failed particle");
+    stop.upload(std::vector<int>(device::stop_numbers, INT_MAX));
+    a.stop = stop.data();
     device.launch(phase, a, teams, team.lanes);
     for (std::size_t k = 0; k < copies.size(); ++k) {
       const std::vector<double> values = copies[k].download();

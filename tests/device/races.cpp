@@ -158,7 +158,7 @@ TEST_CASE("a race that is planted in a kernel is reported with its kernel, its p
                ContainsSubstring("mpm_scatter, phase 1: ") && ContainsSubstring("shared memory, byte "));
   }
   // All lanes write to one place what stands there: no result shows that.
-  const std::string checked = "if (!(J > T(0))) Team::lower(a.first_failed, p);";
+  const std::string checked = "if (!(J > T(0))) report(a, p);";
   CHECK_THAT(found_in({checked, checked + " a.particles.field[0][0] += T(0);"}, 0),
              ContainsSubstring("mpm_stress_0, phase 0: ") && ContainsSubstring("position of particles, byte 0"));
 }

@@ -80,7 +80,7 @@ mpm_fault(${cpu}/particles/particle_gather.hpp
 
 # The device's kernels
 set(kernels backends/device/kernels)
-mpm_fault(${kernels}/grid.hpp
+mpm_fault(${kernels}/conditions.hpp
           "(velocity[c] - now[c]));\n  });"
           "(velocity[c] - now[c]));
     for (int c = 0; c < D && mpm_fault_now() == 1; ++c)

@@ -5,8 +5,10 @@
 #include <sstream>
 
 #include "backends/device/kernels/fields.hpp"
+#include "experiment/device_settings.hpp"
 #include "kernel/polynomial_basis.hpp"
 #include "plugin/extension_of.hpp"
+#include "simulation/contact_points.hpp"
 #include "support/hash.hpp"
 
 namespace mpm::device {
@@ -203,7 +205,9 @@ std::string scene_text(const Choice& choice) {
       << "  using Shape = " << type(choice.shape) << ";\n  using Transfer = " << type(choice.transfer) << ";\n";
   if (choice.filter) out << "  using Filter = " << type(choice.filter) << ";\n";
   if (choice.contact) out << "  using Contact = " << type(choice.contact) << ";\n";
-  out << "  static constexpr bool contact = " << yes(choice.contact) << ", list = " << yes(list)
+  const bool weld = choice.contact && (choice.contact->contact().traits & MPM_BYPASSES_DETECTION);
+  out << "  static constexpr bool contact = " << yes(choice.contact) << ", bypasses_detection = " << yes(weld)
+      << ", contact_by_particles = " << yes(choice.contact_by_particles) << ", list = " << yes(list)
       << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
       << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
       << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
@@ -220,6 +224,8 @@ std::string scene_text(const Choice& choice) {
       << ", stress_by_affine = " << yes(traits & MPM_STRESS_BY_AFFINE)
       << ", strain_by_affine = " << yes(traits & MPM_STRAIN_BY_AFFINE)
       << ", affine_carries_energy = " << yes(traits & MPM_AFFINE_CARRIES_ENERGY) << ";\n"
+      << "  static constexpr bool deterministic = " << yes(choice.deterministic) << ";\n"
+      << "  static constexpr bool reactions = " << yes(choice.reactions) << ";\n"
       << "  static constexpr bool ledger = " << yes(keeps_ledger(choice)) << ";\n"
       << "  static constexpr int basis_order = " << choice.basis_order
       << ", basis_functions = " << basis_functions(choice.dimension, choice.basis_order)
@@ -239,6 +245,7 @@ std::string scene_text(const Choice& choice) {
   if (has_loads(choice)) out << "MPM_DEVICE_LOAD_ENTRIES\n";
   if (keeps_ledger(choice)) out << "MPM_DEVICE_LEDGER_ENTRIES\n";
   if (choice.contact) out << "MPM_DEVICE_CONTACT_ENTRIES\n";
+  if (choice.reactions) out << "MPM_DEVICE_REACTION_ENTRIES\n";
   if (has_grips(choice)) out << "MPM_DEVICE_GRIP_ENTRIES\n";
   if (choice.filter) out << "MPM_DEVICE_FILTER_ENTRIES\n";
   if (has_filter_loop(choice)) out << "MPM_DEVICE_FILTER_LOOP_ENTRIES\n";
@@ -259,7 +266,7 @@ std::vector<std::string> entry_names(const Choice& choice) {
   std::string line, macro;
   while (std::getline(lines, line)) {
     if (line.rfind("#define ", 0) == 0) macro = line.substr(8, line.find_first_of(" (", 8) - 8);
-    const std::string start = "MPM_DEVICE_ENTRY(";
+    const std::string start = "MPM_DEVICE_PHASE(";
     std::size_t at = line.find(start);
     if (at == line.npos || line.rfind("//", 0) == 0) continue;
     at += start.size();
@@ -267,6 +274,7 @@ std::vector<std::string> entry_names(const Choice& choice) {
     if (macro == "MPM_DEVICE_LOAD_ENTRIES" && !has_loads(choice)) continue;
     if (macro == "MPM_DEVICE_LEDGER_ENTRIES" && !keeps_ledger(choice)) continue;
     if (macro == "MPM_DEVICE_CONTACT_ENTRIES" && !choice.contact) continue;
+    if (macro == "MPM_DEVICE_REACTION_ENTRIES" && !choice.reactions) continue;
     if (macro == "MPM_DEVICE_GRIP_ENTRIES" && !has_grips(choice)) continue;
     if (macro == "MPM_DEVICE_FILTER_ENTRIES" && !choice.filter) continue;
     if (macro == "MPM_DEVICE_FILTER_LOOP_ENTRIES" && !has_filter_loop(choice)) continue;
@@ -303,6 +311,9 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
   choice.shape = experiment.shape.plugin;
   choice.transfer = experiment.transfer.plugin;
   choice.basis_order = plan.basis_order;
+  choice.reactions = !experiment.output.reactions.empty();
+  choice.deterministic = sums_deterministically(experiment);
+  choice.contact_by_particles = ContactPoints(experiment).needed();
   choice.node_fields = node_fields(experiment, plan);
   choice.particle_fields = particle_fields(experiment, plan, 0);
   if (experiment.filter) choice.filter = experiment.filter->plugin;
@@ -310,6 +321,12 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
   for (const MaterialSpecification& material : experiment.materials)
     choice.materials.push_back(material.component.plugin);
   return choice;
+}
+
+int most_channels(const Choice& choice) {
+  int scattered = 0;
+  for (const Field& field : choice.node_fields) scattered += is_scattered(field) ? field.components : 0;
+  return std::max({scattered, 2 * choice.dimension + 1, 4 + choice.dimension});  // as of grips and of heat
 }
 
 const char* embedded_header(std::string_view path) {

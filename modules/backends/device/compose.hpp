@@ -22,12 +22,18 @@ struct Choice {
   const Plugin* filter = nullptr;
   const Plugin* contact = nullptr;
   std::vector<const Plugin*> materials;
+  bool deterministic = false;                       ///< scatters sum to the same bits in any order of lanes
+  bool contact_by_particles = false;                ///< the host finds how fields meet (contact_pairs.hpp)
+  bool reactions = false;                           ///< what supports give is summed
   int basis_order = 0;                              ///< as in Plan
   std::vector<Field> node_fields, particle_fields;  ///< numbered (backends/device/fields.hpp); those of any one body
 
   /// The choice in words for messages: "2-D double: linear apic coulomb neo_hookean".
   std::string name() const;
 };
+
+/// The most values that a particle gives to a node in one scatter.
+int most_channels(const Choice& choice);
 
 /// The choice that a run of the experiment needs; its materials are in the experiment's order.
 Choice choice_of(const Experiment& experiment, const Plan& plan);

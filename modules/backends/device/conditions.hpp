@@ -70,7 +70,7 @@ class Conditions {
       for (int side = 0; side < 2; ++side) {
         const FaceCondition& face = experiment.faces[axis][side];
         if (!face.velocity) continue;
-        moving_.push_back({&*face.velocity, nodes_of_wall(scene, axis, side), {}, {device, "the conditions"}});
+        moving_.push_back({&*face.velocity, nodes_of_wall(scene, axis, side), {device, "the conditions"}});
         walls_.push_back({axis, side, moving_.size() - 1});
       }
     for (std::size_t k = 0; k < experiment.boxes.size(); ++k) {
@@ -83,32 +83,24 @@ class Conditions {
         box.lower[c] = nodes->lower[c], box.upper[c] = nodes->upper[c];
         box.given |= condition.held[c] << c;
       }
+      box.support = support_of_box(static_cast<int>(k));
       boxes_.push_back(box);
-      supports_.push_back(support_of_box(static_cast<int>(k)));
       moving_of_box_.push_back(condition.velocity ? moving_.size() : none);
-      if (condition.velocity) moving_.push_back({&*condition.velocity, *nodes, {}, {device, "the conditions"}});
+      if (condition.velocity) moving_.push_back({&*condition.velocity, *nodes, {device, "the conditions"}});
     }
   }
 
-  /// The supports that the scene's boxes are.
-  const std::vector<int>& supports() const { return supports_; }
-
-  /// Evaluates velocities at a time, s, and points the scene to them on the device, and `on_host` to those that the
-  /// host keeps.
-  void evaluate(double time, Arguments<T>& scene, Arguments<T>& on_host) {
+  /// Evaluates velocities at a time, s, and points the scene to them.
+  void evaluate(double time, Arguments<T>& scene) {
     for (Moving& moving : moving_) evaluate(moving, time);
     time_ = time;
-    for (const auto& [axis, side, number] : walls_) {
-      scene.wall_velocity[axis][side] = moving_[number].on_device.data();
-      on_host.wall_velocity[axis][side] = moving_[number].velocity.data();
-    }
+    for (const auto& [axis, side, number] : walls_) scene.wall_velocity[axis][side] = moving_[number].velocity.data();
     if (device_boxes_.count() != boxes_.size()) {  // what moves has its place from its first evaluation on
-      point_boxes([](const Moving& moving) { return moving.on_device.data(); });
+      for (std::size_t k = 0; k < boxes_.size(); ++k)
+        boxes_[k].velocity = moving_of_box_[k] == none ? nullptr : moving_[moving_of_box_[k]].velocity.data();
       device_boxes_.upload(boxes_);
     }
-    point_boxes([](const Moving& moving) { return moving.velocity.data(); });
-    scene.boxes = device_boxes_.data(), on_host.boxes = boxes_.data();
-    scene.box_count = on_host.box_count = static_cast<int>(boxes_.size());
+    scene.boxes = device_boxes_.data(), scene.box_count = static_cast<int>(boxes_.size());
   }
 
  private:
@@ -116,8 +108,7 @@ class Conditions {
   struct Moving {
     const VectorExpression* formula;
     NodeRange nodes;
-    std::vector<T> velocity;
-    DeviceArray<T> on_device;
+    DeviceArray<T> velocity;
   };
   struct MovingWall {
     int axis, side;
@@ -125,23 +116,16 @@ class Conditions {
   };
   static constexpr std::size_t none = ~std::size_t{0};
 
-  template <class Velocity>
-  void point_boxes(Velocity velocity) {
-    for (std::size_t k = 0; k < boxes_.size(); ++k)
-      boxes_[k].velocity = moving_of_box_[k] == none ? nullptr : velocity(moving_[moving_of_box_[k]]);
-  }
-
   void evaluate(Moving& moving, double time) {
-    if (!moving.velocity.empty() && (!moving.formula->uses_time() || time == time_)) return;
+    if (moving.velocity.count() > 0 && (!moving.formula->uses_time() || time == time_)) return;
     const int D = experiment_.dimension;
     const std::vector<Vector3> positions = moving.nodes.positions(experiment_);
     std::vector<Vector3> values(positions.size());
     moving.formula->evaluate(positions, positions, time, values);
-    moving.velocity.resize(values.size() * static_cast<std::size_t>(D));
+    std::vector<T> velocity;
     for (int c = 0; c < D; ++c)
-      for (std::size_t n = 0; n < values.size(); ++n)
-        moving.velocity[static_cast<std::size_t>(c) * values.size() + n] = static_cast<T>(values[n][c]);
-    moving.on_device.upload(moving.velocity);
+      for (const Vector3& value : values) velocity.push_back(static_cast<T>(value[c]));
+    moving.velocity.upload(velocity);
   }
 
   const Experiment& experiment_;
@@ -150,7 +134,6 @@ class Conditions {
   std::vector<MovingWall> walls_;
   std::vector<Box<T>> boxes_;
   DeviceArray<Box<T>> device_boxes_;
-  std::vector<int> supports_;
   std::vector<std::size_t> moving_of_box_;
 };
 

@@ -1,75 +1,78 @@
 #include "backends/device/device_backend.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "backends/device/kernels/contact.hpp"
 
 namespace mpm::device {
 
-/// Shows the particles to all nodes where fields meet. The host does so, on copies.
 template <class T>
-void DeviceBackend<T>::find_contact_points(const std::vector<ContactFields<T>>& found) {
-  ContactPoints& points = pairs_.points();
-  points.begin();
-  for (std::size_t node = 0; node < static_cast<std::size_t>(nodes()); ++node) {
-    int present = 0;
-    for (const ContactFields<T>& field : found) present += field.mass[node] > 0;
-    if (present > 1) points.open(pairs_.coordinates(node, scene_));
+void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded) {
+  if (contact_pairs_ && recorded == Recorded::before_forces) {
+    look();  // a particle that has failed is nowhere
+    contact_pairs_->find(bodies_, fields_);
   }
-  const bool by_domain = plan_.particle_field(0, "domain") != nullptr;
-  const bool by_deformation = plan_.particle_field(0, "deformation") != nullptr && points.gives_separation();
-  for (const Body<T>& body : bodies_) {
-    const std::vector<T> position = body.arrays.read("position"), size = body.arrays.read("size"),
-                         sides = by_domain        ? body.arrays.read("domain")
-                                 : by_deformation ? body.arrays.read("deformation")
-                                                  : std::vector<T>();
-    const auto n = static_cast<std::size_t>(body.count);
-    for (std::size_t p = 0; p < n; ++p) {
-      Vector3 x = body.vector(position, p);
-      for (int c = 0; c < experiment_.dimension; ++c)
-        x[c] = (x[c] - experiment_.grid.lower[c]) / experiment_.grid.cell_size;
-      if (!points.look_around(x, x)) continue;
-      const double volume = double(body.volume) * (size.empty() || experiment_.axisymmetric() ? 1.0 : double(size[p]));
-      points.add(body.field, x, sides.empty() ? nullptr : sides.data() + p, n,
-                 by_domain ? 1.0 : points.half_side(volume));
+  const auto given = std::make_shared<ContactGiven>();
+  const Tally<3> unbalanced = tally<3>();
+  const bool after_forces = recorded == Recorded::after_forces;
+  later([this, given, after_forces] {
+    *given = {};
+    if (after_forces) contact_ = {};
+  });
+  for (std::size_t a = 0; a < fields_.size(); ++a)
+    for (std::size_t b = a + 1; b < fields_.size(); ++b) {
+      Arguments<T> arguments = scene_;
+      arguments.grid = fields_[a].table(), arguments.other = fields_[b].table();
+      arguments.edges[0] = edges_.of(a), arguments.edges[1] = edges_.of(b);
+      if (contact_pairs_) arguments.found = contact_pairs_->of(static_cast<int>(a), static_cast<int>(b));
+      const std::size_t at = place(contact_sums);
+      join("contact", arguments, nodes(), contact_sums, at, 1);
+      results_.later([this, at, given, unbalanced, after_forces](const double* sums) {
+        const double* const found = sums + at;
+        for (std::size_t c = 0; c < 3; ++c) (*unbalanced)[c] += found[contact_unbalanced + c];
+        take_pair(found, *given, after_forces);
+      });
     }
-  }
-  points.find(0, points.node_count());
+  Ledger* const ledger = scene_.records ? &ledger_ : nullptr;
+  later([this, recorded, given, ledger, filtered = step.filtered] {
+    if (recorded == Recorded::before_forces) contact_impulse_.before_forces(*given, filtered, ledger);
+    if (recorded == Recorded::filter)
+      contact_impulse_.in_filter(*given, plan_.node_field("velocity_of_constraints") != nullptr, ledger);
+    if (recorded != Recorded::after_forces) return;
+    contact_impulse_.after_forces(*given, ledger);
+    contact_impulse_.record_counts(*given);
+  });
+  if (!after_forces) return;
+  record_force(step);
+  later([this, unbalanced] {
+    const auto [x, y, z] = *unbalanced;
+    contact_.momentum_residual = std::hypot(x, y, z);
+  });
 }
 
 template <class T>
-void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded) {
-  if (recorded == Recorded::after_forces) contact_ = {};
-  Vector3 unbalanced{};
-  ContactGiven given;
-  given.pairs.reserve(contact_impulse_.pairs().size());
-  const std::vector<ContactFields<T>> found(fields_.begin(), fields_.end());
-  if (pairs_.points().needed() && recorded == Recorded::before_forces) find_contact_points(found);
-  for (std::size_t a = 0; a < fields_.size(); ++a)
-    for (std::size_t b = a + 1; b < fields_.size(); ++b) {
-      pairs_.find(found[a], a, found[b], b, scene_);
-      Arguments<T> arguments = scene_;
-      arguments.grid = fields_[a].table(), arguments.other = fields_[b].table();
-      arguments.contact = pairs_.table();
-      launch("contact", arguments, nodes());
-      pairs_.read();
-      if (recorded == Recorded::after_forces) pairs_.add_to(contact_, unbalanced);
-      pairs_.add_to(given, !contact_impulse_.pairs().empty());
-    }
-  Ledger* const ledger = scene_.records ? &ledger_ : nullptr;
-  if (recorded == Recorded::before_forces) contact_impulse_.before_forces(given, step.filtered, ledger);
-  if (recorded == Recorded::filter)
-    contact_impulse_.in_filter(given, plan_.node_field("velocity_of_constraints") != nullptr, ledger);
-  if (recorded != Recorded::after_forces) return;
-  contact_impulse_.after_forces(given, ledger);
-  contact_impulse_.record_counts(given);
-  record_force(step);
-  contact_.momentum_residual = std::hypot(unbalanced[0], unbalanced[1], unbalanced[2]);
+void DeviceBackend<T>::take_pair(const double* sums, ContactGiven& given, bool record) {
+  PairGiven pair;
+  for (std::size_t c = 0; c < 3; ++c) pair.impulse[c] = sums[contact_impulse + c];
+  pair.sticking = std::lround(sums[contact_sticking]), pair.slipping = std::lround(sums[contact_slipping]);
+  pair.largest_penetration = sums[contact_penetration];
+  for (std::size_t c = 0; c < 3; ++c) given.impulse[c] += pair.impulse[c];
+  given.dissipated += sums[contact_dissipated];
+  if (!contact_impulse_.pairs().empty()) given.pairs.push_back(pair);
+  if (!record) return;
+  contact_.sticking += pair.sticking, contact_.slipping += pair.slipping;
+  contact_.nodes += pair.sticking + pair.slipping;
+  contact_.largest_penetration = std::max(contact_.largest_penetration, pair.largest_penetration);
 }
 
 template <class T>
 void DeviceBackend<T>::record_force(const StepInfo& step) {
-  const Vector3 impulse = contact_impulse_.handed_over(step.filtered);
-  for (std::size_t c = 0; c < 3; ++c) contact_.force[c] = impulse[c] / step.dt;
-  contact_impulse_.record_forces(step.filtered, step.dt);
+  later([this, filtered = step.filtered, dt = step.dt] {
+    const Vector3 impulse = contact_impulse_.handed_over(filtered);
+    for (std::size_t c = 0; c < 3; ++c) contact_.force[c] = impulse[c] / dt;
+    contact_impulse_.record_forces(filtered, dt);
+  });
 }
 
 template class DeviceBackend<float>;

@@ -1,9 +1,7 @@
 #pragma once
-// Two velocity fields that meet: the host finds where and how, the device applies the law, and the host counts what it
-// gave.
+// Contact whose normal or detection looks at particles (simulation/contact_points.hpp). The host finds it once a step on
+// copies of particles and nodes, as positions do not move within a step, and hands it to the device for all stages of it.
 
-#include <algorithm>
-#include <string>
 #include <vector>
 
 #include "backends/device/device_arrays.hpp"
@@ -12,7 +10,7 @@
 
 namespace mpm::device {
 
-/// The fields of one velocity field that detection reads, on the host.
+/// The values of one velocity field that detection reads, on the host.
 template <class T>
 struct ContactFields {
   std::vector<T> mass, volume, volume_gradient, mass_position;
@@ -32,111 +30,96 @@ struct ContactFields {
   }
 };
 
-/// What is found and given at the nodes for one pair at a time.
+/// The geometry of all pairs of velocity fields at all nodes.
 template <class T>
 class ContactPairs {
  public:
-  /// Without contact there are no nodes.
-  ContactPairs(Device& device, const Experiment& experiment, std::size_t nodes)
-      : experiment_(experiment),
-        geometry_(experiment),
-        points_(experiment),
-        nodes_(nodes),
-        active_on_device_(device, "contact", nodes),
-        status_on_device_(device, "contact", nodes),
-        normal_on_device_(device, "contact", vectors()),
-        separation_on_device_(device, "contact", nodes),
-        area_on_device_(device, "contact", nodes),
-        impulse_on_device_(device, "contact", vectors()),
-        unbalanced_on_device_(device, "contact", vectors()),
-        dissipated_on_device_(device, "contact", nodes),
-        active_(nodes),
-        normal_(vectors()),
-        separation_(nodes),
-        area_(nodes) {}
-
-  /// The particles near nodes where fields meet, which `find` looks at where the scene asks for them.
-  ContactPoints& points() { return points_; }
-  /// The coordinates of a node.
-  std::array<int, 3> coordinates(std::size_t node, const Arguments<T>& scene) const {
-    std::array<int, 3> at{};
-    auto rest = static_cast<int>(node);
-    for (int c = 0; c < experiment_.dimension; rest /= scene.extent[c], ++c)
-      at[c] = rest % scene.extent[c] - scene.padding[c];
-    return at;
-  }
-  /// Finds normal, separation and area at every node that two fields share (simulation/contact_pair.hpp).
-  void find(const ContactFields<T>& first, std::size_t a, const ContactFields<T>& second, std::size_t b,
-            const Arguments<T>& scene) {
-    const bool weld = experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION;
-    const int D = experiment_.dimension;
-    for (std::size_t node = 0; node < nodes_; ++node) {
-      const ContactFieldNode of_a = first.at(node, D), of_b = second.at(node, D);
-      active_[node] = 0;
-      if (!meet(of_a.mass, of_b.mass, weld)) continue;
-      const ContactGeometry geometry =
-          geometry_(points_, coordinates(node, scene), static_cast<int>(a), static_cast<int>(b), of_a, of_b);
-      if (!geometry.valid && !weld) continue;
-      active_[node] = 1;
-      for (int c = 0; c < D; ++c)
-        normal_[static_cast<std::size_t>(c) * nodes_ + node] = static_cast<T>(geometry.normal[c]);
-      separation_[node] = static_cast<T>(geometry.separation), area_[node] = static_cast<T>(geometry.area);
-    }
-    active_on_device_.upload(active_), normal_on_device_.upload(normal_);
-    separation_on_device_.upload(separation_), area_on_device_.upload(area_);
-  }
-  ContactArrays<T> table() const {
-    return {active_on_device_.data(),     normal_on_device_.data(),  separation_on_device_.data(),
-            area_on_device_.data(),       impulse_on_device_.data(), unbalanced_on_device_.data(),
-            dissipated_on_device_.data(), status_on_device_.data()};
-  }
-  /// Waits for what the law gave the pair.
-  void read() {
-    impulse_ = impulse_on_device_.download(), unbalanced_ = unbalanced_on_device_.download();
-    dissipated_ = dissipated_on_device_.download(), status_ = status_on_device_.download();
+  ContactPairs(Device& device, const Experiment& experiment, const Arguments<T>& scene)
+      : experiment_(experiment), scene_(scene), geometry_(experiment), points_(experiment) {
+    for (int k = 0; k < experiment.field_count * (experiment.field_count - 1) / 2; ++k) pairs_.emplace_back(device);
   }
 
-  /// Adds what was given to the sum over all pairs, and where these are asked for notes the pair itself.
-  void add_to(ContactGiven& sum, bool by_pair) const {
-    PairGiven pair;
-    for_each_active([&](std::size_t node) {
-      sum.dissipated += dissipated_[node];
-      for (int c = 0; c < experiment_.dimension; ++c) {
-        const double impulse = impulse_[static_cast<std::size_t>(c) * nodes_ + node];
-        sum.impulse[c] += impulse, pair.impulse[c] += impulse;
-      }
-      pair.count(status_[node], separation_[node], true);
-    });
-    if (by_pair) sum.pairs.push_back(pair);
+  /// Finds everything, once the masses of the nodes are known.
+  void find(const std::vector<Body<T>>& bodies, const std::vector<VelocityField<T>>& fields) {
+    const std::vector<ContactFields<T>> found(fields.begin(), fields.end());
+    open_nodes(found);
+    show_particles(bodies);
+    points_.find(0, points_.node_count());
+    for (int a = 0; a < experiment_.field_count; ++a)
+      for (int b = a + 1; b < experiment_.field_count; ++b) find_pair(found, a, b);
   }
-  void add_to(ContactRecord& record, Vector3& unbalanced) const {
-    for_each_active([&](std::size_t node) {
-      for (int c = 0; c < experiment_.dimension; ++c)
-        unbalanced[c] += unbalanced_[static_cast<std::size_t>(c) * nodes_ + node];
-      if (status_[node] == MPM_APART) return;
-      ++record.nodes;
-      ++(status_[node] == MPM_STICKS ? record.sticking : record.slipping);
-      record.largest_penetration = std::max(record.largest_penetration, -static_cast<double>(separation_[node]));
-    });
+  /// What was found for fields a < b, at the device's addresses.
+  FoundContact<T> of(int a, int b) const {
+    const Pair& pair = pairs_[pair_number(a, b)];
+    return {pair.valid.data(), pair.values.data()};
   }
 
  private:
-  std::size_t vectors() const { return static_cast<std::size_t>(experiment_.dimension) * nodes_; }
-  template <class Visit>
-  void for_each_active(Visit visit) const {
-    for (std::size_t node = 0; node < nodes_; ++node)
-      if (active_[node]) visit(node);
+  struct Pair {
+    DeviceArray<int> valid;
+    DeviceArray<T> values;
+    explicit Pair(Device& device) : valid(device, "contact"), values(device, "contact") {}
+  };
+  std::size_t nodes() const { return static_cast<std::size_t>(scene_.node_count); }
+  std::size_t pair_number(int a, int b) const { return pair_index(a, b, experiment_.field_count); }
+  std::array<int, 3> coordinates(std::size_t node) const {
+    std::array<int, 3> at{};
+    auto rest = static_cast<int>(node);
+    for (int c = 0; c < experiment_.dimension; rest /= scene_.extent[c], ++c)
+      at[c] = rest % scene_.extent[c] - scene_.padding[c];
+    return at;
+  }
+
+  void open_nodes(const std::vector<ContactFields<T>>& found) {
+    points_.begin();
+    for (std::size_t node = 0; node < nodes(); ++node) {
+      int present = 0;
+      for (const ContactFields<T>& field : found) present += field.mass[node] > 0;
+      if (present > 1) points_.open(coordinates(node));
+    }
+  }
+  void show_particles(const std::vector<Body<T>>& bodies) {
+    for (const Body<T>& body : bodies) {
+      const bool by_domain = body.number("domain") >= 0;
+      const bool by_deformation = body.number("deformation") >= 0 && points_.gives_separation();
+      const std::vector<T> position = body.arrays.read("position"), size = body.arrays.read("size"),
+                           sides = by_domain        ? body.arrays.read("domain")
+                                   : by_deformation ? body.arrays.read("deformation")
+                                                    : std::vector<T>();
+      const auto n = static_cast<std::size_t>(body.count);
+      for (std::size_t p = 0; p < n; ++p) {
+        Vector3 x = body.vector(position, p);
+        for (int c = 0; c < experiment_.dimension; ++c)
+          x[c] = (x[c] - experiment_.grid.lower[c]) / experiment_.grid.cell_size;
+        if (!points_.look_around(x, x)) continue;
+        const double volume =
+            double(body.volume) * (size.empty() || experiment_.axisymmetric() ? 1.0 : double(size[p]));
+        points_.add(body.field, x, sides.empty() ? nullptr : sides.data() + p, n,
+                    by_domain ? 1.0 : points_.half_side(volume));
+      }
+    }
+  }
+  void find_pair(const std::vector<ContactFields<T>>& found, int a, int b) {
+    const std::size_t D = experiment_.dimension;
+    std::vector<int> valid(nodes());
+    std::vector<T> values((D + 2) * nodes());
+    for (std::size_t node = 0; node < nodes(); ++node) {
+      const ContactFieldNode of_a = found[a].at(node, experiment_.dimension),
+                             of_b = found[b].at(node, experiment_.dimension);
+      if (!meet(of_a.mass, of_b.mass, /*weld=*/false)) continue;  // a weld looks at no particle
+      const ContactGeometry geometry = geometry_(points_, coordinates(node), a, b, of_a, of_b);
+      valid[node] = geometry.valid;
+      values[node] = static_cast<T>(geometry.separation), values[nodes() + node] = static_cast<T>(geometry.area);
+      for (std::size_t c = 0; c < D; ++c) values[(2 + c) * nodes() + node] = static_cast<T>(geometry.normal[c]);
+    }
+    pairs_[pair_number(a, b)].valid.upload(valid), pairs_[pair_number(a, b)].values.upload(values);
   }
 
   const Experiment& experiment_;
+  const Arguments<T>& scene_;
   PairGeometry geometry_;
   ContactPoints points_;
-  std::size_t nodes_;
-  DeviceArray<int> active_on_device_, status_on_device_;
-  DeviceArray<T> normal_on_device_, separation_on_device_, area_on_device_, impulse_on_device_, unbalanced_on_device_,
-      dissipated_on_device_;
-  std::vector<int> active_, status_;
-  std::vector<T> normal_, separation_, area_, impulse_, unbalanced_, dissipated_;
+  std::vector<Pair> pairs_;  ///< [pair_index]
 };
 
 }  // namespace mpm::device

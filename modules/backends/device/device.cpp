@@ -123,6 +123,12 @@ std::string Device::architecture() const {
   return architecture_of(driver_, device_);
 }
 
+int Device::multiprocessors() const {
+  int count = 0;
+  check(driver_.cuDeviceGetAttribute(&count, attribute_multiprocessors, device_), "to tell its multiprocessors");
+  return count;
+}
+
 void Device::load(const std::string& image, const std::string& program) {
   make_current();
   program_ = program;
@@ -150,10 +156,12 @@ void Device::free(DevicePointer pointer) noexcept {
 
 void Device::copy_in(DevicePointer to, const void* from, std::size_t bytes) {
   make_current();
+  ++host_copies_;
   check(driver_.cuMemcpyHtoDAsync_v2(to, from, bytes, stream_), "to take a copy");
 }
 void Device::read(void* to, DevicePointer from, std::size_t bytes) {
   make_current();
+  ++host_copies_;
   landing_.resize(std::max(landing_.size(), bytes));
   check(driver_.cuMemcpyDtoHAsync_v2(landing_.data(), from, bytes, stream_), "to give a copy");
   try {
@@ -172,6 +180,33 @@ void Device::copy(DevicePointer to, DevicePointer from, std::size_t bytes) {
 void Device::fill(DevicePointer to, unsigned char byte, std::size_t bytes) {
   make_current();
   check(driver_.cuMemsetD8Async(to, byte, bytes, stream_), "to fill memory");
+}
+
+void Device::begin_capture() {
+  make_current();
+  check(driver_.cuStreamBeginCapture_v2(stream_, capture_global), "to begin a graph");
+}
+GraphExecHandle Device::end_capture() {
+  make_current();
+  GraphHandle graph = nullptr;
+  GraphExecHandle made = nullptr;
+  check(driver_.cuStreamEndCapture(stream_, &graph), "to end a graph");
+  const DriverResult result = driver_.cuGraphInstantiateWithFlags(&made, graph, 0);
+  driver_.cuGraphDestroy(graph);
+  check(result, "to make a graph ready");
+  return made;
+}
+void Device::abandon_capture() noexcept {
+  GraphHandle graph = nullptr;
+  if (driver_.cuStreamEndCapture(stream_, &graph) == driver_success) driver_.cuGraphDestroy(graph);
+}
+void Device::launch(GraphExecHandle graph) {
+  make_current();
+  check(driver_.cuGraphLaunch(graph, stream_), "to launch a graph");
+}
+void Device::free(GraphExecHandle graph) noexcept {
+  driver_.cuCtxSetCurrent(context_);
+  driver_.cuGraphExecDestroy(graph);
 }
 
 FunctionHandle Device::function(const std::string& phase) {

@@ -32,6 +32,7 @@ class Device {
 
   const std::string& name() const { return name_; }  ///< as the driver calls it
   std::uint64_t free_bytes() const;
+  int multiprocessors() const;
   /// The architecture of machine code, "sm_90".
   std::string architecture() const;
 
@@ -54,6 +55,20 @@ class Device {
     static_assert(sizeof(Arguments<T>) <= 4096, "a kernel takes at most 4096 bytes of parameters");
     launch(phase, &arguments, sizeof arguments, teams, lanes);
   }
+
+  /// Begins to collect fills, copies on the device and launches in a graph instead of running them. Nothing may be copied
+  /// from or to the host, allocated or waited for until the graph is made.
+  void begin_capture();
+  /// Makes the graph of what was collected. Throws DeviceError where something came that it cannot hold.
+  GraphExecHandle end_capture();
+  /// Ends a capture that nobody wants any more.
+  void abandon_capture() noexcept;
+  /// Runs a graph's work once.
+  void launch(GraphExecHandle graph);
+  void free(GraphExecHandle graph) noexcept;
+  /// The copies from and to the host so far.
+  long host_copies() const { return host_copies_; }
+  bool measures() const { return measures_; }
 
   /// Waits for a copy out. Throws DeviceError as `synchronise` does.
   void read(void* to, DevicePointer from, std::size_t bytes);
@@ -85,6 +100,7 @@ class Device {
   ModuleHandle module_ = nullptr;
   std::string name_, program_, last_phase_;
   std::map<std::string, FunctionHandle> functions_;
+  long host_copies_ = 0;
   bool measures_ = false;
   std::vector<Timed> timed_;
   std::vector<EventHandle> events_;  ///< those free for use

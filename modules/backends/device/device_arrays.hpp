@@ -29,13 +29,15 @@ struct Body {
   DeviceArray<double> parameters, melted_parameters;  ///< of all particles, and of the melted ones where it melts
   Blocks blocks;
 
-  Body(Device& device, const Experiment& experiment, const Plan& plan, int index, const SeededBody& seeded)
+  /// `scene` holds cells and padding.
+  Body(Device& device, const Experiment& experiment, const Plan& plan, const Arguments<T>& scene, int index,
+       const SeededBody& seeded)
       : dimension(experiment.dimension),
         arrays(device, "the particles of " + experiment.bodies[index].name, particle_fields(experiment, plan, index),
                seeded.count()),
         parameters(device, "the parameters of a material"),
         melted_parameters(device, "the parameters of a melted material"),
-        blocks(device, experiment.bodies[index].name) {
+        blocks(device, experiment.bodies[index].name, scene, experiment.dimension, seeded.count()) {
     const BodySpecification& body = experiment.bodies[index];
     frozen = body.frozen;
     material = &experiment.materials[body.material].component;
@@ -140,18 +142,16 @@ struct VelocityField {
         grips(device, "the grips") {
     folded.clear();
     std::vector<GripArrays<T>> all;
-    for (std::size_t k = 0; k < experiment.grips.size(); ++k)
-      all.push_back(grip(experiment, k, [&](const auto& id) { return arrays.of(std::string_view(id)); }));
+    for (std::size_t k = 0; k < experiment.grips.size(); ++k) all.push_back(grip(experiment, k));
     grips.upload(all);
   }
 
-  /// The arrays of one grip, as array(id of the field) finds them.
-  template <class Array>
-  static GripArrays<T> grip(const Experiment& experiment, std::size_t k, Array array) {
+  GripArrays<T> grip(const Experiment& experiment, std::size_t k) const {
+    const auto array = [&](const std::string& id) { return arrays.of(std::string_view(id)); };
     const std::string id = grip_field(k);
     int given = 0;
     for (int c = 0; c < experiment.dimension; ++c) given |= int(experiment.grips[k].held[c]) << c;
-    return {array(id + "_mass"), array(id), array(id + "_before"), given};
+    return {array(id + "_mass"), array(id), array(id + "_before"), given, experiment.support_of_grip(k)};
   }
 
   NodeArrays<T> table() const {
@@ -160,36 +160,6 @@ struct VelocityField {
     return table;
   }
   std::uint64_t bytes() const { return arrays.bytes() + folded.bytes(); }
-};
-
-/// What the host has read of the nodes of a velocity field, each field when it is first asked for.
-template <class T>
-class NodesOnHost {
- public:
-  explicit NodesOnHost(const VelocityField<T>& field) : field_(field) {}
-
-  /// The values of a field, [component][node].
-  T* of(std::string_view id) {
-    auto found = values_.find(id);
-    if (found == values_.end()) found = values_.emplace(std::string(id), field_.arrays.read(id)).first;
-    return found->second.data();
-  }
-  /// See NodeArrays.
-  const std::vector<int>& folded() {
-    if (folded_.empty()) folded_ = field_.folded.download();
-    return folded_;
-  }
-  std::vector<GripArrays<T>> grips(const Experiment& experiment) {
-    std::vector<GripArrays<T>> all;
-    for (std::size_t k = 0; k < experiment.grips.size(); ++k)
-      all.push_back(VelocityField<T>::grip(experiment, k, [&](const auto& id) { return of(id); }));
-    return all;
-  }
-
- private:
-  const VelocityField<T>& field_;
-  std::map<std::string, std::vector<T>, std::less<>> values_;
-  std::vector<int> folded_;
 };
 
 }  // namespace mpm::device

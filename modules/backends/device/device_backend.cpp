@@ -1,9 +1,12 @@
 #include "backends/device/device_backend.hpp"
 
+#include <algorithm>
+#include <climits>
 #include <stdexcept>
 
 #include "backends/device/kernels/sums.hpp"  // largest_team
 #include "backends/device/memory.hpp"
+#include "experiment/device_settings.hpp"
 #include "simulation/boundary.hpp"
 
 namespace mpm::device {
@@ -31,6 +34,9 @@ Arguments<T> described(const Experiment& experiment) {
   return scene;
 }
 
+/// The teams at work on blocks that one multiprocessor may hold: as many as the limits of its threads allow.
+constexpr int teams_of_multiprocessor = 32;
+
 /// Opens the device, unless it has too little memory free.
 std::unique_ptr<Device> open(const DeviceSetup& setup, const Experiment& experiment, const Plan& plan,
                              const std::vector<SeededBody>& seeded, std::size_t nodes) {
@@ -41,6 +47,13 @@ std::unique_ptr<Device> open(const DeviceSetup& setup, const Experiment& experim
   return device;
 }
 
+/// The name of the pass that ends every step.
+std::string last_pass_of(const Step& step) {
+  if (step.kind == Step::Kind::sequence && !step.children.empty()) return last_pass_of(step.children.back());
+  if (step.kind != Step::Kind::pass) throw std::logic_error("the device cannot tell which pass ends a step");
+  return step.pass.name();
+}
+
 }  // namespace
 
 template <class T>
@@ -49,22 +62,27 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
     : experiment_(experiment),
       plan_(plan),
       scene_(described<T>(experiment)),
-      on_host_(scene_),
       device_(open(setup, experiment, plan, seeded, static_cast<std::size_t>(scene_.node_count))),
       lanes_(setup.lanes),
+      teams_(setup.teams > 0 ? setup.teams : teams_of_multiprocessor * device_->multiprocessors()),
       shape_parameters_(*device_, "the shape's parameters"),
       transfer_parameters_(*device_, "the transfer's parameters"),
       filter_parameters_(*device_, "the filter's parameters"),
       contact_parameters_(*device_, "the parameters of contact"),
-      first_failed_(*device_, "the failed particle"),
-      ignored_failures_(*device_, "the failed particle"),
+      ignored_stop_(*device_, "the failed particle"),
       partial_sums_(*device_, "sums"),
+      deterministic_(sums_deterministically(experiment)),
+      exponents_(*device_, "exact sums"),
+      exact_sums_(*device_, "exact sums"),
+      results_(*device_),
       conditions_(*device_, experiment, scene_),
-      pairs_(*device_, experiment, plan.resolves_contact() ? static_cast<std::size_t>(scene_.node_count) : 0),
+      edges_(*device_, experiment),
       contact_impulse_(experiment),
       reactions_(experiment),
-      noted_(experiment, on_host_, reactions_, experiment.field_count) {
-  const Composition composition = compose(choice_of(experiment, plan));
+      uses_graphs_(setup.graphs),
+      graphs_(*device_) {
+  const Choice choice = choice_of(experiment, plan);
+  const Composition composition = compose(choice);
   device_->load(setup.compile(composition, device_->architecture()), composition.name);
 
   const auto give = [](DeviceArray<double>& array, const Component& component) {
@@ -75,16 +93,28 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
   scene_.transfer_parameters = give(transfer_parameters_, experiment.transfer);
   if (experiment.filter) scene_.filter_parameters = give(filter_parameters_, *experiment.filter);
   if (experiment.contact) scene_.contact_parameters = give(contact_parameters_, *experiment.contact);
-  first_failed_.upload({INT_MAX}), ignored_failures_.upload({INT_MAX});
-  scene_.first_failed = first_failed_.data();
+  ignored_stop_.upload(std::vector<int>(stop_numbers, INT_MAX));
+  scene_.stop = results_.stop();
+  if (deterministic_) {
+    const auto channels = static_cast<std::size_t>(most_channels(choice));
+    exponents_.resize(channels), exact_sums_.resize(2 * channels * static_cast<std::size_t>(nodes()));
+    exact_sums_.clear();
+    scene_.exponents = exponents_.data(), scene_.exact_sums = exact_sums_.data();
+  }
 
+  if (ContactPoints(experiment).needed()) contact_pairs_.emplace(*device_, experiment, scene_);
   if (experiment.has_temperature()) heat_conditions_.emplace(*device_, experiment, scene_);
   for (std::size_t body = 0; body < seeded.size(); ++body) {
-    bodies_.emplace_back(*device_, experiment, plan, static_cast<int>(body), seeded[body]);
+    bodies_.emplace_back(*device_, experiment, plan, scene_, static_cast<int>(body), seeded[body]);
     loads_.emplace_back(experiment, static_cast<int>(body), seeded[body]);
   }
   for (int field = 0; field < experiment.field_count; ++field)
     fields_.emplace_back(*device_, experiment, plan, static_cast<std::size_t>(scene_.node_count));
+  int most = nodes();
+  for (const Body<T>& body : bodies_) most = std::max(most, body.count);
+  partial_sums_.resize(most_sums * (static_cast<std::size_t>(most) / static_cast<std::size_t>(lanes_) + 1));
+  last_pass_ = last_pass_of(plan.step);
+  scene_.partial_sums = partial_sums_.data();
   for (int axis = 0; axis < experiment.dimension; ++axis) (periodic(axis) ? images_ : walls_).push_back(axis);
 }
 
@@ -99,57 +129,6 @@ std::uint64_t DeviceBackend<T>::grid_bytes() const {
   std::uint64_t sum = 0;
   for (const VelocityField<T>& field : fields_) sum += field.bytes();
   return sum;
-}
-
-template <class T>
-void DeviceBackend<T>::execute(const Pass& pass, const StepInfo& step) {
-  scene_.dt = static_cast<T>(step.dt);
-  accounted_ = plan_.accounts_at(step.step);
-  notes_reactions_ = reactions_.asked() && !pass.remap();
-  switch (pass.operators.front().act) {
-    case Act::estimate_time_step:
-      return estimate_time_step();
-    case Act::sort:
-    case Act::sort_ahead:
-      return;  // the scatter sorts
-    case Act::clear:
-      return for_each_field("clear", nodes());
-    case Act::scatter_momentum:
-    case Act::scatter_force:
-      return scatter(pass, step);
-    case Act::divide:
-      return momentum_to_velocity(pass, step);
-    case Act::accelerate:
-      return apply_forces(step);
-    case Act::gather:
-      return gather(pass, step);
-    case Act::strain:
-      return strain(pass);
-    case Act::move:
-      return move();
-    case Act::begin_filter:
-      return begin_filter(pass);
-    case Act::project:
-      return project(pass, step);
-    case Act::update_filter:
-      return update_filter(pass, step);
-    case Act::end_filter:
-      return end_filter(pass, step);
-    case Act::divide_heat:
-      return heat_to_temperature();
-    case Act::conduct:
-      return conduct();
-    case Act::heat:
-      return warm(step);
-    case Act::change_phase:
-      return change_phase();
-    case Act::restore_velocity:
-      return restore_velocity(pass);
-    case Act::add_correction:
-      return add_correction(pass, step);
-    default:  // the other acts share a visit with one of these
-      throw std::logic_error("the device does not execute pass \"" + pass.name() + "\"");
-  }
 }
 
 template class DeviceBackend<float>;

@@ -1,24 +1,26 @@
 #pragma once
 // The backend of a device executes the passes of a plan as launches of a composition's phases, through a driver's table:
-// libcuda's, or the host's. Particles and nodes stay on the device; formulas, contact geometry, sorting and what
-// supports give are the host's, which reads and writes the arrays that these need.
+// libcuda's, or the host's. Particles and nodes stay on the device. The host evaluates formulas, at places that
+// it reads, and once a step takes what phases have summed.
 
 #include <array>
-#include <climits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "backends/device/conditions.hpp"
+#include "backends/device/contact_edges.hpp"
 #include "backends/device/contact_pairs.hpp"
 #include "backends/device/device.hpp"
 #include "backends/device/device_arrays.hpp"
 #include "backends/device/heat_conditions.hpp"
 #include "backends/device/make_device_backend.hpp"
-#include "backends/device/noted_reactions.hpp"
+#include "backends/device/results.hpp"
+#include "backends/device/step_graphs.hpp"
 #include "simulation/contact_impulse.hpp"
 #include "simulation/loads.hpp"
+#include "simulation/reaction_impulse.hpp"
 
 namespace mpm::device {
 
@@ -33,8 +35,9 @@ enum class Checks { stencil, temperature, deformation, position };
 /// The part of contact that goes to the ledger and to the record.
 enum class Recorded { nothing, before_forces, after_forces, filter };
 
-/// The heat that a pair of rows of the ledger takes, J.
-using HeatOfTwo = std::array<double, 2>;
+/// Sums that phases make, which are known only when the host looks at the results of the step.
+template <std::size_t count>
+using Tally = std::shared_ptr<std::array<double, count>>;
 
 /// Its methods are defined by physics, one file each beside this one.
 template <class T>
@@ -66,12 +69,26 @@ class DeviceBackend final : public Backend {
   BodyState body_state(int index) const override;
 
  private:
+  // ---- steps.cpp
+  /// A pass that waits for the end of its step.
+  struct WaitingPass {
+    const Pass* pass;
+    StepInfo step;
+  };
+  void perform(const Pass& pass, const StepInfo& step);
+  void perform(const std::vector<WaitingPass>& passes);
+  /// Does what waits, by a graph where there is one, and looks at what the step has left.
+  void end_step();
+  StepKind kind_of(const std::vector<WaitingPass>& passes) const;
+  /// Collects the launches of a step in a graph.
+  void capture(KnownStep& known, const std::vector<WaitingPass>& passes);
+
   // ---- launches.cpp
   Arguments<T> arguments_of(const VelocityField<T>& field, const Manner& manner) const;
   Arguments<T> arguments_of(const Body<T>& body) const;
   void point_to(Arguments<T>& a, const VelocityField<T>& field) const;
   void launch(const std::string& phase, const Arguments<T>& a, int indices);
-  void launch_teams(const std::string& phase, const Arguments<T>& a, int teams);
+  void launch_teams(const std::string& phase, Arguments<T> a, int teams);
   /// Runs one phase over `indices` of every field's grid.
   void for_each_field(const std::string& phase, int indices, const Manner& manner = {});
   /// Runs one phase of folds along the lines of every one of these axes.
@@ -79,14 +96,25 @@ class DeviceBackend final : public Backend {
   /// The axes in the order of folding: periodic images come before walls. Ghosts are filled in the reverse order.
   std::vector<int> folded_axes() const;
   std::vector<int> filled_axes() const;
-  /// Runs a phase that makes `count` sums in teams, and adds up in order what the teams have summed.
-  std::vector<double> sums(const std::string& phase, Arguments<T> a, int indices, std::size_t count);
-  double sum_over_nodes(const std::string& phase);
-  double sum_over_particles(const std::string& phase, const Body<T>& body);
-  /// Runs a phase over a body's particles, or over its blocks, and stops the run where it reports a particle.
+  /// Takes a place for so many values of this step's results.
+  std::size_t place(std::size_t count);
+  /// Runs a phase that makes `count` values in teams, the last of them largest ones, and a phase that joins the teams.
+  void join(const std::string& phase, Arguments<T> a, int indices, std::size_t count, std::size_t place, int maxima = 0,
+            const std::string& joining = "add_teams");
+  Tally<1> sum_over_nodes(const std::string& phase);
+  void sum_over_particles(const std::string& phase, const Body<T>& body, const Tally<1>& to);
+  /// Runs a phase over a body's particles, or over its blocks, which may report a particle.
   void run(const std::string& phase, const Arguments<T>& a, const Body<T>& body, Checks checks);
+  /// Keeps in mind that the last launch may report a particle.
+  void watch(const Body<T>& body, Checks checks);
   void run_blocks(const std::string& phase, const Arguments<T>& a, const Body<T>& body);
-  void stop_where_failed(const Body<T>& body, Checks checks);
+  void launch_blocks(const std::string& phase, Arguments<T> a, const Body<T>& body);
+  /// Waits for the device. Stops the run where a phase has reported a particle; else does what waited for results.
+  void look();
+  /// Does something once the results of what was launched so far are known.
+  void later(std::function<void()> use) {
+    results_.later([use = std::move(use)](const double*) { use(); });
+  }
   void run_material(const std::string& phase, const Body<T>& body);
   void run_material(const std::string& phase, const Arguments<T>& a, const Body<T>& body);
   void run_strain(const Pass& pass, Body<T>& body);
@@ -102,8 +130,9 @@ class DeviceBackend final : public Backend {
 
   // ---- particles.cpp: passes over particles
   void estimate_time_step();
+  /// Puts a body's particles into their blocks, where any has left its own.
+  void sort(const Body<T>& body);
   void scatter(const Pass& pass, const StepInfo& step);
-  static void add(std::array<double, 4>& sum, double sign, const std::array<double, 4>& values);
   void gather(const Pass& pass, const StepInfo& step);
   void strain(const Pass& pass);
   void move();
@@ -111,8 +140,8 @@ class DeviceBackend final : public Backend {
   // ---- loads.cpp: loads and grips
   /// Evaluates what gripped particles are told for the end of the step, and lets nodes know of them.
   void scatter_grips(Body<T>& body, double end);
-  /// Sums what grips gave a body's particles in the gather; returns the energy of it, J.
-  double note_gripped(const Body<T>& body, const StepInfo& step);
+  /// Sums what grips gave a body's particles in the gather, and its energy, J.
+  void note_gripped(const Body<T>& body, const StepInfo& step, const Tally<1>& energy);
   /// Evaluates the loads of a body at its particles, and scatters each kind into its own field. Throws RunFailure where
   /// one is not finite.
   void scatter_loads(Body<T>& body, Arguments<T> a, double time);
@@ -122,12 +151,17 @@ class DeviceBackend final : public Backend {
   // ---- conditions.cpp: from momenta to velocities, and what supports give
   void momentum_to_velocity(const Pass& pass, const StepInfo& step);
   void apply_forces(const StepInfo& step);
-  static std::vector<T> sum_of_forces(const VelocityField<T>& field);
+  /// Folds along an axis, and sums what its walls give by it where reactions are noted.
+  void fold(const std::string& phase, int axis, const Manner& manner, GivenBySupport given);
+  /// Runs a phase along the lines of an axis that sums what its walls give.
+  void note_walls(const std::string& phase, const Arguments<T>& a, GivenBySupport given);
+  void take_support(const double* sums, GivenBySupport given, int support);
+  /// Sums what particles gather from ghosts (kernels/reactions.hpp).
+  void note_beyond(int beyond, GivenBySupport given);
   void fold_momenta(const Manner& manner);
   void fold_forces();
   void fold_projection(bool at_rest);
   void impose_conditions(const Manner& manner);
-  void note_gathered_increment();
   /// Records what particles take from the supports when they gather the velocity as it is now.
   void record_reactions(const StepInfo& step);
   void damp(const StepInfo& step);
@@ -143,21 +177,21 @@ class DeviceBackend final : public Backend {
   /// Books the works of a filter's loop, and what they do not explain of the kinetic energy.
   void book_filter();
   /// The works of the stresses' forces and of gravity at the velocity of now, J.
-  std::array<double, 2> power_of_forces();
+  Tally<2> power_of_forces();
   /// Books what strain by the velocity of now stores less than by v+ before any filter.
   void book_strain(double Ledger::*row, double share);
-  double power_of_filter();
   void book_material(Body<T>& body);
-  double energy_of_particles();
+  /// The kinetic energy of all particles, J.
+  Tally<1> energy_of_particles();
 
   // ---- heat.cpp
   /// Finds temperatures before the step's heat, those of ghosts too.
   void heat_to_temperature();
   /// Imposes what walls and boxes hold, as evaluated last; returns the heat that each gives by it.
-  HeatOfTwo impose_temperature();
+  Tally<2> impose_temperature();
   /// Fills ghosts; returns the heat by which they exceed their mirrors, at walls held at a temperature and at others.
-  HeatOfTwo fill_temperature();
-  HeatOfTwo sum_over_lines(const char* phase, VelocityField<T>& field, int axis);
+  Tally<2> fill_temperature();
+  void sum_over_lines(const char* phase, VelocityField<T>& field, int axis, const Tally<2>& to);
   void conduct();
   /// Finds temperatures after the step's heat.
   void warm(const StepInfo& step);
@@ -167,7 +201,8 @@ class DeviceBackend final : public Backend {
   // ---- contact.cpp
   /// Applies the law to every pair of fields.
   void resolve_contact(const StepInfo& step, Recorded recorded);
-  void find_contact_points(const std::vector<ContactFields<T>>& found);
+  /// Adds what contact did to a pair, as its phase has summed it, to what all pairs were given, and to the record.
+  void take_pair(const double* sums, ContactGiven& given, bool record);
   /// Records the force that particles take when they gather the velocity as it is now.
   void record_force(const StepInfo& step);
 
@@ -197,13 +232,27 @@ class DeviceBackend final : public Backend {
   int nodes() const { return scene_.node_count; }
   int vectors() const { return experiment_.dimension * scene_.node_count; }
   int lines_along(int axis) const { return nodes() / scene_.extent[axis]; }
-  /// Runs a phase that makes this many sums.
-  template <std::size_t count = 1>
-  std::array<double, count> sum(const std::string& phase, const Arguments<T>& a, int indices) {
-    const std::vector<double> found = sums(phase, a, indices, count);
-    std::array<double, count> all{};
-    std::copy_n(found.begin(), count, all.begin());
-    return all;
+  /// Makes sums that begin with zero.
+  template <std::size_t count>
+  Tally<count> tally() {
+    auto made = std::make_shared<std::array<double, count>>();
+    later([made] { *made = {}; });
+    return made;
+  }
+  /// Runs a phase that makes this many sums and adds them, times a factor, to others.
+  template <std::size_t count>
+  void sum(const std::string& phase, const Arguments<T>& a, int indices, const Tally<count>& to, double factor = 1) {
+    const std::size_t at = place(count);
+    join(phase, a, indices, count, at);
+    results_.later([to, at, factor](const double* sums) {
+      for (std::size_t k = 0; k < count; ++k) (*to)[k] += factor * sums[at + k];
+    });
+  }
+  template <std::size_t count>
+  Tally<count> sum(const std::string& phase, const Arguments<T>& a, int indices) {
+    const Tally<count> made = tally<count>();
+    sum<count>(phase, a, indices, made);
+    return made;
   }
   /// Calls visit(field, number) for the fields that last from one step to the next, in order.
   template <class Visit>
@@ -221,19 +270,25 @@ class DeviceBackend final : public Backend {
   const Experiment& experiment_;
   const Plan& plan_;
   Arguments<T> scene_;              ///< what all launches share; its pointers are the device's
-  Arguments<T> on_host_;            ///< the same with what conditions give on the host, for NotedReactions
   std::unique_ptr<Device> device_;  ///< outlives the arrays on it
-  int lanes_;
+  int lanes_, teams_;               ///< of a team, and at work on blocks at once
   DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_;
-  DeviceArray<int> first_failed_, ignored_failures_;
+  DeviceArray<int> ignored_stop_;
   DeviceArray<double> partial_sums_;
+  bool deterministic_;          ///< particles are summed to the same bits in any order of lanes
+  DeviceArray<int> exponents_;  ///< see kernels/exact_sums.hpp
+  DeviceArray<unsigned long long> exact_sums_;
+  Results results_;
+  int launches_ = 0;  ///< since the host has looked
+  std::vector<Watched> watched_;
   Conditions<T> conditions_;
   std::optional<HeatConditions<T>> heat_conditions_;  ///< empty in scenes without temperature
   std::vector<Body<T>> bodies_;
   std::vector<BodyLoads> loads_;  ///< of each body
   std::vector<VelocityField<T>> fields_;
   std::vector<int> images_, walls_;  ///< axes with periodic images, and those with walls
-  ContactPairs<T> pairs_;
+  ContactEdges edges_;
+  std::optional<ContactPairs<T>> contact_pairs_;  ///< where contact looks at particles
   TimeStepLimit limit_;
   Ledger ledger_;
   HeatLedger heat_ledger_;
@@ -241,9 +296,12 @@ class DeviceBackend final : public Backend {
   ContactRecord contact_;
   ContactImpulse contact_impulse_;
   ReactionImpulse reactions_;
-  NotedReactions<T> noted_;
   bool notes_reactions_ = false;  ///< the pass under way notes what supports give
   FilterRecord filter_;
+  bool uses_graphs_;
+  StepGraphs graphs_;
+  std::vector<WaitingPass> waiting_;
+  std::string last_pass_;                 ///< name of the pass that ends every step
   double scattered_energy_ = 0;           ///< kinetic energy of the grid as scattered, images summed, J
   double energy_after_ = 0;               ///< kinetic energy of the grid when particles gather from it, J
   double works_ = 0;                      ///< works on the grid since the scatter, J
@@ -251,9 +309,9 @@ class DeviceBackend final : public Backend {
   double early_share_ = 0;                ///< share of the step's strain that came before the forces
   double energy_before_move_ = 0;         ///< kinetic energy of the particles after the gather, J
   double scattered_heat_ = 0;             ///< heat of the particles that the step's scatter began with, J
-  double heat_of_images_ = 0;  ///< heat that folding has given the grid at walls that do something with heat, J
-  HeatOfTwo beyond_{};         ///< see fill_temperature, before the step's heat
-  double heat_after_ = 0;      ///< heat of the grid when particles gather from it, J
+  double heat_of_images_ = 0;       ///< heat that folding has given the grid at walls that do something with heat, J
+  std::array<double, 2> beyond_{};  ///< see fill_temperature, before the step's heat
+  double heat_after_ = 0;           ///< heat of the grid when particles gather from it, J
 };
 
 }  // namespace mpm::device

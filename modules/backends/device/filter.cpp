@@ -3,18 +3,22 @@
 #include <cmath>
 #include <limits>
 
+#include "backends/device/kernels/reactions.hpp"
+
 namespace mpm::device {
 
 template <class T>
 double DeviceBackend<T>::increment_norm() {
-  return std::sqrt(sum_over_nodes("increment_norm"));
+  const Tally<1> square = sum_over_nodes("increment_norm");
+  look();  // the norm decides whether another pass follows
+  return std::sqrt((*square)[0]);
 }
 
 template <class T>
 void DeviceBackend<T>::keep_unfiltered() {
   for_each_field("keep_unfiltered", vectors());
-  contact_impulse_.keep();
-  reactions_.keep();
+  later([this] { contact_impulse_.keep(); });
+  later([this] { reactions_.keep(); });
 }
 
 template <class T>
@@ -28,17 +32,21 @@ void DeviceBackend<T>::begin_filter(const Pass& pass) {
 
 template <class T>
 void DeviceBackend<T>::project(const Pass& pass, const StepInfo& step) {
-  conditions_.evaluate(time_of(pass, step), scene_, on_host_);
+  conditions_.evaluate(time_of(pass, step), scene_);
   for_each_field("clear_projection", vectors());
   for (Body<T>& body : bodies_) run_blocks("project", arguments_of(body), body);
-  note_gathered_increment();
+  if (notes_reactions_) {
+    later([this] { reactions_.begin_projection(); });
+    note_beyond(beyond_increment, GivenBySupport::projection);
+  }
   fold_projection(filter_.iterations > 0);
 }
 
 template <class T>
 void DeviceBackend<T>::update_filter(const Pass& pass, const StepInfo& step) {
   for_each_field("update_filter", nodes());
-  if (notes_reactions_) reactions_.take_projection(static_cast<int>(filter_.iterations + 1));
+  if (notes_reactions_)
+    later([this, pass = static_cast<int>(filter_.iterations + 1)] { reactions_.take_projection(pass); });
   if (experiment_.filter_schedule.constrain_always) {
     constrain_velocity(pass, step);
     for_each_field("correct_increment", vectors());
@@ -59,11 +67,11 @@ void DeviceBackend<T>::measure_constraints() {
 
 template <class T>
 void DeviceBackend<T>::constrain_velocity(const Pass& pass, const StepInfo& step) {
-  conditions_.evaluate(time_of(pass, step), scene_, on_host_);
+  conditions_.evaluate(time_of(pass, step), scene_);
   scene_.grips_at_end = pass.stage != Stage::before_forces;
   if (plan_.node_field("velocity_of_constraints")) {
     for_each_field("take_free_velocity", vectors());
-    if (notes_reactions_) reactions_.take_back();
+    if (notes_reactions_) later([this] { reactions_.take_back(); });
   }
   impose_conditions({});
   if (plan_.resolves_contact()) {
@@ -77,15 +85,18 @@ void DeviceBackend<T>::constrain_velocity(const Pass& pass, const StepInfo& step
 template <class T>
 void DeviceBackend<T>::restore_velocity(const Pass& pass) {
   const bool keeps = pass.has(Act::keep_correction);
-  if (accounted_ && !keeps) ledger_.filtered_strain -= early_share_ * power_of_filter();
-  contact_impulse_.restore(keeps);
-  reactions_.restore(keeps);
+  if (accounted_ && !keeps) {
+    const Tally<1> power = sum_over_nodes("power_of_filter");
+    later([this, power, share = early_share_] { ledger_.filtered_strain -= share * (*power)[0]; });
+  }
+  later([this, keeps] { contact_impulse_.restore(keeps); });
+  later([this, keeps] { reactions_.restore(keeps); });
   for_each_field(keeps ? "keep_correction" : "restore_velocity", vectors());
 }
 
 template <class T>
 void DeviceBackend<T>::end_filter(const Pass& pass, const StepInfo& step) {
-  conditions_.evaluate(time_of(pass, step), scene_, on_host_);
+  conditions_.evaluate(time_of(pass, step), scene_);
   if (!experiment_.filter_schedule.constrain_always) constrain_velocity(pass, step);
   for_each_axis("fill_velocities", filled_axes());
   if (scene_.records) book_filter();
@@ -96,8 +107,8 @@ template <class T>
 void DeviceBackend<T>::add_correction(const Pass& pass, const StepInfo& step) {
   begin_stage(accounted_);
   for_each_field("add_correction", vectors());
-  contact_impulse_.add_correction();
-  reactions_.add_correction();
+  later([this] { contact_impulse_.add_correction(); });
+  later([this] { reactions_.add_correction(); });
   constrain_velocity(pass, step);
   for_each_axis("fill_velocities", filled_axes());
   if (accounted_) book_filter();

@@ -1,6 +1,9 @@
 #include "backends/device/device_backend.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+
+#include "backends/device/kernels/exact_sums.hpp"
 
 namespace mpm::device {
 
@@ -35,7 +38,8 @@ void DeviceBackend<T>::launch(const std::string& phase, const Arguments<T>& a, i
 }
 
 template <class T>
-void DeviceBackend<T>::launch_teams(const std::string& phase, const Arguments<T>& a, int teams) {
+void DeviceBackend<T>::launch_teams(const std::string& phase, Arguments<T> a, int teams) {
+  a.launch = ++launches_;
   device_->launch(phase, a, teams, lanes_);
 }
 
@@ -69,50 +73,80 @@ std::vector<int> DeviceBackend<T>::filled_axes() const {
 }
 
 template <class T>
-std::vector<double> DeviceBackend<T>::sums(const std::string& phase, Arguments<T> a, int indices, std::size_t count) {
-  const int teams = (indices + lanes_ - 1) / lanes_;
-  partial_sums_.resize(count * static_cast<std::size_t>(teams));
-  a.partial_sums = partial_sums_.data();
-  launch_teams(phase, a, teams);
-  const std::vector<double> partial = partial_sums_.download();
-  std::vector<double> sums(count);
-  for (std::size_t k = 0; k < partial.size(); ++k) sums[k % count] += partial[k];
-  return sums;
+std::size_t DeviceBackend<T>::place(std::size_t count) {
+  if (!results_.has_room_for(count)) look();
+  return results_.place(count);
 }
 
 template <class T>
-double DeviceBackend<T>::sum_over_nodes(const std::string& phase) {
-  double total = 0;
-  for (const VelocityField<T>& field : fields_) total += sum(phase, arguments_of(field, {}), nodes())[0];
+void DeviceBackend<T>::join(const std::string& phase, Arguments<T> a, int indices, std::size_t count, std::size_t place,
+                            int maxima, const std::string& joining) {
+  a.sum_teams = (indices + lanes_ - 1) / lanes_, a.sum_count = static_cast<int>(count), a.sum_maxima = maxima;
+  a.sums = results_.at(place);
+  launch_teams(phase, a, a.sum_teams);
+  launch_teams(joining, a, 1);
+}
+
+template <class T>
+Tally<1> DeviceBackend<T>::sum_over_nodes(const std::string& phase) {
+  const Tally<1> total = tally<1>();
+  for (const VelocityField<T>& field : fields_) sum<1>(phase, arguments_of(field, {}), nodes(), total);
   return total;
 }
 
 template <class T>
-double DeviceBackend<T>::sum_over_particles(const std::string& phase, const Body<T>& body) {
-  return sum(phase, arguments_of(body), body.count)[0];
+void DeviceBackend<T>::sum_over_particles(const std::string& phase, const Body<T>& body, const Tally<1>& to) {
+  sum<1>(phase, arguments_of(body), body.count, to);
 }
 
 template <class T>
 void DeviceBackend<T>::run(const std::string& phase, const Arguments<T>& a, const Body<T>& body, Checks checks) {
   launch(phase, a, body.count);
-  stop_where_failed(body, checks);
+  watch(body, checks);
 }
 
 template <class T>
 void DeviceBackend<T>::run_blocks(const std::string& phase, const Arguments<T>& a, const Body<T>& body) {
-  launch_teams(phase, a, body.blocks.count());
-  stop_where_failed(body, Checks::stencil);
+  if (!deterministic_) {
+    launch_blocks(phase, a, body);
+    return watch(body, Checks::stencil);
+  }
+  exponents_.fill(0x7f);  // none
+  Arguments<T> b = a;
+  for (b.exact_phase = exact_measure; b.exact_phase < exact_take; ++b.exact_phase) {
+    launch_blocks(phase, b, body);
+    watch(body, Checks::stencil);
+  }
+  launch(phase, b, nodes());
 }
 
 template <class T>
-void DeviceBackend<T>::stop_where_failed(const Body<T>& body, Checks checks) {
-  const int particle = first_failed_.download()[0];
-  if (particle == INT_MAX) return;
-  first_failed_.upload({INT_MAX});
-  throw RunFailure(checks == Checks::temperature   ? failed_temperature(body, particle)
-                   : checks == Checks::deformation ? failed_deformation(body, particle)
-                   : checks == Checks::position    ? failed_position(body, particle)
-                                                   : failed_stencil(body, particle));
+void DeviceBackend<T>::watch(const Body<T>& body, Checks checks) {
+  watched_.push_back({launches_, static_cast<int>(&body - bodies_.data()), static_cast<int>(checks)});
+}
+
+template <class T>
+void DeviceBackend<T>::launch_blocks(const std::string& phase, Arguments<T> a, const Body<T>& body) {
+  a.teams = std::min(teams_, body.blocks.most(body.arrays.count()));
+  launch_teams(phase, a, a.teams);
+}
+
+template <class T>
+void DeviceBackend<T>::look() {
+  std::vector<Watched> watched;
+  watched.swap(watched_);
+  launches_ = 0;
+  const Results::Stop stop = results_.look();
+  if (!stop.any()) return;
+  const auto found =
+      std::find_if(watched.begin(), watched.end(), [&](const Watched& launch) { return launch.launch == stop.launch; });
+  if (found == watched.end()) throw std::logic_error("a phase that nobody watches has reported a particle");
+  const Body<T>& body = bodies_[static_cast<std::size_t>(found->body)];
+  const auto checks = static_cast<Checks>(found->checks);
+  throw RunFailure(checks == Checks::temperature   ? failed_temperature(body, stop.particle)
+                   : checks == Checks::deformation ? failed_deformation(body, stop.particle)
+                   : checks == Checks::position    ? failed_position(body, stop.particle)
+                                                   : failed_stencil(body, stop.particle));
 }
 
 template <class T>
@@ -131,8 +165,10 @@ void DeviceBackend<T>::run_strain(const Pass& pass, Body<T>& body) {
   a.dt *= static_cast<T>(pass.share);
   run_material("strain", a, body);
   if (accounted_) book_material(body);
-  if (plan_.has_heat_ledger() && body.heat.warming > 0)
-    heat_ledger_.dissipation += sum_over_particles("heat_of_dissipation", body);
+  if (!plan_.has_heat_ledger() || !(body.heat.warming > 0)) return;
+  const Tally<1> heat = tally<1>();
+  sum_over_particles("heat_of_dissipation", body, heat);
+  later([this, heat] { heat_ledger_.dissipation += (*heat)[0]; });
 }
 
 template class DeviceBackend<float>;

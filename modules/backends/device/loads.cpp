@@ -1,9 +1,12 @@
 #include "backends/device/device_backend.hpp"
 
+#include <algorithm>
+
 namespace mpm::device {
 
 template <class T>
 void DeviceBackend<T>::scatter_grips(Body<T>& body, double end) {
+  look();  // what the particles are told may be impossible only because they are
   const std::size_t D = experiment_.dimension;
   const std::vector<T> position = body.arrays.read("position"), numbers = body.arrays.read("grip");
   std::vector<T> told(position.size());
@@ -25,22 +28,19 @@ void DeviceBackend<T>::scatter_grips(Body<T>& body, double end) {
 }
 
 template <class T>
-double DeviceBackend<T>::note_gripped(const Body<T>& body, const StepInfo& step) {
-  std::vector<GivenToGripped> given(experiment_.grips.size());
-  const auto [numbers, ring, position, velocity, free] =
-      std::array{body.arrays.read("grip"), body.arrays.read("size"), body.arrays.read("position"),
-                 body.arrays.read("velocity"), body.arrays.read("gathered_velocity")};
-  for (std::size_t p = 0; p < numbers.size(); ++p)
-    if (numbers[p] > T(0))
-      given[static_cast<std::size_t>(numbers[p]) - 1].add(double(body.mass) * (ring.empty() ? 1.0 : double(ring[p])),
-                                                          body.vector(position, p), body.vector(free, p),
-                                                          body.vector(velocity, p));
-  double energy = 0;
-  for (std::size_t k = 0; k < given.size(); ++k) {
-    reactions_.give_particles(experiment_.support_of_grip(k), given[k], step.dt);
-    energy += given[k].energy;
+void DeviceBackend<T>::note_gripped(const Body<T>& body, const StepInfo& step, const Tally<1>& energy) {
+  for (std::size_t k = 0; k < experiment_.grips.size(); ++k) {
+    Arguments<T> a = arguments_of(body);
+    a.grip = static_cast<int>(k);
+    const Tally<7> sums = sum<7>("given_to_gripped", a, body.count);
+    later([this, k, dt = step.dt, sums, energy] {
+      GivenToGripped given;
+      std::copy_n(sums->data(), 3, given.impulse.data());
+      std::copy_n(sums->data() + 3, 3, given.moment.data());
+      reactions_.give_particles(experiment_.support_of_grip(k), given, dt);
+      (*energy)[0] += (*sums)[6];
+    });
   }
-  return energy;
 }
 
 template <class T>
@@ -49,6 +49,7 @@ void DeviceBackend<T>::scatter_loads(Body<T>& body, Arguments<T> a, double time)
   FirstFailure failures;
   for (const ExternalForce kind : external_forces) {
     if (!loads.gives(kind)) continue;
+    look();  // a particle that has failed has no place to evaluate formulas at
     for (const int given : {body.number("load_force"), body.number("load_moment")})
       if (given >= 0) body.arrays.fill(given, 0);
     kind == ExternalForce::body_force ? evaluate_body_force(body, loads, time, failures)

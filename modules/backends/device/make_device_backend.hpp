@@ -19,6 +19,8 @@ struct DeviceSetup {
   int lanes = 32;  ///< of a team, 1 to 256
   /// Makes the machine code of a composition for an architecture ("sm_90"). Its exceptions are passed on.
   std::function<std::string(const Composition&, const std::string& architecture)> compile;
+  bool graphs = true;  ///< steps that need nothing of the host are launched as graphs
+  int teams = 0;       ///< that share the blocks of particles; 0: as many as the device may work on at once
 };
 
 /// Makes the backend; `plan` is that of an experiment with the backend "cuda". All memory is taken here. Throws

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 
+#include "backends/device/compose.hpp"
 #include "backends/device/fields.hpp"
+#include "experiment/device_settings.hpp"
+#include "simulation/contact_points.hpp"
 
 namespace mpm::device {
 std::vector<TakenMemory> taken_memory(const Experiment& experiment, const Plan& plan,
@@ -17,14 +20,21 @@ std::vector<TakenMemory> taken_memory(const Experiment& experiment, const Plan& 
   for (std::size_t body = 0; body < particles.size(); ++body) {
     const double count = static_cast<double>(particles[body]);
     add(particle_fields(experiment, plan, static_cast<int>(body)), static_cast<int>(body), count);
-    all.push_back({"order", static_cast<int>(body), 1, count * sizeof(int), true});
+    all.push_back({"blocks", static_cast<int>(body), 2, 2 * count * sizeof(int), true});
   }
   const double all_nodes = static_cast<double>(nodes) * experiment.field_count;
   add(node_fields(experiment, plan), -1, all_nodes);
   all.push_back({"folded", -1, 1, all_nodes * sizeof(int), true});
-  if (plan.resolves_contact())
-    all.push_back({"contact", -1, 3 + 3 * experiment.dimension,
-                   static_cast<double>(nodes) * ((3 + 3 * experiment.dimension) * scalar + 2 * sizeof(int)), true});
+  if (ContactPoints(experiment).needed()) {
+    const double pairs = 0.5 * experiment.field_count * (experiment.field_count - 1);
+    all.push_back({"contact", -1, 2 + experiment.dimension,
+                   static_cast<double>(nodes) * pairs * ((2 + experiment.dimension) * scalar + sizeof(int)), true});
+  }
+  if (sums_deterministically(experiment)) {
+    const int channels = most_channels(choice_of(experiment, plan));
+    all.push_back(
+        {"exact sums", -1, 2 * channels, 2.0 * channels * static_cast<double>(nodes) * sizeof(std::uint64_t), true});
+  }
   return all;
 }
 

@@ -8,16 +8,31 @@ template <class T>
 void DeviceBackend<T>::estimate_time_step() {
   limit_ = {};
   for (std::size_t index = 0; index < bodies_.size(); ++index) {
-    Body<T>& body = bodies_[index];
+    const Body<T>& body = bodies_[index];
     run_material("wave_speed", body);
-    const std::vector<T> velocity = body.arrays.read("velocity"), waves = body.arrays.read("wave_speed");
-    for (std::size_t p = 0; p < waves.size(); ++p) {
-      double square = 0;
-      for (const double v : body.vector(velocity, p)) square += v * v;
-      const double wave = waves[p], speed = wave + std::sqrt(square);
-      if (speed > limit_.speed) limit_ = {speed, wave, static_cast<int>(index), p};
-    }
+    const std::size_t at = place(3);
+    join("largest_speed", arguments_of(body), body.count, 3, at, 0, "largest_of_teams");
+    results_.later([this, index, at](const double* sums) {
+      const double *const found = sums + at, speed = found[0];
+      if (speed > limit_.speed) limit_ = {speed, found[1], static_cast<int>(index), static_cast<std::size_t>(found[2])};
+    });
   }
+  look();
+}
+
+template <class T>
+void DeviceBackend<T>::sort(const Body<T>& body) {
+  const Arguments<T> a = arguments_of(body);
+  const BlockArrays& blocks = body.blocks.table();
+  launch("find_blocks", a, body.count);
+  launch("clear_counts", a, blocks.table);
+  launch("count_particles", a, body.count);
+  launch_teams("sum_chunks", a, body.blocks.chunks());
+  launch_teams("scan_chunks", a, 1);
+  launch_teams("number_blocks", a, body.blocks.chunks());
+  launch("place_particles", a, body.count);
+  launch_blocks("order_blocks", a, body);
+  launch_teams("end_sort", a, 1);
 }
 
 template <class T>
@@ -26,11 +41,10 @@ void DeviceBackend<T>::scatter(const Pass& pass, const StepInfo& step) {
   const bool force = pass.has(Act::scatter_force);
   if (pass.remap()) for_each_field("clear", nodes(), {true});
   const bool heat = pass.has(Act::scatter_heat);
-  double energy = 0;
-  std::array<double, 4> unbalanced{};  // momentum and mass
-  if (heat) scattered_heat_ = 0;
+  const Tally<1> energy = tally<1>(), of_heat = tally<1>();
+  const Tally<4> unbalanced = tally<4>();  // momentum and mass
   for (Body<T>& body : bodies_) {
-    if (enters) body.blocks.sort(scene_, body.arrays.read("position"), body.dimension);
+    if (enters) sort(body);
     if (force || heat || pass.has(Act::scatter_contact)) run_material("stress", body);  // with the volume ratio
     Arguments<T> a = arguments_of(body);
     a.momentum = pass.has(Act::scatter_momentum), a.force = force;
@@ -39,13 +53,14 @@ void DeviceBackend<T>::scatter(const Pass& pass, const StepInfo& step) {
     if (force) scatter_loads(body, a, step.time);
     if (heat) run_blocks("scatter_heat", a, body);
     if (enters && !experiment_.grips.empty()) scatter_grips(body, step.time + step.dt);
-    if (heat && plan_.has_heat_ledger()) scattered_heat_ += sum_over_particles("heat_of_particles", body);
-    if (accounted_ && enters) energy += sum_over_particles("energy_of_particles", body);
-    if (accounted_ && enters) add(unbalanced, 1, sum<4>("momentum_of_particles", arguments_of(body), body.count));
+    if (heat && plan_.has_heat_ledger()) sum_over_particles("heat_of_particles", body, of_heat);
+    if (accounted_ && enters) sum_over_particles("energy_of_particles", body, energy);
+    if (accounted_ && enters) sum<4>("momentum_of_particles", arguments_of(body), body.count, unbalanced);
   }
+  if (heat) later([this, of_heat] { scattered_heat_ = (*of_heat)[0]; });
   if (!pass.has(Act::scatter_momentum)) return;
   for (VelocityField<T>& field : fields_)
-    if (accounted_ && enters) add(unbalanced, -1, sum<4>("momentum_of_nodes", arguments_of(field, {}), nodes()));
+    if (accounted_ && enters) sum<4>("momentum_of_nodes", arguments_of(field, {}), nodes(), unbalanced, -1);
   const Vector3 gravity = experiment_.gravity_at(step.time);
   for (std::size_t c = 0; c < 3; ++c) scene_.gravity[c] = static_cast<T>(gravity[c]);
   if (enters) for_each_field("weigh", nodes());
@@ -53,44 +68,46 @@ void DeviceBackend<T>::scatter(const Pass& pass, const StepInfo& step) {
   if (!enters) return;
   for_each_axis("fold_forces", images_);
   if (!accounted_) return;
-  scattered_energy_ = sum_over_nodes("energy_of_momenta");
-  ledger_.scatter += scattered_energy_ - energy;
-  ledger_.mass_book += unbalanced[3];
-  ledger_.momentum_book += std::hypot(unbalanced[0], unbalanced[1], unbalanced[2]);
-  works_ = 0;
-}
-
-template <class T>
-void DeviceBackend<T>::add(std::array<double, 4>& sum, double sign, const std::array<double, 4>& values) {
-  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += sign * values[k];
+  const Tally<1> scattered = sum_over_nodes("energy_of_momenta");
+  later([this, energy, unbalanced, scattered] {
+    const auto [x, y, z, mass] = *unbalanced;
+    scattered_energy_ = (*scattered)[0];
+    ledger_.scatter += scattered_energy_ - (*energy)[0];
+    ledger_.mass_book += mass;
+    ledger_.momentum_book += std::hypot(x, y, z);
+    works_ = 0;
+  });
 }
 
 template <class T>
 void DeviceBackend<T>::gather(const Pass& pass, const StepInfo& step) {
-  double energy = 0, heat = 0, gripped = 0;
   if (accounted_ && step.filtered) {
     if (pass.has(Act::strain)) book_strain(&Ledger::filtered_strain, pass.share);
-    ledger_.filtered_gravity -= power_of_forces()[1] - lumped_power_[1];
+    const Tally<2> power = power_of_forces();
+    later([this, power] { ledger_.filtered_gravity -= (*power)[1] - lumped_power_[1]; });
   }
   scene_.records = accounted_;
+  const Tally<1> energy = tally<1>(), heat = tally<1>(), gripped = tally<1>();
   for (Body<T>& body : bodies_) {
     Arguments<T> a = arguments_of(body);
     a.update_particles = true, a.filtered = step.filtered;
     a.moves_by_mean = experiment_.filter_schedule.moves_by_mean;
     run("gather", a, body, Checks::stencil);
-    if (!experiment_.grips.empty()) gripped += note_gripped(body, step);
+    if (!experiment_.grips.empty()) note_gripped(body, step, gripped);
     if (pass.has(Act::gather_heat)) run("gather_heat", a, body, Checks::temperature);
-    if (pass.has(Act::gather_heat) && plan_.has_heat_ledger()) heat += sum_over_particles("heat_of_particles", body);
-    if (accounted_) energy += sum_over_particles("energy_of_particles", body);  // weights are still those of the step
+    if (pass.has(Act::gather_heat) && plan_.has_heat_ledger()) sum_over_particles("heat_of_particles", body, heat);
+    if (accounted_) sum_over_particles("energy_of_particles", body, energy);  // weights are still those of the step
     if (pass.has(Act::strain)) run_strain(pass, body);
   }
-  if (accounted_) {
-    ledger_.gather += energy - energy_after_ - gripped;
-    ledger_.boundary += gripped;
-    ledger_.grid_book += energy_after_ - scattered_energy_ - works_;
-    energy_before_move_ = energy;
-  }
-  if (pass.has(Act::gather_heat) && plan_.has_heat_ledger()) heat_ledger_.gather += heat - heat_after_;
+  if (accounted_)
+    later([this, energy, gripped] {
+      ledger_.gather += (*energy)[0] - energy_after_ - (*gripped)[0];
+      ledger_.boundary += (*gripped)[0];
+      ledger_.grid_book += energy_after_ - scattered_energy_ - works_;
+      energy_before_move_ = (*energy)[0];
+    });
+  if (pass.has(Act::gather_heat) && plan_.has_heat_ledger())
+    later([this, heat] { heat_ledger_.gather += (*heat)[0] - heat_after_; });
   if (pass.has(Act::move)) move();
   if (pass.has(Act::change_phase)) change_phase();
 }
@@ -109,7 +126,9 @@ void DeviceBackend<T>::strain(const Pass& pass) {
 template <class T>
 void DeviceBackend<T>::move() {
   for (Body<T>& body : bodies_) run("move", arguments_of(body), body, Checks::position);
-  if (accounted_) ledger_.second_moment += energy_of_particles() - energy_before_move_;
+  if (!accounted_) return;
+  const Tally<1> energy = energy_of_particles();
+  later([this, energy] { ledger_.second_moment += (*energy)[0] - energy_before_move_; });
 }
 
 template class DeviceBackend<float>;

@@ -35,7 +35,7 @@ Found find() {
 #undef MPM_LOAD
   if (!found.why.empty()) {
     found.why = "the NVIDIA driver on this machine (libcuda) has no function " + found.why +
-                ": it is older than CUDA 11; install a newer driver" + instead;
+                ": it is older than CUDA 11.4; install a newer driver" + instead;
     return found;
   }
   if (const DriverResult result = found.driver.cuInit(0); result != driver_success) {

@@ -16,6 +16,8 @@ using StreamHandle = struct OpaqueStream*;
 using EventHandle = struct OpaqueEvent*;
 using ModuleHandle = struct OpaqueModule*;
 using FunctionHandle = struct OpaqueFunction*;
+using GraphHandle = struct OpaqueGraph*;
+using GraphExecHandle = struct OpaqueGraphExec*;
 
 /// The results of cuda.h that are looked at by name.
 enum : DriverResult {
@@ -31,12 +33,18 @@ enum : DriverResult {
   driver_no_binary_for_device = 209,
   driver_unsupported_ptx_version = 222,
   driver_invalid_handle = 400,
+  driver_illegal_state = 401,
   driver_not_found = 500,
   driver_illegal_address = 700,
   driver_launch_out_of_resources = 701,
   driver_launch_failed = 719,
-  driver_system_driver_mismatch = 803
+  driver_system_driver_mismatch = 803,
+  driver_capture_unsupported = 900,
+  driver_capture_invalidated = 901
 };
+
+/// How far a capture reaches (CUstreamCaptureMode): nothing that it could not hold may be done by any thread.
+enum : int { capture_global = 0 };
 
 /// The attributes of devices that are asked for (CUdevice_attribute).
 enum : int {
@@ -77,6 +85,12 @@ inline void* const launch_parameter_size = reinterpret_cast<void*>(2);
   X(cuStreamCreate, (StreamHandle * stream, unsigned flags))                                                         \
   X(cuStreamDestroy_v2, (StreamHandle stream))                                                                       \
   X(cuStreamSynchronize, (StreamHandle stream))                                                                      \
+  X(cuStreamBeginCapture_v2, (StreamHandle stream, int mode))                                                        \
+  X(cuStreamEndCapture, (StreamHandle stream, GraphHandle * graph))                                                  \
+  X(cuGraphInstantiateWithFlags, (GraphExecHandle * made, GraphHandle graph, unsigned long long flags))              \
+  X(cuGraphLaunch, (GraphExecHandle graph, StreamHandle stream))                                                     \
+  X(cuGraphDestroy, (GraphHandle graph))                                                                             \
+  X(cuGraphExecDestroy, (GraphExecHandle graph))                                                                     \
   X(cuEventCreate, (EventHandle * event, unsigned flags))                                                            \
   X(cuEventDestroy_v2, (EventHandle event))                                                                          \
   X(cuEventRecord, (EventHandle event, StreamHandle stream))                                                         \

@@ -14,6 +14,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "backends/device/drivers/host_graph.hpp"
 #include "backends/device/drivers/host_library.hpp"
 #include "backends/device/drivers/host_results.hpp"
 
@@ -21,7 +22,8 @@ namespace mpm::device {
 
 struct OpaqueStream {
   ContextHandle context;
-  std::vector<std::function<void()>> waiting;
+  HostOperations waiting;
+  HostCapture capture;
 };
 
 struct OpaqueEvent {
@@ -115,6 +117,11 @@ DriverResult begin(const char* function) {
   MPM_BEGIN(function)                  \
   if (!current) return driver_invalid_context;
 
+/// Refuses what a graph cannot hold, or what CUDA refuses to all threads, while a stream captures.
+#define MPM_REFUSE_IN_CAPTURE                            \
+  for (auto& [handle, stream_in_use] : current->streams) \
+    if (stream_in_use->capture.on()) return stream_in_use->capture.refuse();
+
 std::uint64_t memory_of(const HostDevice& device) {
   return device.memory
              ? device.memory
@@ -171,7 +178,7 @@ std::vector<std::uint64_t> words_of(const void* from, std::size_t bytes) {
 
 /// Runs what waits in a stream, in order.
 void run(StreamHandle stream, std::unique_lock<std::mutex>& lock) {
-  std::vector<std::function<void()>> operations;
+  HostOperations operations;
   operations.swap(stream->waiting);
   lock.unlock();
   for (const auto& operation : operations) operation();
@@ -275,6 +282,7 @@ DriverResult cuMemGetInfo_v2(std::size_t* free, std::size_t* total) {
 }
 DriverResult cuMemAlloc_v2(DevicePointer* pointer, std::size_t bytes) {
   MPM_BEGIN_IN_CONTEXT(cuMemAlloc_v2)
+  MPM_REFUSE_IN_CAPTURE
   if (bytes == 0) return driver_invalid_value;
   if (bytes > memory_of(current->device) - current->bytes) return driver_out_of_memory;
   constexpr std::size_t line = 256;
@@ -290,6 +298,7 @@ DriverResult cuMemAlloc_v2(DevicePointer* pointer, std::size_t bytes) {
 }
 DriverResult cuMemFree_v2(DevicePointer pointer) {
   MPM_BEGIN_IN_CONTEXT(cuMemFree_v2)
+  MPM_REFUSE_IN_CAPTURE
   const auto found = current->allocations.find(static_cast<std::uintptr_t>(pointer & ~tag_bits));
   if ((pointer & tag_bits) != tag || found == current->allocations.end()) return driver_invalid_value;
   run_all(lock);  // what waits may still use it
@@ -301,6 +310,8 @@ DriverResult cuMemFree_v2(DevicePointer pointer) {
 
 DriverResult cuMemcpyHtoDAsync_v2(DevicePointer to, const void* from, std::size_t bytes, StreamHandle stream) {
   MPM_BEGIN_IN_CONTEXT(cuMemcpyHtoDAsync_v2)
+  // CUDA would copy at each launch what the host's memory holds by then.
+  MPM_REFUSE_IN_CAPTURE
   unsigned char* const memory = memory_at(to, bytes);
   if (!memory) return driver_invalid_value;
   if (!is_stream(stream)) return driver_invalid_handle;
@@ -312,6 +323,7 @@ DriverResult cuMemcpyHtoDAsync_v2(DevicePointer to, const void* from, std::size_
 }
 DriverResult cuMemcpyDtoHAsync_v2(void* to, DevicePointer from, std::size_t bytes, StreamHandle stream) {
   MPM_BEGIN_IN_CONTEXT(cuMemcpyDtoHAsync_v2)
+  MPM_REFUSE_IN_CAPTURE
   const unsigned char* const memory = memory_at(from, bytes);
   if (!memory) return driver_invalid_value;
   if (!is_stream(stream)) return driver_invalid_handle;
@@ -353,8 +365,41 @@ DriverResult cuStreamDestroy_v2(StreamHandle stream) {
 }
 DriverResult cuStreamSynchronize(StreamHandle stream) {
   MPM_BEGIN_IN_CONTEXT(cuStreamSynchronize)
+  MPM_REFUSE_IN_CAPTURE
   if (!is_stream(stream)) return driver_invalid_handle;
   run(stream, lock);
+  return driver_success;
+}
+
+DriverResult cuStreamBeginCapture_v2(StreamHandle stream, int mode) {
+  MPM_BEGIN_IN_CONTEXT(cuStreamBeginCapture_v2)
+  if (!is_stream(stream)) return driver_invalid_handle;
+  return mode == capture_global ? stream->capture.begin(stream->waiting) : driver_invalid_value;
+}
+DriverResult cuStreamEndCapture(StreamHandle stream, GraphHandle* graph) {
+  MPM_BEGIN_IN_CONTEXT(cuStreamEndCapture)
+  return is_stream(stream) ? stream->capture.end(stream->waiting, graph) : driver_invalid_handle;
+}
+DriverResult cuGraphInstantiateWithFlags(GraphExecHandle* made, GraphHandle graph, unsigned long long) {
+  MPM_BEGIN_IN_CONTEXT(cuGraphInstantiateWithFlags)
+  if (!graph) return driver_invalid_handle;
+  *made = new OpaqueGraphExec{graph->operations};
+  return driver_success;
+}
+DriverResult cuGraphLaunch(GraphExecHandle graph, StreamHandle stream) {
+  MPM_BEGIN_IN_CONTEXT(cuGraphLaunch)
+  if (!graph || !is_stream(stream)) return driver_invalid_handle;
+  stream->waiting.insert(stream->waiting.end(), graph->operations.begin(), graph->operations.end());
+  return driver_success;
+}
+DriverResult cuGraphDestroy(GraphHandle graph) {
+  MPM_BEGIN(cuGraphDestroy)
+  delete graph;
+  return driver_success;
+}
+DriverResult cuGraphExecDestroy(GraphExecHandle graph) {
+  MPM_BEGIN(cuGraphExecDestroy)
+  delete graph;  // a launch that waits has its own copy of the operations
   return driver_success;
 }
 
@@ -435,6 +480,7 @@ DriverResult cuLaunchKernel(FunctionHandle function, unsigned grid_x, unsigned g
   return driver_success;
 }
 
+#undef MPM_REFUSE_IN_CAPTURE
 #undef MPM_BEGIN
 #undef MPM_BEGIN_IN_CONTEXT
 

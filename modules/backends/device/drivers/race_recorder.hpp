@@ -1,6 +1,6 @@
 #pragma once
 // Finds races on the host: lanes of one phase, or teams of one launch, that meet on one address, of which one writes.
-// Nothing orders them on a GPU, unless all of them go through Team::add or Team::lower.
+// Nothing orders them on a GPU, unless Team makes all of them as one (Team::add, lower, take_number, look).
 
 #include <cstddef>
 #include <cstdint>

@@ -2,6 +2,8 @@
 // A phase is given plain pointers and numbers, in the same struct for the host that launches and the text that runs.
 // Arrays are laid out [component][particle] and [component][node]. No system headers are included.
 
+#include "operators/contact_geometry.hpp"
+
 namespace mpm::device {
 
 /// The cells of a block along each axis: the particles of one block are one team's work.
@@ -37,25 +39,13 @@ struct ParticleArrays {
   HeatOfBody<T> heat;     ///< filled in scenes with temperature
 };
 
-/// Pairs of fields, one a node: their geometry comes in, the impulse goes out.
-template <class T>
-struct ContactArrays {
-  const int* active;    ///< 1 where the pair is to be resolved
-  const T* normal;      ///< [D], from the field `grid` to the field `other`
-  const T* separation;  ///< m
-  const T* area;        ///< m^2
-  T* impulse;           ///< [D], kg m/s
-  T* unbalanced;        ///< [D], kg m/s: change of the pair's momentum, zero to rounding
-  T* dissipated;        ///< J
-  int* status;          ///< mpm_contact_status
-};
-
 /// The nodes under a condition: all between two corners.
 template <class T>
 struct Box {
   int lower[3], upper[3];  ///< coordinates of nodes, both included
   int type, axis, side;    ///< Wall; axis and side as in box_holds
   int given;               ///< bit c: component c is prescribed
+  int support;             ///< its number (Experiment::supports)
   const T* velocity;       ///< [D][node of the box, x first], m/s; null for rest
 };
 
@@ -64,6 +54,7 @@ template <class T>
 struct GripArrays {
   T *mass, *momentum, *before;  ///< [node], [D][node] at the end of the step, and as it begins
   int given;
+  int support;  ///< its number
 };
 
 /// Heat through a wall: `value` is a flux, W/m^2, or, with a coefficient, the temperature beyond the wall, K.
@@ -81,11 +72,23 @@ struct HeatBox {
   const T* power;          ///< [node of the box, x first], W, that its nodes share by their mass; null where none comes
 };
 
-/// The work of a scatter: the particles of block k are order[block_begin[k] .. block_begin[k + 1]).
+/// The blocks of cells that a body's particles are in. The particles of the k-th block that has any are
+/// order[begin[k] .. begin[k + 1]), in the order of their indices (kernels/sorting.hpp).
 struct BlockArrays {
-  const int* cell;   ///< [block][3], first cell
-  const int* begin;  ///< [blocks + 1]
-  const int* order;  ///< particle indices, block after block
+  int lower[3], extent[3], table;  ///< all blocks that the grid has, ghosts too: the first one, how many, their product
+  int* block;                      ///< [particle] number in the table
+  int *count, *next;               ///< [table] particles, and where the next one of them goes
+  int *chunk, *before_chunk;       ///< [chunk of the table][2] particles and blocks with any, in it and before it
+  int* in_order;                   ///< [1] 0 where a particle has left its block since the last sort
+  int* active;                     ///< [1] blocks with particles
+  int *cell, *begin, *order;       ///< [block with particles][3] first cell; [blocks with particles + 1]; [particle]
+};
+
+/// How two fields meet, as the host found it by looking at particles.
+template <class T>
+struct FoundContact {
+  const int* valid;  ///< [node]
+  const T* values;   ///< [node] separation, then area, then [D][node] normal (ContactGeometry)
 };
 
 template <class T>
@@ -112,10 +115,19 @@ struct Arguments {
   // These are what this phase works on.
   ParticleArrays<T> particles;
   NodeArrays<T> grid, other;
-  ContactArrays<T> contact;
+  EdgeTable edges[2];     ///< contact: of `grid` and of `other`
+  FoundContact<T> found;  ///< contact: in scenes that look at particles
   BlockArrays blocks;
-  double* partial_sums;  ///< [team][sum]
-  int* first_failed;     ///< smallest index of a particle that cannot go on; count where there is none
+  int teams;                             ///< that share the blocks with particles
+  double* partial_sums;                  ///< [team][sum]
+  int sum_teams, sum_count, sum_maxima;  ///< add_teams: how many there are, and how many of them are largest values
+  double* sums;                          ///< where it leaves them
+  const double* masses_of_box;           ///< masses of its nodes in each velocity field, kg
+  int* exponents;                        ///< [channel] of a scatter, and its sums [channel][node][2]
+  unsigned long long* exact_sums;        ///< (kernels/exact_sums.hpp)
+  int exact_phase;                       ///< of that scatter
+  int* stop;                             ///< [stop_numbers] see kernels/stopping.hpp
+  int launch;                            ///< number of this launch in the step
   // These say how it works.
   T dt;
   T local_damping, left_of_velocity, left_of_change;  ///< damp: see `damped`
@@ -123,8 +135,10 @@ struct Arguments {
   int iteration;                                      ///< number of the filter's pass, from 1
   int load_field;                                     ///< field of nodes that a load goes to
   int heat_box;                                       ///< number of the box that is warmed
-  T mass_of_box;                                      ///< mass of its nodes in all velocity fields, kg
+  int mass_count;                                     ///< velocity fields that a box has mass in
   bool momentum, force, contact_fields;               /**< scatter: as in Pass */
+  int support;                                        ///< held: number of the support
+  int beyond;                                         ///< gathered_beyond: what particles gather
   bool remap;                                         ///< clear, fold: the remap of MUSL
   int grip;                                           ///< scatter_grip: which
   bool grips_at_end;                                  ///< nodes are held as particles are told for the end of the step

@@ -3,6 +3,7 @@
 
 #include "backends/device/kernels/arguments.hpp"
 #include "backends/device/kernels/fields.hpp"
+#include "backends/device/kernels/stopping.hpp"
 #include "backends/device/kernels/team.hpp"
 #include "kernel/functor.hpp"
 
@@ -80,6 +81,12 @@ MPM_HD typename F::Parameters parameters_of(const double* block) {
     return {};
   else
     return *reinterpret_cast<const typename F::Parameters*>(block);
+}
+
+/// Calls body(block) for the blocks with particles, which the teams take in turn: there may be fewer teams than blocks.
+template <class T, class Body>
+MPM_HD void for_each_block(const Team& team, const Arguments<T>& a, Body body) {
+  for (int block = team.block(); block < *a.blocks.active; block += a.teams) body(block);
 }
 
 /// The index of the node at these coordinates; ghosts have negative ones.

@@ -1,43 +1,90 @@
 #pragma once
-// Two velocity fields meet at a node through the contact functor; normal, separation and area are given.
+// Two velocity fields meet at a node through the contact functor.
 
-#include "backends/device/kernels/grid.hpp"
+#include "backends/device/kernels/conditions.hpp"
+#include "backends/device/kernels/sums.hpp"
 #include "operators/contact.hpp"
+#include "operators/contact_geometry.hpp"
 
 namespace mpm::device {
 
-/// Gives the velocities of `grid` and `other` the law's impulse where the pair is active.
+/// What contact does to a pair, summed over its nodes.
+enum : int {
+  contact_impulse = 0,     ///< 3, on the first field, kg m/s
+  contact_unbalanced = 3,  ///< 3, change of the pair's momentum, kg m/s: zero to rounding
+  contact_dissipated = 6,  ///< J
+  contact_sticking,        ///< nodes
+  contact_slipping,
+  contact_penetration,  ///< the largest one, m
+  contact_sums
+};
+
+/// What contact looks at of one velocity field at a node.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD ContactFieldNode contact_field(const Arguments<T>& a, const NodeArrays<T>& grid, int node) {
+  using N = typename Scene::Node;
+  ContactFieldNode found{};
+  found.mass = grid.field[N::mass][node], found.volume = grid.field[N::volume][node];
+  for (int c = 0; c < Scene::dimension; ++c) {
+    found.volume_gradient[c] = grid.field[N::volume_gradient][c * a.node_count + node];
+    found.mass_position[c] = grid.field[N::mass_position][c * a.node_count + node];
+  }
+  return found;
+}
+
+/// How two fields meet at a node: as follows from sums over nodes, or as the host found it.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD ContactGeometry geometry_of_pair(const Arguments<T>& a, int node) {
+  if constexpr (Scene::contact_by_particles) {
+    ContactGeometry found;
+    found.valid = a.found.valid[node] != 0;
+    found.separation = a.found.values[node], found.area = a.found.values[a.node_count + node];
+    for (int c = 0; c < Scene::dimension; ++c) found.normal[c] = a.found.values[(2 + c) * a.node_count + node];
+    return found;
+  } else {
+    return contact_geometry(contact_field<Scene>(a, a.grid, node), contact_field<Scene>(a, a.other, node), a.edges[0],
+                            a.edges[1], double(a.cell_size), Scene::dimension);
+  }
+}
+
+/// Gives the velocities of `grid` and `other` the law's impulse at every node where they meet, and sums what it does.
 template <class Scene>
 MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using Law = typename Scene::Contact;
   using N = typename Scene::Node;
   constexpr int D = Scene::dimension;
-  for_each_index(team, a.node_count, [&](int node) {
+  sum_over<contact_sums, 1>(team, a, a.node_count, [&](int node, double* sums) {
     const int nodes = a.node_count;
-    if (!a.contact.active[node]) return;
+    const bool weld = Scene::bypasses_detection;
     ContactPair<D, T> pair;
     pair.mass_a = a.grid.field[N::mass][node], pair.mass_b = a.other.field[N::mass][node];
+    if (!meet(pair.mass_a, pair.mass_b, weld)) return;
+    const ContactGeometry geometry = geometry_of_pair<Scene>(a, node);
+    if (!geometry.valid && !weld) return;
     for (int c = 0; c < D; ++c) {
       pair.momentum_a[c] = momentum_of(a.grid.field[N::velocity][c * nodes + node], pair.mass_a);
       pair.momentum_b[c] = momentum_of(a.other.field[N::velocity][c * nodes + node], pair.mass_b);
+      pair.normal[c] = geometry.valid ? static_cast<T>(geometry.normal[c]) : T(0);
     }
-    pair.normal = load<D>(a.contact.normal, nodes, node);
-    pair.separation = a.contact.separation[node], pair.area = a.contact.area[node];
+    pair.separation = static_cast<T>(geometry.separation), pair.area = static_cast<T>(geometry.area);
     pair.dt = a.dt;
     ContactResult<D, T> result;
     Law::apply(parameters_of<Law>(a.contact_parameters), pair, result);
     for (int c = 0; c < D; ++c) {
       const int at = c * nodes + node;
-      a.contact.unbalanced[at] = strike_pair<T>(a.grid.field[N::velocity][at], a.other.field[N::velocity][at],
-                                                pair.mass_a, pair.mass_b, result.impulse[c], [&](bool second, T given) {
-                                                  note_impulse<N::contact_impulse, N::standing_contact_impulse>(
-                                                      a, second ? a.other : a.grid, at, given);
-                                                });
+      sums[contact_unbalanced + c] += strike_pair<double>(
+          a.grid.field[N::velocity][at], a.other.field[N::velocity][at], pair.mass_a, pair.mass_b, result.impulse[c],
+          [&](bool second, T given) {
+            note_impulse<N::contact_impulse, N::standing_contact_impulse>(a, second ? a.other : a.grid, at, given);
+          });
+      sums[contact_impulse + c] += result.impulse[c];
     }
-    store(a.contact.impulse, nodes, node, result.impulse);
-    a.contact.dissipated[node] = result.dissipated;
-    a.contact.status[node] = static_cast<int>(result.status);
+    sums[contact_dissipated] += result.dissipated;
+    const int status = static_cast<int>(result.status);
+    if (status == contact_apart) return;
+    sums[status == contact_sticks ? contact_sticking : contact_slipping] += 1;
+    if (geometry.valid) sums[contact_penetration] = max(0.0, -double(pair.separation));
   });
 }
 

@@ -38,9 +38,9 @@ MPM_HD void project(const Team& team, const Arguments<typename Scene::Scalar>& a
   constexpr int D = Scene::dimension;
   T* channel[D];
   for (int c = 0; c < D; ++c) channel[c] = a.grid.field[N::projection] + c * a.node_count;
-  scatter_block<D, D>(team, a, channel, [&](int p, auto add) {
+  scatter_blocks<Scene, D>(team, a, channel, [&](int p, auto add) {
     const Stencil<Scene> stencil(a, p);
-    if (!stencil.inside()) return Team::lower(a.first_failed, p);
+    if (!stencil.inside()) return report(a, p);
     const T mass = of_size<Scene>(a.particles, a.particles.mass, p);
     auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::increment], nullptr);
     moments.velocity_increment = moments.velocity;
@@ -74,8 +74,14 @@ template <class Scene>
 MPM_HD void fold_projection(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
   using F = NodeField<N::projection, Scene::dimension, rule_momentum, never_folded, false, -1>;
-  for_each_fold(team, a, true, false, [&](const Fold& fold) {
-    if (a.grid.folded[fold.ghost] >> fold.axis & 1) fold_field<F>(a, fold, a.grid.field[N::folded_mass][fold.ghost]);
+  for_each_line<Scene>(team, a, [&](int line, double* sums) {
+    for_each_fold_of_line(a, line, true, false, [&](const Fold& fold) {
+      if (!(a.grid.folded[fold.ghost] >> fold.axis & 1)) return;
+      const auto mass = a.grid.field[N::folded_mass][fold.ghost];
+      note_image<Scene>(
+          a, fold, mass, [&](int c) { return a.grid.field[N::projection][c * a.node_count + fold.ghost]; }, sums);
+      fold_field<F>(a, fold, mass);
+    });
   });
 }
 

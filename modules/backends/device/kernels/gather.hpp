@@ -73,7 +73,7 @@ MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a)
     const ParticleArrays<T>& particles = a.particles;
     const int stride = particles.stride;
     const Stencil<Scene> stencil(a, p);
-    if (!stencil.inside()) return Team::lower(a.first_failed, p);
+    if (!stencil.inside()) return report(a, p);
     const T* before = nullptr;
     if constexpr (Scene::gathers_increment) before = a.grid.field[N::velocity_before];
     const auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::velocity], before);
@@ -114,7 +114,7 @@ MPM_HD void second_moments(const Team& team, const Arguments<typename Scene::Sca
   for_each_index(team, a.particles.count, [&](int p) {
     if constexpr (P::second_moment >= 0) {
       const Stencil<Scene> stencil(a, p);
-      if (!stencil.inside()) return Team::lower(a.first_failed, p);
+      if (!stencil.inside()) return report(a, p);
       store_matrix(a.particles.field[P::second_moment], a.particles.stride, p, stencil.second_moment());
     }
   });
@@ -161,7 +161,7 @@ MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
     }
     if constexpr (Scene::axisymmetric) inside = inside && x[0] > T(0);
     store(a.particles.field[P::position], stride, p, x);
-    if (!inside) Team::lower(a.first_failed, p);
+    if (!inside) report(a, p);
     if constexpr (P::strained_domain >= 0)  // no weights of this step are needed any more
       store_matrix(a.particles.field[P::domain], stride, p,
                    load_matrix<D>(a.particles.field[P::strained_domain], stride, p));

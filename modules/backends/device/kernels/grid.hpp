@@ -1,8 +1,8 @@
 #pragma once
 // The grid's work between scatter and gather: walls and periodic images by the mirror fold of simulation/boundary.hpp,
-// velocities from momenta, forces, conditions. The formulas are those of operators/.
+// velocities from momenta, forces. The formulas are those of operators/.
 
-#include "backends/device/kernels/folds.hpp"
+#include "backends/device/kernels/reactions.hpp"
 #include "operators/motion.hpp"
 
 namespace mpm::device {
@@ -101,7 +101,7 @@ template <class Scene>
 MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
-  const auto fold_node = [&](const Fold& fold, T gradient) {
+  const auto fold_node = [&](const Fold& fold, T gradient, double* sums) {
     T* const masses = a.grid.field[N::mass];
     const T mass = masses[fold.ghost];
     if (!(mass > T(0))) return;
@@ -115,7 +115,11 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
       if (!approaches(fold.side, speed(fold.ghost) + speed(fold.mirror))) return;
     }
     if (fold.ghost != fold.mirror) a.grid.folded[fold.ghost] |= 1 << fold.axis;
-    if (fold.ghost != fold.mirror) note_work_of_fold<Scene>(a, fold);
+    if (fold.ghost != fold.mirror) {
+      note_work_of_fold<Scene>(a, fold);
+      note_image<Scene>(
+          a, fold, mass, [&](int c) { return a.grid.field[N::momentum][c * a.node_count + fold.ghost]; }, sums);
+    }
     if constexpr (N::folded_mass >= 0) a.grid.field[N::folded_mass][fold.ghost] = mass;
     T heat_capacity = T(0), heat = T(0);
     if constexpr (N::heat_capacity >= 0) {
@@ -138,11 +142,12 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
     });
     if constexpr (N::heat >= 0) a.grid.field[N::heat][fold.mirror] += heat;
   };
-  for_each_index(team, a.node_count / a.extent[a.axis], [&](int line) {
+  for_each_line<Scene>(team, a, [&](int line, double* sums) {
     T gradients[2] = {T(0), T(0)};
     for (int side = 0; side < 2 && !a.remap; ++side)
       gradients[side] = gradient_at_wall<Scene>(a, foot_of_line(a, line, side), false);
-    for_each_fold_of_line(a, line, true, !a.remap, [&](const Fold& fold) { fold_node(fold, gradients[fold.side]); });
+    for_each_fold_of_line(a, line, true, !a.remap,
+                          [&](const Fold& fold) { fold_node(fold, gradients[fold.side], sums); });
   });
 }
 
@@ -167,12 +172,16 @@ MPM_HD void note_work_beyond_wall(const Arguments<T>& a, const Fold& fold) {
 template <class Scene>
 MPM_HD void fold_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
-  for_each_fold(team, a, true, false, [&](const Fold& fold) {
-    if (!(a.grid.folded[fold.ghost] >> fold.axis & 1)) return;
-    note_work_beyond_wall<Scene>(a, fold);
-    Scene::for_each_node_field([&](auto field) {
-      using F = decltype(field);
-      if constexpr (F::folded == folded_with_force) fold_field<F>(a, fold, T(0));
+  for_each_line<Scene>(team, a, [&](int line, double* sums) {
+    for_each_fold_of_line(a, line, true, false, [&](const Fold& fold) {
+      if (!(a.grid.folded[fold.ghost] >> fold.axis & 1)) return;
+      note_work_beyond_wall<Scene>(a, fold);
+      note_image<Scene>(
+          a, fold, T(0), [&](int c) { return total_force<Scene>(a, c * a.node_count + fold.ghost); }, sums);
+      Scene::for_each_node_field([&](auto field) {
+        using F = decltype(field);
+        if constexpr (F::folded == folded_with_force) fold_field<F>(a, fold, T(0));
+      });
     });
   });
 }
@@ -248,84 +257,6 @@ MPM_HD void damp(const Team& team, const Arguments<typename Scene::Scalar>& a) {
         if (a.records) a.grid.field[N::damping_impulse][at] += mass * (now - velocity);
       velocity = now;
     });
-}
-
-/// The coordinates of a node by its index.
-template <int D, class T>
-MPM_HD void coordinates_of_node(const Arguments<T>& a, int index, int* node) {
-  for (int axis = 0; axis < D; index /= a.extent[axis], ++axis) node[axis] = index % a.extent[axis] - a.padding[axis];
-}
-template <int D, class AnyBox>
-MPM_HD bool is_inside(const AnyBox& box, const int* node) {
-  bool inside = true;
-  for (int c = 0; c < D; ++c) inside = inside && node[c] >= box.lower[c] && node[c] <= box.upper[c];
-  return inside;
-}
-/// The index of a node among those of a box.
-template <int D, class AnyBox>
-MPM_HD int index_in_box(const AnyBox& box, const int* node) {
-  int index = 0;
-  for (int c = D - 1; c >= 0; --c) index = index * (box.upper[c] - box.lower[c] + 1) + node[c] - box.lower[c];
-  return index;
-}
-template <int D, class T>
-MPM_HD int nodes_of_box(const Box<T>& box) {
-  int count = 1;
-  for (int c = 0; c < D; ++c) count *= box.upper[c] - box.lower[c] + 1;
-  return count;
-}
-
-/// Notes an impulse on one component of a node where conditions or contact apply it; `standing` is -1 where no filter
-/// may take it back.
-template <int impulse, int standing, class T>
-MPM_HD void note_impulse(const Arguments<T>& a, const NodeArrays<T>& grid, int at, T given) {
-  if constexpr (impulse >= 0) {
-    if (!a.records) return;
-    grid.field[impulse][at] += given;
-    if constexpr (standing >= 0) grid.field[standing][at] += given;
-  }
-}
-
-/// Sets the velocities that walls and boxes give. Where several do, the last of them counts, boxes after walls. All
-/// decide by the velocity as it was.
-template <class Scene>
-MPM_HD void impose_conditions(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  using T = typename Scene::Scalar;
-  using N = typename Scene::Node;
-  constexpr int D = Scene::dimension;
-  for_each_index(team, a.node_count, [&](int node) {
-    if (!(a.grid.field[N::mass][node] > T(0))) return;
-    const Vec<D, T> now = load<D>(a.grid.field[N::velocity], a.node_count, node);
-    Vec<D, T> velocity = now;
-    int held = 0, at[D];
-    coordinates_of_node<D>(a, node, at);
-    for_each_wall_of_node<D>(a, node, at, [&](const Fold& foot) {
-      for (int c = 0; c < D; ++c)
-        if (wall_holds(foot.wall, foot.axis, foot.side, c, now[foot.axis]))
-          velocity[c] = velocity_of_wall(a, foot, c), held |= 1 << c;
-    });
-    for (int k = 0; k < a.box_count; ++k) {
-      const Box<T>& box = a.boxes[k];
-      if (!is_inside<D>(box, at)) continue;
-      for (int c = 0; c < D; ++c)
-        if (box_holds(box.type, box.axis, box.side, box.given, c, now[c])) {
-          velocity[c] = box.velocity ? box.velocity[c * nodes_of_box<D>(box) + index_in_box<D>(box, at)] : T(0);
-          held |= 1 << c;
-        }
-    }
-    for (int k = 0; k < a.grip_count; ++k) {
-      const GripArrays<T>& grip = a.grips[k];
-      if (!grip_holds(grip.mass[node], a.grid.field[N::mass][node])) continue;
-      const T* const momentum = a.grips_at_end ? grip.momentum : grip.before;
-      for (int c = 0; c < D; ++c)
-        if (grip.given >> c & 1) velocity[c] = momentum[c * a.node_count + node] / grip.mass[node], held |= 1 << c;
-    }
-    if (held == 0) return;
-    store(a.grid.field[N::velocity], a.node_count, node, velocity);
-    for (int c = 0; c < D; ++c)
-      note_impulse<N::boundary_impulse, N::standing_boundary_impulse>(
-          a, a.grid, c * a.node_count + node, a.grid.field[N::mass][node] * (velocity[c] - now[c]));
-  });
 }
 
 }  // namespace mpm::device

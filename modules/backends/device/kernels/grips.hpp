@@ -2,6 +2,8 @@
 // Lets nodes know of particles that a grip moves.
 
 #include "backends/device/kernels/scatter.hpp"
+#include "backends/device/kernels/sums.hpp"
+#include "operators/supports.hpp"
 
 namespace mpm::device {
 
@@ -21,10 +23,10 @@ MPM_HD void scatter_grip(const Team& team, const Arguments<typename Scene::Scala
     for (int c = 0; c < D; ++c)
       channel[c] = grip.momentum + c * a.node_count, channel[D + c] = grip.before + c * a.node_count;
     channel[2 * D] = grip.mass;
-    scatter_block<D, 2 * D + 1>(team, a, channel, [&](int p, auto add) {
+    scatter_blocks<Scene, 2 * D + 1>(team, a, channel, [&](int p, auto add) {
       if (int(a.particles.field[P::grip][p]) != a.grip + 1) return;
       const Stencil<Scene> stencil(a, p);
-      if (!stencil.inside()) return Team::lower(a.first_failed, p);
+      if (!stencil.inside()) return report(a, p);
       const T mass_of_particle = of_size<Scene>(a.particles, a.particles.mass, p);
       const int stride = a.particles.stride;
       stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
@@ -39,6 +41,26 @@ MPM_HD void scatter_grip(const Team& team, const Arguments<typename Scene::Scala
       });
     });
   }
+}
+
+/// Sums what the grip a.grip has given its particles after the gather: impulse, its moment, and energy.
+template <class Scene>
+MPM_HD void given_to_gripped(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using P = typename Scene::Particle;
+  constexpr int D = Scene::dimension;
+  sum_over<7>(team, a, a.particles.count, [&]([[maybe_unused]] int p, [[maybe_unused]] double* sums) {
+    if constexpr (P::grip >= 0) {
+      if (int(a.particles.field[P::grip][p]) != a.grip + 1) return;
+      const int stride = a.particles.stride;
+      double x[3] = {}, from[3] = {}, to[3] = {};
+      for (int c = 0; c < D; ++c) {
+        x[c] = a.particles.field[P::position][c * stride + p];
+        from[c] = a.particles.field[P::gathered_velocity][c * stride + p];
+        to[c] = a.particles.field[P::velocity][c * stride + p];
+      }
+      add_given_to_particle(sums, sums + 3, sums[6], of_size<Scene>(a.particles, a.particles.mass, p), x, from, to);
+    }
+  });
 }
 
 }  // namespace mpm::device

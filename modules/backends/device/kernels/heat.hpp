@@ -4,6 +4,7 @@
 // component of a velocity. The formulas are those of operators/heat.hpp and operators/edges.hpp. This file is compiled
 // only for scenes with temperature.
 
+#include "backends/device/kernels/conditions.hpp"
 #include "backends/device/kernels/grid.hpp"
 #include "backends/device/kernels/material.hpp"
 #include "backends/device/kernels/scatter.hpp"
@@ -74,9 +75,9 @@ MPM_HD void scatter_heat(const Team& team, const Arguments<typename Scene::Scala
     channel[2] = a.grid.field[N::heated_volume], channel[3] = a.grid.field[N::volume_conductivity];
   if constexpr (N::capacity_position >= 0)
     for (int c = 0; c < D; ++c) channel[4 + c] = a.grid.field[N::capacity_position] + c * a.node_count;
-  scatter_block<D, channels>(team, a, channel, [&](int p, auto add) {
+  scatter_blocks<Scene, channels>(team, a, channel, [&](int p, auto add) {
     const Stencil<Scene> stencil(a, p);
-    if (!stencil.inside()) return Team::lower(a.first_failed, p);
+    if (!stencil.inside()) return report(a, p);
     const ParticleArrays<T>& particles = a.particles;
     const T capacity = capacity_of_particle<Scene>(particles, p);
     Vec<D, T> temperature{}, b{};
@@ -114,9 +115,9 @@ MPM_HD void conduct(const Team& team, const Arguments<typename Scene::Scalar>& a
   using N = typename Scene::Node;
   constexpr int D = Scene::dimension;
   T* channel[1] = {a.grid.field[N::heat_rate]};
-  scatter_block<D, 1>(team, a, channel, [&](int p, auto add) {
+  scatter_blocks<Scene, 1>(team, a, channel, [&](int p, auto add) {
     const Stencil<Scene> stencil(a, p);
-    if (!stencil.inside()) return Team::lower(a.first_failed, p);
+    if (!stencil.inside()) return report(a, p);
     const T* const temperature = a.grid.field[N::temperature];
     Vec<D, T> gradient{};
     stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
@@ -262,7 +263,10 @@ MPM_HD void warm_box(const Team& team, const Arguments<typename Scene::Scalar>& 
     int at[D];
     coordinates_of_node<D>(a, node, at);
     if (!is_inside<D>(box, at)) return;
-    const T rate = box.power[index_in_box<D>(box, at)] * (a.grid.field[N::mass][node] / a.mass_of_box);
+    double mass_of_box = 0;
+    for (int k = 0; k < a.mass_count; ++k) mass_of_box += a.masses_of_box[k];
+    if (!(mass_of_box > 0)) return;
+    const T rate = box.power[index_in_box<D>(box, at)] * (a.grid.field[N::mass][node] / static_cast<T>(mass_of_box));
     a.grid.field[N::heat_rate][node] += rate;
     sum[0] += rate;
   });
@@ -292,7 +296,7 @@ MPM_HD void gather_heat(const Team& team, const Arguments<typename Scene::Scalar
   constexpr int D = Scene::dimension;
   for_each_index(team, a.particles.count, [&](int p) {
     const Stencil<Scene> stencil(a, p);
-    if (!stencil.inside()) return Team::lower(a.first_failed, p);
+    if (!stencil.inside()) return report(a, p);
     GatheredMoments<D, T> moments{};
     if constexpr (Scene::reads_second_moment) moments.second_moment = stencil.second_moment();
     stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
@@ -311,7 +315,7 @@ MPM_HD void gather_heat(const Team& team, const Arguments<typename Scene::Scalar
     auto state = temperature_state<Scene>(a.particles, p);
     Transfer::gather(parameters_of<Transfer>(a.transfer_parameters), moments, a.dt, temperature, state, advection);
     a.particles.field[P::temperature][p] = temperature[0];
-    if (!(temperature[0] - temperature[0] == T(0))) Team::lower(a.first_failed, p);  // it is infinite or not a number
+    if (!(temperature[0] - temperature[0] == T(0))) report(a, p);  // it is infinite or not a number
     store_temperature_state<Scene>(a.particles, p, state);
   });
 }

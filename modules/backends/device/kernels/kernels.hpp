@@ -1,10 +1,11 @@
 #pragma once
 // This file includes all kernels and makes their entries. The composer defines Scene, and Scene0, Scene1 ... with a
 // material each, in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_LOAD_ENTRIES, MPM_DEVICE_LEDGER_ENTRIES,
-// MPM_DEVICE_CONTACT_ENTRIES, MPM_DEVICE_GRIP_ENTRIES, MPM_DEVICE_FILTER_ENTRIES, MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES and
-// MPM_DEVICE_HEAT_LEDGER_ENTRIES where the scene has these, and for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and,
-// where any melts, MPM_DEVICE_MELTING_ENTRIES(n).
+// MPM_DEVICE_CONTACT_ENTRIES, MPM_DEVICE_REACTION_ENTRIES, MPM_DEVICE_GRIP_ENTRIES, MPM_DEVICE_FILTER_ENTRIES,
+// MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES and MPM_DEVICE_HEAT_LEDGER_ENTRIES where the scene has these, and
+// for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and, where any melts, MPM_DEVICE_MELTING_ENTRIES(n).
 
+#include "backends/device/kernels/conditions.hpp"
 #include "backends/device/kernels/contact.hpp"
 #include "backends/device/kernels/filter.hpp"
 #include "backends/device/kernels/gather.hpp"
@@ -14,88 +15,113 @@
 #include "backends/device/kernels/ledger.hpp"
 #include "backends/device/kernels/material.hpp"
 #include "backends/device/kernels/scatter.hpp"
+#include "backends/device/kernels/sorting.hpp"
 
-#define MPM_DEVICE_ENTRIES                                                           \
-  MPM_DEVICE_ENTRY(mpm_clear, clear<Scene>, 1)                                       \
-  MPM_DEVICE_ENTRY(mpm_scatter, scatter<Scene>, mpm::device::scatter_scalars<Scene>) \
-  MPM_DEVICE_ENTRY(mpm_weigh, weigh<Scene>, 1)                                       \
-  MPM_DEVICE_ENTRY(mpm_fold_masses, fold_masses<Scene>, 1)                           \
-  MPM_DEVICE_ENTRY(mpm_fold_forces, fold_forces<Scene>, 1)                           \
-  MPM_DEVICE_ENTRY(mpm_fill_velocities, fill_velocities<Scene>, 1)                   \
-  MPM_DEVICE_ENTRY(mpm_divide, divide<Scene>, 1)                                     \
-  MPM_DEVICE_ENTRY(mpm_impose_conditions, impose_conditions<Scene>, 1)               \
-  MPM_DEVICE_ENTRY(mpm_keep_velocity, keep_velocity<Scene>, 1)                       \
-  MPM_DEVICE_ENTRY(mpm_accelerate, accelerate<Scene>, 1)                             \
-  MPM_DEVICE_ENTRY(mpm_damp, damp<Scene>, 1)                                         \
-  MPM_DEVICE_ENTRY(mpm_gather, gather<Scene>, 1)                                     \
-  MPM_DEVICE_ENTRY(mpm_move, move<Scene>, 1)                                         \
-  MPM_DEVICE_ENTRY(mpm_second_moments, second_moments<Scene>, 1)
+#define MPM_DEVICE_ENTRIES                                                                \
+  MPM_DEVICE_SUM_ENTRIES                                                                  \
+  MPM_DEVICE_SORT_ENTRIES                                                                 \
+  MPM_DEVICE_PHASE(mpm_clear, clear<Scene>, 1)                                            \
+  MPM_DEVICE_PHASE(mpm_scatter, scatter<Scene>, mpm::device::scatter_scalars<Scene>)      \
+  MPM_DEVICE_PHASE(mpm_weigh, weigh<Scene>, 1)                                            \
+  MPM_DEVICE_PHASE(mpm_fold_masses, fold_masses<Scene>, mpm::device::line_scalars<Scene>) \
+  MPM_DEVICE_PHASE(mpm_fold_forces, fold_forces<Scene>, mpm::device::line_scalars<Scene>) \
+  MPM_DEVICE_PHASE(mpm_fill_velocities, fill_velocities<Scene>, 1)                        \
+  MPM_DEVICE_PHASE(mpm_divide, divide<Scene>, 1)                                          \
+  MPM_DEVICE_PHASE(mpm_impose_conditions, impose_conditions<Scene>, 1)                    \
+  MPM_DEVICE_PHASE(mpm_keep_velocity, keep_velocity<Scene>, 1)                            \
+  MPM_DEVICE_PHASE(mpm_accelerate, accelerate<Scene>, 1)                                  \
+  MPM_DEVICE_PHASE(mpm_damp, damp<Scene>, 1)                                              \
+  MPM_DEVICE_PHASE(mpm_gather, gather<Scene>, 1)                                          \
+  MPM_DEVICE_PHASE(mpm_move, move<Scene>, 1)                                              \
+  MPM_DEVICE_PHASE(mpm_second_moments, second_moments<Scene>, 1)
+
+#define MPM_DEVICE_SUM_ENTRIES                                                                                 \
+  MPM_DEVICE_PHASE(mpm_add_teams, add_teams<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::most_sums>)) \
+  MPM_DEVICE_PHASE(mpm_largest_of_teams, largest_of_teams<Scene>, (mpm::device::sum_scalars<Scene, 3>))        \
+  MPM_DEVICE_PHASE(mpm_largest_speed, largest_speed<Scene>, (mpm::device::sum_scalars<Scene, 3>))
+
+#define MPM_DEVICE_SORT_ENTRIES                                                               \
+  MPM_DEVICE_PHASE(mpm_find_blocks, find_blocks<Scene>, 1)                                    \
+  MPM_DEVICE_PHASE(mpm_clear_counts, clear_counts<Scene>, 1)                                  \
+  MPM_DEVICE_PHASE(mpm_count_particles, count_particles<Scene>, 1)                            \
+  MPM_DEVICE_PHASE(mpm_sum_chunks, sum_chunks<Scene>, mpm::device::scan_scalars<Scene>)       \
+  MPM_DEVICE_PHASE(mpm_scan_chunks, scan_chunks<Scene>, mpm::device::scan_scalars<Scene>)     \
+  MPM_DEVICE_PHASE(mpm_number_blocks, number_blocks<Scene>, mpm::device::scan_scalars<Scene>) \
+  MPM_DEVICE_PHASE(mpm_place_particles, place_particles<Scene>, 1)                            \
+  MPM_DEVICE_PHASE(mpm_order_blocks, order_blocks<Scene>, 1)                                  \
+  MPM_DEVICE_PHASE(mpm_end_sort, end_sort<Scene>, 1)
 
 #define MPM_DEVICE_LOAD_ENTRIES \
-  MPM_DEVICE_ENTRY(mpm_scatter_load, scatter_load<Scene>, mpm::device::load_scalars<Scene>)
+  MPM_DEVICE_PHASE(mpm_scatter_load, scatter_load<Scene>, mpm::device::load_scalars<Scene>)
 
 #define MPM_DEVICE_LEDGER_ENTRIES                                                                               \
-  MPM_DEVICE_ENTRY(mpm_energy_of_momenta, energy_of_momenta<Scene>, (mpm::device::sum_scalars<Scene, 1>))       \
-  MPM_DEVICE_ENTRY(mpm_energy_of_velocities, energy_of_velocities<Scene>, (mpm::device::sum_scalars<Scene, 1>)) \
-  MPM_DEVICE_ENTRY(mpm_work_of_forces, work_of_forces<Scene>, (mpm::device::sum_scalars<Scene, 11>))            \
-  MPM_DEVICE_ENTRY(mpm_energy_of_particles, energy_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 1>))   \
-  MPM_DEVICE_ENTRY(mpm_energy_dissipated, energy_dissipated<Scene>, (mpm::device::sum_scalars<Scene, 3>))       \
-  MPM_DEVICE_ENTRY(mpm_clear_work_of_folds, clear_work_of_folds<Scene>, 1)                                      \
-  MPM_DEVICE_ENTRY(mpm_clear_impulses, clear_impulses<Scene>, 1)                                                \
-  MPM_DEVICE_ENTRY(mpm_work_of_impulses, work_of_impulses<Scene>, (mpm::device::sum_scalars<Scene, 3>))         \
-  MPM_DEVICE_ENTRY(mpm_power_of_forces, power_of_forces<Scene>, (mpm::device::sum_scalars<Scene, 2>))           \
-  MPM_DEVICE_ENTRY(mpm_power_of_filter, power_of_filter<Scene>, (mpm::device::sum_scalars<Scene, 1>))           \
-  MPM_DEVICE_ENTRY(mpm_work_of_folds, work_of_folds<Scene>, (mpm::device::sum_scalars<Scene, 2>))               \
-  MPM_DEVICE_ENTRY(mpm_momentum_of_nodes, momentum_of_nodes<Scene>, (mpm::device::sum_scalars<Scene, 4>))       \
-  MPM_DEVICE_ENTRY(mpm_momentum_of_particles, momentum_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 4>))
+  MPM_DEVICE_PHASE(mpm_energy_of_momenta, energy_of_momenta<Scene>, (mpm::device::sum_scalars<Scene, 1>))       \
+  MPM_DEVICE_PHASE(mpm_energy_of_velocities, energy_of_velocities<Scene>, (mpm::device::sum_scalars<Scene, 1>)) \
+  MPM_DEVICE_PHASE(mpm_work_of_forces, work_of_forces<Scene>, (mpm::device::sum_scalars<Scene, 11>))            \
+  MPM_DEVICE_PHASE(mpm_energy_of_particles, energy_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 1>))   \
+  MPM_DEVICE_PHASE(mpm_energy_dissipated, energy_dissipated<Scene>, (mpm::device::sum_scalars<Scene, 3>))       \
+  MPM_DEVICE_PHASE(mpm_clear_work_of_folds, clear_work_of_folds<Scene>, 1)                                      \
+  MPM_DEVICE_PHASE(mpm_clear_impulses, clear_impulses<Scene>, 1)                                                \
+  MPM_DEVICE_PHASE(mpm_work_of_impulses, work_of_impulses<Scene>, (mpm::device::sum_scalars<Scene, 3>))         \
+  MPM_DEVICE_PHASE(mpm_power_of_forces, power_of_forces<Scene>, (mpm::device::sum_scalars<Scene, 2>))           \
+  MPM_DEVICE_PHASE(mpm_power_of_filter, power_of_filter<Scene>, (mpm::device::sum_scalars<Scene, 1>))           \
+  MPM_DEVICE_PHASE(mpm_work_of_folds, work_of_folds<Scene>, (mpm::device::sum_scalars<Scene, 2>))               \
+  MPM_DEVICE_PHASE(mpm_momentum_of_nodes, momentum_of_nodes<Scene>, (mpm::device::sum_scalars<Scene, 4>))       \
+  MPM_DEVICE_PHASE(mpm_momentum_of_particles, momentum_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 4>))
 
-#define MPM_DEVICE_GRIP_ENTRIES \
-  MPM_DEVICE_ENTRY(mpm_scatter_grip, scatter_grip<Scene>, mpm::device::scatter_grip_scalars<Scene>)
+#define MPM_DEVICE_REACTION_ENTRIES                                                               \
+  MPM_DEVICE_PHASE(mpm_gathered_beyond, gathered_beyond<Scene>, mpm::device::line_scalars<Scene>) \
+  MPM_DEVICE_PHASE(mpm_held, held<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::support_sums>))
 
-#define MPM_DEVICE_CONTACT_ENTRIES MPM_DEVICE_ENTRY(mpm_contact, contact<Scene>, 1)
+#define MPM_DEVICE_GRIP_ENTRIES                                                                     \
+  MPM_DEVICE_PHASE(mpm_scatter_grip, scatter_grip<Scene>, mpm::device::scatter_grip_scalars<Scene>) \
+  MPM_DEVICE_PHASE(mpm_given_to_gripped, given_to_gripped<Scene>, (mpm::device::sum_scalars<Scene, 7>))
+
+#define MPM_DEVICE_CONTACT_ENTRIES \
+  MPM_DEVICE_PHASE(mpm_contact, contact<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::contact_sums>))
 
 #define MPM_DEVICE_FILTER_ENTRIES                                          \
-  MPM_DEVICE_ENTRY(mpm_begin_filter, begin_filter<Scene>, 1)               \
-  MPM_DEVICE_ENTRY(mpm_keep_unfiltered, keep_unfiltered<Scene>, 1)         \
-  MPM_DEVICE_ENTRY(mpm_keep_correction, keep_correction<Scene>, 1)         \
-  MPM_DEVICE_ENTRY(mpm_add_correction, add_correction<Scene>, 1)           \
-  MPM_DEVICE_ENTRY(mpm_restore_velocity, restore_velocity<Scene>, 1)       \
-  MPM_DEVICE_ENTRY(mpm_keep_free_velocity, keep_free_velocity<Scene>, 1)   \
-  MPM_DEVICE_ENTRY(mpm_take_free_velocity, take_free_velocity<Scene>, 1)   \
-  MPM_DEVICE_ENTRY(mpm_measure_constraints, measure_constraints<Scene>, 1) \
-  MPM_DEVICE_ENTRY(mpm_increment_norm, increment_norm<Scene>, (mpm::device::sum_scalars<Scene, 1>))
+  MPM_DEVICE_PHASE(mpm_begin_filter, begin_filter<Scene>, 1)               \
+  MPM_DEVICE_PHASE(mpm_keep_unfiltered, keep_unfiltered<Scene>, 1)         \
+  MPM_DEVICE_PHASE(mpm_keep_correction, keep_correction<Scene>, 1)         \
+  MPM_DEVICE_PHASE(mpm_add_correction, add_correction<Scene>, 1)           \
+  MPM_DEVICE_PHASE(mpm_restore_velocity, restore_velocity<Scene>, 1)       \
+  MPM_DEVICE_PHASE(mpm_keep_free_velocity, keep_free_velocity<Scene>, 1)   \
+  MPM_DEVICE_PHASE(mpm_take_free_velocity, take_free_velocity<Scene>, 1)   \
+  MPM_DEVICE_PHASE(mpm_measure_constraints, measure_constraints<Scene>, 1) \
+  MPM_DEVICE_PHASE(mpm_increment_norm, increment_norm<Scene>, (mpm::device::sum_scalars<Scene, 1>))
 
-#define MPM_DEVICE_FILTER_LOOP_ENTRIES                                               \
-  MPM_DEVICE_ENTRY(mpm_clear_projection, clear_projection<Scene>, 1)                 \
-  MPM_DEVICE_ENTRY(mpm_project, project<Scene>, mpm::device::project_scalars<Scene>) \
-  MPM_DEVICE_ENTRY(mpm_fold_projection, fold_projection<Scene>, 1)                   \
-  MPM_DEVICE_ENTRY(mpm_update_filter, update_filter<Scene>, 1)                       \
-  MPM_DEVICE_ENTRY(mpm_correct_increment, correct_increment<Scene>, 1)               \
-  MPM_DEVICE_ENTRY(mpm_fill_increments, fill_increments<Scene>, 1)
+#define MPM_DEVICE_FILTER_LOOP_ENTRIES                                                            \
+  MPM_DEVICE_PHASE(mpm_clear_projection, clear_projection<Scene>, 1)                              \
+  MPM_DEVICE_PHASE(mpm_project, project<Scene>, mpm::device::project_scalars<Scene>)              \
+  MPM_DEVICE_PHASE(mpm_fold_projection, fold_projection<Scene>, mpm::device::line_scalars<Scene>) \
+  MPM_DEVICE_PHASE(mpm_update_filter, update_filter<Scene>, 1)                                    \
+  MPM_DEVICE_PHASE(mpm_correct_increment, correct_increment<Scene>, 1)                            \
+  MPM_DEVICE_PHASE(mpm_fill_increments, fill_increments<Scene>, 1)
 
 #define MPM_DEVICE_HEAT_ENTRIES                                                                             \
-  MPM_DEVICE_ENTRY(mpm_scatter_heat, scatter_heat<Scene>, mpm::device::scatter_heat_scalars<Scene>)         \
-  MPM_DEVICE_ENTRY(mpm_divide_heat, divide_heat<Scene>, 1)                                                  \
-  MPM_DEVICE_ENTRY(mpm_impose_temperature, impose_temperature<Scene>, (mpm::device::sum_scalars<Scene, 2>)) \
-  MPM_DEVICE_ENTRY(mpm_fill_temperature, fill_temperature<Scene>, (mpm::device::sum_scalars<Scene, 2>))     \
-  MPM_DEVICE_ENTRY(mpm_keep_temperature, keep_temperature<Scene>, 1)                                        \
-  MPM_DEVICE_ENTRY(mpm_conduct, conduct<Scene>, mpm::device::conduct_scalars<Scene>)                        \
-  MPM_DEVICE_ENTRY(mpm_exchange_at_walls, exchange_at_walls<Scene>, (mpm::device::sum_scalars<Scene, 2>))   \
-  MPM_DEVICE_ENTRY(mpm_mass_of_box, mass_of_box<Scene>, (mpm::device::sum_scalars<Scene, 1>))               \
-  MPM_DEVICE_ENTRY(mpm_warm_box, warm_box<Scene>, (mpm::device::sum_scalars<Scene, 1>))                     \
-  MPM_DEVICE_ENTRY(mpm_warm, warm<Scene>, 1)                                                                \
-  MPM_DEVICE_ENTRY(mpm_gather_heat, gather_heat<Scene>, 1)
+  MPM_DEVICE_PHASE(mpm_scatter_heat, scatter_heat<Scene>, mpm::device::scatter_heat_scalars<Scene>)         \
+  MPM_DEVICE_PHASE(mpm_divide_heat, divide_heat<Scene>, 1)                                                  \
+  MPM_DEVICE_PHASE(mpm_impose_temperature, impose_temperature<Scene>, (mpm::device::sum_scalars<Scene, 2>)) \
+  MPM_DEVICE_PHASE(mpm_fill_temperature, fill_temperature<Scene>, (mpm::device::sum_scalars<Scene, 2>))     \
+  MPM_DEVICE_PHASE(mpm_keep_temperature, keep_temperature<Scene>, 1)                                        \
+  MPM_DEVICE_PHASE(mpm_conduct, conduct<Scene>, mpm::device::conduct_scalars<Scene>)                        \
+  MPM_DEVICE_PHASE(mpm_exchange_at_walls, exchange_at_walls<Scene>, (mpm::device::sum_scalars<Scene, 2>))   \
+  MPM_DEVICE_PHASE(mpm_mass_of_box, mass_of_box<Scene>, (mpm::device::sum_scalars<Scene, 1>))               \
+  MPM_DEVICE_PHASE(mpm_warm_box, warm_box<Scene>, (mpm::device::sum_scalars<Scene, 1>))                     \
+  MPM_DEVICE_PHASE(mpm_warm, warm<Scene>, 1)                                                                \
+  MPM_DEVICE_PHASE(mpm_gather_heat, gather_heat<Scene>, 1)
 
 #define MPM_DEVICE_HEAT_LEDGER_ENTRIES                                                                          \
-  MPM_DEVICE_ENTRY(mpm_heat_of_nodes, heat_of_nodes<Scene>, (mpm::device::sum_scalars<Scene, 1>))               \
-  MPM_DEVICE_ENTRY(mpm_heat_rate_of_nodes, heat_rate_of_nodes<Scene>, (mpm::device::sum_scalars<Scene, 1>))     \
-  MPM_DEVICE_ENTRY(mpm_heat_of_temperatures, heat_of_temperatures<Scene>, (mpm::device::sum_scalars<Scene, 1>)) \
-  MPM_DEVICE_ENTRY(mpm_heat_of_particles, heat_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 1>))       \
-  MPM_DEVICE_ENTRY(mpm_heat_of_dissipation, heat_of_dissipation<Scene>, (mpm::device::sum_scalars<Scene, 1>))
+  MPM_DEVICE_PHASE(mpm_heat_of_nodes, heat_of_nodes<Scene>, (mpm::device::sum_scalars<Scene, 1>))               \
+  MPM_DEVICE_PHASE(mpm_heat_rate_of_nodes, heat_rate_of_nodes<Scene>, (mpm::device::sum_scalars<Scene, 1>))     \
+  MPM_DEVICE_PHASE(mpm_heat_of_temperatures, heat_of_temperatures<Scene>, (mpm::device::sum_scalars<Scene, 1>)) \
+  MPM_DEVICE_PHASE(mpm_heat_of_particles, heat_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 1>))       \
+  MPM_DEVICE_PHASE(mpm_heat_of_dissipation, heat_of_dissipation<Scene>, (mpm::device::sum_scalars<Scene, 1>))
 
-#define MPM_DEVICE_MELTING_ENTRIES(n) MPM_DEVICE_ENTRY(mpm_change_phase_##n, change_phase<Scene##n>, 1)
+#define MPM_DEVICE_MELTING_ENTRIES(n) MPM_DEVICE_PHASE(mpm_change_phase_##n, change_phase<Scene##n>, 1)
 
 #define MPM_DEVICE_MATERIAL_ENTRIES(n)                  \
-  MPM_DEVICE_ENTRY(mpm_stress_##n, stress<Scene##n>, 1) \
-  MPM_DEVICE_ENTRY(mpm_strain_##n, strain<Scene##n>, 1) \
-  MPM_DEVICE_ENTRY(mpm_wave_speed_##n, wave_speed<Scene##n>, 1)
+  MPM_DEVICE_PHASE(mpm_stress_##n, stress<Scene##n>, 1) \
+  MPM_DEVICE_PHASE(mpm_strain_##n, strain<Scene##n>, 1) \
+  MPM_DEVICE_PHASE(mpm_wave_speed_##n, wave_speed<Scene##n>, 1)

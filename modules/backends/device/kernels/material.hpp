@@ -3,6 +3,7 @@
 // ratio is not a positive number is reported as failed.
 
 #include "backends/device/kernels/arrays.hpp"
+#include "backends/device/kernels/sums.hpp"
 #include "operators/heat.hpp"
 
 namespace mpm::device {
@@ -80,7 +81,7 @@ MPM_HD void for_each_state(const Team& team, const Arguments<typename Scene::Sca
     body(constants, p, state);
     const T J = Material::volume_ratio(state);
     a.particles.field[Scene::Particle::volume_ratio][p] = J;
-    if (!(J > T(0))) Team::lower(a.first_failed, p);
+    if (!(J > T(0))) report(a, p);
   };
   const Constants constants(parameters_of<Material>(a.material_parameters));
   if constexpr (Scene::Particle::melted_fraction >= 0) {
@@ -172,6 +173,23 @@ MPM_HD void wave_speed(const Team& team, const Arguments<typename Scene::Scalar>
   using Material = typename Scene::Material;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, const auto& state) {
     a.particles.field[Scene::Particle::wave_speed][p] = Material::wave_speed(constants, state);
+  });
+}
+
+/// Finds the largest sum of a particle's wave speed and speed, that wave speed, and the particle's index; of equal ones
+/// the first.
+template <class Scene>
+MPM_HD void largest_speed(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using P = typename Scene::Particle;
+  sum_over<3, 0, TakingLargest>(team, a, a.particles.count, [&](int p, double* values) {
+    double square = 0;
+    for (int c = 0; c < Scene::dimension; ++c) {
+      const double v = a.particles.field[P::velocity][c * a.particles.stride + p];
+      square += v * v;
+    }
+    const double wave = a.particles.field[P::wave_speed][p];
+    const double speed = wave + sqrt(square);
+    if (speed > 0) values[0] = speed, values[1] = wave, values[2] = p;  // not what is no number
   });
 }
 

@@ -23,7 +23,7 @@ mpm::device::AccessRecorder* mpm_access_recorder = nullptr;
 
 namespace mpm::device {
 
-inline bool accesses_add = false;  ///< the accesses of now are those of Team::add or Team::lower
+inline bool accesses_add = false;  ///< the accesses of now are those that Team lets several lanes make at once
 
 /// Marks accesses that several lanes may make at once, as long as it lives. The compiler must not move them out of it.
 struct SharedAccess {

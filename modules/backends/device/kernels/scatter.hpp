@@ -1,6 +1,7 @@
 #pragma once
 // Takes particles to the grid: a team sums a block's particles into a tile in shared memory, then adds it to the grid.
 
+#include "backends/device/kernels/exact_sums.hpp"
 #include "backends/device/kernels/higher.hpp"
 
 namespace mpm::device {
@@ -25,18 +26,19 @@ struct Tile {
   }
 };
 
-/// Sums over the particles of the team's block. `contribute(p, add)` calls add(node, values[Channels]); `channel[k]` is
-/// the grid's array of channel k, or null where nothing is given to it.
+/// Sums over the particles of each block. `contribute(p, add)` calls add(node, values[Channels]); `channel[k]` is the
+/// grid's array of channel k, or null where nothing is given to it.
 template <int D, int Channels, class T, class Contribute>
-MPM_HD void scatter_block(const Team& team, const Arguments<T>& a, T* const* channel, Contribute contribute) {
+MPM_HD void scatter_block(const Team& team, const Arguments<T>& a, int block, T* const* channel,
+                          Contribute& contribute) {
   T* const tile = team.template shared<T>();
-  const int* const first_cell = a.blocks.cell + 3 * team.block();
+  const int* const first_cell = a.blocks.cell + 3 * block;
   team.for_each_lane([&](int lane) {
     for (int k = lane; k < Channels * Tile<D>::nodes; k += team.lanes()) tile[k] = T(0);
   });
   team.for_each_lane([&](int lane) {
-    const int end = a.blocks.begin[team.block() + 1];
-    for (int i = a.blocks.begin[team.block()] + lane; i < end; i += team.lanes())
+    const int end = a.blocks.begin[block + 1];
+    for (int i = a.blocks.begin[block] + lane; i < end; i += team.lanes())
       contribute(a.blocks.order[i], [&](const int* node, const T* values) {
         const int at = Tile<D>::index(first_cell, node);
         for (int k = 0; k < Channels; ++k)
@@ -54,6 +56,21 @@ MPM_HD void scatter_block(const Team& team, const Arguments<T>& a, T* const* cha
         Team::add(channel[k] + node_index<D>(a, node), value);
       }
   });
+}
+template <class Scene, int Channels, class T, class Contribute>
+MPM_HD void scatter_blocks(const Team& team, const Arguments<T>& a, T* const* channel, Contribute contribute) {
+  constexpr int D = Scene::dimension;
+  if constexpr (Scene::deterministic) {
+    if (a.exact_phase == exact_take) return take_exact_sums<Channels>(team, a, channel);
+    for_each_block(team, a, [&](int block) {
+      if (a.exact_phase == exact_measure)
+        measure_block<Channels>(team, a, block, channel, contribute);
+      else
+        add_block_exactly<D, Channels>(team, a, block, channel, contribute);
+    });
+  } else {
+    for_each_block(team, a, [&](int block) { scatter_block<D, Channels>(team, a, block, channel, contribute); });
+  }
 }
 
 template <class Scene>
@@ -92,9 +109,9 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
   constexpr int D = Scene::dimension;
   T* channel[Scene::scattered];
   find_channels<Scene>(a, channel);
-  scatter_block<D, Scene::scattered>(team, a, channel, [&](int p, auto add) {
+  scatter_blocks<Scene, Scene::scattered>(team, a, channel, [&](int p, auto add) {
     const Stencil<Scene> stencil(a, p);
-    if (!stencil.inside()) return Team::lower(a.first_failed, p);
+    if (!stencil.inside()) return report(a, p);
     const ParticleArrays<T>& particles = a.particles;
     const int stride = particles.stride;
     [[maybe_unused]] const T* const position = particles.field[P::position];
@@ -155,9 +172,9 @@ MPM_HD void scatter_load(const Team& team, const Arguments<typename Scene::Scala
   constexpr int D = Scene::dimension;
   T* channel[D];
   for (int c = 0; c < D; ++c) channel[c] = a.grid.field[a.load_field] + c * a.node_count;
-  scatter_block<D, D>(team, a, channel, [&](int p, auto add) {
+  scatter_blocks<Scene, D>(team, a, channel, [&](int p, auto add) {
     const Stencil<Scene> stencil(a, p);
-    if (!stencil.inside()) return Team::lower(a.first_failed, p);
+    if (!stencil.inside()) return report(a, p);
     const int stride = a.particles.stride;
     const Vec<D, T> b = load<D>(a.particles.field[P::load_force], stride, p);
     Mat<D, T> S{};

@@ -30,6 +30,10 @@ class Team {
     atomicAdd(to, value);
   }
   MPM_HD static void lower(int* to, int value) { atomicMin(to, value); }
+  /// Raises a counter by one and returns its value before; which lane gets which depends on their order.
+  MPM_HD static int take_number(int* counter) { return atomicAdd(counter, 1); }
+  /// Reads what others may lower or raise at the same time.
+  MPM_HD static int look(const int* at) { return *static_cast<const volatile int*>(at); }
 
  private:
   void* shared_;
@@ -93,6 +97,14 @@ class Team {
   static void lower(int* to, int value) {
     const SharedAccess noted;
     if (value < *to) *to = value;
+  }
+  static int take_number(int* counter) {
+    const SharedAccess noted;
+    return (*counter)++;
+  }
+  static int look(const int* at) {
+    const SharedAccess noted;
+    return *at;
   }
 
  private:

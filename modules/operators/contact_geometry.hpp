@@ -1,0 +1,95 @@
+#pragma once
+// The geometry of two velocity fields that meet at a node: shared normal, separation, area. All backends use it.
+
+#include "kernel/math.hpp"
+
+namespace mpm {
+
+/// A monotone table by which the mean position of a body's particles near a node tells where its edge is, both in cells
+/// (simulation/contact_detection.hpp).
+struct EdgeTable {
+  const double *edges, *means;
+  int count;
+
+  /// The edge that gives this mean. Means outside the table give its ends.
+  MPM_HD double edge(double mean) const {
+    if (mean <= means[0]) return edges[0];
+    if (mean >= means[count - 1]) return edges[count - 1];
+    int lower = 0, upper = count - 1;  // means[lower] <= mean < means[upper]
+    while (upper - lower > 1) {
+      const int middle = (lower + upper) / 2;
+      (means[middle] > mean ? upper : lower) = middle;
+    }
+    const double share = (mean - means[lower]) / (means[upper] - means[lower]);
+    return edges[lower] + share * (edges[upper] - edges[lower]);
+  }
+};
+
+/// The values of the contact channels at one node for one field.
+struct ContactFieldNode {
+  double mass = 0;
+  double volume = 0;               ///< sum w V
+  double volume_gradient[3] = {};  ///< sum V grad w, derivative by the particle's position: points out of the body
+  double mass_position[3] = {};    ///< sum w m (x_p - x_node), kg m
+};
+
+struct ContactGeometry {
+  bool valid = false;     ///< both fields present and a normal exists
+  double normal[3] = {};  ///< unit, from a to b
+  double separation = 0;  ///< m, negative when the surfaces overlap
+  double area = 0;        ///< m^2, m in 2-D
+};
+
+/// A pair whose lighter field holds less than this share of the mass is skipped (unless the law is a weld).
+inline constexpr double contact_prescreen = 1e-5;
+
+/// Whether a law is asked about two fields with these masses at a node.
+template <class Scalar>
+MPM_HD bool meet(Scalar mass_a, Scalar mass_b, bool weld) {
+  if (!(mass_a > 0) || !(mass_b > 0)) return false;
+  return weld || min(mass_a, mass_b) >= contact_prescreen * (static_cast<double>(mass_a) + mass_b);
+}
+
+/// Finds the shared average volume gradient (Nairn 2013, CMES 92:271); false where there is none.
+MPM_HD bool average_gradient(const ContactFieldNode& a, const ContactFieldNode& b, int dimension, double* normal) {
+  double norm = 0;
+  for (int i = 0; i < dimension; ++i) {
+    normal[i] = a.volume_gradient[i] - b.volume_gradient[i];
+    norm += normal[i] * normal[i];
+  }
+  norm = sqrt(norm);
+  if (!(norm > 0)) return false;
+  for (int i = 0; i < dimension; ++i) normal[i] /= norm;
+  return true;
+}
+
+/// The separation by edge tables that are inverted at the mean positions of mass.
+MPM_HD double separation_of_edges(const ContactFieldNode& a, const ContactFieldNode& b, const EdgeTable& edge_a,
+                                  const EdgeTable& edge_b, const double* normal, double cell_size, int dimension) {
+  double position_a = 0, position_b = 0;
+  for (int i = 0; i < dimension; ++i) {
+    position_a += a.mass_position[i] * normal[i];
+    position_b += b.mass_position[i] * normal[i];
+  }
+  const double surface_a = edge_a.edge(position_a / (a.mass * cell_size));
+  const double surface_b = -edge_b.edge(-position_b / (b.mass * cell_size));
+  return (surface_b - surface_a) * cell_size;
+}
+
+/// The area that two fields share at a node (Nairn 2013, eq. 26).
+MPM_HD double contact_area(const ContactFieldNode& a, const ContactFieldNode& b, double cell_size) {
+  return sqrt(2 * (a.volume + b.volume) * min(a.volume, b.volume)) / cell_size;
+}
+
+/// The geometry where normal and separation both follow from sums over nodes.
+MPM_HD ContactGeometry contact_geometry(const ContactFieldNode& a, const ContactFieldNode& b, const EdgeTable& edge_a,
+                                        const EdgeTable& edge_b, double cell_size, int dimension) {
+  ContactGeometry result;
+  if (!average_gradient(a, b, dimension, result.normal)) return result;
+  result.separation = separation_of_edges(a, b, edge_a, edge_b, result.normal, cell_size, dimension);
+  result.area = contact_area(a, b, cell_size);
+  result.valid = true;
+  return result;
+}
+
+}  // namespace mpm
