@@ -96,9 +96,12 @@ void print_table(const Component& shape, int particles) {
   std::cout << "\n" << padded("gap", 8);
   for (const Column& column : columns) std::cout << padded(number(largest_gap(shape, column.faces), 4), width);
   std::cout
-      << "\n\nThe last row is the largest gap, to either side, that detection by position finds between such faces: it "
-         "knows of\nfaces along the grid and of particles as they were seeded. \"detection\": \"particle_surfaces\" "
-         "takes the particles'\nown sides instead, and finds none.\n";
+      << "\n\nRows of particles are parallel to the faces; all is the mean over the places along them. The last row is "
+         "the largest\ngap, to either side, that detection by position finds between such faces where a node sees "
+         "both: it "
+         "knows of faces\nalong the grid and of particles as they were seeded. \"detection\": \"particle_surfaces\" "
+         "takes the "
+         "particles' own sides\ninstead, and finds none.\n";
 }
 
 render::Panel panel(const Component& shape, const std::string& title, const std::vector<Column>& columns) {

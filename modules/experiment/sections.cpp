@@ -24,10 +24,10 @@ std::vector<ParameterSpec> filter_schedule() {
       parameter("every_time", Type::number, "s", "Time from one filtered step to the next.").above(0),
       parameter("every_courant", Type::number, "", "Cells that the fastest wave crosses between filtered steps.")
           .above(0),
-      parameter("constraints", Type::choice, "",
-                "When conditions and contact act: on every increment, with one-sided impulses taken back where a later "
-                "increment "
-                "makes them needless, or kept; or once at the end.")
+      parameter(
+          "constraints", Type::choice, "",
+          "When conditions and contact act: on every increment, with one-sided impulses taken back where a later one "
+          "makes them needless, or kept; or once at the end.")
           .of({"every_increment", "kept_impulses", "at_end"})
           .standard("every_increment"),
       parameter("position_update", Type::choice, "",

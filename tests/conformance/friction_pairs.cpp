@@ -89,6 +89,8 @@ TEST_CASE("a pair takes the friction of the speed that it is left with") {
     check(0.1, 0.5, decay);  // it falls
     check(0.5, 0.1, decay);  // it rises
   }
+  check(0.5, 0.1, 1e-12);  // the least decay speed
+  check(0.1, 0.5, 1e-12);
   check(2, 0.1, 5);  // friction that would hold it at high speed slows it all the same
   // mu_s u = 3.2 m/s holds it, 2.8 m/s does not.
   ContactResult<3, double> found{};
@@ -103,6 +105,24 @@ TEST_CASE("a pair takes the friction of the speed that it is left with") {
   CHECK(found.dissipated == Approx(3.75).epsilon(1e-10));
   VelocityDependentFriction::apply({0.25, 0.7, 1e-6}, hit(-0.01), found);
   CHECK(found.dissipated == Approx(3.75).epsilon(1e-10));
+}
+
+// In float the least decay speed keeps all numbers finite, of pairs that are apart too.
+TEST_CASE("friction of the least decay speed is a number in float") {
+  ContactPair<2, float> pair{};
+  pair.mass_a = 2, pair.mass_b = 6;
+  pair.normal = {{0, 1}};
+  pair.momentum_a = {{6, 8}};
+  for (const float separation : {-0.01f, 0.01f})
+    for (const double kinetic : {0.1, 0.5, 100.0}) {
+      pair.separation = separation;
+      ContactResult<2, float> found{};
+      VelocityDependentFriction::apply({kinetic, 0.3, 1e-12}, pair, found);
+      INFO(separation << " " << kinetic);
+      CHECK(std::isfinite(found.impulse[0]));
+      CHECK(std::isfinite(found.dissipated));
+      CHECK((found.impulse[1] == 0) == (separation > 0));
+    }
 }
 
 // At the brink of sticking and with a slope of the law that is nearly its own reciprocal Newton's rounds do not arrive: what

@@ -223,13 +223,13 @@ TEST_CASE(
   }
 }
 
-// The proposition of docs/studies/filtered_contact.md. What is taken back is the mean of a collision of the consistent mass
-// matrix; what is kept gains as the study's figure says.
+// What docs/studies/filtered_contact.md measures: taken back, impulses gain nothing up to order 8 and 0.11 % at order 16; kept,
+// they gain what the study's figure says.
 TEST_CASE("impulses that a filter's loop keeps gain energy, those that it takes back do not",
           "[energy_gain][contact][filters][docs]") {
   const auto figure = mpm::support::read_csv_cells(MPM_SOURCE_DIR "/figures/studies/filtered_contact_map_2.csv");
   const std::vector<std::string> ten{set("/grid/cell_size", "0.002"), set("/solver/time_step", "4e-7")};
-  for (const int order : {2, 8}) {
+  for (const int order : {2, 8, 16}) {
     const auto row = std::find_if(figure.begin(), figure.end(), [&](const std::vector<std::string>& cells) {
       return cells[0] == "discs" && cells[1] == std::to_string(order);
     });
@@ -238,7 +238,7 @@ TEST_CASE("impulses that a filter's loop keeps gain energy, those that it takes 
       INFO("order " << order << " " << backend);
       std::vector<std::string> settings = ten;
       settings.push_back(set("/backend", backend));
-      CHECK(gain_of_discs(order, settings) < 1e-9);
+      CHECK(gain_of_discs(order, settings) < (order == 16 ? 0.11 : 1e-9));
       settings.emplace_back("/filter/constraints=kept_impulses");
       CHECK(gain_of_discs(order, settings) == Approx(std::stod((*row)[2])).epsilon(1e-6));
     }

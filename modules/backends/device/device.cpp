@@ -184,7 +184,7 @@ void Device::fill(DevicePointer to, unsigned char byte, std::size_t bytes) {
 
 void Device::begin_capture() {
   make_current();
-  check(driver_.cuStreamBeginCapture_v2(stream_, capture_global), "to begin a graph");
+  check(driver_.cuStreamBeginCapture_v2(stream_, capture_of_thread), "to begin a graph");
 }
 GraphExecHandle Device::end_capture() {
   make_current();

@@ -51,7 +51,7 @@ struct VelocityDependentFriction {
       MPM_NUMBER_PARAMETER(static_friction, "", 0.0, 0.0, unbounded, 0,
                            "coefficient at rest; below `friction` it rises with the speed"),
       MPM_NUMBER_PARAMETER(
-          decay_speed, "m/s", 1.0, 0.0, unbounded, MPM_REQUIRED | MPM_ABOVE_MINIMUM,
+          decay_speed, "m/s", required, 1e-12, unbounded, 0,
           "sliding speed over which the coefficient goes from one to the other, by exp(-v / decay_speed)"),
   };
 #endif

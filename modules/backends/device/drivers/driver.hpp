@@ -43,8 +43,8 @@ enum : DriverResult {
   driver_capture_invalidated = 901
 };
 
-/// How far a capture reaches (CUstreamCaptureMode): nothing that it could not hold may be done by any thread.
-enum : int { capture_global = 0 };
+/// How far a capture reaches (CUstreamCaptureMode): what it could not hold is refused to the thread that captures alone.
+enum : int { capture_of_thread = 1 };
 
 /// The attributes of devices that are asked for (CUdevice_attribute).
 enum : int {

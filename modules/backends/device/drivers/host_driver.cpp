@@ -374,7 +374,7 @@ DriverResult cuStreamSynchronize(StreamHandle stream) {
 DriverResult cuStreamBeginCapture_v2(StreamHandle stream, int mode) {
   MPM_BEGIN_IN_CONTEXT(cuStreamBeginCapture_v2)
   if (!is_stream(stream)) return driver_invalid_handle;
-  return mode == capture_global ? stream->capture.begin(stream->waiting) : driver_invalid_value;
+  return mode == capture_of_thread ? stream->capture.begin(stream->waiting) : driver_invalid_value;
 }
 DriverResult cuStreamEndCapture(StreamHandle stream, GraphHandle* graph) {
   MPM_BEGIN_IN_CONTEXT(cuStreamEndCapture)

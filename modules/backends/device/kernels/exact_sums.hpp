@@ -69,6 +69,7 @@ MPM_HD void add_block_exactly(const Team& team, const Arguments<T>& a, int block
             Team::add(channel[k] + node, values[k]);
             continue;
           }
+          if (a.exponents[k] > no_exponent) continue;  // a compiler may have rounded it to zero when it was measured
           const double step = coarse_step(a.exponents[k]), fine = step * MPM_MATH(ldexp)(1.0, -exact_bits);
           const auto many = static_cast<long long>(value / step);
           const auto rest = static_cast<long long>((value - static_cast<double>(many) * step) / fine);
