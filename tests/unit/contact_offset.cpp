@@ -21,6 +21,9 @@ constexpr double degree = std::numbers::pi / 180;
 Component shape(const char* id) {
   Component component;
   component.plugin = test::plugins().find(MPM_SHAPE, id);
+  component.parameters.resize((component.plugin->descriptor->parameter_bytes + 7) / 8);
+  for (const mpm_parameter& parameter : component.plugin->parameters())
+    component.parameters[parameter.offset / sizeof(double)] = parameter.default_value;
   return component;
 }
 
