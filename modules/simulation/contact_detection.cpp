@@ -93,13 +93,9 @@ EdgeModel::EdgeModel(const Component& shape, int particles_per_cell_axis)
 }
 
 double EdgeModel::mean_position(double edge) const {
-  std::vector<double> rows;
-  for (int k = 0; k < 2 * static_cast<int>(reach) * rows_per_cell_; ++k)
-    rows.push_back(edge - (k + 0.5) / rows_per_cell_);
-  const std::vector<double> w = row_weights(shape_, {0.5 / rows_per_cell_}, rows);
-  double sum = 0, moment = 0;
-  for (std::size_t p = 0; p < rows.size(); ++p) sum += w[p], moment += w[p] * rows[p];
-  return moment / sum;
+  const Row row{0.5 / rows_per_cell_};
+  return mean_of_rows([&](const std::vector<double>& rows) { return row_weights(shape_, row, rows); }, edge, 1,
+                      rows_per_cell_);
 }
 
 double EdgeModel::contact_offset(double edge) const {

@@ -16,6 +16,19 @@ struct Row {
 /// The weight of a node at zero for each of these places of rows, in cells.
 std::vector<double> row_weights(const Component& shape, const Row& row, const std::vector<double>& places);
 
+/// The mean place of a body's rows as a node at zero sees them, in cells: rows lie half a spacing and so on inside its face,
+/// `stretch` / `per_cell` apart, and weights(places) weighs them. NaN where the node sees none.
+template <class Weights>
+double mean_of_rows(const Weights& weights, double face, double stretch, int per_cell) {
+  constexpr double reach = 8;  // cells inside the face, which is beyond the support of every shape
+  std::vector<double> rows;
+  for (int k = 0; k * stretch < reach * per_cell; ++k) rows.push_back(face - (k + 0.5) * stretch / per_cell);
+  const std::vector<double> w = weights(rows);
+  double sum = 0, moment = 0;
+  for (std::size_t p = 0; p < rows.size(); ++p) sum += w[p], moment += w[p] * rows[p];
+  return moment / sum;
+}
+
 /// A body occupies x < e on one axis, and its particle rows lie 1/(2n), 3/(2n), ... cells inside the edge (n a cell). A
 /// node at 0 sees the mass-weighted mean position of the rows in its support. That mean grows with e, so that it
 /// determines e without a fitted constant. Positions and edges are in cells.

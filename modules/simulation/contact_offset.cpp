@@ -67,25 +67,19 @@ class ProjectedWeights {
 /// What a node at zero sees of the two bodies.
 class Seen {
  public:
-  Seen(const Component& shape, const TouchingFaces& faces)
-      : weights_(shape, faces), spacing_(faces.stretch / faces.particles_per_cell_axis) {
+  Seen(const Component& shape, const TouchingFaces& faces) : weights_(shape, faces), faces_(faces) {
     if (faces.angle != 0 && shape.plugin->shape().form == MPM_NODE_LIST)
       throw std::invalid_argument("the nodes of " + std::string(shape.plugin->id()) +
                                   " follow no axes: faces along the grid alone");
   }
   /// The mean distance of a body's rows, for its face at `face`.
   double mean(double face) const {
-    std::vector<double> rows;
-    for (int k = 0; k * spacing_ < 2 * reach; ++k) rows.push_back(face - (k + 0.5) * spacing_);
-    const std::vector<double> w = weights_(rows);
-    double sum = 0, moment = 0;
-    for (std::size_t p = 0; p < rows.size(); ++p) sum += w[p], moment += w[p] * rows[p];
-    return moment / sum;
+    return mean_of_rows(weights_, face, faces_.stretch, faces_.particles_per_cell_axis);
   }
 
  private:
   const ProjectedWeights weights_;
-  const double spacing_;
+  const TouchingFaces faces_;
 };
 
 }  // namespace

@@ -19,8 +19,8 @@ struct VelocityDependentFriction {
   /// The speed v that is left of a sliding speed v0 solves v + mu(v) u = v0, with u the speed of approach, and is that of
   /// the step's end: no step overshoots it. Where v0 > mu_s u it has one solution in (0, v0): the left side less v0 is
   /// below 0 at 0 and above at v0, and convex where friction falls with speed, concave and growing where it rises.
-  /// Newton's method then goes to it from v0, or from 0, without passing it. So few rounds that they have not arrived
-  /// leave friction below what the law allows at the speed that is left.
+  /// Newton's method from v0 then comes down to it, or passes it once and comes up. Rounds that have not arrived leave
+  /// friction that the law allows at the speed that is left, or less.
   template <int D, class S>
   MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
     const scalar_of<S> zero = 0, one = 1;
@@ -30,7 +30,7 @@ struct VelocityDependentFriction {
     const scalar_of<S> kinetic = real<S>(p.friction), excess = real<S>(p.static_friction - p.friction);
     const scalar_of<S> rate = real<S>(1 / p.decay_speed);
     const auto sticks = speed <= real<S>(p.static_friction) * approach;
-    S left = excess > zero ? speed : S(zero), decayed = exp(-rate * left);
+    S left = speed, decayed = exp(-rate * left);
     for (int round = 0; round < rounds; ++round) {
       const S beyond = left + (kinetic + excess * decayed) * approach - speed;
       const S slope = one - excess * rate * decayed * approach;
