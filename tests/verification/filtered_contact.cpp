@@ -240,7 +240,7 @@ TEST_CASE("impulses that a filter's loop keeps gain energy, those that it takes 
       settings.push_back(set("/backend", backend));
       CHECK(gain_of_discs(order, settings) < (order == 16 ? 0.11 : 1e-9));
       settings.emplace_back("/filter/constraints=kept_impulses");
-      CHECK(gain_of_discs(order, settings) == Approx(std::stod((*row)[2])).epsilon(1e-6));
+      CHECK(gain_of_discs(order, settings) == Approx(std::stod((*row)[2])).epsilon(1e-4));
     }
   }
 }
