@@ -96,22 +96,20 @@ struct Arguments {
   // These describe the scene; they are the same for all phases.
   T cell_size, inverse_cell_size, lower[3], gravity[3];
   int cells[3], extent[3], padding[3], node_count;
-  int walls[3][2];  ///< Wall
-  bool gravity_has_potential[3];
+  int walls[3][2];               ///< Wall
   const T* wall_velocity[3][2];  ///< [D][line of the axis], m/s, as evaluated last; null for rest
   const Box<T>* boxes;
-  int box_count;
   const GripArrays<T>* grips;  ///< of the velocity field `grid`
-  int grip_count;
+  int box_count, grip_count;
   const double *shape_parameters, *transfer_parameters, *filter_parameters, *contact_parameters, *material_parameters;
   const double* melted_parameters;  ///< parameters of the material's melted particles
   const T* wall_temperature[3][2];  ///< [line of the axis], K, as evaluated last; null where none is held
   WallHeat<T> wall_heat[3][2];      ///< as evaluated last
   const T* wall_shares;             ///< shares of heat through a wall: that of its node, of the next one inward ...
-  int wall_share_count;
-  T wall_beyond;  ///< m, how far the nodes beyond the wall make the temperature there differ (WallWeights)
   const HeatBox<T>* heat_boxes;
-  int heat_box_count;
+  int wall_share_count, heat_box_count;
+  T wall_beyond;  ///< m, how far the nodes beyond the wall make the temperature there differ (WallWeights)
+  bool gravity_has_potential[3];
   // These are what this phase works on.
   ParticleArrays<T> particles;
   NodeArrays<T> grid, other;
