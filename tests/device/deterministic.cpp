@@ -99,8 +99,8 @@ TEST_CASE("the memory of deterministic sums is counted before a run begins", "[d
   const auto bytes_of_nodes = [](const std::vector<std::string>& overrides) {
     const Experiment experiment = device_experiment(touching(2).text(), "double", overrides);
     double bytes = 0;
-    for (const device::TakenMemory& taken : device::taken_memory(experiment, make_plan(experiment), {1, 1}, 1000))
-      if (taken.body < 0) bytes += taken.bytes;
+    for (const device::TakenMemory& taken : device::taken_memory(experiment, make_plan(experiment), {{1, 1}, 1000}))
+      if (taken.body == device::TakenMemory::of_nodes) bytes += taken.bytes;
     return bytes;
   };
   // A scatter with contact has 10 channels: mass, momentum and force, volume, its gradient, and the position of mass.

@@ -6,7 +6,10 @@
 #include <csignal>
 
 #include "backends/device/device.hpp"
+#include "backends/device/memory.hpp"
+#include "backends/device/sorting.hpp"
 #include "device/device_support.hpp"
+#include "simulation/boundary.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -129,6 +132,64 @@ TEST_CASE("a run that does not fit on its device is refused before it begins", "
   CHECK(has(message, "KiB"));
   CHECK(has(message, "--backend cpu"));
   CHECK(device::calls_on_host("cuModuleLoadData") == compiled);
+}
+
+namespace {
+
+/// The bytes that a run has asked a device for after one step, and those that are counted before it begins.
+struct Memory {
+  double asked = 0, counted = 0;
+  int blocks = 0;  ///< of the grid
+};
+
+/// 20 small bodies, so that what a body takes of the grid outweighs its particles; every second one is another velocity
+/// field where there is contact.
+Memory memory_of_many_bodies(double cell_size, const std::string& contact) {
+  std::string bodies;
+  for (int k = 0; k < 20; ++k) {
+    const double x = 0.1 + 0.4 * (k % 5), y = 0.1 + 0.5 * (k / 5);
+    const std::string field = contact.empty() ? "" : k % 2 ? R"("field": "odd", )" : R"("field": "even", )";
+    bodies += (k ? ", " : "") + std::string(R"({"name": "b)") + std::to_string(k) + R"(", "material": "m", )" + field +
+              R"("geometry": {"type": "box", "lower": [)" + digits(x) + ", " + digits(y) + R"(], "upper": [)" +
+              digits(x + 0.08) + ", " + digits(y + 0.08) + "]}}";
+  }
+  const Experiment experiment =
+      device_experiment(R"({"title": "many", "dimension": 2, "grid": {"cell_size": )" + digits(cell_size) + R"(,
+          "domain": [[0, 0], [2, 2]], "boundaries": {"all": "slip"}}, "shape": {"type": "bspline_quadratic"},
+          "transfer": {"type": "apic"}, "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000,
+          "poisson_ratio": 0.3, "density": 1000}},)" +
+                            (contact.empty() ? "" : "\"contact\": " + contact + ",") + "\"bodies\": [" + bodies +
+                            R"(], "solver": {"time_step": 0.001, "end_time": 0.1}})",
+                        "double");
+  const Plan plan = make_plan(experiment);
+  Simulation simulation(experiment, device_factory());
+  simulation.step();
+  device::Arguments<double> scene{};
+  device::SceneSize size{{}, 1, 0, device_setup().lanes};
+  for (int c = 0; c < 2; ++c) {
+    scene.cells[c] = experiment.grid.cells[c], scene.padding[c] = grid_padding_of(experiment.shape.plugin->shape());
+    size.nodes *= static_cast<std::size_t>(scene.cells[c] + 1 + 2 * scene.padding[c]);
+  }
+  size.blocks = device::table_of_blocks(scene, 2).table;
+  for (int body = 0; body < 20; ++body)
+    size.particles.push_back(simulation.backend().body_state(body).position.size() / 2);
+  Memory memory{static_cast<double>(device::bytes_on_host(0)), 0, size.blocks};
+  for (const device::TakenMemory& taken : device::taken_memory(experiment, plan, size)) memory.counted += taken.bytes;
+  return memory;
+}
+
+}  // namespace
+
+TEST_CASE("what a device is asked for is counted before a run begins, in a scene of many bodies", "[device][driver]") {
+  for (const std::string contact : {"", R"({"type": "coulomb", "friction": 0.2})"}) {
+    INFO(contact);
+    const Memory coarse = memory_of_many_bodies(0.04, contact), fine = memory_of_many_bodies(0.01, contact);
+    // What is not counted is the same on any grid: parameters, and with contact the edges of bodies.
+    CHECK(fine.asked - coarse.asked == fine.counted - coarse.counted);
+    CHECK(coarse.asked >= coarse.counted);
+    CHECK(coarse.asked - coarse.counted < 30000);
+    CHECK(fine.blocks > 2 * device::chunk_of_blocks);  // so that chunks of the table count too
+  }
 }
 
 TEST_CASE("memory that runs out all the same is said with what is asked and free", "[device][driver]") {

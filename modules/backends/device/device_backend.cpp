@@ -37,13 +37,20 @@ Arguments<T> described(const Experiment& experiment) {
 /// The teams at work on blocks that one multiprocessor may hold: as many as the limits of its threads allow.
 constexpr int teams_of_multiprocessor = 32;
 
+template <class T>
+SceneSize size_of(const Arguments<T>& scene, int dimension, const std::vector<SeededBody>& seeded, int lanes) {
+  SceneSize size{{}, static_cast<std::size_t>(scene.node_count), table_of_blocks(scene, dimension).table, lanes};
+  for (const SeededBody& body : seeded) size.particles.push_back(body.count());
+  return size;
+}
+
 /// Opens the device, unless it has too little memory free.
 std::unique_ptr<Device> open(const DeviceSetup& setup, const Experiment& experiment, const Plan& plan,
-                             const std::vector<SeededBody>& seeded, std::size_t nodes) {
+                             const SceneSize& size) {
   if (setup.lanes < 1 || setup.lanes > largest_team)
     throw std::invalid_argument("a team has 1 to " + std::to_string(largest_team) + " lanes");
   auto device = std::make_unique<Device>(*setup.driver, setup.number);
-  refuse_what_does_not_fit(*device, experiment, plan, seeded, nodes);
+  refuse_what_does_not_fit(*device, experiment, plan, size);
   return device;
 }
 
@@ -62,7 +69,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
     : experiment_(experiment),
       plan_(plan),
       scene_(described<T>(experiment)),
-      device_(open(setup, experiment, plan, seeded, static_cast<std::size_t>(scene_.node_count))),
+      device_(open(setup, experiment, plan, size_of(scene_, experiment.dimension, seeded, setup.lanes))),
       lanes_(setup.lanes),
       teams_(setup.teams > 0 ? setup.teams : teams_of_multiprocessor * device_->multiprocessors()),
       shape_parameters_(*device_, "the shape's parameters"),
@@ -110,9 +117,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
   }
   for (int field = 0; field < experiment.field_count; ++field)
     fields_.emplace_back(*device_, experiment, plan, static_cast<std::size_t>(scene_.node_count));
-  int most = nodes();
-  for (const Body<T>& body : bodies_) most = std::max(most, body.count);
-  partial_sums_.resize(most_sums * (static_cast<std::size_t>(most) / static_cast<std::size_t>(lanes_) + 1));
+  partial_sums_.resize(room_for_sums(size_of(scene_, experiment.dimension, seeded, lanes_)));
   last_pass_ = last_pass_of(plan.step);
   scene_.partial_sums = partial_sums_.data();
   for (int axis = 0; axis < experiment.dimension; ++axis) (periodic(axis) ? images_ : walls_).push_back(axis);

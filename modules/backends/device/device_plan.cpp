@@ -63,7 +63,7 @@ DevicePlan device_plan(const Experiment& experiment, const Plan& plan, const Mul
   DevicePlan result;
   result.composition = composition.name, result.processor = processor;
   for (const BodySpecification& body : experiment.bodies) result.bodies.push_back(body.name);
-  result.memory = taken_memory(experiment, plan, std::vector<std::size_t>(experiment.bodies.size(), 1), 1);
+  result.memory = taken_by_one(experiment, plan);
   for (const std::string& entry : composition.entries)
     result.kernels.push_back(entry.substr(std::string("mpm_").size()));
   std::optional<Nvrtc> nvrtc = Nvrtc::find(result.missing);
@@ -83,7 +83,7 @@ double DevicePlan::bytes_per_particle(int body) const {
   return sum_of(memory, body);
 }
 double DevicePlan::bytes_per_node() const {
-  return sum_of(memory, -1);
+  return sum_of(memory, TakenMemory::of_nodes);
 }
 
 std::string DevicePlan::to_text() const {
@@ -92,7 +92,8 @@ std::string DevicePlan::to_text() const {
     text += row("  body %d, %s: %.0f bytes a particle\n", body, bodies[static_cast<std::size_t>(body)].c_str(),
                 bytes_per_particle(body)) +
             fields_text(memory, body);
-  text += row("  %.0f bytes a node, with all velocity fields\n", bytes_per_node()) + fields_text(memory, -1);
+  text += row("  %.0f bytes a node, with all velocity fields\n", bytes_per_node()) +
+          fields_text(memory, TakenMemory::of_nodes);
   text += "  " + std::to_string(kernels.size()) + " kernels";
   if (!missing.empty() && taken.empty()) return text + "; what they take is not known: " + missing + "\n";
   text += ", as " + compiler + " compiles them for " + processor.architecture + " (nothing was run), with " +

@@ -127,7 +127,7 @@ void DeviceBackend<T>::watch(const Body<T>& body, Checks checks) {
 
 template <class T>
 void DeviceBackend<T>::launch_blocks(const std::string& phase, Arguments<T> a, const Body<T>& body) {
-  a.teams = std::min(teams_, body.blocks.most(body.arrays.count()));
+  a.teams = std::min(teams_, body.blocks.most());
   launch_teams(phase, a, a.teams);
 }
 

@@ -17,7 +17,11 @@ class Results {
   /// What to do with the sums of a step, which are given from the first one on.
   using Use = std::function<void(const double* sums)>;
 
-  explicit Results(Device& device) : values_(device, "sums", stops + room) { forget(); }
+  /// Numbers of double precision on the device: the first holds two ints, sums take the others.
+  static constexpr std::size_t stops = 1, room = 8192, numbers = stops + room;
+  static_assert(stop_numbers * sizeof(int) <= stops * sizeof(double));
+
+  explicit Results(Device& device) : values_(device, "sums", numbers) { forget(); }
 
   /// Whether so many sums more find a place.
   bool has_room_for(std::size_t count) const { return used_ + count <= room; }
@@ -63,9 +67,6 @@ class Results {
   }
 
  private:
-  static constexpr std::size_t stops = 1, room = 8192;  ///< numbers of double precision; the first holds two ints
-  static_assert(stop_numbers * sizeof(int) <= stops * sizeof(double));
-
   void forget() {
     const int nothing[stop_numbers] = {INT_MAX, INT_MAX};
     double none = 0;
