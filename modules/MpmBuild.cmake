@@ -9,6 +9,12 @@ if(MPM_NATIVE)
   set(mpm_instruction_set -march=native)
 endif()
 
+# GCC 12 writes some loops so that they store relative to a null pointer, takes that for a store to null, after which nothing
+# counts, and drops calls of functions that do nothing else (docs/design/mutation.md). It does not where null may be stored to.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND mpm_arithmetic_flags -fno-delete-null-pointer-checks)
+endif()
+
 add_library(mpm_flags INTERFACE)
 target_compile_options(mpm_flags INTERFACE -Wall -Wextra ${mpm_arithmetic_flags})
 # GCC 12 warns falsely of std::string sums (GCC bug 105329) and of its own AVX-512 headers (bug 105593).

@@ -64,6 +64,7 @@ std::vector<std::string> HostCompiler::all_options() const {
   // The text sees the compiler's own functions only, as it does with NVRTC.
   std::vector<std::string> all{"-std=c++17", "-DMPM_DEVICE_PASS=1", "-nostdinc",         "-nostdinc++",
                                "-fPIC",      "-fno-math-errno",     "-fno-trapping-math"};
+  all.push_back("-fno-delete-null-pointer-checks");  // or GCC 12 drops calls (modules/MpmBuild.cmake)
   all.insert(all.end(), options.begin(), options.end());
   // The compiler alone is told of it: the composition has what the linker would take from the sanitizer's library.
   if (records) all.insert(all.end(), {"-DMPM_RECORD=1", "-fsanitize=thread"});
