@@ -99,7 +99,31 @@ class Page {
   void add_names(const std::vector<std::string>& patterns) { names_ = patterns; }
 
   /// What is left of the page around numbers that no test has read and that are not given.
-  std::vector<std::string> numbers_of_nobody() const {
+  std::vector<std::string> numbers_of_nobody() const { return left_around("(?:[0-9]|½|¾|¼)"); }
+
+  /// The same around words that state a quantity: shares, multiples and what becomes half or double. Not counted are the times
+  /// and steps of the scenes, by the names that all pages give them.
+  std::vector<std::string> words_of_nobody() const {
+    static const std::string number =
+        "(?:two|three|four|five|six|seven|eight|nine|ten|twelve|fifteen|twenty|thirty|forty|fifty|sixty|hundred|"
+        "thousand|million|few)";
+    static const std::string shares =
+        "half|thirds?|quarters?|fifths?|sixths?|sevenths?|eighths?|ninths?|tenths?|twelfths?|twentieths?|hundredths?|"
+        "thousandths?|millionths?|one per ?cent|" +
+        number + " per ?cent";
+    static const std::string multiples =
+        "twice|thrice|times as|" + number + " times|(?:two|three|four|five|ten|hundred)fold";
+    static const std::string changes = "double[sd]|doubling|halve[sd]?|halving|treble[sd]?|orders? of magnitude";
+    return left_around("(?:\\b(?:" + shares + "|" + multiples + "|" + changes + ")\\b|⅓|⅔|⅛)",
+                       {"half a (?:step|period|cell)", "a quarter of a period",
+                        "(?:a|three) tenths? of the estimated?(?: step)?", "half their difference", "half-widths?"});
+  }
+
+ private:
+  /// Pieces of the page that hold what a pattern says, without sentences that a test has read or that are given, without what a
+  /// reader types and without names.
+  std::vector<std::string> left_around(const std::string& pattern,
+                                       const std::vector<std::string>& more_names = {}) const {
     std::string left = text_;
     for (const auto* sentences : {&measured_, &given_})
       for (const std::string& sentence : *sentences) {
@@ -109,15 +133,15 @@ class Page {
     for (const char* typed : {"```.*?```", "`[^`]*`", "!\\[[^\\]]*\\]\\([^)]*\\)", "\\]\\([^)]*\\)",
                               "[Ll]essons? [0-9]( to [0-9])?", "exit code [0-9]"})
       left = std::regex_replace(left, std::regex(typed), " ");
-    for (const std::string& name : names_) left = std::regex_replace(left, std::regex(name), " ");
+    for (const auto* names : {&names_, &more_names})
+      for (const std::string& name : *names) left = std::regex_replace(left, std::regex(name), " ");
     std::vector<std::string> found;
-    const std::regex number("[^\n]{0,40}(?:[0-9]|½|¾|¼)[^\n]{0,20}");
-    for (std::sregex_iterator match(left.begin(), left.end(), number), end; match != end; ++match)
+    const std::regex wanted("[^\n]{0,40}" + pattern + "[^\n]{0,20}");
+    for (std::sregex_iterator match(left.begin(), left.end(), wanted), end; match != end; ++match)
       found.push_back(match->str());
     return found;
   }
 
- private:
   static std::regex pattern_of(const std::string& sentence) {
     const std::string quoted = std::regex_replace(in_one_line(sentence), std::regex(R"([.*+?^${}()|\[\]\\])"), "\\$&");
     static const std::string number =

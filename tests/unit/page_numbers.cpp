@@ -7,7 +7,9 @@
 //   {"as": FORMULA, "x": …, "y": …, "z": …}   a formula of such values
 //   {"of": "least", "each": [WORD, …], …}     the least of them with each word in the place of {}
 // A cell "!C" is one that a row must not have, "A / B" either of two, "A*" what begins with A. FIGURE#2 takes the values of
-// another column than that of the figure. "tables" are compared in study_pages.cpp, and "given" says of which numbers no run
+// another column than that of the figure. "words" are the sentences that state a quantity in words, each with a formula of such
+// values: "rounded" of it to a whole number "is" what the word says (3 for a third of one over it), or it "holds", which is 1.
+// "tables" are compared in study_pages.cpp, and "given" says of which numbers no run
 // decides, and why.
 
 #include <algorithm>
@@ -151,8 +153,8 @@ double value_of(const Json& source, const std::string& word = "") {
 
 }  // namespace
 
-TEST_CASE("every number of the pages of studies is one of a figure, or given", "[docs]") {
-  int pages = 0, numbers = 0;
+TEST_CASE("every number of the pages of studies, in digits and in words, is one of a figure, or given", "[docs]") {
+  int pages = 0, numbers = 0, words = 0;
   for (const auto& entry : std::filesystem::directory_iterator(MPM_SOURCE_DIR "/tests/unit/fixtures/page_numbers")) {
     const Json list = Json::parse(support::read_file(entry.path()));
     const std::string file = list["page"];
@@ -174,11 +176,23 @@ TEST_CASE("every number of the pages of studies is one of a figure, or given", "
       numbers += static_cast<int>(printed.size());
     }
     for (const Json& group : list["given"]) page.add_given(group["says"]);
+    for (const Json& sentence : list.value("words", Json::array())) {
+      const std::string says = sentence["says"];
+      INFO(says);
+      if (sentence.contains("holds"))
+        CHECK(value_of(sentence["holds"]) == 1);
+      else
+        CHECK(std::round(value_of(sentence["rounded"])) == sentence["is"].get<double>());
+      page.add_given({says});
+      ++words;
+    }
     for (const std::string& left : page.numbers_of_nobody()) FAIL_CHECK("a number that nothing gives: " << left);
+    for (const std::string& left : page.words_of_nobody()) FAIL_CHECK("a quantity that nothing gives: " << left);
     ++pages;
   }
   CHECK(pages > 0);
   CHECK(numbers > 10 * pages);
+  CHECK(words > pages);
 }
 
 TEST_CASE("beside the command of a study stands how many runs it has", "[docs]") {
