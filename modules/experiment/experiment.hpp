@@ -325,7 +325,8 @@ struct Experiment {
   Component shape, transfer;
   std::optional<Component> filter, contact;
   FilterSchedule filter_schedule;
-  std::string contact_normal, contact_detection;  ///< names of the host's choices, empty without contact
+  std::optional<Component> contact_normal;  ///< with contact only
+  std::string contact_detection;            ///< the name of the host's choice, empty without contact
   int field_count = 1;
   std::vector<std::string> field_names;  ///< one a field; with contact only
 

@@ -57,6 +57,7 @@ class ExperimentReader {
   void check_capability(const Plugin& plugin, mpm_kind kind, const Node& place);
   void read_filter_schedule(const Fields& fields);
   void read_components(const Fields& fields);
+  void read_normal(const Fields& contact);
   void check_contact(const Fields& fields);
   void read_materials(const Node* node);
 

@@ -501,9 +501,8 @@ std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind
         kind(std::string(plugin->id()), plugin->descriptor->summary ? plugin->descriptor->summary : "", {});
     for (const mpm_parameter& declared : plugin->parameters()) section.parameters.push_back(from_plugin(declared));
     if (wanted == MPM_CONTACT) {
-      section.parameters.push_back(parameter("normal", Type::choice, "", "How the contact normal is found.")
-                                       .of({"average_volume_gradient", "widest_gap"})
-                                       .standard("average_volume_gradient"));
+      section.parameters.push_back(
+          nested("normal", "how the contact normal is found", "normal").standard(standard_normal));
       section.parameters.push_back(parameter("detection", Type::choice, "", "When two fields count as touching.")
                                        .of({"approach_and_position", "particle_surfaces"})
                                        .standard("approach_and_position"));

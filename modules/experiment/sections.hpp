@@ -40,6 +40,8 @@ std::vector<Section> exact_kinds(const ReadOptions& options);
 Limits limits_of(const Fields& fields, ReadContext& context);
 
 /// The plugins of a kind as sections, with the keys the host itself reads beside them.
+/// The contact normal of scenes that choose none.
+inline constexpr const char* standard_normal = "average_volume_gradient";
 std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind kind);
 
 }  // namespace mpm

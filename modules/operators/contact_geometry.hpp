@@ -30,12 +30,15 @@ struct ContactFieldNode {
   double mass = 0;
   double volume = 0;               ///< sum w V
   double volume_gradient[3] = {};  ///< sum V grad w, derivative by the particle's position: points out of the body
+  double mass_gradient[3] = {};    ///< sum m grad w, where the normal reads it
   double mass_position[3] = {};    ///< sum w m (x_p - x_node), kg m
 };
 
 struct ContactGeometry {
   bool valid = false;     ///< both fields present and a normal exists
   double normal[3] = {};  ///< unit, from a to b
+  double own_a[3] = {};   ///< those of each body alone, unit, from a to b, where the normal has MPM_OWN_NORMALS
+  double own_b[3] = {};
   double separation = 0;  ///< m, negative when the surfaces overlap
   double area = 0;        ///< m^2, m in 2-D
 };
@@ -50,7 +53,8 @@ MPM_HD bool meet(Scalar mass_a, Scalar mass_b, bool weld) {
   return weld || min(mass_a, mass_b) >= contact_prescreen * (static_cast<double>(mass_a) + mass_b);
 }
 
-/// Finds the shared average volume gradient (Nairn 2013, CMES 92:271); false where there is none.
+/// Finds the normal of averaged volume gradients (Nairn 2013, CMES 92:271), as modules/normals/average_volume_gradient
+/// does, where particles tell none; false where there is none.
 MPM_HD bool average_gradient(const ContactFieldNode& a, const ContactFieldNode& b, int dimension, double* normal) {
   double norm = 0;
   for (int i = 0; i < dimension; ++i) {
@@ -81,15 +85,12 @@ MPM_HD double contact_area(const ContactFieldNode& a, const ContactFieldNode& b,
   return sqrt(2 * (a.volume + b.volume) * min(a.volume, b.volume)) / cell_size;
 }
 
-/// The geometry where normal and separation both follow from sums over nodes.
-MPM_HD ContactGeometry contact_geometry(const ContactFieldNode& a, const ContactFieldNode& b, const EdgeTable& edge_a,
-                                        const EdgeTable& edge_b, double cell_size, int dimension) {
-  ContactGeometry result;
-  if (!average_gradient(a, b, dimension, result.normal)) return result;
-  result.separation = separation_of_edges(a, b, edge_a, edge_b, result.normal, cell_size, dimension);
-  result.area = contact_area(a, b, cell_size);
-  result.valid = true;
-  return result;
+/// Finds separation and area along the normal that a pair has.
+MPM_HD void measure_pair(ContactGeometry& pair, const ContactFieldNode& a, const ContactFieldNode& b,
+                         const EdgeTable& edge_a, const EdgeTable& edge_b, double cell_size, int dimension) {
+  pair.separation = separation_of_edges(a, b, edge_a, edge_b, pair.normal, cell_size, dimension);
+  pair.area = contact_area(a, b, cell_size);
+  pair.valid = true;
 }
 
 }  // namespace mpm

@@ -186,9 +186,16 @@ void contact_fields(FieldList& fields) {
   if (!fields.plan.resolves_contact()) return;
   const int D = fields.experiment.dimension;
   const std::string& contact = fields.experiment.contact->pointer;
-  const std::string normal = contact + "/normal \"" + fields.experiment.contact_normal + "\"";
-  fields.summed("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, normal);
-  fields.summed("volume", "m^3", 1, AtWall::even, Folded::with_mass, normal, "volume_gradient");
+  const Component& chosen = *fields.experiment.contact_normal;
+  const unsigned traits = chosen.plugin->normal().traits;
+  const std::string normal = contact + "/normal \"" + std::string(chosen.plugin->id()) + "\"";
+  const bool sums_volumes = traits & (MPM_READS_VOLUME_GRADIENT | MPM_LOOKS_AT_POINTS);
+  if (sums_volumes) fields.summed("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, normal);
+  if (traits & MPM_READS_MASS_GRADIENT)
+    fields.summed("mass_gradient", "kg/m", D, AtWall::slip, Folded::with_mass, normal);
+  fields.summed("volume", "m^3", 1, AtWall::even, Folded::with_mass,
+                sums_volumes ? normal : contact + ": the area that bodies share",
+                sums_volumes ? "volume_gradient" : "mass_position");
   fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass,
                 contact + "/detection \"" + fields.experiment.contact_detection + "\"");
 }

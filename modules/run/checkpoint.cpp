@@ -130,6 +130,7 @@ std::vector<const Plugin*> plugins_of(const Experiment& experiment) {
   std::vector<const Plugin*> used{experiment.shape.plugin, experiment.transfer.plugin};
   if (experiment.filter) used.push_back(experiment.filter->plugin);
   if (experiment.contact) used.push_back(experiment.contact->plugin);
+  if (experiment.contact_normal) used.push_back(experiment.contact_normal->plugin);
   for (const MaterialSpecification& material : experiment.materials)
     if (std::find(used.begin(), used.end(), material.component.plugin) == used.end())
       used.push_back(material.component.plugin);

@@ -16,7 +16,7 @@ double length(const std::array<double, 3>& v) {
 }  // namespace
 
 const BodySpecification* finite_block(const Experiment& experiment) {
-  if (!experiment.contact || experiment.contact_normal != "average_volume_gradient") return nullptr;
+  if (!experiment.contact || experiment.contact_normal->plugin->id() != "average_volume_gradient") return nullptr;
   if (!experiment.shape.plugin->id().starts_with("bspline")) return nullptr;
   for (const BodySpecification& body : experiment.bodies) {
     if (std::isfinite(body.geometry->smallest_radius())) continue;

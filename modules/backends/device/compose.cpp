@@ -205,10 +205,12 @@ std::string scene_text(const Choice& choice) {
       << "  using Shape = " << type(choice.shape) << ";\n  using Transfer = " << type(choice.transfer) << ";\n";
   if (choice.filter) out << "  using Filter = " << type(choice.filter) << ";\n";
   if (choice.contact) out << "  using Contact = " << type(choice.contact) << ";\n";
+  if (choice.normal) out << "  using Normal = " << type(choice.normal) << ";\n";
+  const bool own = choice.normal && (choice.normal->normal().traits & MPM_OWN_NORMALS);
   const bool weld = choice.contact && (choice.contact->contact().traits & MPM_BYPASSES_DETECTION);
   out << "  static constexpr bool contact = " << yes(choice.contact) << ", bypasses_detection = " << yes(weld)
-      << ", contact_by_particles = " << yes(choice.contact_by_particles) << ", list = " << yes(list)
-      << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
+      << ", contact_by_particles = " << yes(choice.contact_by_particles) << ", own_normals = " << yes(own)
+      << ", list = " << yes(list) << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
       << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
       << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
       << "  static constexpr int width = " << (list ? 1 : shape.width)
@@ -295,7 +297,7 @@ std::vector<std::string> entry_names(const Choice& choice) {
 std::string Choice::name() const {
   std::string text = std::to_string(dimension) + "-D " + (axisymmetric ? "axisymmetric " : "") +
                      (precision == Precision::single ? "float" : "double") + ":";
-  std::vector<const Plugin*> plugins{shape, transfer, filter, contact};
+  std::vector<const Plugin*> plugins{shape, transfer, filter, contact, normal};
   plugins.insert(plugins.end(), materials.begin(), materials.end());
   for (const Plugin* plugin : plugins)
     if (plugin) text += " " + std::string(plugin->id());
@@ -318,6 +320,7 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
   choice.particle_fields = particle_fields(experiment, plan, 0);
   if (experiment.filter) choice.filter = experiment.filter->plugin;
   if (experiment.contact) choice.contact = experiment.contact->plugin;
+  if (experiment.contact_normal && !choice.contact_by_particles) choice.normal = experiment.contact_normal->plugin;
   for (const MaterialSpecification& material : experiment.materials)
     choice.materials.push_back(material.component.plugin);
   return choice;
@@ -338,13 +341,13 @@ const char* embedded_header(std::string_view path) {
 Composition compose(const Choice& choice) {
   Text text;
   text.add_header("backends/device/kernels/kernels.hpp", "the composer");
-  for (const Plugin* plugin : {choice.shape, choice.transfer, choice.filter, choice.contact})
+  for (const Plugin* plugin : {choice.shape, choice.transfer, choice.filter, choice.contact, choice.normal})
     if (plugin) text.add_functor(*plugin);
   for (const Plugin* plugin : choice.materials) text.add_functor(*plugin);
   text.add(scene_text(choice));
   Composition composition{choice.name(), text.str(), "", entry_names(choice), {}};
   composition.hash = support::sha256(composition.text);
-  std::vector<const Plugin*> chosen{choice.shape, choice.transfer, choice.filter, choice.contact};
+  std::vector<const Plugin*> chosen{choice.shape, choice.transfer, choice.filter, choice.contact, choice.normal};
   chosen.insert(chosen.end(), choice.materials.begin(), choice.materials.end());
   for (const Plugin* plugin : chosen)
     if (plugin) composition.plugins.emplace_back(name_in_messages(*plugin), plugin->file.string());

@@ -21,6 +21,7 @@ struct Choice {
   const Plugin* transfer = nullptr;
   const Plugin* filter = nullptr;
   const Plugin* contact = nullptr;
+  const Plugin* normal = nullptr;  ///< with contact whose geometry follows from sums over nodes
   std::vector<const Plugin*> materials;
   bool deterministic = false;                       ///< scatters sum to the same bits in any order of lanes
   bool contact_by_particles = false;                ///< the host finds how fields meet (contact_pairs.hpp)

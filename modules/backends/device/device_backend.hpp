@@ -272,7 +272,8 @@ class DeviceBackend final : public Backend {
   Arguments<T> scene_;              ///< what all launches share; its pointers are the device's
   std::unique_ptr<Device> device_;  ///< outlives the arrays on it
   int lanes_, teams_;               ///< of a team, and at work on blocks at once
-  DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_;
+  DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_,
+      normal_parameters_;
   DeviceArray<int> ignored_stop_;
   DeviceArray<double> partial_sums_;
   bool deterministic_;          ///< particles are summed to the same bits in any order of lanes

@@ -8,25 +8,44 @@
 namespace mpm::reference {
 
 ContactFieldNode ReferenceBackend::contact_view(std::size_t i) const {
-  ContactFieldNode view{mass_[i], volume_[i], {}, {}};
-  for (int c = 0; c < 3; ++c)
-    view.volume_gradient[c] = volume_gradient_[i][c], view.mass_position[c] = mass_position_[i][c];
+  ContactFieldNode view;
+  view.mass = mass_[i], view.volume = volume_[i];
+  for (int c = 0; c < 3; ++c) {
+    if (sums_volume_gradients_) view.volume_gradient[c] = volume_gradient_[i][c];
+    if (sums_mass_gradients_) view.mass_gradient[c] = mass_gradient_[i][c];
+    view.mass_position[c] = mass_position_[i][c];
+  }
   return view;
 }
 
 std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::size_t a, std::size_t b,
                                                                            const Vector& momentum_a,
                                                                            const Vector& momentum_b, double dt) const {
-  const Component& law = *experiment_.contact;
-  const bool weld = law.plugin->contact().traits & MPM_BYPASSES_DETECTION;
-  const int D = experiment_.dimension;
+  const bool weld = experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION;
   if (!meet(mass_[a], mass_[b], weld)) return {};
-  const std::size_t node = a % grid_.node_count();
-  const Eigen::Vector3i& at = grid_.coordinates(node);
-  const ContactGeometry geometry = pair_geometry_(contact_points_, {at[0], at[1], at[2]}, grid_.velocity_field_of(a),
-                                                  grid_.velocity_field_of(b), contact_view(a), contact_view(b));
+  const Eigen::Vector3i& at = grid_.coordinates(a % grid_.node_count());
+  MetPair met{{at[0], at[1], at[2]}, contact_view(a), contact_view(b), {}};
+  pair_geometry_.find(contact_points_, grid_.velocity_field_of(a), grid_.velocity_field_of(b), {&met, 1});
+  const ContactGeometry& geometry = met.geometry;
   if (!geometry.valid && !weld) return {};
+  const bool own = experiment_.contact_normal->plugin->normal().traits & MPM_OWN_NORMALS;
+  const auto apply = [&](const double* normal) {
+    return apply_law(a, b, momentum_a, momentum_b, geometry, normal, dt);
+  };
+  if (!own) return apply(geometry.normal);
+  PairResult result = apply(geometry.own_a);
+  const PairResult of_b = apply(geometry.own_b);
+  result.returned = of_b.impulse;
+  result.dissipated = 0.5 * (result.dissipated + of_b.dissipated);
+  result.status = std::max(result.status, of_b.status);
+  return result;
+}
 
+ReferenceBackend::PairResult ReferenceBackend::apply_law(std::size_t a, std::size_t b, const Vector& momentum_a,
+                                                         const Vector& momentum_b, const ContactGeometry& geometry,
+                                                         const double* normal_of_pair, double dt) const {
+  const Component& law = *experiment_.contact;
+  const int D = experiment_.dimension;
   // The pair is repeated over a full lane so that the plugin may compute whole lanes.
   constexpr int n = MPM_LANES;
   std::array<double, n> mass_a, mass_b, separation, area, dissipated{};
@@ -37,7 +56,7 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
     for (int lane = 0; lane < n; ++lane) {
       p_a[c * n + lane] = momentum_a[c];
       p_b[c * n + lane] = momentum_b[c];
-      normal[c * n + lane] = geometry.normal[c];
+      normal[c * n + lane] = normal_of_pair[c];
     }
   const mpm_contact_batch batch{n,
                                 n,
@@ -55,8 +74,8 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
                                 dissipated.data(),
                                 status.data()};
   law.plugin->contact().apply[MPM_SCALAR_DOUBLE][D - 2](law.parameters.data(), &batch);
-  PairResult result{Vector::Zero(), dissipated[0], status[0], geometry.separation, geometry.valid};
-  for (int c = 0; c < D; ++c) result.impulse[c] = impulse[c * n];
+  PairResult result{Vector::Zero(), Vector::Zero(), dissipated[0], status[0], geometry.separation, geometry.valid};
+  for (int c = 0; c < D; ++c) result.impulse[c] = result.returned[c] = impulse[c * n];
   return result;
 }
 
@@ -98,13 +117,13 @@ void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, 
   for_each_pair([&](std::size_t a, std::size_t b) {
     const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step.dt);
     if (!pair) return;
-    const Vector& J = pair->impulse;
+    const Vector &J = pair->impulse, &returned = pair->returned;
     record(contact_impulse_, standing_contact_impulse_, a, J);
-    record(contact_impulse_, standing_contact_impulse_, b, -J);
+    record(contact_impulse_, standing_contact_impulse_, b, -returned);
     dissipated += pair->dissipated;
     const Vector sum = momentum_[a] + momentum_[b];
     momentum_[a] += J;
-    momentum_[b] -= J;
+    momentum_[b] -= returned;
     total_change += momentum_[a] + momentum_[b] - sum;
     total_impulse += J;
     count(*pair, a, b, pairs);

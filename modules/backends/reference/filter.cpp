@@ -180,9 +180,9 @@ ContactGiven ReferenceBackend::resolve_contact_of_velocity(double dt) {
     const auto pair = resolve_pair(a, b, mass_[a] * velocity_[a], mass_[b] * velocity_[b], dt);
     if (!pair) return;
     velocity_[a] += pair->impulse / mass_[a];
-    velocity_[b] -= pair->impulse / mass_[b];
+    velocity_[b] -= pair->returned / mass_[b];
     record(contact_impulse_, standing_contact_impulse_, a, pair->impulse);
-    record(contact_impulse_, standing_contact_impulse_, b, -pair->impulse);
+    record(contact_impulse_, standing_contact_impulse_, b, -pair->returned);
     total += pair->impulse;
     count(*pair, a, b, pairs);
     dissipated += pair->dissipated;

@@ -79,8 +79,9 @@ class ReferenceBackend final : public Backend {
   // ---- contact.cpp
   /// The effect of the law on one pair of velocity fields at one node.
   struct PairResult {
-    Vector impulse = Vector::Zero();  ///< added to a, taken from b, kg m/s
-    double dissipated = 0;            ///< J
+    Vector impulse = Vector::Zero();   ///< added to a, kg m/s
+    Vector returned = Vector::Zero();  ///< taken from b: the same, unless each has a normal of its own
+    double dissipated = 0;             ///< J
     std::int32_t status = MPM_APART;
     double separation = 0;  ///< m
     bool has_normal = false;
@@ -90,6 +91,9 @@ class ReferenceBackend final : public Backend {
   /// Returns nothing when a pair is skipped: a field is absent or too light, or has no normal (and the law is no weld).
   std::optional<PairResult> resolve_pair(std::size_t a, std::size_t b, const Vector& momentum_a,
                                          const Vector& momentum_b, double dt) const;
+  /// What the law says of a pair along a normal from a to b.
+  PairResult apply_law(std::size_t a, std::size_t b, const Vector& momentum_a, const Vector& momentum_b,
+                       const ContactGeometry& geometry, const double* normal_of_pair, double dt) const;
   ContactFieldNode contact_view(std::size_t i) const;
   void find_contact_points();
   /// Applies the law to all pairs of fields in order; conditions are imposed again and win.
@@ -180,9 +184,12 @@ class ReferenceBackend final : public Backend {
   std::vector<External> external_forces_;                           ///< those that the scene has
   std::vector<BodyLoads> loads_;                                    ///< of each body
   VectorField& volume_gradient_ = grid_.vector("volume_gradient");  ///< sum V grad w
-  VectorField& mass_position_ = grid_.vector("mass_position");      ///< sum w m (x_p - x_node)
-  VectorField& increment_ = grid_.vector("increment");              ///< v* of the filter
-  VectorField& projection_ = grid_.vector("projection");            ///< S+ S v*, a momentum until over_mass divides it
+  VectorField& mass_gradient_ = grid_.vector("mass_gradient");      ///< sum m grad w
+  const bool sums_volume_gradients_ = plan_.node_field("volume_gradient") != nullptr,
+             sums_mass_gradients_ = plan_.node_field("mass_gradient") != nullptr;
+  VectorField& mass_position_ = grid_.vector("mass_position");  ///< sum w m (x_p - x_node)
+  VectorField& increment_ = grid_.vector("increment");          ///< v* of the filter
+  VectorField& projection_ = grid_.vector("projection");        ///< S+ S v*, a momentum until over_mass divides it
   VectorField& trial_velocity_ = grid_.vector("trial_velocity");
   VectorField& unfiltered_ = grid_.vector("unfiltered_velocity");
   /// The velocities that conditions and contact have added in this step.
@@ -203,7 +210,7 @@ class ReferenceBackend final : public Backend {
   VectorField& capacity_position_ = grid_.vector("capacity_position");
   const WallWeights wall_weights_ = plan_.node_field("heated_volume") ? wall_weights(experiment_) : WallWeights();
   std::deque<Particles> bodies_;
-  const PairGeometry pair_geometry_{experiment_};
+  const PairGeometry pair_geometry_{experiment_, MPM_SCALAR_DOUBLE};
   ContactPoints contact_points_{experiment_};
   TimeStepLimit limit_;
   Ledger ledger_;

@@ -1,6 +1,8 @@
 #pragma once
 // This part of GridStep lets velocity fields meet: pairs of a slot in batches, pair after pair, so three act in order.
 
+#include <array>
+
 #include "backends/cpu/grid/grid_step.hpp"
 #include "operators/contact.hpp"
 
@@ -24,9 +26,13 @@ struct GridStep<D, T>::ContactBatch {
       dissipated[block_nodes];
   alignas(64) T momentum_a[D * block_nodes],
       momentum_b[D * block_nodes], normal[D * block_nodes], impulse[D * block_nodes];
+  // Where each body has a normal of its own, `normal` is that of a, and these are of b.
+  alignas(64) T normal_of_b[D * block_nodes], impulse_of_b[D * block_nodes], dissipated_of_b[block_nodes];
+  alignas(64) std::int32_t status_of_b[block_nodes];
   alignas(64) std::int32_t status[block_nodes];
 
-  void add(std::uint32_t at, const Quad<T>& a, const Quad<T>& b, const ContactGeometry& geometry) {
+  void add(std::uint32_t at, const Quad<T>& a, const Quad<T>& b, const ContactGeometry& geometry, bool own) {
+    const double* const of_a = own ? geometry.own_a : geometry.normal;
     node[count] = at;
     valid[count] = geometry.valid;
     mass_a[count] = a[3], mass_b[count] = b[3];
@@ -34,7 +40,8 @@ struct GridStep<D, T>::ContactBatch {
     for (int c = 0; c < D; ++c) {
       momentum_a[c * block_nodes + count] = momentum_of(a[c], a[3]);
       momentum_b[c * block_nodes + count] = momentum_of(b[c], b[3]);
-      normal[c * block_nodes + count] = geometry.valid ? static_cast<T>(geometry.normal[c]) : T(0);
+      normal[c * block_nodes + count] = geometry.valid ? static_cast<T>(of_a[c]) : T(0);
+      if (own) normal_of_b[c * block_nodes + count] = static_cast<T>(geometry.own_b[c]);
     }
     ++count;
   }
@@ -46,12 +53,13 @@ struct GridStep<D, T>::ContactBatch {
     }
   }
   /// Copies the last pair so that whole lanes may be computed.
-  int pad() {
+  int pad(bool own) {
     const int last = count - 1, end = padded(count);
     for (int i = count; i < end; ++i) {
       mass_a[i] = mass_a[last], mass_b[i] = mass_b[last], separation[i] = separation[last], area[i] = area[last];
       for (int c = 0; c < D; ++c)
-        for (T* array : {momentum_a, momentum_b, normal}) array[c * block_nodes + i] = array[c * block_nodes + last];
+        for (T* array : {momentum_a, momentum_b, normal, normal_of_b})
+          if (array != normal_of_b || own) array[c * block_nodes + i] = array[c * block_nodes + last];
     }
     return end;
   }
@@ -60,7 +68,7 @@ struct GridStep<D, T>::ContactBatch {
 /// What contact looks at of one velocity field, from a slot's first node on.
 template <int D, class T>
 struct GridStep<D, T>::ContactField {
-  const Q *motion, *gradient, *position;
+  const Q *motion, *gradient, *mass_gradient, *position, *volume;  ///< gradients are null where none is summed
 
   ContactFieldNode at(std::uint32_t node) const;
 };
@@ -68,46 +76,62 @@ struct GridStep<D, T>::ContactField {
 template <int D, class T>
 inline ContactFieldNode GridStep<D, T>::ContactField::at(std::uint32_t node) const {
   ContactFieldNode result;
-  const Q gradient = this->gradient[node], position = this->position[node];
+  const Q position = this->position[node];
   result.mass = motion[node][3];
-  result.volume = gradient[3];
+  result.volume = volume[node][3];
   for (int c = 0; c < 3; ++c) {
-    result.volume_gradient[c] = gradient[c];
+    if (gradient) result.volume_gradient[c] = gradient[node][c];
+    if (mass_gradient) result.mass_gradient[c] = mass_gradient[node][c];
     result.mass_position[c] = position[c];
   }
   return result;
 }
 
 template <int D, class T>
-void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums) {
+void GridStep<D, T>::ask_law(ContactBatch& batch, std::uint32_t end, double dt, bool of_b) const {
   const Component& law = *scene_.experiment.contact;
-  const std::uint32_t end = static_cast<std::uint32_t>(batch.pad());
   const mpm_contact_batch request{end,
                                   block_nodes,
                                   D,
                                   0,
-                                  step.dt,
+                                  dt,
                                   batch.mass_a,
                                   batch.mass_b,
                                   batch.momentum_a,
                                   batch.momentum_b,
-                                  batch.normal,
+                                  of_b ? batch.normal_of_b : batch.normal,
                                   batch.separation,
                                   batch.area,
-                                  batch.impulse,
-                                  batch.dissipated,
-                                  batch.status};
+                                  of_b ? batch.impulse_of_b : batch.impulse,
+                                  of_b ? batch.dissipated_of_b : batch.dissipated,
+                                  of_b ? batch.status_of_b : batch.status};
   law.plugin->contact().apply[lane_precision<T>][D - 2](law.parameters.data(), &request);
+}
+
+template <int D, class T>
+void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums) {
+  const bool own = own_normals_;
+  const std::uint32_t end = static_cast<std::uint32_t>(batch.pad(own));
+  ask_law(batch, end, step.dt, false);
+  if (own) {
+    ask_law(batch, end, step.dt, true);
+    for (int i = 0; i < batch.count; ++i) {
+      batch.dissipated[i] = T(0.5) * (batch.dissipated[i] + batch.dissipated_of_b[i]);
+      batch.status[i] = std::max(batch.status[i], batch.status_of_b[i]);
+    }
+  }
+  const T* const returned = own ? batch.impulse_of_b : batch.impulse;
   const bool records = records_;  // the compiler need not ask again after each store
   for (int i = 0; i < batch.count; ++i) {
     Q &va = motion_at(a, batch.node[i]), &vb = motion_at(b, batch.node[i]);
 #pragma GCC unroll 3
     for (int c = 0; c < D; ++c) {
-      const T impulse = batch.impulse[c * block_nodes + i];
+      const T impulse = batch.impulse[c * block_nodes + i], opposite = returned[c * block_nodes + i];
       T of_a = va[c], of_b = vb[c];
-      sums.change[c] += strike_pair<double>(of_a, of_b, T(va[3]), T(vb[3]), impulse, [&](bool second, T given) {
-        if (records) record(contact_impulse, standing_contact, second ? b : a, batch.node[i], c, given);
-      });
+      sums.change[c] +=
+          strike_pair<double>(of_a, of_b, T(va[3]), T(vb[3]), impulse, opposite, [&](bool second, T given) {
+            if (records) record(contact_impulse, standing_contact, second ? b : a, batch.node[i], c, given);
+          });
       va[c] = of_a, vb[c] = of_b;
       sums.impulse[c] += impulse;
     }
@@ -124,19 +148,29 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
   const bool weld = (scene_.experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION) != 0;
   const std::uint32_t first = slot * block_nodes;
   const auto contact_field = [&](int field) {
-    return ContactField{&motion_at(field, first), &grid_.quad(volume_gradient, field, first),
-                        &grid_.quad(mass_position, field, first)};
+    const auto summed = [&](Channel channel) { return channel < 0 ? nullptr : &grid_.quad(channel, field, first); };
+    return ContactField{&motion_at(field, first), summed(volume_gradient), summed(mass_gradient), summed(mass_position),
+                        summed(volume_of_contact)};
   };
+  static_assert(block_nodes <= MPM_BATCH);
+  static thread_local std::array<MetPair, block_nodes> met;  // its memory is kept from slot to slot
+  std::array<std::uint32_t, block_nodes> nodes;
   for (int a = 0; a < grid_.fields(); ++a)
     for (int b = a + 1; b < grid_.fields(); ++b) {
-      ContactBatch batch;
       const ContactField of_a = contact_field(a), of_b = contact_field(b);
+      std::size_t count = 0;
       for (std::uint32_t node = 0; node < block_nodes; ++node) {
-        const Q &va = of_a.motion[node], &vb = of_b.motion[node];
-        if (!meet(va[3], vb[3], weld)) continue;
-        const ContactGeometry geometry =
-            pair_geometry_(contact_points_, grid_.coordinates_of(first + node), a, b, of_a.at(node), of_b.at(node));
-        if (geometry.valid || weld) batch.add(first + node, va, vb, geometry);
+        if (!meet(T(of_a.motion[node][3]), T(of_b.motion[node][3]), weld)) continue;
+        nodes[count] = node;
+        met[count++] = {grid_.coordinates_of(first + node), of_a.at(node), of_b.at(node), {}};
+      }
+      pair_geometry_.find(contact_points_, a, b, {met.data(), count});
+      ContactBatch batch;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t node = nodes[i];
+        const ContactGeometry& geometry = met[i].geometry;
+        if (geometry.valid || weld)
+          batch.add(first + node, of_a.motion[node], of_b.motion[node], geometry, own_normals_);
       }
       if (batch.count == 0) continue;
       apply_law(batch, a, b, step, sums);

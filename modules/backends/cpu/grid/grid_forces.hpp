@@ -19,7 +19,9 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
       impulse_(scene.experiment),
       filter_(filter),
       reactions_(reactions),
-      pair_geometry_(scene.experiment),
+      pair_geometry_(scene.experiment, MPM_LANES_DOUBLE),
+      own_normals_(scene.experiment.contact_normal &&
+                   (scene.experiment.contact_normal->plugin->normal().traits & MPM_OWN_NORMALS)),
       contact_points_(scene.experiment),
       wall_weights_(scene.plan.node_field("heated_volume") ? wall_weights(scene.experiment) : WallWeights()) {
   for (int c = 0; c < D; ++c) has_gravity_ = has_gravity_ || scene.experiment.has_gravity(c);

@@ -181,6 +181,8 @@ class GridStep : NamedChannels {
   void record_force(const StepInfo& step);
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
+  /// Calls the law along the pairs' normals, or along those of the second body's own.
+  void ask_law(ContactBatch& batch, std::uint32_t end, double dt, bool of_b) const;
 
   Q gravity_{}, gravity_without_potential_{};  ///< all of it, and the part that has none, m/s^2
   const Scene<D, T>& scene_;
@@ -192,6 +194,7 @@ class GridStep : NamedChannels {
   FilterRecord& filter_;
   ReactionImpulse& reactions_;
   const PairGeometry pair_geometry_;
+  const bool own_normals_;  ///< each body of a pair has its own
   ContactPoints contact_points_;
   std::function<void(ContactPoints&)> show_particles_;
   std::array<std::vector<Channel>, 3> folded_;  ///< [when]
