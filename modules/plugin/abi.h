@@ -210,7 +210,8 @@ typedef struct mpm_filter {
 } mpm_filter;
 
 /* ---- contact law ----------------------------------------------------------------------------------------------
- * One batch entry is the pair (a, b) of velocity fields at one node. */
+ * One batch entry is the pair (a, b) of velocity fields at one node. Where b is a rigid body that moves as it is told, its
+ * mass is infinite, its momentum zero, and the velocity of a is relative to it: the impulse on a stays finite. */
 enum mpm_contact_trait {
   MPM_BYPASSES_DETECTION = 1, /* a weld: no prescreen, detection or cap */
   MPM_PULLS = 2               /* may resist separation (adhesion) */
@@ -220,7 +221,7 @@ typedef struct mpm_contact_batch {
   uint32_t count, stride, dimension, reserved;
   double dt;
   const void* mass_a; /* [stride], kg */
-  const void* mass_b;
+  const void* mass_b; /* may be infinite */
   const void* momentum_a; /* [D][stride], kg m/s */
   const void* momentum_b;
   const void* normal;     /* [D][stride], unit, from a to b, shared by the pair */

@@ -449,6 +449,16 @@ struct SlipsInPlace : Stick {  // says that a weld slips
   }
 };
 
+struct MultipliesMasses : Coulomb {  // makes the reduced mass by a product, which is infinite beside a rigid body
+  template <int D, class S>
+  MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
+    Coulomb::apply(p, pair, result);
+    const S product = pair.mass_a * pair.mass_b / (pair.mass_a + pair.mass_b);
+    const S share = product / reduced_mass_of(pair.mass_a, pair.mass_b);
+    for (int i = 0; i < D; ++i) result.impulse[i] = share * result.impulse[i];
+  }
+};
+
 struct PullsOpenly : Pulls {  // is the same law, declared
   static constexpr unsigned traits = MPM_PULLS;
 };
@@ -614,6 +624,7 @@ TEST_CASE("wrong contact laws are caught") {
   check_caught(wrong_contact<HeatsTooLittle>, "heat_is_work_of_friction");
   check_caught(wrong_contact<SlipsInPlace>, "sliding_pair_slides");
   check_caught(wrong_contact<Pulls>, "no_pull");
+  check_caught(wrong_contact<MultipliesMasses>, "infinite_mass");
   CHECK(failures(wrong_contact<PullsOpenly>).count("no_pull") == 0);
 }
 
