@@ -45,8 +45,12 @@ void ExperimentReader::check_capability(const Plugin& plugin, mpm_kind kind, con
 }
 
 ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_kind kind) {
+  return read_component(node, kind, component_kinds(components_, kind));
+}
+
+ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_kind kind,
+                                                          const std::vector<Section>& kinds) {
   Chosen chosen;
-  const std::vector<Section> kinds = component_kinds(components_, kind);
   const std::string what = kind == MPM_CONTACT ? "contact law" : std::string(kind_name(kind));
   const Section* section = choose_kind(node, kinds, what, false, context_);
   if (!section) return chosen;

@@ -190,6 +190,12 @@ Json definitions(const ComponentLookup& components, const ReadOptions& options) 
   all["solver"] = choice_schema(solver_kinds(options), true);
   all["output"] = section_schema(output_section(options));
   all["grips"] = list_of(section_schema(grip_section()));
+  all["rigid_contact"] = choice_schema(rigid_contact_kinds(components));
+  Json rigid_body = section_schema(rigid_body_section(3));
+  Json& turning = rigid_body["properties"]["angular_velocity"];
+  turning = {
+      {"anyOf", Json::array({section_schema(rigid_body_section(2))["properties"]["angular_velocity"], turning})}};
+  all["rigid_bodies"] = list_of(std::move(rigid_body));
   all["device"] = section_schema(device_section());
   all["damping"] = section_schema(damping_section());
   all["compare"] = section_schema(compare_section());

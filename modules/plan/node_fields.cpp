@@ -107,8 +107,7 @@ bool joins_force(ExternalForce external) {
 std::string why_separate_force(const FieldList& fields) {
   const Experiment& experiment = fields.experiment;
   if (gathers_increment(experiment)) return FieldList::named(experiment.transfer) + ": gathers the change of velocity";
-  if (fields.plan.resolves_contact())
-    return FieldList::named(*experiment.contact) + ": acts before and after the forces";
+  if (fields.plan.resolves_contact()) return experiment.why_it_meets() + ": acts before and after the forces";
   if (experiment.damping.acts()) return experiment.damping.pointer + ": acts on the change of velocity";
   for (const ExternalForce external : external_forces) {
     const std::string giver = experiment.giver_of(external);
@@ -185,12 +184,16 @@ void impulse_fields(FieldList& fields) {
 void contact_fields(FieldList& fields) {
   if (!fields.plan.resolves_contact()) return;
   const int D = fields.experiment.dimension;
-  const std::string& contact = fields.experiment.contact->pointer;
-  const std::string normal = contact + "/normal \"" + fields.experiment.contact_normal + "\"";
+  const Experiment& experiment = fields.experiment;
+  const auto because = [&](const char* choice, const std::string& chosen, const char* of_rigid) {
+    return experiment.contact ? experiment.contact->pointer + choice + " \"" + chosen + "\""
+                              : experiment.rigid_bodies.front().pointer + of_rigid;
+  };
+  const std::string normal = because("/normal", experiment.contact_normal, ": the area that a node stands for");
   fields.summed("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, normal);
   fields.summed("volume", "m^3", 1, AtWall::even, Folded::with_mass, normal, "volume_gradient");
   fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass,
-                contact + "/detection \"" + fields.experiment.contact_detection + "\"");
+                because("/detection", experiment.contact_detection, ": where the edge of the material lies"));
 }
 
 /// What nodes get from the particles of each grip: the momentum that these have as they are told at the end of the step,

@@ -89,7 +89,7 @@ void refuse_work_for_nobody(const Step& step, const Experiment& experiment) {
       case Act::add_correction:
         return experiment.filter ? nullptr : "filter";
       case Act::scatter_contact:
-        return experiment.contact ? nullptr : "contact";
+        return experiment.meets() ? nullptr : "contact";
       case Act::scatter_heat:
       case Act::divide_heat:
       case Act::conduct:

@@ -152,6 +152,15 @@ void paint_specks(const TileSamples& tile, const ParticleFrame& f, const std::ve
   for (const std::size_t i : shown) painter.fill(outline_of(f, i, view), colours(f.values[i]));
 }
 
+/// Draws the edges of rigid bodies.
+void draw_outlines(Canvas& canvas, const ParticleFrame& f, const PlaneView& view, double u) {
+  canvas.clip(view.box);
+  for (std::size_t k = 0; k + 3 < f.outlines.size(); k += 4)
+    canvas.line(view.at(f.outlines[k], f.outlines[k + 1]), view.at(f.outlines[k + 2], f.outlines[k + 3]),
+                {kInk, kOutline * u});
+  canvas.unclip();
+}
+
 void draw_scale_bar(Canvas& canvas, const Theme& theme, const PlaneView& view) {
   const double length = nice_below(view.box.width() / view.scale / 4);
   const double u = theme.unit, y = view.box.y1 + 1.1 * theme.text;
@@ -184,6 +193,7 @@ std::optional<PlaneView> draw_plane(Canvas& canvas, const ParticleFrame& f, cons
                           return is_speck(outline_of(f, i, view), theme.unit);
                         });
   if (!are_left) draw_particles(canvas, f, shown, colours, view, theme.unit);
+  draw_outlines(canvas, f, view, theme.unit);
   canvas.outline(view.box, {kInk, kOutline * theme.unit});
   canvas.text({view.box.x0, view.box.y0 - 0.6 * theme.text}, clock_text(f), theme.style());
   draw_scale_bar(canvas, theme, view);

@@ -17,12 +17,13 @@ enum class ColourMap { viridis, diverging, categorical };
 /// Lengths in metres, times in seconds; n is the number of particles.
 struct ParticleFrame {
   int dimension = 2;
-  std::array<double, 3> lower{}, upper{};    ///< the domain
-  std::vector<float> positions = {};         ///< n * dimension
-  std::vector<float> half_size = {};         ///< n: half the particle's side; in 3-D a ball of the same volume is drawn
-  std::vector<float> domain_axes = {};       ///< optional, 2-D: n * 4, semi-side vectors of the parallelogram to draw
-  std::vector<float> values = {};            ///< n, in `unit`
-  std::string quantity = {}, unit = {};      ///< colour bar: "von Mises stress σᵥ" and "Pa"
+  std::array<double, 3> lower{}, upper{};  ///< the domain
+  std::vector<float> positions = {};       ///< n * dimension
+  std::vector<float> half_size = {};       ///< n: half the particle's side; in 3-D a ball of the same volume is drawn
+  std::vector<float> domain_axes = {};     ///< optional, 2-D: n * 4, semi-side vectors of the parallelogram to draw
+  std::vector<float> values = {};          ///< n, in `unit`
+  std::vector<float> outlines = {};        ///< optional, 2-D: 4 numbers a piece of a rigid body's edge, from and to, m
+  std::string quantity = {}, unit = {};    ///< colour bar: "von Mises stress σᵥ" and "Pa"
   std::vector<std::string> categories = {};  ///< names of the values 0, 1, 2, ... of a categorical map
   ColourMap map = ColourMap::viridis;
   std::optional<std::pair<double, double>> range = {};  ///< colour scale, to be fixed over a film; else from the values

@@ -130,9 +130,11 @@ std::vector<const Plugin*> plugins_of(const Experiment& experiment) {
   std::vector<const Plugin*> used{experiment.shape.plugin, experiment.transfer.plugin};
   if (experiment.filter) used.push_back(experiment.filter->plugin);
   if (experiment.contact) used.push_back(experiment.contact->plugin);
-  for (const MaterialSpecification& material : experiment.materials)
-    if (std::find(used.begin(), used.end(), material.component.plugin) == used.end())
-      used.push_back(material.component.plugin);
+  const auto add = [&](const Component& component) {
+    if (std::find(used.begin(), used.end(), component.plugin) == used.end()) used.push_back(component.plugin);
+  };
+  for (const RigidBodySpecification& body : experiment.rigid_bodies) add(body.contact);
+  for (const MaterialSpecification& material : experiment.materials) add(material.component);
   return used;
 }
 

@@ -34,7 +34,7 @@ const BodySpecification* finite_block(const Experiment& experiment) {
 
 Watch::Watch(const Simulation& simulation)
     : simulation_(simulation),
-      watches_(simulation.plan().resolves_contact() &&
+      watches_(simulation.experiment().contact &&
                !(simulation.experiment().contact->plugin->contact().traits & MPM_BYPASSES_DETECTION)),
       watches_slide_(watches_ && simulation.experiment().field_count == 2 && finite_block(simulation.experiment())) {}
 

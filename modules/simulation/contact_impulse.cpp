@@ -51,7 +51,7 @@ GatherShares gather_shares(const Experiment& experiment) {
 }
 
 ContactImpulse::ContactImpulse(const Experiment& experiment)
-    : shares_(experiment.contact ? gather_shares(experiment) : GatherShares()),
+    : shares_(experiment.meets() ? gather_shares(experiment) : GatherShares()),
       flows_(recorded_pairs(experiment)),
       records_(flows_.size()) {}
 
@@ -67,37 +67,43 @@ void ContactImpulse::for_each_flow(Visit visit) {
   for (Flow& flow : flows_) visit(flow);
 }
 
+void ContactImpulse::book(Ledger& ledger, const ContactGiven& given, double share) {
+  ledger.friction += share * given.dissipated;
+  ledger.rigid_bodies += share * given.driven;
+  ledger.contact -= share * given.driven;
+}
+
 void ContactImpulse::before_forces(const ContactGiven& given, bool filtered, Ledger* ledger) {
   for_each_flow(given, [](Flow& flow, const Vector3& impulse) { flow.before = flow.now = impulse; });
-  friction_ = given.dissipated;
+  friction_ = given.dissipated, driven_ = given.driven;
   if (!ledger) return;
   const double kept = filtered ? 1.0 : shares_.of_velocity;
-  ledger->friction += kept * given.dissipated;
+  book(*ledger, given, kept);
   ledger->friction_taken_back += (1 - kept) * given.dissipated;
 }
 
 void ContactImpulse::after_forces(const ContactGiven& given, Ledger* ledger) {
   for_each_flow(given, [](Flow& flow, const Vector3& impulse) { add(flow.now, impulse); });
-  friction_ += given.dissipated;
-  if (ledger) ledger->friction += given.dissipated;
+  friction_ += given.dissipated, driven_ += given.driven;
+  if (ledger) book(*ledger, given, 1);
 }
 
 void ContactImpulse::in_filter(const ContactGiven& given, bool replaces, Ledger* ledger) {
-  if (replaces && ledger) ledger->friction -= friction_;
+  if (replaces && ledger) book(*ledger, {{}, friction_, {}, driven_}, -1);
   if (replaces) {
     for_each_flow(given, [](Flow& flow, const Vector3&) { flow.now = {}; });
-    friction_ = 0;
+    friction_ = driven_ = 0;
   }
   after_forces(given, ledger);
 }
 
 void ContactImpulse::keep() {
   for_each_flow([](Flow& flow) { flow.kept = flow.now; });
-  kept_friction_ = friction_;
+  kept_friction_ = friction_, kept_driven_ = driven_;
 }
 
 void ContactImpulse::restore(bool keeps_correction) {
-  friction_ = kept_friction_;
+  friction_ = kept_friction_, driven_ = kept_driven_;
   for_each_flow([&](Flow& flow) {
     const Vector3 filtered = flow.now;
     flow.now = flow.kept;

@@ -58,6 +58,7 @@ struct ContactGiven {
   Vector3 impulse{};               ///< on the first bodies, kg m/s
   double dissipated = 0;           ///< J, as the law says
   std::vector<PairGiven> pairs{};  ///< each of them, where pairs are recorded
+  double driven = 0;               ///< J, work of rigid bodies, by their own velocities
 };
 
 /// The impulses of contact on the first bodies of all pairs through the parts of one step, and the heat of friction.
@@ -104,7 +105,11 @@ class ContactImpulse {
   Flow total_;
   std::vector<Flow> flows_;  ///< one a recorded pair
   std::vector<PairRecord> records_;
+  /// Books heat and the work of rigid bodies, which is taken out of contact's own row; with -1 takes them back.
+  static void book(Ledger& ledger, const ContactGiven& given, double share);
+
   double friction_ = 0, kept_friction_ = 0;  ///< J, of all that contact has done in the step
+  double driven_ = 0, kept_driven_ = 0;      ///< J, work of rigid bodies in the step
 };
 
 }  // namespace mpm

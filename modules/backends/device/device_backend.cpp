@@ -79,6 +79,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
       edges_(*device_, experiment),
       contact_impulse_(experiment),
       reactions_(experiment),
+      rigid_(*device_, experiment, scene_),
       uses_graphs_(setup.graphs),
       graphs_(*device_) {
   const Choice choice = choice_of(experiment, plan);

@@ -14,6 +14,7 @@
 #include "simulation/contact_impulse.hpp"
 #include "simulation/contact_pair.hpp"
 #include "simulation/loads.hpp"
+#include "simulation/rigid_bodies.hpp"
 
 namespace mpm::reference {
 
@@ -31,6 +32,7 @@ class ReferenceBackend final : public Backend {
   const std::vector<PairRecord>& contact_pairs() const override { return impulse_.pairs(); }
   const FilterRecord& filter_record() const override { return filter_; }
   const std::vector<Reaction>& reactions() const override { return reactions_.reactions(); }
+  const std::vector<RigidState>& rigid_bodies() const override { return rigid_.states(); }
   bool scattered() const override { return false; }
   void save(ArchiveWriter& archive) const override;
   void restore(ArchiveReader& archive) override;
@@ -91,9 +93,24 @@ class ReferenceBackend final : public Backend {
   std::optional<PairResult> resolve_pair(std::size_t a, std::size_t b, const Vector& momentum_a,
                                          const Vector& momentum_b, double dt) const;
   ContactFieldNode contact_view(std::size_t i) const;
+  /// What a law is told of a pair.
+  struct LawInput {
+    double mass_a, mass_b;
+    Vector momentum_a, momentum_b;
+    ContactGeometry geometry;
+    double dt;
+  };
+  PairResult apply_law(const Component& law, const LawInput& input) const;
+  /// Lets the material of all fields meet rigid bodies, whose velocities are those of a time, s. velocity(i) is that of a
+  /// node and give(i, impulse) changes it.
+  template <class VelocityOf, class Give>
+  void meet_rigid_bodies(double time, double dt, VelocityOf velocity, Give give, ContactGiven& all,
+                         ContactRecord* record);
   void find_contact_points();
   /// Applies the law to all pairs of fields in order; conditions are imposed again and win.
   void resolve_contact(const StepInfo& step, bool after_forces, bool remap = false);
+  Vector resolve_pairs(const StepInfo& step, bool after_forces, ContactGiven& given);
+  ContactGiven resolve_contact_of_velocity(double time, double dt);
   /// Records the force that particles take when they gather the velocity as it is now.
   void record_force(const StepInfo& step);
 
@@ -108,7 +125,6 @@ class ReferenceBackend final : public Backend {
   void constrain_free_velocity(const Pass& pass, const StepInfo& step);
   void constrain_velocity(const Pass& pass, const StepInfo& step);
   void impose_on_velocity(double time);
-  ContactGiven resolve_contact_of_velocity(double dt);
 
   // ---- ledger.cpp
   /// Notes an impulse on a node where conditions or contact apply it.
@@ -205,6 +221,7 @@ class ReferenceBackend final : public Backend {
   std::deque<Particles> bodies_;
   const PairGeometry pair_geometry_{experiment_};
   ContactPoints contact_points_{experiment_};
+  const std::vector<EdgeModel> edges_ = edge_models(experiment_);  ///< of each velocity field
   TimeStepLimit limit_;
   Ledger ledger_;
   HeatLedger heat_ledger_;
@@ -220,6 +237,7 @@ class ReferenceBackend final : public Backend {
   ContactRecord contact_;
   ContactImpulse impulse_;
   ReactionImpulse reactions_;
+  RigidBodies rigid_{experiment_};
   bool notes_reactions_ = false;  ///< the pass under way notes what supports give
   FilterRecord filter_;
   double held_beyond_ = 0, others_beyond_ = 0;  ///< heat of Grid::heat_beyond_walls before the forces

@@ -79,8 +79,7 @@ inline ContactFieldNode GridStep<D, T>::ContactField::at(std::uint32_t node) con
 }
 
 template <int D, class T>
-void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums) {
-  const Component& law = *scene_.experiment.contact;
+void GridStep<D, T>::call_law(const Component& law, ContactBatch& batch, const StepInfo& step) {
   const std::uint32_t end = static_cast<std::uint32_t>(batch.pad());
   const mpm_contact_batch request{end,
                                   block_nodes,
@@ -98,6 +97,11 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
                                   batch.dissipated,
                                   batch.status};
   law.plugin->contact().apply[lane_precision<T>][D - 2](law.parameters.data(), &request);
+}
+
+template <int D, class T>
+void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums) {
+  call_law(*scene_.experiment.contact, batch, step);
   const bool records = records_;  // the compiler need not ask again after each store
   for (int i = 0; i < batch.count; ++i) {
     Q &va = motion_at(a, batch.node[i]), &vb = motion_at(b, batch.node[i]);
@@ -158,30 +162,26 @@ void GridStep<D, T>::find_contact_points() {
   scene_.team->for_each(contact_points_.node_count(), 4, [&](std::size_t i, int) { contact_points_.find(i, i + 1); });
 }
 
+/// Lets all pairs of fields meet, each slot with sums of its own.
 template <int D, class T>
-void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
-  if (contact_points_.needed() && recorded == Recorded::before_forces) find_contact_points();
+void GridStep<D, T>::resolve_pairs(const StepInfo& step, std::vector<ContactSums>& sums, ContactGiven& given) {
+  if (!scene_.experiment.contact) return;
   const auto& slots = grid_.shared_slots();
   const std::size_t pairs = impulse_.pairs().size();
-  std::vector<ContactSums> sums(slots.size());
+  sums.resize(slots.size());
   std::vector<PairGiven> pairs_of_slots(pairs * slots.size());
   for (std::size_t i = 0; pairs > 0 && i < slots.size(); ++i) sums[i].pairs = &pairs_of_slots[i * pairs];
   scene_.team->for_each(slots.size(), 4, [&](std::size_t i, int) { resolve_slot(slots[i], step, sums[i]); });
-
-  ContactGiven given;
   for (const ContactSums& s : sums) {
     for (int c = 0; c < D; ++c) given.impulse[c] += s.impulse[c];
     given.dissipated += s.friction;
   }
   given.pairs.resize(pairs);
   for (std::size_t k = 0; k < pairs_of_slots.size(); ++k) given.pairs[k % pairs].add(pairs_of_slots[k]);
-  Ledger* const ledger = records_ ? &ledger_ : nullptr;
-  if (recorded == Recorded::before_forces) return impulse_.before_forces(given, step.filtered, ledger);
-  if (recorded == Recorded::filter) return impulse_.in_filter(given, grid_.has(constrained), ledger);
-  if (recorded == Recorded::remap) return;
-  impulse_.after_forces(given, ledger);
-  impulse_.record_counts(given);
+}
 
+template <int D, class T>
+ContactRecord GridStep<D, T>::record_of(const std::vector<ContactSums>& sums) {
   ContactRecord record;
   double change[3]{}, squared = 0;
   for (const ContactSums& s : sums) {
@@ -193,6 +193,24 @@ void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
   record.nodes = record.sticking + record.slipping;
   for (int c = 0; c < D; ++c) squared += change[c] * change[c];
   record.momentum_residual = std::sqrt(squared);
+  return record;
+}
+
+/// Lets fields meet one another, and then rigid bodies, whose velocities are those of a time, s.
+template <int D, class T>
+void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded, double time) {
+  if (contact_points_.needed() && recorded == Recorded::before_forces) find_contact_points();
+  std::vector<ContactSums> sums;
+  ContactGiven given;
+  resolve_pairs(step, sums, given);
+  ContactRecord record = record_of(sums);
+  meet_rigid_bodies(time, step, given, record);
+  Ledger* const ledger = records_ ? &ledger_ : nullptr;
+  if (recorded == Recorded::before_forces) return impulse_.before_forces(given, step.filtered, ledger);
+  if (recorded == Recorded::filter) return impulse_.in_filter(given, grid_.has(constrained), ledger);
+  if (recorded == Recorded::remap) return;
+  impulse_.after_forces(given, ledger);
+  impulse_.record_counts(given);
   record_ = record;
   record_force(step);
 }

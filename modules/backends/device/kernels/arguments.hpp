@@ -91,6 +91,14 @@ struct FoundContact {
   const T* values;   ///< [node] separation, then area, then [D][node] normal (ContactGeometry)
 };
 
+/// The nodes near a rigid body, as the host found them for the step, and how it moves in this stage of it.
+struct RigidArrays {
+  const int* node;       ///< [count] index of the node
+  const double* values;  ///< [2 + 2 D][count] distance and cell, then normal and arm (simulation/rigid_bodies.hpp)
+  double velocity[3], spin[3], mass;  ///< m/s, rad/s, and the infinite mass, kg
+  long long count;
+};
+
 template <class T>
 struct Arguments {
   // These describe the scene; they are the same for all phases.
@@ -115,6 +123,7 @@ struct Arguments {
   NodeArrays<T> grid, other;
   EdgeTable edges[2];     ///< contact: of `grid` and of `other`
   FoundContact<T> found;  ///< contact: in scenes that look at particles
+  RigidArrays rigid;      ///< rigid_contact
   BlockArrays blocks;
   int teams;                             ///< that share the blocks with particles
   double* partial_sums;                  ///< [team][sum]
