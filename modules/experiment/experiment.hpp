@@ -279,6 +279,7 @@ struct OutputSpecification {
   std::vector<GroupSpecification> groups;
   std::vector<ProbeSpecification> probes;
   bool contact_pairs = false;  ///< contact has columns for each pair of fields
+  bool contact_nodes = false;  ///< the nodes where fields meet are drawn and written with each frame
 
   /// Whether a probe takes a quantity whose name begins so.
   bool probes_take(std::string_view beginning) const;

@@ -37,6 +37,7 @@ class ExperimentReader {
   OrderedJson read_expectation(const Node& node);
 
   // read_records.cpp
+  void read_contact_nodes(const Fields& fields);
   void read_records(const Fields& fields);
   OrderedJson read_recorded_bodies(const Node& node);
   OrderedJson read_group(const Node& node);

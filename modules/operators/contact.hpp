@@ -28,4 +28,16 @@ MPM_HD Sum strike_pair(S& velocity_a, S& velocity_b, S mass_a, S mass_b, S impul
   return mass_a * (velocity_a - before_a) + mass_b * (velocity_b - before_b);
 }
 
+/// Adds to `along` the part of field a's impulse along the pair's unit normal, kg m/s, and to `pressing` how hard that
+/// presses the fields together: positive where it pushes a back from b.
+template <class S>
+MPM_HD void add_normal_part(const S* impulse, const S* normal, std::size_t stride, int dimension, double* along,
+                            double& pressing) {
+  double size = 0;
+  for (int c = 0; c < dimension; ++c)
+    size += static_cast<double>(impulse[c * stride]) * static_cast<double>(normal[c * stride]);
+  for (int c = 0; c < dimension; ++c) along[c] += size * static_cast<double>(normal[c * stride]);
+  pressing -= size;
+}
+
 }  // namespace mpm

@@ -188,7 +188,6 @@ void contact_fields(FieldList& fields) {
   const std::string& contact = fields.experiment.contact->pointer;
   const std::string normal = contact + "/normal \"" + fields.experiment.contact_normal + "\"";
   fields.summed("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, normal);
-  fields.summed("volume", "m^3", 1, AtWall::even, Folded::with_mass, normal, "volume_gradient");
   fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass,
                 contact + "/detection \"" + fields.experiment.contact_detection + "\"");
 }

@@ -13,6 +13,8 @@
 #include "output/checkpoint_file.hpp"
 #include "output/film.hpp"
 #include "output/vtk.hpp"
+#include "run/contact_nodes.hpp"
+#include "support/files.hpp"
 #include "support/parallel.hpp"
 
 namespace mpm::app {
@@ -70,6 +72,7 @@ void Recorder::save(ArchiveWriter& archive) {
     record.put("positions", snapshot.positions);
     record.put("values", snapshot.values);
     record.put("domain_axes", snapshot.domain_axes);
+    record.put("contact_nodes", snapshot.contact_nodes);
     kept_snapshots_.append({record.bytes().data(), record.bytes().size()});
   }
   archive.put("rows", csv_->bytes());
@@ -105,6 +108,7 @@ void Recorder::restore(ArchiveReader& archive) {
     record.get("positions", snapshot.positions);
     record.get("values", snapshot.values);
     record.get("domain_axes", snapshot.domain_axes);
+    record.get("contact_nodes", snapshot.contact_nodes);
   }
   archive.get("last_row", last_row_);
   archive.get("frames_taken", frames_taken_);
@@ -169,6 +173,7 @@ void Recorder::record_frame() {
       for (const std::size_t component : {0, 2, 1, 3})  // columns of the matrix are the semi-sides
         snapshot.domain_axes.push_back(static_cast<float>(state.domain[k + component]));
   }
+  snapshot.contact_nodes = simulation_.backend().contact_nodes();
   if (experiment.output.vtk) write_vtk(frames_taken_);
   const std::size_t bytes =
       (snapshot.positions.size() + snapshot.values.size() + snapshot.domain_axes.size()) * sizeof(float);
@@ -228,7 +233,12 @@ void Recorder::draw(render::ParticleFrame frame, const Snapshot& snapshot, std::
     range = {-limit, limit};
   }
   if (frame.map != render::ColourMap::categorical && range.first < range.second) frame.range = range;
+  const Experiment& experiment = simulation_.experiment();
+  if (experiment.dimension == 2) frame.marks = contact_marks(experiment, snapshot.contact_nodes);
   render::write_frame(frame, folder_.frames() / numbered("frame", index));
+  if (experiment.output.contact_nodes)
+    support::write_atomically(folder_.frames() / (numbered("contact", index) + ".csv"),
+                              contact_table(experiment, snapshot.contact_nodes));
 }
 
 void Recorder::draw_frames() {

@@ -59,6 +59,7 @@ class Recorder {
     long step;
     std::vector<float> positions, values;
     std::vector<float> domain_axes;  ///< domains of 2-D particles that carry one: four numbers a particle
+    std::vector<ContactNode> contact_nodes = {};
   };
   void start_rows();
   bool frame_due(double time) const;

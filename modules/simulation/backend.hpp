@@ -256,8 +256,22 @@ struct ContactRecord {
 /// The same of one pair of velocity fields. The force acts on its first field.
 struct PairRecord {
   std::array<double, 3> force{};               ///< N
+  std::array<double, 3> tangential_force{};    ///< N, the force less the parts along the nodes' normals
+  double normal_force = 0;                     ///< N, sum of the sizes of those; negative where they pull
+  double area = 0;                             ///< m^2 (m in 2-D), of what touches in the last step
   long nodes = 0, sticking = 0, slipping = 0;  ///< last step
   double largest_penetration = 0;              ///< m, last step
+};
+
+/// A node where two velocity fields a < b met in the last step.
+struct ContactNode {
+  std::array<int, 3> node{};  ///< its coordinates
+  int a = 0, b = 0;           ///< numbers of the fields
+  Vector3 normal{};           ///< unit, from a to b; zero where a weld finds none
+  double separation = 0;      ///< m, negative where the surfaces overlap
+  double area = 0;            ///< m^2 (m in 2-D)
+  int status = 0;             ///< mpm_contact_status, after the forces
+  Vector3 force{};            ///< N, on a: the momentum that particles take from it over dt
 };
 
 /// A record of what a support (a wall or a box of nodes, Experiment::supports) does to the particles: what they took
@@ -348,6 +362,8 @@ class Backend {
   virtual const ContactRecord& contact_record() const = 0;
   /// The record of each pair of fields, in the order of pair_index, where /output/contact_pairs asks; else empty.
   virtual const std::vector<PairRecord>& contact_pairs() const = 0;
+  /// The nodes where fields met in the last step, if it was observed and /output/contact_nodes asks; else empty.
+  virtual const std::vector<ContactNode>& contact_nodes() const = 0;
   virtual const FilterRecord& filter_record() const = 0;
   /// By the number of the support; empty unless an experiment asks for any.
   virtual const std::vector<Reaction>& reactions() const = 0;

@@ -21,7 +21,8 @@ class PairGeometry {
     const int D = experiment_.dimension;
     const EdgeTable edge_a = edges_[static_cast<std::size_t>(field_a)].table(),
                     edge_b = edges_[static_cast<std::size_t>(field_b)].table();
-    if (!points.needed()) return contact_geometry(a, b, edge_a, edge_b, h, D);
+    const double around = experiment_.axisymmetric() ? around_axis(experiment_.grid.lower[0] + node[0] * h) : 1.0;
+    if (!points.needed()) return contact_geometry(a, b, edge_a, edge_b, h, D, around);
     ContactGeometry result;
     const SeparatedPair pair = points.pair(node, field_a, field_b);
     if (!pair.found) return result;
@@ -33,7 +34,7 @@ class PairGeometry {
       result.separation = separation_of_edges(a, b, edge_a, edge_b, normal.data(), h, D);
     else
       result.separation = by_gap ? pair.separation : points.separation(node, field_a, field_b, normal);
-    result.area = contact_area(a, b, h);
+    result.area = contact_area(a, b, result.normal, D, around);
     result.valid = true;
     return result;
   }

@@ -20,7 +20,8 @@ namespace {
 /// Two balls that meet, with rows, frames and files of particles that fall between the checkpoints.
 Json meeting() {
   Json scene = two_balls();
-  scene["output"] = {{"metrics_every", 3}, {"frames", 4}, {"vtk", true}, {"checkpoint_steps", 7}};
+  scene["output"] = {
+      {"metrics_every", 3}, {"frames", 4}, {"vtk", true}, {"checkpoint_steps", 7}, {"contact_nodes", true}};
   scene["output"]["particles"] = {{"format", {"vtk", "csv"}}, {"count", 5}, {"grid", true}, {"shape", "domains"}};
   return scene;
 }

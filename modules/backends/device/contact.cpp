@@ -54,9 +54,11 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded) 
 template <class T>
 void DeviceBackend<T>::take_pair(const double* sums, ContactGiven& given, bool record) {
   PairGiven pair;
-  for (std::size_t c = 0; c < 3; ++c) pair.impulse[c] = sums[contact_impulse + c];
+  for (std::size_t c = 0; c < 3; ++c)
+    pair.impulse[c] = sums[contact_impulse + c], pair.along[c] = sums[contact_along + c];
+  pair.pressing = sums[contact_pressing];
   pair.sticking = std::lround(sums[contact_sticking]), pair.slipping = std::lround(sums[contact_slipping]);
-  pair.largest_penetration = sums[contact_penetration];
+  pair.area = sums[contact_touching], pair.largest_penetration = sums[contact_penetration];
   for (std::size_t c = 0; c < 3; ++c) given.impulse[c] += pair.impulse[c];
   given.dissipated += sums[contact_dissipated];
   if (!contact_impulse_.pairs().empty()) given.pairs.push_back(pair);

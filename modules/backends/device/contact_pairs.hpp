@@ -13,15 +13,14 @@ namespace mpm::device {
 /// The values of one velocity field that detection reads, on the host.
 template <class T>
 struct ContactFields {
-  std::vector<T> mass, volume, volume_gradient, mass_position;
+  std::vector<T> mass, volume_gradient, mass_position;
 
   explicit ContactFields(const VelocityField<T>& field)
       : mass(field.arrays.read("mass")),
-        volume(field.arrays.read("volume")),
         volume_gradient(field.arrays.read("volume_gradient")),
         mass_position(field.arrays.read("mass_position")) {}
   ContactFieldNode at(std::size_t node, int dimension) const {
-    ContactFieldNode view{mass[node], volume[node], {}, {}};
+    ContactFieldNode view{mass[node], {}, {}};
     for (int c = 0; c < dimension; ++c) {
       const std::size_t at = static_cast<std::size_t>(c) * mass.size() + node;
       view.volume_gradient[c] = volume_gradient[at], view.mass_position[c] = mass_position[at];

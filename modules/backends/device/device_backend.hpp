@@ -54,6 +54,7 @@ class DeviceBackend final : public Backend {
   HeatLedger heat_ledger() const override { return heat_ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
   const std::vector<PairRecord>& contact_pairs() const override { return contact_impulse_.pairs(); }
+  const std::vector<ContactNode>& contact_nodes() const override { return contact_impulse_.nodes(); }
   const FilterRecord& filter_record() const override { return filter_; }
   const std::vector<Reaction>& reactions() const override { return reactions_.reactions(); }
   bool scattered() const override { return false; }

@@ -8,7 +8,7 @@
 namespace mpm::reference {
 
 ContactFieldNode ReferenceBackend::contact_view(std::size_t i) const {
-  ContactFieldNode view{mass_[i], volume_[i], {}, {}};
+  ContactFieldNode view{mass_[i], {}, {}};
   for (int c = 0; c < 3; ++c)
     view.volume_gradient[c] = volume_gradient_[i][c], view.mass_position[c] = mass_position_[i][c];
   return view;
@@ -55,7 +55,7 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
                                 dissipated.data(),
                                 status.data()};
   law.plugin->contact().apply[MPM_SCALAR_DOUBLE][D - 2](law.parameters.data(), &batch);
-  PairResult result{Vector::Zero(), dissipated[0], status[0], geometry.separation, geometry.valid};
+  PairResult result{Vector::Zero(), dissipated[0], status[0], geometry};
   for (int c = 0; c < D; ++c) result.impulse[c] = impulse[c * n];
   return result;
 }
@@ -92,35 +92,33 @@ void ReferenceBackend::find_contact_points() {
 void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, bool remap) {
   if (contact_points_.needed() && !after_forces && !remap) find_contact_points();
   if (after_forces) contact_ = {};
-  Vector total_impulse = Vector::Zero(), total_change = Vector::Zero();
-  double dissipated = 0;
-  std::vector<PairGiven> pairs(impulse_.pairs().size());
+  Vector total_change = Vector::Zero();
+  ContactGiven given = nothing_given();
+  const bool notes_nodes = records_nodes(experiment_, step);
   for_each_pair([&](std::size_t a, std::size_t b) {
     const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step.dt);
     if (!pair) return;
     const Vector& J = pair->impulse;
     record(contact_impulse_, standing_contact_impulse_, a, J);
     record(contact_impulse_, standing_contact_impulse_, b, -J);
-    dissipated += pair->dissipated;
     const Vector sum = momentum_[a] + momentum_[b];
     momentum_[a] += J;
     momentum_[b] -= J;
     total_change += momentum_[a] + momentum_[b] - sum;
-    total_impulse += J;
-    count(*pair, a, b, pairs);
+    count(*pair, a, b, notes_nodes, given);
     if (!after_forces || pair->status == MPM_APART) return;
     ++contact_.nodes;
     ++(pair->status == MPM_STICKS ? contact_.sticking : contact_.slipping);
-    if (pair->has_normal) contact_.largest_penetration = std::max(contact_.largest_penetration, -pair->separation);
+    const ContactGeometry& geometry = pair->geometry;
+    if (geometry.valid) contact_.largest_penetration = std::max(contact_.largest_penetration, -geometry.separation);
   });
   if (after_forces) {
-    const ContactGiven given{as_array(total_impulse), dissipated, std::move(pairs)};
     impulse_.after_forces(given, ledger_to_book());
     impulse_.record_counts(given);
     record_force(step);
     contact_.momentum_residual = total_change.norm();
   } else if (!remap) {
-    impulse_.before_forces({as_array(total_impulse), dissipated, std::move(pairs)}, step.filtered, ledger_to_book());
+    impulse_.before_forces(given, step.filtered, ledger_to_book());
   }
   impose_conditions(after_forces ? step.time + step.dt : step.time);
 }
@@ -131,12 +129,41 @@ void ReferenceBackend::record_force(const StepInfo& step) {
   impulse_.record_forces(step.filtered, step.dt);
 }
 
-void ReferenceBackend::count(const PairResult& result, std::size_t a, std::size_t b,
-                             std::vector<PairGiven>& pairs) const {
-  if (pairs.empty()) return;
-  PairGiven& pair = pairs[pair_index(grid_.velocity_field_of(a), grid_.velocity_field_of(b), grid_.velocity_fields())];
+ContactGiven ReferenceBackend::nothing_given() const {
+  ContactGiven given;
+  given.pairs.resize(impulse_.pairs().size());
+  return given;
+}
+
+void ReferenceBackend::count(const PairResult& result, std::size_t a, std::size_t b, bool notes_node,
+                             ContactGiven& given) const {
+  for (int c = 0; c < 3; ++c) given.impulse[static_cast<std::size_t>(c)] += result.impulse[c];
+  given.dissipated += result.dissipated;
+  if (notes_node) {
+    const ContactGeometry& geometry = result.geometry;
+    const Eigen::Vector3i& at = grid_.coordinates(a % grid_.node_count());
+    const Eigen::Map<const Vector> normal(geometry.normal);
+    given.nodes.push_back({{{at[0], at[1], at[2]},
+                            grid_.velocity_field_of(a),
+                            grid_.velocity_field_of(b),
+                            as_array(normal),
+                            geometry.separation,
+                            geometry.area,
+                            result.status,
+                            {}},
+                           as_array(result.impulse)});
+  }
+  if (given.pairs.empty()) return;
+  PairGiven& pair =
+      given.pairs[pair_index(grid_.velocity_field_of(a), grid_.velocity_field_of(b), grid_.velocity_fields())];
   for (int c = 0; c < 3; ++c) pair.impulse[static_cast<std::size_t>(c)] += result.impulse[c];
-  pair.count(result.status, result.separation, result.has_normal);
+  if (result.geometry.valid) {
+    const Vector normal = Eigen::Map<const Vector>(result.geometry.normal);
+    const double pull = result.impulse.dot(normal);
+    for (int c = 0; c < 3; ++c) pair.along[static_cast<std::size_t>(c)] += pull * normal[c];
+    pair.pressing -= pull;
+  }
+  pair.count(result.status, result.geometry.separation, result.geometry.area, result.geometry.valid);
 }
 
 }  // namespace mpm::reference

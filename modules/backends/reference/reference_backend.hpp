@@ -29,6 +29,7 @@ class ReferenceBackend final : public Backend {
   HeatLedger heat_ledger() const override { return heat_ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
   const std::vector<PairRecord>& contact_pairs() const override { return impulse_.pairs(); }
+  const std::vector<ContactNode>& contact_nodes() const override { return impulse_.nodes(); }
   const FilterRecord& filter_record() const override { return filter_; }
   const std::vector<Reaction>& reactions() const override { return reactions_.reactions(); }
   bool scattered() const override { return false; }
@@ -82,11 +83,11 @@ class ReferenceBackend final : public Backend {
     Vector impulse = Vector::Zero();  ///< added to a, taken from b, kg m/s
     double dissipated = 0;            ///< J
     std::int32_t status = MPM_APART;
-    double separation = 0;  ///< m
-    bool has_normal = false;
+    ContactGeometry geometry{};
   };
-  /// Adds what the law did at a node to its pair, where pairs are recorded apart.
-  void count(const PairResult& result, std::size_t a, std::size_t b, std::vector<PairGiven>& pairs) const;
+  ContactGiven nothing_given() const;
+  /// Adds what the law did at a node to all pairs, to its own where pairs are recorded apart, and to the recorded nodes.
+  void count(const PairResult& result, std::size_t a, std::size_t b, bool notes_node, ContactGiven& given) const;
   /// Returns nothing when a pair is skipped: a field is absent or too light, or has no normal (and the law is no weld).
   std::optional<PairResult> resolve_pair(std::size_t a, std::size_t b, const Vector& momentum_a,
                                          const Vector& momentum_b, double dt) const;
@@ -108,7 +109,7 @@ class ReferenceBackend final : public Backend {
   void constrain_free_velocity(const Pass& pass, const StepInfo& step);
   void constrain_velocity(const Pass& pass, const StepInfo& step);
   void impose_on_velocity(double time);
-  ContactGiven resolve_contact_of_velocity(double dt);
+  ContactGiven resolve_contact_of_velocity(const StepInfo& step);
 
   // ---- ledger.cpp
   /// Notes an impulse on a node where conditions or contact apply it.
@@ -165,7 +166,7 @@ class ReferenceBackend final : public Backend {
   const Plan& plan_;
   Grid grid_;
   // These references name fields of the nodes as the text of the method does.
-  ScalarField &mass_ = grid_.scalar("mass"), &volume_ = grid_.scalar("volume");
+  ScalarField& mass_ = grid_.scalar("mass");
   VectorField& momentum_ = grid_.vector("momentum");
   VectorField& velocity_before_ = grid_.vector("velocity_before");  ///< v-
   VectorField& velocity_ = grid_.vector("velocity");                ///< v+ (or v- until the forces are applied)

@@ -13,6 +13,7 @@ struct GridStep<D, T>::ContactSums {
   double impulse[3]{}, change[3]{};
   long sticking = 0, slipping = 0;
   PairGiven* pairs = nullptr;  ///< one a pair of fields, where they are recorded apart
+  std::vector<NodeGiven> nodes;
 };
 
 template <int D, class T>
@@ -42,7 +43,8 @@ struct GridStep<D, T>::ContactBatch {
   void add_to(PairGiven& pair) const {
     for (int i = 0; i < count; ++i) {
       for (int c = 0; c < D; ++c) pair.impulse[c] += impulse[c * block_nodes + i];
-      pair.count(status[i], separation[i], valid[i]);
+      add_normal_part(impulse + i, normal + i, block_nodes, D, pair.along.data(), pair.pressing);
+      pair.count(status[i], separation[i], area[i], valid[i]);
     }
   }
   /// Copies the last pair so that whole lanes may be computed.
@@ -70,7 +72,6 @@ inline ContactFieldNode GridStep<D, T>::ContactField::at(std::uint32_t node) con
   ContactFieldNode result;
   const Q gradient = this->gradient[node], position = this->position[node];
   result.mass = motion[node][3];
-  result.volume = gradient[3];
   for (int c = 0; c < 3; ++c) {
     result.volume_gradient[c] = gradient[c];
     result.mass_position[c] = position[c];
@@ -119,6 +120,22 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
   }
 }
 
+/// Notes where a batch meets, and what the law gave its nodes.
+template <int D, class T>
+void GridStep<D, T>::note_nodes(const ContactBatch& batch, int a, int b, std::vector<NodeGiven>& nodes) const {
+  for (int i = 0; i < batch.count; ++i) {
+    NodeGiven& given = nodes.emplace_back();
+    given.node.node = grid_.coordinates_of(batch.node[i]);
+    given.node.a = a, given.node.b = b;
+    for (std::size_t c = 0; c < D; ++c) {
+      given.node.normal[c] = batch.normal[c * block_nodes + i];
+      given.impulse[c] = batch.impulse[c * block_nodes + i];
+    }
+    given.node.separation = batch.separation[i], given.node.area = batch.area[i];
+    given.node.status = batch.status[i];
+  }
+}
+
 template <int D, class T>
 void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums) {
   const bool weld = (scene_.experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION) != 0;
@@ -140,6 +157,7 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
       }
       if (batch.count == 0) continue;
       apply_law(batch, a, b, step, sums);
+      if (records_nodes(scene_.experiment, step)) note_nodes(batch, a, b, sums.nodes);
       if (sums.pairs) batch.add_to(sums.pairs[pair_index(a, b, grid_.fields())]);
     }
 }
@@ -172,6 +190,7 @@ void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
   for (const ContactSums& s : sums) {
     for (int c = 0; c < D; ++c) given.impulse[c] += s.impulse[c];
     given.dissipated += s.friction;
+    given.nodes.insert(given.nodes.end(), s.nodes.begin(), s.nodes.end());
   }
   given.pairs.resize(pairs);
   for (std::size_t k = 0; k < pairs_of_slots.size(); ++k) given.pairs[k % pairs].add(pairs_of_slots[k]);

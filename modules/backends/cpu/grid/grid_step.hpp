@@ -33,6 +33,7 @@ class GridStep : NamedChannels {
   /// The records of pairs of fields, which go into checkpoints.
   std::vector<PairRecord>& contact_pairs() { return impulse_.pairs(); }
   const std::vector<PairRecord>& contact_pairs() const { return impulse_.pairs(); }
+  const std::vector<ContactNode>& contact_nodes() const { return impulse_.nodes(); }
   /// The largest component of the velocities after apply_forces, along any axis.
   T largest_component() const { return merges() ? largest_ : grid_.largest_component(motion); }
 
@@ -181,6 +182,7 @@ class GridStep : NamedChannels {
   void record_force(const StepInfo& step);
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
+  void note_nodes(const ContactBatch& batch, int a, int b, std::vector<NodeGiven>& nodes) const;
 
   Q gravity_{}, gravity_without_potential_{};  ///< all of it, and the part that has none, m/s^2
   const Scene<D, T>& scene_;

@@ -426,7 +426,7 @@ void ParticleStep<D, T, Components>::scatter_loads(const Chunk& chunk, Work& wor
   note_forces(failures);
 }
 
-/// Scatters V grad w with w V beside it, and w m (x_p - x_node), V = J V0. A ring has the gradient of its section, as
+/// Scatters V grad w and w m (x_p - x_node), V = J V0. A ring has the gradient of its section, as
 /// its volume grows away from the axis.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, Work& work) {
@@ -444,10 +444,9 @@ void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, 
     for (int p = 0; p < chunk.end; p += Lanes<T>::width) {
       const Lanes<T> whole = Lanes<T>::load(work.scalar + p) * Lanes<T>::load(size + p);
       const Lanes<T> cut = section(chunk, whole, p);
-      whole.store(work.scalar + p);
       for (int c = 0; c < D; ++c) cut.store(work.S + (c * D + c) * chunk_size<T> + p);
     }
-  add_to_tile(chunk, work, volume_gradient, work.scalar, false, false, true);
+  add_to_tile(chunk, work, volume_gradient, nullptr, false, false, true);
   add_to_tile(chunk, work, mass_position, nullptr, false, true, false);
 }
 

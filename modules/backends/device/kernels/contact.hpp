@@ -12,9 +12,12 @@ namespace mpm::device {
 enum : int {
   contact_impulse = 0,     ///< 3, on the first field, kg m/s
   contact_unbalanced = 3,  ///< 3, change of the pair's momentum, kg m/s: zero to rounding
-  contact_dissipated = 6,  ///< J
+  contact_along = 6,       ///< 3, the parts of the impulse along the nodes' normals, kg m/s
+  contact_pressing = 9,    ///< sum of their sizes, positive where they push the fields apart, kg m/s
+  contact_dissipated,      ///< J
   contact_sticking,        ///< nodes
   contact_slipping,
+  contact_touching,     ///< area where they touch, m^2
   contact_penetration,  ///< the largest one, m
   contact_sums
 };
@@ -24,12 +27,20 @@ template <class Scene, class T = typename Scene::Scalar>
 MPM_HD ContactFieldNode contact_field(const Arguments<T>& a, const NodeArrays<T>& grid, int node) {
   using N = typename Scene::Node;
   ContactFieldNode found{};
-  found.mass = grid.field[N::mass][node], found.volume = grid.field[N::volume][node];
+  found.mass = grid.field[N::mass][node];
   for (int c = 0; c < Scene::dimension; ++c) {
     found.volume_gradient[c] = grid.field[N::volume_gradient][c * a.node_count + node];
     found.mass_position[c] = grid.field[N::mass_position][c * a.node_count + node];
   }
   return found;
+}
+
+/// The length of a node's ring in axisymmetric scenes, m, else 1.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD double around_node(const Arguments<T>& a, int node) {
+  if constexpr (!Scene::axisymmetric) return 1;
+  const int column = node % a.extent[0] - a.padding[0];
+  return around_axis(double(a.lower[0]) + column * double(a.cell_size));
 }
 
 /// How two fields meet at a node: as follows from sums over nodes, or as the host found it.
@@ -43,7 +54,7 @@ MPM_HD ContactGeometry geometry_of_pair(const Arguments<T>& a, int node) {
     return found;
   } else {
     return contact_geometry(contact_field<Scene>(a, a.grid, node), contact_field<Scene>(a, a.other, node), a.edges[0],
-                            a.edges[1], double(a.cell_size), Scene::dimension);
+                            a.edges[1], double(a.cell_size), Scene::dimension, around_node<Scene>(a, node));
   }
 }
 
@@ -80,11 +91,14 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
           });
       sums[contact_impulse + c] += result.impulse[c];
     }
+    add_normal_part(result.impulse, pair.normal, 1, D, sums + contact_along, sums[contact_pressing]);
     sums[contact_dissipated] += result.dissipated;
     const int status = static_cast<int>(result.status);
     if (status == contact_apart) return;
     sums[status == contact_sticks ? contact_sticking : contact_slipping] += 1;
-    if (geometry.valid) sums[contact_penetration] = max(0.0, -double(pair.separation));
+    if (!geometry.valid) return;
+    sums[contact_touching] += pair.area;
+    sums[contact_penetration] = max(0.0, -double(pair.separation));
   });
 }
 
