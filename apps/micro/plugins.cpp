@@ -242,6 +242,30 @@ struct ContactCase {
   std::string problem() { return sound({&impulse, &dissipated}); }
 };
 
+/// Bodies that face each other at every node.
+struct NormalCase {
+  Variant v;
+  std::vector<Buffer> gradients;
+  Buffer normal, own_a, own_b, found;
+
+  explicit NormalCase(const Variant& variant) : v(variant) {
+    Random random(1);
+    const int D = v.dimension;
+    for (int k = 0; k < 4; ++k) gradients.push_back(v.random(random, D, k % 2 ? -1 : 0.5, k % 2 ? -0.5 : 1));
+    for (Buffer* out : {&normal, &own_a, &own_b}) *out = v.buffer(D);
+    found = v.indices(1);
+  }
+  void run() {
+    auto q = v.header<mpm_normal_batch>();
+    q.mass_gradient_a = gradients[0].data(), q.mass_gradient_b = gradients[1].data();
+    q.volume_gradient_a = gradients[2].data(), q.volume_gradient_b = gradients[3].data();
+    q.normal = normal.data(), q.own_a = own_a.data(), q.own_b = own_b.data();
+    q.found = static_cast<std::int32_t*>(found.data());
+    v.plugin->normal().from_sums[v.precision()][v.dimension - 2](v.parameters->data(), &q);
+  }
+  std::string problem() { return sound({&normal}); }
+};
+
 // ---- materials -----------------------------------------------------------------------------------------------------
 
 enum MaterialOutputs { advances = 1, stress = 2, energy = 4, speed = 8 };
@@ -305,6 +329,10 @@ void add_variant(const Variant& v, const std::string& name) {
       return;
     case MPM_CONTACT:
       add(name + "/apply", "pair", [=] { return ContactCase(v); });
+      return;
+    case MPM_NORMAL:  // those that look at particles have no batches
+      if (!(v.plugin->normal().traits & MPM_LOOKS_AT_POINTS))
+        add(name + "/find", "pair", [=] { return NormalCase(v); });
       return;
     case MPM_MATERIAL: {
       const std::pair<const char*, int> entries[] = {{"/advance_stress", advances | stress},

@@ -307,6 +307,15 @@ int run_command_line(int argc, char** argv) {
       ->type_name("STEM");
   offset_verb->callback([&] { code = guarded([&] { return contact_offset(shape, particles, stem); }); });
 
+  auto* normals_verb = app.add_subcommand(
+      "contact-normals", "how far each contact normal turns from the true one, along a flat face and around a disc");
+  normals_verb->add_option("SHAPE", shape, "shape function, a tensor product; default bspline_quadratic");
+  normals_verb
+      ->add_option("--figure", stem,
+                   "draws it as well: STEM and STEM_end, each .png, .svg and .csv, in a folder that exists")
+      ->type_name("STEM");
+  normals_verb->callback([&] { code = guarded([&] { return contact_normals(shape, stem); }); });
+
   auto* schema_verb = app.add_subcommand("schema", "print the JSON Schema of experiment files, for editors");
   schema_verb->callback([&] { code = guarded([&] { return schema(); }); });
 
@@ -350,7 +359,7 @@ int run_command_line(int argc, char** argv) {
   });
 
   auto* new_verb = app.add_subcommand("new", "write a project for a plugin of your own, with an experiment and a test");
-  new_verb->add_option("KIND", kind, "shape, transfer, filter, contact or material")->required();
+  new_verb->add_option("KIND", kind, "shape, transfer, filter, contact, normal or material")->required();
   new_verb->add_option("ID", id, "the word that experiments will use, e.g. my_rubber")->required();
   new_verb->add_option("DIR", plugin_folder, "folder to write, new or empty")->required();
   new_verb->callback(

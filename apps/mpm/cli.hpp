@@ -94,6 +94,9 @@ int describe(const std::string& id, bool json);
 /// Prints the contact offset of a shape function, and draws it where `figure` names files, without their extension.
 /// Throws PluginError where there is no such shape.
 int contact_offset(const std::string& shape, int particles, const std::filesystem::path& figure);
+/// Prints the errors of all contact normals that need no parameters, and draws them where `figure` names files, without
+/// their extension. Throws PluginError where there is no such shape, or it lists its nodes.
+int contact_normals(const std::string& shape, const std::filesystem::path& figure);
 int schema();
 /// Writes a project for a plugin of `kind` into `folder`, which must be empty or missing. Throws InputError.
 int new_plugin(const std::string& kind, const std::string& id, const std::filesystem::path& folder);

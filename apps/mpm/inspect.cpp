@@ -304,6 +304,18 @@ void print_filters(const Registry& registry) {
   }
 }
 
+/// Prints which contact normals do not mix with everything.
+void print_normals(const Registry& registry) {
+  std::cout
+      << "\nContact normals run with every law but a weld, which looks at none, and with every shape, transfer and "
+         "stress update.\n";
+  for (const Plugin* normal : registry.of_kind(MPM_NORMAL))
+    if (normal->normal().traits & MPM_OWN_NORMALS)
+      std::cout << "`" << normal->id()
+                << "` gives each body an impulse of its own: it is refused with a filter, and with detection by "
+                   "`particle_surfaces`.\n";
+}
+
 }  // namespace
 
 int list_combinations(bool json) {
@@ -341,6 +353,7 @@ int list_combinations(bool json) {
   print_filters(registry);
   std::cout << "\nRefused at load, with this reason:\n\n";
   for (const std::string& reason : reasons) std::cout << "- " << reason << "\n";
+  print_normals(registry);
   return done;
 }
 

@@ -68,6 +68,9 @@ Json scene_of(const Plugin& plugin, int dimension, double speed, double time_ste
       scene["filter"] = choice;
       scene["filter"]["every_steps"] = 2;
       break;
+    case MPM_NORMAL:
+      scene["contact"] = {{"type", "coulomb"}, {"friction", 0.3}, {"normal", choice}};
+      break;
     default:
       scene[std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind)))] = choice;
   }
@@ -85,7 +88,7 @@ Json scene_of(const Plugin& plugin, int dimension, double speed, double time_ste
        {"jitter", 0.2},
        {"geometry", {{"type", "ball"}, {"centre", of("[0.4, 0.4]", "[0.4, 0.4, 0.4]")}, {"radius", 0.22}}},
        {"velocity", velocity("1-0.9*(y-0.4)", "0.1+0.9*(x-0.4)", "0.2+x-y")}});
-  if (plugin.descriptor->kind == MPM_CONTACT)
+  if (plugin.descriptor->kind == MPM_CONTACT || plugin.descriptor->kind == MPM_NORMAL)
     scene["bodies"].push_back({{"name", "b"},
                                {"material", "m"},
                                {"seeding", "lattice"},

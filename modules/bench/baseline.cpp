@@ -285,8 +285,8 @@ std::string baseline_refusal(const Experiment& experiment) {
   if (experiment.shape.plugin->id() != "bspline_quadratic") return "it knows quadratic B-splines";
   if (experiment.transfer.plugin->id() != "mls") return "it knows MLS";
   if (experiment.filter || experiment.contact || experiment.body_force || !experiment.loads.empty() ||
-      !experiment.boxes.empty())
-    return "it knows no filter, contact, body force, load or condition on a box";
+      !experiment.boxes.empty() || !experiment.rigid_bodies.empty())
+    return "it knows no filter, contact, body force, load, rigid body or condition on a box";
   const Component& material = experiment.materials[experiment.bodies[0].material].component;
   if (material.plugin->id() != "neo_hookean" || material.parameter("form") != 0 ||
       material.parameter("volumetric_energy") != 0)

@@ -57,6 +57,9 @@ bool has_entries(const Plugin& plugin, const conformance::Variant& v) {
       return plugin.filter().update[v.precision][axis];
     case MPM_CONTACT:
       return plugin.contact().apply[v.precision][axis];
+    case MPM_NORMAL:
+      return plugin.normal().traits & MPM_LOOKS_AT_POINTS ? plugin.normal().from_points[axis] != nullptr
+                                                          : plugin.normal().from_sums[v.precision][axis] != nullptr;
     case MPM_MATERIAL:
       return plugin.material().update[v.precision][axis];
     default:
@@ -88,6 +91,9 @@ std::vector<ConformanceFinding> check_plugin(const Plugin& plugin, const Conform
       break;
     case MPM_CONTACT:
       conformance::check_contact(plugin, findings);
+      break;
+    case MPM_NORMAL:
+      conformance::check_normal(plugin, findings);
       break;
     case MPM_MATERIAL:
       conformance::check_material(plugin, findings);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 
 #include "conformance/support.hpp"
 
@@ -231,6 +232,33 @@ void check_symmetry(const Plugin& plugin, const ContactBatch& b, const Parameter
   findings.at_most("heat_invariance", b.variant, heat, bound, "heat in swapped, turned and moving frames" + where);
 }
 
+/// Checks that a partner of infinite mass, at rest, counts as one so heavy that its mass is lost in rounding.
+void check_infinite_mass(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const Pairs& pairs,
+                         const std::string& where, Findings& findings) {
+  Pairs heavy = pairs;
+  for (Pair& pair : heavy) {
+    for (int i = 0; i < 3; ++i) pair.velocity_a[i] -= pair.velocity_b[i], pair.velocity_b[i] = 0;
+    pair.mass_b = 0x1p60 * pair.mass_a;
+  }
+  ContactBatch infinite(v, heavy, full);
+  for (int lane = 0; lane < full; ++lane) infinite.mass_b.set(0, lane, std::numeric_limits<double>::infinity());
+  infinite.apply(plugin, parameters);
+  const ContactBatch expected = applied(plugin, v, parameters, heavy);
+  Worst impulse, heat;
+  bool status = true;
+  for (int lane = 0; lane < full; ++lane) {
+    const double m = heavy[lane].mass_a;
+    impulse.add(impulse_difference(infinite, expected, lane, 1) / m, lane);
+    heat.add(std::abs(infinite.dissipated(0, lane) - expected.dissipated(0, lane)) / m, lane);
+    status &= infinite.status(0, lane) == expected.status(0, lane);
+  }
+  const double bound = 256 * v.epsilon();
+  findings.at_most("infinite_mass", v, impulse, bound,
+                   "|J - J beside a body 2^60 times as heavy| over the mass of the other body" + where);
+  findings.at_most("heat_beside_infinite_mass", v, heat, bound, "heat beside an infinite mass" + where);
+  findings.require("status_beside_infinite_mass [" + v.name() + "]", status, "status of every pair" + where);
+}
+
 void check_agreement(const ContactBatch& b, const ContactBatch& oracle, const Pairs& pairs, const std::string& where,
                      Findings& findings) {
   Worst impulse, heat;
@@ -300,6 +328,8 @@ void check_contact(const Plugin& plugin, Findings& findings) {
       check_friction(plugin, b, parameters, pairs, where, findings);
       findings.running("symmetry and frames", v, where);
       check_symmetry(plugin, b, parameters, pairs, random.rotation(v.dimension), where, findings);
+      findings.running("infinite mass", v, where);
+      check_infinite_mass(plugin, v, parameters, pairs, where, findings);
       findings.running("neighbours", v, where);
       check_neighbours(plugin, b, parameters, pairs, where, findings);
       findings.running("batches", v, where);

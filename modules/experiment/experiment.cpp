@@ -70,7 +70,25 @@ std::vector<Support> Experiment::supports() const {
     }
   for (const BoxCondition& box : boxes) all.push_back({box.name, box.type != ConditionType::free});
   for (const Grip& grip : grips) all.push_back({grip.name, true});
+  for (const RigidBodySpecification& body : rigid_bodies) all.push_back({body.name, true});
   return all;
+}
+
+std::string Experiment::why_it_meets() const {
+  const Component& law = contact ? *contact : rigid_bodies.front().contact;
+  return law.pointer + " \"" + std::string(law.plugin->id()) + "\"";
+}
+
+Vector3 RigidBodySpecification::spin_at(double time, int dimension) const {
+  const Vector3 spin = angular_velocity({}, {}, time);
+  return dimension == 2 ? Vector3{0, 0, spin[0]} : spin;
+}
+
+bool RigidBodySpecification::moves() const {
+  const auto rests = [](const VectorExpression& expression) {
+    return expression.is_constant() && expression({}, {}, 0) == Vector3{};
+  };
+  return !rests(velocity) || !rests(angular_velocity);
 }
 
 std::string Experiment::where(std::string_view pointer) const {

@@ -87,7 +87,7 @@ struct BoxCondition {
   ThermalCondition thermal;
 };
 
-/// What may hold the material: a wall of the domain, a box of nodes or a grip. Its number is its place in
+/// What may hold the material: a wall of the domain, a box of nodes, a grip or a rigid body. Its number is its place in
 /// Experiment::supports.
 struct Support {
   std::string name;
@@ -109,6 +109,22 @@ struct Grip {
   std::array<bool, 3> held{true, true, true};  ///< components that are given (null in the file leaves one free)
   VectorExpression velocity;                   ///< m/s, function of x, y, z, initial X, Y, Z, and t
   std::string pointer;
+};
+
+/// A rigid body that moves as it is told and meets material by a law of its own.
+struct RigidBodySpecification {
+  std::string name;                          ///< that of its reaction
+  std::shared_ptr<const Geometry> geometry;  ///< where it lies at the start
+  Vector3 about{};                           ///< its point of reference at the start, m
+  VectorExpression velocity;                 ///< of its point of reference, m/s, function of t
+  VectorExpression angular_velocity;         ///< rad/s, function of t; in 2-D its only component is that about z
+  Component contact;
+  std::string pointer;
+
+  /// The angular velocity at a time, s, of an experiment of so many dimensions, rad/s.
+  Vector3 spin_at(double time, int dimension) const;
+  /// Whether it ever moves.
+  bool moves() const;
 };
 
 /// How one phase of a material conducts and stores heat.
@@ -279,6 +295,7 @@ struct OutputSpecification {
   std::vector<GroupSpecification> groups;
   std::vector<ProbeSpecification> probes;
   bool contact_pairs = false;  ///< contact has columns for each pair of fields
+  bool contact_nodes = false;  ///< the nodes where fields meet are drawn and written with each frame
 
   /// Whether a probe takes a quantity whose name begins so.
   bool probes_take(std::string_view beginning) const;
@@ -325,13 +342,15 @@ struct Experiment {
   Component shape, transfer;
   std::optional<Component> filter, contact;
   FilterSchedule filter_schedule;
-  std::string contact_normal, contact_detection;  ///< names of the host's choices, empty without contact
+  std::optional<Component> contact_normal;  ///< with contact only
+  std::string contact_detection;            ///< the name of the host's choice, empty without contact
   int field_count = 1;
   std::vector<std::string> field_names;  ///< one a field; with contact only
 
   std::vector<MaterialSpecification> materials;
   std::vector<BodySpecification> bodies;
   std::vector<Grip> grips;
+  std::vector<RigidBodySpecification> rigid_bodies;
 
   Vector3 gravity{};  ///< m/s^2, as far as it is constant; zero along axes where it changes
   /// All of gravity, a function of t, where it changes in time along any axis, and along which.
@@ -371,10 +390,17 @@ struct Experiment {
   bool any_face(ConditionType type) const;
   /// Whether material may leave a wall or a box.
   bool separates() const;
-  /// The six faces of the domain, then the boxes of nodes, then the grips; numbered by support_of_wall, support_of_box and
-  /// support_of_grip.
+  /// The six faces of the domain, then the boxes of nodes, then the grips, then the rigid bodies; numbered by
+  /// support_of_wall, support_of_box, support_of_grip and support_of_rigid_body.
   std::vector<Support> supports() const;
   int support_of_grip(std::size_t grip) const { return support_of_box(static_cast<int>(boxes.size() + grip)); }
+  int support_of_rigid_body(std::size_t body) const { return support_of_grip(grips.size() + body); }
+  /// Whether anything meets at nodes by a law: bodies that have velocity fields of their own, or rigid bodies.
+  bool meets() const { return contact || !rigid_bodies.empty(); }
+  /// The JSON pointer of what asks for that, and its law, as reasons name it; of a scene that `meets`.
+  std::string why_it_meets() const;
+  /// Whether what supports give is noted: where reactions are asked for, and in scenes with rigid bodies.
+  bool notes_reactions() const { return !output.reactions.empty() || !rigid_bodies.empty(); }
   /// Whether a formula of body forces or grips reads where particles began.
   bool reads_initial_position() const;
 

@@ -77,6 +77,7 @@ Experiment ExperimentReader::read() {
   read_materials(fields.node("materials"));
   read_bodies(fields.node("bodies"));
   read_grips(fields.node("grips"));
+  read_rigid_bodies(fields.node("rigid_bodies"));
   read_loads(fields.node("loads"));
   read_damping(fields.node("damping"));
   read_solver(fields.node("solver"));

@@ -45,14 +45,22 @@ void ExperimentReader::check_capability(const Plugin& plugin, mpm_kind kind, con
 }
 
 ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_kind kind) {
+  return read_component(node, kind, component_kinds(components_, kind));
+}
+
+ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_kind kind,
+                                                          const std::vector<Section>& kinds) {
   Chosen chosen;
-  const std::vector<Section> kinds = component_kinds(components_, kind);
-  const std::string what = kind == MPM_CONTACT ? "contact law" : std::string(kind_name(kind));
-  const Section* section = choose_kind(node, kinds, what, false, context_);
+  const bool by_word = kind == MPM_NORMAL;
+  const std::string what = kind == MPM_CONTACT  ? "contact law"
+                           : kind == MPM_NORMAL ? "contact normal"
+                                                : std::string(kind_name(kind));
+  const Section* section = choose_kind(node, kinds, what, by_word, context_);
   if (!section) return chosen;
   const Plugin* plugin = components_.find(kind, section->name);
-  check_capability(*plugin, kind, *node.find("type"));
-  chosen.fields.emplace(&node, *section, context_);
+  const bool is_word = node.type == Node::Type::string;
+  check_capability(*plugin, kind, is_word ? node : *node.find("type"));
+  chosen.fields.emplace(is_word ? nullptr : &node, *section, context_);
   chosen.component.plugin = plugin;
   chosen.component.pointer = node.pointer;
   chosen.component.parameters.resize(plugin->descriptor->parameter_bytes / sizeof(double));
@@ -101,15 +109,40 @@ void ExperimentReader::read_components(const Fields& fields) {
   const Chosen contact = choose("contact", MPM_CONTACT);
   experiment_.contact = contact.component;
   if (!contact.fields) return;
-  experiment_.contact_normal = contact.fields->text("normal");
+  read_normal(*contact.fields);
   experiment_.contact_detection = contact.fields->text("detection");
   check_contact(*contact.fields);
 }
 
+/// Reads the normal, which a word chooses unless it needs parameters; a word stays one in the resolved experiment.
+void ExperimentReader::read_normal(const Fields& contact) {
+  Node standard;
+  standard.type = Node::Type::string, standard.text = standard_normal;
+  standard.at = contact.place("normal").at, standard.pointer = experiment_.contact->pointer + "/normal";
+  const Node& node = contact.given("normal") ? *contact.node("normal") : standard;
+  const Chosen chosen = read_component(node, MPM_NORMAL);
+  if (!chosen.component.plugin) return;
+  experiment_.contact_normal = chosen.component;
+  const auto parameters = chosen.component.plugin->parameters();
+  if (node.type != Node::Type::string) {
+    resolved_["contact"]["normal"] = chosen.resolved;
+    return;
+  }
+  resolved_["contact"]["normal"] = node.text;
+  for (const mpm_parameter& declared : parameters)
+    if (declared.flags & MPM_REQUIRED)
+      return problem(node, "contact normal " + in_quotes(node.text) + " needs " + in_quotes(declared.name) +
+                               ": {\"type\": " + in_quotes(node.text) + ", " + in_quotes(declared.name) + ": …}");
+}
+
 /// Refuses a choice of normal or detection that nobody would look at.
 void ExperimentReader::check_contact(const Fields& fields) {
-  for (const char* key : {"normal", "detection"}) {
-    if (!fields.given(key) || !fields.valid(key) || fields.choice(key) == 0) continue;  // the first is the default
+  for (const std::string key : {"normal", "detection"}) {
+    if (!fields.given(key) || !fields.valid(key)) continue;
+    if (key == "normal" && !experiment_.contact_normal) continue;  // what is wrong with it has been said
+    const bool standard =
+        key == "normal" ? experiment_.contact_normal->plugin->id() == standard_normal : fields.choice(key) == 0;
+    if (standard) continue;
     if (experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION)
       problem(fields.place(key), in_quotes(experiment_.contact->plugin->id()) +
                                      " joins bodies at every node that they share and looks at no " + key +

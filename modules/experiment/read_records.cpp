@@ -189,11 +189,21 @@ void ExperimentReader::read_section(const Fields& fields, ProbeSpecification& pr
     problem(fields.place("normal"), "in an axisymmetric scene sections lie across the axis: give [0, 1] or [0, -1]");
 }
 
+void ExperimentReader::read_contact_nodes(const Fields& fields) {
+  experiment_.output.contact_nodes = fields.boolean("contact_nodes");
+  if (!experiment_.output.contact_nodes) return;
+  const auto refuse = [&](const char* why) { problem(fields.place("contact_nodes"), why); };
+  if (!experiment_.contact) refuse("there are no such nodes without \"contact\"");
+  if (experiment_.output.frames <= 0) refuse("they are shown in frames: give \"frames\"");
+  if (experiment_.backend == "cuda") refuse("backend \"cuda\" hands over no single nodes; take backend \"cpu\"");
+}
+
 void ExperimentReader::read_records(const Fields& fields) {
   OrderedJson& resolved = resolved_["output"];
   experiment_.output.contact_pairs = fields.boolean("contact_pairs");
   if (experiment_.output.contact_pairs && !experiment_.contact)
     problem(fields.place("contact_pairs"), "there are no pairs without \"contact\"");
+  read_contact_nodes(fields);
   if (fields.given("bodies")) resolved["bodies"] = read_recorded_bodies(*fields.node("bodies"));
   for (const char* key : {"groups", "probes"}) {
     if (!fields.given(key) || !is_list(*fields.node(key), key, true)) continue;

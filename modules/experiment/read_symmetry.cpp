@@ -78,7 +78,7 @@ void ExperimentReader::check_frozen() {
     if (experiment_.gravity != Vector3{} || experiment_.changing_gravity)
       problem(place,
               name + "gravity would do work without a way, so that no energy balance closes; remove one of them");
-    if (experiment_.contact)
+    if (experiment_.meets())
       problem(place, name +
                          "it neither comes near another body nor leaves it, which contact decides by; remove one of "
                          "them");

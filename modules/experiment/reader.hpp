@@ -37,6 +37,7 @@ class ExperimentReader {
   OrderedJson read_expectation(const Node& node);
 
   // read_records.cpp
+  void read_contact_nodes(const Fields& fields);
   void read_records(const Fields& fields);
   OrderedJson read_recorded_bodies(const Node& node);
   OrderedJson read_group(const Node& node);
@@ -54,9 +55,11 @@ class ExperimentReader {
 
   // read_components.cpp
   Chosen read_component(const Node& node, mpm_kind kind);
+  Chosen read_component(const Node& node, mpm_kind kind, const std::vector<Section>& kinds);
   void check_capability(const Plugin& plugin, mpm_kind kind, const Node& place);
   void read_filter_schedule(const Fields& fields);
   void read_components(const Fields& fields);
+  void read_normal(const Fields& contact);
   void check_contact(const Fields& fields);
   void read_materials(const Node* node);
 
@@ -80,6 +83,11 @@ class ExperimentReader {
   OrderedJson read_grip(const Node& node);
   int body_index(const Fields& fields);
   void refuse_nothing_held(const Fields& fields, const std::array<bool, 3>& held, const std::string& remedy);
+
+  // read_rigid_bodies.cpp
+  void read_rigid_bodies(const Node* node);
+  OrderedJson read_rigid_body(const Node& node);
+  void check_rigid_about_axis(const Fields& fields);
 
   // read_symmetry.cpp
   void check_axisymmetric();

@@ -30,6 +30,9 @@ std::vector<ParameterSpec> record_parameters() {
           defined("groups", "a list of groups of particles, whose numbers have columns of their own", "groups"),
           defined("probes", "a list of probes: values at a particle, a place, along a line, over a section", "probes"),
           parameter("contact_pairs", Type::boolean, "", "Contact has columns for each pair of velocity fields.")
+              .standard(false),
+          parameter("contact_nodes", Type::boolean, "",
+                    "Each frame shows the nodes where bodies meet, and a table beside it lists them.")
               .standard(false)};
 }
 

@@ -178,6 +178,7 @@ Json definitions(const ComponentLookup& components, const ReadOptions& options) 
   for (const mpm_kind kind : {MPM_SHAPE, MPM_TRANSFER, MPM_FILTER, MPM_CONTACT, MPM_MATERIAL}) {
     all[std::string(kind_name(kind))] = choice_schema(component_kinds(components, kind));
   }
+  all["normal"] = words_or(component_kinds(components, MPM_NORMAL));
   all["materials"] = {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", reference("material")}};
   all["geometry"] = choice_schema(geometry_kinds());
   all["geometries"] = list_of(reference("geometry"));
@@ -190,6 +191,12 @@ Json definitions(const ComponentLookup& components, const ReadOptions& options) 
   all["solver"] = choice_schema(solver_kinds(options), true);
   all["output"] = section_schema(output_section(options));
   all["grips"] = list_of(section_schema(grip_section()));
+  all["rigid_contact"] = choice_schema(rigid_contact_kinds(components));
+  Json rigid_body = section_schema(rigid_body_section(3));
+  Json& turning = rigid_body["properties"]["angular_velocity"];
+  turning = {
+      {"anyOf", Json::array({section_schema(rigid_body_section(2))["properties"]["angular_velocity"], turning})}};
+  all["rigid_bodies"] = list_of(std::move(rigid_body));
   all["device"] = section_schema(device_section());
   all["damping"] = section_schema(damping_section());
   all["compare"] = section_schema(compare_section());

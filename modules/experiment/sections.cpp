@@ -87,6 +87,7 @@ Section experiment_section(const ReadOptions& options) {
               nested("materials", "an object of materials by name", "materials").needed(),
               nested("bodies", "a list of bodies", "bodies").needed(),
               nested("grips", "a list of grips", "grips"),
+              nested("rigid_bodies", "a list of rigid bodies", "rigid_bodies"),
               parameter("gravity", Type::expression_vector, "m/s^2", "Acceleration of every particle, of time t.")
                   .over("t")
                   .standard(0),
@@ -119,6 +120,27 @@ Section grip_section() {
                   .over("xyzXYZt")
                   .leave_free()
                   .needed(),
+          }};
+}
+
+Section rigid_body_section(int dimension) {
+  const Type turning = dimension == 2 ? Type::expression : Type::expression_vector;
+  return {"rigid body",
+          "a rigid body",
+          {
+              parameter("name", Type::string, "", "Name of its force and torque; default rigid_body_ and its place."),
+              nested("geometry", "a geometry", "geometry").needed(),
+              parameter("velocity", Type::expression_vector, "m/s", "Velocity of its point of reference, of time t.")
+                  .over("t")
+                  .standard(0),
+              parameter("angular_velocity", turning, "rad/s",
+                        "Angular velocity, of time t: a number in 2-D, from x to y, a vector in 3-D.")
+                  .over("t")
+                  .standard(0),
+              parameter("about", Type::vector, "m",
+                        "Point of reference at the start, for its rotation and torque; default: the middle of the "
+                        "geometry's bounds."),
+              nested("contact", "a contact law", "rigid_contact").needed(),
           }};
 }
 
@@ -397,7 +419,8 @@ Section output_section(const ReadOptions& options) {
           particle_output_parameter(),
           parameter("film", Type::boolean, "", "Join the frames to a film.").standard(false),
           parameter("reactions", Type::names, "",
-                    "Walls and boxes of nodes whose force on the material is recorded; true: all that hold any.")
+                    "Walls, boxes of nodes, grips and rigid bodies whose force on the material is recorded; true: all "
+                    "that hold any.")
               .or_boolean()
               .standard(false),
           parameter("ledger", Type::boolean, "", "Keep the energy ledger.").standard(true),
@@ -494,16 +517,28 @@ std::vector<Section> exact_kinds(const ReadOptions& options) {
   return kinds;
 }
 
+namespace {
+/// A plugin with its own keys.
+Section plugin_section(const Plugin& plugin) {
+  Section section = kind(std::string(plugin.id()), plugin.descriptor->summary ? plugin.descriptor->summary : "", {});
+  for (const mpm_parameter& declared : plugin.parameters()) section.parameters.push_back(from_plugin(declared));
+  return section;
+}
+}  // namespace
+
+std::vector<Section> rigid_contact_kinds(const ComponentLookup& components) {
+  std::vector<Section> kinds;
+  for (const Plugin* plugin : components.of_kind(MPM_CONTACT)) kinds.push_back(plugin_section(*plugin));
+  return kinds;
+}
+
 std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind wanted) {
   std::vector<Section> kinds;
   for (const Plugin* plugin : components.of_kind(wanted)) {
-    Section section =
-        kind(std::string(plugin->id()), plugin->descriptor->summary ? plugin->descriptor->summary : "", {});
-    for (const mpm_parameter& declared : plugin->parameters()) section.parameters.push_back(from_plugin(declared));
+    Section section = plugin_section(*plugin);
     if (wanted == MPM_CONTACT) {
-      section.parameters.push_back(parameter("normal", Type::choice, "", "How the contact normal is found.")
-                                       .of({"average_volume_gradient", "widest_gap"})
-                                       .standard("average_volume_gradient"));
+      section.parameters.push_back(
+          nested("normal", "how the contact normal is found", "normal").standard(standard_normal));
       section.parameters.push_back(parameter("detection", Type::choice, "", "When two fields count as touching.")
                                        .of({"approach_and_position", "particle_surfaces"})
                                        .standard("approach_and_position"));

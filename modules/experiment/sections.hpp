@@ -31,6 +31,8 @@ ParameterSpec max_steps_parameter();
 Section output_section(const ReadOptions& options);
 Section damping_section();
 Section grip_section();
+/// A rigid body; in 2-D its angular velocity is a number, in 3-D a vector.
+Section rigid_body_section(int dimension);
 Section compare_section();
 Section limits_section();
 Section expectation_section();
@@ -40,6 +42,10 @@ std::vector<Section> exact_kinds(const ReadOptions& options);
 Limits limits_of(const Fields& fields, ReadContext& context);
 
 /// The plugins of a kind as sections, with the keys the host itself reads beside them.
+/// The contact normal of scenes that choose none.
+inline constexpr const char* standard_normal = "average_volume_gradient";
 std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind kind);
+/// The laws by which rigid bodies meet material: their normals and surfaces are known, nobody chooses how.
+std::vector<Section> rigid_contact_kinds(const ComponentLookup& components);
 
 }  // namespace mpm

@@ -43,6 +43,21 @@ struct ContactResult {
   S status;           ///< 0 apart, 1 sticks, 2 slips
 };
 
+/// What two bodies that meet at a node have there, as far as the normal says that it reads it; the rest is zero. Both
+/// gradients are by the particles' positions and point out of the body.
+template <int D, class S>
+struct NormalPair {
+  Vec<D, S> mass_gradient_a, mass_gradient_b;      ///< sum m grad w, kg/m
+  Vec<D, S> volume_gradient_a, volume_gradient_b;  ///< sum V grad w, m^2
+};
+
+template <int D, class S>
+struct NormalResult {
+  Vec<D, S> normal;        ///< unit, from a to b
+  Vec<D, S> own_a, own_b;  ///< of each body alone, unit, from a to b; only normals with MPM_OWN_NORMALS fill them
+  S found;                 ///< 1 where there is a normal, else 0
+};
+
 /// State of solids that keep F alone, declared as MPM_STATE_PLANE_DEFORMATION: `Gradient` is a Mat, or in axisymmetric
 /// scenes a Deformation.
 template <class Gradient>

@@ -6,6 +6,13 @@
 
 namespace mpm {
 
+/// The reduced mass of a pair, kg; that of a where b is infinite. No product of masses is made, which overflows in float
+/// beyond 1e19 kg.
+template <class S>
+MPM_HD S reduced_mass_of(S mass_a, S mass_b) {
+  return mass_a / (real<S>(1) + mass_a / mass_b);
+}
+
 /// The relative motion of a pair: b seen from a.
 template <int D, class S>
 struct RelativeMotion {
@@ -15,9 +22,7 @@ struct RelativeMotion {
   S slide_squared;  ///< m^2/s^2
 
   MPM_HD explicit RelativeMotion(const ContactPair<D, S>& pair)
-      : reduced_mass(pair.mass_a * pair.mass_b / (pair.mass_a + pair.mass_b)),
-        approach(real<S>(0)),
-        slide_squared(real<S>(0)) {
+      : reduced_mass(reduced_mass_of(pair.mass_a, pair.mass_b)), approach(real<S>(0)), slide_squared(real<S>(0)) {
     Vec<D, S> jump;
     for (int i = 0; i < D; ++i) {
       jump[i] = pair.momentum_b[i] / pair.mass_b - pair.momentum_a[i] / pair.mass_a;

@@ -168,6 +168,9 @@ void ChosenNumbers::add_pairs(std::vector<ChosenRow>& rows) const {
       const std::string &of_a = experiment.field_names[a], &of_b = experiment.field_names[b];
       const Adder add{"pair " + of_a + " " + of_b + " ", {"pairs", of_a, of_b}, rows};
       add.components("force", units.force, pair.force, first, experiment.dimension);
+      add("normal force", units.force, pair.normal_force);
+      add.components("tangential force", units.force, pair.tangential_force, first, experiment.dimension);
+      add("area", units.area, pair.area);
       add("nodes", "", static_cast<double>(pair.nodes));
       add("sticking nodes", "", static_cast<double>(pair.sticking));
       add("slipping nodes", "", static_cast<double>(pair.slipping));

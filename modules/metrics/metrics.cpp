@@ -107,6 +107,7 @@ std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
            (!(plan.filters() && falls) && row.name == "filtered gravity") ||
            (!simulation_.experiment().damping.acts() && row.name == "damping") ||
            (!remaps && row.name == "remapped strain") ||
+           (simulation_.experiment().rigid_bodies.empty() && row.name == "rigid bodies") ||
            (!moves_second_moment(simulation_.experiment(), plan) && row.name == "second moment") ||
            (!gravity_without_potential && row.name == "gravity without potential") ||
            (!takes_back && row.name == "friction taken back");
@@ -186,6 +187,15 @@ std::vector<ValueRow> Metrics::rows(const Totals& t) const {
     const std::string name = "reaction " + supports[static_cast<std::size_t>(asked)].name;
     add_components(name, force, reaction.force, first, experiment.dimension);
     add_components(name + " moment", flat ? "N m/m" : "N m", reaction.moment, first_spin, 3);
+  }
+  for (std::size_t k = 0; k < experiment.rigid_bodies.size(); ++k) {
+    const Backend& backend = simulation_.backend();
+    const Reaction& reaction = backend.reactions()[static_cast<std::size_t>(experiment.support_of_rigid_body(k))];
+    const RigidState& state = backend.rigid_bodies()[k];
+    const std::string name = "rigid " + experiment.rigid_bodies[k].name;
+    add_components(name + " force", force, state.force_on(reaction), first, experiment.dimension);
+    add_components(name + " torque", flat ? "N m/m" : "N m", state.torque_on(reaction), first_spin, 3);
+    add_components(name + " place", "m", state.place, first, experiment.dimension);
   }
   if (plan.filters()) {
     const FilterRecord& filter = simulation_.backend().filter_record();

@@ -15,17 +15,30 @@ MPM_HD S momentum_of(S velocity, S mass) {
   return mass * velocity;
 }
 
-/// Strikes one component of a pair with the law's impulse: field a takes it, field b its opposite. Calls note(of_b,
-/// impulse) for what each is given, for the ledger. Returns the momentum that the pair gains, kg m/s, zero to rounding,
-/// in the precision of `Sum`.
+/// Strikes one component of a pair with the law's impulses: field a takes `impulse`, field b the opposite of `returned`,
+/// which is the same impulse unless each body has a normal of its own. Calls note(of_b, impulse) for what each is given,
+/// for the ledger. Returns the momentum that the pair gains, kg m/s, zero to rounding where the normal is shared, in the
+/// precision of `Sum`.
 template <class Sum, class S, class Note>
-MPM_HD Sum strike_pair(S& velocity_a, S& velocity_b, S mass_a, S mass_b, S impulse, Note&& note) {
+MPM_HD Sum strike_pair(S& velocity_a, S& velocity_b, S mass_a, S mass_b, S impulse, S returned, Note&& note) {
   const Sum before_a = velocity_a, before_b = velocity_b;
   velocity_a = struck(velocity_a, impulse, mass_a);
-  velocity_b = struck(velocity_b, -impulse, mass_b);
+  velocity_b = struck(velocity_b, -returned, mass_b);
   note(false, impulse);
-  note(true, -impulse);
+  note(true, -returned);
   return mass_a * (velocity_a - before_a) + mass_b * (velocity_b - before_b);
+}
+
+/// Adds to `along` the part of field a's impulse along the pair's unit normal, kg m/s, and to `pressing` how hard that
+/// presses the fields together: positive where it pushes a back from b.
+template <class Impulse, class Normal>
+MPM_HD void add_normal_part(const Impulse& impulse, const Normal& normal, int stride, int dimension, double* along,
+                            double& pressing) {
+  double size = 0;
+  for (int c = 0; c < dimension; ++c)
+    size += static_cast<double>(impulse[c * stride]) * static_cast<double>(normal[c * stride]);
+  for (int c = 0; c < dimension; ++c) along[c] += size * static_cast<double>(normal[c * stride]);
+  pressing -= size;
 }
 
 }  // namespace mpm

@@ -107,8 +107,7 @@ bool joins_force(ExternalForce external) {
 std::string why_separate_force(const FieldList& fields) {
   const Experiment& experiment = fields.experiment;
   if (gathers_increment(experiment)) return FieldList::named(experiment.transfer) + ": gathers the change of velocity";
-  if (fields.plan.resolves_contact())
-    return FieldList::named(*experiment.contact) + ": acts before and after the forces";
+  if (fields.plan.resolves_contact()) return experiment.why_it_meets() + ": acts before and after the forces";
   if (experiment.damping.acts()) return experiment.damping.pointer + ": acts on the change of velocity";
   for (const ExternalForce external : external_forces) {
     const std::string giver = experiment.giver_of(external);
@@ -185,12 +184,22 @@ void impulse_fields(FieldList& fields) {
 void contact_fields(FieldList& fields) {
   if (!fields.plan.resolves_contact()) return;
   const int D = fields.experiment.dimension;
-  const std::string& contact = fields.experiment.contact->pointer;
-  const std::string normal = contact + "/normal \"" + fields.experiment.contact_normal + "\"";
-  fields.summed("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, normal);
-  fields.summed("volume", "m^3", 1, AtWall::even, Folded::with_mass, normal, "volume_gradient");
-  fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass,
-                contact + "/detection \"" + fields.experiment.contact_detection + "\"");
+  const Experiment& experiment = fields.experiment;
+  const std::string meets = experiment.contact ? experiment.contact->pointer : experiment.rigid_bodies.front().pointer;
+  std::string area = meets + ": the area that a node stands for";
+  std::string place = meets + ": where the edge of the material lies";
+  unsigned traits = 0;
+  if (experiment.contact) {
+    const Component& chosen = *experiment.contact_normal;
+    const std::string normal = meets + "/normal \"" + std::string(chosen.plugin->id()) + "\"";
+    traits = chosen.plugin->normal().traits;
+    if (traits & (MPM_READS_VOLUME_GRADIENT | MPM_LOOKS_AT_POINTS)) area = normal;
+    place = meets + "/detection \"" + experiment.contact_detection + "\"";
+    if (traits & MPM_READS_MASS_GRADIENT)
+      fields.summed("mass_gradient", "kg/m", D, AtWall::slip, Folded::with_mass, normal);
+  }
+  fields.summed("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, area);
+  fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass, place);
 }
 
 /// What nodes get from the particles of each grip: the momentum that these have as they are told at the end of the step,

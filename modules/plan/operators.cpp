@@ -54,7 +54,7 @@ class Uses {
 // Where a particle is and which nodes it reaches.
 #define MPM_STENCIL "particles/position", "particles/domain", "particles/corners"
 // What contact and one-sided walls look at.
-#define MPM_PAIRS "nodes/volume", "nodes/volume_gradient", "nodes/mass_position"
+#define MPM_PAIRS "nodes/volume_gradient", "nodes/mass_gradient", "nodes/mass_position"
 // What walls that heat comes through look at.
 #define MPM_HEATED_WALL "nodes/heated_volume", "nodes/volume_conductivity", "nodes/capacity_position"
 

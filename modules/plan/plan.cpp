@@ -1,6 +1,7 @@
 #include "plan/plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <numeric>
 #include <stdexcept>
@@ -41,6 +42,33 @@ void refuse_temperature(const Experiment& experiment) {
   if (const auto refusal = refusal_of_temperature(*transfer.plugin, basis_order_of(transfer)))
     refuse(experiment, transfer.pointer, *refusal);
   if (const auto refusal = refusal_of_gradients(experiment)) refuse(experiment, experiment.shape.pointer, *refusal);
+}
+
+/// A normal of each body's own makes two impulses of one, which not everybody can take.
+void refuse_normal(const Experiment& experiment) {
+  if (!experiment.contact_normal) return;
+  const Component& normal = *experiment.contact_normal;
+  const mpm_normal& functions = normal.plugin->normal();
+  const std::string name = "contact normal \"" + std::string(normal.plugin->id()) + "\"";
+  if (functions.traits & MPM_OWN_NORMALS) {
+    const std::string why = name + " gives each body an impulse of its own, and ";
+    if (experiment.filter)
+      refuse(experiment, normal.pointer, why + "a filter hands on one for both; take another normal, or no filter");
+    if (experiment.contact_detection == "particle_surfaces")
+      refuse(experiment, normal.pointer,
+             why +
+                 "\"particle_surfaces\" measures the gap along a normal that both share; take another normal, or "
+                 "detection \"approach_and_position\"");
+  }
+  if (functions.traits != 0) return;
+  // What reads nothing of the scene is known before it runs.
+  std::array<double, 3 * MPM_LANES> found_normal{};
+  std::array<std::int32_t, MPM_LANES> found{};
+  mpm_normal_batch batch{};
+  batch.count = batch.stride = MPM_LANES, batch.dimension = static_cast<std::uint32_t>(experiment.dimension);
+  batch.normal = found_normal.data(), batch.found = found.data();
+  functions.from_sums[MPM_SCALAR_DOUBLE][experiment.dimension - 2](normal.parameters.data(), &batch);
+  if (!found[0]) refuse(experiment, normal.pointer, name + " gives no direction: its components are all zero");
 }
 
 /// A filter and a ledger that skip steps meet always, or never, where their numbers have a common divisor.
@@ -89,7 +117,7 @@ void refuse_work_for_nobody(const Step& step, const Experiment& experiment) {
       case Act::add_correction:
         return experiment.filter ? nullptr : "filter";
       case Act::scatter_contact:
-        return experiment.contact ? nullptr : "contact";
+        return experiment.meets() ? nullptr : "contact";
       case Act::scatter_heat:
       case Act::divide_heat:
       case Act::conduct:
@@ -171,6 +199,7 @@ BackendNeeds backend_needs(std::string_view backend) {
 
 Plan assemble_plan(const Experiment& experiment, const std::function<void(StepBuilder&)>& solver_step) {
   refuse_impossible_combinations(experiment);
+  refuse_normal(experiment);
   refuse_common_schedules(experiment);
   refuse_temperature(experiment);
   Plan plan;

@@ -26,11 +26,11 @@ extern "C" {
 
 /* The boundary is unstable until 1.0 of the sandbox: any change of a struct or number below makes a new version, and a
  * host takes plugins of its own version alone. */
-#define MPM_ABI_VERSION 2u
+#define MPM_ABI_VERSION 3u
 #define MPM_BATCH 64u /* particles or nodes in a full batch */
 #define MPM_LANES 16u /* counts are padded to a multiple of this */
 
-enum mpm_kind { MPM_SHAPE = 1, MPM_TRANSFER = 2, MPM_FILTER = 3, MPM_CONTACT = 4, MPM_MATERIAL = 5 };
+enum mpm_kind { MPM_SHAPE = 1, MPM_TRANSFER = 2, MPM_FILTER = 3, MPM_CONTACT = 4, MPM_MATERIAL = 5, MPM_NORMAL = 6 };
 
 /* Index into the entry tables. The reference backend takes the plain instantiation, MPM_SCALAR_DOUBLE, as its oracle.
  */
@@ -210,7 +210,8 @@ typedef struct mpm_filter {
 } mpm_filter;
 
 /* ---- contact law ----------------------------------------------------------------------------------------------
- * One batch entry is the pair (a, b) of velocity fields at one node. */
+ * One batch entry is the pair (a, b) of velocity fields at one node. Where b is a rigid body that moves as it is told, its
+ * mass is infinite, its momentum zero, and the velocity of a is relative to it: the impulse on a stays finite. */
 enum mpm_contact_trait {
   MPM_BYPASSES_DETECTION = 1, /* a weld: no prescreen, detection or cap */
   MPM_PULLS = 2               /* may resist separation (adhesion) */
@@ -219,11 +220,11 @@ enum mpm_contact_status { MPM_APART = 0, MPM_STICKS = 1, MPM_SLIPS = 2 };
 typedef struct mpm_contact_batch {
   uint32_t count, stride, dimension, reserved;
   double dt;
-  const void* mass_a; /* [stride], kg */
-  const void* mass_b;
+  const void* mass_a;     /* [stride], kg */
+  const void* mass_b;     /* may be infinite */
   const void* momentum_a; /* [D][stride], kg m/s */
   const void* momentum_b;
-  const void* normal;     /* [D][stride], unit, from a to b, shared by the pair */
+  const void* normal;     /* [D][stride], unit, from a to b, shared by the pair unless each has its own */
   const void* separation; /* [stride], m, negative when the surfaces overlap */
   const void* area;       /* [stride], m^2 (m in 2-D per metre of depth) */
   void* impulse;          /* [D][stride] out: added to a, taken from b, kg m/s */
@@ -234,6 +235,50 @@ typedef struct mpm_contact {
   uint32_t traits, reserved;
   void (*apply[MPM_PRECISIONS][2])(const void* parameters, const mpm_contact_batch* batch);
 } mpm_contact;
+
+/* ---- contact normal -------------------------------------------------------------------------------------------
+ * The direction in which two bodies meet at a node, from sums of their particles over the node's weights, or from the
+ * places of those particles. Hosts ask in double whatever the run's precision: sums of two bodies nearly cancel. */
+enum mpm_normal_trait {
+  MPM_READS_MASS_GRADIENT = 1,   /* mass_gradient_a and _b are filled: a scene sums what its normal reads */
+  MPM_READS_VOLUME_GRADIENT = 2, /* volume_gradient_a and _b are filled */
+  /* from_points finds the normal. Where it finds none the host takes that of the averaged volume gradients, and sums
+   * them for it. */
+  MPM_LOOKS_AT_POINTS = 4,
+  /* Each body has a normal of its own: own_a and own_b are filled, and momentum is not kept. */
+  MPM_OWN_NORMALS = 8
+};
+/* One batch entry is the pair (a, b) of velocity fields at one node. Gradients are by the particles' positions and point
+ * out of a body: sum m grad w, and sum V grad w with the current volumes V. In axisymmetric scenes mass and volume are
+ * those of the section, as a ring's grow away from the axis. */
+typedef struct mpm_normal_batch {
+  uint32_t count, stride, dimension, reserved;
+  const void* mass_gradient_a; /* [D][stride], kg/m (kg/m^2 in 2-D, per metre of depth); null unless read */
+  const void* mass_gradient_b;
+  const void* volume_gradient_a; /* [D][stride], m^2 (m in 2-D); null unless read */
+  const void* volume_gradient_b;
+  void* normal;   /* [D][stride] out: unit, from a to b; where none is found any value */
+  void* own_a;    /* [D][stride] out: that of a alone, unit, out of a; null unless MPM_OWN_NORMALS */
+  void* own_b;    /* [D][stride] out: that of b alone, unit, into b; null unless MPM_OWN_NORMALS */
+  int32_t* found; /* [stride] out: 1 where there is a normal, else 0 */
+} mpm_normal_batch;
+/* The particles of both bodies near one node. Lanes from a count to its stride repeat the first particle. */
+typedef struct mpm_normal_points {
+  uint32_t count_a, stride_a, count_b, stride_b; /* counts are 1 or more */
+  const double* position_a;                      /* [3][stride_a], cells from the node; z is 0 in 2-D */
+  const double* position_b;                      /* [3][stride_b] */
+  /* [stride_a]: the quadratic B-spline's weight of the node at the particle, 0 from 1.5 cells along an axis on; lanes
+   * that repeat have 0. */
+  const double* weight_a;
+  const double* weight_b; /* [stride_b] */
+  double* normal;         /* [3] out: unit, from a to b */
+} mpm_normal_points;
+typedef struct mpm_normal {
+  uint32_t traits, reserved;
+  void (*from_sums[MPM_PRECISIONS][2])(const void* parameters, const mpm_normal_batch* batch); /* null with points */
+  /* [dimension - 2]; returns 1 where there is a normal, else 0. Null without MPM_LOOKS_AT_POINTS. */
+  int32_t (*from_points[2])(const void* parameters, const mpm_normal_points* points);
+} mpm_normal;
 
 /* ---- material -------------------------------------------------------------------------------------------------
  * `update` first advances the state over dt with the velocity gradient (skipped when that is null), then fills every
@@ -291,7 +336,7 @@ typedef struct mpm_descriptor {
   const mpm_state* state;
   uint32_t state_count;
   uint32_t kind_table_size;
-  const void* kind_table;   /* mpm_shape, mpm_transfer, mpm_filter, mpm_contact or mpm_material */
+  const void* kind_table;   /* mpm_shape, mpm_transfer, mpm_filter, mpm_contact, mpm_material or mpm_normal */
   const char* functor_name; /* C++ name inside `source` */
   const char* source;       /* text of the functor's header, for run-time compilation */
   /* The table of an extension by its id (plugin/extensions.h), or null where there is none of that id: always the same

@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::array kinds{MPM_SHAPE, MPM_TRANSFER, MPM_FILTER, MPM_CONTACT, MPM_MATERIAL};
+constexpr std::array kinds{MPM_SHAPE, MPM_TRANSFER, MPM_FILTER, MPM_CONTACT, MPM_NORMAL, MPM_MATERIAL};
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what, const std::string& remedy) {
   throw PluginError("plugin " + file.string() + ": " + what + "; " + remedy);
@@ -96,6 +96,8 @@ std::size_t table_size(std::uint32_t kind) {
       return sizeof(mpm_contact);
     case MPM_MATERIAL:
       return sizeof(mpm_material);
+    case MPM_NORMAL:
+      return sizeof(mpm_normal);
     default:
       return 0;
   }
@@ -195,6 +197,8 @@ std::string_view kind_name(mpm_kind kind) {
       return "contact";
     case MPM_MATERIAL:
       return "material";
+    case MPM_NORMAL:
+      return "normal";
   }
   return "unknown";
 }
@@ -211,6 +215,8 @@ std::string_view kind_plural(mpm_kind kind) {
       return "contact laws";
     case MPM_MATERIAL:
       return "materials";
+    case MPM_NORMAL:
+      return "contact normals";
   }
   return "unknown";
 }

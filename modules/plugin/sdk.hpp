@@ -62,6 +62,10 @@ constexpr mpm_descriptor contact(const Manual& m, const char* source) {
   return descriptor<F>(MPM_CONTACT, contact_table<F>, nullptr, m, source);
 }
 template <class F>
+constexpr mpm_descriptor normal(const Manual& m, const char* source) {
+  return descriptor<F>(MPM_NORMAL, NormalTable<F>::value, nullptr, m, source);
+}
+template <class F>
 constexpr mpm_descriptor material(const Manual& m, const char* source) {
   return descriptor<F>(MPM_MATERIAL, material_table<F>, &material_extension<F>, m, source);
 }

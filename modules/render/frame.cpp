@@ -143,6 +143,41 @@ void draw_particles(Canvas& canvas, const ParticleFrame& f, const std::vector<st
   canvas.unclip();
 }
 
+void draw_mark(Canvas& canvas, Point at, NodeMark::State state, double u) {
+  if (state == NodeMark::State::apart) return canvas.marker(at, Marker::cross, 4 * u, kBlack, {kBlack, 1.5 * u});
+  canvas.marker(at, Marker::circle, 5 * u, state == NodeMark::State::sticks ? kBlack : kWhite, {kBlack, 1.5 * u});
+}
+
+/// Draws nodes over the particles, with half a cell of their normals.
+void draw_marks(Canvas& canvas, const ParticleFrame& f, const PlaneView& view, double u) {
+  canvas.clip(view.box);
+  for (const NodeMark& mark : f.marks) {
+    const auto [x, y] = mark.place;
+    const Point at = view.at(x, y);
+    const Point tip = view.at(x + mark.normal[0] * f.cell_size / 2, y + mark.normal[1] * f.cell_size / 2);
+    canvas.line(at, tip, {kWhite, 4 * u});
+    canvas.line(at, tip, {kBlack, 2 * u});
+    draw_mark(canvas, at, mark.state, u);
+  }
+  canvas.unclip();
+}
+
+/// Says below the picture, from x on, what the marks of nodes mean.
+void draw_mark_key(Canvas& canvas, const Theme& theme, double x, double y) {
+  const auto write = [&](const char* text) {
+    canvas.text({x, y}, text, theme.style(kInk, Anchor::start, Baseline::middle));
+    x += canvas.measure_text(text, theme.text) + theme.text;
+  };
+  write("nodes where bodies meet:");
+  for (const auto& [state, text] : {std::pair{NodeMark::State::sticks, "stick"},
+                                    {NodeMark::State::slips, "slip"},
+                                    {NodeMark::State::apart, "apart"}}) {
+    draw_mark(canvas, {x, y}, state, theme.unit);
+    x += 0.7 * theme.text;
+    write(text);
+  }
+}
+
 /// Paints particles that are all specks, within the outline of the domain.
 void paint_specks(const TileSamples& tile, const ParticleFrame& f, const std::vector<std::size_t>& shown,
                   const FieldColours& colours, const PlaneView& view, double outline) {
@@ -152,7 +187,17 @@ void paint_specks(const TileSamples& tile, const ParticleFrame& f, const std::ve
   for (const std::size_t i : shown) painter.fill(outline_of(f, i, view), colours(f.values[i]));
 }
 
-void draw_scale_bar(Canvas& canvas, const Theme& theme, const PlaneView& view) {
+/// Draws the edges of rigid bodies.
+void draw_outlines(Canvas& canvas, const ParticleFrame& f, const PlaneView& view, double u) {
+  canvas.clip(view.box);
+  for (std::size_t k = 0; k + 3 < f.outlines.size(); k += 4)
+    canvas.line(view.at(f.outlines[k], f.outlines[k + 1]), view.at(f.outlines[k + 2], f.outlines[k + 3]),
+                {kInk, kOutline * u});
+  canvas.unclip();
+}
+
+/// Draws a length below the picture, and returns where its writing ends.
+double draw_scale_bar(Canvas& canvas, const Theme& theme, const PlaneView& view) {
   const double length = nice_below(view.box.width() / view.scale / 4);
   const double u = theme.unit, y = view.box.y1 + 1.1 * theme.text;
   const Point a{view.box.x0, y}, b{view.box.x0 + length * view.scale, y};
@@ -160,6 +205,7 @@ void draw_scale_bar(Canvas& canvas, const Theme& theme, const PlaneView& view) {
   canvas.line(a, b, ink);
   for (const Point& end : {a, b}) canvas.line({end.x, y - 6 * u}, {end.x, y + 6 * u}, {kInk, 2 * u});
   canvas.text({b.x + 0.6 * theme.text, y}, metres(length), theme.style(kInk, Anchor::start, Baseline::middle));
+  return b.x + 0.6 * theme.text + canvas.measure_text(metres(length), theme.text);
 }
 
 /// Draws a 2-D picture. With `leaves_specks` particles are left out where all are specks, and the view to paint them in
@@ -180,13 +226,16 @@ std::optional<PlaneView> draw_plane(Canvas& canvas, const ParticleFrame& f, cons
 
   if (f.map == ColourMap::diverging) canvas.rectangle(view.box, {0.94, 0.94, 0.94});  // white particles need a ground
   draw_cells(canvas, f, view, theme.unit);
-  const bool are_left = leaves_specks && std::all_of(shown.begin(), shown.end(), [&](std::size_t i) {
+  const bool are_left = leaves_specks && f.marks.empty() && std::all_of(shown.begin(), shown.end(), [&](std::size_t i) {
                           return is_speck(outline_of(f, i, view), theme.unit);
                         });
   if (!are_left) draw_particles(canvas, f, shown, colours, view, theme.unit);
+  if (!f.marks.empty()) draw_marks(canvas, f, view, theme.unit);
+  draw_outlines(canvas, f, view, theme.unit);
   canvas.outline(view.box, {kInk, kOutline * theme.unit});
   canvas.text({view.box.x0, view.box.y0 - 0.6 * theme.text}, clock_text(f), theme.style());
-  draw_scale_bar(canvas, theme, view);
+  const double end = draw_scale_bar(canvas, theme, view);
+  if (!f.marks.empty()) draw_mark_key(canvas, theme, end + 2 * theme.text, view.box.y1 + 1.1 * theme.text);
   // A flat domain would squash the colour bar.
   const double key_height = std::max(h, std::min(bottom - top, 12 * theme.text));
   const double key_top = std::clamp(upper + h / 2 - key_height / 2, top, std::max(top, bottom - key_height));

@@ -127,12 +127,16 @@ EarlierParts restore_from(const fs::path& path, Simulation& simulation, Recorder
 }  // namespace
 
 std::vector<const Plugin*> plugins_of(const Experiment& experiment) {
-  std::vector<const Plugin*> used{experiment.shape.plugin, experiment.transfer.plugin};
-  if (experiment.filter) used.push_back(experiment.filter->plugin);
-  if (experiment.contact) used.push_back(experiment.contact->plugin);
-  for (const MaterialSpecification& material : experiment.materials)
-    if (std::find(used.begin(), used.end(), material.component.plugin) == used.end())
-      used.push_back(material.component.plugin);
+  std::vector<const Plugin*> used;
+  const auto add = [&](const Component& component) {
+    if (std::find(used.begin(), used.end(), component.plugin) == used.end()) used.push_back(component.plugin);
+  };
+  add(experiment.shape), add(experiment.transfer);
+  if (experiment.filter) add(*experiment.filter);
+  if (experiment.contact) add(*experiment.contact);
+  if (experiment.contact_normal) add(*experiment.contact_normal);
+  for (const RigidBodySpecification& body : experiment.rigid_bodies) add(body.contact);
+  for (const MaterialSpecification& material : experiment.materials) add(material.component);
   return used;
 }
 

@@ -13,6 +13,9 @@
 #include "output/checkpoint_file.hpp"
 #include "output/film.hpp"
 #include "output/vtk.hpp"
+#include "run/contact_nodes.hpp"
+#include "simulation/rigid_outline.hpp"
+#include "support/files.hpp"
 #include "support/parallel.hpp"
 
 namespace mpm::app {
@@ -33,6 +36,16 @@ std::pair<double, double> range_of(const std::vector<float>& values, std::pair<d
   for (const float value : values)
     if (std::isfinite(value)) range = {std::min<double>(range.first, value), std::max<double>(range.second, value)};
   return range;
+}
+
+/// The edges of rigid bodies where they are now, as far as they lie in the domain or near it; none in 3-D.
+std::vector<float> outlines_of(const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  std::vector<float> outlines;
+  for (std::size_t k = 0; experiment.dimension == 2 && k < experiment.rigid_bodies.size(); ++k)
+    for (const auto& [from, to] : edges_of(experiment, k, simulation.backend().rigid_bodies()[k]))
+      for (const double number : {from[0], from[1], to[0], to[1]}) outlines.push_back(static_cast<float>(number));
+  return outlines;
 }
 
 }  // namespace
@@ -70,6 +83,8 @@ void Recorder::save(ArchiveWriter& archive) {
     record.put("positions", snapshot.positions);
     record.put("values", snapshot.values);
     record.put("domain_axes", snapshot.domain_axes);
+    record.put("contact_nodes", snapshot.contact_nodes);
+    record.put("outlines", snapshot.outlines);
     kept_snapshots_.append({record.bytes().data(), record.bytes().size()});
   }
   archive.put("rows", csv_->bytes());
@@ -105,6 +120,8 @@ void Recorder::restore(ArchiveReader& archive) {
     record.get("positions", snapshot.positions);
     record.get("values", snapshot.values);
     record.get("domain_axes", snapshot.domain_axes);
+    record.get("contact_nodes", snapshot.contact_nodes);
+    record.get("outlines", snapshot.outlines);
   }
   archive.get("last_row", last_row_);
   archive.get("frames_taken", frames_taken_);
@@ -159,7 +176,7 @@ void Recorder::record_row() {
 
 void Recorder::record_frame() {
   const Experiment& experiment = simulation_.experiment();
-  Snapshot snapshot{simulation_.time(), simulation_.steps(), {}, {}, {}};
+  Snapshot snapshot{simulation_.time(), simulation_.steps(), {}, {}, outlines_of(simulation_), {}};
   for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
     const BodyState state = simulation_.backend().body_state(body);
     const std::vector<double> values = quantity(experiment, body, state, experiment.output.colour_by);
@@ -169,6 +186,7 @@ void Recorder::record_frame() {
       for (const std::size_t component : {0, 2, 1, 3})  // columns of the matrix are the semi-sides
         snapshot.domain_axes.push_back(static_cast<float>(state.domain[k + component]));
   }
+  snapshot.contact_nodes = simulation_.backend().contact_nodes();
   if (experiment.output.vtk) write_vtk(frames_taken_);
   const std::size_t bytes =
       (snapshot.positions.size() + snapshot.values.size() + snapshot.domain_axes.size()) * sizeof(float);
@@ -221,6 +239,7 @@ void Recorder::draw(render::ParticleFrame frame, const Snapshot& snapshot, std::
   frame.positions = snapshot.positions;
   frame.values = snapshot.values;
   frame.domain_axes = snapshot.domain_axes;
+  frame.outlines = snapshot.outlines;
   frame.time = snapshot.time;
   frame.step = snapshot.step;
   if (frame.map == render::ColourMap::diverging) {
@@ -228,7 +247,12 @@ void Recorder::draw(render::ParticleFrame frame, const Snapshot& snapshot, std::
     range = {-limit, limit};
   }
   if (frame.map != render::ColourMap::categorical && range.first < range.second) frame.range = range;
+  const Experiment& experiment = simulation_.experiment();
+  if (experiment.dimension == 2) frame.marks = contact_marks(experiment, snapshot.contact_nodes);
   render::write_frame(frame, folder_.frames() / numbered("frame", index));
+  if (experiment.output.contact_nodes)
+    support::write_atomically(folder_.frames() / (numbered("contact", index) + ".csv"),
+                              contact_table(experiment, snapshot.contact_nodes));
 }
 
 void Recorder::draw_frames() {

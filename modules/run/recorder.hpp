@@ -58,7 +58,9 @@ class Recorder {
     double time;
     long step;
     std::vector<float> positions, values;
+    std::vector<float> outlines;     ///< edges of rigid bodies in 2-D: from and to, four numbers a piece
     std::vector<float> domain_axes;  ///< domains of 2-D particles that carry one: four numbers a particle
+    std::vector<ContactNode> contact_nodes = {};
   };
   void start_rows();
   bool frame_due(double time) const;

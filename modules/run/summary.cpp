@@ -110,6 +110,26 @@ Json reactions(const Simulation& simulation) {
   return json;
 }
 
+/// The force and torque on each rigid body in the last step, its force as a mean over time, and where it is.
+Json rigid_bodies(const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  const auto [first, first_spin] = recorded_axes(experiment);
+  Json json = Json::object();
+  for (std::size_t k = 0; k < experiment.rigid_bodies.size(); ++k) {
+    const auto support = static_cast<std::size_t>(experiment.support_of_rigid_body(k));
+    const Reaction& reaction = simulation.backend().reactions()[support];
+    const RigidState& state = simulation.backend().rigid_bodies()[k];
+    Vector3 mean = reaction.impulse;
+    for (double& component : mean) component /= -simulation.time();
+    Json& entry = json[experiment.rigid_bodies[k].name];
+    entry["force"] = by_axis(state.force_on(reaction), first, experiment.dimension);
+    entry["mean_force"] = by_axis(mean, first, experiment.dimension);
+    if (first_spin < 3) entry["torque"] = by_axis(state.torque_on(reaction), first_spin, 3);
+    entry["place"] = by_axis(state.place, first, experiment.dimension);
+  }
+  return json;
+}
+
 /// Puts the chosen numbers under their paths.
 void add_chosen(const Metrics& metrics, const RunRecord& rows, Json& json) {
   if (rows.chosen().empty()) return;
@@ -198,6 +218,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const RunRe
         std::isnan(recorder.first_contact_time()) ? Json() : Json(recorder.first_contact_time());
   }
   if (!experiment.output.reactions.empty()) json["reaction"] = reactions(simulation);
+  if (!experiment.rigid_bodies.empty()) json["rigid"] = rigid_bodies(simulation);
   if (experiment.exact)
     json["error"] = {{"position", {{"rms", end.position_error_rms}, {"max", end.position_error_max}}},
                      {"velocity", {{"rms", end.velocity_error_rms}, {"max", end.velocity_error_max}}}};

@@ -16,7 +16,7 @@ double length(const std::array<double, 3>& v) {
 }  // namespace
 
 const BodySpecification* finite_block(const Experiment& experiment) {
-  if (!experiment.contact || experiment.contact_normal != "average_volume_gradient") return nullptr;
+  if (!experiment.contact || experiment.contact_normal->plugin->id() != "average_volume_gradient") return nullptr;
   if (!experiment.shape.plugin->id().starts_with("bspline")) return nullptr;
   for (const BodySpecification& body : experiment.bodies) {
     if (std::isfinite(body.geometry->smallest_radius())) continue;
@@ -34,7 +34,7 @@ const BodySpecification* finite_block(const Experiment& experiment) {
 
 Watch::Watch(const Simulation& simulation)
     : simulation_(simulation),
-      watches_(simulation.plan().resolves_contact() &&
+      watches_(simulation.experiment().contact &&
                !(simulation.experiment().contact->plugin->contact().traits & MPM_BYPASSES_DETECTION)),
       watches_slide_(watches_ && simulation.experiment().field_count == 2 && finite_block(simulation.experiment())) {}
 

@@ -144,7 +144,8 @@ struct Ledger {
       0;  ///< the same of gravity that has none: along periodic axes, or changing in time
   double surface_load = 0, point_load = 0, spring = 0, dashpot = 0;  ///< the same (simulation/loads.hpp)
   double boundary = 0, contact = 0;                                  ///< J.(v- + v+)/2 of impulses
-  double damping = 0;                                                ///< the same of what damping takes
+  double rigid_bodies = 0;         ///< share of contact that is work of rigid bodies, J times their own velocity
+  double damping = 0;              ///< the same of what damping takes
   double friction = 0;             ///< share of contact that the law turned to heat (positive), as particles keep it
   double friction_taken_back = 0;  ///< more of it, before the forces, that gathering increments undoes (FLIP)
   double material = 0;             ///< dissipated by the materials (positive)
@@ -192,6 +193,7 @@ inline constexpr LedgerEntry<Ledger> ledger_entries[] = {
     {"gravity without potential", &Ledger::gravity_without_potential, 1, 3},
     {"boundary", &Ledger::boundary, 1, 2},
     {"contact", &Ledger::contact, 1, 2},
+    {"rigid bodies", &Ledger::rigid_bodies, 1, 2},
     {"damping", &Ledger::damping, 1, 2},
     {"friction", &Ledger::friction, 0},
     {"friction taken back", &Ledger::friction_taken_back, 0},
@@ -256,8 +258,22 @@ struct ContactRecord {
 /// The same of one pair of velocity fields. The force acts on its first field.
 struct PairRecord {
   std::array<double, 3> force{};               ///< N
+  std::array<double, 3> tangential_force{};    ///< N, the force less the parts along the nodes' normals
+  double normal_force = 0;                     ///< N, sum of the sizes of those; negative where they pull
+  double area = 0;                             ///< m^2 (m in 2-D), of what touches in the last step
   long nodes = 0, sticking = 0, slipping = 0;  ///< last step
   double largest_penetration = 0;              ///< m, last step
+};
+
+/// A node where two velocity fields a < b met in the last step.
+struct ContactNode {
+  std::array<int, 3> node{};  ///< its coordinates
+  int a = 0, b = 0;           ///< numbers of the fields
+  Vector3 normal{};           ///< unit, from a to b; zero where a weld finds none
+  double separation = 0;      ///< m, negative where the surfaces overlap
+  double area = 0;            ///< m^2 (m in 2-D)
+  int status = 0;             ///< mpm_contact_status, after the forces
+  Vector3 force{};            ///< N, on a: the momentum that particles take from it over dt
 };
 
 /// A record of what a support (a wall or a box of nodes, Experiment::supports) does to the particles: what they took
@@ -266,6 +282,17 @@ struct Reaction {
   Vector3 force{};    ///< N, momentum given in the last step over dt
   Vector3 moment{};   ///< N m about the origin
   Vector3 impulse{};  ///< N s since the run began
+};
+
+/// Where a rigid body is, which follows from its motion since the run began.
+struct RigidState {
+  Vector3 place{};                                                     ///< of its point of reference, m
+  std::array<Vector3, 3> rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< from the start, orthonormal rows
+  Vector3 acted_at{};  ///< where the point of reference was in the last step, m: torques are about it
+
+  /// The force, N, and the torque about the point of reference, N m, on the body whose reaction on the material this is.
+  Vector3 force_on(const Reaction& reaction) const;
+  Vector3 torque_on(const Reaction& reaction) const;
 };
 
 /// The heat that came and went since the run began, J. Each row is summed where the heat is applied; content and latent
@@ -348,9 +375,13 @@ class Backend {
   virtual const ContactRecord& contact_record() const = 0;
   /// The record of each pair of fields, in the order of pair_index, where /output/contact_pairs asks; else empty.
   virtual const std::vector<PairRecord>& contact_pairs() const = 0;
+  /// The nodes where fields met in the last step, if it was observed and /output/contact_nodes asks; else empty.
+  virtual const std::vector<ContactNode>& contact_nodes() const = 0;
   virtual const FilterRecord& filter_record() const = 0;
   /// By the number of the support; empty unless an experiment asks for any.
   virtual const std::vector<Reaction>& reactions() const = 0;
+  /// Where the rigid bodies are, in the order of Experiment::rigid_bodies.
+  virtual const std::vector<RigidState>& rigid_bodies() const = 0;
 
   /// Whether the last gather_scatter left the next step's grid. It may refuse (particles must be sorted first): the
   /// next step then scatters as usual.

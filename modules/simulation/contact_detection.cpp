@@ -104,7 +104,7 @@ double EdgeModel::contact_offset(double edge) const {
 
 std::vector<EdgeModel> edge_models(const Experiment& experiment) {
   std::vector<EdgeModel> models;
-  for (int field = 0; experiment.contact && field < experiment.field_count; ++field) {
+  for (int field = 0; experiment.meets() && field < experiment.field_count; ++field) {
     int rows = 8;
     for (const BodySpecification& body : experiment.bodies)
       if (body.field == field) rows = std::min(rows, body.particles_per_cell_axis);

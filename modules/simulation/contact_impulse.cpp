@@ -9,8 +9,9 @@ namespace mpm {
 
 namespace {
 
-void add(Vector3& sum, const Vector3& impulse) {
-  for (std::size_t c = 0; c < 3; ++c) sum[c] += impulse[c];
+template <std::size_t n>
+void add(std::array<double, n>& sum, const std::array<double, n>& more) {
+  for (std::size_t c = 0; c < n; ++c) sum[c] += more[c];
 }
 
 }  // namespace
@@ -51,58 +52,74 @@ GatherShares gather_shares(const Experiment& experiment) {
 }
 
 ContactImpulse::ContactImpulse(const Experiment& experiment)
-    : shares_(experiment.contact ? gather_shares(experiment) : GatherShares()),
+    : shares_(experiment.meets() ? gather_shares(experiment) : GatherShares()),
       flows_(recorded_pairs(experiment)),
       records_(flows_.size()) {}
 
+ContactImpulse::Momentum ContactImpulse::momentum_of(const Vector3& impulse, const Vector3& along, double pressing) {
+  return {impulse[0], impulse[1], impulse[2], along[0], along[1], along[2], pressing};
+}
+
 template <class Visit>
 void ContactImpulse::for_each_flow(const ContactGiven& given, Visit visit) {
-  visit(total_, given.impulse);
-  for (std::size_t k = 0; k < flows_.size(); ++k) visit(flows_[k], given.pairs[k].impulse);
+  visit(total_, momentum_of(given.impulse));
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    const PairGiven& pair = given.pairs[k];
+    visit(flows_[k], momentum_of(pair.impulse, pair.along, pair.pressing));
+  }
+  for (std::size_t k = 0; k < node_flows_.size(); ++k) visit(node_flows_[k], momentum_of(given.nodes.at(k).impulse));
 }
 
 template <class Visit>
 void ContactImpulse::for_each_flow(Visit visit) {
   visit(total_);
   for (Flow& flow : flows_) visit(flow);
+  for (Flow& flow : node_flows_) visit(flow);
+}
+
+void ContactImpulse::book(Ledger& ledger, const ContactGiven& given, double share) {
+  ledger.friction += share * given.dissipated;
+  ledger.rigid_bodies += share * given.driven;
+  ledger.contact -= share * given.driven;
 }
 
 void ContactImpulse::before_forces(const ContactGiven& given, bool filtered, Ledger* ledger) {
-  for_each_flow(given, [](Flow& flow, const Vector3& impulse) { flow.before = flow.now = impulse; });
-  friction_ = given.dissipated;
+  node_flows_.resize(given.nodes.size());
+  for_each_flow(given, [](Flow& flow, const Momentum& momentum) { flow.before = flow.now = momentum; });
+  friction_ = given.dissipated, driven_ = given.driven;
   if (!ledger) return;
   const double kept = filtered ? 1.0 : shares_.of_velocity;
-  ledger->friction += kept * given.dissipated;
+  book(*ledger, given, kept);
   ledger->friction_taken_back += (1 - kept) * given.dissipated;
 }
 
 void ContactImpulse::after_forces(const ContactGiven& given, Ledger* ledger) {
-  for_each_flow(given, [](Flow& flow, const Vector3& impulse) { add(flow.now, impulse); });
-  friction_ += given.dissipated;
-  if (ledger) ledger->friction += given.dissipated;
+  for_each_flow(given, [](Flow& flow, const Momentum& momentum) { add(flow.now, momentum); });
+  friction_ += given.dissipated, driven_ += given.driven;
+  if (ledger) book(*ledger, given, 1);
 }
 
 void ContactImpulse::in_filter(const ContactGiven& given, bool replaces, Ledger* ledger) {
-  if (replaces && ledger) ledger->friction -= friction_;
+  if (replaces && ledger) book(*ledger, {.dissipated = friction_, .driven = driven_}, -1);
   if (replaces) {
-    for_each_flow(given, [](Flow& flow, const Vector3&) { flow.now = {}; });
-    friction_ = 0;
+    for_each_flow(given, [](Flow& flow, const Momentum&) { flow.now = {}; });
+    friction_ = driven_ = 0;
   }
   after_forces(given, ledger);
 }
 
 void ContactImpulse::keep() {
   for_each_flow([](Flow& flow) { flow.kept = flow.now; });
-  kept_friction_ = friction_;
+  kept_friction_ = friction_, kept_driven_ = driven_;
 }
 
 void ContactImpulse::restore(bool keeps_correction) {
-  friction_ = kept_friction_;
+  friction_ = kept_friction_, driven_ = kept_driven_;
   for_each_flow([&](Flow& flow) {
-    const Vector3 filtered = flow.now;
+    const Momentum filtered = flow.now;
     flow.now = flow.kept;
     if (!keeps_correction) return;
-    for (std::size_t c = 0; c < 3; ++c) flow.kept[c] = filtered[c] - flow.kept[c];
+    for (std::size_t c = 0; c < filtered.size(); ++c) flow.kept[c] = filtered[c] - flow.kept[c];
   });
 }
 
@@ -110,10 +127,10 @@ void ContactImpulse::add_correction() {
   for_each_flow([](Flow& flow) { add(flow.now, flow.kept); });
 }
 
-Vector3 ContactImpulse::handed_over(const Flow& flow, bool filtered) const {
+ContactImpulse::Momentum ContactImpulse::handed_over(const Flow& flow, bool filtered) const {
   const GatherShares shares = filtered ? GatherShares() : shares_;
-  Vector3 sum{};
-  for (std::size_t c = 0; c < 3; ++c)
+  Momentum sum{};
+  for (std::size_t c = 0; c < sum.size(); ++c)
     sum[c] = shares.of_velocity * flow.now[c] + shares.of_increment * (flow.now[c] - flow.before[c]);
   return sum;
 }
@@ -121,14 +138,27 @@ Vector3 ContactImpulse::handed_over(const Flow& flow, bool filtered) const {
 void ContactImpulse::record_counts(const ContactGiven& given) {
   for (std::size_t k = 0; k < records_.size(); ++k) {
     const PairGiven& pair = given.pairs[k];
-    records_[k] = {{}, pair.sticking + pair.slipping, pair.sticking, pair.slipping, pair.largest_penetration};
+    records_[k] = {};
+    records_[k].nodes = pair.sticking + pair.slipping;
+    records_[k].sticking = pair.sticking, records_[k].slipping = pair.slipping;
+    records_[k].largest_penetration = pair.largest_penetration, records_[k].area = pair.area;
   }
+  nodes_.clear();
+  for (const NodeGiven& given_here : given.nodes) nodes_.push_back(given_here.node);
 }
 
 void ContactImpulse::record_forces(bool filtered, double dt) {
   for (std::size_t k = 0; k < records_.size(); ++k) {
-    const Vector3 impulse = handed_over(flows_[k], filtered);
-    for (std::size_t c = 0; c < 3; ++c) records_[k].force[c] = impulse[c] / dt;
+    const Momentum momentum = handed_over(flows_[k], filtered);
+    for (std::size_t c = 0; c < 3; ++c) {
+      records_[k].force[c] = momentum[c] / dt;
+      records_[k].tangential_force[c] = (momentum[c] - momentum[3 + c]) / dt;
+    }
+    records_[k].normal_force = momentum[6] / dt;
+  }
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    const Momentum momentum = handed_over(node_flows_[k], filtered);
+    for (std::size_t c = 0; c < 3; ++c) nodes_[k].force[c] = momentum[c] / dt;
   }
 }
 

@@ -3,6 +3,7 @@
 // the heat of its friction.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -37,20 +38,33 @@ inline std::size_t recorded_pairs(const Experiment& experiment) {
 /// The sums of what contact does to one pair at one occasion, over the nodes where it meets.
 struct PairGiven {
   Vector3 impulse{};                ///< on the first body, kg m/s
+  Vector3 along{};                  ///< the parts of it along the nodes' normals, kg m/s
+  double pressing = 0;              ///< sum of their sizes, positive where they push the bodies apart, kg m/s
   long sticking = 0, slipping = 0;  ///< nodes
   double largest_penetration = 0;   ///< m
+  double area = 0;                  ///< m^2 (m in 2-D), where the fields touch
 
-  /// Takes what the law did at a node.
-  void count(std::int32_t status, double separation, bool has_normal) {
+  /// Takes what the law did at a node; a weld acts where there is no normal too.
+  void count(std::int32_t status, double separation, double area_of_node, bool has_normal) {
     sticking += status == MPM_STICKS;
     slipping += status == MPM_SLIPS;
-    if (status != MPM_APART && has_normal) largest_penetration = std::max(largest_penetration, -separation);
+    if (status == MPM_APART || !has_normal) return;
+    largest_penetration = std::max(largest_penetration, -separation);
+    area += area_of_node;
   }
   void add(const PairGiven& other) {
-    for (std::size_t c = 0; c < 3; ++c) impulse[c] += other.impulse[c];
+    for (std::size_t c = 0; c < 3; ++c) impulse[c] += other.impulse[c], along[c] += other.along[c];
+    pressing += other.pressing;
     sticking += other.sticking, slipping += other.slipping;
     largest_penetration = std::max(largest_penetration, other.largest_penetration);
+    area += other.area;
   }
+};
+
+/// What contact does at one node at one occasion.
+struct NodeGiven {
+  ContactNode node;
+  Vector3 impulse{};  ///< on the first body, kg m/s
 };
 
 /// The sums of what contact does to all pairs at one occasion.
@@ -58,7 +72,14 @@ struct ContactGiven {
   Vector3 impulse{};               ///< on the first bodies, kg m/s
   double dissipated = 0;           ///< J, as the law says
   std::vector<PairGiven> pairs{};  ///< each of them, where pairs are recorded
+  std::vector<NodeGiven> nodes{};  ///< each of them in one order in all stages of the step, where nodes are recorded
+  double driven = 0;               ///< J, work of rigid bodies, by their own velocities
 };
+
+/// Whether the nodes of a step are recorded.
+inline bool records_nodes(const Experiment& experiment, const StepInfo& step) {
+  return step.observed && experiment.contact && experiment.output.contact_nodes;
+}
 
 /// The impulses of contact on the first bodies of all pairs through the parts of one step, and the heat of friction.
 /// What contact does before the forces is a part of v- and v+ alike: particles that take increments never see it. The
@@ -79,32 +100,46 @@ class ContactImpulse {
   void add_correction();
 
   /// The momentum that particles take from contact when they gather now.
-  Vector3 handed_over(bool filtered) const { return handed_over(total_, filtered); }
-  /// Records of each recorded pair: the nodes where it meets after the forces, and the force by what particles take now,
+  Vector3 handed_over(bool filtered) const {
+    const Momentum total = handed_over(total_, filtered);
+    return {total[0], total[1], total[2]};
+  }
+  /// Records of each recorded pair and node: where they meet after the forces, and the force by what particles take now,
   /// over a step of dt.
   void record_counts(const ContactGiven& given);
   void record_forces(bool filtered, double dt);
   /// The records of the pairs; empty where the experiment does not ask for them. They go into checkpoints.
   std::vector<PairRecord>& pairs() { return records_; }
   const std::vector<PairRecord>& pairs() const { return records_; }
+  /// The records of the nodes of the last step; empty where it was not to be recorded.
+  const std::vector<ContactNode>& nodes() const { return nodes_; }
 
  private:
-  /// An impulse on its way through the step.
+  /// What the step hands on of a pair, kg m/s: its impulse, its normal part and how hard that presses (PairGiven).
+  using Momentum = std::array<double, 7>;
+  static Momentum momentum_of(const Vector3& impulse, const Vector3& along = {}, double pressing = 0);
+  /// A momentum on its way through the step.
   struct Flow {
-    Vector3 before{}, now{}, kept{};
+    Momentum before{}, now{}, kept{};
   };
-  /// Visits the flow of all pairs together and that of each recorded one, with what was given to it.
+  /// Visits the flow of all pairs together and that of each recorded pair and node, with what was given to it.
   template <class Visit>
   void for_each_flow(const ContactGiven& given, Visit visit);
   template <class Visit>
   void for_each_flow(Visit visit);
-  Vector3 handed_over(const Flow& flow, bool filtered) const;
+  Momentum handed_over(const Flow& flow, bool filtered) const;
 
   GatherShares shares_;
   Flow total_;
-  std::vector<Flow> flows_;  ///< one a recorded pair
+  std::vector<Flow> flows_;       ///< one a recorded pair
+  std::vector<Flow> node_flows_;  ///< one a recorded node
   std::vector<PairRecord> records_;
+  std::vector<ContactNode> nodes_;
+  /// Books heat and the work of rigid bodies, which is taken out of contact's own row; with -1 takes them back.
+  static void book(Ledger& ledger, const ContactGiven& given, double share);
+
   double friction_ = 0, kept_friction_ = 0;  ///< J, of all that contact has done in the step
+  double driven_ = 0, kept_driven_ = 0;      ///< J, work of rigid bodies in the step
 };
 
 }  // namespace mpm

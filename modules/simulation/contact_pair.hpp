@@ -2,7 +2,9 @@
 // How two velocity fields meet at a node, by the scene's choice of normal and detection: by sums over nodes alone
 // (operators/contact_geometry.hpp), or by the particles that the node sees (contact_points.hpp).
 
-#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
 
 #include "operators/contact_geometry.hpp"
 #include "simulation/contact_detection.hpp"
@@ -10,37 +12,32 @@
 
 namespace mpm {
 
+/// Two velocity fields that meet at a node, by its coordinates, and what is found of them.
+struct MetPair {
+  std::array<int, 3> node{};
+  ContactFieldNode a, b;
+  ContactGeometry geometry;
+};
+
 class PairGeometry {
  public:
-  explicit PairGeometry(const Experiment& experiment) : experiment_(experiment), edges_(edge_models(experiment)) {}
+  /// `entry` says which of the normal's entries is called: that for lanes of double, or the plain one.
+  PairGeometry(const Experiment& experiment, mpm_precision entry)
+      : experiment_(experiment), edges_(edge_models(experiment)), entry_(entry) {}
 
-  /// The geometry of fields a < b at a node. `points` holds the particles near it where the scene asks for them.
-  ContactGeometry operator()(const ContactPoints& points, const std::array<int, 3>& node, int field_a, int field_b,
-                             const ContactFieldNode& a, const ContactFieldNode& b) const {
-    const double h = experiment_.grid.cell_size;
-    const int D = experiment_.dimension;
-    const EdgeTable edge_a = edges_[static_cast<std::size_t>(field_a)].table(),
-                    edge_b = edges_[static_cast<std::size_t>(field_b)].table();
-    if (!points.needed()) return contact_geometry(a, b, edge_a, edge_b, h, D);
-    ContactGeometry result;
-    const SeparatedPair pair = points.pair(node, field_a, field_b);
-    if (!pair.found) return result;
-    Vector3 normal = pair.normal;
-    const bool by_gap = points.gives_normal() && pair.parted;
-    if (!by_gap && !average_gradient(a, b, D, normal.data())) return result;
-    std::copy(normal.begin(), normal.end(), result.normal);
-    if (!points.gives_separation())
-      result.separation = separation_of_edges(a, b, edge_a, edge_b, normal.data(), h, D);
-    else
-      result.separation = by_gap ? pair.separation : points.separation(node, field_a, field_b, normal);
-    result.area = contact_area(a, b, h);
-    result.valid = true;
-    return result;
-  }
+  /// Finds the geometry of fields a < b at some nodes, at most MPM_BATCH. `points` holds the particles near them where
+  /// the scene asks for them.
+  void find(const ContactPoints& points, int field_a, int field_b, std::span<MetPair> pairs) const;
 
  private:
+  void find_normals(std::span<MetPair> pairs) const;
+  void find_by_points(const ContactPoints& points, int field_a, int field_b, MetPair& pair) const;
+  /// Finds separation and area along the normal that the pair has.
+  void measure(int field_a, int field_b, MetPair& pair) const;
+
   const Experiment& experiment_;
   const std::vector<EdgeModel> edges_;
+  const mpm_precision entry_;
 };
 
 }  // namespace mpm

@@ -26,6 +26,13 @@ bool looks(const Experiment& experiment) {
   return experiment.contact && !(experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION);
 }
 
+/// The weight of the quadratic B-spline along an axis, `x` in cells from its node.
+double quadratic_weight(double x) {
+  const double distance = std::abs(x);
+  if (distance >= 1.5) return 0;
+  return distance < 0.5 ? 0.75 - distance * distance : 0.5 * (1.5 - distance) * (1.5 - distance);
+}
+
 int cube_of(double x) {
   return static_cast<int>(std::floor(x / cube_side));
 }
@@ -45,7 +52,7 @@ ContactPoints::ContactPoints(const Experiment& experiment)
     : experiment_(experiment),
       dimension_(experiment.dimension),
       fields_(experiment.field_count),
-      gives_normal_(looks(experiment) && experiment.contact_normal == "widest_gap"),
+      gives_normal_(looks(experiment) && (experiment.contact_normal->plugin->normal().traits & MPM_LOOKS_AT_POINTS)),
       gives_separation_(looks(experiment) && experiment.contact_detection == "particle_surfaces") {
   const mpm_shape& shape = experiment.shape.plugin->shape();
   by_domain_ = shape.form == MPM_NODE_LIST;
@@ -206,16 +213,42 @@ void ContactPoints::find(std::size_t first, std::size_t end) {
       for (int b = a + 1; b < fields_; ++b) nodes_[i].pairs[pair_index(a, b, fields_)] = separate(nodes_[i], a, b);
 }
 
+void PointRow::take(const std::vector<Vector3>& places, const std::vector<std::uint32_t>& numbers,
+                    const std::array<int, 3>& node, int dimension) {
+  count = static_cast<std::uint32_t>(numbers.size());
+  stride = (count + MPM_LANES - 1) / MPM_LANES * MPM_LANES;
+  positions.resize(3 * static_cast<std::size_t>(stride)), weights.assign(stride, 0.0);
+  for (std::uint32_t i = 0; i < stride; ++i) {
+    const Vector3& x = places[numbers[i < count ? i : 0]];
+    double weight = 1;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double from_node = x[c] - node[c];
+      positions[c * stride + i] = from_node;
+      if (static_cast<int>(c) < dimension) weight *= quadratic_weight(from_node);
+    }
+    if (i < count) weights[i] = weight;
+  }
+}
+
+mpm_normal_points points_of(const PointRow& a, const PointRow& b, Vector3& normal) {
+  return {a.count,          a.stride,         b.count,      b.stride, a.positions.data(), b.positions.data(),
+          a.weights.data(), b.weights.data(), normal.data()};
+}
+
 SeparatedPair ContactPoints::separate(const Node& node, int a, int b) const {
-  const auto cloud = [&](int field) {
-    return PointCloud{places_.data(), node.particles[static_cast<std::size_t>(field)]};
+  const auto particles = [&](int field) -> const std::vector<std::uint32_t>& {
+    return node.particles[static_cast<std::size_t>(field)];
   };
   SeparatedPair pair;
-  pair.found = cloud(a).size() > 0 && cloud(b).size() > 0;
-  const SeparatingPlane plane = widest_gap(cloud(a), cloud(b), dimension_);
-  if (!plane.found) return pair;
-  pair.parted = true, pair.normal = plane.normal;
-  if (gives_separation_) pair.separation = separation(node, a, b, pair.normal);
+  pair.found = !particles(a).empty() && !particles(b).empty();
+  if (!pair.found || !gives_normal_) return pair;
+  static thread_local PointRow of_a, of_b;  // their memory is kept from node to node
+  of_a.take(places_, particles(a), node.at, dimension_), of_b.take(places_, particles(b), node.at, dimension_);
+  const mpm_normal_points points = points_of(of_a, of_b, pair.normal);
+  const Component& normal = *experiment_.contact_normal;
+  const auto find = normal.plugin->normal().from_points[dimension_ - 2];
+  pair.parted = find(normal.parameters.data(), &points) != 0;
+  if (pair.parted && gives_separation_) pair.separation = separation(node, a, b, pair.normal);
   return pair;
 }
 

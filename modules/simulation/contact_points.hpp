@@ -9,17 +9,28 @@
 #include <vector>
 
 #include "experiment/experiment.hpp"
-#include "simulation/separation.hpp"
 
 namespace mpm {
 
 /// What the particles near a node say of a pair of bodies.
 struct SeparatedPair {
   bool found = false;     ///< both bodies have particles near the node
-  bool parted = false;    ///< a plane lies between them; else their particles are mixed
+  bool parted = false;    ///< the scene's normal follows from them; else it cannot tell, as where they are mixed
   Vector3 normal{};       ///< unit, from a to b; where parted
   double separation = 0;  ///< ContactPoints::separation along this normal; where parted, and particles' surfaces count
 };
+
+/// One body's particles near a node as a normal looks at them (abi.h, mpm_normal_points).
+struct PointRow {
+  std::uint32_t count = 0, stride = 0;
+  std::vector<double> positions, weights;  ///< [3][stride], cells from the node; [stride]
+
+  /// Takes the particles with these numbers, at least one, from places in cells.
+  void take(const std::vector<Vector3>& places, const std::vector<std::uint32_t>& numbers,
+            const std::array<int, 3>& node, int dimension);
+};
+/// The call for the normal between two rows, which it writes to `normal`.
+mpm_normal_points points_of(const PointRow& a, const PointRow& b, Vector3& normal);
 
 class ContactPoints {
  public:
@@ -52,7 +63,7 @@ class ContactPoints {
   /// Half the side of an undeformed square or cube of this volume, m^D, in cells: the factor of a deformation gradient. In
   /// axisymmetric scenes it is that of a ring's section.
   double half_side(double volume) const;
-  /// Finds the planes of all pairs at the nodes [first, end) of `node_count`, once all particles are there. Any thread
+  /// Finds the normals of all pairs at the nodes [first, end) of `node_count`, once all particles are there. Any thread
   /// may call it for nodes of its own.
   void find(std::size_t first, std::size_t end);
   std::size_t node_count() const { return count_; }

@@ -129,6 +129,24 @@ std::optional<ImposedValue> impossible_gravity(const Experiment& experiment, dou
   return std::nullopt;
 }
 
+/// A velocity of a rigid body that is not finite.
+std::optional<ImposedValue> impossible_motion(const Experiment& experiment, double time, bool changing) {
+  static constexpr std::array<bool, 3> all{true, true, true};
+  for (const RigidBodySpecification& body : experiment.rigid_bodies)
+    for (const bool turns : {false, true}) {
+      const VectorExpression& value = turns ? body.angular_velocity : body.velocity;
+      const std::string pointer = body.pointer + (turns ? "/angular_velocity" : "/velocity");
+      if (changing && !value.uses_time()) continue;
+      auto found = impossible_velocity(experiment, value, pointer, all, {}, {}, time);
+      if (!found) continue;
+      found->position.clear();  // it is the same everywhere
+      if (turns) found->name = "angular velocity", found->unit = "rad/s";
+      if (turns && experiment.dimension == 2) found->pointer = pointer;  // a number is no list
+      return found;
+    }
+  return std::nullopt;
+}
+
 /// The first value of the conditions of walls and boxes that nothing can have: check(condition, nodes) looks at one.
 template <class Check>
 std::optional<ImposedValue> first_of_conditions(const Experiment& experiment, Check check) {
@@ -172,6 +190,7 @@ std::optional<ImposedValue> impossible_condition(const Experiment& experiment, d
 std::optional<ImposedValue> impossible_value(const Experiment& experiment, const StepTimes& times, bool changing) {
   if (!changing || experiment.changing_gravity)
     if (auto found = impossible_gravity(experiment, times.start)) return found;
+  if (auto found = impossible_motion(experiment, times.end, changing)) return found;
   return impossible_condition(experiment, times.end, changing);
 }
 
@@ -182,6 +201,8 @@ bool imposes_by_time(const Experiment& experiment) {
   };
   for (const auto& sides : experiment.faces)
     if (std::any_of(sides.begin(), sides.end(), by_time)) return true;
+  for (const RigidBodySpecification& body : experiment.rigid_bodies)
+    if (body.velocity.uses_time() || body.angular_velocity.uses_time()) return true;
   return experiment.changing_gravity || std::any_of(experiment.boxes.begin(), experiment.boxes.end(), by_time);
 }
 

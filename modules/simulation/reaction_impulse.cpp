@@ -48,7 +48,7 @@ void SupportImpulses::add(const SupportImpulses& other, double factor) {
 }
 
 ReactionImpulse::ReactionImpulse(const Experiment& experiment) : experiment_(experiment) {
-  if (experiment.output.reactions.empty()) return;
+  if (!experiment.notes_reactions()) return;
   shares_ = gather_shares(experiment);
   record_.resize(experiment.supports().size());
   impulse_before_.resize(record_.size());

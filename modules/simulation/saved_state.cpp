@@ -21,6 +21,7 @@ void save_records(ArchiveWriter& archive, const Backend& backend) {
   archive.put("contact_pairs", backend.contact_pairs());
   archive.put("filter", backend.filter_record());
   archive.put("reactions", backend.reactions());
+  archive.put("rigid_bodies", backend.rigid_bodies());
   archive.put("speed", limit.speed);
   archive.put("wave_speed", limit.wave_speed);
   archive.put("limiting_body", limit.body);
@@ -35,6 +36,7 @@ SavedRecords restore_records(ArchiveReader& archive, const Backend& backend) {
   records.contact_pairs = get_all(archive, "contact_pairs", backend.contact_pairs());
   archive.get("filter", records.filter);
   records.reactions = get_all(archive, "reactions", backend.reactions());
+  records.rigid_bodies = get_all(archive, "rigid_bodies", backend.rigid_bodies());
   archive.get("speed", records.limit.speed);
   archive.get("wave_speed", records.limit.wave_speed);
   archive.get("limiting_body", records.limit.body);

@@ -16,6 +16,7 @@ struct SavedRecords {
   std::vector<PairRecord> contact_pairs;
   FilterRecord filter;
   std::vector<Reaction> reactions;
+  std::vector<RigidState> rigid_bodies;
   TimeStepLimit limit;
 };
 

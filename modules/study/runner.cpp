@@ -65,6 +65,7 @@ std::string KeyMaker::operator()(const Experiment& experiment) {
   add(experiment.transfer);
   if (experiment.filter) add(*experiment.filter);
   if (experiment.contact) add(*experiment.contact);
+  for (const RigidBodySpecification& body : experiment.rigid_bodies) add(body.contact);
   for (const MaterialSpecification& material : experiment.materials) add(material.component);
   return support::sha256(text);
 }

@@ -176,10 +176,50 @@ TEST_CASE("names that no record has are mistakes of the file, with place and nea
   scene = asking();
   scene.erase("contact");
   CHECK(has(refusal(scene), "/output/contact_pairs: there are no pairs without \"contact\""));
+  scene["output"]["contact_pairs"] = false, scene["output"]["contact_nodes"] = true;
+  CHECK(has(refusal(scene), "/output/contact_nodes: there are no such nodes without \"contact\""));
+  scene = asking();
+  scene["output"]["contact_nodes"] = true;
+  CHECK(has(refusal(scene), "/output/contact_nodes: they are shown in frames: give \"frames\""));
+  scene["output"]["frames"] = 2, scene["backend"] = "cuda";
+  CHECK(
+      has(refusal(scene), "/output/contact_nodes: backend \"cuda\" hands over no single nodes; take backend \"cpu\""));
   scene = two_balls();
   scene["output"]["ledger"] = false;
   scene["figures"] = {{{"type", "columns"}, {"name", "energy"}, {"columns", {"total energy"}}}, "ledger"};
   CHECK(has(refusal(scene), "/figures/0/name: there are two figures named \"energy\""));
   scene["figures"][0]["name"] = "mine";
   CHECK(has(refusal(scene), "/figures/1: figure \"ledger\" needs \"ledger residual\""));
+}
+
+TEST_CASE("the nodes where bodies meet stand in a table beside each frame, and add up to the pair") {
+  const Folder folder;
+  Json scene = asking();
+  scene["output"]["frames"] = 2, scene["output"]["contact_nodes"] = true, scene["output"]["metrics_every"] = 1;
+  scene["solver"]["end_time"] = 0.2;  // in the middle of the impact
+  const Result result = run_scene(folder, scene);
+  INFO(result.err);
+  CHECK(result.code == 0);
+  const std::string before = slurp(folder / "run/frames/contact_0000.csv");
+  CHECK(before ==
+        "x (m),y (m),first,second,state,normal x,normal y,separation (m),area (m),force x (N/m),force y (N/m)\n");
+  std::istringstream after(slurp(folder / "run/frames/contact_0001.csv"));
+  std::string line;
+  std::getline(after, line);
+  double force = 0;
+  int touching = 0;
+  while (std::getline(after, line)) {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    REQUIRE(cells.size() == 11);
+    CHECK((cells[2] == "ball" && cells[3] == "other"));
+    CHECK((cells[4] == "apart" || cells[4] == "sticks" || cells[4] == "slips"));
+    touching += cells[4] != "apart";
+    force += std::stod(cells[9]);
+  }
+  const auto table = metrics_of(folder / "run");
+  CHECK(touching > 0);
+  CHECK(touching == table.find("pair ball other nodes")->back());
+  CHECK(force == Approx(table.find("pair ball other force x (N/m)")->back()));
 }

@@ -119,7 +119,9 @@ std::vector<std::pair<std::string, Json>> scenes_that_carry_more() {
 /// Scenes that keep different states: contact, one fused pass, filters, node lists, histories, automatic steps.
 std::vector<std::pair<std::string, Json>> scenes() {
   std::vector<std::pair<std::string, Json>> all = scenes_that_carry_more();
-  all.emplace_back("contact", meeting());
+  Json shown = meeting();
+  shown["output"]["contact_nodes"] = true;
+  all.emplace_back("contact", shown);
   Json fused = meeting();
   fused.erase("contact");
   fused["bodies"].erase(1);

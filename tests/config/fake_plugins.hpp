@@ -21,6 +21,7 @@ inline const mpm_parameter elastic_parameters[] = {
 };
 inline const mpm_parameter pic_fraction[] = {number("pic_fraction", "", 0, 0, 1, 0, 0)};
 inline const mpm_parameter friction[] = {number("friction", "", 0, 0, 10, MPM_REQUIRED, 0)};
+inline const mpm_parameter direction[] = {number("x", "", 0, -1, 1, MPM_REQUIRED, 0)};
 inline const mpm_parameter iterations[] = {
     {"iterations", "", "Passes.", "", MPM_INTEGER, 0, 0, 0, 3, 1, 20},
     {"quadratic", "", "Second order.", "", MPM_BOOLEAN, 0, 8, 0, 1, 0, 1},
@@ -47,6 +48,9 @@ inline const mpm_descriptor descriptors[] = {
     descriptor("apic", MPM_TRANSFER, both, every_precision, nullptr, 0),
     descriptor("slow_double", MPM_TRANSFER, both, 1u << MPM_SCALAR_DOUBLE, iterations, 2),
     descriptor("coulomb", MPM_CONTACT, both, every_precision, friction, 1),
+    descriptor("average_volume_gradient", MPM_NORMAL, both, every_precision, nullptr, 0),
+    descriptor("widest_gap", MPM_NORMAL, both, every_precision, nullptr, 0),
+    descriptor("given", MPM_NORMAL, both, every_precision, direction, 1),
     descriptor("neo_hookean", MPM_MATERIAL, both, every_precision, elastic_parameters, 4),
     descriptor("linear_elastic", MPM_MATERIAL, both, every_precision, elastic_parameters, 4),
 };

@@ -42,7 +42,8 @@ TEST_CASE("wrong types and ranges", "[config]") {
         "FILE:23:67: /bodies/0/geometry/radius: out of range: expected a length (m) above 0, got -0.001 (-1 mm)");
   CHECK(errors_after("\"friction\": 0.3", "\"friction\": true, \"normal\": \"regression\"") ==
         "FILE:17:46: /contact/friction: expected a number from 0 to 10, got true\n"
-        "FILE:17:62: /contact/normal: expected one of \"average_volume_gradient\", \"widest_gap\", got \"regression\"");
+        "FILE:17:62: /contact/normal: unknown contact normal \"regression\"; available: \"average_volume_gradient\", "
+        "\"widest_gap\", \"given\"");
   CHECK(
       errors_after("[\"energy\", \"contact\"]", "[\"energi\", \"energy\", \"energy\", 3]") ==
       R"(FILE:34:15: /figures/0: expected one of "energy", "dissipation", "contact", got "energi"; did you mean "energy"?

@@ -194,6 +194,26 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
 }
 )";
 
+constexpr const char* normal_body = R"(
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  const auto& p = *static_cast<const Functor::Parameters*>(t.parameters);
+  NormalPair<D, S> pair;
+  NormalResult<D, S> result{};
+  load<D>(t.in[0], lane, pair.mass_gradient_a.v);
+  load<D>(t.in[1], lane, pair.mass_gradient_b.v);
+  load<D>(t.in[2], lane, pair.volume_gradient_a.v);
+  load<D>(t.in[3], lane, pair.volume_gradient_b.v);
+  Functor::find(p, pair, result);
+  store<D>(t.out[0], lane, result.normal.v);
+  store<D>(t.out[1], lane, result.own_a.v);
+  store<D>(t.out[2], lane, result.own_b.v);
+  store<1>(t.out[3], lane, &result.found);
+}
+)";
+
+/// Normals that look at particles run on the host alone: their text has to compile.
+constexpr const char* host_body = "template <int D, class S> MPM_HD void run(const Task&, int) {}\n";
+
 constexpr const char* material_body = R"(
 template <int D, class S> MPM_HD void run(const Task& t, int lane) {
   const Functor::Constants<S> constants(*static_cast<const Functor::Parameters*>(t.parameters));
@@ -229,6 +249,10 @@ ENTRY(run_2_float, 2, float)
 ENTRY(run_3_float, 3, float)
 )";
 
+bool by_points(const Plugin& plugin) {
+  return plugin.descriptor->kind == MPM_NORMAL && (plugin.normal().traits & MPM_LOOKS_AT_POINTS);
+}
+
 bool is_list(const Plugin& plugin) {
   return plugin.descriptor->kind == MPM_SHAPE && plugin.shape().form == MPM_NODE_LIST;
 }
@@ -253,6 +277,8 @@ std::string body_of(const Plugin& plugin) {
       return filter_body;
     case MPM_CONTACT:
       return contact_body;
+    case MPM_NORMAL:
+      return by_points(plugin) ? host_body : normal_body;
     default:
       return material_body;
   }
@@ -365,6 +391,11 @@ Call inputs(const Plugin& plugin, int D, Random& random) {
       call.out = {zeros(D), zeros(1), zeros(1)};
       break;
     }
+    case MPM_NORMAL:
+      if (by_points(plugin)) break;
+      for (int k = 0; k < 4; ++k) call.in.push_back(random_column(random, D, k % 2 ? -2 : 0.5, k % 2 ? -0.5 : 2));
+      call.out = {zeros(D), zeros(D), zeros(D), zeros(1)};
+      break;
     default:
       call.in = {random_column(random, D * D, -0.2 / step, 0.2 / step)};
       call.out = {initial_state(plugin, D), zeros(D == 2 ? 4 : 6), zeros(1), zeros(1), zeros(1), zeros(1)};
@@ -476,6 +507,25 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
                                     indices.data()};
       plugin.contact().apply[MPM_SCALAR_DOUBLE][axis](parameters.data(), &batch);
       out[2] = as_column(indices);
+      break;
+    }
+    case MPM_NORMAL: {
+      if (by_points(plugin)) break;
+      indices.resize(particles);
+      const mpm_normal_batch batch{n,
+                                   n,
+                                   dimension,
+                                   0,
+                                   in[0].data(),
+                                   in[1].data(),
+                                   in[2].data(),
+                                   in[3].data(),
+                                   out[0].data(),
+                                   out[1].data(),
+                                   out[2].data(),
+                                   indices.data()};
+      plugin.normal().from_sums[MPM_SCALAR_DOUBLE][axis](parameters.data(), &batch);
+      out[3] = as_column(indices);
       break;
     }
     default: {

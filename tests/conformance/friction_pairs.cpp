@@ -2,9 +2,11 @@
 // min(m u_t, mu m u_n), heat by friction (Bardenhagen, Brackbill & Sulsky 2000): friction times the mean sliding speed.
 
 #include <cmath>
+#include <limits>
 
 #include "contacts/coulomb/coulomb.hpp"
 #include "contacts/frictionless/frictionless.hpp"
+#include "contacts/stick/stick.hpp"
 #include "contacts/velocity_dependent_friction/velocity_dependent_friction.hpp"
 #include "support/catch.hpp"
 
@@ -139,4 +141,35 @@ TEST_CASE("a pair at the brink is slowed by no more than its law allows") {
     CHECK(friction / 6 <= at_rest);
     CHECK(found.dissipated > 0);
   }
+}
+
+// A rigid body that moves as it is told takes any impulse: body a, 2 kg, loses its approach of 4 m/s, 8 N s, and by
+// friction of 1/4 a third of its sliding of 3 m/s, 2 N s, which makes 2 x 2.5 J of heat.
+TEST_CASE("beside an infinite mass a pair has the mass of its other body") {
+  ContactPair<3, double> pair = hit(-0.01);
+  pair.mass_b = std::numeric_limits<double>::infinity();
+  ContactResult<3, double> found{};
+  Coulomb::apply({0.25, 0}, pair, found);
+  check_result(found, 8, 2, 5, 2);
+  Frictionless::apply({}, pair, found);
+  check_result(found, 8, 0, 0, 2);
+  VelocityDependentFriction::apply({0.25, 0.25, 1}, pair, found);
+  check_result(found, 8, 2, 5, 2);
+  Stick::apply({}, pair, found);
+  check_result(found, 8, 6, 0, 1);
+}
+
+// The product of two masses of 1e20 kg is beyond the largest number in float.
+TEST_CASE("masses whose product overflows in float meet") {
+  ContactPair<2, float> pair{};
+  pair.mass_a = 1e20f, pair.mass_b = 1e20f;
+  pair.normal = {{0, 1}};
+  pair.momentum_a = {{3e20f, 4e20f}};
+  pair.separation = -0.01f;
+  ContactResult<2, float> found{};
+  Coulomb::apply({0.25, 0}, pair, found);
+  CHECK(found.impulse[0] / 1e20f == Approx(-0.5));
+  CHECK(found.impulse[1] / 1e20f == Approx(-2));
+  Stick::apply({}, pair, found);
+  CHECK(found.impulse[0] / 1e20f == Approx(-1.5));
 }

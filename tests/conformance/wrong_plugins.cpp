@@ -8,6 +8,9 @@
 #include "contacts/stick/stick.hpp"
 #include "filters/fmpm/fmpm.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
+#include "normals/average_volume_gradient/average_volume_gradient.hpp"
+#include "normals/own_gradient/own_gradient.hpp"
+#include "normals/widest_gap/widest_gap.hpp"
 #include "plugin/extension_of.hpp"
 #include "plugin/sdk.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
@@ -449,6 +452,16 @@ struct SlipsInPlace : Stick {  // says that a weld slips
   }
 };
 
+struct MultipliesMasses : Coulomb {  // makes the reduced mass by a product, which is infinite beside a rigid body
+  template <int D, class S>
+  MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
+    Coulomb::apply(p, pair, result);
+    const S product = pair.mass_a * pair.mass_b / (pair.mass_a + pair.mass_b);
+    const S share = product / reduced_mass_of(pair.mass_a, pair.mass_b);
+    for (int i = 0; i < D; ++i) result.impulse[i] = share * result.impulse[i];
+  }
+};
+
 struct PullsOpenly : Pulls {  // is the same law, declared
   static constexpr unsigned traits = MPM_PULLS;
 };
@@ -517,6 +530,8 @@ template <class F>
 constexpr mpm_descriptor wrong_filter = sdk::filter<F>(manual, source);
 template <class F>
 constexpr mpm_descriptor wrong_transfer = sdk::transfer<F>(manual, source);
+template <class F>
+constexpr mpm_descriptor wrong_normal = sdk::normal<F>(manual, source);
 template <class F>
 constexpr mpm_descriptor wrong_contact = sdk::contact<F>(manual, source);
 template <class F>
@@ -607,6 +622,106 @@ TEST_CASE("wrong transfers are caught") {
   check_caught(wrong_transfer<MovesTwiceAsFar>, "moves_with_gathered_velocity");
 }
 
+struct LongNormal : AverageVolumeGradient {
+  template <int D, class S>
+  MPM_HD static void find(const Parameters& p, const NormalPair<D, S>& pair, NormalResult<D, S>& result) {
+    AverageVolumeGradient::find(p, pair, result);
+    for (int i = 0; i < D; ++i) result.normal[i] = real<S>(1.01) * result.normal[i];
+  }
+};
+
+struct BackwardsNormal : AverageVolumeGradient {
+  template <int D, class S>
+  MPM_HD static void find(const Parameters& p, const NormalPair<D, S>& pair, NormalResult<D, S>& result) {
+    AverageVolumeGradient::find(p, pair, result);
+    for (int i = 0; i < D; ++i) result.normal[i] = real<S>(-1) * result.normal[i];
+  }
+};
+
+struct FirstBodysNormal : AverageVolumeGradient {
+  template <int D, class S>
+  MPM_HD static void find(const Parameters&, const NormalPair<D, S>& pair, NormalResult<D, S>& result) {
+    result.normal = pair.volume_gradient_a;
+    result.found = make_unit(result.normal);
+  }
+};
+
+struct NormalOfFrame : AverageVolumeGradient {  // takes the first axis for the better one
+  template <int D, class S>
+  MPM_HD static void find(const Parameters&, const NormalPair<D, S>& pair, NormalResult<D, S>& result) {
+    for (int i = 0; i < D; ++i)
+      result.normal[i] = real<S>(i ? 1 : 1.01) * (pair.volume_gradient_a[i] - pair.volume_gradient_b[i]);
+    result.found = make_unit(result.normal);
+  }
+};
+
+struct NormalOfNothing : AverageVolumeGradient {
+  template <int D, class S>
+  MPM_HD static void find(const Parameters& p, const NormalPair<D, S>& pair, NormalResult<D, S>& result) {
+    AverageVolumeGradient::find(p, pair, result);
+    result.found = S(real<S>(1));
+  }
+};
+
+struct SharedOwnNormals : OwnGradient {  // says that momentum is not kept, and keeps it
+  template <int D, class S>
+  MPM_HD static void find(const Parameters& p, const NormalPair<D, S>& pair, NormalResult<D, S>& result) {
+    OwnGradient::find(p, pair, result);
+    result.own_a = result.own_b = result.normal;
+  }
+};
+
+struct ShortOwnNormals : OwnGradient {
+  template <int D, class S>
+  MPM_HD static void find(const Parameters& p, const NormalPair<D, S>& pair, NormalResult<D, S>& result) {
+    OwnGradient::find(p, pair, result);
+    for (int i = 0; i < D; ++i) result.own_b[i] = real<S>(0.99) * result.own_b[i];
+  }
+};
+
+struct TiltedGap : WidestGap {
+  template <int D>
+  static bool find(const Parameters& p, const mpm_normal_points& points, double* normal) {
+    if (!WidestGap::find<D>(p, points, normal)) return false;
+    const double x = normal[0];
+    normal[0] = std::cos(0.01) * x - std::sin(0.01) * normal[1];
+    normal[1] = std::sin(0.01) * x + std::cos(0.01) * normal[1];
+    return true;
+  }
+};
+
+struct BackwardsGap : WidestGap {
+  template <int D>
+  static bool find(const Parameters& p, const mpm_normal_points& points, double* normal) {
+    const bool found = WidestGap::find<D>(p, points, normal);
+    for (int c = 0; c < D; ++c) normal[c] = -normal[c];
+    return found;
+  }
+};
+
+struct NoGap : WidestGap {
+  template <int D>
+  static bool find(const Parameters&, const mpm_normal_points&, double*) {
+    return false;
+  }
+};
+
+TEST_CASE("wrong contact normals are caught") {
+  CHECK(failures(wrong_normal<AverageVolumeGradient>).empty());
+  CHECK(failures(wrong_normal<OwnGradient>).empty());
+  CHECK(failures(wrong_normal<WidestGap>).empty());
+  check_caught(wrong_normal<LongNormal>, "unit_length");
+  check_caught(wrong_normal<BackwardsNormal>, "from_a_to_b");
+  check_caught(wrong_normal<FirstBodysNormal>, "exchange_of_bodies");
+  check_caught(wrong_normal<NormalOfFrame>, "rotation_of_frame");
+  check_caught(wrong_normal<NormalOfNothing>, "none_of_nothing");
+  check_caught(wrong_normal<SharedOwnNormals>, "own_normals_differ");
+  check_caught(wrong_normal<ShortOwnNormals>, "own_unit_length");
+  check_caught(wrong_normal<TiltedGap>, "mirror_image");
+  check_caught(wrong_normal<BackwardsGap>, "from_a_to_b");
+  check_caught(wrong_normal<NoGap>, "finds_a_normal");
+}
+
 TEST_CASE("wrong contact laws are caught") {
   check_caught(wrong_contact<GainsEnergy>, "energy_never_grows");
   check_caught(wrong_contact<OneSided>, "pair_symmetry");
@@ -614,6 +729,7 @@ TEST_CASE("wrong contact laws are caught") {
   check_caught(wrong_contact<HeatsTooLittle>, "heat_is_work_of_friction");
   check_caught(wrong_contact<SlipsInPlace>, "sliding_pair_slides");
   check_caught(wrong_contact<Pulls>, "no_pull");
+  check_caught(wrong_contact<MultipliesMasses>, "infinite_mass");
   CHECK(failures(wrong_contact<PullsOpenly>).count("no_pull") == 0);
 }
 

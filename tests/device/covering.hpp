@@ -9,7 +9,7 @@ namespace mpm::test {
 inline std::vector<Mix> every_plugin_once(int dimension) {
   const auto shapes = plugins().of_kind(MPM_SHAPE), transfers = plugins().of_kind(MPM_TRANSFER),
              filters = plugins().of_kind(MPM_FILTER), contacts = plugins().of_kind(MPM_CONTACT),
-             materials = plugins().of_kind(MPM_MATERIAL);
+             materials = plugins().of_kind(MPM_MATERIAL), normals = plugins().of_kind(MPM_NORMAL);
   const std::size_t most =
       std::max({shapes.size(), transfers.size(), filters.size(), contacts.size(), materials.size()});
   std::vector<Mix> mixes;
@@ -28,6 +28,7 @@ inline std::vector<Mix> every_plugin_once(int dimension) {
     if (k < filters.size()) mixes.push_back(mix_with(*filters[k], dimension));
     if (k < contacts.size()) mixes.push_back(mix_with(*contacts[k], dimension));
   }
+  for (const Plugin* normal : normals) mixes.push_back(mix_with(*normal, dimension));
   return mixes;
 }
 

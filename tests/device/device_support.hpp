@@ -43,6 +43,9 @@ inline Mix mix_with(const Plugin& plugin, int dimension) {
     case MPM_CONTACT:
       mix.contact = choice;
       break;
+    case MPM_NORMAL:
+      mix.contact = R"({"type": "coulomb", "friction": 0.2, "normal": )" + choice + "}";
+      break;
     default:
       mix.material = choice;
   }

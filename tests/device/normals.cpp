@@ -1,4 +1,4 @@
-// Contact whose normal or detection looks at particles, on the host-run device.
+// Every contact normal, and detection that looks at particles, on the host-run device.
 
 #include "device/device_support.hpp"
 
@@ -28,4 +28,17 @@ TEST_CASE("normals and surfaces of particles on the host-run device", "[device][
   walls.contact = both, walls.close = true;
   walls.boundaries = R"({"all": "separate", "x_min": "periodic", "x_max": "periodic"})";
   check_on_device(walls);
+}
+
+TEST_CASE("every normal on the host-run device", "[device][normals]") {
+  for (const Plugin* normal : plugins().of_kind(MPM_NORMAL)) {
+    for (const int dimension : {2, 3}) check_on_device(mix_with(*normal, dimension));
+    Mix rings = mix_with(*normal, 2);
+    rings.overrides = {"/grid/symmetry=axisymmetric", "/gravity=[0, -1.3]"};
+    check_on_device(rings);
+    if (normal->normal().traits & MPM_OWN_NORMALS) continue;  // refused with detection by particles' surfaces
+    Mix surfaces = mix_with(*normal, 2);
+    surfaces.contact.insert(surfaces.contact.size() - 1, ", \"detection\": \"particle_surfaces\"");
+    check_on_device(surfaces);
+  }
 }

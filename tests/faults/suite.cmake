@@ -29,8 +29,8 @@ mpm_fault(${reference}/contact.cpp
           "record(contact_impulse_, standing_contact_impulse_, a, J);"
           "record(contact_impulse_, standing_contact_impulse_, a, (${now}::contact ? 0.5 : 1.0) * J);")
 mpm_fault(${reference}/contact.cpp
-          "record(contact_impulse_, standing_contact_impulse_, b, -J);"
-          "record(contact_impulse_, standing_contact_impulse_, b, (${now}::contact ? -0.5 : -1.0) * J);")
+          "record(contact_impulse_, standing_contact_impulse_, b, -returned);"
+          "record(contact_impulse_, standing_contact_impulse_, b, (${now}::contact ? -0.5 : -1.0) * returned);")
 mpm_fault(${reference}/transfers.cpp
           "  scatter_affine(body, momentum_);\n}"
           "  scatter_affine(body, momentum_);

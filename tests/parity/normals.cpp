@@ -1,4 +1,4 @@
-// Contact whose normal or detection looks at particles, with every shape, order and wall.
+// Every contact normal, and detection that looks at particles: with every law, shape, order and wall.
 
 #include "parity/parity.hpp"
 
@@ -11,7 +11,56 @@ const std::string normals[] = {R"({"type": "coulomb", "friction": 0.2, "normal":
                                R"({"type": "coulomb", "friction": 0.2, "detection": "particle_surfaces"})",
                                R"({"type": "coulomb", "normal": "widest_gap", "detection": "particle_surfaces"})"};
 
+/// Contact with a law and a normal, both as JSON objects.
+std::string contact_of(const std::string& law, const std::string& normal) {
+  return law.substr(0, law.size() - 1) + ", \"normal\": " + normal + "}";
+}
+
+const std::string coulomb = R"({"type": "coulomb", "friction": 0.2})";
+
+bool is(const std::string& choice, const std::string& id) {
+  return choice.find("\"" + id + "\"") != choice.npos;
+}
+
 }  // namespace
+
+TEST_CASE("parity of every normal with every law", "[parity][normals]") {
+  for (const int dimension : {2, 3})
+    for (const std::string& normal : variants(MPM_NORMAL))
+      for (const std::string& law : variants(MPM_CONTACT)) {
+        if (is(law, "stick")) continue;  // a weld looks at no normal
+        Mix mix;
+        mix.dimension = dimension, mix.contact = contact_of(law, normal);
+        check_parity(mix);
+      }
+}
+
+TEST_CASE("parity of every normal around an axis, beside walls, with sizes, filters and orders", "[parity][normals]") {
+  for (const std::string& normal : variants(MPM_NORMAL)) {
+    Mix rings;
+    rings.contact = contact_of(coulomb, normal), rings.boundaries = R"({"all": "slip", "x_max": "free"})";
+    rings.overrides = {"/grid/symmetry=axisymmetric", "/gravity=[0, -1.3]"};
+    check_parity(rings);
+    for (const std::string boundaries :
+         {R"({"all": "separate", "x_min": "periodic", "x_max": "periodic"})", R"({"all": "stick"})"}) {
+      Mix walls;
+      walls.contact = contact_of(coulomb, normal), walls.boundaries = boundaries, walls.close = true;
+      check_parity(walls);
+    }
+    Mix sizes;
+    sizes.contact = contact_of(coulomb, normal);
+    sizes.overrides = {"/bodies/0/seeding=blue_noise", "/bodies/1/seeding=random", "/bodies/0/jitter=0",
+                       "/bodies/1/jitter=0"};
+    check_parity(sizes);
+    Mix remapped;
+    remapped.contact = contact_of(coulomb, normal), remapped.stress_update = "modified_last";
+    check_parity(remapped);
+    if (is(normal, "own_gradient")) continue;  // refused with a filter
+    Mix filtered;
+    filtered.contact = contact_of(coulomb, normal), filtered.filter = R"({"type": "fmpm", "order": 2})";
+    check_parity(filtered);
+  }
+}
 
 TEST_CASE("parity of normals and surfaces of particles with every shape and order", "[parity][normals]") {
   for (const int dimension : {2, 3})

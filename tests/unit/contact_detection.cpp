@@ -91,12 +91,14 @@ TEST_CASE("normal, separation and area of a flat interface", "[contact]") {
     "solver": {"end_time": 1}})");
   const ContactPoints points(experiment);
   REQUIRE_FALSE(points.needed());
-  const auto contact_geometry = [&, find = PairGeometry(experiment)](const ContactFieldNode& a,
-                                                                     const ContactFieldNode& b) {
-    return find(points, {5, 5, 0}, 0, 1, a, b);
+  const auto contact_geometry = [&, geometry = PairGeometry(experiment, MPM_SCALAR_DOUBLE)](const ContactFieldNode& a,
+                                                                                            const ContactFieldNode& b) {
+    MetPair met{{5, 5, 0}, a, b, {}};
+    geometry.find(points, 0, 1, {&met, 1});
+    return met.geometry;
   };
   ContactFieldNode a, b;
-  a.mass = 2, b.mass = 3, a.volume = b.volume = 0.5 * h * h;
+  a.mass = 2, b.mass = 3;
   a.volume_gradient[1] = h, b.volume_gradient[1] = -h;
   a.mass_position[1] = -27.0 / 64 * h * a.mass, b.mass_position[1] = 27.0 / 64 * h * b.mass;
   const ContactGeometry touching = contact_geometry(a, b);

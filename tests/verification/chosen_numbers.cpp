@@ -190,6 +190,9 @@ TEST_CASE("the pairs of three stacked blocks carry what lies above them", "[chos
   Numbers now = chosen(scene.metrics);
   CHECK(now["pair b1 b2 force y"] == Approx(-2 * block_weight).epsilon(1e-3));
   CHECK(now["pair b2 b3 force y"] == Approx(-block_weight).epsilon(1e-3));
+  CHECK(now["pair b1 b2 normal force"] == Approx(2 * block_weight).epsilon(1e-3));
+  CHECK(now["pair b2 b3 normal force"] == Approx(block_weight).epsilon(1e-3));
+  CHECK(std::abs(now["pair b1 b2 tangential force y"]) < 1e-9 * block_weight);
 }
 
 // The walls of one cell strain all of it alike, s = 1 + v dt / h a step. Uniaxial stretch s of the neo-Hookean solid: Cauchy

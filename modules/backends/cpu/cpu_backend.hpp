@@ -37,8 +37,10 @@ class CpuBackend final : public Backend, NamedChannels {
   HeatLedger heat_ledger() const override { return heat_ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
   const std::vector<PairRecord>& contact_pairs() const override { return grid_step_->contact_pairs(); }
+  const std::vector<ContactNode>& contact_nodes() const override { return grid_step_->contact_nodes(); }
   const FilterRecord& filter_record() const override { return filter_; }
   const std::vector<Reaction>& reactions() const override { return reactions_.reactions(); }
+  const std::vector<RigidState>& rigid_bodies() const override { return grid_step_->rigid_bodies().states(); }
   bool scattered() const override { return scattered_; }
   void save(ArchiveWriter& archive) const override;
   void restore(ArchiveReader& archive) override;

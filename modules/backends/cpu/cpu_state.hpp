@@ -129,6 +129,7 @@ void CpuBackend<D, T, Components>::restore(ArchiveReader& archive) {
   contact_ = records.contact, grid_step_->contact_pairs() = std::move(records.contact_pairs);
   filter_ = records.filter, limit_ = records.limit;
   reactions_.resume(std::move(records.reactions));
+  grid_step_->rigid_bodies().resume(std::move(records.rigid_bodies));
   for (int body = 0; body < static_cast<int>(particles_.size()); ++body)
     restore_body(archive, body, bytes.empty() ? nullptr : &arrangement);
   if (!arrangement.at_end()) throw ArchiveError("value \"arrangement\" is not of these particles");

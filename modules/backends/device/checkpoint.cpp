@@ -24,7 +24,7 @@ void DeviceBackend<T>::restore(ArchiveReader& archive) {
   ledger_ = records.ledger, heat_ledger_ = records.heat_ledger;
   contact_ = records.contact, contact_impulse_.pairs() = std::move(records.contact_pairs);
   filter_ = records.filter, limit_ = records.limit;
-  reactions_.resume(std::move(records.reactions));
+  reactions_.resume(std::move(records.reactions)), rigid_.bodies().resume(std::move(records.rigid_bodies));
   for (std::size_t index = 0; index < bodies_.size(); ++index) {
     FieldArrays<T>& arrays = bodies_[index].arrays;
     restore_particles<T>(

@@ -205,10 +205,12 @@ std::string scene_text(const Choice& choice) {
       << "  using Shape = " << type(choice.shape) << ";\n  using Transfer = " << type(choice.transfer) << ";\n";
   if (choice.filter) out << "  using Filter = " << type(choice.filter) << ";\n";
   if (choice.contact) out << "  using Contact = " << type(choice.contact) << ";\n";
+  if (choice.normal) out << "  using Normal = " << type(choice.normal) << ";\n";
+  const bool own = choice.normal && (choice.normal->normal().traits & MPM_OWN_NORMALS);
   const bool weld = choice.contact && (choice.contact->contact().traits & MPM_BYPASSES_DETECTION);
   out << "  static constexpr bool contact = " << yes(choice.contact) << ", bypasses_detection = " << yes(weld)
-      << ", contact_by_particles = " << yes(choice.contact_by_particles) << ", list = " << yes(list)
-      << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
+      << ", contact_by_particles = " << yes(choice.contact_by_particles) << ", own_normals = " << yes(own)
+      << ", list = " << yes(list) << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
       << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
       << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
       << "  static constexpr int width = " << (list ? 1 : shape.width)
@@ -241,6 +243,8 @@ std::string scene_text(const Choice& choice) {
       out << "  static constexpr double reference_temperature = " << temperature->reference << ";  // K\n";
     out << "};\n";
   }
+  for (std::size_t k = 0; k < choice.rigid_laws.size(); ++k)
+    out << "struct RigidScene" << k << " : Scene {\n  using Contact = " << type(choice.rigid_laws[k]) << ";\n};\n";
   out << "MPM_DEVICE_ENTRIES\n";
   if (has_loads(choice)) out << "MPM_DEVICE_LOAD_ENTRIES\n";
   if (keeps_ledger(choice)) out << "MPM_DEVICE_LEDGER_ENTRIES\n";
@@ -255,6 +259,7 @@ std::string scene_text(const Choice& choice) {
     out << "MPM_DEVICE_MATERIAL_ENTRIES(" << k << ")\n";
     if (melts(choice)) out << "MPM_DEVICE_MELTING_ENTRIES(" << k << ")\n";
   }
+  for (std::size_t k = 0; k < choice.rigid_laws.size(); ++k) out << "MPM_DEVICE_RIGID_ENTRIES(" << k << ")\n";
   out << "}  // namespace mpm::device\n";
   return out.str();
 }
@@ -281,11 +286,12 @@ std::vector<std::string> entry_names(const Choice& choice) {
     if (macro == "MPM_DEVICE_HEAT_ENTRIES" && !has_temperature(choice)) continue;
     if (macro == "MPM_DEVICE_HEAT_LEDGER_ENTRIES" && !(has_temperature(choice) && keeps_ledger(choice))) continue;
     if (macro == "MPM_DEVICE_MELTING_ENTRIES" && !melts(choice)) continue;
-    if (macro != "MPM_DEVICE_MATERIAL_ENTRIES" && macro != "MPM_DEVICE_MELTING_ENTRIES")
-      names.push_back(name);
-    else
-      for (std::size_t k = 0; k < choice.materials.size(); ++k)
-        names.push_back(name.substr(0, name.find("##")) + std::to_string(k));
+    const std::size_t number = name.find("##");
+    if (number == name.npos) names.push_back(name);
+    const std::size_t times = number == name.npos                   ? 0
+                              : macro == "MPM_DEVICE_RIGID_ENTRIES" ? choice.rigid_laws.size()
+                                                                    : choice.materials.size();
+    for (std::size_t k = 0; k < times; ++k) names.push_back(name.substr(0, number) + std::to_string(k));
   }
   return names;
 }
@@ -295,12 +301,28 @@ std::vector<std::string> entry_names(const Choice& choice) {
 std::string Choice::name() const {
   std::string text = std::to_string(dimension) + "-D " + (axisymmetric ? "axisymmetric " : "") +
                      (precision == Precision::single ? "float" : "double") + ":";
-  std::vector<const Plugin*> plugins{shape, transfer, filter, contact};
+  std::vector<const Plugin*> plugins{shape, transfer, filter, contact, normal};
+  plugins.insert(plugins.end(), rigid_laws.begin(), rigid_laws.end());
   plugins.insert(plugins.end(), materials.begin(), materials.end());
   for (const Plugin* plugin : plugins)
     if (plugin) text += " " + std::string(plugin->id());
   if (basis_order > 0) text += ", polynomials of order " + std::to_string(basis_order);
   return text;
+}
+
+namespace {
+std::vector<const Plugin*> laws_of_rigid_bodies(const Experiment& experiment) {
+  std::vector<const Plugin*> laws;
+  for (const RigidBodySpecification& body : experiment.rigid_bodies)
+    if (std::find(laws.begin(), laws.end(), body.contact.plugin) == laws.end()) laws.push_back(body.contact.plugin);
+  return laws;
+}
+}  // namespace
+
+int number_of_law(const Experiment& experiment, std::size_t body) {
+  const std::vector<const Plugin*> laws = laws_of_rigid_bodies(experiment);
+  return static_cast<int>(std::find(laws.begin(), laws.end(), experiment.rigid_bodies[body].contact.plugin) -
+                          laws.begin());
 }
 
 Choice choice_of(const Experiment& experiment, const Plan& plan) {
@@ -311,13 +333,15 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
   choice.shape = experiment.shape.plugin;
   choice.transfer = experiment.transfer.plugin;
   choice.basis_order = plan.basis_order;
-  choice.reactions = !experiment.output.reactions.empty();
+  choice.reactions = experiment.notes_reactions();
   choice.deterministic = sums_deterministically(experiment);
   choice.contact_by_particles = ContactPoints(experiment).needed();
   choice.node_fields = node_fields(experiment, plan);
   choice.particle_fields = particle_fields(experiment, plan, 0);
   if (experiment.filter) choice.filter = experiment.filter->plugin;
   if (experiment.contact) choice.contact = experiment.contact->plugin;
+  if (experiment.contact_normal && !choice.contact_by_particles) choice.normal = experiment.contact_normal->plugin;
+  choice.rigid_laws = laws_of_rigid_bodies(experiment);
   for (const MaterialSpecification& material : experiment.materials)
     choice.materials.push_back(material.component.plugin);
   return choice;
@@ -338,13 +362,16 @@ const char* embedded_header(std::string_view path) {
 Composition compose(const Choice& choice) {
   Text text;
   text.add_header("backends/device/kernels/kernels.hpp", "the composer");
-  for (const Plugin* plugin : {choice.shape, choice.transfer, choice.filter, choice.contact})
+  for (const Plugin* plugin : {choice.shape, choice.transfer, choice.filter, choice.contact, choice.normal})
     if (plugin) text.add_functor(*plugin);
+  for (const Plugin* plugin : choice.rigid_laws) text.add_functor(*plugin);
   for (const Plugin* plugin : choice.materials) text.add_functor(*plugin);
   text.add(scene_text(choice));
   Composition composition{choice.name(), text.str(), "", entry_names(choice), {}};
   composition.hash = support::sha256(composition.text);
-  std::vector<const Plugin*> chosen{choice.shape, choice.transfer, choice.filter, choice.contact};
+  std::vector<const Plugin*> chosen{choice.shape, choice.transfer, choice.filter, choice.contact, choice.normal};
+  for (const Plugin* law : choice.rigid_laws)
+    if (law != choice.contact) chosen.push_back(law);
   chosen.insert(chosen.end(), choice.materials.begin(), choice.materials.end());
   for (const Plugin* plugin : chosen)
     if (plugin) composition.plugins.emplace_back(name_in_messages(*plugin), plugin->file.string());

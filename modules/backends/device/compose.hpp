@@ -21,7 +21,9 @@ struct Choice {
   const Plugin* transfer = nullptr;
   const Plugin* filter = nullptr;
   const Plugin* contact = nullptr;
+  const Plugin* normal = nullptr;  ///< with contact whose geometry follows from sums over nodes
   std::vector<const Plugin*> materials;
+  std::vector<const Plugin*> rigid_laws;            ///< of rigid bodies, each once (number_of_law)
   bool deterministic = false;                       ///< scatters sum to the same bits in any order of lanes
   bool contact_by_particles = false;                ///< the host finds how fields meet (contact_pairs.hpp)
   bool reactions = false;                           ///< what supports give is summed
@@ -34,6 +36,9 @@ struct Choice {
 
 /// The most values that a particle gives to a node in one scatter.
 int most_channels(const Choice& choice);
+
+/// The number of a rigid body's law among the choice's.
+int number_of_law(const Experiment& experiment, std::size_t body);
 
 /// The choice that a run of the experiment needs; its materials are in the experiment's order.
 Choice choice_of(const Experiment& experiment, const Plan& plan);

@@ -11,6 +11,7 @@ void DeviceBackend<T>::momentum_to_velocity(const Pass& pass, const StepInfo& st
   const bool records_heat = plan_.has_heat_ledger() && !pass.remap() && heat_conditions_->walls_act();
   const Tally<1> heat = records_heat ? sum_over_nodes("heat_of_nodes") : nullptr;
   if (notes_reactions_) later([this] { reactions_.begin_step(); });
+  if (!pass.remap()) rigid_.begin_step();
   fold_momenta({pass.remap()});
   if (records_heat) {
     const Tally<1> folded = sum_over_nodes("heat_of_nodes");
@@ -22,7 +23,7 @@ void DeviceBackend<T>::momentum_to_velocity(const Pass& pass, const StepInfo& st
   keep_free_velocity({});
   impose_conditions({});
   if (plan_.resolves_contact()) {
-    resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::before_forces);
+    resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::before_forces, step.time);
     impose_conditions({});
   }
   measure_constraints();
@@ -45,7 +46,7 @@ void DeviceBackend<T>::apply_forces(const StepInfo& step) {
   keep_free_velocity(after);
   impose_conditions(after);
   if (plan_.resolves_contact()) {
-    resolve_contact(step, Recorded::after_forces);
+    resolve_contact(step, Recorded::after_forces, step.time + step.dt);
     impose_conditions(after);
   }
   measure_constraints();
@@ -54,6 +55,7 @@ void DeviceBackend<T>::apply_forces(const StepInfo& step) {
   for_each_axis("fill_velocities", filled_axes());
   if (notes_reactions_) later([this, dt = step.dt] { reactions_.apply_forces(dt); });
   record_reactions(step);
+  rigid_.bodies().end_step(step);
 }
 
 template <class T>
@@ -109,7 +111,8 @@ void DeviceBackend<T>::fold_projection(bool at_rest) {
 
 template <class T>
 void DeviceBackend<T>::impose_conditions(const Manner& manner) {
-  for (std::size_t support = 0; notes_reactions_ && support < reactions_.reactions().size(); ++support)
+  const auto held = static_cast<std::size_t>(experiment_.support_of_rigid_body(0));
+  for (std::size_t support = 0; notes_reactions_ && support < held; ++support)
     for (const VelocityField<T>& field : fields_) {
       Arguments<T> a = arguments_of(field, manner);
       a.support = static_cast<int>(support);

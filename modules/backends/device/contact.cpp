@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backends/device/kernels/contact.hpp"
+#include "backends/device/compose.hpp"
+#include "backends/device/kernels/rigid.hpp"
 
 namespace mpm::device {
 
 template <class T>
-void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded) {
+void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, double time) {
   if (contact_pairs_ && recorded == Recorded::before_forces) {
     look();  // a particle that has failed is nowhere
     contact_pairs_->find(bodies_, fields_);
@@ -34,6 +35,7 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded) 
         take_pair(found, *given, after_forces);
       });
     }
+  meet_rigid_bodies(time, given, after_forces);
   Ledger* const ledger = scene_.records ? &ledger_ : nullptr;
   later([this, recorded, given, ledger, filtered = step.filtered] {
     if (recorded == Recorded::before_forces) contact_impulse_.before_forces(*given, filtered, ledger);
@@ -52,11 +54,42 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded) 
 }
 
 template <class T>
+void DeviceBackend<T>::meet_rigid_bodies(double time, const std::shared_ptr<ContactGiven>& all, bool after_forces) {
+  for (std::size_t body = 0; body < rigid_.bodies().count(); ++body) {
+    const RigidArrays rigid = rigid_.of(body, time);
+    for (std::size_t field = 0; rigid.count > 0 && field < fields_.size(); ++field) {
+      Arguments<T> arguments = arguments_of(fields_[field], {});
+      arguments.edges[0] = edges_.of(field), arguments.rigid = rigid;
+      arguments.contact_parameters = rigid_.parameters(body);
+      const std::size_t at = place(rigid_sums);
+      join("rigid_contact_" + std::to_string(number_of_law(experiment_, body)), arguments,
+           static_cast<int>(rigid.count), rigid_sums, at, 1);
+      results_.later([this, at, all, after_forces, notes = notes_reactions_,
+                      support = experiment_.support_of_rigid_body(body)](const double* sums) {
+        const double* const found = sums + at;
+        RigidGiven given{{found[0], found[1], found[2]},
+                         {found[rigid_moment], found[rigid_moment + 1], found[rigid_moment + 2]},
+                         found[rigid_dissipated],
+                         found[rigid_driven],
+                         std::lround(found[rigid_sticking]),
+                         std::lround(found[rigid_slipping]),
+                         found[rigid_penetration]};
+        all->dissipated += given.dissipated, all->driven += given.driven;
+        if (notes) reactions_.add(GivenBySupport::held, support, given.impulse, given.moment);
+        if (after_forces) given.add_to(contact_);
+      });
+    }
+  }
+}
+
+template <class T>
 void DeviceBackend<T>::take_pair(const double* sums, ContactGiven& given, bool record) {
   PairGiven pair;
-  for (std::size_t c = 0; c < 3; ++c) pair.impulse[c] = sums[contact_impulse + c];
+  for (std::size_t c = 0; c < 3; ++c)
+    pair.impulse[c] = sums[contact_impulse + c], pair.along[c] = sums[contact_along + c];
+  pair.pressing = sums[contact_pressing];
   pair.sticking = std::lround(sums[contact_sticking]), pair.slipping = std::lround(sums[contact_slipping]);
-  pair.largest_penetration = sums[contact_penetration];
+  pair.area = sums[contact_touching], pair.largest_penetration = sums[contact_penetration];
   for (std::size_t c = 0; c < 3; ++c) given.impulse[c] += pair.impulse[c];
   given.dissipated += sums[contact_dissipated];
   if (!contact_impulse_.pairs().empty()) given.pairs.push_back(pair);

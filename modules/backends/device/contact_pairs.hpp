@@ -2,6 +2,8 @@
 // Contact whose normal or detection looks at particles (simulation/contact_points.hpp). The host finds it once a step on
 // copies of particles and nodes, as positions do not move within a step, and hands it to the device for all stages of it.
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
 #include "backends/device/device_arrays.hpp"
@@ -13,18 +15,21 @@ namespace mpm::device {
 /// The values of one velocity field that detection reads, on the host.
 template <class T>
 struct ContactFields {
-  std::vector<T> mass, volume, volume_gradient, mass_position;
+  std::vector<T> mass, volume_gradient, mass_position, mass_gradient;  ///< the last where the normal reads it
 
-  explicit ContactFields(const VelocityField<T>& field)
+  ContactFields(const VelocityField<T>& field, const Plan& plan)
       : mass(field.arrays.read("mass")),
-        volume(field.arrays.read("volume")),
         volume_gradient(field.arrays.read("volume_gradient")),
-        mass_position(field.arrays.read("mass_position")) {}
+        mass_position(field.arrays.read("mass_position")) {
+    if (plan.node_field("mass_gradient")) mass_gradient = field.arrays.read("mass_gradient");
+  }
   ContactFieldNode at(std::size_t node, int dimension) const {
-    ContactFieldNode view{mass[node], volume[node], {}, {}};
+    ContactFieldNode view;
+    view.mass = mass[node];
     for (int c = 0; c < dimension; ++c) {
       const std::size_t at = static_cast<std::size_t>(c) * mass.size() + node;
       view.volume_gradient[c] = volume_gradient[at], view.mass_position[c] = mass_position[at];
+      if (!mass_gradient.empty()) view.mass_gradient[c] = mass_gradient[at];
     }
     return view;
   }
@@ -34,14 +39,19 @@ struct ContactFields {
 template <class T>
 class ContactPairs {
  public:
-  ContactPairs(Device& device, const Experiment& experiment, const Arguments<T>& scene)
-      : experiment_(experiment), scene_(scene), geometry_(experiment), points_(experiment) {
+  ContactPairs(Device& device, const Experiment& experiment, const Plan& plan, const Arguments<T>& scene)
+      : experiment_(experiment),
+        plan_(plan),
+        scene_(scene),
+        geometry_(experiment, MPM_SCALAR_DOUBLE),
+        points_(experiment) {
     for (int k = 0; k < experiment.field_count * (experiment.field_count - 1) / 2; ++k) pairs_.emplace_back(device);
   }
 
   /// Finds everything, once the masses of the nodes are known.
   void find(const std::vector<Body<T>>& bodies, const std::vector<VelocityField<T>>& fields) {
-    const std::vector<ContactFields<T>> found(fields.begin(), fields.end());
+    std::vector<ContactFields<T>> found;
+    for (const VelocityField<T>& field : fields) found.emplace_back(field, plan_);
     open_nodes(found);
     show_particles(bodies);
     points_.find(0, points_.node_count());
@@ -103,11 +113,20 @@ class ContactPairs {
     const std::size_t D = experiment_.dimension;
     std::vector<int> valid(nodes());
     std::vector<T> values((D + 2) * nodes());
+    std::vector<MetPair> met;
+    std::vector<std::size_t> at;
     for (std::size_t node = 0; node < nodes(); ++node) {
-      const ContactFieldNode of_a = found[a].at(node, experiment_.dimension),
-                             of_b = found[b].at(node, experiment_.dimension);
-      if (!meet(of_a.mass, of_b.mass, /*weld=*/false)) continue;  // a weld looks at no particle
-      const ContactGeometry geometry = geometry_(points_, coordinates(node), a, b, of_a, of_b);
+      if (!meet(found[a].mass[node], found[b].mass[node], /*weld=*/false)) continue;  // a weld looks at no particle
+      met.push_back(
+          {coordinates(node), found[a].at(node, experiment_.dimension), found[b].at(node, experiment_.dimension), {}});
+      at.push_back(node);
+    }
+    for (std::size_t first = 0; first < met.size(); first += MPM_BATCH)
+      geometry_.find(points_, a, b,
+                     std::span(met).subspan(first, std::min<std::size_t>(MPM_BATCH, met.size() - first)));
+    for (std::size_t i = 0; i < met.size(); ++i) {
+      const ContactGeometry& geometry = met[i].geometry;
+      const std::size_t node = at[i];
       valid[node] = geometry.valid;
       values[node] = static_cast<T>(geometry.separation), values[nodes() + node] = static_cast<T>(geometry.area);
       for (std::size_t c = 0; c < D; ++c) values[(2 + c) * nodes() + node] = static_cast<T>(geometry.normal[c]);
@@ -116,6 +135,7 @@ class ContactPairs {
   }
 
   const Experiment& experiment_;
+  const Plan& plan_;
   const Arguments<T>& scene_;
   PairGeometry geometry_;
   ContactPoints points_;

@@ -76,6 +76,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
       transfer_parameters_(*device_, "the transfer's parameters"),
       filter_parameters_(*device_, "the filter's parameters"),
       contact_parameters_(*device_, "the parameters of contact"),
+      normal_parameters_(*device_, "the parameters of the contact normal"),
       ignored_stop_(*device_, "the failed particle"),
       partial_sums_(*device_, "sums"),
       deterministic_(sums_deterministically(experiment)),
@@ -86,6 +87,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
       edges_(*device_, experiment),
       contact_impulse_(experiment),
       reactions_(experiment),
+      rigid_(*device_, experiment, scene_),
       uses_graphs_(setup.graphs),
       graphs_(*device_) {
   const Choice choice = choice_of(experiment, plan);
@@ -100,6 +102,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
   scene_.transfer_parameters = give(transfer_parameters_, experiment.transfer);
   if (experiment.filter) scene_.filter_parameters = give(filter_parameters_, *experiment.filter);
   if (experiment.contact) scene_.contact_parameters = give(contact_parameters_, *experiment.contact);
+  if (experiment.contact_normal) scene_.normal_parameters = give(normal_parameters_, *experiment.contact_normal);
   ignored_stop_.upload(std::vector<int>(stop_numbers, INT_MAX));
   scene_.stop = results_.stop();
   if (deterministic_) {
@@ -109,7 +112,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
     scene_.exponents = exponents_.data(), scene_.exact_sums = exact_sums_.data();
   }
 
-  if (ContactPoints(experiment).needed()) contact_pairs_.emplace(*device_, experiment, scene_);
+  if (ContactPoints(experiment).needed()) contact_pairs_.emplace(*device_, experiment, plan, scene_);
   if (experiment.has_temperature()) heat_conditions_.emplace(*device_, experiment, scene_);
   for (std::size_t body = 0; body < seeded.size(); ++body) {
     bodies_.emplace_back(*device_, experiment, plan, scene_, static_cast<int>(body), seeded[body]);

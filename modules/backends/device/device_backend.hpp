@@ -17,6 +17,7 @@
 #include "backends/device/heat_conditions.hpp"
 #include "backends/device/make_device_backend.hpp"
 #include "backends/device/results.hpp"
+#include "backends/device/rigid_nodes.hpp"
 #include "backends/device/step_graphs.hpp"
 #include "simulation/contact_impulse.hpp"
 #include "simulation/loads.hpp"
@@ -54,8 +55,10 @@ class DeviceBackend final : public Backend {
   HeatLedger heat_ledger() const override { return heat_ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
   const std::vector<PairRecord>& contact_pairs() const override { return contact_impulse_.pairs(); }
+  const std::vector<ContactNode>& contact_nodes() const override { return contact_impulse_.nodes(); }
   const FilterRecord& filter_record() const override { return filter_; }
   const std::vector<Reaction>& reactions() const override { return reactions_.reactions(); }
+  const std::vector<RigidState>& rigid_bodies() const override { return rigid_.bodies().states(); }
   bool scattered() const override { return false; }
   void measure_phases(bool on) override { device_->measure(on); }
   std::map<std::string, double> phase_seconds() const override { return device_->seconds(); }
@@ -199,8 +202,10 @@ class DeviceBackend final : public Backend {
   void change_phase();
 
   // ---- contact.cpp
-  /// Applies the law to every pair of fields.
-  void resolve_contact(const StepInfo& step, Recorded recorded);
+  /// Applies the law to every pair of fields, and then those of rigid bodies, whose velocities are those of a time, s.
+  void resolve_contact(const StepInfo& step, Recorded recorded, double time);
+  /// Lets all fields meet rigid bodies one after another, and adds what these give.
+  void meet_rigid_bodies(double time, const std::shared_ptr<ContactGiven>& all, bool after_forces);
   /// Adds what contact did to a pair, as its phase has summed it, to what all pairs were given, and to the record.
   void take_pair(const double* sums, ContactGiven& given, bool record);
   /// Records the force that particles take when they gather the velocity as it is now.
@@ -272,7 +277,8 @@ class DeviceBackend final : public Backend {
   Arguments<T> scene_;              ///< what all launches share; its pointers are the device's
   std::unique_ptr<Device> device_;  ///< outlives the arrays on it
   int lanes_, teams_;               ///< of a team, and at work on blocks at once
-  DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_;
+  DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_,
+      normal_parameters_;
   DeviceArray<int> ignored_stop_;
   DeviceArray<double> partial_sums_;
   bool deterministic_;          ///< particles are summed to the same bits in any order of lanes
@@ -296,6 +302,7 @@ class DeviceBackend final : public Backend {
   ContactRecord contact_;
   ContactImpulse contact_impulse_;
   ReactionImpulse reactions_;
+  RigidNodes<T> rigid_;
   bool notes_reactions_ = false;  ///< the pass under way notes what supports give
   FilterRecord filter_;
   bool uses_graphs_;

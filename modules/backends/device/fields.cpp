@@ -22,7 +22,7 @@ std::vector<Field> node_fields(const Experiment& experiment, const Plan& plan) {
   std::copy_if(plan.fields.begin(), plan.fields.end(), std::back_inserter(fields),
                [](const Field& field) { return field.owner == Owner::node; });
   // A projection is folded as the masses were, and walls give by what was folded, which is no longer there.
-  if (plan.node_field("projection") || !experiment.output.reactions.empty())
+  if (plan.node_field("projection") || experiment.notes_reactions())
     fields.push_back(working_field("folded_mass", "kg", 1)), fields.back().owner = Owner::node;
   if (plan.has_ledger()) {
     for (const char* id : {"work_of_folds", "work_beyond_walls"}) {

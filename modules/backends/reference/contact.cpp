@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "backends/reference/reference_backend.hpp"
 
 namespace mpm::reference {
 
 ContactFieldNode ReferenceBackend::contact_view(std::size_t i) const {
-  ContactFieldNode view{mass_[i], volume_[i], {}, {}};
-  for (int c = 0; c < 3; ++c)
+  ContactFieldNode view;
+  view.mass = mass_[i];
+  for (int c = 0; c < 3; ++c) {
     view.volume_gradient[c] = volume_gradient_[i][c], view.mass_position[c] = mass_position_[i][c];
+    if (sums_mass_gradients_) view.mass_gradient[c] = mass_gradient_[i][c];
+  }
   return view;
 }
 
@@ -19,31 +23,45 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
                                                                            const Vector& momentum_b, double dt) const {
   const Component& law = *experiment_.contact;
   const bool weld = law.plugin->contact().traits & MPM_BYPASSES_DETECTION;
-  const int D = experiment_.dimension;
   if (!meet(mass_[a], mass_[b], weld)) return {};
-  const std::size_t node = a % grid_.node_count();
-  const Eigen::Vector3i& at = grid_.coordinates(node);
-  const ContactGeometry geometry = pair_geometry_(contact_points_, {at[0], at[1], at[2]}, grid_.velocity_field_of(a),
-                                                  grid_.velocity_field_of(b), contact_view(a), contact_view(b));
+  const Eigen::Vector3i& at = grid_.coordinates(a % grid_.node_count());
+  MetPair met{{at[0], at[1], at[2]}, contact_view(a), contact_view(b), {}};
+  pair_geometry_.find(contact_points_, grid_.velocity_field_of(a), grid_.velocity_field_of(b), {&met, 1});
+  const ContactGeometry& geometry = met.geometry;
   if (!geometry.valid && !weld) return {};
+  const bool own = experiment_.contact_normal->plugin->normal().traits & MPM_OWN_NORMALS;
+  const auto apply = [&](const double* normal) {
+    return apply_law(law, {mass_[a], mass_[b], momentum_a, momentum_b, geometry, normal, dt});
+  };
+  if (!own) return apply(geometry.normal);
+  PairResult result = apply(geometry.own_a);
+  const PairResult of_b = apply(geometry.own_b);
+  result.returned = of_b.impulse;
+  result.dissipated = 0.5 * (result.dissipated + of_b.dissipated);
+  result.status = std::max(result.status, of_b.status);
+  return result;
+}
 
-  // The pair is repeated over a full lane so that the plugin may compute whole lanes.
+/// The pair is repeated over a full lane so that the plugin may compute whole lanes.
+ReferenceBackend::PairResult ReferenceBackend::apply_law(const Component& law, const LawInput& input) const {
+  const int D = experiment_.dimension;
   constexpr int n = MPM_LANES;
   std::array<double, n> mass_a, mass_b, separation, area, dissipated{};
   std::array<double, 3 * n> p_a, p_b, normal, impulse{};
   std::array<std::int32_t, n> status{};
-  mass_a.fill(mass_[a]), mass_b.fill(mass_[b]), separation.fill(geometry.separation), area.fill(geometry.area);
+  mass_a.fill(input.mass_a), mass_b.fill(input.mass_b);
+  separation.fill(input.geometry.separation), area.fill(input.geometry.area);
   for (int c = 0; c < D; ++c)
     for (int lane = 0; lane < n; ++lane) {
-      p_a[c * n + lane] = momentum_a[c];
-      p_b[c * n + lane] = momentum_b[c];
-      normal[c * n + lane] = geometry.normal[c];
+      p_a[c * n + lane] = input.momentum_a[c];
+      p_b[c * n + lane] = input.momentum_b[c];
+      normal[c * n + lane] = input.normal[c];
     }
   const mpm_contact_batch batch{n,
                                 n,
                                 static_cast<std::uint32_t>(D),
                                 0,
-                                dt,
+                                input.dt,
                                 mass_a.data(),
                                 mass_b.data(),
                                 p_a.data(),
@@ -55,9 +73,39 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
                                 dissipated.data(),
                                 status.data()};
   law.plugin->contact().apply[MPM_SCALAR_DOUBLE][D - 2](law.parameters.data(), &batch);
-  PairResult result{Vector::Zero(), dissipated[0], status[0], geometry.separation, geometry.valid};
-  for (int c = 0; c < D; ++c) result.impulse[c] = impulse[c * n];
+  PairResult result{Vector::Zero(), Vector::Zero(), dissipated[0], status[0], input.geometry};
+  for (int c = 0; c < D; ++c) result.impulse[c] = result.returned[c] = impulse[c * n];
   return result;
+}
+
+/// The law sees a body of infinite mass at rest, and the material as it moves beside that.
+template <class VelocityOf, class Give>
+void ReferenceBackend::meet_rigid_bodies(double time, double dt, VelocityOf velocity, Give give, ContactGiven& all,
+                                         ContactRecord* record) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  for (std::size_t body = 0; body < rigid_.count(); ++body) {
+    const RigidMotion motion = rigid_.motion(body, time);
+    RigidGiven given;
+    for (const RigidNode& node : rigid_.nodes(body))
+      for (int field = 0; field < grid_.velocity_fields(); ++field) {
+        const std::size_t i = grid_.at(field, grid_.index({node.at[0], node.at[1], node.at[2]}));
+        if (!(mass_[i] > 0)) continue;
+        const Vector3 of_body = motion.velocity_at(node.arm);
+        const ContactGeometry geometry =
+            rigid_contact_geometry(contact_view(i), edges_[static_cast<std::size_t>(field)].table(), node.surface,
+                                   rigid_.around(node), experiment_.grid.cell_size, experiment_.dimension);
+        const PairResult pair =
+            apply_law(rigid_.law(body), {mass_[i], infinite, mass_[i] * (velocity(i) - to_eigen(of_body)),
+                                         Vector::Zero(), geometry, geometry.normal, dt});
+        give(i, pair.impulse);
+        given.give(rigid_.place(node), as_array(pair.impulse), of_body);
+        given.count(pair.status, pair.geometry.separation, pair.dissipated);
+      }
+    all.dissipated += given.dissipated, all.driven += given.driven;
+    if (notes_reactions_)
+      reactions_.add(GivenBySupport::held, experiment_.support_of_rigid_body(body), given.impulse, given.moment);
+    if (record) given.add_to(*record);
+  }
 }
 
 /// Shows the particles to all nodes where fields meet.
@@ -92,37 +140,72 @@ void ReferenceBackend::find_contact_points() {
 void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, bool remap) {
   if (contact_points_.needed() && !after_forces && !remap) find_contact_points();
   if (after_forces) contact_ = {};
-  Vector total_impulse = Vector::Zero(), total_change = Vector::Zero();
-  double dissipated = 0;
-  std::vector<PairGiven> pairs(impulse_.pairs().size());
-  for_each_pair([&](std::size_t a, std::size_t b) {
-    const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step.dt);
-    if (!pair) return;
-    const Vector& J = pair->impulse;
-    record(contact_impulse_, standing_contact_impulse_, a, J);
-    record(contact_impulse_, standing_contact_impulse_, b, -J);
-    dissipated += pair->dissipated;
-    const Vector sum = momentum_[a] + momentum_[b];
-    momentum_[a] += J;
-    momentum_[b] -= J;
-    total_change += momentum_[a] + momentum_[b] - sum;
-    total_impulse += J;
-    count(*pair, a, b, pairs);
-    if (!after_forces || pair->status == MPM_APART) return;
-    ++contact_.nodes;
-    ++(pair->status == MPM_STICKS ? contact_.sticking : contact_.slipping);
-    if (pair->has_normal) contact_.largest_penetration = std::max(contact_.largest_penetration, -pair->separation);
-  });
+  const double time = after_forces ? step.time + step.dt : step.time;
+  ContactGiven given = nothing_given();
+  const Vector total_change = resolve_pairs(step, after_forces, given);
+  meet_rigid_bodies(
+      time, step.dt, [&](std::size_t i) { return Vector(momentum_[i] / mass_[i]); },
+      [&](std::size_t i, const Vector& impulse) {
+        record(contact_impulse_, standing_contact_impulse_, i, impulse);
+        momentum_[i] += impulse;
+      },
+      given, after_forces ? &contact_ : nullptr);
   if (after_forces) {
-    const ContactGiven given{as_array(total_impulse), dissipated, std::move(pairs)};
     impulse_.after_forces(given, ledger_to_book());
     impulse_.record_counts(given);
     record_force(step);
     contact_.momentum_residual = total_change.norm();
   } else if (!remap) {
-    impulse_.before_forces({as_array(total_impulse), dissipated, std::move(pairs)}, step.filtered, ledger_to_book());
+    impulse_.before_forces(given, step.filtered, ledger_to_book());
   }
-  impose_conditions(after_forces ? step.time + step.dt : step.time);
+  impose_conditions(time);
+}
+
+/// Applies the law to all pairs of fields; returns the change of their momenta, zero to rounding.
+Vector ReferenceBackend::resolve_pairs(const StepInfo& step, bool after_forces, ContactGiven& given) {
+  Vector total_change = Vector::Zero();
+  const bool notes_nodes = records_nodes(experiment_, step);
+  for_each_pair([&](std::size_t a, std::size_t b) {
+    const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step.dt);
+    if (!pair) return;
+    const Vector &J = pair->impulse, &returned = pair->returned;
+    record(contact_impulse_, standing_contact_impulse_, a, J);
+    record(contact_impulse_, standing_contact_impulse_, b, -returned);
+    const Vector sum = momentum_[a] + momentum_[b];
+    momentum_[a] += J;
+    momentum_[b] -= returned;
+    total_change += momentum_[a] + momentum_[b] - sum;
+    count(*pair, a, b, notes_nodes, given);
+    if (!after_forces || pair->status == MPM_APART) return;
+    ++contact_.nodes;
+    ++(pair->status == MPM_STICKS ? contact_.sticking : contact_.slipping);
+    const ContactGeometry& geometry = pair->geometry;
+    if (geometry.valid) contact_.largest_penetration = std::max(contact_.largest_penetration, -geometry.separation);
+  });
+  return total_change;
+}
+
+/// The same in a filter's loop, where velocities are at hand and nothing is recorded but what is given.
+ContactGiven ReferenceBackend::resolve_contact_of_velocity(double time, const StepInfo& step) {
+  ContactGiven given = nothing_given();
+  const bool notes_nodes = records_nodes(experiment_, step);
+  for_each_pair([&](std::size_t a, std::size_t b) {
+    const auto pair = resolve_pair(a, b, mass_[a] * velocity_[a], mass_[b] * velocity_[b], step.dt);
+    if (!pair) return;
+    velocity_[a] += pair->impulse / mass_[a];
+    velocity_[b] -= pair->returned / mass_[b];
+    record(contact_impulse_, standing_contact_impulse_, a, pair->impulse);
+    record(contact_impulse_, standing_contact_impulse_, b, -pair->returned);
+    count(*pair, a, b, notes_nodes, given);
+  });
+  meet_rigid_bodies(
+      time, step.dt, [&](std::size_t i) { return velocity_[i]; },
+      [&](std::size_t i, const Vector& impulse) {
+        record(contact_impulse_, standing_contact_impulse_, i, impulse);
+        velocity_[i] += impulse / mass_[i];
+      },
+      given, nullptr);
+  return given;
 }
 
 void ReferenceBackend::record_force(const StepInfo& step) {
@@ -131,12 +214,40 @@ void ReferenceBackend::record_force(const StepInfo& step) {
   impulse_.record_forces(step.filtered, step.dt);
 }
 
-void ReferenceBackend::count(const PairResult& result, std::size_t a, std::size_t b,
-                             std::vector<PairGiven>& pairs) const {
-  if (pairs.empty()) return;
-  PairGiven& pair = pairs[pair_index(grid_.velocity_field_of(a), grid_.velocity_field_of(b), grid_.velocity_fields())];
+ContactGiven ReferenceBackend::nothing_given() const {
+  ContactGiven given;
+  given.pairs.resize(impulse_.pairs().size());
+  return given;
+}
+
+void ReferenceBackend::count(const PairResult& result, std::size_t a, std::size_t b, bool notes_node,
+                             ContactGiven& given) const {
+  for (int c = 0; c < 3; ++c) given.impulse[static_cast<std::size_t>(c)] += result.impulse[c];
+  given.dissipated += result.dissipated;
+  const ContactGeometry& geometry = result.geometry;
+  const bool own = experiment_.contact_normal->plugin->normal().traits & MPM_OWN_NORMALS;
+  const Vector normal = geometry.valid ? Vector(Eigen::Map<const Vector>(own ? geometry.own_a : geometry.normal))
+                                       : Vector(Vector::Zero());
+  if (notes_node) {
+    const Eigen::Vector3i& at = grid_.coordinates(a % grid_.node_count());
+    given.nodes.push_back({{{at[0], at[1], at[2]},
+                            grid_.velocity_field_of(a),
+                            grid_.velocity_field_of(b),
+                            as_array(normal),
+                            geometry.separation,
+                            geometry.area,
+                            result.status,
+                            {}},
+                           as_array(result.impulse)});
+  }
+  if (given.pairs.empty()) return;
+  PairGiven& pair =
+      given.pairs[pair_index(grid_.velocity_field_of(a), grid_.velocity_field_of(b), grid_.velocity_fields())];
   for (int c = 0; c < 3; ++c) pair.impulse[static_cast<std::size_t>(c)] += result.impulse[c];
-  pair.count(result.status, result.separation, result.has_normal);
+  const double pull = result.impulse.dot(normal);
+  for (int c = 0; c < 3; ++c) pair.along[static_cast<std::size_t>(c)] += pull * normal[c];
+  pair.pressing -= pull;
+  pair.count(result.status, geometry.separation, geometry.area, geometry.valid);
 }
 
 }  // namespace mpm::reference

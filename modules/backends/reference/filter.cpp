@@ -153,7 +153,7 @@ void ReferenceBackend::constrain_velocity(const Pass& pass, const StepInfo& step
   grid_.hold_grips_at_end(pass.stage != Stage::before_forces);
   impose_on_velocity(time);
   if (!plan_.resolves_contact()) return;
-  const ContactGiven given = resolve_contact_of_velocity(step.dt);
+  const ContactGiven given = resolve_contact_of_velocity(time, step);
   if (!pass.remap()) impulse_.in_filter(given, keeps_constraints_, ledger_to_book());
   if (pass.stage == Stage::after_forces) record_force(step);
   impose_on_velocity(time);
@@ -170,24 +170,6 @@ void ReferenceBackend::impose_on_velocity(double time) {
     }
     if (!all.empty()) record(boundary_impulse_, standing_boundary_impulse_, i, mass_[i] * (velocity_[i] - before));
   });
-}
-
-ContactGiven ReferenceBackend::resolve_contact_of_velocity(double dt) {
-  Vector total = Vector::Zero();
-  double dissipated = 0;
-  std::vector<PairGiven> pairs(impulse_.pairs().size());
-  for_each_pair([&](std::size_t a, std::size_t b) {
-    const auto pair = resolve_pair(a, b, mass_[a] * velocity_[a], mass_[b] * velocity_[b], dt);
-    if (!pair) return;
-    velocity_[a] += pair->impulse / mass_[a];
-    velocity_[b] -= pair->impulse / mass_[b];
-    record(contact_impulse_, standing_contact_impulse_, a, pair->impulse);
-    record(contact_impulse_, standing_contact_impulse_, b, -pair->impulse);
-    total += pair->impulse;
-    count(*pair, a, b, pairs);
-    dissipated += pair->dissipated;
-  });
-  return {as_array(total), dissipated, std::move(pairs)};
 }
 
 }  // namespace mpm::reference

@@ -8,6 +8,7 @@ namespace mpm::reference {
 
 void ReferenceBackend::momentum_to_velocity(const Pass& pass, const StepInfo& step) {
   if (notes_reactions_) reactions_.begin_step();
+  if (!pass.remap()) rigid_.begin_step();
   const bool accounts_heat = plan_.has_heat_ledger() && !pass.remap();
   const double heat = accounts_heat ? sum(heat_) : 0.0;
   const double work_of_folds = grid_.fold_walls(step.time, pass.remap() ? 0.0 : step.dt);
@@ -110,6 +111,7 @@ void ReferenceBackend::apply_forces(const StepInfo& step) {
   grid_.fill_velocity_ghosts(step.time + step.dt);
   if (notes_reactions_) reactions_.apply_forces(step.dt);
   record_reactions(step);
+  rigid_.end_step(step);
 }
 
 }  // namespace mpm::reference

@@ -165,7 +165,7 @@ void ReferenceBackend::restore(ArchiveReader& archive) {
   ledger_ = records.ledger, heat_ledger_ = records.heat_ledger;
   contact_ = records.contact, impulse_.pairs() = std::move(records.contact_pairs);
   filter_ = records.filter, limit_ = records.limit;
-  reactions_.resume(std::move(records.reactions));
+  reactions_.resume(std::move(records.reactions)), rigid_.resume(std::move(records.rigid_bodies));
   restore_arrangement(archive);  // particles keep the order of seeding
   for (Particles& body : bodies_) body.restore(archive);
 }

@@ -14,6 +14,7 @@
 #include "simulation/contact_impulse.hpp"
 #include "simulation/contact_pair.hpp"
 #include "simulation/loads.hpp"
+#include "simulation/rigid_bodies.hpp"
 
 namespace mpm::reference {
 
@@ -29,8 +30,10 @@ class ReferenceBackend final : public Backend {
   HeatLedger heat_ledger() const override { return heat_ledger_; }
   const ContactRecord& contact_record() const override { return contact_; }
   const std::vector<PairRecord>& contact_pairs() const override { return impulse_.pairs(); }
+  const std::vector<ContactNode>& contact_nodes() const override { return impulse_.nodes(); }
   const FilterRecord& filter_record() const override { return filter_; }
   const std::vector<Reaction>& reactions() const override { return reactions_.reactions(); }
+  const std::vector<RigidState>& rigid_bodies() const override { return rigid_.states(); }
   bool scattered() const override { return false; }
   void save(ArchiveWriter& archive) const override;
   void restore(ArchiveReader& archive) override;
@@ -79,21 +82,38 @@ class ReferenceBackend final : public Backend {
   // ---- contact.cpp
   /// The effect of the law on one pair of velocity fields at one node.
   struct PairResult {
-    Vector impulse = Vector::Zero();  ///< added to a, taken from b, kg m/s
-    double dissipated = 0;            ///< J
+    Vector impulse = Vector::Zero();   ///< added to a, kg m/s
+    Vector returned = Vector::Zero();  ///< taken from b: the same, unless each has a normal of its own
+    double dissipated = 0;             ///< J
     std::int32_t status = MPM_APART;
-    double separation = 0;  ///< m
-    bool has_normal = false;
+    ContactGeometry geometry{};
   };
-  /// Adds what the law did at a node to its pair, where pairs are recorded apart.
-  void count(const PairResult& result, std::size_t a, std::size_t b, std::vector<PairGiven>& pairs) const;
+  ContactGiven nothing_given() const;
+  /// Adds what the law did at a node to all pairs, to its own where pairs are recorded apart, and to the recorded nodes.
+  void count(const PairResult& result, std::size_t a, std::size_t b, bool notes_node, ContactGiven& given) const;
   /// Returns nothing when a pair is skipped: a field is absent or too light, or has no normal (and the law is no weld).
   std::optional<PairResult> resolve_pair(std::size_t a, std::size_t b, const Vector& momentum_a,
                                          const Vector& momentum_b, double dt) const;
   ContactFieldNode contact_view(std::size_t i) const;
+  /// What a law is told of a pair.
+  struct LawInput {
+    double mass_a, mass_b;
+    Vector momentum_a, momentum_b;
+    ContactGeometry geometry;
+    const double* normal;  ///< from a to b, along which the law acts
+    double dt;
+  };
+  PairResult apply_law(const Component& law, const LawInput& input) const;
+  /// Lets the material of all fields meet rigid bodies, whose velocities are those of a time, s. velocity(i) is that of a
+  /// node and give(i, impulse) changes it.
+  template <class VelocityOf, class Give>
+  void meet_rigid_bodies(double time, double dt, VelocityOf velocity, Give give, ContactGiven& all,
+                         ContactRecord* record);
   void find_contact_points();
   /// Applies the law to all pairs of fields in order; conditions are imposed again and win.
   void resolve_contact(const StepInfo& step, bool after_forces, bool remap = false);
+  Vector resolve_pairs(const StepInfo& step, bool after_forces, ContactGiven& given);
+  ContactGiven resolve_contact_of_velocity(double time, const StepInfo& step);
   /// Records the force that particles take when they gather the velocity as it is now.
   void record_force(const StepInfo& step);
 
@@ -108,7 +128,6 @@ class ReferenceBackend final : public Backend {
   void constrain_free_velocity(const Pass& pass, const StepInfo& step);
   void constrain_velocity(const Pass& pass, const StepInfo& step);
   void impose_on_velocity(double time);
-  ContactGiven resolve_contact_of_velocity(double dt);
 
   // ---- ledger.cpp
   /// Notes an impulse on a node where conditions or contact apply it.
@@ -165,7 +184,7 @@ class ReferenceBackend final : public Backend {
   const Plan& plan_;
   Grid grid_;
   // These references name fields of the nodes as the text of the method does.
-  ScalarField &mass_ = grid_.scalar("mass"), &volume_ = grid_.scalar("volume");
+  ScalarField& mass_ = grid_.scalar("mass");
   VectorField& momentum_ = grid_.vector("momentum");
   VectorField& velocity_before_ = grid_.vector("velocity_before");  ///< v-
   VectorField& velocity_ = grid_.vector("velocity");                ///< v+ (or v- until the forces are applied)
@@ -180,9 +199,11 @@ class ReferenceBackend final : public Backend {
   std::vector<External> external_forces_;                           ///< those that the scene has
   std::vector<BodyLoads> loads_;                                    ///< of each body
   VectorField& volume_gradient_ = grid_.vector("volume_gradient");  ///< sum V grad w
-  VectorField& mass_position_ = grid_.vector("mass_position");      ///< sum w m (x_p - x_node)
-  VectorField& increment_ = grid_.vector("increment");              ///< v* of the filter
-  VectorField& projection_ = grid_.vector("projection");            ///< S+ S v*, a momentum until over_mass divides it
+  VectorField& mass_gradient_ = grid_.vector("mass_gradient");      ///< sum m grad w
+  const bool sums_mass_gradients_ = plan_.node_field("mass_gradient") != nullptr;
+  VectorField& mass_position_ = grid_.vector("mass_position");  ///< sum w m (x_p - x_node)
+  VectorField& increment_ = grid_.vector("increment");          ///< v* of the filter
+  VectorField& projection_ = grid_.vector("projection");        ///< S+ S v*, a momentum until over_mass divides it
   VectorField& trial_velocity_ = grid_.vector("trial_velocity");
   VectorField& unfiltered_ = grid_.vector("unfiltered_velocity");
   /// The velocities that conditions and contact have added in this step.
@@ -203,8 +224,9 @@ class ReferenceBackend final : public Backend {
   VectorField& capacity_position_ = grid_.vector("capacity_position");
   const WallWeights wall_weights_ = plan_.node_field("heated_volume") ? wall_weights(experiment_) : WallWeights();
   std::deque<Particles> bodies_;
-  const PairGeometry pair_geometry_{experiment_};
+  const PairGeometry pair_geometry_{experiment_, MPM_SCALAR_DOUBLE};
   ContactPoints contact_points_{experiment_};
+  const std::vector<EdgeModel> edges_ = edge_models(experiment_);  ///< of each velocity field
   TimeStepLimit limit_;
   Ledger ledger_;
   HeatLedger heat_ledger_;
@@ -220,6 +242,7 @@ class ReferenceBackend final : public Backend {
   ContactRecord contact_;
   ContactImpulse impulse_;
   ReactionImpulse reactions_;
+  RigidBodies rigid_{experiment_};
   bool notes_reactions_ = false;  ///< the pass under way notes what supports give
   FilterRecord filter_;
   double held_beyond_ = 0, others_beyond_ = 0;  ///< heat of Grid::heat_beyond_walls before the forces

@@ -159,8 +159,9 @@ void ReferenceBackend::scatter_contact_fields(Particles& body) {
     const double section = body.axisymmetric() ? volume / (2 * std::numbers::pi * body.position(0, p)) : volume;
     for (const StencilNode& s : body.stencil(p)) {
       const std::size_t i = grid_.at(body.field(), s.index);
-      volume_[i] += s.weight * volume;
-      volume_gradient_[i] += section * s.gradient;  // gradient of the section: a ring's volume grows away from the axis
+      // These are gradients of the section: a ring's volume grows away from the axis.
+      volume_gradient_[i] += section * s.gradient;
+      if (sums_mass_gradients_) mass_gradient_[i] += section / volume * body.mass(p) * s.gradient;
       mass_position_[i] -= s.weight * body.mass(p) * s.distance;
     }
   }

@@ -188,7 +188,10 @@ void CountedPlugins::attach(const Experiment& experiment) const {
   attached.transfer = &original(MPM_TRANSFER, experiment.transfer)->transfer();
   attached.material = &original(MPM_MATERIAL, experiment.materials.front().component)->material();
   if (experiment.filter) attached.filter = &original(MPM_FILTER, *experiment.filter)->filter();
-  if (experiment.contact) attached.contact = &original(MPM_CONTACT, *experiment.contact)->contact();
+  if (experiment.meets()) {
+    const Component& law = experiment.contact ? *experiment.contact : experiment.rigid_bodies.front().contact;
+    attached.contact = &original(MPM_CONTACT, law)->contact();
+  }
   clear();
 }
 

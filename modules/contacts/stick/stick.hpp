@@ -1,7 +1,7 @@
 #pragma once
 // A weld: both fields take their common velocity at every node they share, as a single field would.
 
-#include "kernel/functor.hpp"
+#include "kernel/sliding.hpp"
 #if MPM_HOST
 #include "plugin/tables.hpp"
 #endif
@@ -13,9 +13,9 @@ struct Stick {
 
   template <int D, class S>
   MPM_HD static void apply(const Parameters&, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
-    const S total = pair.mass_a + pair.mass_b;
-    for (int i = 0; i < D; ++i)  // m_a (p_a + p_b) / (m_a + m_b) - p_a
-      result.impulse[i] = (pair.mass_a * pair.momentum_b[i] - pair.mass_b * pair.momentum_a[i]) / total;
+    const S reduced_mass = reduced_mass_of(pair.mass_a, pair.mass_b);
+    for (int i = 0; i < D; ++i)
+      result.impulse[i] = reduced_mass * (pair.momentum_b[i] / pair.mass_b - pair.momentum_a[i] / pair.mass_a);
     result.dissipated = S(real<S>(0));
     result.status = S(real<S>(1));
   }

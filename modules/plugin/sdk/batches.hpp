@@ -129,6 +129,25 @@ concept ContactFunctorIn = requires(const typename F::Parameters& p, const Conta
 template <class F>
 concept ContactFunctor = ContactFunctorIn<F, 2> && ContactFunctorIn<F, 3>;
 
+/// A normal that follows from sums over a node.
+template <class F, int D>
+concept SumsNormalFunctorIn = requires(const typename F::Parameters& p, const NormalPair<D, double>& pair,
+                                       NormalResult<D, double>& result) {
+  { F::traits } -> std::convertible_to<unsigned>;
+  F::find(p, pair, result);
+};
+template <class F>
+concept SumsNormalFunctor = SumsNormalFunctorIn<F, 2> && SumsNormalFunctorIn<F, 3>;
+/// A normal that looks at the particles near a node. Returns whether there is one.
+template <class F, int D>
+concept PointsNormalFunctorIn = requires(const typename F::Parameters& p, const mpm_normal_points& points,
+                                         double* normal) {
+  { F::traits } -> std::convertible_to<unsigned>;
+  { F::template find<D>(p, points, normal) } -> std::same_as<bool>;
+};
+template <class F>
+concept PointsNormalFunctor = PointsNormalFunctorIn<F, 2> && PointsNormalFunctorIn<F, 3>;
+
 template <class F, int D>
 concept MaterialFunctorIn = requires(const typename F::template Constants<double>& c, const Mat<D, double>& L,
                                      typename F::template State<D, double>& s) {
@@ -526,6 +545,37 @@ void contact_batch(const void* parameters, const mpm_contact_batch* request) {
   }
 }
 
+template <class F, int D, class S>
+void normal_batch(const void* parameters, const mpm_normal_batch* request) {
+  const mpm_normal_batch q = *request;  // a copy of its own: nothing that is stored changes it
+  const auto& p = parameters_of<F>(parameters);
+  for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
+    NormalPair<D, S> pair{};
+    NormalResult<D, S> result{};
+    if constexpr ((F::traits & MPM_READS_MASS_GRADIENT) != 0) {
+      load_components<D, S>(q.mass_gradient_a, q.stride, lane, pair.mass_gradient_a.v);
+      load_components<D, S>(q.mass_gradient_b, q.stride, lane, pair.mass_gradient_b.v);
+    }
+    if constexpr ((F::traits & MPM_READS_VOLUME_GRADIENT) != 0) {
+      load_components<D, S>(q.volume_gradient_a, q.stride, lane, pair.volume_gradient_a.v);
+      load_components<D, S>(q.volume_gradient_b, q.stride, lane, pair.volume_gradient_b.v);
+    }
+    F::find(p, pair, result);
+    store_components<D, S>(q.normal, q.stride, lane, result.normal.v);
+    if constexpr ((F::traits & MPM_OWN_NORMALS) != 0) {
+      store_components<D, S>(q.own_a, q.stride, lane, result.own_a.v);
+      store_components<D, S>(q.own_b, q.stride, lane, result.own_b.v);
+    }
+    Access<S>::store_index(q.found + lane, result.found);
+  }
+}
+
+template <class F, int D>
+std::int32_t normal_of_points(const void* parameters, const mpm_normal_points* points) {
+  for (int c = 0; c < 3; ++c) points->normal[c] = 0;
+  return F::template find<D>(parameters_of<F>(parameters), *points, points->normal);
+}
+
 /// Index of the first particle whose J is not a positive number, or -1.
 template <class S>
 std::int32_t first_inadmissible(S J, std::uint32_t lane) {
@@ -672,6 +722,17 @@ template <TransferFunctor F>
 inline constexpr mpm_transfer transfer_table{F::traits, 0, MPM_ENTRIES(scatter_batch), MPM_ENTRIES(gather_batch)};
 template <ContactFunctor F>
 inline constexpr mpm_contact contact_table{F::traits, 0, MPM_ENTRIES(contact_batch)};
+template <class F>
+struct NormalTable;
+template <SumsNormalFunctor F>
+struct NormalTable<F> {
+  static constexpr mpm_normal value{F::traits, 0, MPM_ENTRIES(normal_batch), {}};
+};
+template <PointsNormalFunctor F>
+struct NormalTable<F> {
+  static_assert((F::traits & MPM_LOOKS_AT_POINTS) != 0, "a normal that is found from points says so");
+  static constexpr mpm_normal value{F::traits, 0, {}, {&normal_of_points<F, 2>, &normal_of_points<F, 3>}};
+};
 template <MaterialFunctor F>
 inline constexpr mpm_material material_table{
     F::traits | (AxisymmetricMaterialFunctor<F> ? unsigned{MPM_STRAINS_AROUND_AXIS} : 0u), 0,

@@ -141,7 +141,7 @@ void explicit_step(StepBuilder& step) {
   const double share = averaged ? 0.5 : 1;
   const std::string order = "/solver/stress_update", transfer = StepBuilder::named(scene.transfer);
   const std::string first = order + (averaged ? " \"averaged\"" : " \"first\""), again = order + " \"modified_last\"";
-  const std::string contact = scene.contact ? StepBuilder::named(*scene.contact) : "";
+  const std::string contact = scene.meets() ? scene.why_it_meets() : "";
   const bool heats = scene.has_temperature();
   const std::string thermal = heats ? scene.materials[scene.bodies[0].material].thermal->pointer : "";
   FilterParts filter(step);
@@ -154,9 +154,9 @@ void explicit_step(StepBuilder& step) {
   step.perform(Act::clear, transfer);
   step.perform(Act::scatter_momentum, transfer);
   if (!stress_first) step.perform(Act::scatter_force, transfer);
-  if (scene.contact) step.perform(Act::scatter_contact, contact);
+  if (scene.meets()) step.perform(Act::scatter_contact, contact);
   if (heats) step.perform(Act::scatter_heat, thermal);
-  step.perform(Act::divide, scene.contact ? contact + " before the forces; boundaries" : "boundaries");
+  step.perform(Act::divide, scene.meets() ? contact + " before the forces; boundaries" : "boundaries");
 
   if (heats) {
     step.perform(Act::divide_heat, thermal);
@@ -170,7 +170,7 @@ void explicit_step(StepBuilder& step) {
   }
   filter.unfilter_for_forces(stress_first);
 
-  step.perform(Act::accelerate, scene.contact ? contact + " after the forces; boundaries" : "boundaries",
+  step.perform(Act::accelerate, scene.meets() ? contact + " after the forces; boundaries" : "boundaries",
                Stage::after_forces);
   filter.after_forces();
 

@@ -21,7 +21,7 @@ struct MyPlugin {
   template <int D, class S>
   MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
     const S zero = S(real<S>(0)), one = S(real<S>(1));
-    const S mass = pair.mass_a * pair.mass_b / (pair.mass_a + pair.mass_b);
+    const S mass = pair.mass_a / (real<S>(1) + pair.mass_a / pair.mass_b);  // b may be a rigid body, of infinite mass
     Vec<D, S> slide;  // velocity of b seen from a, then its part in the plane of contact
     S approach = zero, squared = zero;
     for (int i = 0; i < D; ++i) {

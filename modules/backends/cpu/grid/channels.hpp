@@ -62,7 +62,8 @@ struct NamedChannels {
   const Channel force = channel_of(plan_, "force");
   const Channel body_force = channel_of(plan_, "body_force");
   const std::vector<ExternalChannel> external = external_channels(plan_);
-  const Channel volume_gradient = channel_of(plan_, "volume_gradient");  ///< with the volume
+  const Channel volume_gradient = channel_of(plan_, "volume_gradient"),
+                mass_gradient = channel_of(plan_, "mass_gradient");
   const Channel mass_position = channel_of(plan_, "mass_position");
   /// Holds heat and its capacity; temperature and capacity once the heat has been divided.
   const Channel heat = channel_of(plan_, "heat"), heat_rate = channel_of(plan_, "heat_rate");

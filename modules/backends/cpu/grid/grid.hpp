@@ -231,7 +231,7 @@ void Grid<D, T>::list_faces() {
   }
   for (FaceNodes& face : faces_) {
     face.pair_folds.assign(face.pairs.size() * fields_, 0);
-    face.folded_mass.assign(scene_.experiment.output.reactions.empty() ? 0 : face.pairs.size() * fields_, 0);
+    face.folded_mass.assign(scene_.experiment.notes_reactions() ? face.pairs.size() * fields_ : 0, 0);
     face.folded_capacity.assign(scene_.experiment.has_temperature() ? face.pairs.size() * fields_ : 0, 0);
   }
   number_edge_nodes();

@@ -1,6 +1,8 @@
 #pragma once
 // This part of GridStep lets velocity fields meet: pairs of a slot in batches, pair after pair, so three act in order.
 
+#include <array>
+
 #include "backends/cpu/grid/grid_step.hpp"
 #include "operators/contact.hpp"
 
@@ -13,6 +15,7 @@ struct GridStep<D, T>::ContactSums {
   double impulse[3]{}, change[3]{};
   long sticking = 0, slipping = 0;
   PairGiven* pairs = nullptr;  ///< one a pair of fields, where they are recorded apart
+  std::vector<NodeGiven> nodes;
 };
 
 template <int D, class T>
@@ -24,9 +27,13 @@ struct GridStep<D, T>::ContactBatch {
       dissipated[block_nodes];
   alignas(64) T momentum_a[D * block_nodes],
       momentum_b[D * block_nodes], normal[D * block_nodes], impulse[D * block_nodes];
+  // Where each body has a normal of its own, `normal` is that of a, and these are of b.
+  alignas(64) T normal_of_b[D * block_nodes], impulse_of_b[D * block_nodes], dissipated_of_b[block_nodes];
+  alignas(64) std::int32_t status_of_b[block_nodes];
   alignas(64) std::int32_t status[block_nodes];
 
-  void add(std::uint32_t at, const Quad<T>& a, const Quad<T>& b, const ContactGeometry& geometry) {
+  void add(std::uint32_t at, const Quad<T>& a, const Quad<T>& b, const ContactGeometry& geometry, bool own) {
+    const double* const of_a = own ? geometry.own_a : geometry.normal;
     node[count] = at;
     valid[count] = geometry.valid;
     mass_a[count] = a[3], mass_b[count] = b[3];
@@ -34,7 +41,8 @@ struct GridStep<D, T>::ContactBatch {
     for (int c = 0; c < D; ++c) {
       momentum_a[c * block_nodes + count] = momentum_of(a[c], a[3]);
       momentum_b[c * block_nodes + count] = momentum_of(b[c], b[3]);
-      normal[c * block_nodes + count] = geometry.valid ? static_cast<T>(geometry.normal[c]) : T(0);
+      normal[c * block_nodes + count] = geometry.valid ? static_cast<T>(of_a[c]) : T(0);
+      if (own) normal_of_b[c * block_nodes + count] = static_cast<T>(geometry.own_b[c]);
     }
     ++count;
   }
@@ -42,16 +50,18 @@ struct GridStep<D, T>::ContactBatch {
   void add_to(PairGiven& pair) const {
     for (int i = 0; i < count; ++i) {
       for (int c = 0; c < D; ++c) pair.impulse[c] += impulse[c * block_nodes + i];
-      pair.count(status[i], separation[i], valid[i]);
+      add_normal_part(impulse + i, normal + i, block_nodes, D, pair.along.data(), pair.pressing);
+      pair.count(status[i], separation[i], area[i], valid[i]);
     }
   }
   /// Copies the last pair so that whole lanes may be computed.
-  int pad() {
+  int pad(bool own) {
     const int last = count - 1, end = padded(count);
     for (int i = count; i < end; ++i) {
       mass_a[i] = mass_a[last], mass_b[i] = mass_b[last], separation[i] = separation[last], area[i] = area[last];
       for (int c = 0; c < D; ++c)
-        for (T* array : {momentum_a, momentum_b, normal}) array[c * block_nodes + i] = array[c * block_nodes + last];
+        for (T* array : {momentum_a, momentum_b, normal, normal_of_b})
+          if (array != normal_of_b || own) array[c * block_nodes + i] = array[c * block_nodes + last];
     }
     return end;
   }
@@ -60,7 +70,7 @@ struct GridStep<D, T>::ContactBatch {
 /// What contact looks at of one velocity field, from a slot's first node on.
 template <int D, class T>
 struct GridStep<D, T>::ContactField {
-  const Q *motion, *gradient, *position;
+  const Q *motion, *gradient, *position, *mass_gradient;  ///< the last is null where it is not summed
 
   ContactFieldNode at(std::uint32_t node) const;
 };
@@ -70,44 +80,59 @@ inline ContactFieldNode GridStep<D, T>::ContactField::at(std::uint32_t node) con
   ContactFieldNode result;
   const Q gradient = this->gradient[node], position = this->position[node];
   result.mass = motion[node][3];
-  result.volume = gradient[3];
   for (int c = 0; c < 3; ++c) {
-    result.volume_gradient[c] = gradient[c];
-    result.mass_position[c] = position[c];
+    result.volume_gradient[c] = gradient[c], result.mass_position[c] = position[c];
+    if (mass_gradient) result.mass_gradient[c] = mass_gradient[node][c];
   }
   return result;
 }
 
 template <int D, class T>
-void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums) {
-  const Component& law = *scene_.experiment.contact;
-  const std::uint32_t end = static_cast<std::uint32_t>(batch.pad());
+void GridStep<D, T>::call_law(const Component& law, ContactBatch& batch, std::uint32_t end, double dt,
+                              bool of_b) const {
   const mpm_contact_batch request{end,
                                   block_nodes,
                                   D,
                                   0,
-                                  step.dt,
+                                  dt,
                                   batch.mass_a,
                                   batch.mass_b,
                                   batch.momentum_a,
                                   batch.momentum_b,
-                                  batch.normal,
+                                  of_b ? batch.normal_of_b : batch.normal,
                                   batch.separation,
                                   batch.area,
-                                  batch.impulse,
-                                  batch.dissipated,
-                                  batch.status};
+                                  of_b ? batch.impulse_of_b : batch.impulse,
+                                  of_b ? batch.dissipated_of_b : batch.dissipated,
+                                  of_b ? batch.status_of_b : batch.status};
   law.plugin->contact().apply[lane_precision<T>][D - 2](law.parameters.data(), &request);
+}
+
+template <int D, class T>
+void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums) {
+  const Component& law = *scene_.experiment.contact;
+  const bool own = own_normals_;
+  const std::uint32_t end = static_cast<std::uint32_t>(batch.pad(own));
+  call_law(law, batch, end, step.dt, false);
+  if (own) {
+    call_law(law, batch, end, step.dt, true);
+    for (int i = 0; i < batch.count; ++i) {
+      batch.dissipated[i] = T(0.5) * (batch.dissipated[i] + batch.dissipated_of_b[i]);
+      batch.status[i] = std::max(batch.status[i], batch.status_of_b[i]);
+    }
+  }
+  const T* const returned = own ? batch.impulse_of_b : batch.impulse;
   const bool records = records_;  // the compiler need not ask again after each store
   for (int i = 0; i < batch.count; ++i) {
     Q &va = motion_at(a, batch.node[i]), &vb = motion_at(b, batch.node[i]);
 #pragma GCC unroll 3
     for (int c = 0; c < D; ++c) {
-      const T impulse = batch.impulse[c * block_nodes + i];
+      const T impulse = batch.impulse[c * block_nodes + i], opposite = returned[c * block_nodes + i];
       T of_a = va[c], of_b = vb[c];
-      sums.change[c] += strike_pair<double>(of_a, of_b, T(va[3]), T(vb[3]), impulse, [&](bool second, T given) {
-        if (records) record(contact_impulse, standing_contact, second ? b : a, batch.node[i], c, given);
-      });
+      sums.change[c] +=
+          strike_pair<double>(of_a, of_b, T(va[3]), T(vb[3]), impulse, opposite, [&](bool second, T given) {
+            if (records) record(contact_impulse, standing_contact, second ? b : a, batch.node[i], c, given);
+          });
       va[c] = of_a, vb[c] = of_b;
       sums.impulse[c] += impulse;
     }
@@ -119,27 +144,54 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
   }
 }
 
+/// Notes where a batch meets, and what the law gave its nodes.
+template <int D, class T>
+void GridStep<D, T>::note_nodes(const ContactBatch& batch, int a, int b, std::vector<NodeGiven>& nodes) const {
+  for (int i = 0; i < batch.count; ++i) {
+    NodeGiven& given = nodes.emplace_back();
+    given.node.node = grid_.coordinates_of(batch.node[i]);
+    given.node.a = a, given.node.b = b;
+    for (std::size_t c = 0; c < D; ++c) {
+      given.node.normal[c] = batch.normal[c * block_nodes + i];
+      given.impulse[c] = batch.impulse[c * block_nodes + i];
+    }
+    given.node.separation = batch.separation[i], given.node.area = batch.area[i];
+    given.node.status = batch.status[i];
+  }
+}
+
 template <int D, class T>
 void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums) {
   const bool weld = (scene_.experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION) != 0;
   const std::uint32_t first = slot * block_nodes;
   const auto contact_field = [&](int field) {
     return ContactField{&motion_at(field, first), &grid_.quad(volume_gradient, field, first),
-                        &grid_.quad(mass_position, field, first)};
+                        &grid_.quad(mass_position, field, first),
+                        mass_gradient < 0 ? nullptr : &grid_.quad(mass_gradient, field, first)};
   };
+  static_assert(block_nodes <= MPM_BATCH);
+  static thread_local std::array<MetPair, block_nodes> met;  // its memory is kept from slot to slot
+  std::array<std::uint32_t, block_nodes> nodes;
   for (int a = 0; a < grid_.fields(); ++a)
     for (int b = a + 1; b < grid_.fields(); ++b) {
-      ContactBatch batch;
       const ContactField of_a = contact_field(a), of_b = contact_field(b);
+      std::size_t count = 0;
       for (std::uint32_t node = 0; node < block_nodes; ++node) {
-        const Q &va = of_a.motion[node], &vb = of_b.motion[node];
-        if (!meet(va[3], vb[3], weld)) continue;
-        const ContactGeometry geometry =
-            pair_geometry_(contact_points_, grid_.coordinates_of(first + node), a, b, of_a.at(node), of_b.at(node));
-        if (geometry.valid || weld) batch.add(first + node, va, vb, geometry);
+        if (!meet(T(of_a.motion[node][3]), T(of_b.motion[node][3]), weld)) continue;
+        nodes[count] = node;
+        met[count++] = {grid_.coordinates_of(first + node), of_a.at(node), of_b.at(node), {}};
+      }
+      pair_geometry_.find(contact_points_, a, b, {met.data(), count});
+      ContactBatch batch;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t node = nodes[i];
+        const ContactGeometry& geometry = met[i].geometry;
+        if (geometry.valid || weld)
+          batch.add(first + node, of_a.motion[node], of_b.motion[node], geometry, own_normals_);
       }
       if (batch.count == 0) continue;
       apply_law(batch, a, b, step, sums);
+      if (records_nodes(scene_.experiment, step)) note_nodes(batch, a, b, sums.nodes);
       if (sums.pairs) batch.add_to(sums.pairs[pair_index(a, b, grid_.fields())]);
     }
 }
@@ -158,30 +210,27 @@ void GridStep<D, T>::find_contact_points() {
   scene_.team->for_each(contact_points_.node_count(), 4, [&](std::size_t i, int) { contact_points_.find(i, i + 1); });
 }
 
+/// Lets all pairs of fields meet, each slot with sums of its own.
 template <int D, class T>
-void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
-  if (contact_points_.needed() && recorded == Recorded::before_forces) find_contact_points();
+void GridStep<D, T>::resolve_pairs(const StepInfo& step, std::vector<ContactSums>& sums, ContactGiven& given) {
+  if (!scene_.experiment.contact) return;
   const auto& slots = grid_.shared_slots();
   const std::size_t pairs = impulse_.pairs().size();
-  std::vector<ContactSums> sums(slots.size());
+  sums.resize(slots.size());
   std::vector<PairGiven> pairs_of_slots(pairs * slots.size());
   for (std::size_t i = 0; pairs > 0 && i < slots.size(); ++i) sums[i].pairs = &pairs_of_slots[i * pairs];
   scene_.team->for_each(slots.size(), 4, [&](std::size_t i, int) { resolve_slot(slots[i], step, sums[i]); });
-
-  ContactGiven given;
   for (const ContactSums& s : sums) {
     for (int c = 0; c < D; ++c) given.impulse[c] += s.impulse[c];
     given.dissipated += s.friction;
+    given.nodes.insert(given.nodes.end(), s.nodes.begin(), s.nodes.end());
   }
   given.pairs.resize(pairs);
   for (std::size_t k = 0; k < pairs_of_slots.size(); ++k) given.pairs[k % pairs].add(pairs_of_slots[k]);
-  Ledger* const ledger = records_ ? &ledger_ : nullptr;
-  if (recorded == Recorded::before_forces) return impulse_.before_forces(given, step.filtered, ledger);
-  if (recorded == Recorded::filter) return impulse_.in_filter(given, grid_.has(constrained), ledger);
-  if (recorded == Recorded::remap) return;
-  impulse_.after_forces(given, ledger);
-  impulse_.record_counts(given);
+}
 
+template <int D, class T>
+ContactRecord GridStep<D, T>::record_of(const std::vector<ContactSums>& sums) {
   ContactRecord record;
   double change[3]{}, squared = 0;
   for (const ContactSums& s : sums) {
@@ -193,6 +242,24 @@ void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded) {
   record.nodes = record.sticking + record.slipping;
   for (int c = 0; c < D; ++c) squared += change[c] * change[c];
   record.momentum_residual = std::sqrt(squared);
+  return record;
+}
+
+/// Lets fields meet one another, and then rigid bodies, whose velocities are those of a time, s.
+template <int D, class T>
+void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded, double time) {
+  if (contact_points_.needed() && recorded == Recorded::before_forces) find_contact_points();
+  std::vector<ContactSums> sums;
+  ContactGiven given;
+  resolve_pairs(step, sums, given);
+  ContactRecord record = record_of(sums);
+  meet_rigid_bodies(time, step, given, record);
+  Ledger* const ledger = records_ ? &ledger_ : nullptr;
+  if (recorded == Recorded::before_forces) return impulse_.before_forces(given, step.filtered, ledger);
+  if (recorded == Recorded::filter) return impulse_.in_filter(given, grid_.has(constrained), ledger);
+  if (recorded == Recorded::remap) return;
+  impulse_.after_forces(given, ledger);
+  impulse_.record_counts(given);
   record_ = record;
   record_force(step);
 }

@@ -19,7 +19,11 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
       impulse_(scene.experiment),
       filter_(filter),
       reactions_(reactions),
-      pair_geometry_(scene.experiment),
+      pair_geometry_(scene.experiment, MPM_LANES_DOUBLE),
+      own_normals_(scene.experiment.contact_normal &&
+                   (scene.experiment.contact_normal->plugin->normal().traits & MPM_OWN_NORMALS)),
+      edges_(scene.experiment.rigid_bodies.empty() ? std::vector<EdgeModel>() : edge_models(scene.experiment)),
+      rigid_(scene.experiment),
       contact_points_(scene.experiment),
       wall_weights_(scene.plan.node_field("heated_volume") ? wall_weights(scene.experiment) : WallWeights()) {
   for (int c = 0; c < D; ++c) has_gravity_ = has_gravity_ || scene.experiment.has_gravity(c);
@@ -140,6 +144,7 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   begin_stage(accounted);
   notes_reactions_ = reactions_.asked() && !remap;
   if (notes_reactions_) reactions_.begin_step();
+  if (!remap) rigid_.begin_step();
   if (accounted) book_scattered_sums();
   fold_images(remap, step);
   const double edges_raw = accounted ? kinetic_energy_of_edges() : 0.0;
@@ -158,7 +163,7 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   keep_free_velocity(false);
   impose(step.time);
   if (scene_.plan.resolves_contact()) {
-    resolve_contact(step, remap ? Recorded::remap : Recorded::before_forces);
+    resolve_contact(step, remap ? Recorded::remap : Recorded::before_forces, step.time);
     impose(step.time);
   }
   measure_constraints();
@@ -180,6 +185,10 @@ void GridStep<D, T>::find_constrained_slots() {
   for (const GrippedNode& gripped : gripped_) constrained_[gripped.node / block_nodes] = 1;
   if (!scene_.plan.resolves_contact()) return;
   for (const std::uint32_t slot : grid_.shared_slots()) constrained_[slot] = 1;
+  for (std::size_t body = 0; body < rigid_.count(); ++body)
+    for (const RigidNode& near : rigid_.nodes(body))
+      if (const std::int32_t node = grid_.find(near.at); node >= 0)
+        constrained_[static_cast<std::uint32_t>(node) / block_nodes] = 1;
 }
 
 /// Copies into velocity_before what conditions and contact have changed since divide_by_mass.
@@ -410,7 +419,7 @@ void GridStep<D, T>::apply_forces(const StepInfo& step) {
   keep_free_velocity(true);
   impose(end);
   if (scene_.plan.resolves_contact()) {
-    resolve_contact(step, Recorded::after_forces);
+    resolve_contact(step, Recorded::after_forces, end);
     impose(end);
   }
   measure_constraints();
@@ -420,6 +429,7 @@ void GridStep<D, T>::apply_forces(const StepInfo& step) {
   if (gathers_increment) subtract_velocity_before();
   fill_ghosts(end, gathers_increment);
   record_reactions(step, gathers_increment);
+  rigid_.end_step(step);
 }
 
 }  // namespace mpm::cpu

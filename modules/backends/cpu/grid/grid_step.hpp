@@ -14,6 +14,7 @@
 #include "simulation/contact_pair.hpp"
 #include "simulation/loads.hpp"
 #include "simulation/reaction_impulse.hpp"
+#include "simulation/rigid_bodies.hpp"
 #include "simulation/wall_heat.hpp"
 
 namespace mpm::cpu {
@@ -33,6 +34,10 @@ class GridStep : NamedChannels {
   /// The records of pairs of fields, which go into checkpoints.
   std::vector<PairRecord>& contact_pairs() { return impulse_.pairs(); }
   const std::vector<PairRecord>& contact_pairs() const { return impulse_.pairs(); }
+  const std::vector<ContactNode>& contact_nodes() const { return impulse_.nodes(); }
+  /// The rigid bodies, which go into checkpoints.
+  RigidBodies& rigid_bodies() { return rigid_; }
+  const RigidBodies& rigid_bodies() const { return rigid_; }
   /// The largest component of the velocities after apply_forces, along any axis.
   T largest_component() const { return merges() ? largest_ : grid_.largest_component(motion); }
 
@@ -175,12 +180,21 @@ class GridStep : NamedChannels {
   struct ContactSums;
   struct ContactBatch;
   struct ContactField;
-  void resolve_contact(const StepInfo& step, Recorded recorded);
+  struct RigidChunk;
+  void resolve_contact(const StepInfo& step, Recorded recorded, double time);
+  void resolve_pairs(const StepInfo& step, std::vector<ContactSums>& sums, ContactGiven& given);
+  static ContactRecord record_of(const std::vector<ContactSums>& sums);
   void find_contact_points();
   /// Records the force that particles take when they gather the velocity as it is now.
   void record_force(const StepInfo& step);
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
+  /// Calls the law along the pairs' normals, or along those of the second body's own.
+  void call_law(const Component& law, ContactBatch& batch, std::uint32_t end, double dt, bool of_b) const;
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
+  void note_nodes(const ContactBatch& batch, int a, int b, std::vector<NodeGiven>& nodes) const;
+  void see_rigid_body(const RigidChunk& chunk, int field, ContactBatch& batch, std::size_t* listed);
+  void meet_rigid_body(const RigidChunk& chunk, const StepInfo& step, RigidGiven& given);
+  void meet_rigid_bodies(double time, const StepInfo& step, ContactGiven& all, ContactRecord& record);
 
   Q gravity_{}, gravity_without_potential_{};  ///< all of it, and the part that has none, m/s^2
   const Scene<D, T>& scene_;
@@ -192,6 +206,9 @@ class GridStep : NamedChannels {
   FilterRecord& filter_;
   ReactionImpulse& reactions_;
   const PairGeometry pair_geometry_;
+  const bool own_normals_;              ///< each body of a pair has its own
+  const std::vector<EdgeModel> edges_;  ///< of each velocity field, beside rigid bodies
+  RigidBodies rigid_;
   ContactPoints contact_points_;
   std::function<void(ContactPoints&)> show_particles_;
   std::array<std::vector<Channel>, 3> folded_;  ///< [when]

@@ -426,8 +426,8 @@ void ParticleStep<D, T, Components>::scatter_loads(const Chunk& chunk, Work& wor
   note_forces(failures);
 }
 
-/// Scatters V grad w with w V beside it, and w m (x_p - x_node), V = J V0. A ring has the gradient of its section, as
-/// its volume grows away from the axis.
+/// Scatters V grad w, V = J V0, m grad w where the normal reads it, and w m (x_p - x_node). A ring has the gradients of its
+/// section, as its volume and mass grow away from the axis.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, Work& work) {
   const T volume = static_cast<T>(chunk.body.volume);
@@ -444,11 +444,16 @@ void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, 
     for (int p = 0; p < chunk.end; p += Lanes<T>::width) {
       const Lanes<T> whole = Lanes<T>::load(work.scalar + p) * Lanes<T>::load(size + p);
       const Lanes<T> cut = section(chunk, whole, p);
-      whole.store(work.scalar + p);
       for (int c = 0; c < D; ++c) cut.store(work.S + (c * D + c) * chunk_size<T> + p);
     }
-  add_to_tile(chunk, work, volume_gradient, work.scalar, false, false, true);
+  add_to_tile(chunk, work, volume_gradient, nullptr, false, false, true);
   add_to_tile(chunk, work, mass_position, nullptr, false, true, false);
+  if (mass_gradient < 0) return;
+  for (int p = 0; p < chunk.end; p += Lanes<T>::width) {
+    const Lanes<T> cut = section(chunk, Lanes<T>::load(work.mass + p), p);
+    for (int c = 0; c < D; ++c) cut.store(work.S + (c * D + c) * chunk_size<T> + p);
+  }
+  add_to_tile(chunk, work, mass_gradient, nullptr, false, false, true);
 }
 
 }  // namespace mpm::cpu

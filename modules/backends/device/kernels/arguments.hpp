@@ -91,6 +91,14 @@ struct FoundContact {
   const T* values;   ///< [node] separation, then area, then [D][node] normal (ContactGeometry)
 };
 
+/// The nodes near a rigid body, as the host found them for the step, and how it moves in this stage of it.
+struct RigidArrays {
+  const int* node;       ///< [count] index of the node
+  const double* values;  ///< [2 + 2 D][count] distance and cell, then normal and arm (simulation/rigid_bodies.hpp)
+  double velocity[3], spin[3], mass;  ///< m/s, rad/s, and the infinite mass, kg
+  long long count;
+};
+
 template <class T>
 struct Arguments {
   // These describe the scene; they are the same for all phases.
@@ -101,7 +109,8 @@ struct Arguments {
   const Box<T>* boxes;
   const GripArrays<T>* grips;  ///< of the velocity field `grid`
   int box_count, grip_count;
-  const double *shape_parameters, *transfer_parameters, *filter_parameters, *contact_parameters, *material_parameters;
+  const double *shape_parameters, *transfer_parameters, *filter_parameters, *contact_parameters, *normal_parameters,
+      *material_parameters;
   const double* melted_parameters;  ///< parameters of the material's melted particles
   const T* wall_temperature[3][2];  ///< [line of the axis], K, as evaluated last; null where none is held
   WallHeat<T> wall_heat[3][2];      ///< as evaluated last
@@ -115,6 +124,7 @@ struct Arguments {
   NodeArrays<T> grid, other;
   EdgeTable edges[2];     ///< contact: of `grid` and of `other`
   FoundContact<T> found;  ///< contact: in scenes that look at particles
+  RigidArrays rigid;      ///< rigid_contact
   BlockArrays blocks;
   int teams;                             ///< that share the blocks with particles
   double* partial_sums;                  ///< [team][sum]

@@ -12,9 +12,12 @@ namespace mpm::device {
 enum : int {
   contact_impulse = 0,     ///< 3, on the first field, kg m/s
   contact_unbalanced = 3,  ///< 3, change of the pair's momentum, kg m/s: zero to rounding
-  contact_dissipated = 6,  ///< J
+  contact_along = 6,       ///< 3, the parts of the impulse along the nodes' normals, kg m/s
+  contact_pressing = 9,    ///< sum of their sizes, positive where they push the fields apart, kg m/s
+  contact_dissipated,      ///< J
   contact_sticking,        ///< nodes
   contact_slipping,
+  contact_touching,     ///< area where they touch, m^2
   contact_penetration,  ///< the largest one, m
   contact_sums
 };
@@ -24,26 +27,75 @@ template <class Scene, class T = typename Scene::Scalar>
 MPM_HD ContactFieldNode contact_field(const Arguments<T>& a, const NodeArrays<T>& grid, int node) {
   using N = typename Scene::Node;
   ContactFieldNode found{};
-  found.mass = grid.field[N::mass][node], found.volume = grid.field[N::volume][node];
+  found.mass = grid.field[N::mass][node];
   for (int c = 0; c < Scene::dimension; ++c) {
-    found.volume_gradient[c] = grid.field[N::volume_gradient][c * a.node_count + node];
-    found.mass_position[c] = grid.field[N::mass_position][c * a.node_count + node];
+    const int at = c * a.node_count + node;
+    found.volume_gradient[c] = grid.field[N::volume_gradient][at];
+    if constexpr (N::mass_gradient >= 0) found.mass_gradient[c] = grid.field[N::mass_gradient][at];
+    found.mass_position[c] = grid.field[N::mass_position][at];
   }
   return found;
+}
+
+/// The length of a node's ring in axisymmetric scenes, m, else 1.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD double around_node(const Arguments<T>& a, int node) {
+  if constexpr (!Scene::axisymmetric) return 1;
+  const int column = node % a.extent[0] - a.padding[0];
+  return around_axis(double(a.lower[0]) + column * double(a.cell_size));
 }
 
 /// How two fields meet at a node: as follows from sums over nodes, or as the host found it.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD ContactGeometry geometry_of_pair(const Arguments<T>& a, int node) {
+  constexpr int D = Scene::dimension;
+  ContactGeometry found;
   if constexpr (Scene::contact_by_particles) {
-    ContactGeometry found;
     found.valid = a.found.valid[node] != 0;
     found.separation = a.found.values[node], found.area = a.found.values[a.node_count + node];
-    for (int c = 0; c < Scene::dimension; ++c) found.normal[c] = a.found.values[(2 + c) * a.node_count + node];
-    return found;
+    for (int c = 0; c < D; ++c) found.normal[c] = a.found.values[(2 + c) * a.node_count + node];
   } else {
-    return contact_geometry(contact_field<Scene>(a, a.grid, node), contact_field<Scene>(a, a.other, node), a.edges[0],
-                            a.edges[1], double(a.cell_size), Scene::dimension);
+    using Normal = typename Scene::Normal;
+    const ContactFieldNode of_a = contact_field<Scene>(a, a.grid, node), of_b = contact_field<Scene>(a, a.other, node);
+    NormalPair<D, double> pair;
+    NormalResult<D, double> result{};
+    for (int c = 0; c < D; ++c) {
+      pair.mass_gradient_a[c] = of_a.mass_gradient[c], pair.mass_gradient_b[c] = of_b.mass_gradient[c];
+      pair.volume_gradient_a[c] = of_a.volume_gradient[c], pair.volume_gradient_b[c] = of_b.volume_gradient[c];
+    }
+    Normal::find(parameters_of<Normal>(a.normal_parameters), pair, result);
+    if (!(result.found > 0)) return found;
+    for (int c = 0; c < D; ++c) {
+      found.normal[c] = result.normal[c];
+      if constexpr (Scene::own_normals) found.own_a[c] = result.own_a[c], found.own_b[c] = result.own_b[c];
+    }
+    measure_pair(found, of_a, of_b, a.edges[0], a.edges[1], double(a.cell_size), D, around_node<Scene>(a, node));
+  }
+  return found;
+}
+
+/// Asks the law, twice where each body has a normal of its own: what b takes is then that of its normal, and heat is the
+/// mean of both. Returns the impulse that b takes with the other sign.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD Vec<Scene::dimension, T> ask_law(const Arguments<T>& a, const ContactGeometry& geometry,
+                                        ContactPair<Scene::dimension, T>& pair,
+                                        ContactResult<Scene::dimension, T>& result) {
+  using Law = typename Scene::Contact;
+  constexpr int D = Scene::dimension;
+  const auto apply = [&](const double* normal, ContactResult<D, T>& said) {
+    for (int c = 0; c < D; ++c) pair.normal[c] = geometry.valid ? static_cast<T>(normal[c]) : T(0);
+    Law::apply(parameters_of<Law>(a.contact_parameters), pair, said);
+  };
+  if constexpr (Scene::own_normals) {
+    ContactResult<D, T> of_b;
+    apply(geometry.own_a, result);
+    apply(geometry.own_b, of_b);
+    result.dissipated = T(0.5) * (result.dissipated + of_b.dissipated);
+    result.status = max(result.status, of_b.status);
+    return of_b.impulse;
+  } else {
+    apply(geometry.normal, result);
+    return result.impulse;
   }
 }
 
@@ -51,7 +103,6 @@ MPM_HD ContactGeometry geometry_of_pair(const Arguments<T>& a, int node) {
 template <class Scene>
 MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
-  using Law = typename Scene::Contact;
   using N = typename Scene::Node;
   constexpr int D = Scene::dimension;
   sum_over<contact_sums, 1>(team, a, a.node_count, [&](int node, double* sums) {
@@ -65,26 +116,30 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
     for (int c = 0; c < D; ++c) {
       pair.momentum_a[c] = momentum_of(a.grid.field[N::velocity][c * nodes + node], pair.mass_a);
       pair.momentum_b[c] = momentum_of(a.other.field[N::velocity][c * nodes + node], pair.mass_b);
-      pair.normal[c] = geometry.valid ? static_cast<T>(geometry.normal[c]) : T(0);
     }
     pair.separation = static_cast<T>(geometry.separation), pair.area = static_cast<T>(geometry.area);
     pair.dt = a.dt;
     ContactResult<D, T> result;
-    Law::apply(parameters_of<Law>(a.contact_parameters), pair, result);
+    const Vec<D, T> returned = ask_law<Scene>(a, geometry, pair, result);
     for (int c = 0; c < D; ++c) {
       const int at = c * nodes + node;
       sums[contact_unbalanced + c] += strike_pair<double>(
           a.grid.field[N::velocity][at], a.other.field[N::velocity][at], pair.mass_a, pair.mass_b, result.impulse[c],
-          [&](bool second, T given) {
+          returned[c], [&](bool second, T given) {
             note_impulse<N::contact_impulse, N::standing_contact_impulse>(a, second ? a.other : a.grid, at, given);
           });
       sums[contact_impulse + c] += result.impulse[c];
     }
+    if (geometry.valid)
+      add_normal_part(result.impulse, Scene::own_normals ? geometry.own_a : geometry.normal, 1, D, sums + contact_along,
+                      sums[contact_pressing]);
     sums[contact_dissipated] += result.dissipated;
     const int status = static_cast<int>(result.status);
     if (status == contact_apart) return;
     sums[status == contact_sticks ? contact_sticking : contact_slipping] += 1;
-    if (geometry.valid) sums[contact_penetration] = max(0.0, -double(pair.separation));
+    if (!geometry.valid) return;
+    sums[contact_touching] += pair.area;
+    sums[contact_penetration] = max(0.0, -double(pair.separation));
   });
 }
 

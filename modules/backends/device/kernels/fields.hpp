@@ -15,7 +15,7 @@ struct NoNodeFields {
   static constexpr int mass = -1, momentum = -1, velocity = -1, velocity_before = -1;
   static constexpr int force = -1, weight = -1;
   static constexpr int body_force = -1, surface_load = -1, point_load = -1, spring = -1, dashpot = -1;
-  static constexpr int volume = -1, volume_gradient = -1, mass_position = -1;
+  static constexpr int volume_gradient = -1, mass_gradient = -1, mass_position = -1;
   static constexpr int increment = -1, projection = -1, trial_velocity = -1, folded_mass = -1;
   static constexpr int unfiltered_velocity = -1;
   static constexpr int velocity_of_constraints = -1, unfiltered_velocity_of_constraints = -1;

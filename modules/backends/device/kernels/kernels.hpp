@@ -2,8 +2,9 @@
 // This file includes all kernels and makes their entries. The composer defines Scene, and Scene0, Scene1 ... with a
 // material each, in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_LOAD_ENTRIES, MPM_DEVICE_LEDGER_ENTRIES,
 // MPM_DEVICE_CONTACT_ENTRIES, MPM_DEVICE_REACTION_ENTRIES, MPM_DEVICE_GRIP_ENTRIES, MPM_DEVICE_FILTER_ENTRIES,
-// MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES and MPM_DEVICE_HEAT_LEDGER_ENTRIES where the scene has these, and
-// for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and, where any melts, MPM_DEVICE_MELTING_ENTRIES(n).
+// MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES and MPM_DEVICE_HEAT_LEDGER_ENTRIES where the scene has these,
+// for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and, where any melts, MPM_DEVICE_MELTING_ENTRIES(n), and for each law of
+// rigid bodies MPM_DEVICE_RIGID_ENTRIES(n), with RigidScene0, RigidScene1 ...
 
 #include "backends/device/kernels/conditions.hpp"
 #include "backends/device/kernels/contact.hpp"
@@ -14,6 +15,7 @@
 #include "backends/device/kernels/heat.hpp"
 #include "backends/device/kernels/ledger.hpp"
 #include "backends/device/kernels/material.hpp"
+#include "backends/device/kernels/rigid.hpp"
 #include "backends/device/kernels/scatter.hpp"
 #include "backends/device/kernels/sorting.hpp"
 
@@ -79,6 +81,10 @@
 
 #define MPM_DEVICE_CONTACT_ENTRIES \
   MPM_DEVICE_PHASE(mpm_contact, contact<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::contact_sums>))
+
+#define MPM_DEVICE_RIGID_ENTRIES(n)                                     \
+  MPM_DEVICE_PHASE(mpm_rigid_contact_##n, rigid_contact<RigidScene##n>, \
+                   (mpm::device::sum_scalars<Scene, mpm::device::rigid_sums>))
 
 #define MPM_DEVICE_FILTER_ENTRIES                                          \
   MPM_DEVICE_PHASE(mpm_begin_filter, begin_filter<Scene>, 1)               \

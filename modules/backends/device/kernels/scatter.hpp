@@ -146,13 +146,14 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
         values[Place::force + i] = -volume_of_particle * traction;
       }
       if constexpr (Scene::axisymmetric) values[Place::force] -= s.weight * volume_of_particle * tau.s[2] / position[p];
-      if constexpr (Place::volume >= 0) {
+      if constexpr (Place::volume_gradient >= 0) {
         const T volume = a.contact_fields ? volume_of_particle * particles.field[P::volume_ratio][p] : T(0);
-        T section = volume;  // a ring's volume grows away from the axis
-        if constexpr (Scene::axisymmetric) section = volume / (T(6.283185307179586) * position[p]);
-        values[Place::volume] = s.weight * volume;
+        T around = T(1);  // a ring's volume and mass grow away from the axis; gradients are those of its section
+        if constexpr (Scene::axisymmetric) around = T(6.283185307179586) * position[p];
         for (int i = 0; i < D; ++i) {
-          values[Place::volume_gradient + i] = section * s.gradient[i];
+          values[Place::volume_gradient + i] = volume / around * s.gradient[i];
+          if constexpr (Place::mass_gradient >= 0)
+            values[Place::mass_gradient + i] = mass_of_particle / around * s.gradient[i];
           values[Place::mass_position + i] = -mass * s.distance[i];
         }
       }

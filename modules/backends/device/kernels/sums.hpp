@@ -7,7 +7,7 @@
 namespace mpm::device {
 
 /// The lanes of a reduction that shared memory has room for, and the values of one.
-inline constexpr int largest_team = 256, most_sums = 12;
+inline constexpr int largest_team = 256, most_sums = 16;
 
 /// The room in shared memory for `count` values a lane.
 template <class Scene, int count>

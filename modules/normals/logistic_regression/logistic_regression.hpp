@@ -1,0 +1,135 @@
+#pragma once
+// The normal of the plane across which a logistic curve fits the labels -1 and +1 of two bodies' particles near a node
+// best. Nairn, Hammerquist & Smith, Comput. Methods Appl. Mech. Engrg. 362 (2020) 112859.
+
+#include "kernel/direction.hpp"
+#include "kernel/linear_system.hpp"
+#if MPM_HOST
+#include <cstddef>
+#include <cstdint>
+
+#include "plugin/tables.hpp"
+#endif
+
+namespace mpm {
+
+struct LogisticRegression {
+  struct Parameters {
+    double penalty;  ///< cells^2, beside the weights of the particles
+  };
+
+#if MPM_HOST
+  /// A plane: slope along the axes, 1/cell, then the offset.
+  template <int D>
+  using Plane = Vec<D + 1, double>;
+  /// The sums of one plane: what is minimized, half its negative gradient and the matrix of Gauss and Newton.
+  template <int D>
+  struct Sums {
+    double cost = 0, rhs[D + 1] = {}, m[D + 1][D + 1] = {};
+  };
+
+  /// Adds one body's particles: w (c - f)^2 with f = 2 / (1 + exp(-z)) - 1, z = b + s . x. The matrix is half the second
+  /// derivative where `curved`; else, as Gauss does, without the curvature f'' = -f f'.
+  template <int D>
+  static void add(const double* position, const double* weight, std::uint32_t count, std::uint32_t stride, double label,
+                  const Plane<D>& plane, bool curved, Sums<D>& sums) {
+    for (std::uint32_t k = 0; k < count; ++k) {
+      double row[D + 1], z = plane[D];
+      for (int i = 0; i < D; ++i) row[i] = position[static_cast<std::size_t>(i) * stride + k], z += plane[i] * row[i];
+      row[D] = 1;
+      const double f = 2 / (1 + exp(-z)) - 1, slope = 0.5 * (1 - f * f), error = label - f;
+      const double second = slope * slope + (curved ? error * f * slope : 0);
+      sums.cost += weight[k] * error * error;
+      for (int i = 0; i <= D; ++i) {
+        sums.rhs[i] += weight[k] * error * slope * row[i];
+        for (int j = 0; j <= D; ++j) sums.m[i][j] += weight[k] * second * row[i] * row[j];
+      }
+    }
+  }
+  template <int D>
+  static Sums<D> sums_of(const Parameters& p, const mpm_normal_points& points, const Plane<D>& plane, bool curved) {
+    Sums<D> sums;
+    add<D>(points.position_a, points.weight_a, points.count_a, points.stride_a, -1, plane, curved, sums);
+    add<D>(points.position_b, points.weight_b, points.count_b, points.stride_b, 1, plane, curved, sums);
+    for (int i = 0; i < D; ++i) {
+      sums.cost += p.penalty * plane[i] * plane[i];
+      sums.rhs[i] -= p.penalty * plane[i], sums.m[i][i] += p.penalty;
+    }
+    return sums;
+  }
+
+  template <int D>
+  static Plane<D> moved(Plane<D> plane, const double (&by)[D + 1]) {
+    for (int i = 0; i <= D; ++i) plane[i] += by[i];
+    return plane;
+  }
+  template <int D>
+  static Vec<D, double> slope_of(const Plane<D>& plane) {
+    Vec<D, double> slope;
+    for (int i = 0; i < D; ++i) slope[i] = plane[i];
+    return slope;
+  }
+
+  /// Steps of Gauss and Newton, damped as Levenberg does, until the normal hardly turns. The first, from the plane z = 0,
+  /// where f has the slope 1/2, is linear regression.
+  template <int D>
+  static Plane<D> fitted(const Parameters& p, const mpm_normal_points& points) {
+    constexpr int most_rounds = 200;
+    constexpr double little = 1e-5, first_damping = 1e-12, most_damping = 1e12;
+    Plane<D> plane{};
+    Sums<D> sums = sums_of<D>(p, points, plane, false);
+    Vec<D, double> direction{};
+    double damping = 0, scale = 0;
+    for (int i = 0; i <= D; ++i) scale += sums.m[i][i];
+    for (int round = 0; round < most_rounds && damping < most_damping; ++round) {
+      Sums<D> system = sums;
+      for (int i = 0; i <= D; ++i) system.m[i][i] += damping * scale;
+      const bool solved = solve_symmetric(system.m, system.rhs);
+      const Plane<D> next = solved ? moved<D>(plane, system.rhs) : plane;
+      const Sums<D> there = sums_of<D>(p, points, next, false);
+      if (!(there.cost < sums.cost)) {
+        damping = max(10 * damping, first_damping);
+        continue;
+      }
+      plane = next, sums = there, damping *= 0.1;
+      Vec<D, double> turned = slope_of<D>(plane);
+      make_unit(turned);
+      double change = 0;
+      for (int i = 0; i < D; ++i) change = max(change, abs(turned[i] - direction[i]));
+      direction = turned;
+      if (change < little) break;
+    }
+    return plane;
+  }
+
+  /// The plane that is fitted, and a few steps of Newton's own, which leave nothing of how it was come to.
+  template <int D>
+  static bool find(const Parameters& p, const mpm_normal_points& points, double* normal) {
+    constexpr int steps = 4;
+    constexpr double rounding = 1e-12;
+    Plane<D> plane = fitted<D>(p, points);
+    Sums<D> sums = sums_of<D>(p, points, plane, true);
+    for (int step = 0; step < steps; ++step) {
+      Sums<D> system = sums;
+      if (!solve_symmetric(system.m, system.rhs)) break;  // no minimum is near
+      const Plane<D> next = moved<D>(plane, system.rhs);
+      const Sums<D> there = sums_of<D>(p, points, next, true);
+      if (!(there.cost <= sums.cost * (1 + rounding))) break;
+      plane = next, sums = there;
+    }
+    Vec<D, double> direction = slope_of<D>(plane);
+    if (!(make_unit(direction) > 0)) return false;
+    for (int i = 0; i < D; ++i) normal[i] = direction[i];
+    return true;
+  }
+
+  static constexpr unsigned traits = MPM_LOOKS_AT_POINTS;
+  static constexpr mpm_parameter parameters[] = {
+      MPM_NUMBER_PARAMETER(penalty, "", 1e-6, 1e-12, 1.0, 0,
+                           "penalty on the squared slope, cells^2: it ends the growth of the slope where a plane "
+                           "parts the bodies"),
+  };
+#endif
+};
+
+}  // namespace mpm

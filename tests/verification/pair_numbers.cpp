@@ -1,0 +1,155 @@
+// What the columns of a pair of bodies in contact say: area, normal and tangential force, of faces whose size, load and
+// friction are known.
+
+#include <cmath>
+#include <numbers>
+
+#include "support/catch.hpp"
+#include "support/scene.hpp"
+#include "support/stacked_blocks.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+/// Two welded blocks of 4.5 cells' height that fill a shaft 0.5 m wide and meet at a height that no node has. Rows of
+/// particles go on across the face between them.
+std::string shaft(int dimension, double h, const std::string& grid = "") {
+  const std::string zero = dimension == 3 ? "0, 0, " : "0, ", wide = dimension == 3 ? "0.5, 0.5, " : "0.5, ";
+  const auto body = [&](const char* name, double from) {
+    return R"({"name": ")" + std::string(name) + R"(", "material": "m", "seeding": "fitted",
+      "geometry": {"type": "box", "lower": [)" +
+           zero + digits(from) + R"(], "upper": [)" + wide + digits(from + 4.5 * h) + R"(]}, "velocity": [)" + zero +
+           "0.01]}";
+  };
+  return R"({"dimension": )" + std::to_string(dimension) + R"(, "grid": {"cell_size": )" + digits(h) +
+         R"(, "domain": [[)" + zero + "0], [" + wide + R"(1]], "boundaries": {"all": "slip"})" + grid + R"(},
+      "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"}, "contact": {"type": "stick"},
+      "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e6, "poisson_ratio": 0.3, "density": 1000}},
+      "bodies": [)" +
+         body("low", 0.16 * h) + ", " + body("high", 4.66 * h) +
+         R"(], "solver": {"end_time": 1}, "output": {"ledger": false, "bodies": true, "contact_pairs": true}})";
+}
+
+Numbers after(Scene& scene, int steps) {
+  scene.run_steps(steps);
+  return chosen(scene.metrics);
+}
+
+/// A block of 0.4 m by 0.2 m, 80 kg a metre, on a bed, both turned by `angle` against the grid; the weight leans by 30
+/// degrees against the face between them and grows over a tenth of a second.
+std::string leaning_block(double angle, double friction) {
+  const double down = (30 - angle) * std::numbers::pi / 180;
+  const auto grows = [](double size) { return "\"" + digits(size) + "*min(1, t/0.1)\""; };
+  const auto turned = [&](const std::string& box) {
+    return R"({"type": "turned", "about": [0, 0], "angle": "-)" + digits(angle) + R"( deg", "of": {"type": "box", )" +
+           box + "}}";
+  };
+  return R"({"dimension": 2, "grid": {"cell_size": 0.05, "domain": [[-0.8, -1.4], [1.8, 0.8]],
+      "boundaries": {"all": "free"}}, "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
+      "gravity": [)" +
+         grows(9.81 * std::sin(down)) + ", " + grows(-9.81 * std::cos(down)) +
+         R"(], "contact": {"type": "coulomb", "normal": "widest_gap", "friction": )" + digits(friction) +
+         R"(}, "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e6, "poisson_ratio": 0.3, "density": 1000}},
+      "bodies": [{"name": "bed", "material": "m", "seeding": "fitted", "geometry": )" +
+         turned(R"("lower": [-0.4, -0.3], "upper": [1.6, 0])") +
+         R"(}, {"name": "block", "material": "m", "seeding": "fitted", "geometry": )" +
+         turned(R"("lower": [0, 0], "upper": [0.4, 0.2])") +
+         R"(}], "grips": [{"name": "held", "body": "bed", "velocity": [0, 0], "where": )" +
+         turned(R"("lower": [-0.4, -0.3], "upper": [1.6, -0.15])") +
+         R"(}], "solver": {"end_time": 0.4}, "output": {"ledger": false, "bodies": true, "contact_pairs": true}})";
+}
+
+}  // namespace
+
+TEST_CASE("the area of contact is that of the face, for every shape and wherever it lies in the cell",
+          "[pairs][area]") {
+  for (const Plugin* shape : plugins().of_kind(MPM_SHAPE))
+    for (const char* backend : {"reference", "cpu"}) {
+      INFO(shape->id() << ", " << backend);
+      Scene scene(shaft(2, 0.05), {set("/shape/type", std::string(shape->id())), set("/backend", backend)});
+      const Numbers now = after(scene, 3);
+      CHECK(now.at("pair low high nodes") > 0);
+      CHECK(now.at("pair low high area") == Approx(0.5).epsilon(1e-4));
+    }
+  Scene solid(shaft(3, 0.1));
+  CHECK(after(solid, 3).at("pair low high area") == Approx(0.25).epsilon(1e-4));
+  Scene rings(shaft(2, 0.05, R"(, "symmetry": "axisymmetric")"));
+  CHECK(after(rings, 3).at("pair low high area") == Approx(std::numbers::pi * 0.25).epsilon(1e-3));
+}
+
+TEST_CASE("the area of a block on a turned bed is that of its face", "[pairs][area]") {
+  for (const double angle : {0.0, 17.0, 30.0, 45.0}) {
+    INFO(angle << " degrees");
+    Scene scene(leaning_block(angle, 0.6), {R"(/contact={"type": "stick"})"});
+    // It is 8 cells long; at its ends, where normals lean, half a cell may be off.
+    CHECK(after(scene, 3).at("pair bed block area") == Approx(0.4).margin(0.025));
+  }
+}
+
+TEST_CASE("the parts of a pair's force are the weight that presses and friction", "[pairs][friction]") {
+  const double weight = 80 * 9.81, pressing = weight * std::sqrt(0.75);
+  for (const double angle : {0.0, 30.0}) {
+    INFO(angle << " degrees");
+    // The mean over a tenth of a second: a soft block shakes.
+    const auto means = [&](double friction) {
+      Scene scene(leaning_block(angle, friction));
+      while (scene.simulation.time() < 0.3) scene.simulation.step();
+      double normal = 0, along = 0, ratio = 0;
+      int steps = 0;
+      for (; !scene.simulation.finished(); ++steps) {
+        scene.simulation.step();
+        const Numbers now = chosen(scene.metrics);
+        const double size =
+            std::hypot(now.at("pair bed block tangential force x"), now.at("pair bed block tangential force y"));
+        normal += now.at("pair bed block normal force"), along += size;
+        ratio = std::max(ratio, std::abs(size / now.at("pair bed block normal force") - friction));
+      }
+      return std::array{normal / steps, along / steps, ratio};
+    };
+    const auto [normal, along, ratio] = means(0.3);
+    CHECK(normal == Approx(pressing).epsilon(0.01));
+    CHECK(along == Approx(0.3 * pressing).epsilon(0.01));
+    CHECK(ratio < 0.01);  // each step, as all nodes slip
+    const auto [held_normal, held_along, unused] = means(0.6);
+    CHECK(held_normal == Approx(pressing).epsilon(0.01));
+    CHECK(held_along == Approx(weight / 2).epsilon(0.02));
+  }
+}
+
+TEST_CASE("the forces of a pair's nodes add up to its force, for every transfer and filter", "[pairs][nodes]") {
+  const std::vector<std::string> filters{
+      "", R"({"type": "fmpm", "order": 3})", R"({"type": "fmpm", "order": 4, "constraints": "kept_impulses"})",
+      R"({"type": "fmpm", "order": 3, "every_steps": 3})", R"({"type": "xpic", "order": 3})"};
+  int tried = 0;
+  for (const std::string backend : {"reference", "cpu"})
+    for (const Plugin* transfer : plugins().of_kind(MPM_TRANSFER))
+      for (const std::string& filter : filters) {
+        INFO(backend << " " << transfer->id() << " " << filter);
+        std::vector<std::string> settings{set("/backend", backend), set("/transfer/type", std::string(transfer->id())),
+                                          "/output/frames=2", "/output/contact_nodes=true"};
+        if (!filter.empty()) settings.push_back("/filter=" + filter);
+        try {
+          Scene scene(leaning_block(30, 0.3), settings);
+          scene.run_steps(40);
+          const Numbers now = chosen(scene.metrics);
+          Vector3 sum{};
+          double area = 0;
+          for (const ContactNode& node : scene.simulation.backend().contact_nodes()) {
+            CHECK(std::hypot(node.normal[0], node.normal[1]) == Approx(1));
+            CHECK((node.a == 0 && node.b == 1));
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += node.force[c];
+            if (node.status != MPM_APART) area += node.area;
+          }
+          const double size = now.at("pair bed block normal force");
+          CHECK(size > 1);
+          CHECK(sum[0] == Approx(now.at("pair bed block force x")).margin(1e-9 * size));
+          CHECK(sum[1] == Approx(now.at("pair bed block force y")).margin(1e-9 * size));
+          CHECK(area == Approx(now.at("pair bed block area")));
+          ++tried;
+        } catch (const InputError&) {
+        }
+      }
+  CHECK(tried >= 60);
+}
