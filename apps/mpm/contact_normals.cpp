@@ -4,8 +4,8 @@
 #include <iostream>
 #include <sstream>
 
-#include "experiment/diagnostics.hpp"
 #include "mpm/cli.hpp"
+#include "mpm/default_component.hpp"
 #include "render/plot.hpp"
 #include "simulation/normal_errors.hpp"
 
@@ -23,13 +23,6 @@ struct Row {
   double density_ratio;
 };
 
-std::vector<double> default_parameters(const Plugin& plugin) {
-  std::vector<double> block((plugin.descriptor->parameter_bytes + 7) / 8, 0.0);
-  for (const mpm_parameter& parameter : plugin.parameters())
-    block[parameter.offset / sizeof(double)] = parameter.default_value;
-  return block;
-}
-
 bool needs_parameters(const Plugin& plugin) {
   for (const mpm_parameter& parameter : plugin.parameters())
     if (parameter.flags & MPM_REQUIRED) return true;
@@ -42,11 +35,9 @@ std::vector<Row> rows_of(const Registry& registry) {
   std::vector<Row> rows;
   for (const Plugin* plugin : registry.of_kind(MPM_NORMAL)) {
     if (needs_parameters(*plugin)) continue;
-    Component normal;
-    normal.plugin = plugin, normal.parameters = default_parameters(*plugin);
     const bool by_mass = plugin->normal().traits & MPM_READS_MASS_GRADIENT;
-    rows.push_back(
-        {std::string(plugin->id()) + (by_mass ? ", densities 1:100" : ""), normal, by_mass ? density_ratio : 1});
+    rows.push_back({std::string(plugin->id()) + (by_mass ? ", densities 1:100" : ""), default_component(*plugin),
+                    by_mass ? density_ratio : 1});
   }
   return rows;
 }
@@ -127,17 +118,7 @@ void draw(const std::vector<Row>& rows, const Component& shape,
 
 int contact_normals(const std::string& id, const std::filesystem::path& figure) {
   const Registry registry = load_registry();
-  Component shape;
-  std::vector<std::string> names;
-  for (const Plugin* plugin : registry.of_kind(MPM_SHAPE)) {
-    if (plugin->shape().form == MPM_NODE_LIST) continue;
-    names.emplace_back(plugin->id());
-    if (names.back() == id) shape.plugin = plugin;
-  }
-  if (!shape.plugin)
-    throw PluginError("no shape that is a tensor product is called " + in_quotes(id) + did_you_mean(id, names) +
-                      "; they are " + quoted_list(names));
-  shape.parameters = default_parameters(*shape.plugin);
+  const Component shape = default_shape(registry, id, Shapes::tensor_products);
   const std::vector<Row> rows = rows_of(registry);
   print_table(rows, shape);
   if (figure.empty()) return done;

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "experiment/diagnostics.hpp"
 #include "mpm/cli.hpp"
+#include "mpm/default_component.hpp"
 #include "render/plot.hpp"
 #include "simulation/contact_offset.hpp"
 
@@ -21,13 +21,6 @@ struct Column {
   std::string name;
   TouchingFaces faces;
 };
-
-std::vector<double> default_parameters(const Plugin& plugin) {
-  std::vector<double> block((plugin.descriptor->parameter_bytes + 7) / 8, 0.0);
-  for (const mpm_parameter& parameter : plugin.parameters())
-    block[parameter.offset / sizeof(double)] = parameter.default_value;
-  return block;
-}
 
 bool follows_axes(const Plugin& shape) {
   return shape.shape().form != MPM_NODE_LIST;
@@ -136,16 +129,7 @@ void draw(const Component& shape, int particles, const std::filesystem::path& st
 
 int contact_offset(const std::string& id, int particles, const std::filesystem::path& figure) {
   const Registry registry = load_registry();
-  Component shape;
-  std::vector<std::string> names;
-  for (const Plugin* plugin : registry.of_kind(MPM_SHAPE)) {
-    names.emplace_back(plugin->id());
-    if (names.back() == id) shape.plugin = plugin;
-  }
-  if (!shape.plugin)
-    throw PluginError("no shape is called " + in_quotes(id) + did_you_mean(id, names) + "; shapes are " +
-                      quoted_list(names));
-  shape.parameters = default_parameters(*shape.plugin);
+  const Component shape = default_shape(registry, id, Shapes::all);
   print_table(shape, particles);
   if (figure.empty()) return done;
   draw(shape, particles, figure);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <map>
+#include <sstream>
 
 #include "experiment/diagnostics.hpp"
 #include "simulation/point_bins.hpp"
@@ -148,6 +150,38 @@ std::string Overlap::text(const Experiment& experiment) const {
          " lie in " + b + ", and " + std::to_string(of_second) + " of " + b + " in " + a +
          ", so that the mass is there twice; move one of them, or cut it out with the geometry \"difference\" "
          "(docs/experiment_file.md#bodies)";
+}
+
+std::vector<RigidOverlap> rigid_overlaps_of(const Experiment& experiment) {
+  std::vector<RigidOverlap> found;
+  if (experiment.rigid_bodies.empty()) return found;
+  const double touching = 1e-6 * experiment.grid.cell_size;
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const Points points = places_of(experiment, body);
+    for (int rigid = 0; rigid < static_cast<int>(experiment.rigid_bodies.size()); ++rigid) {
+      const Geometry& geometry = *experiment.rigid_bodies[static_cast<std::size_t>(rigid)].geometry;
+      RigidOverlap overlap{body, rigid};
+      for (const Vector3& x : points) {
+        const double depth = -geometry.distance(x);
+        if (!(depth > touching)) continue;
+        ++overlap.particles;
+        overlap.deepest = std::max(overlap.deepest, depth);
+      }
+      if (overlap.particles > 0) found.push_back(overlap);
+    }
+  }
+  return found;
+}
+
+std::string RigidOverlap::text(const Experiment& experiment) const {
+  std::ostringstream words;
+  words
+      << particles << " particles of body " << in_quotes(experiment.bodies[static_cast<std::size_t>(body)].name)
+      << " begin inside rigid body " << in_quotes(experiment.rigid_bodies[static_cast<std::size_t>(rigid_body)].name)
+      << ", the deepest " << std::setprecision(3) << deepest
+      << " m below its surface, and stay there, as a law of contact stops what approaches and pushes nothing out; move "
+         "one of them, or cut the body out with the geometry \"difference\" (docs/experiment_file.md#rigid-bodies)";
+  return words.str();
 }
 
 }  // namespace mpm::app

@@ -1,5 +1,6 @@
 #pragma once
-// Bodies that begin in one place: what was meant to stand side by side counts double there.
+// Bodies that begin in one place: what was meant to stand side by side counts double there, and no law pushes it out of a
+// rigid body.
 
 #include <cstddef>
 #include <string>
@@ -22,5 +23,17 @@ struct Overlap {
 
 /// The pairs of bodies of which one has most of its particles in the other.
 std::vector<Overlap> overlaps_of(const Experiment& experiment);
+
+/// A body of which particles begin inside a rigid body.
+struct RigidOverlap {
+  int body = 0, rigid_body = 0;
+  std::size_t particles = 0;
+  double deepest = 0;  ///< m, below the rigid body's surface
+
+  /// What is wrong, with numbers and remedy.
+  std::string text(const Experiment& experiment) const;
+};
+
+std::vector<RigidOverlap> rigid_overlaps_of(const Experiment& experiment);
 
 }  // namespace mpm::app

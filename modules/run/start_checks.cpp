@@ -53,7 +53,7 @@ void refuse_impossible_temperatures(const Simulation& simulation) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-/// Warns of bodies that begin in one place. Throws InputError where two are the same.
+/// Warns of bodies that begin in one place, or in a rigid body. Throws InputError where two are the same.
 std::vector<std::string> look_for_overlaps(const Experiment& experiment) {
   std::vector<std::string> warnings;
   std::vector<Problem> problems;
@@ -65,6 +65,7 @@ std::vector<std::string> look_for_overlaps(const Experiment& experiment) {
       warnings.push_back(text);
   }
   if (!problems.empty()) throw InputError(std::move(problems));
+  for (const RigidOverlap& overlap : rigid_overlaps_of(experiment)) warnings.push_back(overlap.text(experiment));
   return warnings;
 }
 

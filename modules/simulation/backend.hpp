@@ -252,7 +252,7 @@ struct ContactRecord {
   std::array<double, 3> force{};  ///< N, the momentum that particles took from contact in the last step over dt
   long nodes = 0, sticking = 0, slipping = 0;  ///< last step
   double largest_penetration = 0;              ///< m, last step, of pairs in contact
-  double momentum_residual = 0;                ///< kg m/s, sum of the pair's impulses: zero to rounding
+  double momentum_residual = 0;                ///< kg m/s, sum of its impulses: rounding, but with own normals
 };
 
 /// The same of one pair of velocity fields. The force acts on its first field.

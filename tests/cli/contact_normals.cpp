@@ -1,7 +1,7 @@
 // The verb contact-normals: its table, its figure, and what it refuses.
 
+#include "cli/figure_data.hpp"
 #include "cli/program.hpp"
-#include "support/csv.hpp"
 
 using namespace mpm::test;
 
@@ -17,18 +17,8 @@ TEST_CASE("contact-normals prints a row for every normal and draws the figure of
     CHECK(has(result.out, std::string("\n") + id));
   CHECK(!has(result.out, "\ngiven"));  // it has no default
   for (const std::string end : {"", "_end"}) {
-    const auto drawn = mpm::support::read_csv_cells(folder / ("normals" + end + ".csv"));
-    const auto page = mpm::support::read_csv_cells(MPM_SOURCE_DIR "/figures/studies/contact_normals" + end + ".csv");
-    REQUIRE(drawn.size() == page.size());
-    for (std::size_t row = 0; row < page.size(); ++row) {
-      INFO("row " << row);
-      REQUIRE(drawn[row].size() == page[row].size());
-      for (std::size_t cell = 0; cell < page[row].size(); ++cell)
-        if (row > 0 && cell == 4)
-          CHECK(std::stod(drawn[row][cell]) == Approx(std::stod(page[row][cell])).epsilon(1e-6));
-        else
-          CHECK(drawn[row][cell] == page[row][cell]);
-    }
+    INFO("figure " << end);
+    check_figure_data(folder / ("normals" + end + ".csv"), "contact_normals" + end + ".csv", 1e-6);
   }
 }
 

@@ -1,7 +1,7 @@
 // The verb contact-offset: its table, its figure, and what it refuses.
 
+#include "cli/figure_data.hpp"
 #include "cli/program.hpp"
-#include "support/csv.hpp"
 
 using namespace mpm::test;
 
@@ -26,18 +26,7 @@ TEST_CASE("contact-offset draws the figure of the page") {
   INFO(result.err);
   REQUIRE(result.code == 0);
   CHECK(folder.names() == Words{"offset.csv", "offset.png", "offset.svg"});
-  const auto drawn = mpm::support::read_csv_cells(folder / "offset.csv");
-  const auto page = mpm::support::read_csv_cells(MPM_SOURCE_DIR "/figures/studies/contact_offset.csv");
-  REQUIRE(drawn.size() == page.size());
-  for (std::size_t row = 0; row < page.size(); ++row) {
-    INFO("row " << row);
-    REQUIRE(drawn[row].size() == page[row].size());
-    for (std::size_t cell = 0; cell < page[row].size(); ++cell)
-      if (row > 0 && cell == 4)
-        CHECK(std::stod(drawn[row][cell]) == Approx(std::stod(page[row][cell])).epsilon(1e-9));
-      else
-        CHECK(drawn[row][cell] == page[row][cell]);
-  }
+  check_figure_data(folder / "offset.csv", "contact_offset.csv", 1e-9);
 }
 
 TEST_CASE("contact-offset refuses what is no shape, no number and no folder") {

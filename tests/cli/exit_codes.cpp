@@ -219,6 +219,28 @@ TEST_CASE("2: two bodies of the same particles, and a warning of those that have
   CHECK(call(folder, {"check", "beside.json"}).err.empty());
 }
 
+TEST_CASE("a warning of particles that begin inside a rigid body, and none of those on its face") {
+  Json scene = two_balls();
+  scene["bodies"] = Json::array({scene["bodies"][0]});
+  scene.erase("contact");
+  scene["bodies"][0]["geometry"] = {{"type", "box"}, {"lower", {0.2, 0.1}}, {"upper", {0.6, 0.5}}};
+  scene["rigid_bodies"] = Json::parse(R"([{"name": "floor", "contact": {"type": "frictionless"},
+    "geometry": {"type": "half_space", "point": [0, 0.1], "normal": [0, 1]}}])");
+  const Folder folder;
+  spill(folder / "on_it.json", scene.dump());
+  CHECK(call(folder, {"check", "on_it.json"}).err.empty());
+  // Rows of particles are 0.025 m apart, the lowest half of that above the block's face: four are below the floor's.
+  scene["rigid_bodies"][0]["geometry"]["point"] = {0, 0.2};
+  spill(folder / "in_it.json", scene.dump());
+  const Result checked = call(folder, {"check", "in_it.json"});
+  INFO(checked.err);
+  CHECK(checked.code == 0);
+  CHECK(has(checked.err,
+            "warning: 64 particles of body \"ball\" begin inside rigid body \"floor\", the deepest 0.0875 m"));
+  const Result ran = call(folder, {"run", "in_it.json", "--out", "run"});
+  CHECK(has(json_in(folder / "run/summary.json")["warnings"].dump(), "begin inside rigid body"));
+}
+
 TEST_CASE("2: a load on the axis alone, and gravity along the radius, are refused with what to write") {
   Json rod = ball();
   rod["grid"]["symmetry"] = "axisymmetric";

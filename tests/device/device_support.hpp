@@ -6,6 +6,7 @@
 #include <mutex>
 #include <set>
 
+#include "backends/device/cache.hpp"
 #include "backends/device/drivers/host_compiler.hpp"
 #include "backends/device/drivers/host_driver.hpp"
 #include "backends/device/make_device_backend.hpp"
@@ -72,7 +73,7 @@ inline device::Choice device_choice_of(const Experiment& experiment) {
   return device::choice_of(experiment, make_plan(experiment));
 }
 
-/// Compiled compositions, each once a process.
+/// Compiled compositions, each once. They are kept in the build folder for other suites and the next run of this one.
 class Programs {
  public:
   static Programs& shared() {
@@ -84,11 +85,14 @@ class Programs {
       const std::lock_guard lock(mutex_);
       if (const auto found = images_.find(composition.hash); found != images_.end()) return found->second;
     }
-    device::HostCompiler compiler;
-    compiler.options = {"-O1", "-Wall", "-Wextra", "-Werror"};
-    std::string made = compiler.compile(composition);
+    const std::string key = device::cache_key(composition, identity_, {});
+    std::optional<std::string> made = kept_.find(key);
+    if (!made) {
+      made = compiler_.compile(composition);
+      kept_.keep(key, *made);
+    }
     const std::lock_guard lock(mutex_);
-    return images_.emplace(composition.hash, std::move(made)).first->second;
+    return images_.emplace(composition.hash, std::move(*made)).first->second;
   }
   /// Compiles several compositions at once, two side by side.
   void prepare(const std::vector<device::Choice>& choices) {
@@ -101,6 +105,15 @@ class Programs {
   }
 
  private:
+  Programs() {
+    compiler_.options = {"-O1", "-Wall", "-Wextra", "-Werror"};
+    identity_ = compiler_.program + "\n" + compiler_.version();
+    for (const std::string& option : compiler_.all_options()) identity_ += "\n" + option;
+  }
+
+  device::HostCompiler compiler_;
+  std::string identity_;  ///< all that a program depends on beside its text
+  const device::ProgramCache kept_{std::filesystem::path(MPM_BUILD_DIR) / "host_programs_of_tests", 512ull << 20};
   std::mutex mutex_;
   std::map<std::string, std::string> images_;  ///< by the composition's hash
 };
