@@ -147,7 +147,8 @@ struct Memory {
 Memory memory_of_many_bodies(double cell_size, const std::string& contact) {
   std::string bodies;
   for (int k = 0; k < 20; ++k) {
-    const double x = 0.1 + 0.4 * (k % 5), y = 0.1 + 0.5 * (k / 5);
+    const int column = k % 5, row = k / 5;
+    const double x = 0.1 + 0.4 * column, y = 0.1 + 0.5 * row;
     const std::string field = contact.empty() ? "" : k % 2 ? R"("field": "odd", )" : R"("field": "even", )";
     bodies += (k ? ", " : "") + std::string(R"({"name": "b)") + std::to_string(k) + R"(", "material": "m", )" + field +
               R"("geometry": {"type": "box", "lower": [)" + digits(x) + ", " + digits(y) + R"(], "upper": [)" +
