@@ -1,0 +1,88 @@
+// The normal of linear regression against the same least squares solved by QR, with the penalty as rows of their own.
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "normals/linear_regression/linear_regression.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+using namespace mpm;
+
+/// Particles of one body as a host hands them over.
+struct Cloud {
+  std::vector<double> position, weight;
+  std::uint32_t count;
+
+  explicit Cloud(const std::vector<Vec<3, double>>& places, std::mt19937* random = nullptr)
+      : position(3 * places.size()), weight(places.size(), 0.5), count(static_cast<std::uint32_t>(places.size())) {
+    std::uniform_real_distribution<double> share(0.1, 1);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      for (std::size_t i = 0; i < 3; ++i) position[i * places.size() + k] = places[k][static_cast<int>(i)];
+      if (random) weight[k] = share(*random);
+    }
+  }
+};
+
+template <int D>
+bool regression(double penalty, const Cloud& a, const Cloud& b, double* normal) {
+  const mpm_normal_points points{a.count,           a.count,         b.count,         b.count, a.position.data(),
+                                 b.position.data(), a.weight.data(), b.weight.data(), normal};
+  return LinearRegression::find<D>({penalty}, points, normal);
+}
+
+/// The unit slope that minimizes sum w (c - b - s . x)^2 + penalty s^2.
+template <int D>
+Eigen::VectorXd least_squares(double penalty, const Cloud& a, const Cloud& b) {
+  const Eigen::Index rows = Eigen::Index{a.count} + Eigen::Index{b.count};
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(rows + D, D + 1);
+  Eigen::VectorXd labels = Eigen::VectorXd::Zero(rows + D);
+  Eigen::Index row = 0;
+  for (const Cloud* cloud : {&a, &b})
+    for (std::uint32_t k = 0; k < cloud->count; ++k, ++row) {
+      const double root = std::sqrt(cloud->weight[k]);
+      for (int i = 0; i < D; ++i) A(row, i) = root * cloud->position[static_cast<std::size_t>(i) * cloud->count + k];
+      A(row, D) = root;
+      labels(row) = cloud == &a ? -root : root;
+    }
+  for (int i = 0; i < D; ++i) A(rows + i, i) = std::sqrt(penalty);
+  return Eigen::VectorXd(A.colPivHouseholderQr().solve(labels)).head(D).normalized();
+}
+
+template <int D>
+void check_random_clouds(double penalty) {
+  std::mt19937 random(29);
+  std::uniform_real_distribution<double> along(-1.5, 1.5), across(-1.2, 0.3);
+  for (int k = 0; k < 20; ++k) {
+    std::vector<Vec<3, double>> first, second;
+    for (int i = 0; i < 9; ++i) {
+      const double z = D == 3 ? along(random) : 0;
+      first.push_back({{across(random), along(random), z}});
+      second.push_back({{-across(random) + 0.4 * along(random), along(random), D == 3 ? along(random) : 0}});
+    }
+    const Cloud a(first, &random), b(second, &random);
+    double normal[3] = {};
+    REQUIRE(regression<D>(penalty, a, b, normal));
+    const Eigen::VectorXd expected = least_squares<D>(penalty, a, b);
+    for (int i = 0; i < D; ++i) CHECK(normal[i] == Approx(expected(i)).margin(1e-10));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("linear regression has the normal of least squares solved by QR") {
+  for (const double penalty : {1e-6, 0.5}) {
+    check_random_clouds<2>(penalty);
+    check_random_clouds<3>(penalty);
+  }
+}
+
+TEST_CASE("where particles leave a direction open, the penalty of linear regression leaves it out of the normal") {
+  // All particles lie on the line y = x / 2: the slope across it is free, and the least one lies along the line.
+  const Cloud a({{{-0.8, -0.4, 0}}, {{-0.2, -0.1, 0}}}), b({{{0.4, 0.2, 0}}, {{1, 0.5, 0}}});
+  double normal[3] = {};
+  REQUIRE(regression<2>(1e-6, a, b, normal));
+  CHECK(normal[0] == Approx(2 / std::sqrt(5)).epsilon(1e-9));
+  CHECK(normal[1] == Approx(1 / std::sqrt(5)).epsilon(1e-9));
+}
