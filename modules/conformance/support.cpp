@@ -259,7 +259,7 @@ bool named(const mpm_parameter& p, const char* part) {
 /// A value of engineering size inside the declared range: by name where a name says more than the range.
 double sensible_value(const mpm_parameter& p, double stiffness, Random& random) {
   if (named(p, "youngs_modulus")) return stiffness;
-  if (named(p, "poisson")) return random.uniform(0, 0.45);
+  if (named(p, "poisson")) return random.uniform(0, std::min(0.45, p.maximum));
   if (named(p, "density")) return random.logarithmic(100, 10000);
   if (std::strcmp(p.unit, "Pa") == 0) return stiffness * random.logarithmic(1e-3, 0.3);
   const bool below = std::isfinite(p.minimum), above = std::isfinite(p.maximum);
