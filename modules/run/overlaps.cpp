@@ -19,15 +19,21 @@ struct Box {
   Vector3 lower{}, upper{};
 };
 
-Points places_of(const Experiment& experiment, int body) {
+template <class Visit>
+void for_each_place(const Experiment& experiment, int body, Visit visit) {
   const std::size_t D = static_cast<std::size_t>(experiment.dimension);
-  Points points;
   seed_body(experiment, body).for_each_batch([&](const SeedBatch& batch) {
     for (std::size_t p = 0; p < batch.count; ++p) {
-      Vector3& x = points.emplace_back();
+      Vector3 x{};
       std::copy_n(batch.position + p * D, D, x.begin());
+      visit(x);
     }
   });
+}
+
+Points places_of(const Experiment& experiment, int body) {
+  Points points;
+  for_each_place(experiment, body, [&](const Vector3& x) { points.push_back(x); });
   return points;
 }
 
@@ -154,33 +160,32 @@ std::string Overlap::text(const Experiment& experiment) const {
 
 std::vector<RigidOverlap> rigid_overlaps_of(const Experiment& experiment) {
   std::vector<RigidOverlap> found;
-  if (experiment.rigid_bodies.empty()) return found;
   const double touching = 1e-6 * experiment.grid.cell_size;
-  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
-    const Points points = places_of(experiment, body);
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body)
     for (int rigid = 0; rigid < static_cast<int>(experiment.rigid_bodies.size()); ++rigid) {
       const Geometry& geometry = *experiment.rigid_bodies[static_cast<std::size_t>(rigid)].geometry;
+      const auto [lower, upper] = geometry.bounds();
+      const Box of_body = bounds_of(experiment, experiment.bodies[static_cast<std::size_t>(body)]);
+      if (!has_volume(experiment, common(of_body, {lower, upper}))) continue;
       RigidOverlap overlap{body, rigid};
-      for (const Vector3& x : points) {
+      for_each_place(experiment, body, [&](const Vector3& x) {
         const double depth = -geometry.distance(x);
-        if (!(depth > touching)) continue;
+        if (!(depth > touching)) return;
         ++overlap.particles;
         overlap.deepest = std::max(overlap.deepest, depth);
-      }
+      });
       if (overlap.particles > 0) found.push_back(overlap);
     }
-  }
   return found;
 }
 
 std::string RigidOverlap::text(const Experiment& experiment) const {
   std::ostringstream words;
-  words
-      << particles << " particles of body " << in_quotes(experiment.bodies[static_cast<std::size_t>(body)].name)
-      << " begin inside rigid body " << in_quotes(experiment.rigid_bodies[static_cast<std::size_t>(rigid_body)].name)
-      << ", the deepest " << std::setprecision(3) << deepest
-      << " m below its surface, and stay there, as a law of contact stops what approaches and pushes nothing out; move "
-         "one of them, or cut the body out with the geometry \"difference\" (docs/experiment_file.md#rigid-bodies)";
+  words << particles << " particles of body " << in_quotes(experiment.bodies[static_cast<std::size_t>(body)].name)
+        << " begin inside rigid body " << in_quotes(experiment.rigid_bodies[static_cast<std::size_t>(rigid_body)].name)
+        << ", the deepest " << std::setprecision(3) << deepest
+        << " m below its surface: a law of contact stops what approaches and pushes nothing out; move one of them, or "
+        << "cut the body out with the geometry \"difference\" (docs/experiment_file.md#rigid-bodies)";
   return words.str();
 }
 

@@ -239,6 +239,13 @@ TEST_CASE("a warning of particles that begin inside a rigid body, and none of th
             "warning: 64 particles of body \"ball\" begin inside rigid body \"floor\", the deepest 0.0875 m"));
   const Result ran = call(folder, {"run", "in_it.json", "--out", "run"});
   CHECK(has(json_in(folder / "run/summary.json")["warnings"].dump(), "begin inside rigid body"));
+  // A slope through the block's middle: the particles below it, but for those on its face.
+  scene["rigid_bodies"][0]["geometry"] = {{"type", "half_space"}, {"point", {0.4, 0.3}}, {"normal", {1, 1}}};
+  spill(folder / "slope.json", scene.dump());
+  int below = 0;
+  for (int i = 0; i < 16; ++i)
+    for (int j = 0; j < 16; ++j) below += i + j < 15;
+  CHECK(has(call(folder, {"check", "slope.json"}).err, "warning: " + std::to_string(below) + " particles of body"));
 }
 
 TEST_CASE("2: a load on the axis alone, and gravity along the radius, are refused with what to write") {
