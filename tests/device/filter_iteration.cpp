@@ -1,7 +1,7 @@
 // A filter is told the number of its pass, from 1, by every backend. No filter of the build reads it, so this one does:
 // the increment of pass k counts 1 / k.
 
-#include "device/device_support.hpp"
+#include "device/changed_plugin.hpp"
 #include "plugin/sdk.hpp"
 
 using namespace mpm;
@@ -25,30 +25,6 @@ struct FadingFilter {
   static constexpr unsigned traits = 0;
 };
 
-/// The build's FMPM with the update of this filter, in its table and in its text.
-class Fading {
- public:
-  Fading() : plugin_(*plugins().find(MPM_FILTER, "fmpm")), descriptor_(*plugin_.descriptor), text_(descriptor_.source) {
-    const auto replace = [&](const std::string& from, const std::string& to) {
-      const std::size_t at = text_.find(from);
-      REQUIRE(at != std::string::npos);
-      text_.replace(at, from.size(), to);
-    };
-    replace("const Parameters&, int, const", "const Parameters&, int iteration, const");
-    replace("velocity[i] + increment[i]", "velocity[i] + increment[i] * real<S>(1.0 / iteration)");
-    descriptor_.source = text_.c_str(), descriptor_.kind_table = &sdk::filter_table<FadingFilter>;
-    plugin_.descriptor = &descriptor_;
-  }
-  Fading(const Fading&) = delete;
-  Fading& operator=(const Fading&) = delete;
-  const Plugin& plugin() const { return plugin_; }
-
- private:
-  Plugin plugin_;
-  mpm_descriptor descriptor_;
-  std::string text_;
-};
-
 std::vector<double> velocities(Experiment experiment, const Plugin& filter, const BackendFactory& factory) {
   experiment.filter->plugin = &filter;
   Simulation simulation(experiment, factory);
@@ -69,7 +45,10 @@ TEST_CASE("a filter is told the number of its pass", "[device][filter]") {
   Mix mix;
   mix.filter = R"({"type": "fmpm", "order": 4, "every_steps": 2})";
   const Experiment experiment = device_experiment(mix.text(), "double");
-  const Fading fading;
+  ChangedPlugin fading(MPM_FILTER, "fmpm");
+  fading.set_table(&sdk::filter_table<FadingFilter>);
+  fading.replace("const Parameters&, int, const", "const Parameters&, int iteration, const");
+  fading.replace("velocity[i] + increment[i]", "velocity[i] + increment[i] * real<S>(1.0 / iteration)");
   const std::vector<double> expected = velocities(experiment, fading.plugin(), make_reference_backend);
   const BackendFactory cpu = [](const Experiment& e, const Plan& plan, std::vector<SeededBody> bodies) {
     return make_cpu_backend(e, plan, std::move(bodies), 1);

@@ -5,34 +5,13 @@
 
 #include <cstdlib>
 
-#include "device/device_support.hpp"
+#include "device/changed_plugin.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
 
 namespace {
-
-/// A plugin of the build whose text differs from its file in one place.
-class OddPlugin {
- public:
-  OddPlugin(mpm_kind kind, const std::string& id, const std::string& from, const std::string& to)
-      : plugin_(*plugins().find(kind, id)), descriptor_(*plugin_.descriptor), text_(descriptor_.source) {
-    const std::size_t at = text_.find(from);
-    REQUIRE(at != std::string::npos);
-    text_.replace(at, from.size(), to);
-    descriptor_.source = text_.c_str();
-    plugin_.descriptor = &descriptor_;
-  }
-  OddPlugin(const OddPlugin&) = delete;
-  OddPlugin& operator=(const OddPlugin&) = delete;
-  std::vector<ConformanceFinding> check() const { return app::check_plugin_on_device(plugin_, {}); }
-
- private:
-  Plugin plugin_;
-  mpm_descriptor descriptor_;
-  std::string text_;
-};
 
 std::string all_of(const std::vector<ConformanceFinding>& findings) {
   std::string text;
@@ -81,8 +60,9 @@ TEST_CASE("a text that does another thing than the plugin's file fails", "[devic
   device_setup();
   const TemporaryFolder folder;
   const CacheIn here(folder / "cache");
-  const OddPlugin odd(MPM_MATERIAL, "neo_hookean", "const S J = ", "const S J = real<S>(1.0001) * ");
-  const std::vector<ConformanceFinding> findings = odd.check();
+  ChangedPlugin odd(MPM_MATERIAL, "neo_hookean");
+  odd.replace("const S J = ", "const S J = real<S>(1.0001) * ");
+  const std::vector<ConformanceFinding> findings = app::check_plugin_on_device(odd.plugin(), {});
   INFO(all_of(findings));
   REQUIRE(findings.size() >= 3);
   CHECK(!findings[0].passed);
@@ -93,8 +73,9 @@ TEST_CASE("a text that does not compile, and none at all, are said", "[device][p
   device_setup();
   const TemporaryFolder folder;
   const CacheIn here(folder / "cache");
-  const OddPlugin broken(MPM_SHAPE, "bspline_quadratic", "#include", "int wrong() { return nowhere; }\n#include");
-  const std::vector<ConformanceFinding> findings = broken.check();
+  ChangedPlugin broken(MPM_SHAPE, "bspline_quadratic");
+  broken.replace("#include", "int wrong() { return nowhere; }\n#include");
+  const std::vector<ConformanceFinding> findings = app::check_plugin_on_device(broken.plugin(), {});
   INFO(all_of(findings));
   REQUIRE(!findings.empty());
   CHECK(!findings[0].passed);
