@@ -280,7 +280,7 @@ inline std::vector<double> motion_values(const Totals& t, const Totals& start, d
 inline void check_parity(const Mix& mix) {
 #ifdef __SANITIZE_ADDRESS__
   static int mixes = 0;
-  if (mixes++ % 5 != 0) return;  // runs are many times as slow here, and a fifth of the mixes finds bad memory
+  if (mixes++ % 3 != 0) return;  // runs are many times as slow here, and a third of the mixes finds bad memory
 #endif
   // The linear shape's gradient does not vanish with its weight: f/m of a node barely reached is unbounded, worst in
   // 3-D. Measured for single particles: up to 4e6 epsilon, in float a velocity as large as all there is. What is compared
