@@ -164,12 +164,15 @@ class SmallDisk {
   bool mounted_ = false;
 };
 
-}  // namespace
-
-TEST_CASE("a run that was stopped at any step goes on bit for bit") {
-  for (const auto& [name, scene] : scenes())
-    for (const auto& [backend, precision] :
-         {std::pair{"reference", "double"}, std::pair{"cpu", "double"}, std::pair{"cpu", "float"}}) {
+/// Stops runs at several steps and lets them go on: each scene on so many of three backends and precisions, in turn.
+void check_stopped_runs(std::size_t of_three) {
+  const std::vector<std::pair<std::string, std::string>> ways{
+      {"reference", "double"}, {"cpu", "double"}, {"cpu", "float"}};
+  const auto all = scenes();
+  for (std::size_t s = 0; s < all.size(); ++s)
+    for (std::size_t k = 0; k < of_three; ++k) {
+      const auto& [name, scene] = all[s];
+      const auto& [backend, precision] = ways[(s + k) % ways.size()];
       INFO(name << ", " << backend << ", " << precision);
       const Folder folder;
       Json variant = scene;
@@ -191,7 +194,8 @@ TEST_CASE("a run that was stopped at any step goes on bit for bit") {
     }
 }
 
-TEST_CASE("a hundred kills at random moments change no byte") {
+/// Kills runs at random moments, half of them on each backend; of so many kills a part comes after a checkpoint.
+void check_killed_runs(int all_kills, int least_resumed) {
   const unsigned seed = 20240607;
   std::mt19937 random(seed);
   int kills = 0, resumed = 0, runs = 0;
@@ -204,7 +208,7 @@ TEST_CASE("a hundred kills at random moments change no byte") {
     spill(folder / "scene.json", scene.dump(1));
     const Result whole = run_in(folder, "whole");
     must_end_with(0, whole);
-    for (const int goal = kills + 50; kills < goal; ++runs) {
+    for (const int goal = kills + all_kills / 2; kills < goal; ++runs) {
       const std::string place = "killed" + std::to_string(runs);
       for (bool ended = false; !ended;) {
         const bool goes_on = !checkpoints(folder, place).empty();
@@ -231,8 +235,26 @@ TEST_CASE("a hundred kills at random moments change no byte") {
     }
   }
   std::cout << "seed " << seed << ": " << kills << " kills, " << resumed << " resumptions, " << runs << " runs\n";
-  CHECK(kills >= 100);
-  CHECK(resumed >= 30);
+  CHECK(kills >= all_kills);
+  CHECK(resumed >= least_resumed);
+}
+
+}  // namespace
+
+TEST_CASE("a run that was stopped at any step goes on bit for bit") {
+  check_stopped_runs(1);
+}
+
+TEST_CASE("a run that was stopped at any step goes on bit for bit on every backend and in both precisions", "[slow]") {
+  check_stopped_runs(3);
+}
+
+TEST_CASE("thirty kills at random moments change no byte") {
+  check_killed_runs(30, 9);
+}
+
+TEST_CASE("a hundred kills at random moments change no byte", "[slow]") {
+  check_killed_runs(100, 30);
 }
 
 TEST_CASE("a killed run goes on with the polynomials and corners that its particles carry") {

@@ -5,7 +5,8 @@
 
 namespace mpm::test {
 
-/// Mixes that hold every plugin at least once: the k-th of each kind together, or apart where these are refused.
+/// Mixes that hold every plugin at least once: the k-th of each kind together, or apart where these are refused. One of
+/// them at least has no contact.
 inline std::vector<Mix> every_plugin_once(int dimension) {
   const auto shapes = plugins().of_kind(MPM_SHAPE), transfers = plugins().of_kind(MPM_TRANSFER),
              filters = plugins().of_kind(MPM_FILTER), contacts = plugins().of_kind(MPM_CONTACT),
@@ -13,22 +14,30 @@ inline std::vector<Mix> every_plugin_once(int dimension) {
   const std::size_t most =
       std::max({shapes.size(), transfers.size(), filters.size(), contacts.size(), materials.size()});
   std::vector<Mix> mixes;
+  std::size_t next_normal = 0;  // the first that no mix holds yet
   for (std::size_t k = 0; k < most; ++k) {
     const Plugin *const shape = shapes[k % shapes.size()], *const transfer = transfers[k % transfers.size()],
-                        *const material = materials[k % materials.size()];
+                        *const material = materials[k % materials.size()], *const law = contacts[k % contacts.size()];
     Mix mix = mix_with(*shape, dimension);
     mix.transfer = device_choice(*transfer), mix.material = device_choice(*material);
     if (k < filters.size()) mix.filter = device_choice(*filters[k]);
-    if (k < contacts.size()) mix.contact = device_choice(*contacts[k]);
+    const bool asks = !(law->contact().traits & MPM_BYPASSES_DETECTION) && next_normal < normals.size();
+    if (asks || k < contacts.size()) mix.contact = device_choice(*law);
+    if (asks) mix.contact.insert(mix.contact.size() - 1, ", \"normal\": " + device_choice(*normals[next_normal]));
     if (!is_refused(mix)) {
       mixes.push_back(mix);
+      next_normal += asks;
       continue;
     }
     for (const Plugin* plugin : {shape, transfer, material}) mixes.push_back(mix_with(*plugin, dimension));
     if (k < filters.size()) mixes.push_back(mix_with(*filters[k], dimension));
     if (k < contacts.size()) mixes.push_back(mix_with(*contacts[k], dimension));
   }
-  for (const Plugin* normal : normals) mixes.push_back(mix_with(*normal, dimension));
+  for (; next_normal < normals.size(); ++next_normal) mixes.push_back(mix_with(*normals[next_normal], dimension));
+  if (std::none_of(mixes.begin(), mixes.end(), [](const Mix& mix) { return mix.contact.empty(); })) {
+    mixes.emplace_back();
+    mixes.back().dimension = dimension;
+  }
   return mixes;
 }
 
