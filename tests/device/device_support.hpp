@@ -210,6 +210,12 @@ inline double device_bound(const Mix& mix) {
   return mix.shape.find("linear") != mix.shape.npos ? 1e4 : 1e3;
 }
 
+/// Both precisions, or one of them in turn: programs of both take twice as long to compile.
+inline std::vector<std::string> precisions_in_turn(bool both, std::size_t turn) {
+  if (both) return {"double", "float"};
+  return {turn % 2 == 0 ? "double" : "float"};
+}
+
 /// Runs a mix on the reference (in double) and on the device in these precisions; both go 14 steps, in which bodies
 /// cross cells. The bound is that of tests/parity in units of the precision's epsilon.
 inline void check_on_device(const Mix& mix, const std::vector<std::string>& precisions = {"double", "float"}) {

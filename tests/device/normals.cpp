@@ -30,15 +30,30 @@ TEST_CASE("normals and surfaces of particles on the host-run device", "[device][
   check_on_device(walls);
 }
 
-TEST_CASE("every normal on the host-run device", "[device][normals]") {
+namespace {
+
+/// Every normal in the plane, around an axis, in 3-D and with particles' surfaces.
+void check_every_normal(bool both_precisions) {
+  std::size_t turn = 0;
   for (const Plugin* normal : plugins().of_kind(MPM_NORMAL)) {
-    for (const int dimension : {2, 3}) check_on_device(mix_with(*normal, dimension));
-    Mix rings = mix_with(*normal, 2);
-    rings.overrides = {"/grid/symmetry=axisymmetric", "/gravity=[0, -1.3]"};
-    check_on_device(rings);
-    if (normal->normal().traits & MPM_OWN_NORMALS) continue;  // refused with detection by particles' surfaces
-    Mix surfaces = mix_with(*normal, 2);
-    surfaces.contact.insert(surfaces.contact.size() - 1, ", \"detection\": \"particle_surfaces\"");
-    check_on_device(surfaces);
+    std::vector<Mix> mixes{mix_with(*normal, 2), mix_with(*normal, 3), mix_with(*normal, 2)};
+    mixes[2].overrides = {"/grid/symmetry=axisymmetric", "/gravity=[0, -1.3]"};
+    if (!(normal->normal().traits & MPM_OWN_NORMALS)) {  // refused with detection by particles' surfaces
+      mixes.push_back(mix_with(*normal, 2));
+      mixes[3].contact.insert(mixes[3].contact.size() - 1, ", \"detection\": \"particle_surfaces\"");
+    }
+    for (std::size_t k = 0; k < mixes.size(); ++k)
+      check_on_device(mixes[k], precisions_in_turn(both_precisions, turn + k));
+    ++turn;
   }
+}
+
+}  // namespace
+
+TEST_CASE("every normal on the host-run device", "[device][normals]") {
+  check_every_normal(false);
+}
+
+TEST_CASE("every normal on the host-run device in both precisions", "[device][normals][slow]") {
+  check_every_normal(true);
 }
