@@ -9,34 +9,29 @@ namespace mpm {
 /// times how far the ends have moved apart.
 template <class S>
 struct SpringImpulse {
-  S of_speed;         ///< pure number
+  S of_speed;         ///< pure number: the share of a weld in it, 1 where the spring is far too stiff for the step
   S of_displacement;  ///< 1/s
-  S holds;            ///< 1 where the spring is too stiff for the step, and holds the pair together as a weld, else 0
 };
 
-/// The oscillator m d'' + k d = 0, integrated exactly over a step: with x = k dt^2 / m = theta^2 the impulse on a mass m is
-/// m (w (1 - cos theta) + d theta sin theta / dt), for the relative speed w and the displacement d at the start. A spring
-/// with x >= 1 would turn by more than a sixth of its period in a step: it holds its pair. Before the forces a spring that
-/// does not hold gives nothing.
+/// The oscillator m d'' + k d = 0 over a step after which the ends move on with the new speed, d <- d + w dt. With theta^2 =
+/// k dt^2 / m the kick w <- w - 2 (1 - cos theta) d / dt puts d on the exact sinusoid at every step and keeps its
+/// amplitude; that of the oscillator's own end, w cos theta - d theta sin theta / dt, would lose a share theta^2 / 2 of it
+/// in each step. Where the pair would turn by more than a radian in a step the spring gives way to a weld, wholly from
+/// theta^2 = 2 on. Before the forces the weld's part alone acts.
 template <class S>
 MPM_HD SpringImpulse<S> spring_impulse(S stiffness, S mass, scalar_of<S> dt, bool after_forces) {
-  const scalar_of<S> one = 1;
-  const S x = stiffness * dt * dt / mass;
-  const auto holds = x >= one;
-  const S below = min(x, S(one));
-  // (1 - cos theta) / x and sin theta / theta are series in x that end below rounding where x <= 1.
-  S cosine(one), sine(one);
-  for (int k = 9; k > 0; --k) {
-    cosine = one - below / real<S>((2 * k + 1) * (2 * k + 2)) * cosine;
-    sine = one - below / real<S>(2 * k * (2 * k + 1)) * sine;
-  }
-  const S acts(real<S>(after_forces ? 1 : 0));
-  return {select(holds, S(one), acts * below * real<S>(0.5) * cosine),
-          select(holds, S(real<S>(0)), acts * below / dt * sine), select(holds, S(one), S(real<S>(0)))};
+  const scalar_of<S> zero = 0, one = 1, two = 2;
+  const S squared = min(stiffness * dt * dt / mass, S(two));
+  const S weld = max(squared - one, S(zero));
+  // 2 (1 - cos theta) / theta^2 is a series in theta^2 that ends below rounding.
+  S series(one);
+  for (int k = 11; k > 0; --k) series = one - squared / real<S>((2 * k + 1) * (2 * k + 2)) * series;
+  const S springs = after_forces ? one - weld : S(zero);
+  return {weld, springs * squared * series / dt};
 }
 
-/// Lets springs of these stiffnesses, Pa/m, pull along the normal and across it. What they do not hold keeps its energy:
-/// what the bodies lose the springs have.
+/// Lets springs of these stiffnesses, Pa/m, pull along the normal and across it. What the bodies lose the springs store, but
+/// for the weld's share of it.
 template <int D, class S>
 MPM_HD void pull(const ContactPair<D, S>& pair, const RelativeMotion<D, S>& motion, S normal_stiffness,
                  S shear_stiffness, ContactResult<D, S>& result) {
@@ -44,20 +39,22 @@ MPM_HD void pull(const ContactPair<D, S>& pair, const RelativeMotion<D, S>& moti
   const S mass = motion.reduced_mass;
   const auto along = spring_impulse<S>(normal_stiffness * pair.area, mass, pair.dt, pair.after_forces);
   const auto across = spring_impulse<S>(shear_stiffness * pair.area, mass, pair.dt, pair.after_forces);
-  S opening(zero), largest(zero), stored(zero);
+  S opening(zero), largest(zero), taken(zero);
   for (int i = 0; i < D; ++i) opening = opening + pair.displacement[i] * pair.normal[i];
-  const S normal_change = along.of_speed * -motion.approach + along.of_displacement * opening;
-  stored = (one - along.holds) * normal_change * (-motion.approach - half * normal_change);
+  const S closing = along.of_displacement * opening - along.of_speed * motion.approach;
   for (int i = 0; i < D; ++i) {
     const S shear = pair.displacement[i] - opening * pair.normal[i];
     const S change = across.of_speed * motion.slide[i] + across.of_displacement * shear;
-    stored = stored + (one - across.holds) * change * (motion.slide[i] - half * change);
-    result.impulse[i] = mass * (normal_change * pair.normal[i] + change);
+    taken = taken + change * (motion.slide[i] - half * change);
+    result.impulse[i] = mass * (closing * pair.normal[i] + change);
     largest = max(largest, max(result.impulse[i], -result.impulse[i]));
   }
-  result.stored = mass * stored;
+  const S taken_along = closing * (-motion.approach - half * closing);
+  result.stored =
+      mass * (taken_along - along.of_speed * max(taken_along, S(zero)) + taken - across.of_speed * max(taken, S(zero)));
   result.dissipated = S(zero);
-  result.status = select(largest > zero, select(along.holds * across.holds > zero, S(one), S(real<S>(2))), S(zero));
+  const S welds = select(along.of_speed * across.of_speed < one, S(zero), S(one));
+  result.status = select(largest > zero, real<S>(2) - welds, S(zero));
 }
 
 }  // namespace mpm

@@ -160,6 +160,23 @@ TEST_CASE("a layer swings alike wherever its plane lies in a cell, on every back
                      digits(bars.stiffness) + ", \"compression_stiffness\": " + digits(bars.stiffness) + "}"});
 }
 
+TEST_CASE("bars on a spring keep their swing", "[interface]") {
+  const Bars bars = opening(0.01);
+  for (const double courant : {0.4, 0.1}) {
+    Scene scene(bars.text, {set("/solver/courant", digits(courant)),
+                            set("/solver/end_time", digits(4.2 * 2 * std::numbers::pi / bars.frequency))});
+    const double start = velocity_along(scene, 0);
+    double fastest = 0;
+    while (!scene.simulation.finished()) {
+      scene.simulation.step();
+      if (scene.simulation.time() * bars.frequency > 3.8 * 2 * std::numbers::pi)
+        fastest = std::max(fastest, velocity_along(scene, 0));
+    }
+    INFO(courant);
+    CHECK(fastest == Approx(start).epsilon(0.002));
+  }
+}
+
 // After a quarter of a period the bars rest, and all their energy is in the layer. The works of contact are taken at the
 // mean velocity of a stage in which the bars' stress acts too, so that the two books differ by a share of the step.
 TEST_CASE("what contact takes from bars on a spring is in the spring", "[interface][ledger]") {
