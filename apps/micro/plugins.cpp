@@ -217,7 +217,8 @@ struct FilterCase {
 /// Pairs of which half press and half are apart; some stick and some slip.
 struct ContactCase {
   Variant v;
-  Buffer mass_a, mass_b, momentum_a, momentum_b, normal, separation, area, impulse, dissipated, status;
+  Buffer mass_a, mass_b, momentum_a, momentum_b, normal, separation, area, impulse, dissipated, status, displacement,
+      stored;
 
   explicit ContactCase(const Variant& variant) : v(variant) {
     Random random(1);
@@ -226,6 +227,7 @@ struct ContactCase {
     momentum_a = v.random(random, D, -1, 1), momentum_b = v.random(random, D, -1, 1);
     separation = v.random(random, 1, -0.1, 0.1), area = v.random(random, 1, 0.5, 1);
     normal = v.buffer(D), impulse = v.buffer(D), dissipated = v.buffer(1), status = v.indices(1);
+    displacement = v.random(random, D, -step, step), stored = v.buffer(1);
     for (int lane = 0; lane < batch; ++lane) {
       const conformance::Vector3 n = random.direction(D);
       for (int a = 0; a < D; ++a) normal.set(a, lane, n[a]);
@@ -233,10 +235,11 @@ struct ContactCase {
   }
   void run() {
     auto q = v.header<mpm_contact_batch>();
-    q.dt = step, q.mass_a = mass_a.data(), q.mass_b = mass_b.data();
+    q.stage = MPM_AFTER_FORCES, q.dt = step, q.mass_a = mass_a.data(), q.mass_b = mass_b.data();
     q.momentum_a = momentum_a.data(), q.momentum_b = momentum_b.data(), q.normal = normal.data();
     q.separation = separation.data(), q.area = area.data(), q.impulse = impulse.data();
     q.dissipated = dissipated.data(), q.status = static_cast<std::int32_t*>(status.data());
+    if (v.plugin->contact().traits & MPM_COMPLIANT) q.displacement = displacement.data(), q.stored = stored.data();
     v.plugin->contact().apply[v.precision()][v.dimension - 2](v.parameters->data(), &q);
   }
   std::string problem() { return sound({&impulse, &dissipated}); }

@@ -79,6 +79,10 @@ std::string Experiment::why_it_meets() const {
   return law.pointer + " \"" + std::string(law.plugin->id()) + "\"";
 }
 
+bool Experiment::has_compliant_contact() const {
+  return contact && (contact->plugin->contact().traits & MPM_COMPLIANT);
+}
+
 Vector3 RigidBodySpecification::spin_at(double time, int dimension) const {
   const Vector3 spin = angular_velocity({}, {}, time);
   return dimension == 2 ? Vector3{0, 0, spin[0]} : spin;

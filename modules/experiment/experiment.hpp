@@ -399,6 +399,8 @@ struct Experiment {
   bool meets() const { return contact || !rigid_bodies.empty(); }
   /// The JSON pointer of what asks for that, and its law, as reasons name it; of a scene that `meets`.
   std::string why_it_meets() const;
+  /// Whether a law joins bodies by springs, which pull by how far they have moved beside one another (MPM_COMPLIANT).
+  bool has_compliant_contact() const;
   /// Whether what supports give is noted: where reactions are asked for, and in scenes with rigid bodies.
   bool notes_reactions() const { return !output.reactions.empty() || !rigid_bodies.empty(); }
   /// Whether a formula of body forces or grips reads where particles began.

@@ -34,6 +34,8 @@ struct ContactPair {
   S separation;                      ///< m, negative when the surfaces overlap
   S area;                            ///< m^2
   scalar_of<S> dt;                   ///< s
+  bool after_forces = true;          ///< asked about v+, not about the v- that particles bring
+  Vec<D, S> displacement{};          ///< m, how far b has moved beside a; only laws with MPM_COMPLIANT have it
 };
 
 template <int D, class S>
@@ -41,6 +43,7 @@ struct ContactResult {
   Vec<D, S> impulse;  ///< added to a and taken from b, kg m/s
   S dissipated;       ///< J
   S status;           ///< 0 apart, 1 sticks, 2 slips
+  S stored;           ///< J, taken up by springs; only laws with MPM_COMPLIANT fill it
 };
 
 /// What two bodies that meet at a node have there, as far as the normal says that it reads it; the rest is zero. Both

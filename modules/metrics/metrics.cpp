@@ -108,6 +108,7 @@ std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
            (!simulation_.experiment().damping.acts() && row.name == "damping") ||
            (!remaps && row.name == "remapped strain") ||
            (simulation_.experiment().rigid_bodies.empty() && row.name == "rigid bodies") ||
+           (!simulation_.experiment().has_compliant_contact() && row.name == "interface springs") ||
            (!moves_second_moment(simulation_.experiment(), plan) && row.name == "second moment") ||
            (!gravity_without_potential && row.name == "gravity without potential") ||
            (!takes_back && row.name == "friction taken back");

@@ -28,9 +28,10 @@ struct EdgeTable {
 /// The values of the contact channels at one node for one field.
 struct ContactFieldNode {
   double mass = 0;
-  double volume_gradient[3] = {};  ///< sum V grad w, derivative by the particle's position: points out of the body
-  double mass_gradient[3] = {};    ///< sum m grad w, where the normal reads it
-  double mass_position[3] = {};    ///< sum w m (x_p - x_node), kg m
+  double volume_gradient[3] = {};    ///< sum V grad w, derivative by the particle's position: points out of the body
+  double mass_gradient[3] = {};      ///< sum m grad w, where the normal reads it
+  double mass_position[3] = {};      ///< sum w m (x_p - x_node), kg m
+  double mass_displacement[3] = {};  ///< sum w m (x_p - X_p), kg m, where the law reads it
 };
 
 struct ContactGeometry {
@@ -50,6 +51,11 @@ template <class Scalar>
 MPM_HD bool meet(Scalar mass_a, Scalar mass_b, bool weld) {
   if (!(mass_a > 0) || !(mass_b > 0)) return false;
   return weld || min(mass_a, mass_b) >= contact_prescreen * (static_cast<double>(mass_a) + mass_b);
+}
+
+/// How far field b's particles have moved since the start beside those of a, along one axis, m (MPM_COMPLIANT).
+MPM_HD double displacement_of_pair(const ContactFieldNode& a, const ContactFieldNode& b, int axis) {
+  return b.mass_displacement[axis] / b.mass - a.mass_displacement[axis] / a.mass;
 }
 
 /// Finds the normal of averaged volume gradients (Nairn 2013, CMES 92:271), as modules/normals/average_volume_gradient

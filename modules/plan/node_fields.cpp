@@ -200,6 +200,8 @@ void contact_fields(FieldList& fields) {
   }
   fields.summed("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, area);
   fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass, place);
+  if (experiment.has_compliant_contact())
+    fields.summed("mass_displacement", "kg m", D, AtWall::slip, Folded::with_mass, meets + ": its springs");
 }
 
 /// What nodes get from the particles of each grip: the momentum that these have as they are told at the end of the step,

@@ -54,7 +54,7 @@ class Uses {
 // Where a particle is and which nodes it reaches.
 #define MPM_STENCIL "particles/position", "particles/domain", "particles/corners"
 // What contact and one-sided walls look at.
-#define MPM_PAIRS "nodes/volume_gradient", "nodes/mass_gradient", "nodes/mass_position"
+#define MPM_PAIRS "nodes/volume_gradient", "nodes/mass_gradient", "nodes/mass_position", "nodes/mass_displacement"
 // What walls that heat comes through look at.
 #define MPM_HEATED_WALL "nodes/heated_volume", "nodes/volume_conductivity", "nodes/capacity_position"
 
@@ -220,6 +220,9 @@ void add_what_depends(Uses& uses, Act act, const Pass& pass, const Plan& plan, c
       for (std::size_t k = 0; k < experiment.grips.size(); ++k)
         uses.reads(
             {"nodes/" + grip_field(k), "nodes/" + grip_field(k) + "_mass", "nodes/" + grip_field(k) + "_before"});
+      break;
+    case Act::scatter_contact:
+      if (plan.node_field("mass_displacement")) uses.reads({"particles/initial_position"});
       break;
     case Act::scatter_heat:
       if (plan.node_field("heated_volume")) uses.reads({"particles/material"});

@@ -71,6 +71,34 @@ void refuse_normal(const Experiment& experiment) {
   if (!found[0]) refuse(experiment, normal.pointer, name + " gives no direction: its components are all zero");
 }
 
+/// What a law that acts over time, or by springs, cannot be combined with.
+void refuse_laws(const Experiment& experiment) {
+  const auto name_of = [](const Component& law) { return "contact \"" + std::string(law.plugin->id()) + "\""; };
+  const auto refuse_in_filter = [&](const Component& law) {
+    if (experiment.filter && !experiment.filter_schedule.takes_back &&
+        (law.plugin->contact().traits & MPM_ACTS_OVER_TIME))
+      refuse(experiment, law.pointer,
+             name_of(law) +
+                 " gives an impulse that grows with the step, and a filter that does not take back what contact "
+                 "gave would add it again; take \"constraints\": \"every_increment\" in the filter");
+  };
+  for (const RigidBodySpecification& body : experiment.rigid_bodies) {
+    refuse_in_filter(body.contact);
+    if (body.contact.plugin->contact().traits & MPM_COMPLIANT)
+      refuse(experiment, body.contact.pointer,
+             name_of(body.contact) +
+                 " joins particles by springs, and a rigid body has none; let a body that grips "
+                 "hold be the partner, or take another law");
+  }
+  if (!experiment.contact) return;
+  refuse_in_filter(*experiment.contact);
+  if (experiment.has_compliant_contact() && experiment.any_face(ConditionType::periodic))
+    refuse(experiment, experiment.contact->pointer,
+           name_of(*experiment.contact) +
+               " pulls by how far particles have moved, which jumps where they come in again "
+               "at the other side; close the periodic axis, or take another law");
+}
+
 /// A filter and a ledger that skip steps meet always, or never, where their numbers have a common divisor.
 void refuse_common_schedules(const Experiment& experiment) {
   const FilterSchedule& schedule = experiment.filter_schedule;
@@ -200,6 +228,7 @@ BackendNeeds backend_needs(std::string_view backend) {
 Plan assemble_plan(const Experiment& experiment, const std::function<void(StepBuilder&)>& solver_step) {
   refuse_impossible_combinations(experiment);
   refuse_normal(experiment);
+  refuse_laws(experiment);
   refuse_common_schedules(experiment);
   refuse_temperature(experiment);
   Plan plan;

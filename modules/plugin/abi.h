@@ -26,7 +26,7 @@ extern "C" {
 
 /* The boundary is unstable until 1.0 of the sandbox: any change of a struct or number below makes a new version, and a
  * host takes plugins of its own version alone. */
-#define MPM_ABI_VERSION 3u
+#define MPM_ABI_VERSION 4u
 #define MPM_BATCH 64u /* particles or nodes in a full batch */
 #define MPM_LANES 16u /* counts are padded to a multiple of this */
 
@@ -214,11 +214,18 @@ typedef struct mpm_filter {
  * mass is infinite, its momentum zero, and the velocity of a is relative to it: the impulse on a stays finite. */
 enum mpm_contact_trait {
   MPM_BYPASSES_DETECTION = 1, /* a weld: no prescreen, detection or cap */
-  MPM_PULLS = 2               /* may resist separation (adhesion) */
+  MPM_PULLS = 2,              /* may resist separation (adhesion) */
+  /* Joins the bodies by springs: reads displacement and fills stored. A scene sums displacements for it alone. */
+  MPM_COMPLIANT = 4,
+  /* Its impulse follows from a force over the step, which it gives after the forces: hosts refuse filters whose loop would
+   * add it again in every pass. */
+  MPM_ACTS_OVER_TIME = 8
 };
+/* A law is asked twice in a step: before the forces about the velocity v- that particles bring, and after them about v+. */
+enum mpm_contact_stage { MPM_BEFORE_FORCES = 0, MPM_AFTER_FORCES = 1 };
 enum mpm_contact_status { MPM_APART = 0, MPM_STICKS = 1, MPM_SLIPS = 2 };
 typedef struct mpm_contact_batch {
-  uint32_t count, stride, dimension, reserved;
+  uint32_t count, stride, dimension, stage; /* stage: mpm_contact_stage */
   double dt;
   const void* mass_a;     /* [stride], kg */
   const void* mass_b;     /* may be infinite */
@@ -230,6 +237,10 @@ typedef struct mpm_contact_batch {
   void* impulse;          /* [D][stride] out: added to a, taken from b, kg m/s */
   void* dissipated;       /* [stride] out: energy turned to heat by the law, J */
   int32_t* status;        /* [stride] out: mpm_contact_status */
+  /* [D][stride], m: how far b's particles have moved since the start, less how far a's have, both as means by mass over
+   * the node's weights. Null unless MPM_COMPLIANT. */
+  const void* displacement;
+  void* stored; /* [stride] out: energy that springs take up in this call, J, negative where they give it back; or null */
 } mpm_contact_batch;
 typedef struct mpm_contact {
   uint32_t traits, reserved;

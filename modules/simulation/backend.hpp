@@ -148,6 +148,7 @@ struct Ledger {
   double damping = 0;              ///< the same of what damping takes
   double friction = 0;             ///< share of contact that the law turned to heat (positive), as particles keep it
   double friction_taken_back = 0;  ///< more of it, before the forces, that gathering increments undoes (FLIP)
+  double interface = 0;            ///< share of contact that the springs of the law took up (negative: gave back)
   double material = 0;             ///< dissipated by the materials (positive)
   double filter = 0;               ///< J.(v + v_filtered)/2 of the filter's impulses
   double filtered_strain = 0;      ///< what strain by the filtered velocity stores less than by the unfiltered one
@@ -197,6 +198,7 @@ inline constexpr LedgerEntry<Ledger> ledger_entries[] = {
     {"damping", &Ledger::damping, 1, 2},
     {"friction", &Ledger::friction, 0},
     {"friction taken back", &Ledger::friction_taken_back, 0},
+    {"interface springs", &Ledger::interface, 0},
     {"material dissipation", &Ledger::material, -1, 4},
     {"filter", &Ledger::filter, 1, 1},
     {"filtered strain", &Ledger::filtered_strain, 1, 5},

@@ -81,12 +81,13 @@ void ContactImpulse::book(Ledger& ledger, const ContactGiven& given, double shar
   ledger.friction += share * given.dissipated;
   ledger.rigid_bodies += share * given.driven;
   ledger.contact -= share * given.driven;
+  ledger.interface += share * given.stored;
 }
 
 void ContactImpulse::before_forces(const ContactGiven& given, bool filtered, Ledger* ledger) {
   node_flows_.resize(given.nodes.size());
   for_each_flow(given, [](Flow& flow, const Momentum& momentum) { flow.before = flow.now = momentum; });
-  friction_ = given.dissipated, driven_ = given.driven;
+  friction_ = given.dissipated, driven_ = given.driven, stored_ = given.stored;
   if (!ledger) return;
   const double kept = filtered ? 1.0 : shares_.of_velocity;
   book(*ledger, given, kept);
@@ -95,26 +96,26 @@ void ContactImpulse::before_forces(const ContactGiven& given, bool filtered, Led
 
 void ContactImpulse::after_forces(const ContactGiven& given, Ledger* ledger) {
   for_each_flow(given, [](Flow& flow, const Momentum& momentum) { add(flow.now, momentum); });
-  friction_ += given.dissipated, driven_ += given.driven;
+  friction_ += given.dissipated, driven_ += given.driven, stored_ += given.stored;
   if (ledger) book(*ledger, given, 1);
 }
 
 void ContactImpulse::in_filter(const ContactGiven& given, bool replaces, Ledger* ledger) {
-  if (replaces && ledger) book(*ledger, {.dissipated = friction_, .driven = driven_}, -1);
+  if (replaces && ledger) book(*ledger, {.dissipated = friction_, .driven = driven_, .stored = stored_}, -1);
   if (replaces) {
     for_each_flow(given, [](Flow& flow, const Momentum&) { flow.now = {}; });
-    friction_ = driven_ = 0;
+    friction_ = driven_ = stored_ = 0;
   }
   after_forces(given, ledger);
 }
 
 void ContactImpulse::keep() {
   for_each_flow([](Flow& flow) { flow.kept = flow.now; });
-  kept_friction_ = friction_, kept_driven_ = driven_;
+  kept_friction_ = friction_, kept_driven_ = driven_, kept_stored_ = stored_;
 }
 
 void ContactImpulse::restore(bool keeps_correction) {
-  friction_ = kept_friction_, driven_ = kept_driven_;
+  friction_ = kept_friction_, driven_ = kept_driven_, stored_ = kept_stored_;
   for_each_flow([&](Flow& flow) {
     const Momentum filtered = flow.now;
     flow.now = flow.kept;

@@ -74,6 +74,7 @@ struct ContactGiven {
   std::vector<PairGiven> pairs{};  ///< each of them, where pairs are recorded
   std::vector<NodeGiven> nodes{};  ///< each of them in one order in all stages of the step, where nodes are recorded
   double driven = 0;               ///< J, work of rigid bodies, by their own velocities
+  double stored = 0;               ///< J, taken up by the springs of the law
 };
 
 /// Whether the nodes of a step are recorded.
@@ -140,6 +141,7 @@ class ContactImpulse {
 
   double friction_ = 0, kept_friction_ = 0;  ///< J, of all that contact has done in the step
   double driven_ = 0, kept_driven_ = 0;      ///< J, work of rigid bodies in the step
+  double stored_ = 0, kept_stored_ = 0;      ///< J, taken up by springs in the step
 };
 
 }  // namespace mpm

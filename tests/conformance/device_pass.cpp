@@ -186,11 +186,14 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
   load<D>(t.in[4], lane, pair.normal.v);
   load<1>(t.in[5], lane, &pair.separation);
   load<1>(t.in[6], lane, &pair.area);
+  load<D>(t.in[7], lane, pair.displacement.v);
   pair.dt = real<S>(t.dt);
+  result.stored = S(0);
   Functor::apply(p, pair, result);
   store<D>(t.out[0], lane, result.impulse.v);
   store<1>(t.out[1], lane, &result.dissipated);
   store<1>(t.out[2], lane, &result.status);
+  store<1>(t.out[3], lane, &result.stored);
 }
 )";
 
@@ -382,13 +385,14 @@ Call inputs(const Plugin& plugin, int D, Random& random) {
                  random_column(random, D, -1, 1),
                  zeros(D),
                  random_column(random, 1, -0.1, 0.05),
-                 random_column(random, 1, 0.1, 1)};
+                 random_column(random, 1, 0.1, 1),
+                 random_column(random, D, -step, step)};
       for (int lane = 0; lane < particles; ++lane) {
         const mpm::conformance::Vector3 n = random.direction(D);
         for (int i = 0; i < D; ++i)
           call.in[4][static_cast<std::size_t>(i) * particles + lane] = static_cast<float>(n[i]);
       }
-      call.out = {zeros(D), zeros(1), zeros(1)};
+      call.out = {zeros(D), zeros(1), zeros(1), zeros(1)};
       break;
     }
     case MPM_NORMAL:
@@ -490,10 +494,11 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
     }
     case MPM_CONTACT: {
       indices.resize(particles);
+      const bool compliant = plugin.contact().traits & MPM_COMPLIANT;
       const mpm_contact_batch batch{n,
                                     n,
                                     dimension,
-                                    0,
+                                    MPM_AFTER_FORCES,
                                     step,
                                     in[0].data(),
                                     in[1].data(),
@@ -504,7 +509,9 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
                                     in[6].data(),
                                     out[0].data(),
                                     out[1].data(),
-                                    indices.data()};
+                                    indices.data(),
+                                    compliant ? in[7].data() : nullptr,
+                                    compliant ? out[3].data() : nullptr};
       plugin.contact().apply[MPM_SCALAR_DOUBLE][axis](parameters.data(), &batch);
       out[2] = as_column(indices);
       break;

@@ -5,6 +5,8 @@
 
 #include "conformance/conformance.hpp"
 #include "contacts/coulomb/coulomb.hpp"
+#include "contacts/linear_interface/linear_interface.hpp"
+#include "contacts/liquid_contact/liquid_contact.hpp"
 #include "contacts/stick/stick.hpp"
 #include "filters/fmpm/fmpm.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
@@ -466,6 +468,35 @@ struct PullsOpenly : Pulls {  // is the same law, declared
   static constexpr unsigned traits = MPM_PULLS;
 };
 
+struct DragsTwice : LiquidContact {  // drags before the forces too
+  template <int D, class S>
+  MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
+    ContactPair<D, S> again = pair;
+    again.after_forces = true;
+    LiquidContact::apply(p, again, result);
+  }
+};
+
+struct LiquidPulls : LiquidContact {  // slows what parts, along the normal too
+  template <int D, class S>
+  MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
+    LiquidContact::apply(p, pair, result);
+    const RelativeMotion<D, S> motion(pair);
+    const scalar_of<S> zero = 0;
+    const S parts = select(motion.approach < zero, motion.approach, S(zero));
+    for (int i = 0; i < D; ++i)
+      result.impulse[i] = result.impulse[i] - motion.reduced_mass * parts * pair.normal[i] * real<S>(0.1);
+  }
+};
+
+struct HalfSprings : LinearInterface {  // says that its springs store half of what they take
+  template <int D, class S>
+  MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
+    LinearInterface::apply(p, pair, result);
+    result.stored = real<S>(0.5) * result.stored;
+  }
+};
+
 struct StressOffEnergy : NeoHookean {
   template <int D, class S>
   MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
@@ -731,6 +762,11 @@ TEST_CASE("wrong contact laws are caught") {
   check_caught(wrong_contact<Pulls>, "no_pull");
   check_caught(wrong_contact<MultipliesMasses>, "infinite_mass");
   CHECK(failures(wrong_contact<PullsOpenly>).count("no_pull") == 0);
+  CHECK(failures(wrong_contact<LiquidContact>).empty());
+  CHECK(failures(wrong_contact<LinearInterface>).empty());
+  check_caught(wrong_contact<DragsTwice>, "acts_once_a_step");
+  check_caught(wrong_contact<LiquidPulls>, "no_pull");
+  check_caught(wrong_contact<HalfSprings>, "energy_never_grows");
 }
 
 TEST_CASE("wrong materials are caught") {

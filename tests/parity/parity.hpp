@@ -20,6 +20,12 @@ inline double required_value(const mpm_parameter& parameter) {
                                                     {"friction_angle", 0.6},
                                                     {"order", 3},
                                                     {"decay_speed", 2},
+                                                    {"normal_stiffness", 3e4},
+                                                    {"tension_stiffness", 1e4},
+                                                    {"compression_stiffness", 5e4},
+                                                    {"shear_stiffness", 2e4},
+                                                    {"viscosity", 50},
+                                                    {"slip_length", 0.1},
                                                     {"x", 0.6},
                                                     {"y", 0.8}};
   const auto found = values.find(parameter.name);

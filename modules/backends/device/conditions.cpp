@@ -23,7 +23,7 @@ void DeviceBackend<T>::momentum_to_velocity(const Pass& pass, const StepInfo& st
   keep_free_velocity({});
   impose_conditions({});
   if (plan_.resolves_contact()) {
-    resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::before_forces, step.time);
+    resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::before_forces, Stage::before_forces, step.time);
     impose_conditions({});
   }
   measure_constraints();
@@ -46,7 +46,7 @@ void DeviceBackend<T>::apply_forces(const StepInfo& step) {
   keep_free_velocity(after);
   impose_conditions(after);
   if (plan_.resolves_contact()) {
-    resolve_contact(step, Recorded::after_forces, step.time + step.dt);
+    resolve_contact(step, Recorded::after_forces, Stage::after_forces, step.time + step.dt);
     impose_conditions(after);
   }
   measure_constraints();

@@ -9,7 +9,7 @@
 namespace mpm::device {
 
 template <class T>
-void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, double time) {
+void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time) {
   if (contact_pairs_ && recorded == Recorded::before_forces) {
     look();  // a particle that has failed is nowhere
     contact_pairs_->find(bodies_, fields_);
@@ -26,6 +26,7 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, 
       Arguments<T> arguments = scene_;
       arguments.grid = fields_[a].table(), arguments.other = fields_[b].table();
       arguments.edges[0] = edges_.of(a), arguments.edges[1] = edges_.of(b);
+      arguments.after_forces = stage == Stage::after_forces;
       if (contact_pairs_) arguments.found = contact_pairs_->of(static_cast<int>(a), static_cast<int>(b));
       const std::size_t at = place(contact_sums);
       join("contact", arguments, nodes(), contact_sums, at, 1);
@@ -35,7 +36,7 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, 
         take_pair(found, *given, after_forces);
       });
     }
-  meet_rigid_bodies(time, given, after_forces);
+  meet_rigid_bodies(time, given, stage, /*record=*/after_forces);
   Ledger* const ledger = scene_.records ? &ledger_ : nullptr;
   later([this, recorded, given, ledger, filtered = step.filtered] {
     if (recorded == Recorded::before_forces) contact_impulse_.before_forces(*given, filtered, ledger);
@@ -54,17 +55,19 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, 
 }
 
 template <class T>
-void DeviceBackend<T>::meet_rigid_bodies(double time, const std::shared_ptr<ContactGiven>& all, bool after_forces) {
+void DeviceBackend<T>::meet_rigid_bodies(double time, const std::shared_ptr<ContactGiven>& all, Stage stage,
+                                         bool record) {
   for (std::size_t body = 0; body < rigid_.bodies().count(); ++body) {
     const RigidArrays rigid = rigid_.of(body, time);
     for (std::size_t field = 0; rigid.count > 0 && field < fields_.size(); ++field) {
       Arguments<T> arguments = arguments_of(fields_[field], {});
       arguments.edges[0] = edges_.of(field), arguments.rigid = rigid;
+      arguments.after_forces = stage == Stage::after_forces;
       arguments.contact_parameters = rigid_.parameters(body);
       const std::size_t at = place(rigid_sums);
       join("rigid_contact_" + std::to_string(number_of_law(experiment_, body)), arguments,
            static_cast<int>(rigid.count), rigid_sums, at, 1);
-      results_.later([this, at, all, after_forces, notes = notes_reactions_,
+      results_.later([this, at, all, record, notes = notes_reactions_,
                       support = experiment_.support_of_rigid_body(body)](const double* sums) {
         const double* const found = sums + at;
         RigidGiven given{{found[0], found[1], found[2]},
@@ -76,7 +79,7 @@ void DeviceBackend<T>::meet_rigid_bodies(double time, const std::shared_ptr<Cont
                          found[rigid_penetration]};
         all->dissipated += given.dissipated, all->driven += given.driven;
         if (notes) reactions_.add(GivenBySupport::held, support, given.impulse, given.moment);
-        if (after_forces) given.add_to(contact_);
+        if (record) given.add_to(contact_);
       });
     }
   }
@@ -91,7 +94,7 @@ void DeviceBackend<T>::take_pair(const double* sums, ContactGiven& given, bool r
   pair.sticking = std::lround(sums[contact_sticking]), pair.slipping = std::lround(sums[contact_slipping]);
   pair.area = sums[contact_touching], pair.largest_penetration = sums[contact_penetration];
   for (std::size_t c = 0; c < 3; ++c) given.impulse[c] += pair.impulse[c];
-  given.dissipated += sums[contact_dissipated];
+  given.dissipated += sums[contact_dissipated], given.stored += sums[contact_stored];
   if (!contact_impulse_.pairs().empty()) given.pairs.push_back(pair);
   if (!record) return;
   contact_.sticking += pair.sticking, contact_.slipping += pair.slipping;

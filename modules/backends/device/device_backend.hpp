@@ -203,9 +203,9 @@ class DeviceBackend final : public Backend {
 
   // ---- contact.cpp
   /// Applies the law to every pair of fields, and then those of rigid bodies, whose velocities are those of a time, s.
-  void resolve_contact(const StepInfo& step, Recorded recorded, double time);
+  void resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time);
   /// Lets all fields meet rigid bodies one after another, and adds what these give.
-  void meet_rigid_bodies(double time, const std::shared_ptr<ContactGiven>& all, bool after_forces);
+  void meet_rigid_bodies(double time, const std::shared_ptr<ContactGiven>& all, Stage stage, bool record);
   /// Adds what contact did to a pair, as its phase has summed it, to what all pairs were given, and to the record.
   void take_pair(const double* sums, ContactGiven& given, bool record);
   /// Records the force that particles take when they gather the velocity as it is now.

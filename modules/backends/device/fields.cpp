@@ -44,7 +44,8 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   const int D = experiment.dimension;
   std::vector<Field> fields, material;
   for (const Field& field : plan.fields) {
-    if (!field.of_particles_of(body) || field.lifetime == Lifetime::seeded) continue;
+    const bool springs_read = field.lifetime == Lifetime::seeded && plan.node_field("mass_displacement");
+    if (!field.of_particles_of(body) || (field.lifetime == Lifetime::seeded && !springs_read)) continue;
     if (field.origin == Origin::host && field.id == "identity") continue;  // particles keep the order of seeding
     if (field.origin == Origin::host &&
         (field.id == "melted_fraction" || field.id == "deformation" || field.id == "size"))

@@ -75,7 +75,7 @@ void DeviceBackend<T>::constrain_velocity(const Pass& pass, const StepInfo& step
   }
   impose_conditions({});
   if (plan_.resolves_contact()) {
-    resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::filter, time_of(pass, step));
+    resolve_contact(step, pass.remap() ? Recorded::nothing : Recorded::filter, pass.stage, time_of(pass, step));
     if (pass.stage == Stage::after_forces) record_force(step);
     impose_conditions({});
   }

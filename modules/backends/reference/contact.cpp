@@ -14,6 +14,7 @@ ContactFieldNode ReferenceBackend::contact_view(std::size_t i) const {
   for (int c = 0; c < 3; ++c) {
     view.volume_gradient[c] = volume_gradient_[i][c], view.mass_position[c] = mass_position_[i][c];
     if (sums_mass_gradients_) view.mass_gradient[c] = mass_gradient_[i][c];
+    if (sums_displacements_) view.mass_displacement[c] = mass_displacement_[i][c];
   }
   return view;
 }
@@ -30,14 +31,18 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
   const ContactGeometry& geometry = met.geometry;
   if (!geometry.valid && !weld) return {};
   const bool own = experiment_.contact_normal->plugin->normal().traits & MPM_OWN_NORMALS;
+  Vector displacement = Vector::Zero();
+  for (int c = 0; c < experiment_.dimension && sums_displacements_; ++c)
+    displacement[c] = displacement_of_pair(met.a, met.b, c);
   const auto apply = [&](const double* normal) {
-    return apply_law(law, {mass_[a], mass_[b], momentum_a, momentum_b, geometry, normal, dt});
+    return apply_law(law, {mass_[a], mass_[b], momentum_a, momentum_b, geometry, normal, dt, displacement});
   };
   if (!own) return apply(geometry.normal);
   PairResult result = apply(geometry.own_a);
   const PairResult of_b = apply(geometry.own_b);
   result.returned = of_b.impulse;
   result.dissipated = 0.5 * (result.dissipated + of_b.dissipated);
+  result.stored = 0.5 * (result.stored + of_b.stored);
   result.status = std::max(result.status, of_b.status);
   return result;
 }
@@ -46,8 +51,8 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
 ReferenceBackend::PairResult ReferenceBackend::apply_law(const Component& law, const LawInput& input) const {
   const int D = experiment_.dimension;
   constexpr int n = MPM_LANES;
-  std::array<double, n> mass_a, mass_b, separation, area, dissipated{};
-  std::array<double, 3 * n> p_a, p_b, normal, impulse{};
+  std::array<double, n> mass_a, mass_b, separation, area, dissipated{}, stored{};
+  std::array<double, 3 * n> p_a, p_b, normal, displacement, impulse{};
   std::array<std::int32_t, n> status{};
   mass_a.fill(input.mass_a), mass_b.fill(input.mass_b);
   separation.fill(input.geometry.separation), area.fill(input.geometry.area);
@@ -56,11 +61,13 @@ ReferenceBackend::PairResult ReferenceBackend::apply_law(const Component& law, c
       p_a[c * n + lane] = input.momentum_a[c];
       p_b[c * n + lane] = input.momentum_b[c];
       normal[c * n + lane] = input.normal[c];
+      displacement[c * n + lane] = input.displacement[c];
     }
+  const bool compliant = law.plugin->contact().traits & MPM_COMPLIANT;
   const mpm_contact_batch batch{n,
                                 n,
                                 static_cast<std::uint32_t>(D),
-                                0,
+                                law_stage_,
                                 input.dt,
                                 mass_a.data(),
                                 mass_b.data(),
@@ -71,9 +78,11 @@ ReferenceBackend::PairResult ReferenceBackend::apply_law(const Component& law, c
                                 area.data(),
                                 impulse.data(),
                                 dissipated.data(),
-                                status.data()};
+                                status.data(),
+                                compliant ? displacement.data() : nullptr,
+                                compliant ? stored.data() : nullptr};
   law.plugin->contact().apply[MPM_SCALAR_DOUBLE][D - 2](law.parameters.data(), &batch);
-  PairResult result{Vector::Zero(), Vector::Zero(), dissipated[0], status[0], input.geometry};
+  PairResult result{Vector::Zero(), Vector::Zero(), dissipated[0], stored[0], status[0], input.geometry};
   for (int c = 0; c < D; ++c) result.impulse[c] = result.returned[c] = impulse[c * n];
   return result;
 }
@@ -140,6 +149,7 @@ void ReferenceBackend::find_contact_points() {
 void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, bool remap) {
   if (contact_points_.needed() && !after_forces && !remap) find_contact_points();
   if (after_forces) contact_ = {};
+  law_stage_ = after_forces ? MPM_AFTER_FORCES : MPM_BEFORE_FORCES;
   const double time = after_forces ? step.time + step.dt : step.time;
   ContactGiven given = nothing_given();
   const Vector total_change = resolve_pairs(step, after_forces, given);
@@ -223,7 +233,7 @@ ContactGiven ReferenceBackend::nothing_given() const {
 void ReferenceBackend::count(const PairResult& result, std::size_t a, std::size_t b, bool notes_node,
                              ContactGiven& given) const {
   for (int c = 0; c < 3; ++c) given.impulse[static_cast<std::size_t>(c)] += result.impulse[c];
-  given.dissipated += result.dissipated;
+  given.dissipated += result.dissipated, given.stored += result.stored;
   const ContactGeometry& geometry = result.geometry;
   const bool own = experiment_.contact_normal->plugin->normal().traits & MPM_OWN_NORMALS;
   const Vector normal = geometry.valid ? Vector(Eigen::Map<const Vector>(own ? geometry.own_a : geometry.normal))

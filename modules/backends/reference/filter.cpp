@@ -153,6 +153,7 @@ void ReferenceBackend::constrain_velocity(const Pass& pass, const StepInfo& step
   grid_.hold_grips_at_end(pass.stage != Stage::before_forces);
   impose_on_velocity(time);
   if (!plan_.resolves_contact()) return;
+  law_stage_ = pass.stage == Stage::after_forces ? MPM_AFTER_FORCES : MPM_BEFORE_FORCES;
   const ContactGiven given = resolve_contact_of_velocity(time, step);
   if (!pass.remap()) impulse_.in_filter(given, keeps_constraints_, ledger_to_book());
   if (pass.stage == Stage::after_forces) record_force(step);

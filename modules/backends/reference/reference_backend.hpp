@@ -82,9 +82,9 @@ class ReferenceBackend final : public Backend {
   // ---- contact.cpp
   /// The effect of the law on one pair of velocity fields at one node.
   struct PairResult {
-    Vector impulse = Vector::Zero();   ///< added to a, kg m/s
-    Vector returned = Vector::Zero();  ///< taken from b: the same, unless each has a normal of its own
-    double dissipated = 0;             ///< J
+    Vector impulse = Vector::Zero();    ///< added to a, kg m/s
+    Vector returned = Vector::Zero();   ///< taken from b: the same, unless each has a normal of its own
+    double dissipated = 0, stored = 0;  ///< J
     std::int32_t status = MPM_APART;
     ContactGeometry geometry{};
   };
@@ -102,6 +102,7 @@ class ReferenceBackend final : public Backend {
     ContactGeometry geometry;
     const double* normal;  ///< from a to b, along which the law acts
     double dt;
+    Vector displacement = Vector::Zero();  ///< of b beside a, m, where the law reads it
   };
   PairResult apply_law(const Component& law, const LawInput& input) const;
   /// Lets the material of all fields meet rigid bodies, whose velocities are those of a time, s. velocity(i) is that of a
@@ -201,6 +202,9 @@ class ReferenceBackend final : public Backend {
   VectorField& volume_gradient_ = grid_.vector("volume_gradient");  ///< sum V grad w
   VectorField& mass_gradient_ = grid_.vector("mass_gradient");      ///< sum m grad w
   const bool sums_mass_gradients_ = plan_.node_field("mass_gradient") != nullptr;
+  VectorField& mass_displacement_ = grid_.vector("mass_displacement");  ///< sum w m (x_p - X_p)
+  const bool sums_displacements_ = plan_.node_field("mass_displacement") != nullptr;
+  std::uint32_t law_stage_ = MPM_BEFORE_FORCES;                 ///< what laws are asked about now (mpm_contact_stage)
   VectorField& mass_position_ = grid_.vector("mass_position");  ///< sum w m (x_p - x_node)
   VectorField& increment_ = grid_.vector("increment");          ///< v* of the filter
   VectorField& projection_ = grid_.vector("projection");        ///< S+ S v*, a momentum until over_mass divides it

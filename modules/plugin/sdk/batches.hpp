@@ -537,8 +537,11 @@ void contact_batch(const void* parameters, const mpm_contact_batch* request) {
     load_components<D, S>(q.normal, q.stride, lane, pair.normal.v);
     load_components<1, S>(q.separation, q.stride, lane, &pair.separation);
     load_components<1, S>(q.area, q.stride, lane, &pair.area);
-    pair.dt = real<S>(q.dt);
+    pair.dt = real<S>(q.dt), pair.after_forces = q.stage == MPM_AFTER_FORCES;
+    constexpr bool compliant = (F::traits & MPM_COMPLIANT) != 0;
+    if constexpr (compliant) load_components<D, S>(q.displacement, q.stride, lane, pair.displacement.v);
     F::apply(p, pair, result);
+    if constexpr (compliant) store_components<1, S>(q.stored, q.stride, lane, &result.stored);
     store_components<D, S>(q.impulse, q.stride, lane, result.impulse.v);
     store_components<1, S>(q.dissipated, q.stride, lane, &result.dissipated);
     Access<S>::store_index(q.status + lane, result.status);

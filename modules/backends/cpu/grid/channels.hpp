@@ -65,6 +65,7 @@ struct NamedChannels {
   const Channel volume_gradient = channel_of(plan_, "volume_gradient"),
                 mass_gradient = channel_of(plan_, "mass_gradient");
   const Channel mass_position = channel_of(plan_, "mass_position");
+  const Channel mass_displacement = channel_of(plan_, "mass_displacement");  ///< where a law has springs
   /// Holds heat and its capacity; temperature and capacity once the heat has been divided.
   const Channel heat = channel_of(plan_, "heat"), heat_rate = channel_of(plan_, "heat_rate");
   const Channel temperature_before = channel_of(plan_, "temperature_before");  ///< later the increment

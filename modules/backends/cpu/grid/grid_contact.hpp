@@ -11,7 +11,7 @@ namespace mpm::cpu {
 /// The sums that the pairs of one slot add to the ledger and the record.
 template <int D, class T>
 struct GridStep<D, T>::ContactSums {
-  double friction = 0, largest_penetration = 0;
+  double friction = 0, stored = 0, largest_penetration = 0;
   double impulse[3]{}, change[3]{};
   long sticking = 0, slipping = 0;
   PairGiven* pairs = nullptr;  ///< one a pair of fields, where they are recorded apart
@@ -30,6 +30,8 @@ struct GridStep<D, T>::ContactBatch {
   // Where each body has a normal of its own, `normal` is that of a, and these are of b.
   alignas(64) T normal_of_b[D * block_nodes], impulse_of_b[D * block_nodes], dissipated_of_b[block_nodes];
   alignas(64) std::int32_t status_of_b[block_nodes];
+  // These are for laws with springs.
+  alignas(64) T displacement[D * block_nodes], stored[block_nodes], stored_of_b[block_nodes];
   alignas(64) std::int32_t status[block_nodes];
 
   void add(std::uint32_t at, const Quad<T>& a, const Quad<T>& b, const ContactGeometry& geometry, bool own) {
@@ -46,6 +48,11 @@ struct GridStep<D, T>::ContactBatch {
     }
     ++count;
   }
+  /// Says of the last pair how far b has moved beside a.
+  void displace(const ContactFieldNode& a, const ContactFieldNode& b) {
+    for (int c = 0; c < D; ++c)
+      displacement[c * block_nodes + count - 1] = static_cast<T>(displacement_of_pair(a, b, c));
+  }
   /// Adds what the law did to its pair.
   void add_to(PairGiven& pair) const {
     for (int i = 0; i < count; ++i) {
@@ -55,13 +62,14 @@ struct GridStep<D, T>::ContactBatch {
     }
   }
   /// Copies the last pair so that whole lanes may be computed.
-  int pad(bool own) {
+  int pad(bool own, bool compliant) {
     const int last = count - 1, end = padded(count);
     for (int i = count; i < end; ++i) {
       mass_a[i] = mass_a[last], mass_b[i] = mass_b[last], separation[i] = separation[last], area[i] = area[last];
       for (int c = 0; c < D; ++c)
-        for (T* array : {momentum_a, momentum_b, normal, normal_of_b})
-          if (array != normal_of_b || own) array[c * block_nodes + i] = array[c * block_nodes + last];
+        for (T* array : {momentum_a, momentum_b, normal, normal_of_b, displacement})
+          if ((array != normal_of_b || own) && (array != displacement || compliant))
+            array[c * block_nodes + i] = array[c * block_nodes + last];
     }
     return end;
   }
@@ -70,7 +78,7 @@ struct GridStep<D, T>::ContactBatch {
 /// What contact looks at of one velocity field, from a slot's first node on.
 template <int D, class T>
 struct GridStep<D, T>::ContactField {
-  const Q *motion, *gradient, *position, *mass_gradient;  ///< the last is null where it is not summed
+  const Q *motion, *gradient, *position, *mass_gradient, *displacement;  ///< the last two are null where not summed
 
   ContactFieldNode at(std::uint32_t node) const;
 };
@@ -83,6 +91,7 @@ inline ContactFieldNode GridStep<D, T>::ContactField::at(std::uint32_t node) con
   for (int c = 0; c < 3; ++c) {
     result.volume_gradient[c] = gradient[c], result.mass_position[c] = position[c];
     if (mass_gradient) result.mass_gradient[c] = mass_gradient[node][c];
+    if (displacement) result.mass_displacement[c] = displacement[node][c];
   }
   return result;
 }
@@ -90,10 +99,11 @@ inline ContactFieldNode GridStep<D, T>::ContactField::at(std::uint32_t node) con
 template <int D, class T>
 void GridStep<D, T>::call_law(const Component& law, ContactBatch& batch, std::uint32_t end, double dt,
                               bool of_b) const {
+  const bool compliant = law.plugin->contact().traits & MPM_COMPLIANT;
   const mpm_contact_batch request{end,
                                   block_nodes,
                                   D,
-                                  0,
+                                  law_stage_,
                                   dt,
                                   batch.mass_a,
                                   batch.mass_b,
@@ -104,7 +114,9 @@ void GridStep<D, T>::call_law(const Component& law, ContactBatch& batch, std::ui
                                   batch.area,
                                   of_b ? batch.impulse_of_b : batch.impulse,
                                   of_b ? batch.dissipated_of_b : batch.dissipated,
-                                  of_b ? batch.status_of_b : batch.status};
+                                  of_b ? batch.status_of_b : batch.status,
+                                  compliant ? batch.displacement : nullptr,
+                                  compliant ? (of_b ? batch.stored_of_b : batch.stored) : nullptr};
   law.plugin->contact().apply[lane_precision<T>][D - 2](law.parameters.data(), &request);
 }
 
@@ -112,13 +124,15 @@ template <int D, class T>
 void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums) {
   const Component& law = *scene_.experiment.contact;
   const bool own = own_normals_;
-  const std::uint32_t end = static_cast<std::uint32_t>(batch.pad(own));
+  const bool compliant = mass_displacement >= 0;
+  const std::uint32_t end = static_cast<std::uint32_t>(batch.pad(own, compliant));
   call_law(law, batch, end, step.dt, false);
   if (own) {
     call_law(law, batch, end, step.dt, true);
     for (int i = 0; i < batch.count; ++i) {
       batch.dissipated[i] = T(0.5) * (batch.dissipated[i] + batch.dissipated_of_b[i]);
       batch.status[i] = std::max(batch.status[i], batch.status_of_b[i]);
+      if (compliant) batch.stored[i] = T(0.5) * (batch.stored[i] + batch.stored_of_b[i]);
     }
   }
   const T* const returned = own ? batch.impulse_of_b : batch.impulse;
@@ -137,6 +151,7 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
       sums.impulse[c] += impulse;
     }
     sums.friction += batch.dissipated[i];
+    if (compliant) sums.stored += batch.stored[i];
     sums.sticking += batch.status[i] == MPM_STICKS;
     sums.slipping += batch.status[i] == MPM_SLIPS;
     if (batch.status[i] != MPM_APART && batch.valid[i])
@@ -167,7 +182,8 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
   const auto contact_field = [&](int field) {
     return ContactField{&motion_at(field, first), &grid_.quad(volume_gradient, field, first),
                         &grid_.quad(mass_position, field, first),
-                        mass_gradient < 0 ? nullptr : &grid_.quad(mass_gradient, field, first)};
+                        mass_gradient < 0 ? nullptr : &grid_.quad(mass_gradient, field, first),
+                        mass_displacement < 0 ? nullptr : &grid_.quad(mass_displacement, field, first)};
   };
   static_assert(block_nodes <= MPM_BATCH);
   static thread_local std::array<MetPair, block_nodes> met;  // its memory is kept from slot to slot
@@ -186,8 +202,9 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
       for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t node = nodes[i];
         const ContactGeometry& geometry = met[i].geometry;
-        if (geometry.valid || weld)
-          batch.add(first + node, of_a.motion[node], of_b.motion[node], geometry, own_normals_);
+        if (!geometry.valid && !weld) continue;
+        batch.add(first + node, of_a.motion[node], of_b.motion[node], geometry, own_normals_);
+        if (mass_displacement >= 0) batch.displace(met[i].a, met[i].b);
       }
       if (batch.count == 0) continue;
       apply_law(batch, a, b, step, sums);
@@ -222,7 +239,7 @@ void GridStep<D, T>::resolve_pairs(const StepInfo& step, std::vector<ContactSums
   scene_.team->for_each(slots.size(), 4, [&](std::size_t i, int) { resolve_slot(slots[i], step, sums[i]); });
   for (const ContactSums& s : sums) {
     for (int c = 0; c < D; ++c) given.impulse[c] += s.impulse[c];
-    given.dissipated += s.friction;
+    given.dissipated += s.friction, given.stored += s.stored;
     given.nodes.insert(given.nodes.end(), s.nodes.begin(), s.nodes.end());
   }
   given.pairs.resize(pairs);
@@ -247,7 +264,8 @@ ContactRecord GridStep<D, T>::record_of(const std::vector<ContactSums>& sums) {
 
 /// Lets fields meet one another, and then rigid bodies, whose velocities are those of a time, s.
 template <int D, class T>
-void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded, double time) {
+void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time) {
+  law_stage_ = stage == Stage::after_forces ? MPM_AFTER_FORCES : MPM_BEFORE_FORCES;
   if (contact_points_.needed() && recorded == Recorded::before_forces) find_contact_points();
   std::vector<ContactSums> sums;
   ContactGiven given;

@@ -147,7 +147,7 @@ void GridStep<D, T>::constrain(const Pass& pass, const StepInfo& step) {
   grips_at_end_ = pass.stage != Stage::before_forces;
   impose(time);
   if (!scene_.plan.resolves_contact()) return;
-  resolve_contact(step, pass.remap() ? Recorded::remap : Recorded::filter, time);
+  resolve_contact(step, pass.remap() ? Recorded::remap : Recorded::filter, pass.stage, time);
   if (pass.stage == Stage::after_forces) record_force(step);
   impose(time);
 }

@@ -163,7 +163,7 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   keep_free_velocity(false);
   impose(step.time);
   if (scene_.plan.resolves_contact()) {
-    resolve_contact(step, remap ? Recorded::remap : Recorded::before_forces, step.time);
+    resolve_contact(step, remap ? Recorded::remap : Recorded::before_forces, Stage::before_forces, step.time);
     impose(step.time);
   }
   measure_constraints();
@@ -419,7 +419,7 @@ void GridStep<D, T>::apply_forces(const StepInfo& step) {
   keep_free_velocity(true);
   impose(end);
   if (scene_.plan.resolves_contact()) {
-    resolve_contact(step, Recorded::after_forces, end);
+    resolve_contact(step, Recorded::after_forces, Stage::after_forces, end);
     impose(end);
   }
   measure_constraints();

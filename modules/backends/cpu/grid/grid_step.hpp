@@ -181,7 +181,7 @@ class GridStep : NamedChannels {
   struct ContactBatch;
   struct ContactField;
   struct RigidChunk;
-  void resolve_contact(const StepInfo& step, Recorded recorded, double time);
+  void resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time);
   void resolve_pairs(const StepInfo& step, std::vector<ContactSums>& sums, ContactGiven& given);
   static ContactRecord record_of(const std::vector<ContactSums>& sums);
   void find_contact_points();
@@ -206,8 +206,9 @@ class GridStep : NamedChannels {
   FilterRecord& filter_;
   ReactionImpulse& reactions_;
   const PairGeometry pair_geometry_;
-  const bool own_normals_;              ///< each body of a pair has its own
-  const std::vector<EdgeModel> edges_;  ///< of each velocity field, beside rigid bodies
+  const bool own_normals_;                       ///< each body of a pair has its own
+  std::uint32_t law_stage_ = MPM_BEFORE_FORCES;  ///< what laws are asked about now (mpm_contact_stage)
+  const std::vector<EdgeModel> edges_;           ///< of each velocity field, beside rigid bodies
   RigidBodies rigid_;
   ContactPoints contact_points_;
   std::function<void(ContactPoints&)> show_particles_;

@@ -426,6 +426,18 @@ void ParticleStep<D, T, Components>::scatter_loads(const Chunk& chunk, Work& wor
   note_forces(failures);
 }
 
+/// Scatters w m (x_p - X_p), which springs between bodies pull by.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::scatter_displacements(const Chunk& chunk, Work& work) {
+  std::fill(work.b, work.b + D * chunk_size<T>, T(0));
+  for (int p = 0; p < chunk.count; ++p) {
+    const double* const start = chunk.body.initial_position + std::size_t(chunk.ids[p]) * D;
+    for (int c = 0; c < D; ++c)
+      work.b[c * chunk_size<T> + p] = work.mass[p] * static_cast<T>(place_of(chunk, p, c) - start[c]);
+  }
+  add_to_tile(chunk, work, mass_displacement, nullptr, true, false, false);
+}
+
 /// Scatters V grad w, V = J V0, m grad w where the normal reads it, and w m (x_p - x_node). A ring has the gradients of its
 /// section, as its volume and mass grow away from the axis.
 template <int D, class T, class Components>
@@ -448,6 +460,7 @@ void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, 
     }
   add_to_tile(chunk, work, volume_gradient, nullptr, false, false, true);
   add_to_tile(chunk, work, mass_position, nullptr, false, true, false);
+  if (mass_displacement >= 0) scatter_displacements(chunk, work);
   if (mass_gradient < 0) return;
   for (int p = 0; p < chunk.end; p += Lanes<T>::width) {
     const Lanes<T> cut = section(chunk, Lanes<T>::load(work.mass + p), p);

@@ -328,6 +328,7 @@ class ParticleStep : NamedChannels {
   void add_body_force(const Chunk& chunk, Work& work, double time, double factor);
   void scatter_loads(const Chunk& chunk, Work& work, double time);
   void scatter_contact_fields(const Chunk& chunk, Work& work);
+  void scatter_displacements(const Chunk& chunk, Work& work);
 
   std::size_t grip_of(const Chunk& chunk, int p) const;
   Vector3 place_of(const Chunk& chunk, int p) const;

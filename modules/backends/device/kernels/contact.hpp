@@ -15,6 +15,7 @@ enum : int {
   contact_along = 6,       ///< 3, the parts of the impulse along the nodes' normals, kg m/s
   contact_pressing = 9,    ///< sum of their sizes, positive where they push the fields apart, kg m/s
   contact_dissipated,      ///< J
+  contact_stored,          ///< J, taken up by springs
   contact_sticking,        ///< nodes
   contact_slipping,
   contact_touching,     ///< area where they touch, m^2
@@ -33,6 +34,7 @@ MPM_HD ContactFieldNode contact_field(const Arguments<T>& a, const NodeArrays<T>
     found.volume_gradient[c] = grid.field[N::volume_gradient][at];
     if constexpr (N::mass_gradient >= 0) found.mass_gradient[c] = grid.field[N::mass_gradient][at];
     found.mass_position[c] = grid.field[N::mass_position][at];
+    if constexpr (N::mass_displacement >= 0) found.mass_displacement[c] = grid.field[N::mass_displacement][at];
   }
   return found;
 }
@@ -92,6 +94,7 @@ MPM_HD Vec<Scene::dimension, T> ask_law(const Arguments<T>& a, const ContactGeom
     apply(geometry.own_b, of_b);
     result.dissipated = T(0.5) * (result.dissipated + of_b.dissipated);
     result.status = max(result.status, of_b.status);
+    if constexpr (Scene::Node::mass_displacement >= 0) result.stored = T(0.5) * (result.stored + of_b.stored);
     return of_b.impulse;
   } else {
     apply(geometry.normal, result);
@@ -118,7 +121,12 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
       pair.momentum_b[c] = momentum_of(a.other.field[N::velocity][c * nodes + node], pair.mass_b);
     }
     pair.separation = static_cast<T>(geometry.separation), pair.area = static_cast<T>(geometry.area);
-    pair.dt = a.dt;
+    pair.dt = a.dt, pair.after_forces = a.after_forces;
+    if constexpr (N::mass_displacement >= 0) {
+      const ContactFieldNode of_a = contact_field<Scene>(a, a.grid, node),
+                             of_b = contact_field<Scene>(a, a.other, node);
+      for (int c = 0; c < D; ++c) pair.displacement[c] = static_cast<T>(displacement_of_pair(of_a, of_b, c));
+    }
     ContactResult<D, T> result;
     const Vec<D, T> returned = ask_law<Scene>(a, geometry, pair, result);
     for (int c = 0; c < D; ++c) {
@@ -134,6 +142,7 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
       add_normal_part(result.impulse, Scene::own_normals ? geometry.own_a : geometry.normal, 1, D, sums + contact_along,
                       sums[contact_pressing]);
     sums[contact_dissipated] += result.dissipated;
+    if constexpr (N::mass_displacement >= 0) sums[contact_stored] += result.stored;
     const int status = static_cast<int>(result.status);
     if (status == contact_apart) return;
     sums[status == contact_sticks ? contact_sticking : contact_slipping] += 1;

@@ -63,7 +63,7 @@ MPM_HD void rigid_contact(const Team& team, const Arguments<typename Scene::Scal
       pair.normal[c] = static_cast<T>(geometry.normal[c]);
     }
     pair.separation = static_cast<T>(geometry.separation), pair.area = static_cast<T>(geometry.area);
-    pair.dt = a.dt;
+    pair.dt = a.dt, pair.after_forces = a.after_forces;
     ContactResult<D, T> result;
     Law::apply(parameters_of<Law>(a.contact_parameters), pair, result);
     for (int c = 0; c < D; ++c) {

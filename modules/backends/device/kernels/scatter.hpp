@@ -154,6 +154,9 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
           values[Place::volume_gradient + i] = volume / around * s.gradient[i];
           if constexpr (Place::mass_gradient >= 0)
             values[Place::mass_gradient + i] = mass_of_particle / around * s.gradient[i];
+          if constexpr (Place::mass_displacement >= 0)
+            values[Place::mass_displacement + i] =
+                mass * (position[i * stride + p] - particles.field[P::initial_position][i * stride + p]);
           values[Place::mass_position + i] = -mass * s.distance[i];
         }
       }

@@ -1,0 +1,82 @@
+// Contact laws with springs and liquids: what a scene keeps for them, and what they are refused with by name.
+
+#include "plan/plan.hpp"
+#include "support/catch.hpp"
+#include "support/scene.hpp"
+
+using namespace mpm;
+
+namespace {
+
+const std::string springs = R"({"type": "linear_interface", "normal_stiffness": 1e4, "shear_stiffness": 1e4})",
+                  liquid = R"({"type": "liquid_contact", "viscosity": 1, "slip_length": 0.1})";
+
+std::string scene(const std::string& contact, const std::string& more = "", const std::string& walls = "\"free\"") {
+  return R"({"title": "t", "dimension": 2, "backend": "cpu",
+    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]], "boundaries": {"x_min": )" +
+         walls + R"(, "x_max": )" + walls + R"(}},
+    "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"})" +
+         (contact.empty() ? "" : ", \"contact\": " + contact) + more + R"(,
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000}},
+    "bodies": [
+      {"name": "a", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0.2], "upper": [0.5, 0.6]}},
+      {"name": "b", "material": "m", "geometry": {"type": "box", "lower": [0.5, 0.2], "upper": [0.8, 0.6]}}],
+    "solver": {"time_step": 1e-3, "end_time": 0.1}})";
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    make_plan(test::experiment_from(text));
+    return "accepted";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+std::string filtered(const std::string& constraints) {
+  return R"(, "filter": {"type": "fmpm", "order": 2, "constraints": ")" + constraints + "\"}";
+}
+
+std::string beside_rigid_body(const std::string& law) {
+  return scene("",
+               R"(, "rigid_bodies": [{"geometry": {"type": "ball", "centre": [0.5, 0.9], "radius": 0.1}, "contact": )" +
+                   law + "}]");
+}
+
+}  // namespace
+
+TEST_CASE("displacements are summed for laws with springs alone", "[interface]") {
+  const Plan with = make_plan(test::experiment_from(scene(springs)));
+  REQUIRE(with.node_field("mass_displacement"));
+  CHECK(with.node_field("mass_displacement")->because.find("linear_interface") != std::string::npos);
+  REQUIRE(with.particle_field(0, "initial_position"));
+  for (const std::string& law : {liquid, std::string(R"({"type": "stick"})"), std::string(R"({"type": "coulomb"})")}) {
+    INFO(law);
+    const Plan without = make_plan(test::experiment_from(scene(law)));
+    CHECK_FALSE(without.node_field("mass_displacement"));
+    CHECK_FALSE(without.particle_field(0, "initial_position"));
+  }
+}
+
+TEST_CASE("laws that act over time are refused where a filter would add them again", "[interface]") {
+  for (const std::string& law : {springs, liquid}) {
+    CHECK(refusal(scene(law, filtered("every_increment"))) == "accepted");
+    for (const char* constraints : {"kept_impulses", "at_end"}) {
+      const std::string said = refusal(scene(law, filtered(constraints)));
+      INFO(said);
+      CHECK(said.find("/contact: contact \"") != std::string::npos);
+      CHECK(said.find("take \"constraints\": \"every_increment\"") != std::string::npos);
+    }
+  }
+  CHECK(refusal(beside_rigid_body(liquid)) == "accepted");
+}
+
+TEST_CASE("springs are refused beside rigid bodies and across periodic axes", "[interface]") {
+  const std::string rigid = refusal(beside_rigid_body(springs)), periodic = refusal(scene(springs, "", "\"periodic\""));
+  INFO(rigid << "\n" << periodic);
+  CHECK(rigid.find("/rigid_bodies/0/contact: contact \"linear_interface\" joins particles by springs") !=
+        std::string::npos);
+  CHECK(periodic.find("/contact: contact \"linear_interface\" pulls by how far particles have moved") !=
+        std::string::npos);
+  CHECK(refusal(scene(liquid, "", "\"periodic\"")) == "accepted");
+}
