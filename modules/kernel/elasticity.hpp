@@ -1,5 +1,5 @@
 #pragma once
-// What several materials share: moduli, the three volumetric energies, and the isochoric Neo-Hookean part.
+// What several materials share: moduli, the three volumetric energies, and isochoric parts.
 
 #include "kernel/tensor.hpp"
 
@@ -52,6 +52,26 @@ MPM_HD double lame_lambda(double youngs_modulus, double poisson_ratio) {
 }
 MPM_HD double bulk_modulus(double youngs_modulus, double poisson_ratio) {
   return youngs_modulus / (3 * (1 - 2 * poisson_ratio));
+}
+
+/// The isochoric left Cauchy-Green tensor J^-2/3 b, whose determinant is 1 (Flory 1961; Simo & Hughes 1998, sec. 9.2).
+template <int D, class S>
+MPM_HD Sym<D, S> isochoric(Sym<D, S> b, S J) {
+  const S scale = exp(real<S>(-2.0 / 3.0) * log(J));
+  for (int k = 0; k < Sym<D, S>::size; ++k) b.s[k] = scale * b.s[k];
+  return b;
+}
+
+/// The cofactors det(a) a^-1 of a symmetric tensor of space; their trace is its second invariant.
+template <class S>
+MPM_HD Sym<2, S> cofactors(const Sym<2, S>& a) {
+  const S &x = a.s[0], &y = a.s[1], &z = a.s[2], &xy = a.s[3];
+  return {{y * z, x * z, x * y - xy * xy, -(xy * z)}};
+}
+template <class S>
+MPM_HD Sym<3, S> cofactors(const Sym<3, S>& a) {
+  const S &x = a.s[0], &y = a.s[1], &z = a.s[2], &yz = a.s[3], &xz = a.s[4], &xy = a.s[5];
+  return {{y * z - yz * yz, x * z - xz * xz, x * y - xy * xy, xz * xy - x * yz, xy * yz - y * xz, xz * yz - z * xy}};
 }
 
 /// rho0 c^2 of the fastest wave along the axes of b, split Neo-Hookean (Simo & Hughes 1998, eq. 9.2.6 with n n n n):

@@ -13,15 +13,10 @@ namespace mpm::test {
 /// The value of a required parameter. One that has no default and is not named here stops the suite: give it a value
 /// fit for these scenes.
 inline double required_value(const mpm_parameter& parameter) {
-  static const std::map<std::string, double> values{{"youngs_modulus", 1000},
-                                                    {"poisson_ratio", 0.3},
-                                                    {"density", 1000},
-                                                    {"yield_stress", 60},
-                                                    {"friction_angle", 0.6},
-                                                    {"order", 3},
-                                                    {"decay_speed", 2},
-                                                    {"x", 0.6},
-                                                    {"y", 0.8}};
+  static const std::map<std::string, double> values{
+      {"youngs_modulus", 1000}, {"poisson_ratio", 0.3}, {"density", 1000}, {"yield_stress", 60},
+      {"friction_angle", 0.6},  {"order", 3},           {"c10", 140},      {"c01", 50},
+      {"bulk_modulus", 800},    {"decay_speed", 2},     {"x", 0.6},        {"y", 0.8}};
   const auto found = values.find(parameter.name);
   if (found == values.end())
     throw std::runtime_error(std::string("tests: no value for the required parameter ") + parameter.name);
