@@ -1,5 +1,5 @@
-// Mooney-Rivlin rubber under imposed deformation, against the textbook's stresses where the volume stays and against the
-// derivatives of the three volumetric energies where the shape does.
+// Mooney-Rivlin rubber under imposed deformation, against the textbook's stresses where the volume stays, and against
+// the derivatives of the three volumetric energies where the shape does.
 
 #include <cmath>
 

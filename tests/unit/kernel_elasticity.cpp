@@ -53,6 +53,22 @@ TEST_CASE("cofactors times the tensor are its determinant, in space and in plane
   CHECK(of_flat(0, 1) == Approx(expected(0, 1)));
 }
 
+TEST_CASE("a tensor put together from its principal values has their invariants, and the third is zz in 2-D") {
+  const double c = 0.6, s = 0.8, h = std::sqrt(0.5);
+  const Mat<3, double> U{{c, -s * h, s * h, s, c * h, -c * h, 0, h, h}};
+  const Vec<3, double> values{{2, -3, 5}};
+  const Sym<3, double> a = from_principal(U, values);
+  CHECK(trace(a) == Approx(4).epsilon(1e-14));
+  CHECK(determinant(a) == Approx(-30).epsilon(1e-14));
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 3; ++i)
+      CHECK(a(i, 0) * U(0, k) + a(i, 1) * U(1, k) + a(i, 2) * U(2, k) == Approx(values[k] * U(i, k)).margin(1e-14));
+  const Sym<2, double> flat = from_principal(Mat<2, double>{{c, -s, s, c}}, values);
+  CHECK(flat(0, 0) == Approx(2 * c * c - 3 * s * s));
+  CHECK(flat(0, 1) == Approx(5 * c * s));
+  CHECK(flat.s[2] == 5);
+}
+
 TEST_CASE("the fastest wave of a split Neo-Hookean solid") {
   // At rest that of K + 4/3 mu; beyond J = e the logarithmic energy pushes no more, and shear is faster.
   using Sym3 = Sym<3, double>;

@@ -50,9 +50,9 @@ struct MooneyRivlin : ElasticSolid {
            c.bulk * volumetric_energy(c.volumetric, J);
   }
 
-  /// Along F + s a (x) F^T n, a and n unit vectors and p = a.n, d2 I2/ds2 = 2 (a.i.a + 2/3 p n.i.a - p^2/9 I2) with
-  /// i = b_iso^-1. It is largest at a = n, where it is 2 (5/3 n.i.n - I2/9), and so C01 adds 2 C01 (5/3 i_max - I2/9) at most
-  /// to what the split Neo-Hookean solid has.
+  /// Along F + s a (x) F^T n, a and n unit vectors and p = a.n, d2 I2/ds2 = 2 (a.i.a + 2/3 p n.i.a - p^2/9 I2) with i =
+  /// b_iso^-1. It is largest at a = n, where it is 2 (5/3 n.i.n - I2/9), and so C01 adds 2 C01 (5/3 i_max - I2/9) at
+  /// most to what the split Neo-Hookean solid has.
   template <class G, class S = typename G::Scalar>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
     const S J = determinant(state.deformation_gradient);

@@ -8,15 +8,15 @@
 //
 // Of F_P only J_P = det F_P matters, and so only that is kept. In plane strain F_E zz stays 1.
 //
-// Dissipation. Let d_i be the plastic rates of stretch along the principal directions, so that dJ_P/dt = J_P sum d_i, and
-// psi0 = psi/h, tau0_i = tau_i/h. Of the work of stress tau : l what is not stored is
+// Dissipation. Let d_i be the plastic rates of stretch along the principal directions, so that dJ_P/dt = J_P sum d_i,
+// and psi0 = psi/h, tau0_i = tau_i/h. Of the work of stress tau : l what is not stored is
 //   D = tau : l - dpsi/dt = sum tau_i d_i - psi0 dh/dt = h sum (tau0_i + xi J_P psi0) d_i.
 // The second law asks for D >= 0. The paper takes each stretch back to its bound by itself and asks for nothing of the
 // kind, so that the sign of d_i is that of the bound and the sign of D that of tau0_i + xi J_P psi0:
-//   compaction, d_i < 0: D < 0 where xi J_P psi0 > -tau0_i. Hardening then stores more than the work: all axes at 1 -
-//     theta_c have psi0/tau0 = -3/2 theta_c for small strains, so that this is where xi J_P theta_c > 2/3.
-//   parting, d_i > 0: D < 0 where tau0_i < -xi J_P psi0. The other axes press through lambda, and the axis that parts is
-//     in compression itself. With both at 1 - theta_c and the paper's numbers this is where J_P < 0.624.
+//   compaction, d_i < 0: D < 0 where xi J_P psi0 > -tau0_i. Hardening then stores more than the work. All axes at
+//     1 - theta_c have psi0 = -3/2 theta_c tau0 for small strains, so that this is where xi J_P theta_c > 2/3.
+//   parting, d_i > 0: D < 0 where tau0_i < -xi J_P psi0. The other axes press through lambda, and the axis that parts
+//     is in compression itself. With both at 1 - theta_c and the paper's numbers this is where J_P < 0.624.
 // There the law makes energy. `advance` returns D with its sign, so that work = stored + dissipated holds everywhere.
 
 #include "kernel/elasticity.hpp"
@@ -109,9 +109,9 @@ struct Snow {
   }
 
   /// Returns the energy dissipated, J/m^3: the work of tau on the plastic strain less what hardening adds to the stored
-  /// energy; negative where the law makes energy, see above. The stretches are those after the return, h the mean of the
-  /// step, as an impact changes it by much in one. A particle that does not yield keeps F_E as advanced, and J_P, to the
-  /// last bit.
+  /// energy; negative where the law makes energy, see above. The stretches are those after the return, h the mean of
+  /// the step, as an impact changes it by much in one. A particle that does not yield keeps F_E as advanced, and J_P,
+  /// to the last bit.
   template <class G, class S = typename G::Scalar>
   MPM_HD static S advance(const Constants<scalar_of<S>>& c, const G& L, scalar_of<S> dt, SnowState<G>& state) {
     constexpr int D = G::dimension;
@@ -181,15 +181,7 @@ struct Snow {
     const S h = factor(c, p.plastic_volume_ratio);
     Vec<3, S> principal = unhardened_stresses(c, p.stretch);
     for (int i = 0; i < 3; ++i) principal[i] = h * principal[i];
-    Sym<D, S> tau;
-    tau.s[2] = principal[2];  // zz in 2-D; written over below in 3-D
-    for (int i = 0; i < D; ++i)
-      for (int j = i; j < D; ++j) {
-        S t = p.directions(i, 0) * principal[0] * p.directions(j, 0);
-        for (int k = 1; k < D; ++k) t = t + p.directions(i, k) * principal[k] * p.directions(j, k);
-        tau(i, j) = t;
-      }
-    return tau;
+    return from_principal(p.directions, principal);
   }
 
   template <int D, class S>
@@ -198,9 +190,10 @@ struct Snow {
   }
 
   /// The fastest wave. Elastic ones have rho0 c^2 = h (2 mu s^2 + lambda J_E^2) at most, s the largest stretch along
-  /// the grid (see fixed_corotated), without lambda where that is negative. A wave that compacts hardens as well: of a unit a (x) n the plastic part has a
-  /// trace of 1 at most and stress does work of max |tau_i| at most, so that hardening adds xi J_P max |tau_i|. Where
-  /// F_E cannot follow, the stress that is carried along with the material adds max |tau_i| once more.
+  /// the grid (see fixed_corotated), without lambda where that is negative. A wave that compacts hardens as well: of a
+  /// unit a (x) n the plastic part has a trace of 1 at most and stress does work of max |tau_i| at most, so that
+  /// hardening adds xi J_P max |tau_i|. Where F_E cannot follow, the stress that is carried along with the material
+  /// adds max |tau_i| once more.
   template <int D, class S>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const Principal<D, S>& p) {
     const S one = S(real<S>(1)), zero = S(real<S>(0)), J = product(p.stretch);
@@ -237,10 +230,8 @@ struct Snow {
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
   static constexpr const char* makes_energy =
-      "each stretch returns to its bound by itself, whatever the stress along it, and hardening scales the stored "
-      "energy: "
-      "parting under pressure from the sides, and compaction where xi J_P theta_c is large, dissipate less than "
-      "nothing";
+      "where snow parts under pressure from its sides, and where xi J_P theta_c is large: each stretch returns to its "
+      "bound by itself, whatever the stress along it, and hardening scales the stored energy";
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Young's modulus at small strain before hardening; 140 kPa in the paper"),

@@ -1,7 +1,8 @@
 #pragma once
 // The extensions of extensions.h as the SDK makes them from a functor. Some every functor gets for nothing (costs, a
 // material's trial and tangent); others come with a member of the functor: `box` and its fellows, `basis_order`,
-// `courant_limits`, `step_limit`, `projects`, `makes_energy`, a `temperature` at the end of State, a `cell_size` at the end of Parameters.
+// `courant_limits`, `step_limit`, `projects`, `makes_energy`, a `temperature` at the end of State, a `cell_size` at the
+// end of Parameters.
 
 #include <cmath>
 #include <cstring>
@@ -69,7 +70,8 @@ concept RefusesTangent = requires {
   { F::no_tangent } -> std::convertible_to<const char*>;
 };
 
-/// A material whose law can dissipate less than nothing says where: `static constexpr const char* makes_energy = "..."`.
+/// A material whose law can dissipate less than nothing says where: `static constexpr const char* makes_energy =
+/// "..."`.
 template <class F>
 concept MakesEnergy = requires {
   { F::makes_energy } -> std::convertible_to<const char*>;
