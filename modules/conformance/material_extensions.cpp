@@ -372,6 +372,15 @@ void check_cell_size(const Context& c, const std::vector<Increments>& path) {
                      "stress on cells of twice the size" + c.where);
 }
 
+/// Checks that a law that makes energy says where, and that its heat is read at all.
+void check_makes_energy(const Context& c) {
+  const auto* table = extension_of<mpm_material_makes_energy>(c.plugin);
+  if (!table) return;
+  c.findings.require("makes_energy_says_where", table->where && *table->where, "in one sentence");
+  c.findings.require("makes_energy_dissipates", c.plugin.material().traits & MPM_DISSIPATES,
+                     "hosts read the heat of materials with MPM_DISSIPATES alone");
+}
+
 }  // namespace
 
 void check_material_extensions(const Context& c, const std::vector<Increments>& path) {
@@ -389,6 +398,7 @@ void check_material_extensions(const Context& c, const std::vector<Increments>& 
   c.findings.running("temperature and cell size", c.variant, c.where);
   check_temperature(c, path);
   check_cell_size(c, path);
+  check_makes_energy(c);
 }
 
 }  // namespace mpm::conformance

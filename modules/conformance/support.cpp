@@ -100,7 +100,9 @@ void Findings::at_most(const std::string& check, double measured, double bound, 
   const auto earlier = std::find_if(findings_.begin(), findings_.end(),
                                     [&](const ConformanceFinding& finding) { return finding.check == check; });
   if (earlier == findings_.end()) return findings_.push_back(now);
-  const auto severity = [](const ConformanceFinding& f) { return f.bound > 0 ? f.measured / f.bound : f.measured; };
+  const auto severity = [](const ConformanceFinding& f) {
+    return f.bound > 0 && std::isfinite(f.bound) ? f.measured / f.bound : f.measured;
+  };
   const bool worse = earlier->passed != now.passed ? earlier->passed : severity(now) > severity(*earlier);
   if (worse) *earlier = now;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// What several materials share: moduli, the three volumetric energies, and the isochoric Neo-Hookean part.
+// What several materials share: moduli, the three volumetric energies, isochoric parts, and tensors made of their
+// principal values.
 
 #include "kernel/tensor.hpp"
 
@@ -52,6 +53,40 @@ MPM_HD double lame_lambda(double youngs_modulus, double poisson_ratio) {
 }
 MPM_HD double bulk_modulus(double youngs_modulus, double poisson_ratio) {
   return youngs_modulus / (3 * (1 - 2 * poisson_ratio));
+}
+
+/// The isochoric left Cauchy-Green tensor J^-2/3 b, whose determinant is 1 (Flory 1961; Simo & Hughes 1998, sec. 9.2).
+template <int D, class S>
+MPM_HD Sym<D, S> isochoric(Sym<D, S> b, S J) {
+  const S scale = exp(real<S>(-2.0 / 3.0) * log(J));
+  for (int k = 0; k < Sym<D, S>::size; ++k) b.s[k] = scale * b.s[k];
+  return b;
+}
+
+/// The cofactors det(a) a^-1 of a symmetric tensor of space; their trace is its second invariant.
+template <class S>
+MPM_HD Sym<2, S> cofactors(const Sym<2, S>& a) {
+  const S &x = a.s[0], &y = a.s[1], &z = a.s[2], &xy = a.s[3];
+  return {{y * z, x * z, x * y - xy * xy, -(xy * z)}};
+}
+template <class S>
+MPM_HD Sym<3, S> cofactors(const Sym<3, S>& a) {
+  const S &x = a.s[0], &y = a.s[1], &z = a.s[2], &yz = a.s[3], &xz = a.s[4], &xy = a.s[5];
+  return {{y * z - yz * yz, x * z - xz * xz, x * y - xy * xy, xz * xy - x * yz, xy * yz - y * xz, xz * yz - z * xy}};
+}
+
+/// The symmetric tensor U diag(values) U^T of space; in 2-D the third value is that of z.
+template <int D, class S>
+MPM_HD Sym<D, S> from_principal(const Mat<D, S>& U, const Vec<3, S>& values) {
+  Sym<D, S> r;
+  r.s[2] = values[2];  // zz in 2-D; written over below in 3-D
+  for (int i = 0; i < D; ++i)
+    for (int j = i; j < D; ++j) {
+      S t = U(i, 0) * values[0] * U(j, 0);
+      for (int k = 1; k < D; ++k) t = t + U(i, k) * values[k] * U(j, k);
+      r(i, j) = t;
+    }
+  return r;
 }
 
 /// rho0 c^2 of the fastest wave along the axes of b, split Neo-Hookean (Simo & Hughes 1998, eq. 9.2.6 with n n n n):

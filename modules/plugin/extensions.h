@@ -160,6 +160,17 @@ typedef struct mpm_material_projection {
   int32_t (*project[MPM_PRECISIONS][2])(const void* parameters, const mpm_projection_batch* batch);
 } mpm_material_projection;
 
+/* ---- mpm.material.makes_energy -----------------------------------------------------------------------------------
+ * The published law does not keep the dissipation inequality: `dissipated_energy` of its `update` is negative where the
+ * law makes energy, so that the work of the stress is stored plus dissipated energy there too. A material without this
+ * table dissipates nothing or something, never less. */
+#define MPM_MATERIAL_MAKES_ENERGY_ID "mpm.material.makes_energy"
+#define MPM_MATERIAL_MAKES_ENERGY_VERSION 1u
+typedef struct mpm_material_makes_energy {
+  uint32_t version, reserved;
+  const char* where; /* in which states, and why, in one sentence */
+} mpm_material_makes_energy;
+
 /* ---- mpm.material.temperature ------------------------------------------------------------------------------------
  * The material reads `temperature` of its batches: that of the particles at the call (docs/method.md, Temperature). */
 #define MPM_MATERIAL_TEMPERATURE_ID "mpm.material.temperature"

@@ -140,6 +140,18 @@ struct IgnoresCells : BandHardening {
 };
 constexpr mpm_material_cell_size shared_place{MPM_MATERIAL_CELL_SIZE_VERSION, 0};
 
+/// Sand that books its heat with the wrong sign; and one that excuses itself for it.
+struct CoolingSand : DruckerPrager {
+  template <class G, int D, class S>
+  MPM_HD static S advance(const Constants<scalar_of<S>>& c, const G& L, scalar_of<S> dt, State<D, S>& state) {
+    return -DruckerPrager::advance(c, L, dt, state);
+  }
+};
+struct ExcusedSand : CoolingSand {
+  static constexpr const char* makes_energy = "wherever it yields";
+};
+constexpr mpm_material_makes_energy nowhere{MPM_MATERIAL_MAKES_ENERGY_VERSION, 0, ""};
+
 struct RefusesTangent : NeoHookean {
   static constexpr const char* no_tangent = "its stress is looked up in a table";
 };
@@ -218,6 +230,16 @@ TEST_CASE("a wrong projection is caught") {
   CHECK(failed.count("projection_objective") == 1);
   CHECK(failed.count("projection_lowers_energy") == 1);
   check_caught(with_extension<idle_projection>(material_of<DruckerPrager>), "projection_is_admissible");
+}
+
+TEST_CASE("negative heat is caught, and a material that says that it makes energy still answers for its balance") {
+  CHECK(was_checked(material_of<DruckerPrager>, "dissipation_not_negative"));
+  check_caught(material_of<CoolingSand>, "dissipation_not_negative");
+  CHECK_FALSE(was_checked(material_of<ExcusedSand>, "dissipation_not_negative"));
+  CHECK(was_checked(material_of<ExcusedSand>, "negative_dissipation"));
+  check_caught(material_of<ExcusedSand>, "energy_balance");
+  check_caught(with_extension<nowhere>(material_of<VonMises>), "makes_energy_says_where");
+  check_caught(with_extension<nowhere>(material_of<NeoHookean>), "makes_energy_dissipates");
 }
 
 TEST_CASE("temperatures and cell sizes that do nothing are caught") {

@@ -33,6 +33,42 @@ TEST_CASE("moduli of Young's modulus and Poisson's ratio") {
   CHECK(bulk_modulus(1000, 0.3) == Approx(833.333333333));
 }
 
+TEST_CASE("the isochoric tensor has determinant 1 and keeps the ratios of its entries") {
+  const Mat<3, double> F{{1.3, 0.2, -0.1, 0.05, 0.8, 0.3, -0.2, 0.1, 1.1}};
+  const Sym<3, double> b = left_cauchy_green(F), c = isochoric(b, determinant(F));
+  CHECK(determinant(c) == Approx(1).epsilon(1e-13));
+  for (int k = 1; k < 6; ++k) CHECK(c.s[k] / c.s[0] == Approx(b.s[k] / b.s[0]).epsilon(1e-13));
+}
+
+TEST_CASE("cofactors times the tensor are its determinant, in space and in plane strain") {
+  const Sym<3, double> a{{2, 3, 5, 0.7, -0.4, 1.1}}, of_a = cofactors(a);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const double entry = a(i, 0) * of_a(0, j) + a(i, 1) * of_a(1, j) + a(i, 2) * of_a(2, j);
+      CHECK(entry == Approx(i == j ? determinant(a) : 0).margin(1e-13));
+    }
+  const Sym<2, double> flat{{2, 3, 5, 1.1}}, of_flat = cofactors(flat);
+  const Sym<3, double> in_space{{2, 3, 5, 0, 0, 1.1}}, expected = cofactors(in_space);
+  for (int i = 0; i < 3; ++i) CHECK(of_flat.s[i] == Approx(expected.s[i]));
+  CHECK(of_flat(0, 1) == Approx(expected(0, 1)));
+}
+
+TEST_CASE("a tensor put together from its principal values has their invariants, and the third is zz in 2-D") {
+  const double c = 0.6, s = 0.8, h = std::sqrt(0.5);
+  const Mat<3, double> U{{c, -s * h, s * h, s, c * h, -c * h, 0, h, h}};
+  const Vec<3, double> values{{2, -3, 5}};
+  const Sym<3, double> a = from_principal(U, values);
+  CHECK(trace(a) == Approx(4).epsilon(1e-14));
+  CHECK(determinant(a) == Approx(-30).epsilon(1e-14));
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 3; ++i)
+      CHECK(a(i, 0) * U(0, k) + a(i, 1) * U(1, k) + a(i, 2) * U(2, k) == Approx(values[k] * U(i, k)).margin(1e-14));
+  const Sym<2, double> flat = from_principal(Mat<2, double>{{c, -s, s, c}}, values);
+  CHECK(flat(0, 0) == Approx(2 * c * c - 3 * s * s));
+  CHECK(flat(0, 1) == Approx(5 * c * s));
+  CHECK(flat.s[2] == 5);
+}
+
 TEST_CASE("the fastest wave of a split Neo-Hookean solid") {
   // At rest that of K + 4/3 mu; beyond J = e the logarithmic energy pushes no more, and shear is faster.
   using Sym3 = Sym<3, double>;

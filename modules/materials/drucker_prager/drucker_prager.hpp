@@ -169,16 +169,7 @@ struct DruckerPrager {
   /// tau = U diag(principal stresses) U^T.
   template <int D, class S>
   MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const Principal<D, S>& p) {
-    const Vec<3, S> principal = stresses(c, p.strain);
-    Sym<D, S> tau;
-    tau.s[2] = principal[2];  // zz in 2-D; written over below in 3-D
-    for (int i = 0; i < D; ++i)
-      for (int j = i; j < D; ++j) {
-        S t = p.directions(i, 0) * principal[0] * p.directions(j, 0);
-        for (int k = 1; k < D; ++k) t = t + p.directions(i, k) * principal[k] * p.directions(j, k);
-        tau(i, j) = t;
-      }
-    return tau;
+    return from_principal(p.directions, stresses(c, p.strain));
   }
 
   /// mu eps:eps + lambda/2 tr(eps)^2.

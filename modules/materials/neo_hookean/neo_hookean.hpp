@@ -30,14 +30,6 @@ struct NeoHookean : ElasticSolid {
           volumetric(static_cast<VolumetricEnergy>(static_cast<int>(p.volumetric_energy))) {}
   };
 
-  /// The isochoric tensor J^-2/3 b.
-  template <int D, class S>
-  MPM_HD static Sym<D, S> isochoric(Sym<D, S> b, S J) {
-    const S scale = exp(real<S>(-2.0 / 3.0) * log(J));
-    for (int k = 0; k < Sym<D, S>::size; ++k) b.s[k] = scale * b.s[k];
-    return b;
-  }
-
   template <class G, class S = typename G::Scalar>
   MPM_HD static Sym<G::dimension, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
     const S J = determinant(state.deformation_gradient);

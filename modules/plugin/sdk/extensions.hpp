@@ -1,7 +1,8 @@
 #pragma once
 // The extensions of extensions.h as the SDK makes them from a functor. Some every functor gets for nothing (costs, a
 // material's trial and tangent); others come with a member of the functor: `box` and its fellows, `basis_order`,
-// `courant_limits`, `step_limit`, `projects`, a `temperature` at the end of State, a `cell_size` at the end of Parameters.
+// `courant_limits`, `step_limit`, `projects`, `makes_energy`, a `temperature` at the end of State, a `cell_size` at the
+// end of Parameters.
 
 #include <cmath>
 #include <cstring>
@@ -67,6 +68,13 @@ constexpr bool projects_by_update() {
 template <class F>
 concept RefusesTangent = requires {
   { F::no_tangent } -> std::convertible_to<const char*>;
+};
+
+/// A material whose law can dissipate less than nothing says where: `static constexpr const char* makes_energy =
+/// "..."`.
+template <class F>
+concept MakesEnergy = requires {
+  { F::makes_energy } -> std::convertible_to<const char*>;
 };
 
 /// A functor that only runs over float, double and lanes says so: `static constexpr bool counted = false`.
@@ -379,6 +387,9 @@ inline constexpr mpm_filter_step_limit step_limit_table{
       return static_cast<double>(F::step_limit(parameters_of<F>(parameters), unfiltered));
     }};
 
+template <MakesEnergy F>
+inline constexpr mpm_material_makes_energy makes_energy_table{MPM_MATERIAL_MAKES_ENERGY_VERSION, 0, F::makes_energy};
+
 template <TemperatureFunctor F>
 inline constexpr mpm_material_temperature temperature_table{MPM_MATERIAL_TEMPERATURE_VERSION, 0,
                                                             F::reference_temperature};
@@ -431,6 +442,8 @@ const void* material_extension(const char* id) {
   if (same_text(id, MPM_MATERIAL_TRIAL_ID)) return &trial_table<F>;
   if constexpr (projects_by_update<F>())
     if (same_text(id, MPM_MATERIAL_PROJECTION_ID)) return &projection_table<F>;
+  if constexpr (MakesEnergy<F>)
+    if (same_text(id, MPM_MATERIAL_MAKES_ENERGY_ID)) return &makes_energy_table<F>;
   if constexpr (TemperatureFunctor<F>)
     if (same_text(id, MPM_MATERIAL_TEMPERATURE_ID)) return &temperature_table<F>;
   if constexpr (CellSizeFunctor<F>)
