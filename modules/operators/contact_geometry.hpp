@@ -1,7 +1,7 @@
 #pragma once
 // The geometry of two velocity fields that meet at a node: shared normal, separation, area. All backends use it.
 
-#include "kernel/math.hpp"
+#include "kernel/tensor.hpp"
 
 namespace mpm {
 
@@ -31,7 +31,7 @@ struct ContactFieldNode {
   double volume_gradient[3] = {};    ///< sum V grad w, derivative by the particle's position: points out of the body
   double mass_gradient[3] = {};      ///< sum m grad w, where the normal reads it
   double mass_position[3] = {};      ///< sum w m (x_p - x_node), kg m
-  double mass_displacement[3] = {};  ///< sum w m (x_p - X_p), kg m, where the law reads it
+  double mass_displacement[3] = {};  ///< sum w m (u_p + (grad u) d), kg m, where the law reads it
 };
 
 struct ContactGeometry {
@@ -53,7 +53,29 @@ MPM_HD bool meet(Scalar mass_a, Scalar mass_b, bool weld) {
   return weld || min(mass_a, mass_b) >= contact_prescreen * (static_cast<double>(mass_a) + mass_b);
 }
 
-/// How far field b's particles have moved since the start beside those of a, along one axis, m (MPM_COMPLIANT).
+/// The gradient of the displacement by the present place, I - F^-1. With it a particle says how far material at the node
+/// has moved, u_p + (I - F^-1)(x_node - x_p): bodies that turn together have then not moved beside one another, although
+/// the particles that a node sees of each lie at some distance from their common surface.
+template <class S>
+MPM_HD Mat<2, S> displacement_gradient(const Mat<2, S>& F) {
+  const scalar_of<S> one = 1;
+  const S scale = one / determinant(F);
+  return {{one - scale * F(1, 1), scale * F(0, 1), scale * F(1, 0), one - scale * F(0, 0)}};
+}
+template <class S>
+MPM_HD Mat<3, S> displacement_gradient(const Mat<3, S>& F) {
+  const scalar_of<S> one = 1;
+  const S scale = one / determinant(F);
+  Mat<3, S> gradient = Mat<3, S>::identity();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
+      gradient(i, j) = gradient(i, j) - scale * (F(a, c) * F(b, d) - F(a, d) * F(b, c));
+    }
+  return gradient;
+}
+
+/// How far field b has moved since the start beside a, along one axis, m (MPM_COMPLIANT).
 MPM_HD double displacement_of_pair(const ContactFieldNode& a, const ContactFieldNode& b, int axis) {
   return b.mass_displacement[axis] / b.mass - a.mass_displacement[axis] / a.mass;
 }

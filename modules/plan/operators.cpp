@@ -222,7 +222,7 @@ void add_what_depends(Uses& uses, Act act, const Pass& pass, const Plan& plan, c
             {"nodes/" + grip_field(k), "nodes/" + grip_field(k) + "_mass", "nodes/" + grip_field(k) + "_before"});
       break;
     case Act::scatter_contact:
-      if (plan.node_field("mass_displacement")) uses.reads({"particles/initial_position"});
+      if (plan.node_field("mass_displacement")) uses.reads({"particles/initial_position", "particles/deformation"});
       break;
     case Act::scatter_heat:
       if (plan.node_field("heated_volume")) uses.reads({"particles/material"});

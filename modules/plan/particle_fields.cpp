@@ -110,14 +110,15 @@ void deformation_fields(FieldList& fields, int body) {
   const std::string loaded = experiment.loaded_at_points(body);
   const bool meets = experiment.contact && experiment.contact_detection == "particle_surfaces" &&
                      !(experiment.shape.plugin->descriptor->needs & MPM_NEEDS_DOMAIN);
-  if (loaded.empty() && !meets) return;
+  const bool springs = experiment.has_compliant_contact();
+  if (loaded.empty() && !meets && !springs) return;
   const int D = experiment.dimension;
   fields
-      .of_particles(body, "deformation", "", D * D,
-                    experiment.bodies[body].deformed() ? First::seeded : First::identity,
-                    !loaded.empty()
-                        ? loaded + ": loaded points and normals move with the particle"
-                        : experiment.contact->pointer + "/detection \"particle_surfaces\": how far a particle extends")
+      .of_particles(
+          body, "deformation", "", D * D, experiment.bodies[body].deformed() ? First::seeded : First::identity,
+          !loaded.empty() ? loaded + ": loaded points and normals move with the particle"
+          : springs       ? experiment.contact->pointer + ": its springs do not feel a common turn"
+                    : experiment.contact->pointer + "/detection \"particle_surfaces\": how far a particle extends")
       .name = "deformation gradient";
 }
 

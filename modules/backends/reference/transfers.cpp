@@ -1,5 +1,6 @@
 // Moves momentum, mass and forces from particles to grid, and velocities back.
 
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 
@@ -157,16 +158,21 @@ void ReferenceBackend::scatter_contact_fields(Particles& body) {
   for (std::size_t p = 0; p < body.count(); ++p) {
     const double volume = body.volume(p) * body.volume_ratio(0, p);
     const double section = body.axisymmetric() ? volume / (2 * std::numbers::pi * body.position(0, p)) : volume;
-    const Vector moved = sums_displacements_
-                             ? Vector(body.column(body.position, p) - body.column(body.values("initial_position"), p))
-                             : Vector(Vector::Zero());
+    Vector moved = Vector::Zero();
+    Matrix gradient = Matrix::Zero();
+    if (sums_displacements_) {
+      const int D = experiment_.dimension;
+      moved = body.column(body.position, p) - body.column(body.values("initial_position"), p);
+      gradient.topLeftCorner(D, D) =
+          Eigen::MatrixXd::Identity(D, D) - body.matrix(body.values("deformation"), p).topLeftCorner(D, D).inverse();
+    }
     for (const StencilNode& s : body.stencil(p)) {
       const std::size_t i = grid_.at(body.field(), s.index);
       // These are gradients of the section: a ring's volume grows away from the axis.
       volume_gradient_[i] += section * s.gradient;
       if (sums_mass_gradients_) mass_gradient_[i] += section / volume * body.mass(p) * s.gradient;
       mass_position_[i] -= s.weight * body.mass(p) * s.distance;
-      if (sums_displacements_) mass_displacement_[i] += s.weight * body.mass(p) * moved;
+      if (sums_displacements_) mass_displacement_[i] += s.weight * body.mass(p) * (moved + gradient * s.distance);
     }
   }
 }

@@ -7,6 +7,7 @@
 #include "backends/cpu/particles/particle_boxes.hpp"
 #include "backends/cpu/particles/particle_grips.hpp"
 #include "backends/cpu/particles/particle_lists.hpp"
+#include "operators/contact_geometry.hpp"
 
 namespace mpm::cpu {
 
@@ -426,7 +427,7 @@ void ParticleStep<D, T, Components>::scatter_loads(const Chunk& chunk, Work& wor
   note_forces(failures);
 }
 
-/// Scatters w m (x_p - X_p), which springs between bodies pull by.
+/// Scatters w m (x_p - X_p + (I - F^-1) d), which springs between bodies pull by.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_displacements(const Chunk& chunk, Work& work) {
   std::fill(work.b, work.b + D * chunk_size<T>, T(0));
@@ -435,7 +436,15 @@ void ParticleStep<D, T, Components>::scatter_displacements(const Chunk& chunk, W
     for (int c = 0; c < D; ++c)
       work.b[c * chunk_size<T> + p] = work.mass[p] * static_cast<T>(place_of(chunk, p, c) - start[c]);
   }
-  add_to_tile(chunk, work, mass_displacement, nullptr, true, false, false);
+  using L = Lanes<T>;
+  const T* const deformation = chunk.at(chunk.particles.deformation);
+  for (int p = 0; p < chunk.end; p += L::width) {
+    Mat<D, L> F;
+    for (int k = 0; k < D * D; ++k) F.m[k] = L::load(deformation + k * chunk_size<T> + p);
+    const Mat<D, L> gradient = displacement_gradient(F);
+    for (int k = 0; k < D * D; ++k) (L::load(work.mass + p) * gradient.m[k]).store(work.A + k * chunk_size<T> + p);
+  }
+  add_to_tile(chunk, work, mass_displacement, nullptr, true, true, false);
 }
 
 /// Scatters V grad w, V = J V0, m grad w where the normal reads it, and w m (x_p - x_node). A ring has the gradients of its

@@ -3,6 +3,7 @@
 
 #include "backends/device/kernels/exact_sums.hpp"
 #include "backends/device/kernels/higher.hpp"
+#include "operators/contact_geometry.hpp"
 
 namespace mpm::device {
 
@@ -126,6 +127,9 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
     if (a.force)
       for (int k = 0; k < Sym<D, T>::size; ++k) tau.s[k] = particles.field[P::stress][k * stride + p];
     [[maybe_unused]] const auto higher = higher_of<Scene>(a, stencil, p);
+    [[maybe_unused]] Mat<D, T> gradient{};  // of the displacement
+    if constexpr (Place::mass_displacement >= 0)
+      gradient = displacement_gradient(load_matrix<D>(particles.field[P::deformation], stride, p));
     stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
       T values[Scene::scattered] = {};  // values that no formula here knows stay zero
       const T mass = s.weight * mass_of_particle;
@@ -154,9 +158,11 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
           values[Place::volume_gradient + i] = volume / around * s.gradient[i];
           if constexpr (Place::mass_gradient >= 0)
             values[Place::mass_gradient + i] = mass_of_particle / around * s.gradient[i];
-          if constexpr (Place::mass_displacement >= 0)
-            values[Place::mass_displacement + i] =
-                mass * (position[i * stride + p] - particles.field[P::initial_position][i * stride + p]);
+          if constexpr (Place::mass_displacement >= 0) {
+            T moved = position[i * stride + p] - particles.field[P::initial_position][i * stride + p];
+            for (int j = 0; j < D; ++j) moved += gradient(i, j) * s.distance[j];
+            values[Place::mass_displacement + i] = mass * moved;
+          }
           values[Place::mass_position + i] = -mass * s.distance[i];
         }
       }
