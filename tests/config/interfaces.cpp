@@ -48,7 +48,7 @@ std::string beside_rigid_body(const std::string& law) {
 TEST_CASE("displacements are summed for laws with springs alone", "[interface]") {
   const Plan with = make_plan(test::experiment_from(scene(springs)));
   REQUIRE(with.node_field("mass_displacement"));
-  CHECK(with.node_field("mass_displacement")->because.find("linear_interface") != std::string::npos);
+  CHECK(with.node_field("mass_displacement")->because.find("/contact: its springs") != std::string::npos);
   REQUIRE(with.particle_field(0, "initial_position"));
   for (const std::string& law : {liquid, std::string(R"({"type": "stick"})"), std::string(R"({"type": "coulomb"})")}) {
     INFO(law);

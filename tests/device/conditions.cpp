@@ -179,6 +179,9 @@ TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]"
     {"type": "spring", "body": "b", "where": {"type": "half_space", "point": [0.52, 0], "normal": [1, 0]},
      "stiffness": [0, 1e3], "damping": [50, 100]}])J";
   check_entries();
+  mix = close_mix(2);
+  mix.contact = R"({"type": "linear_interface", "normal_stiffness": 3e4, "shear_stiffness": 2e4})";
+  check_entries();
   mix = beside_rigid_bodies(2);  // which tests/device/rigid.cpp checks
   take_entries();
   for (const auto& [name, entry] : largest) {
