@@ -111,6 +111,7 @@ class CpuBackend final : public Backend, NamedChannels {
   bool scattered_ = false;      ///< the last gather_scatter left the next step's grid
   Pass gather_alone_;           ///< a fused pass without its acts for the next step; empty until it was needed
   double gathered_energy_ = 0;  ///< kinetic energy of the particles after the last gather, J
+  bool carries_domains_;        ///< particles have domains, which may outgrow a tile
   bool motion_kept_ = true;     ///< particles have the velocity and the transfer's state of the last step
   std::unique_ptr<Step> particle_step_;
   std::unique_ptr<GridStep<D, T>> grid_step_;
@@ -125,7 +126,8 @@ CpuBackend<D, T, Components>::CpuBackend(const Experiment& experiment, const Pla
       scene_(experiment, plan, threads),
       grid_(scene_),
       particles_(seeds.size()),
-      reactions_(experiment) {
+      reactions_(experiment),
+      carries_domains_(plan.particle_field(0, "domain") != nullptr) {
   if (scene_.threads > 1) {
     std::size_t count = 0;
     for (const SeededBody& body : seeds) count += body.count();
@@ -301,7 +303,7 @@ void CpuBackend<D, T, Components>::gather(const Pass& pass, const StepInfo& step
 /// leave its tile, since none moves faster than the fastest node (a domain may outgrow its stencil, though).
 template <int D, class T, class Components>
 bool CpuBackend<D, T, Components>::may_pass_motion(const StepInfo& step) const {
-  return !step.observed && scene_.has(MPM_REPLACES_MOTION) && !scene_.plan.particle_field(0, "domain") &&
+  return !step.observed && scene_.has(MPM_REPLACES_MOTION) && !carries_domains_ &&
          particle_step_->stays_within_tiles(step.dt * grid_step_->largest_component() / scene_.domain.cell_size);
 }
 

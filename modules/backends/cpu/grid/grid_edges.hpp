@@ -193,8 +193,9 @@ void GridStep<D, T>::fold_forces(bool periodic, double time, double dt) {
   for (const FaceNodes& face : grid_.faces()) {
     if (face.periodic() != periodic) continue;
     if (ledger_on()) find_wall_velocities(face, time);
+    if (face.pairs.empty()) continue;
     for (const Channel c : folded_[static_cast<int>(Folded::with_force)]) {
-      if (!grid_.has(c) || face.pairs.empty()) continue;
+      if (!grid_.has(c)) continue;
       const Q signs = mirror_signs(face, grid_.field(c).at_wall);
       for_each_folded(face, [&](int field, const MirrorPair& pair) {
         if (c == heat_rate) rate_of_folds_ += (signs[0] - 1) * static_cast<double>(grid_.quad(c, field, pair.ghost)[0]);
