@@ -11,6 +11,7 @@ template <class S>
 struct SpringImpulse {
   S of_speed;         ///< pure number: the share of a weld in it, 1 where the spring is far too stiff for the step
   S of_displacement;  ///< 1/s
+  S stiffness;        ///< k dt^2 / m of the spring's own share, pure number
 };
 
 /// The oscillator m d'' + k d = 0 over a step after which the ends move on with the new speed, d <- d + w dt. With theta^2 =
@@ -27,31 +28,32 @@ MPM_HD SpringImpulse<S> spring_impulse(S stiffness, S mass, scalar_of<S> dt, boo
   S series(one);
   for (int k = 11; k > 0; --k) series = one - squared / real<S>((2 * k + 1) * (2 * k + 2)) * series;
   const S springs = after_forces ? one - weld : S(zero);
-  return {weld, springs * squared * series / dt};
+  return {weld, springs * squared * series / dt, springs * squared};
 }
 
-/// Lets springs of these stiffnesses, Pa/m, pull along the normal and across it. What the bodies lose the springs store, but
-/// for the weld's share of it.
+/// Lets springs of these stiffnesses, Pa/m, pull along the normal and across it. They store k ((d + w dt)^2 - d^2) / 2 of the
+/// move that follows with the new speed w, which is nothing where a load holds the pair at rest on its springs.
 template <int D, class S>
 MPM_HD void pull(const ContactPair<D, S>& pair, const RelativeMotion<D, S>& motion, S normal_stiffness,
                  S shear_stiffness, ContactResult<D, S>& result) {
-  const scalar_of<S> zero = 0, one = 1, half = real<S>(0.5);
+  const scalar_of<S> zero = 0, one = 1, half = real<S>(0.5), two = 2;
   const S mass = motion.reduced_mass;
   const auto along = spring_impulse<S>(normal_stiffness * pair.area, mass, pair.dt, pair.after_forces);
   const auto across = spring_impulse<S>(shear_stiffness * pair.area, mass, pair.dt, pair.after_forces);
-  S opening(zero), largest(zero), taken(zero);
+  S opening(zero), largest(zero);
   for (int i = 0; i < D; ++i) opening = opening + pair.displacement[i] * pair.normal[i];
   const S closing = along.of_displacement * opening - along.of_speed * motion.approach;
+  const S parting = -motion.approach - closing;
+  S taken = along.stiffness * parting * (two * opening / pair.dt + parting);
   for (int i = 0; i < D; ++i) {
     const S shear = pair.displacement[i] - opening * pair.normal[i];
     const S change = across.of_speed * motion.slide[i] + across.of_displacement * shear;
-    taken = taken + change * (motion.slide[i] - half * change);
+    const S sliding = motion.slide[i] - change;
+    taken = taken + across.stiffness * sliding * (two * shear / pair.dt + sliding);
     result.impulse[i] = mass * (closing * pair.normal[i] + change);
     largest = max(largest, max(result.impulse[i], -result.impulse[i]));
   }
-  const S taken_along = closing * (-motion.approach - half * closing);
-  result.stored =
-      mass * (taken_along - along.of_speed * max(taken_along, S(zero)) + taken - across.of_speed * max(taken, S(zero)));
+  result.stored = half * mass * taken;
   result.dissipated = S(zero);
   const S welds = select(along.of_speed * across.of_speed < one, S(zero), S(one));
   result.status = select(largest > zero, real<S>(2) - welds, S(zero));

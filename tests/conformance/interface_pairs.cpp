@@ -35,7 +35,8 @@ struct Kick {
 Kick kick(double stiffness, double displacement, double speed, double dt) {
   const double half_sine = std::sin(std::sqrt(stiffness * area / mass) * dt / 2);
   const double impulse = mass * 4 * half_sine * half_sine * displacement / dt;
-  return {impulse, impulse * (speed - impulse / (2 * mass))};
+  const double moved = displacement + (speed - impulse / mass) * dt;
+  return {impulse, stiffness * area / 2 * (moved * moved - displacement * displacement)};
 }
 
 /// The stiffness with which the pair turns by `angle` in a step.

@@ -210,11 +210,9 @@ TEST_CASE("a cantilever of two planks bends by the stiffness of the layer betwee
   }
 }
 
-// After a quarter of a period the bars rest, and all their energy is in the layer. The works of contact are taken at the
-// mean velocity of a stage in which the bars' stress acts too, so that the two books differ by a share of the step.
+// After a quarter of a period the bars rest, and all their energy is in the layer.
 TEST_CASE("what contact takes from bars on a spring is in the spring", "[interface][ledger]") {
   for (const auto& [name, bars] : {std::pair{"opening", opening(0.01)}, std::pair{"sliding", sliding(0.01)}}) {
-    double apart = 0;
     for (const double courant : {0.2, 0.1}) {
       Scene scene(bars.text, {set("/solver/end_time", digits(0.25 * 2 * std::numbers::pi / bars.frequency)),
                               set("/solver/courant", digits(courant))});
@@ -224,10 +222,7 @@ TEST_CASE("what contact takes from bars on a spring is in the spring", "[interfa
       CHECK(end.kinetic < 2e-4 * start.kinetic);
       CHECK(ledger.friction == 0);
       CHECK(-ledger.contact + end.strain == Approx(start.kinetic).epsilon(1e-3));
-      const double difference = (ledger.contact + ledger.interface) / start.kinetic;
-      CHECK(std::abs(difference) < 0.22 * courant);
-      if (courant == 0.1) CHECK(difference == Approx(apart / 2).epsilon(0.02));
-      apart = difference;
+      CHECK(std::abs(ledger.contact + ledger.interface) < 2e-4 * start.kinetic);
     }
   }
 }
