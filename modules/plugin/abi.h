@@ -240,7 +240,9 @@ typedef struct mpm_contact_batch {
   /* [D][stride], m: how far b's particles have moved since the start, less how far a's have, both as means by mass over
    * the node's weights. Null unless MPM_COMPLIANT. */
   const void* displacement;
-  void* stored; /* [stride] out: energy that springs take up in this call, J, negative where they give it back; or null */
+  /* [stride] out: energy that springs take up over the step, J, negative where they give it back. Null unless
+   * MPM_COMPLIANT. */
+  void* stored;
 } mpm_contact_batch;
 typedef struct mpm_contact {
   uint32_t traits, reserved;
