@@ -139,9 +139,9 @@ Increments plus(const Increments& a, const Increments& b, double factor) {
   return r;
 }
 
-/// The error of a tangent against central differences of the stress, or against the difference to one side where that is
-/// nearer: on a kink (a yield surface) the tangent is that of one side. Where both sides disagree by much the particle is
-/// left out.
+/// The error of a tangent against central differences of the stress, beyond that by which both one-sided differences
+/// disagree: so much the stress bends within h, by about which equal stretches are put apart (svd::put_apart). Where they
+/// disagree by much the law has a kink (a yield surface), and the particle is left out.
 struct TangentError {
   Worst error;
   int compared = 0;
@@ -156,22 +156,18 @@ TangentError tangent_error(const Context& c, const MaterialBatch& from, const In
   const Array tangent = tangent_of(asked, increments, direction);
   TangentError result;
   for (int lane = 0; lane < full; ++lane) {
-    double kink = 0, size = c.modulus;
-    std::array<double, 3> errors{};
+    double kink = 0, error = 0, size = c.modulus;
     for (int k = 0; k < c.variant.symmetric(); ++k) {
       const double forward = (ahead.stress(k, lane) - here.stress(k, lane)) / h;
       const double backward = (here.stress(k, lane) - behind.stress(k, lane)) / h;
       kink = std::max(kink, std::abs(forward - backward));
       size = std::max(size, std::abs(tangent(k, lane)));
-      const std::array differences{0.5 * (forward + backward), forward, backward};
-      for (int side = 0; side < 3; ++side)
-        errors[side] = std::max(errors[side], std::abs(tangent(k, lane) - differences[side]));
-      if (!std::isfinite(tangent(k, lane))) errors.fill(std::nan(""));
+      error = std::max(error, std::abs(tangent(k, lane) - 0.5 * (forward + backward)));
+      if (!std::isfinite(tangent(k, lane))) error = std::nan("");
     }
-    const double error = *std::min_element(errors.begin(), errors.end());
     if (kink > 1e-3 * size && std::isfinite(error)) continue;
     ++result.compared;
-    result.error.add(error / size, lane);
+    result.error.add((error < kink ? 0 : error - kink) / size, lane);
   }
   return result;
 }

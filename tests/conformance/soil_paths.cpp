@@ -1,11 +1,14 @@
-// Mohr-Coulomb on triaxial paths, on faces, edges and the apex. Stresses are Kirchhoff's.
+// Mohr-Coulomb on triaxial paths, on faces, edges and the apex; modified Cam-Clay from virgin compression to the critical
+// state. Stresses are Kirchhoff's.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <vector>
 
+#include "materials/cam_clay/cam_clay.hpp"
 #include "materials/mohr_coulomb/mohr_coulomb.hpp"
 #include "support/catch.hpp"
 
@@ -162,6 +165,33 @@ struct ActiveSets {
   }
 };
 
+// ---- modified Cam-Clay -------------------------------------------------------------------------------------------
+
+constexpr double consolidation = 1e5, critical = 1.2, exponent = 20;
+
+Particle<CamClay> clay(double cohesion = 0, double xi = exponent, double M = critical) {
+  return Particle<CamClay>({young, poisson, 1600, consolidation, M, xi, cohesion});
+}
+/// Plastic compaction e.
+double compaction(const Particle<CamClay>& particle) {
+  return -std::log(particle.state.plastic_volume_ratio);
+}
+/// p_c by the exponential law.
+double size_of(const Particle<CamClay>& particle, double xi = exponent) {
+  return consolidation * std::exp(xi * compaction(particle));
+}
+/// The ellipse's function, over (M p_c)^2.
+double off_ellipse(const Particle<CamClay>& particle, double beta, double M = critical, double xi = exponent) {
+  const double p = particle.p(), q = particle.q(), size = size_of(particle, xi);
+  return ((1 + 2 * beta) * q * q + M * M * (p + beta * size) * (p - size)) / (M * M * size * size);
+}
+
+/// The root of a function that rises from a to b.
+double root_of(double a, double b, const std::function<double(double)>& f) {
+  for (int k = 0; k < 200; ++k) (f(0.5 * (a + b)) < 0 ? a : b) = 0.5 * (a + b);
+  return 0.5 * (a + b);
+}
+
 }  // namespace
 
 TEST_CASE("Mohr-Coulomb: triaxial compression and extension fail at s1 = s3 (1 + sin)/(1 - sin) + 2 c cos/(1 - sin)") {
@@ -277,6 +307,19 @@ TEST_CASE("Mohr-Coulomb: the return is that of the active planes that Koiter's c
   CAPTURE(elastic, faces, edges, apexes);
   CHECK(std::min({elastic, faces, edges, apexes}) > 500);
   CHECK(worst < 1e-9);
+}
+
+TEST_CASE("Mohr-Coulomb: in plane strain z takes its place among the principal stresses") {
+  const MohrCoulomb::Constants<double> c({young, poisson, 1600, 10 * degree, 1e4, 5 * degree});
+  for (const auto& [x, y] : {std::array{-0.03, -0.02}, std::array{0.02, 0.01}, std::array{-0.02, 0.015}}) {
+    MohrCoulomb::State<2, double> flat{Deformation<2, double>::identity(), 1};
+    Particle<MohrCoulomb> space = soil(10, 1e4, 5);
+    const double heat = MohrCoulomb::advance(c, Mat<2, double>{{std::expm1(x), 0, 0, std::expm1(y)}}, 1.0, flat);
+    CHECK(heat > 0);
+    CHECK(heat == Approx(space.strain(x, y, 0)).epsilon(1e-12));
+    for (int i = 0; i < 3; ++i)
+      CHECK(MohrCoulomb::kirchhoff_stress(c, flat).s[i] == Approx(space.stress().s[i]).margin(1e-13 * young));
+  }
 }
 
 TEST_CASE("Mohr-Coulomb: tension ends at the apex c cot phi, and what opens is heat") {
@@ -396,4 +439,239 @@ TEST_CASE("Mohr-Coulomb: J from 1e-6 to 1e6, thin and long particles, and invert
   Particle<MohrCoulomb> inverted = soil(30, 1e4, 10);
   inverted.advance(diagonal(-2, 0, 0));
   CHECK_FALSE(inverted.state.volume_ratio > 0);  // the host stops the run and names the particle
+}
+
+TEST_CASE("Cam-Clay: virgin compression follows p/K + ln(p/p_c0)/xi, unloading K") {
+  for (double volume : {0.05, 0.15, 0.3})
+    for (int steps : {1, 7, 400}) {
+      CAPTURE(volume, steps);
+      Particle<CamClay> particle = clay();
+      for (int step = 0; step < steps; ++step)
+        particle.strain(-volume / 3 / steps, -volume / 3 / steps, -volume / 3 / steps);
+      const double exact = root_of(consolidation, 10 * bulk, [&](double p) {
+        return p / bulk + std::log(p / consolidation) / exponent - volume;
+      });
+      CHECK(particle.p() == Approx(exact).epsilon(1e-9));
+      CHECK(size_of(particle) == Approx(exact).epsilon(1e-9));
+      CHECK(particle.q() < 1e-9 * exact);
+      // The plastic work is the integral of p_c de = (p_c - p_c0)/xi.
+      if (steps == 400) CHECK(particle.heat == Approx((exact - consolidation) / exponent).epsilon(5e-3));
+      const double heat = particle.heat, plastic = particle.state.plastic_volume_ratio;
+      particle.strain(1e-3, 1e-3, 1e-3);
+      CHECK(particle.p() == Approx(exact - 3e-3 * bulk).epsilon(1e-9));
+      CHECK(particle.heat == heat);
+      CHECK(particle.state.plastic_volume_ratio == plastic);
+    }
+}
+
+TEST_CASE("Cam-Clay: drained triaxial tests end at the critical state q = M p, p_c = 2 p, at constant volume") {
+  // With the side at s: compression q = 3 M s/(3 - M), extension q = 3 M s/(3 + M). At M = 1.2 and 100 kPa: 200 kPa,
+  // 85.714 kPa.
+  for (double preloaded : {1.0, 5.0})  // normally consolidated and overconsolidated
+    for (double direction : {-1.0, 1.0}) {
+      CAPTURE(preloaded, direction);
+      const double side = consolidation / preloaded, q = 3 * critical * side / (3 + direction * critical);
+      Particle<CamClay> particle = clay();
+      particle.strain(-side / (3 * bulk), -side / (3 * bulk), -side / (3 * bulk));
+      double strongest = 0;
+      for (int step = 0; step < 1000; ++step) {
+        particle.squeeze(direction * 1e-3, side);
+        strongest = std::max(strongest, particle.q());
+      }
+      const double volume = particle.state.plastic_volume_ratio, heat = particle.heat;
+      CHECK(particle.q() == Approx(q).epsilon(1e-6));
+      CHECK(particle.q() / particle.p() == Approx(critical).epsilon(1e-6));
+      CHECK(size_of(particle) == Approx(2 * particle.p()).epsilon(1e-6));
+      if (preloaded > 1)
+        CHECK(strongest > 1.2 * q);  // overconsolidated clay has a peak, and has dilated
+      else
+        CHECK(strongest < 1.000001 * q);
+      CHECK((volume > 1) == (compaction(particle) < 0));
+      for (int step = 0; step < 10; ++step) particle.squeeze(direction * 1e-3, side);
+      CHECK(particle.state.plastic_volume_ratio == Approx(volume).epsilon(1e-7));
+      CHECK(particle.heat - heat == Approx(q * 0.01).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("Cam-Clay: the published numbers at 100 kPa and M = 1.2") {
+  Particle<CamClay> particle = clay();
+  particle.strain(-1e5 / (3 * bulk), -1e5 / (3 * bulk), -1e5 / (3 * bulk));
+  for (int step = 0; step < 1000; ++step) particle.squeeze(-1e-3, 1e5);
+  CHECK(particle.q() == Approx(2e5).epsilon(1e-6));
+}
+
+TEST_CASE("Cam-Clay: shearing at constant volume ends where p/K gives what e takes, with cohesion too") {
+  for (double beta : {0.0, 0.3, 0.8})
+    for (double start : {1.0, 0.1}) {
+      CAPTURE(beta, start);
+      Particle<CamClay> particle = clay(beta);
+      const double pressure = start * consolidation;
+      particle.strain(-pressure / (3 * bulk), -pressure / (3 * bulk), -pressure / (3 * bulk));
+      for (int step = 0; step < 3000; ++step) particle.strain(-1e-3, 1e-3, 0);
+      const double p = root_of(1e-3 * consolidation, consolidation, [&](double at) {
+        return (at - pressure) / bulk + std::log(2 * at / ((1 - beta) * consolidation)) / exponent;
+      });
+      const double size = 2 * p / (1 - beta);
+      CHECK(particle.p() == Approx(p).epsilon(1e-8));
+      CHECK(size_of(particle) == Approx(size).epsilon(1e-8));
+      CHECK(particle.q() == Approx(critical * (1 + beta) * size / (2 * std::sqrt(1 + 2 * beta))).epsilon(1e-8));
+    }
+}
+
+TEST_CASE("Cam-Clay: overconsolidated clay is elastic up to q^2 = M^2 p (p_c - p)") {
+  Particle<CamClay> particle = clay();
+  const double side = 2e4;
+  particle.strain(-side / (3 * bulk), -side / (3 * bulk), -side / (3 * bulk));
+  // On the elastic path p = s + q/3: (1/M^2 + 1/9) q^2 - (p_c - 2 s) q/3 - s (p_c - s) = 0.
+  const double a = 1 / (critical * critical) + 1.0 / 9, b = -(consolidation - 2 * side) / 3;
+  const double yields = (-b + std::sqrt(b * b + 4 * a * side * (consolidation - side))) / (2 * a);
+  double last = 0;
+  while (particle.heat == 0 && last < 10 * yields) {
+    last = particle.q();
+    particle.squeeze(-2e-5, side);
+  }
+  CHECK(last <= yields * (1 + 1e-4));
+  CHECK(last + 2e-5 * young >= yields * (1 - 1e-4));
+}
+
+TEST_CASE("Cam-Clay: every return is on the ellipse, along its normal, and loses what the plastic strain takes") {
+  std::mt19937 generator(11);
+  std::normal_distribution<double> normal(0, 1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int compacts = 0, dilates = 0;
+  for (int sample = 0; sample < 20000; ++sample) {
+    const double beta = sample % 2 ? 0 : 0.8 * unit(generator), M = 0.5 + 1.5 * unit(generator),
+                 xi = 20 * unit(generator);
+    Particle<CamClay> particle = clay(beta, xi, M);
+    const double p_0 = consolidation * unit(generator), size = 0.1 * unit(generator) * unit(generator);
+    particle.strain(-p_0 / (3 * bulk), -p_0 / (3 * bulk), -p_0 / (3 * bulk));
+    if (particle.heat > 0) continue;
+    const Vec3 e{{size * normal(generator), size * normal(generator), size * normal(generator)}};
+    const double trace = e[0] + e[1] + e[2], p_trial = p_0 - bulk * trace;
+    double squared = 0;
+    for (int i = 0; i < 3; ++i) squared += (e[i] - trace / 3) * (e[i] - trace / 3);
+    const double q_trial = std::sqrt(1.5 * squared) * 2 * shear;
+    const double heat = particle.strain(e[0], e[1], e[2]);
+    if (heat == 0) continue;
+    CAPTURE(sample, beta, M, xi, p_trial, q_trial);
+    const double p = particle.p(), q = particle.q(), x = compaction(particle), a = 1 + 2 * beta;
+    const double p_c = size_of(particle, xi);
+    if (p_c < 1e-3 * consolidation) continue;  // rounding of p, of the size of the trial, counts there
+    if (xi * p_c > 0.4 * bulk) continue;       // there the slope of hardening is held
+    (x > 0 ? compacts : dilates) += 1;
+    CHECK(p == Approx(p_trial - bulk * x).margin(1e-9 * young));
+    CHECK(std::abs(off_ellipse(particle, beta, M, xi)) < 1e-7);
+    // dev : volume of the plastic strain is 2 a q : M^2 (2 p - (1 - beta) p_c) for shear strains (q' - q)/(3 G).
+    const double shearing = (q_trial - q) / (3 * shear), flow = M * M * (2 * p - (1 - beta) * p_c);
+    CHECK(shearing * flow == Approx(x * 2 * a * q).margin(1e-6 * size * (M * M * p_c + q)));
+    CHECK(heat == Approx(q * shearing + p * x).margin(1e-12 * young));
+    CHECK(heat >= 0);
+  }
+  CHECK(std::min(compacts, dilates) > 1000);
+}
+
+TEST_CASE("Cam-Clay: tension ends at beta p_c, which parting clay loses, and the gap must close again") {
+  const double beta = 0.4;
+  Particle<CamClay> particle = clay(beta);
+  const double opened = 0.15;
+  for (int step = 0; step < 300; ++step) particle.strain(opened / 900, opened / 900, opened / 900);
+  // -p = beta p_c0 exp(xi e), and -p/K - e is the volume that opened.
+  const double tension = root_of(0, beta * consolidation, [&](double at) {
+    return opened - at / bulk + std::log(std::max(at, 1e-300) / (beta * consolidation)) / exponent;
+  });
+  CHECK(-particle.p() == Approx(tension).epsilon(1e-8));
+  CHECK(std::log(CamClay::volume_ratio(particle.state)) == Approx(opened).epsilon(1e-12));
+  for (int step = 0; step < 300; ++step) {
+    particle.strain(-opened / 900, -opened / 900, -opened / 900);
+    CHECK(particle.p() <= size_of(particle) * (1 + 1e-9));
+  }
+  const double back =
+      root_of(1, consolidation, [&](double p) { return p / bulk + std::log(p / consolidation) / exponent; });
+  CHECK(particle.p() == Approx(back).epsilon(1e-8));
+}
+
+TEST_CASE("Cam-Clay: the slope of hardening is held at half of that at which stress would jump") {
+  for (double M : {0.6, 1.2, 2.0})
+    for (double beta : {0.0, 0.1, 0.7}) {
+      CAPTURE(M, beta);
+      // Softening is stable on the ellipse while n.C n > -(dF/dp_c)(dp_c/de)(flow): the least ratio over its dry side,
+      // in units of K, F = a q^2 + M^2 (p + beta p_c)(p - p_c) with p_c = 1.
+      double least = 1e300;
+      for (int k = 1; k <= 200000; ++k) {
+        const double p = (1 - beta) / 2 - (1 + beta) / 2 * k / 200000, flow = M * M * (2 * p - (1 - beta));
+        const double squared = M * M * (p + beta) * (1 - p) / (1 + 2 * beta), a = 1 + 2 * beta;
+        const double stiffness = flow * flow + 12 * shear / bulk * a * a * squared;
+        const double falls = -M * M * ((1 - beta) * p + 2 * beta) * flow;
+        if (falls > 0) least = std::min(least, stiffness / falls);
+      }
+      const double xi = 500, straight = 0.5 * least * bulk;
+      Particle<CamClay> particle = clay(beta, xi, M);
+      particle.strain(-0.2, -0.2, -0.2);
+      const double p_1 = particle.p(), e_1 = compaction(particle);
+      CHECK(p_1 > straight / xi);
+      particle.strain(-0.1, -0.1, -0.1);
+      CHECK((particle.p() - p_1) / (compaction(particle) - e_1) == Approx(straight).epsilon(1e-6));
+      // The straight part goes on from the exponential one, with its slope.
+      const double from = std::log(straight / xi / consolidation) / xi;
+      if (straight / xi > consolidation) CHECK(p_1 == Approx(straight / xi + straight * (e_1 - from)).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("Cam-Clay: within the ellipse it closes its loops, beyond work is stored plus dissipated energy") {
+  Particle<CamClay> elastic = clay();
+  elastic.strain(-2e-3, -2e-3, -2e-3);
+  const double energy = elastic.energy();
+  const double turn[4][3] = {{1e-4, -2e-4, 5e-5}, {-2e-4, 1e-4, 0}, {-1e-4, 2e-4, -5e-5}, {2e-4, -1e-4, 0}};
+  for (const auto& leg : turn)
+    for (int step = 0; step < 50; ++step) elastic.strain(leg[0] / 50, leg[1] / 50, leg[2] / 50);
+  CHECK(elastic.heat == 0);
+  CHECK(elastic.energy() == Approx(energy).epsilon(1e-10));
+  double last = 0;
+  for (int steps : {200, 400, 800}) {
+    Particle<CamClay> particle = clay(0.1);
+    const double legs[4][3] = {{-0.06, -0.02, -0.02}, {0.03, -0.03, 0.01}, {0.05, 0.02, 0.01}, {-0.02, 0.03, 0}};
+    double least = 0;
+    for (const auto& leg : legs)
+      for (int step = 0; step < steps; ++step)
+        least = std::min(least, particle.strain(leg[0] / steps, leg[1] / steps, leg[2] / steps));
+    CHECK(least >= 0);
+    const double miss = std::abs(particle.work - particle.energy() - particle.heat) / particle.work;
+    CHECK(miss < 10.0 / steps);
+    if (last > 0) CHECK(miss < 0.6 * last);  // of first order
+    last = miss;
+  }
+}
+
+TEST_CASE("Cam-Clay: at rest the fastest wave is the elastic longitudinal one") {
+  const Particle<CamClay> particle = clay();
+  const double speed = CamClay::wave_speed(particle.constants, particle.state);
+  CHECK(1600 * speed * speed == Approx(bulk + 4 * shear / 3).epsilon(1e-12));
+}
+
+TEST_CASE("Cam-Clay: J from 1e-6 to 1e6, thin and long particles, and inverted ones") {
+  for (double beta : {0.0, 0.5})
+    for (double J : {1e-6, 1e-3, 1e3, 1e6}) {
+      CAPTURE(J, beta);
+      Particle<CamClay> particle = clay(beta);
+      const double third = std::cbrt(J) - 1;
+      CHECK(particle.advance(diagonal(third, third, third)) >= 0);
+      CHECK(CamClay::volume_ratio(particle.state) == Approx(J).epsilon(1e-12));
+      CHECK(particle.p() == Approx(bulk * (-std::log(J) - compaction(particle))).margin(1e-10 * bulk));
+      if (J > 1) CHECK(-particle.p() <= beta * size_of(particle) + 1e-12 * young);
+      if (J < 1) CHECK(particle.p() > 10 * consolidation);
+      CHECK(CamClay::wave_speed(particle.constants, particle.state) > 0);
+    }
+  for (double stretch : {1e-6, 1e-2, 1e2, 1e6}) {
+    CAPTURE(stretch);
+    Particle<CamClay> particle = clay();
+    CHECK(particle.advance(diagonal(stretch - 1, 0, 0)) >= -1e-20 * young);
+    CHECK(CamClay::volume_ratio(particle.state) == Approx(1 + (stretch - 1)).epsilon(1e-12));
+    CHECK(std::isfinite(particle.q()));
+    CHECK(particle.p() > -1e-9 * young);
+    const double heat = particle.heat;
+    CHECK(particle.strain(0, 0, 0) < 1e-9 * std::max(heat, young));  // the state was on the ellipse
+  }
+  Particle<CamClay> inverted = clay();
+  inverted.advance(diagonal(-2, 0, 0));
+  CHECK_FALSE(CamClay::volume_ratio(inverted.state) > 0);
 }
