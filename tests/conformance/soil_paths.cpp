@@ -1,5 +1,5 @@
 // Mohr-Coulomb on triaxial paths, on faces, edges and the apex; modified Cam-Clay from virgin compression to the critical
-// state. Stresses are Kirchhoff's.
+// state; mu(I) rheology in shear at several rates. Stresses are Kirchhoff's.
 
 #include <algorithm>
 #include <array>
@@ -10,6 +10,7 @@
 
 #include "materials/cam_clay/cam_clay.hpp"
 #include "materials/mohr_coulomb/mohr_coulomb.hpp"
+#include "materials/mu_i/mu_i.hpp"
 #include "support/catch.hpp"
 
 namespace {
@@ -184,6 +185,23 @@ double size_of(const Particle<CamClay>& particle, double xi = exponent) {
 double off_ellipse(const Particle<CamClay>& particle, double beta, double M = critical, double xi = exponent) {
   const double p = particle.p(), q = particle.q(), size = size_of(particle, xi);
   return ((1 + 2 * beta) * q * q + M * M * (p + beta * size) * (p - size)) / (M * M * size * size);
+}
+
+// ---- mu(I) -------------------------------------------------------------------------------------------------------
+
+constexpr double diameter = 1e-3, grain = 2450, static_friction = 0.38, limit_friction = 0.64, inertial = 0.279;
+
+Particle<MuI> grains(double critical_density = 0, double limit = limit_friction) {
+  return Particle<MuI>({young, poisson, 1500, diameter, grain, static_friction, limit, inertial, critical_density});
+}
+/// sqrt(dev : dev/2).
+template <class Material>
+double shear_stress(const Particle<Material>& particle) {
+  return std::sqrt(0.5 * squared_norm(deviator(particle.stress())));
+}
+/// Presses from all sides to a pressure.
+void press(Particle<MuI>& particle, double pressure) {
+  particle.strain(-pressure / (3 * bulk), -pressure / (3 * bulk), -pressure / (3 * bulk));
 }
 
 /// The root of a function that rises from a to b.
@@ -674,4 +692,178 @@ TEST_CASE("Cam-Clay: J from 1e-6 to 1e6, thin and long particles, and inverted o
   Particle<CamClay> inverted = clay();
   inverted.advance(diagonal(-2, 0, 0));
   CHECK_FALSE(CamClay::volume_ratio(inverted.state) > 0);
+}
+
+TEST_CASE("mu(I): simple shear is carried by (mu_s + (mu_2 - mu_s)/(I_0/I + 1)) p, I = rate d sqrt(rho_s/p)") {
+  for (double pressure : {1e3, 2e4})
+    for (double inertia : {1e-4, 1e-2, 0.1, 0.279, 1.0, 10.0}) {
+      CAPTURE(pressure, inertia);
+      const double rate = inertia * std::sqrt(pressure / grain) / diameter, increment = 1e-5;
+      Particle<MuI> particle = grains();
+      press(particle, pressure);
+      CHECK(particle.p() == Approx(pressure).epsilon(1e-9));
+      particle.dt = increment / rate;
+      const int steps = static_cast<int>(20 * pressure / shear / increment) + 20;
+      for (int step = 0; step < steps; ++step) particle.advance({{0, increment, 0, 0, 0, 0, 0, 0, 0}});
+      const double friction = static_friction + (limit_friction - static_friction) / (inertial / inertia + 1);
+      // Steady flow of an elastic solid lies off the axes of simple shear by the elastic strain, of order p/G.
+      CHECK(particle.p() == Approx(pressure).epsilon(1e-9));
+      CHECK(shear_stress(particle) == Approx(friction * pressure).epsilon(5 * pressure / shear));
+      CHECK(particle.stress()(0, 1) == Approx(friction * pressure).epsilon(5 * pressure / shear));
+      const double heat = particle.heat;
+      for (int step = 0; step < 10; ++step) particle.advance({{0, increment, 0, 0, 0, 0, 0, 0, 0}});
+      CHECK((particle.heat - heat) / (10 * increment) == Approx(friction * pressure).epsilon(5 * pressure / shear));
+    }
+}
+
+TEST_CASE("mu(I): at I_0 the friction is half way, 0.51 for glass beads") {
+  Particle<MuI> particle = grains();
+  press(particle, 1e3);
+  particle.dt = 1e-5 / (inertial * std::sqrt(1e3 / grain) / diameter);
+  for (int step = 0; step < 600; ++step) particle.advance({{0, 1e-5, 0, 0, 0, 0, 0, 0, 0}});
+  CHECK(particle.stress()(0, 1) == Approx(510).epsilon(2e-3));
+}
+
+TEST_CASE("mu(I): one step solves s = s' - G dt g with the rate g that carries s") {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int flows = 0;
+  for (int sample = 0; sample < 5000; ++sample) {
+    Particle<MuI> particle = grains();
+    const double pressure = std::pow(10, 2 + 4 * unit(generator));
+    press(particle, pressure);
+    particle.dt = std::pow(10, -6 + 5 * unit(generator));
+    const double strain = pressure / shear * std::pow(10, -1 + 3 * unit(generator));
+    CAPTURE(sample, pressure, particle.dt, strain);
+    const double trial = 2 * shear * strain / 2;  // dev eps = (strain/2, -strain/2, 0)
+    const double heat = particle.strain(strain / 2, -strain / 2, 0);
+    const double s = shear_stress(particle), p = particle.p();
+    if (trial < static_friction * p * (1 - 1e-9)) {
+      CHECK(heat == 0);
+      CHECK(s == Approx(trial).epsilon(1e-9));
+    } else if (trial > static_friction * p * (1 + 1e-9)) {
+      ++flows;
+      CHECK(s <= trial);
+      CHECK(s >= static_friction * p * (1 - 1e-9));
+      CHECK(s < limit_friction * p);
+      // s = mu(I) p solved for I: I = I_0 (s - mu_s p)/(mu_2 p - s).
+      const double exact = root_of(static_friction * p, std::min(limit_friction * p, trial), [&](double at) {
+        const double I = inertial * (at - static_friction * p) / (limit_friction * p - at);
+        return at + shear * particle.dt * I * std::sqrt(p / grain) / diameter - trial;
+      });
+      CHECK(s == Approx(exact).epsilon(1e-9));
+      CHECK(heat == Approx(s * (trial - s) / shear).margin(1e-9 * s * trial / shear));
+    }
+  }
+  CHECK(flows > 1000);
+}
+
+TEST_CASE("mu(I): grains that stand still keep mu_s p, whatever they carried when they flowed") {
+  Particle<MuI> particle = grains();
+  press(particle, 1e4);
+  particle.dt = 1e-8;
+  for (int step = 0; step < 500; ++step) particle.advance({{0, 1e-4, 0, 0, 0, 0, 0, 0, 0}});
+  CHECK(shear_stress(particle) > 0.55e4);
+  particle.dt = 1e-3;
+  for (int step = 0; step < 3000; ++step) particle.advance({});
+  CHECK(shear_stress(particle) == Approx(static_friction * 1e4).epsilon(1e-4));
+  CHECK(particle.p() == Approx(1e4).epsilon(1e-9));
+}
+
+TEST_CASE("mu(I): without growth of friction it is a cone, at every rate") {
+  for (double dt : {1e-9, 1e-3, 1e3}) {
+    Particle<MuI> particle = grains(0, 0.1);  // below mu_s it counts as mu_s
+    press(particle, 1e4);
+    particle.dt = dt;
+    for (int step = 0; step < 100; ++step) particle.advance({{0, 1e-3, 0, 0, 0, 0, 0, 0, 0}});
+    CHECK(shear_stress(particle) == Approx(static_friction * particle.p()).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("mu(I): no stress below the critical density, and above it K ln(density/critical density)") {
+  const double critical_density = 1600;
+  Particle<MuI> particle = grains(critical_density);
+  for (int step = 0; step < 600; ++step) {
+    // Loosening, shearing and compaction in turn; the packing begins at 1500 kg/m^3.
+    const double volume = step < 100 ? 2e-4 : step < 200 ? 0 : -5e-4;
+    particle.advance({{volume, step < 200 ? 1e-3 : 2e-4, 0, 0, volume, 0, 0, 0, volume}});
+    const double now = 1500 / particle.state.volume_ratio;
+    CHECK(particle.p() == Approx(std::max(0.0, bulk * std::log(now / critical_density))).margin(1e-9 * bulk));
+    if (now < critical_density) CHECK(shear_stress(particle) == 0);
+  }
+  CHECK(particle.p() > 1e-2 * bulk);
+  while (1500 / particle.state.volume_ratio > critical_density) particle.advance(diagonal(1e-3, 1e-3, 1e-3));
+  for (double component : particle.stress().s) CHECK(component == 0);
+  CHECK(particle.energy() == 0);
+}
+
+TEST_CASE("mu(I): below mu_s it is Hencky's law, keeps F_e to the last bit and closes its loops") {
+  Particle<MuI> particle = grains();
+  press(particle, 1e5);
+  const double energy = particle.energy();
+  Mat3 F = particle.state.elastic_deformation_gradient.plane;
+  for (int step = 0; step < 20; ++step) {
+    const double sign = step < 10 ? 1 : -1;
+    const Mat3 L{{sign * 1e-5, sign * 3e-5, 0, sign * 1e-5, 0, 0, 0, 0, -sign * 2e-5}};
+    F = advanced(F, L, 1.0);
+    CHECK(particle.advance(L) == 0);
+    for (int k = 0; k < 9; ++k) CHECK(particle.state.elastic_deformation_gradient.plane.m[k] == F.m[k]);
+  }
+  Particle<MuI> elastic = grains();
+  press(elastic, 1e5);
+  const double turn[4][3] = {{1e-4, -2e-4, 5e-5}, {-2e-4, 1e-4, 0}, {-1e-4, 2e-4, -5e-5}, {2e-4, -1e-4, 0}};
+  for (const auto& leg : turn)
+    for (int step = 0; step < 50; ++step) elastic.strain(leg[0] / 50, leg[1] / 50, leg[2] / 50);
+  CHECK(elastic.heat == 0);
+  CHECK(elastic.energy() == Approx(energy).epsilon(1e-10));
+  double last = 0;
+  for (int steps : {200, 400, 800}) {
+    Particle<MuI> flowing = grains();
+    flowing.dt = 0.02 / steps;
+    const double legs[4][3] = {{-0.01, -0.01, -0.01}, {0.03, -0.03, 0}, {0.01, 0.005, -0.02}, {-0.02, 0.03, 0}};
+    double least = 0;
+    for (const auto& leg : legs)
+      for (int step = 0; step < steps; ++step)
+        least = std::min(least, flowing.strain(leg[0] / steps, leg[1] / steps, leg[2] / steps));
+    CHECK(least >= -1e-16 * young);
+    const double miss = std::abs(flowing.work - flowing.energy() - flowing.heat) / flowing.work;
+    CHECK(miss < 10.0 / steps);
+    if (last > 0) CHECK(miss < 0.6 * last);  // of first order
+    last = miss;
+  }
+}
+
+TEST_CASE("mu(I): the wave speed at rest is the fastest that yielding on the cone of mu_2 allows") {
+  for (double limit : {0.3, 0.64, 3.0}) {
+    const double k = std::max(limit, static_friction) * bulk / (std::sqrt(2.0) * shear);
+    double largest = 0;  // of u (k - u) over the components -u of unit deviators
+    for (int n = 0; n <= 100000; ++n) {
+      const double u = n * 1e-5 * std::sqrt(2.0 / 3);
+      largest = std::max(largest, u * (k - u));
+    }
+    const Particle<MuI> particle = grains(0, limit);
+    const double speed = MuI::wave_speed(particle.constants, particle.state);
+    CHECK(1500 * speed * speed == Approx(bulk + 4 * shear / 3 + 2 * shear * largest).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("mu(I): J from 1e-6 to 1e6, thin and long particles, and inverted ones") {
+  for (double J : {1e-6, 1e-3, 1e3, 1e6}) {
+    CAPTURE(J);
+    Particle<MuI> particle = grains();
+    const double third = std::cbrt(J) - 1;
+    CHECK(particle.advance(diagonal(third, third, third)) >= -1e-14 * young);
+    CHECK(particle.state.volume_ratio == Approx(J).epsilon(1e-12));
+    CHECK(particle.p() == Approx(std::max(0.0, -bulk * std::log(J))).margin(1e-12 * bulk));
+    CHECK(MuI::wave_speed(particle.constants, particle.state) > 0);
+  }
+  for (double stretch : {1e-6, 1e-2, 1e2, 1e6}) {
+    CAPTURE(stretch);
+    Particle<MuI> particle = grains();
+    CHECK(particle.advance(diagonal(stretch - 1, 0, 0)) >= 0);
+    CHECK(shear_stress(particle) <= limit_friction * std::max(particle.p(), 0.0) + 1e-9 * young);
+  }
+  Particle<MuI> inverted = grains();
+  inverted.advance(diagonal(-2, 0, 0));
+  CHECK_FALSE(inverted.state.volume_ratio > 0);
 }

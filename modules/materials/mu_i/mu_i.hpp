@@ -66,25 +66,25 @@ struct MuI : HenckySolid {
   }
 
   /// Returns the energy dissipated, J/m^3: tau at the end of the step times the change of elastic strain by the return,
-  /// which is s g dt where grains flow. A particle that does not yield keeps F_e as advanced, to the last bit.
+  /// which is s g dt where grains flow. A particle in contact that does not yield keeps F_e as advanced, to the last bit.
   template <class G, int D, class S>
   MPM_HD static S advance(const Constants<scalar_of<S>>& c, const G& L, scalar_of<S> dt, State<D, S>& state) {
     const S zero = S(real<S>(0));
+    const S before = log(state.volume_ratio) - c.critical;
     state.volume_ratio = state.volume_ratio * determinant(advanced(G::identity(), L, dt));
     const Deformation<D, S> trial = trial_of(state.elastic_deformation_gradient, L, dt);
     SingularValues<D, S> parts;
     const Vec<3, S> strain = strains(trial, parts);
     const S trace = sum(strain), mean = trace * real<S>(1.0 / 3.0);
     // Grains that were apart touch where J falls below the critical volume. They are never in tension.
-    const S felt = min(log(state.volume_ratio) - c.critical, zero);
+    const S now = log(state.volume_ratio) - c.critical, felt = min(now, zero);
 
     Vec<3, S> deviator;
     for (int i = 0; i < 3; ++i) deviator[i] = strain[i] - mean;
     const S sheared = real<S>(0.70710678118654752) * sqrt(dot(deviator, deviator)), pressure = -(c.bulk * felt);
     const auto yields = sheared > c.static_friction * pressure;
-    // Rounding alone tells the elastic volume of grains in contact from J's, and it is left where it is.
-    const S off = abs(felt - trace), close = (sizeof(scalar_of<S>) == 4 ? real<S>(1e-4) : real<S>(1e-12));
-    const auto changes = select(yields, S(real<S>(1)), off - close) > real<S>(0);
+    const S apart = select(max(before, now) > zero, S(real<S>(1)), zero);
+    const auto changes = select(yields, S(real<S>(1)), apart) > zero;
     if (!any(changes)) {
       state.elastic_deformation_gradient = trial;
       return zero;
@@ -92,12 +92,16 @@ struct MuI : HenckySolid {
     const S flowing = min(flowing_stress(c, sheared, pressure, dt), sheared);
     const S kept = select(yields, flowing / max(sheared, S(svd::tiny<S>())), S(real<S>(1)));
     Vec<3, S> after;
-    S heat = zero;
+    S heat = pressure * (felt - trace);  // what a step that closes a gap has pressed too far
     for (int i = 0; i < 3; ++i) {
       after[i] = kept * deviator[i] + felt * real<S>(1.0 / 3.0);
       heat = heat + kept * (real<S>(1) - kept) * (deviator[i] * deviator[i]);
     }
-    store(changes, stretched(parts, after), trial, state.elastic_deformation_gradient);
+    // Grains that are apart get the identity itself, as U V^T would leave a stress of rounding.
+    Deformation<D, S> end = stretched(parts, after);
+    const Mat<D, S> identity = Mat<D, S>::identity();
+    for (int k = 0; k < D * D; ++k) end.plane.m[k] = select(felt < zero, end.plane.m[k], identity.m[k]);
+    store(changes, end, trial, state.elastic_deformation_gradient);
     return select(changes, real<S>(2) * c.mu * heat, zero);
   }
 
