@@ -139,8 +139,9 @@ Increments plus(const Increments& a, const Increments& b, double factor) {
   return r;
 }
 
-/// The error of a tangent against central differences of the stress. Where both one-sided differences disagree the law
-/// has a kink (a yield surface), and the particle is left out.
+/// The error of a tangent against central differences of the stress, beyond that by which both one-sided differences
+/// disagree: so much the stress bends within h, by about which equal stretches are put apart (svd::put_apart). Where they
+/// disagree by much the law has a kink (a yield surface), and the particle is left out.
 struct TangentError {
   Worst error;
   int compared = 0;
@@ -166,7 +167,7 @@ TangentError tangent_error(const Context& c, const MaterialBatch& from, const In
     }
     if (kink > 1e-3 * size && std::isfinite(error)) continue;
     ++result.compared;
-    result.error.add(error / size, lane);
+    result.error.add((error < kink ? 0 : error - kink) / size, lane);
   }
   return result;
 }
