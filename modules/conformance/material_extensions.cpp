@@ -369,8 +369,9 @@ void check_cell_size(const Context& c, const std::vector<Increments>& path) {
   coarse.block[table->offset / sizeof(double)] *= 2;
   const MaterialBatch here = after_path(c.plugin, c.variant, c.parameters, path);
   const MaterialBatch there = after_path(c.plugin, c.variant, coarse, path);
-  c.findings.require("cell_size_matters [" + c.variant.name() + "]", !(here.stress == there.stress),
-                     "stress on cells of twice the size" + c.where);
+  c.findings.require("cell_size_matters [" + c.variant.name() + "]",
+                     !(here.stress == there.stress && here.wave == there.wave),
+                     "stress or wave speed on cells of twice the size" + c.where);
 }
 
 /// Checks that a law that makes energy says where, and that its heat is read at all.
