@@ -6,6 +6,7 @@
 #include <random>
 
 #include "kernel/equation_of_state.hpp"
+#include "materials/herschel_bulkley/herschel_bulkley.hpp"
 #include "materials/newtonian_fluid/newtonian_fluid.hpp"
 #include "support/catch.hpp"
 
@@ -100,6 +101,35 @@ struct Particle {
   double energy() const { return NewtonianFluid::stored_energy(constants, state); }
   double J() const { return NewtonianFluid::volume_ratio(state); }
   double speed() const { return NewtonianFluid::wave_speed(constants, state); }
+};
+
+constexpr double mud_modulus = 1e4, yield_stress = 30;
+
+HerschelBulkley::Parameters mud(double consistency, double index, double yield = yield_stress) {
+  HerschelBulkley::Parameters p{};
+  p.bulk_modulus = 1e6, p.equation_of_state = static_cast<double>(power);
+  p.exponent = 7, p.heat_capacity_ratio = 1.4, p.hugoniot_slope = 1.489, p.density = 1000;
+  p.shear_modulus = mud_modulus, p.yield_stress = yield, p.consistency = consistency, p.flow_index = index;
+  return p;
+}
+
+/// One particle of mud in simple shear.
+struct Mud {
+  HerschelBulkley::Constants<double> constants;
+  HerschelBulkley::State<3, double> state{Sym<3, double>::identity(), 0};
+  double heat = 0, work = 0;
+
+  explicit Mud(const HerschelBulkley::Parameters& p) : constants(p) {}
+  double stress() const { return HerschelBulkley::kirchhoff_stress(constants, state)(0, 1); }
+  double energy() const { return HerschelBulkley::stored_energy(constants, state); }
+  /// Shears by `strain` within `time`, and adds up the work by the trapezoidal rule.
+  void shear(double strain, double time, int steps) {
+    for (int k = 0; k < steps; ++k) {
+      const double before = stress();
+      heat += HerschelBulkley::advance(constants, Mat3{{0, strain / time, 0, 0, 0, 0, 0, 0, 0}}, time / steps, state);
+      work += 0.5 * (before + stress()) * strain / steps;
+    }
+  }
 };
 
 }  // namespace
@@ -326,4 +356,96 @@ TEST_CASE("newtonian_fluid: in plane strain z is held, around an axis it flows")
   CHECK(ring.viscous_stress.s[2] == Approx(12 * 2.0 / 3));
   CHECK(ring.viscous_stress.s[0] == Approx(-12 / 3.0));
   CHECK(ring.log_volume_ratio == Approx(1e-9));
+}
+
+TEST_CASE("herschel_bulkley: the stress of steady shear is tau_y + k rate^n, and all its work is heat") {
+  for (double index : {0.1, 0.4, 1.0, 1.7, 2.0})
+    for (double rate : {0.01, 1.0, 7.0}) {
+      CAPTURE(index, rate);
+      Mud flow(mud(5, index));
+      // To twenty times the elastic strain, which is stress over G; normal stresses are of its square.
+      const double expected = 30 + 5 * std::pow(rate, index), normal = expected / mud_modulus;
+      flow.shear(20 * normal, 20 * normal / rate, 2000);
+      CHECK(flow.stress() == Approx(expected).epsilon(1e-6 + 2 * normal * normal));
+      const double stored = flow.energy(), heat = flow.heat;
+      flow.shear(0.01, 0.01 / rate, 100);
+      CHECK(flow.heat - heat == Approx(expected * 0.01).epsilon(1e-5 + 3 * normal));
+      CHECK(flow.energy() == Approx(stored).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("herschel_bulkley: up to the yield stress it is an elastic solid that gives back all work, beyond it flows") {
+  for (double index : {0.5, 1.0}) {
+    Mud paste(mud(5, index));
+    const double yields = yield_stress / mud_modulus;
+    paste.shear(0.999 * yields, 1, 300);
+    CHECK(paste.stress() == Approx(0.999 * yield_stress).epsilon(1e-5));
+    CHECK(paste.energy() == Approx(0.5 * mud_modulus * std::pow(0.999 * yields, 2)).epsilon(1e-5));
+    paste.shear(0, 1e9, 1);  // nothing creeps in thirty years
+    CHECK(paste.stress() == Approx(0.999 * yield_stress).epsilon(1e-5));
+    CHECK(paste.heat == 0);
+    paste.shear(-0.999 * yields, 1, 300);
+    CHECK(std::abs(paste.work) < 1e-9);
+    CHECK(std::abs(paste.energy()) < 1e-9);
+    paste.shear(1.01 * yields, 1, 300);
+    CHECK(paste.heat > 0);
+  }
+}
+
+TEST_CASE("herschel_bulkley: a Bingham fluid that is held goes back to its yield stress with the time k/G") {
+  Mud paste(mud(200, 1));
+  paste.shear(0.01, 1e-9, 1);  // at once: elastic, 100 Pa
+  const double before = paste.stress();
+  CHECK(before == Approx(100).epsilon(1e-3));
+  paste.shear(0, 0.02, 20000);  // k/G = 0.02 s
+  CHECK(paste.stress() == Approx(30 + (before - 30) * std::exp(-1)).epsilon(1e-4));
+}
+
+TEST_CASE("herschel_bulkley: one implicit step solves k g^n + a g = overstress, from a crawl to a crash") {
+  for (double index : {0.1, 0.3, 0.9, 1.0, 1.5, 3.0})
+    for (double consistency : {0.0, 1e-6, 1.0, 1e6})
+      for (double elastic : {1e-9, 1e-3, 1.0, 1e6})
+        for (double overstress : {1e-9, 1.0, 1e6}) {
+          CAPTURE(index, consistency, elastic, overstress);
+          const HerschelBulkley::Constants<double> c(mud(consistency, index));
+          const double rate = HerschelBulkley::flow_rate(c, overstress, elastic);
+          CHECK(consistency * std::pow(rate, index) + elastic * rate == Approx(overstress).epsilon(1e-11));
+        }
+}
+
+TEST_CASE("herschel_bulkley: work is stored energy and heat, to the order of the step") {
+  for (double index : {0.4, 1.0, 2.0}) {
+    double error[2];
+    for (int refined : {0, 1}) {
+      Mud paste(mud(50, index));
+      paste.shear(0.02, 0.01, refined ? 4000 : 1000);
+      error[refined] = std::abs(paste.work - paste.energy() - paste.heat) / paste.work;
+    }
+    CHECK(error[1] < 2e-3);
+    CHECK(error[1] < 0.4 * error[0]);
+  }
+}
+
+TEST_CASE("herschel_bulkley: the pressure is that of the equation of state, whatever flows") {
+  Mud paste(mud(5, 1));
+  for (int k = 0; k < 100; ++k)
+    HerschelBulkley::advance(paste.constants, Mat3{{-1e-3, 0.02, 0, 0, 0, 0, 0, 0, 0}}, 1.0, paste.state);
+  const double J = std::pow(1 - 1e-3, 100);
+  CHECK(HerschelBulkley::volume_ratio(paste.state) == Approx(J).epsilon(1e-12));
+  CHECK(-trace(HerschelBulkley::kirchhoff_stress(paste.constants, paste.state)) / 3 / J ==
+        Approx(1e6 / 7 * (std::pow(J, -7) - 1)).epsilon(1e-9));
+}
+
+TEST_CASE("herschel_bulkley: the wave at rest is that of K + 4/3 G, and crushed to J = 1e-6 all is finite") {
+  Mud paste(mud(5, 0.5));
+  const double speed = HerschelBulkley::wave_speed(paste.constants, paste.state);
+  CHECK(speed * speed * 1000 == Approx(1e6 + 4e4 / 3).epsilon(1e-12));
+  for (int k = 0; k < 200; ++k) {
+    const double f = std::pow(1e-6, 1.0 / 200) - 1;
+    paste.heat += HerschelBulkley::advance(paste.constants, Mat3{{f, 0, 0, 0, 0, 0, 0, 0, 0}}, 1.0, paste.state);
+  }
+  CHECK(HerschelBulkley::volume_ratio(paste.state) == Approx(1e-6).epsilon(1e-11));
+  const Sym<3, double> tau = HerschelBulkley::kirchhoff_stress(paste.constants, paste.state);
+  for (double e : tau.s) CHECK(std::isfinite(e));
+  CHECK((paste.heat > 0 && std::isfinite(paste.heat)));
 }
