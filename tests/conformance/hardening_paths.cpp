@@ -305,6 +305,27 @@ TEST_CASE("Johnson-Cook: where plain Newton cycles, and where it leaves the law,
         check_root(start, (90 + 292 * std::pow(start, 0.31)) * (1 + excess), step);
 }
 
+TEST_CASE("metals: the slope of a law is the derivative of its stress by the plastic strain of the step") {
+  // A wrong slope would not change results: it makes the iteration slow.
+  const auto check = [](const auto& law) {
+    for (const double before : {1e-3, 0.1, 2.0})
+      for (const double increment : {1e-5, 1e-3, 0.1}) {
+        const double h = 1e-3 * increment;
+        const double difference = (law.flow(before + increment + h, increment + h).stress -
+                                   law.flow(before + increment - h, increment - h).stress) /
+                                  (2 * h);
+        CAPTURE(before, increment);
+        CHECK(law.flow(before + increment, increment).slope == Approx(difference).epsilon(1e-5));
+      }
+  };
+  check(LinearHardening<double>{100, 30});
+  check(VonMisesPower::Constants<double>(power).hardening);
+  check(VonMisesVoce::Constants<double>(voce).hardening);
+  for (const double dt : {1e-7, 0.3, 1e5})  // no rate is the reference rate, where the law turns
+    for (const double temperature : {room, 700.0})
+      check(JohnsonCookStep<double, double>(JohnsonCook::Constants<double>(steel).hardening, temperature, dt));
+}
+
 template <class Metal, class Parameters>
 void check_return(const Parameters& parameters, const FlowCurve& curve) {
   Particle<Metal> particle(parameters);
