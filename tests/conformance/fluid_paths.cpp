@@ -392,6 +392,16 @@ TEST_CASE("herschel_bulkley: up to the yield stress it is an elastic solid that 
   }
 }
 
+TEST_CASE("herschel_bulkley: below the yield stress its deviator is that of the split Neo-Hookean solid") {
+  Mud paste(mud(5, 1, 1e9));
+  HerschelBulkley::advance(paste.constants, Mat3{{0.1, 0, 0, 0, 0, 0, 0, 0, 0}}, 1.0, paste.state);
+  HerschelBulkley::advance(paste.constants, Mat3{{0, 0, 0, 0, 0.2, 0, 0, 0, 0}}, 1.0, paste.state);
+  const double factor = mud_modulus * std::pow(1.1 * 1.2, -2.0 / 3);
+  const Sym<3, double> tau = HerschelBulkley::kirchhoff_stress(paste.constants, paste.state);
+  CHECK(tau(0, 0) - tau(2, 2) == Approx(factor * (1.1 * 1.1 - 1)).epsilon(1e-12));
+  CHECK(tau(1, 1) - tau(2, 2) == Approx(factor * (1.2 * 1.2 - 1)).epsilon(1e-12));
+}
+
 TEST_CASE("herschel_bulkley: a Bingham fluid that is held goes back to its yield stress with the time k/G") {
   Mud paste(mud(200, 1));
   paste.shear(0.01, 1e-9, 1);  // at once: elastic, 100 Pa
