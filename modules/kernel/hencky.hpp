@@ -1,7 +1,7 @@
 #pragma once
 // Hencky's elasticity in principal strains, which soils share: tau = 2 mu eps + lambda tr(eps) I with eps the logarithms
 // of the singular values of F_e (Simo, Comput. Methods Appl. Mech. Engrg. 99 (1992) 61; de Souza Neto, Peric & Owen
-// (2008), Computational Methods for Plasticity, sec. 14.4). A return map works on three strains and three stresses as in
+// (2008), Computational Methods for Plasticity, ch. 14). A return map works on three strains and three stresses as in
 // small strain. In 2-D the third of both is that of z, and F_e keeps its zz.
 
 #include "kernel/elasticity.hpp"

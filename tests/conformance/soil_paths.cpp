@@ -511,7 +511,7 @@ TEST_CASE("Cam-Clay: drained triaxial tests end at the critical state q = M p, p
     }
 }
 
-TEST_CASE("Cam-Clay: the published numbers at 100 kPa and M = 1.2") {
+TEST_CASE("Cam-Clay: with 100 kPa at the side and M = 1.2 the strength is 200 kPa") {
   Particle<CamClay> particle = clay();
   particle.strain(-1e5 / (3 * bulk), -1e5 / (3 * bulk), -1e5 / (3 * bulk));
   for (int step = 0; step < 1000; ++step) particle.squeeze(-1e-3, 1e5);

@@ -1,8 +1,8 @@
 #pragma once
 // Clay: Hencky elasticity and the ellipse of modified Cam-Clay, whose size follows the plastic volume. Finite strain and
-// hardening: Borja & Tamagnini, Comput. Methods Appl. Mech. Engrg. 155 (1998) 73, sec. 2-3, but with constant elastic
+// hardening: Borja & Tamagnini, Comput. Methods Appl. Mech. Engrg. 155 (1998) 73, but with constant elastic
 // moduli, so that clay at rest carries no stress. Ellipse with cohesion: Gaume, Gast, Teran, van Herwijnen & Jiang, Nat.
-// Commun. 9 (2018) 3047, eq. 10.
+// Commun. 9 (2018) 3047.
 //
 //   a q^2 + M^2 (p + beta p_c)(p - p_c) <= 0,   a = 1 + 2 beta,   p pressure, q = sqrt(3/2)|dev tau|
 //   p_c = p_c0 exp(xi e),   e = -ln J_p,   with the slope dp_c/de held below the steepest that `Hardening` explains

@@ -2,7 +2,7 @@
 // Soil and rock: Hencky elasticity and the perfectly plastic Mohr-Coulomb pyramid, with a dilation angle of its own. The
 // return to a face, an edge or the apex is exact and has no iteration: de Souza Neto, Peric & Owen (2008), Computational
 // Methods for Plasticity, sec. 8.2 (faces and their flow); Clausen, Damkilde & Andersen, Int. J. Numer. Methods Engrg. 66
-// (2006) 1795, eq. 28-35 (the return to a line), here with regions told apart by the order of the returned stresses.
+// (2006) 1795 (the return to a line), here with regions told apart by the order of the returned stresses.
 //
 // Principal stresses t1 >= t2 >= t3 (tension is positive), in units of 2 mu:
 //   f = n.t - 2 k,  n = (1 + sin phi, 0, -(1 - sin phi)),  k = c cos(phi)/(2 mu);
@@ -26,7 +26,7 @@ struct MohrCoulomb : HenckySolid {
   struct Parameters {
     double youngs_modulus, poisson_ratio, density, friction_angle, cohesion, dilation_angle;
   };
-  /// Stresses as straight as the edge on which two principal stresses are equal.
+  /// The line of stresses on which two principal ones are equal.
   template <class T>
   struct Edge {
     Vec<3, T> point, direction;  ///< p and l

@@ -1,7 +1,7 @@
 #pragma once
 // Dry grains that flow: Hencky elasticity and the mu(I) rheology, in which friction grows with the shear rate. Law: Jop,
-// Forterre & Pouliquen, Nature 441 (2006) 727, eq. 1-3. Its place in an elastic-viscoplastic solid, the return in closed
-// form, and no stress below the critical density: Dunatunga & Kamrin, J. Fluid Mech. 779 (2015) 483, sec. 3-4; here
+// Forterre & Pouliquen, Nature 441 (2006) 727. Its place in an elastic-viscoplastic solid, the return in closed
+// form, and no stress below the critical density: Dunatunga & Kamrin, J. Fluid Mech. 779 (2015) 483; here
 // with Hencky strains in place of a rate of stress, so that what is stored is known.
 //
 //   s = sqrt(dev tau : dev tau/2) = mu(I) p,   mu(I) = mu_s + (mu_2 - mu_s)/(I_0/I + 1),   I = g d sqrt(rho_s/p)
