@@ -31,13 +31,22 @@ MaterialAtRest::MaterialAtRest(const Experiment& experiment, const Plugin& mater
   }
 }
 
+namespace {
+
+/// Time in which a particle is strained, s: so long that what relaxes has relaxed and no stress is left of the rate. A
+/// power of two changes no bit of the strain.
+constexpr double slow = 0x1p40;
+
+}  // namespace
+
 bool MaterialAtRest::strain(std::span<const std::array<double, 9>> F) {
   const auto D = static_cast<std::size_t>(experiment_.dimension);
   for (std::size_t k = 0; k < stride_; ++k) {
     const std::array<double, 9>& of = F[std::min(k, count_ - 1)];  // the last one pads
     for (std::size_t i = 0; i < D; ++i)
-      for (std::size_t j = 0; j < D; ++j) gradient_[(i * D + j) * stride_ + k] = of[3 * i + j] - (i == j ? 1 : 0);
-    around_[k] = of[8] - 1;
+      for (std::size_t j = 0; j < D; ++j)
+        gradient_[(i * D + j) * stride_ + k] = (of[3 * i + j] - (i == j ? 1 : 0)) / slow;
+    around_[k] = (of[8] - 1) / slow;
   }
   fields_ = rest_;
   std::vector<void*> pointers;
@@ -45,7 +54,7 @@ bool MaterialAtRest::strain(std::span<const std::array<double, 9>> F) {
   mpm_material_batch batch{};
   batch.count = batch.stride = static_cast<std::uint32_t>(stride_);
   batch.dimension = static_cast<std::uint32_t>(D);
-  batch.dt = 1;
+  batch.dt = slow;
   batch.velocity_gradient = gradient_.data();
   if (experiment_.axisymmetric()) batch.velocity_gradient_zz = around_.data();
   if (!temperature_.empty()) batch.temperature = temperature_.data();
