@@ -10,8 +10,8 @@
 namespace mpm {
 namespace {
 
-/// The time within which a material is strained to its first state, s: so long that viscosity gives no stress. A power of
-/// two, so that strains do not round.
+/// The time within which a material is strained to its first state, s: so long that what relaxes has relaxed and no stress
+/// is left of the rate. A power of two changes no bit of the strain.
 constexpr double ages = 0x1p40;
 
 }  // namespace
