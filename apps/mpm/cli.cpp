@@ -133,7 +133,7 @@ void add_drive(CLI::App& verb, DriveOptions& options) {
       ->check(CLI::PositiveNumber);
   verb.add_option("--dimension", options.dimension, "3, or 2: plane strain; default 3 where the material can")
       ->check(CLI::IsMember({2, 3}));
-  verb.add_option("--cell-size", options.cell_size, "of a grid, for materials that soften over it");
+  verb.add_option("--cell-size", options.cell_size, "of a grid, m, for materials that read it");
   verb.add_option("--out", options.out, "folder that gets a run folder of each path: numbers, figures, report.html");
   verb.add_flag("--replace", options.replace, "replaces whatever runs are there");
   verb.footer("Paths:\n" + list +

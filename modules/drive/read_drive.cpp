@@ -131,7 +131,7 @@ class DriveReader {
     const auto* extension = extension_of<mpm_material_cell_size>(*material.plugin);
     if (extension && !fields.given("cell_size"))
       context_.problem(fields.place("cell_size"), "material " + in_quotes(material.plugin->id()) +
-                                                      " softens over a cell of the grid: give \"cell_size\", m");
+                                                      " reads the cell size of a grid: give \"cell_size\", m");
     if (!extension && fields.given("cell_size"))
       context_.problem(fields.place("cell_size"),
                        "material " + in_quotes(material.plugin->id()) + " does not read a cell size: remove it");

@@ -55,8 +55,7 @@ Section solver_section() {
           "One particle by itself, along stages of imposed deformation and stress.",
           {
               parameter("stages", Type::nested, "", "a list of stages").made_of(stage_section(3)).needed(),
-              parameter("cell_size", Type::number, "m", "Cell size of the grid, for materials that soften over it.")
-                  .above(0),
+              parameter("cell_size", Type::number, "m", "Cell size of a grid, for materials that read it.").above(0),
           },
           true};
 }

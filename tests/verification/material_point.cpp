@@ -12,6 +12,7 @@
 #include "drive/standard_paths.hpp"
 #include "plugin/registry.hpp"
 #include "support/catch.hpp"
+#include "support/fixture_materials.hpp"
 
 using namespace mpm;
 using namespace mpm::drive;
@@ -109,6 +110,26 @@ TEST_CASE("material point: Neo-Hookean in uniaxial stress, the sides found by Ne
           CHECK(std::abs(end.response.cauchy(1, 1)) < 1e-8);
           if (steps == 20) CHECK(course.iterations <= 5 * steps);  // quadratic convergence: the slopes are right
         }
+}
+
+TEST_CASE("material point: Newton's method takes no more steps with the plugin's tangent than with differences") {
+  const Json sides{{"yy", -600}, {"zz", -600}, {"xy", 200}};
+  for (const Json& motion : {Json{{"deformation_gradient", {{"xx", "1 + t"}, {"yz", "t"}}}},
+                             Json{{"velocity_gradient", {{"xx", "1"}, {"zx", "t"}}}}}) {
+    Json path = motion;
+    path["steps"] = 20, path["stress"] = sides;
+    const Course by_tangent = driven(rubber("simo"), Json::array({path})),
+                 by_differences = driven(rubber("simo"), Json::array({path}), 3, Slopes::differences);
+    CHECK(by_tangent.iterations <= by_differences.iterations + 1);
+    CHECK(by_tangent.iterations <= 5 * 20);
+    for (const Course& course : {by_tangent, by_differences}) {
+      CHECK(end_of(course).response.cauchy(1, 1) == Approx(-600).epsilon(1e-11));
+      CHECK(end_of(course).response.cauchy(2, 2) == Approx(-600).epsilon(1e-11));
+      CHECK(end_of(course).response.cauchy(0, 1) == Approx(200).epsilon(1e-11));
+    }
+    CHECK(end_of(by_tangent).response.cauchy(0, 0) ==
+          Approx(end_of(by_differences).response.cauchy(0, 0)).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("material point: Neo-Hookean in simple shear, by F, by the velocity gradient and by the shear stress") {
@@ -250,6 +271,92 @@ TEST_CASE("material point: snow keeps its clamped stretch, and hardens by the re
       CHECK(end.response.kirchhoff(0, 0) == Approx(c.factor * (2 * mu + lambda) * (s - 1) * s).epsilon(1e-8));
       CHECK(end.response.volume_ratio == Approx(c.stretch).epsilon(1e-12));
     }
+}
+
+namespace mpm::test {  // so that it finds mpm::log
+
+/// A liquid without viscosity: pressure -K ln J / J, nothing else.
+struct Liquid : ElasticSolid {
+  struct Parameters {
+    double bulk_modulus, density;
+  };
+  template <class T>
+  struct Constants {
+    T bulk, inverse_density;
+    MPM_HD explicit Constants(const Parameters& p) : bulk(T(p.bulk_modulus)), inverse_density(T(1 / p.density)) {}
+  };
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static Sym<G::dimension, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
+    Sym<G::dimension, S> tau{};
+    for (int i = 0; i < 3; ++i) tau.s[i] = c.bulk * log(determinant(state.deformation_gradient));
+    return tau;
+  }
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
+    const S l = log(determinant(state.deformation_gradient));
+    return real<S>(0.5) * c.bulk * l * l;
+  }
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const ElasticState<G>&) {
+    return sqrt(S(c.inverse_density * c.bulk));
+  }
+  static constexpr unsigned traits = MPM_HYPERELASTIC | MPM_OBJECTIVE;
+  static constexpr mpm_parameter parameters[] = {
+      MPM_NUMBER_PARAMETER(bulk_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM, "bulk modulus"),
+      MPM_NUMBER_PARAMETER(density, "kg/m^3", required, 0.0, unbounded, MPM_ABOVE_MINIMUM, "initial density")};
+  static constexpr mpm_state state[] = {NeoHookean::state[0]};
+};
+
+}  // namespace mpm::test
+
+namespace {
+
+template <class F>
+ComponentLookup one_material() {
+  static constexpr mpm_descriptor descriptor = sdk::material<F>(mpm::test::fixture_manual, "struct Fixture {};");
+  static const Plugin plugin{&descriptor, "test"};
+  return ComponentLookup(std::vector<const Plugin*>{&plugin});
+}
+
+}  // namespace
+
+TEST_CASE("material point: the free sides of a liquid, which no stress tells apart, move alike") {
+  const ComponentLookup liquid = one_material<mpm::test::Liquid>();
+  const Json file{{"materials", {{"m", {{"type", "fixture"}, {"bulk_modulus", 2e9}, {"density", 1000}}}}},
+                  {"solver",
+                   {{"type", "material_point"},
+                    {"stages", Json::array({stage({{"xx", "1 + t"}}, 50, {{"yy", -1e5}, {"zz", -1e5}})})}}}};
+  const Course course = follow(read_drive_text(file.dump(), "FILE", liquid));
+  const Row& end = end_of(course);
+  CHECK(end.F(1, 1) == Approx(end.F(2, 2)).epsilon(1e-12));
+  const double J = end.F(0, 0) * end.F(1, 1) * end.F(2, 2);  // p = -K ln J / J
+  CHECK(-2e9 * std::log(J) / J == Approx(1e5).epsilon(1e-6));
+  CHECK(pressure(end.response) == Approx(1e5).epsilon(1e-7));
+}
+
+TEST_CASE("material point: a material that reads a cell size has the one that the file gives") {
+  const ComponentLookup band = one_material<mpm::test::BandHardening>();
+  const auto text = [&](const Json& cell_size) {
+    Json solver{
+        {"type", "material_point"},
+        {"stages", Json::array({stage({{"xx", ramp(1, 1 + 3 * yield / metal_young)}}, 90, {{"yy", 0}, {"zz", 0}})})}};
+    if (!cell_size.is_null()) solver["cell_size"] = cell_size;
+    Json material = metal(0);
+    material.erase("hardening_modulus");
+    material["type"] = "fixture", material["stiffness"] = 10 * metal_young;
+    return Json{{"materials", {{"m", material}}}, {"solver", solver}}.dump();
+  };
+  for (const double h : {0.05, 0.2}) {
+    const double hardening = 10 * metal_young * h, tangent = metal_young * hardening / (metal_young + hardening);
+    const Course course = follow(read_drive_text(text(h), "FILE", band));
+    CHECK(end_of(course).response.cauchy(0, 0) == Approx(yield + 2 * tangent * yield / metal_young).epsilon(small));
+  }
+  try {
+    read_drive_text(text(nullptr), "FILE", band);
+    FAIL("a cell size is missing, and nothing was said");
+  } catch (const InputError& error) {
+    CHECK(std::string(error.what()).find("reads the cell size of a grid: give \"cell_size\", m") != std::string::npos);
+  }
 }
 
 TEST_CASE("material point: the work is that of the closed form, and the ledger closes") {
