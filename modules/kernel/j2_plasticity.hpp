@@ -7,6 +7,7 @@
 #include "kernel/elasticity.hpp"
 #include "kernel/functor.hpp"
 #include "kernel/hardening.hpp"
+#include "kernel/unimodular.hpp"
 
 namespace mpm {
 
@@ -45,17 +46,6 @@ struct J2Constants {
 };
 
 struct J2Plasticity {
-  /// The mean of tr(b)/3 that makes det(d + t I) = 1 for a deviatoric d: largest root of t^3 - (d:d/2) t + det d - 1.
-  /// Newton from a start at or above the root is monotone, the cubic being convex there.
-  template <int D, class S>
-  MPM_HD static S unimodular_mean(const Sym<D, S>& d, S start) {
-    const S half_norm = real<S>(0.5) * squared_norm(d), offset = determinant(d) - real<S>(1);
-    S t = start;
-    for (int iteration = 0; iteration < 8; ++iteration)
-      t = t - (t * (t * t - half_norm) + offset) / (real<S>(3) * t * t - half_norm);
-    return t;
-  }
-
   /// Returns the energy dissipated by plastic flow, J/m^3: the plastic multiplier times its work-conjugate stress at
   /// the end of the step, which is |s| for small elastic strains. (The stored energy that the return removes from the
   /// trial state is E de^2/2 a step more, which no force has supplied.)
@@ -89,43 +79,6 @@ struct J2Plasticity {
     for (int k = 0; k < Sym<D, S>::size; ++k) state.elastic_left_cauchy_green.s[k] = select(yields, d.s[k], b.s[k]);
     state.equivalent_plastic_strain = state.equivalent_plastic_strain + root_two_thirds * multiplier;
     return select(yields, shrink * stress_norm * multiplier * conjugate, S(real<S>(0)));
-  }
-
-  /// The factor -(3 mu / 2) dt / d(shrink of d), over mu |d|^2 / 2, by which the stress that does plastic work differs
-  /// from |s|. t(d) follows from det(d + t I) = 1, and the factor is 1 + O(elastic strain).
-  template <int D, class S>
-  MPM_HD static S conjugate_factor(const Sym<D, S>& d, S t) {
-    const S norm = max(squared_norm(d), S(real<S>(1e-30)));
-    return (t - real<S>(3) * determinant(d) / norm) / (t * t - real<S>(1.0 / 6.0) * norm);
-  }
-
-  /// f b f^T; in plane strain f_zz = 1.
-  template <int D, class S>
-  MPM_HD static Sym<D, S> pushed(const Mat<D, S>& f, const Sym<D, S>& b) {
-    Sym<D, S> r = b;
-    for (int i = 0; i < D; ++i)
-      for (int j = i; j < D; ++j) {
-        S t = S(real<S>(0));
-        for (int k = 0; k < D; ++k)
-          for (int l = 0; l < D; ++l) t = t + f(i, k) * b(k, l) * f(j, l);
-        r(i, j) = t;
-      }
-    return r;
-  }
-  template <class S>
-  MPM_HD static Sym<2, S> pushed(const Deformation<2, S>& f, const Sym<2, S>& b) {
-    Sym<2, S> r = pushed(f.plane, b);
-    r.s[2] = f.zz * f.zz * b.s[2];
-    return r;
-  }
-
-  /// The tensor det(b)^-1/3 b. It is divided by b's own determinant, not by that of the increments, so that rounding
-  /// does not pile up over many steps.
-  template <int D, class S>
-  MPM_HD static Sym<D, S> unimodular(Sym<D, S> b) {
-    const S scale = exp(real<S>(-1.0 / 3.0) * log(determinant(b)));
-    for (int k = 0; k < Sym<D, S>::size; ++k) b.s[k] = scale * b.s[k];
-    return b;
   }
 
   /// tau = mu dev(b_e) + K J u' I.

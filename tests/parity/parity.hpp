@@ -29,6 +29,7 @@ inline double required_value(const mpm_parameter& parameter) {
                                                     {"shear_stiffness", 2e4},
                                                     {"viscosity", 50},
                                                     {"slip_length", 0.1},
+                                                    {"consistency", 5},
                                                     {"reference_strain", 0.02},
                                                     {"hardening_exponent", 0.3},
                                                     {"saturation_hardening", 40},

@@ -116,8 +116,8 @@ TEST_CASE("a column of fluid comes to rest at the pressure density g depth, and 
     const Settled coarse = settle(column, column.height / 20, 6), fine = settle(column, column.height / 40, 6);
     CHECK(coarse.pressure_error < 0.01);
     CHECK(fine.pressure_error < 0.01);
-    CHECK(coarse.height_error < 2e-3);
-    CHECK(fine.height_error < 1e-3);
+    CHECK(coarse.height_error < 5e-4);
+    CHECK(fine.height_error < 5e-4);
   }
 }
 
@@ -153,7 +153,7 @@ TEST_CASE("Couette flow starts as diffusion says, and then turns mu U^2/H^2 to h
     const double more = scene.simulation.ledger().material - heat;
     heat += more;
     std::printf("  Couette flow at t nu/H^2 = %.1f: largest error %.3e of U, heat %.6e J/m\n", time, error, more);
-    CHECK(error < 0.02);
+    CHECK(error < 2e-3);
     // 0.01 (m/s)^2 over 1 m^2 times 0.25 m^2, from 0.5 s to 1 s: the start is off by exp(-2 pi^2 0.5) then.
     if (time == 1.0) CHECK(more == Approx(0.5 * 1 * 0.01 * 0.25).epsilon(0.01));
   }
