@@ -797,6 +797,13 @@ TEST_CASE("mu(I): no stress below the critical density, and above it K ln(densit
   CHECK(particle.energy() == 0);
 }
 
+TEST_CASE("mu(I): of a step that closes a gap and presses, only the pressing is stored, the rest of its work is heat") {
+  Particle<MuI> particle = grains();
+  particle.strain(0.004, 0.003, 0.003);
+  CHECK(particle.strain(-0.01, -0.01, -0.01) == Approx(0.02 * bulk * 0.01).epsilon(1e-9));
+  CHECK(particle.energy() == Approx(0.5 * bulk * 0.02 * 0.02).epsilon(1e-9));
+}
+
 TEST_CASE("mu(I): below mu_s it is Hencky's law, keeps F_e to the last bit and closes its loops") {
   Particle<MuI> particle = grains();
   press(particle, 1e5);
