@@ -45,8 +45,8 @@ inline double required_value(const mpm_parameter& parameter) {
                                                     {"relaxation_time", 0.1},
                                                     {"polymer_viscosity", 20},
                                                     {"solvent_viscosity", 5},
-                                                    {"grain_diameter", 0.005},
-                                                    {"preconsolidation_pressure", 60},
+                                                    {"grain_diameter", 0.01},
+                                                    {"preconsolidation_pressure", 30},
                                                     {"x", 0.6},
                                                     {"y", 0.8}};
   const auto found = values.find(parameter.name);
