@@ -146,7 +146,7 @@ TEST_CASE("a pair at the brink is slowed by no more than its law allows") {
 // Where friction falls with the speed, what the rounds find roots of is, in decay speeds and but for a shift of v, the
 // function y + exp(-y) - 1 less a constant b >= 0. Newton's method on it from above comes nearest to failing with b = 0, where
 // the first round ends below 1 and each other one halves y at least: after eight y^2 / 2 is below 2^-15. Here the pair is
-// within a millionth of b = 0, with speeds of a few m/s and of thousands.
+// within a few millionths of b = 0, with speeds of a few m/s and of thousands.
 TEST_CASE("eight rounds leave a pair within 2^-15 of the decay speed of the friction of its law") {
   for (const double scale : {1.0, 1000.0})
     for (const double steepness : {0.999, 1.0, 1.0001}) {
@@ -178,6 +178,17 @@ TEST_CASE("beside an infinite mass a pair has the mass of its other body") {
   check_result(found, 8, 2, 5, 2);
   Stick::apply({}, pair, found);
   check_result(found, 8, 6, 0, 1);
+}
+
+// An observer who moves sees the same impulse and heat.
+TEST_CASE("two bodies that both move meet by their relative velocity") {
+  ContactPair<3, double> pair = hit(-0.01);
+  for (int i = 0; i < 3; ++i) pair.momentum_a[i] += 2 * (i - 2), pair.momentum_b[i] += 6 * (i - 2);
+  ContactResult<3, double> found{};
+  Coulomb::apply({0.25, 0}, pair, found);
+  check_result(found, 6, 1.5, 3.75, 2);
+  Stick::apply({}, pair, found);
+  check_result(found, 6, 4.5, 0, 1);
 }
 
 // The product of two masses of 1e20 kg is beyond the largest number in float.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contacts/bilinear_interface/bilinear_interface.hpp"
 #include "contacts/linear_interface/linear_interface.hpp"
@@ -46,7 +47,8 @@ double stiffness_of(double angle, double dt) {
 
 template <class Law>
 ContactResult<3, double> result(const typename Law::Parameters& p, const ContactPair<3, double>& pair) {
-  ContactResult<3, double> found{};
+  constexpr double nothing = std::numeric_limits<double>::quiet_NaN();  // what a law leaves out is no number
+  ContactResult<3, double> found{{{nothing, nothing, nothing}}, nothing, 0, nothing};
   Law::apply(p, pair, found);
   return found;
 }
@@ -172,11 +174,19 @@ TEST_CASE("a liquid presses without pulling and slows sliding exponentially whil
     pair.separation = 0.01;
     check(0, 0, 0);
   }
-  // What would leave less than a few millionths of the sliding holds it.
+  // What would leave less than four millionths of the sliding holds it: exp(-12.8) is 2.8 millionths, exp(-12.4) 4.1.
   ContactPair<3, double> pair = pair_of(0, 0.01);
-  for (const double exponent : {20.0, 1e6}) {  // exp(-20) is two billionths
-    const ContactResult<3, double> held = result<LiquidContact>({exponent * mass * 0.02 / (area * 0.01), 0.02}, pair);
+  const auto viscosity = [](double exponent) { return exponent * mass * 0.02 / (area * 0.01); };
+  for (const double exponent : {12.8, 20.0, 1e6}) {
+    const ContactResult<3, double> held = result<LiquidContact>({viscosity(exponent), 0.02}, pair);
     CHECK(held.status == 1);
     CHECK(std::abs(held.impulse[0] + mass * 1.8) <= 1e-14);
   }
+  CHECK(result<LiquidContact>({viscosity(12.4), 0.02}, pair).status == 2);
+  // One that hits the wall straight on has nothing to slide with and rests on it, however little of it would slip.
+  pair.momentum_a = {{0, 2 * 4.0, 0}};
+  const ContactResult<3, double> straight = result<LiquidContact>({viscosity(0.5), 0.02}, pair);
+  CHECK(straight.status == 1);
+  CHECK(straight.dissipated == 0);
+  CHECK(std::abs(straight.impulse[1] + mass * 4) <= 1e-14);
 }
