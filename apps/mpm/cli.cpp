@@ -9,9 +9,11 @@
 
 #include "backends/device/device_plan.hpp"
 #include "backends/device/program.hpp"
+#include "drive/standard_paths.hpp"
 #include "experiment/diagnostics.hpp"
 #include "metrics/exact.hpp"
 #include "metrics/particle_quantities.hpp"
+#include "mpm/drive.hpp"
 #include "mpm/run_figures.hpp"
 #include "output/run_folder.hpp"
 #include "solvers/solver.hpp"
@@ -110,6 +112,34 @@ void add_compare(CLI::App& verb, CompareOptions& options) {
       "against the largest of its kind. Keys of the experiment and files that differ are told and not judged; above a "
       "tolerance of 0 neither are the ledger's books and warnings, which tell of rounding.\n"
       "Exit codes: 0 all agree within the tolerance; 2 bad input; 4 something does not agree.");
+}
+
+void add_drive(CLI::App& verb, DriveOptions& options) {
+  verb.add_option("ID", options.id, "material")->required();
+  verb.add_option("--param", options.parameters,
+                  "name=value: a parameter of the material, with a unit if wanted; may be repeated")
+      ->allow_extra_args(false);
+  std::vector<std::string> names;
+  std::string list;
+  for (const drive::StandardPath& path : drive::standard_paths()) {
+    names.emplace_back(path.name);
+    list += std::string("  ") + path.name + std::string(14 - names.back().size(), ' ') + path.doc + "\n";
+  }
+  verb.add_option("--path", options.path, "one path; default all")->check(CLI::IsMember(names));
+  verb.add_option("--strain", options.strain, "largest displacement gradient; default 0.1")
+      ->check(CLI::Range(1e-12, 0.999));
+  verb.add_option("--steps", options.steps, "steps of one way; default 100")->check(CLI::Range(1, 1000000));
+  verb.add_option("--duration", options.duration, "seconds of one way, for materials that flow or creep; default 1")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--dimension", options.dimension, "3, or 2: plane strain; default 3 where the material can")
+      ->check(CLI::IsMember({2, 3}));
+  verb.add_option("--cell-size", options.cell_size, "of a grid, m, for materials that read it");
+  verb.add_option("--out", options.out, "folder that gets a run folder of each path: numbers, figures, report.html");
+  verb.add_flag("--replace", options.replace, "replaces whatever runs are there");
+  verb.footer("Paths:\n" + list +
+              "The first slope is that of the first step: E, G, K or the modulus M of uniaxial strain at small strains "
+              "(E' in plane strain). The residual is work less stored and dissipated energy, over the turnover.\n"
+              "Exit codes: 0 done; 2 bad input; 3 a path could not be followed to its end.");
 }
 
 std::string quoted_for_a_shell(const std::string& word) {
@@ -328,6 +358,13 @@ int run_command_line(int argc, char** argv) {
                           "folder for the figures; default figures/ of the run, or runs/overlay for several");
   figure_verb->callback(
       [&] { code = guarded([&] { return figure(runs, specification, figure_out); }, "nothing was drawn"); });
+
+  DriveOptions drive_options;
+  drive_options.command = options.command;
+  auto* drive_verb = app.add_subcommand(
+      "drive", "one particle of a material along standard paths: its moduli, strength, heat, and energy balance");
+  add_drive(*drive_verb, drive_options);
+  drive_verb->callback([&] { code = guarded([&] { return drive_material(drive_options); }); });
 
   StudyOptions study_options;
   study_options.command = options.command;

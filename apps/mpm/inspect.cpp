@@ -12,10 +12,12 @@
 #include "backends/device/device_plan.hpp"
 #include "backends/device/program.hpp"
 #include "backends/make_backend.hpp"
+#include "drive/read_drive.hpp"
 #include "experiment/diagnostics.hpp"
 #include "experiment/located_json.hpp"
 #include "experiment/schema.hpp"
 #include "mpm/cli.hpp"
+#include "mpm/drive.hpp"
 #include "mpm/run_figures.hpp"
 #include "plan/compatibility.hpp"
 #include "plugin/extension_of.hpp"
@@ -202,6 +204,7 @@ void refuse_study(const std::filesystem::path& file, const std::string& verb) {
 
 int check(const RunOptions& options) {
   if (study::is_study(read_located(options.file))) return check_study(options);
+  if (drive::is_material_point(options.file, options.overrides)) return check_material_point(options);
   const Registry registry = load_registry();
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const Plan plan = make_plan(experiment);
@@ -219,6 +222,10 @@ int check(const RunOptions& options) {
 
 int plan(const RunOptions& options, bool json, const std::string& graph, const std::string& architecture) {
   refuse_study(options.file, "plan");
+  if (drive::is_material_point(options.file, options.overrides))
+    throw InputError({Problem{options.file.string(), 1, 1, "",
+                              "a material point has no plan: its step is one update of one particle; `mpm check` "
+                              "validates it, `mpm run` runs it"}});
   const Registry registry = load_registry();
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const Plan plan = make_plan(experiment);

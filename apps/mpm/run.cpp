@@ -10,8 +10,10 @@
 
 #include "backends/device/device.hpp"
 #include "backends/make_backend.hpp"
+#include "drive/read_drive.hpp"
 #include "experiment/diagnostics.hpp"
 #include "mpm/cli.hpp"
+#include "mpm/drive.hpp"
 #include "mpm/run_figures.hpp"
 #include "mpm/stop_on_signal.hpp"
 #include "output/manifest.hpp"
@@ -331,6 +333,7 @@ Threads threads_for(const Experiment& experiment, const RunOptions& options) {
 int run(const RunOptions& options) {
   const auto start = Clock::now();
   refuse_study(options.file, "run");
+  if (drive::is_material_point(options.file, options.overrides)) return run_material_point(options);
   const Registry registry = load_registry();
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const auto place = options.out.empty() ? std::filesystem::path("runs") / options.file.stem() : options.out;

@@ -48,6 +48,58 @@ std::vector<const Plugin*> ComponentLookup::of_kind(mpm_kind kind) const {
   return found;
 }
 
+OrderedJson read_constants(const Node& root, ReadContext& context) {
+  const Node* node = root.find("constants");
+  if (!node || node->type == Node::Type::null) return nullptr;
+  if (node->type != Node::Type::object) {
+    context.problem(*node, "expected an object of named numbers, got " + describe_value(*node));
+    return nullptr;
+  }
+  std::vector<std::string> taken = expression_functions();
+  for (const char* name : {"pi", "x", "y", "z", "X", "Y", "Z", "t"}) taken.emplace_back(name);
+  OrderedJson resolved = OrderedJson::object();
+  for (const Member& member : node->members) {
+    double value = 0;
+    if (!is_name(member.key)) {
+      context.problem(member.at, member.value.pointer,
+                      in_quotes(member.key) + " is no name: letters, digits and _, not beginning with a digit");
+    } else if (std::find(taken.begin(), taken.end(), member.key) != taken.end()) {
+      context.problem(member.at, member.value.pointer, in_quotes(member.key) + " already has a meaning in expressions");
+    } else {
+      // A name whose value is wrong stays known, so that its uses are not reported as well.
+      read_si(member.value, "any", "a number", value, context);
+      context.constants.emplace_back(member.key, value);
+      resolved[member.key] = value;
+    }
+  }
+  return resolved;
+}
+
+Expectation read_expectation(const Node& node, ReadContext& context, OrderedJson& resolved) {
+  const Fields fields(&node, expectation_section(), context);
+  Expectation expectation;
+  expectation.metric = fields.text("metric");
+  expectation.pointer = node.pointer;
+  if (fields.given("at_least")) expectation.at_least = fields.number("at_least");
+  if (fields.given("at_most")) expectation.at_most = fields.number("at_most");
+  if (fields.given("equals")) expectation.equals = fields.number("equals");
+  expectation.tolerance = fields.number("tolerance");
+  resolved = fields.resolved;
+  if (node.type != Node::Type::object) return expectation;
+  if (!expectation.at_least && !expectation.at_most && !expectation.equals) {
+    context.problem(node, "expects nothing: give \"at_least\", \"at_most\" or \"equals\"");
+  }
+  if (fields.given("tolerance") && !expectation.equals) {
+    context.problem(*fields.node("tolerance"), "a tolerance belongs to \"equals\", which is not given");
+  }
+  const bool both = expectation.at_least && expectation.at_most && fields.valid("at_least") && fields.valid("at_most");
+  if (both && *expectation.at_least > *expectation.at_most) {
+    context.problem(node, "nothing is both at least " + number_text(*expectation.at_least) + " and at most " +
+                              number_text(*expectation.at_most));
+  }
+  return expectation;
+}
+
 ExperimentReader::ExperimentReader(Node root, const std::filesystem::path& file, const ComponentLookup& components,
                                    const ReadOptions& options)
     : root_(std::move(root)), components_(components), options_(options) {
@@ -63,12 +115,12 @@ Experiment ExperimentReader::read() {
   if (dimension && dimension->type == Node::Type::number && (dimension->number == 2 || dimension->number == 3)) {
     context_.dimension = static_cast<int>(dimension->number);
   }
-  read_constants();
+  const OrderedJson constants = read_constants(root_, context_);
 
   const Section section = experiment_section(options_);
   const Fields fields(&root_, section, context_);
   resolved_ = fields.resolved;
-  if (!experiment_.resolved.is_null()) resolved_["constants"] = experiment_.resolved;
+  if (!constants.is_null()) resolved_["constants"] = constants;
   read_header(fields);
   read_device(fields.node("device"), experiment_, context_, resolved_);
   read_grid(fields.node("grid"));
@@ -94,33 +146,6 @@ Experiment ExperimentReader::read() {
   experiment_.positions = all_positions(root_);
   experiment_.inputs = std::move(context_.inputs);
   return std::move(experiment_);
-}
-
-void ExperimentReader::read_constants() {
-  const Node* node = root_.find("constants");
-  if (!node || node->type == Node::Type::null) return;
-  if (node->type != Node::Type::object) {
-    return problem(*node, "expected an object of named numbers, got " + describe_value(*node));
-  }
-  std::vector<std::string> taken = expression_functions();
-  for (const char* name : {"pi", "x", "y", "z", "X", "Y", "Z", "t"}) taken.emplace_back(name);
-  OrderedJson resolved = OrderedJson::object();
-  for (const Member& member : node->members) {
-    double value = 0;
-    if (!is_name(member.key)) {
-      context_.problem(member.at, member.value.pointer,
-                       in_quotes(member.key) + " is no name: letters, digits and _, not beginning with a digit");
-    } else if (std::find(taken.begin(), taken.end(), member.key) != taken.end()) {
-      context_.problem(member.at, member.value.pointer,
-                       in_quotes(member.key) + " already has a meaning in expressions");
-    } else {
-      // A name whose value is wrong stays known, so that its uses are not reported as well.
-      read_si(member.value, "any", "a number", value, context_);
-      context_.constants.emplace_back(member.key, value);
-      resolved[member.key] = value;
-    }
-  }
-  experiment_.resolved = resolved;
 }
 
 void ExperimentReader::read_header(const Fields& fields) {
@@ -195,7 +220,8 @@ void ExperimentReader::read_compare(const Node* node) {
   if (fields.given("exact")) resolved["exact"] = read_exact(*fields.node("exact"));
   if (!fields.given("expect") || !is_list(*fields.node("expect"), "expectations", true)) return;
   resolved["expect"] = OrderedJson::array();
-  for (const Node& item : fields.node("expect")->items) resolved["expect"].push_back(read_expectation(item));
+  for (const Node& item : fields.node("expect")->items)
+    experiment_.expectations.push_back(read_expectation(item, context_, resolved["expect"].emplace_back()));
 }
 
 void ExperimentReader::read_limits(const Node* node) {
@@ -214,33 +240,6 @@ OrderedJson ExperimentReader::read_exact(const Node& node) {
     if (fields.valid(spec.name)) choice.values.emplace_back(spec.name, fields.number(spec.name));
   }
   experiment_.exact = std::move(choice);
-  return fields.resolved;
-}
-
-OrderedJson ExperimentReader::read_expectation(const Node& node) {
-  const Fields fields(&node, expectation_section(), context_);
-  Expectation expectation;
-  expectation.metric = fields.text("metric");
-  expectation.pointer = node.pointer;
-  if (fields.given("at_least")) expectation.at_least = fields.number("at_least");
-  if (fields.given("at_most")) expectation.at_most = fields.number("at_most");
-  if (fields.given("equals")) expectation.equals = fields.number("equals");
-  expectation.tolerance = fields.number("tolerance");
-  if (node.type == Node::Type::object) {
-    if (!expectation.at_least && !expectation.at_most && !expectation.equals) {
-      problem(node, "expects nothing: give \"at_least\", \"at_most\" or \"equals\"");
-    }
-    if (fields.given("tolerance") && !expectation.equals) {
-      problem(*fields.node("tolerance"), "a tolerance belongs to \"equals\", which is not given");
-    }
-    const bool both =
-        expectation.at_least && expectation.at_most && fields.valid("at_least") && fields.valid("at_most");
-    if (both && *expectation.at_least > *expectation.at_most) {
-      problem(node, "nothing is both at least " + number_text(*expectation.at_least) + " and at most " +
-                        number_text(*expectation.at_most));
-    }
-  }
-  experiment_.expectations.push_back(std::move(expectation));
   return fields.resolved;
 }
 

@@ -20,6 +20,19 @@ std::string offered_precisions(std::uint32_t bits) {
 
 }  // namespace
 
+Component component_of(const Plugin& plugin, const Fields& fields, const std::string& pointer) {
+  Component component;
+  component.plugin = &plugin;
+  component.pointer = pointer;
+  component.parameters.resize(plugin.descriptor->parameter_bytes / sizeof(double));
+  for (const mpm_parameter& declared : plugin.parameters()) {
+    const std::size_t slot = declared.offset / sizeof(double);
+    if (slot >= component.parameters.size()) continue;  // the registry refuses such a plugin
+    component.parameters[slot] = fields.number(declared.name);
+  }
+  return component;
+}
+
 void ExperimentReader::check_capability(const Plugin& plugin, mpm_kind kind, const Node& place) {
   const mpm_descriptor& descriptor = *plugin.descriptor;
   const std::string name = std::string(kind_name(kind)) + " " + in_quotes(plugin.id());
@@ -61,14 +74,7 @@ ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_
   const bool is_word = node.type == Node::Type::string;
   check_capability(*plugin, kind, is_word ? node : *node.find("type"));
   chosen.fields.emplace(is_word ? nullptr : &node, *section, context_);
-  chosen.component.plugin = plugin;
-  chosen.component.pointer = node.pointer;
-  chosen.component.parameters.resize(plugin->descriptor->parameter_bytes / sizeof(double));
-  for (const mpm_parameter& declared : plugin->parameters()) {
-    const std::size_t slot = declared.offset / sizeof(double);
-    if (slot >= chosen.component.parameters.size()) continue;  // the registry refuses such a plugin
-    chosen.component.parameters[slot] = chosen.fields->number(declared.name);
-  }
+  chosen.component = component_of(*plugin, *chosen.fields, node.pointer);
   if (const auto* cell_size = extension_of<mpm_material_cell_size>(*plugin))
     chosen.component.parameters[cell_size->offset / sizeof(double)] = experiment_.grid.cell_size;
   chosen.resolved = chosen.fields->resolved;

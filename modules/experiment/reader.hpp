@@ -27,14 +27,12 @@ class ExperimentReader {
   };
 
   // read.cpp
-  void read_constants();
   void read_header(const Fields& fields);
   void read_solver(const Node* node);
   void read_output(const Node* node);
   void read_compare(const Node* node);
   void read_limits(const Node* node);
   OrderedJson read_exact(const Node& node);
-  OrderedJson read_expectation(const Node& node);
 
   // read_records.cpp
   void read_contact_nodes(const Fields& fields);
@@ -132,6 +130,15 @@ class ExperimentReader {
 
 /// Whether a text can name something in formulas, headings and paths: letters, digits and _, no digit first.
 bool is_name(const std::string& text);
+
+/// Reads the named numbers under "constants" into the context; returns them, null where there are none.
+OrderedJson read_constants(const Node& root, ReadContext& context);
+
+/// Reads one entry of compare/expect.
+Expectation read_expectation(const Node& node, ReadContext& context, OrderedJson& resolved);
+
+/// The plugin with the parameters that its fields hold.
+Component component_of(const Plugin& plugin, const Fields& fields, const std::string& pointer);
 
 /// Reads a geometry and everything in it; null, with problems recorded, when it is not usable.
 GeometryPointer read_geometry(const Node& node, ReadContext& context, OrderedJson& resolved);

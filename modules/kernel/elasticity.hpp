@@ -90,15 +90,19 @@ MPM_HD Sym<D, S> from_principal(const Mat<D, S>& U, const Vec<3, S>& values) {
 }
 
 /// rho0 c^2 of the fastest wave along the axes of b, split Neo-Hookean (Simo & Hughes 1998, eq. 9.2.6 with n n n n):
-/// longitudinal K J^2 u'' + mu (5/9 tr b - 1/3 n.b.n), or shear mu n.b.n, whichever is larger. `b` is isochoric.
+/// longitudinal K J^2 u'' + mu (5/9 tr b - 1/3 n.b.n), or shear mu n.b.n, whichever is larger. `b` is isochoric, and
+/// `volumetric` is K J^2 u''.
 template <int D, class S>
-MPM_HD S split_tangent(VolumetricEnergy form, scalar_of<S> mu, scalar_of<S> bulk, const Sym<D, S>& b, S J) {
+MPM_HD S split_tangent(const S& volumetric, scalar_of<S> mu, const Sym<D, S>& b) {
   const S mean = trace(b) * real<S>(1.0 / 3.0);
   const S spread = real<S>(0.816496580927726) * sqrt(squared_norm(deviator(b)));
   const S smallest = max(mean - spread, S(real<S>(0)));
-  const S longitudinal =
-      bulk * volumetric_tangent(form, J) + mu * (real<S>(5.0 / 3.0) * mean - real<S>(1.0 / 3.0) * smallest);
+  const S longitudinal = volumetric + mu * (real<S>(5.0 / 3.0) * mean - real<S>(1.0 / 3.0) * smallest);
   return max(longitudinal, mu * (mean + spread));
+}
+template <int D, class S>
+MPM_HD S split_tangent(VolumetricEnergy form, scalar_of<S> mu, scalar_of<S> bulk, const Sym<D, S>& b, S J) {
+  return split_tangent(bulk * volumetric_tangent(form, J), mu, b);
 }
 
 }  // namespace mpm

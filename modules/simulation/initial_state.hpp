@@ -16,7 +16,7 @@ class MaterialAtRest;
 
 /// Finds what a body's particles begin with, a batch at a time. F is I + grad u of the initial displacement, or what the
 /// file gives, or what makes the material have the given stress. The material's state is that after one strain from rest,
-/// by the velocity gradient F - I over a time of 1.
+/// so slowly that no stress depends on the rate.
 class InitialState {
  public:
   InitialState(const Experiment& experiment, int body) : experiment_(experiment), body_(experiment.bodies[body]) {}

@@ -8,6 +8,13 @@
 #include "plugin/extension_of.hpp"
 
 namespace mpm {
+namespace {
+
+/// The time within which a material is strained to its first state, s: so long that what relaxes has relaxed and no stress
+/// is left of the rate. A power of two changes no bit of the strain.
+constexpr double ages = 0x1p40;
+
+}  // namespace
 
 MaterialAtRest::MaterialAtRest(const Experiment& experiment, const Plugin& material,
                                const std::vector<double>& parameters, std::vector<double> temperature,
@@ -36,8 +43,9 @@ bool MaterialAtRest::strain(std::span<const std::array<double, 9>> F) {
   for (std::size_t k = 0; k < stride_; ++k) {
     const std::array<double, 9>& of = F[std::min(k, count_ - 1)];  // the last one pads
     for (std::size_t i = 0; i < D; ++i)
-      for (std::size_t j = 0; j < D; ++j) gradient_[(i * D + j) * stride_ + k] = of[3 * i + j] - (i == j ? 1 : 0);
-    around_[k] = of[8] - 1;
+      for (std::size_t j = 0; j < D; ++j)
+        gradient_[(i * D + j) * stride_ + k] = (of[3 * i + j] - (i == j ? 1 : 0)) / ages;
+    around_[k] = (of[8] - 1) / ages;
   }
   fields_ = rest_;
   std::vector<void*> pointers;
@@ -45,7 +53,7 @@ bool MaterialAtRest::strain(std::span<const std::array<double, 9>> F) {
   mpm_material_batch batch{};
   batch.count = batch.stride = static_cast<std::uint32_t>(stride_);
   batch.dimension = static_cast<std::uint32_t>(D);
-  batch.dt = 1;
+  batch.dt = ages;
   batch.velocity_gradient = gradient_.data();
   if (experiment_.axisymmetric()) batch.velocity_gradient_zz = around_.data();
   if (!temperature_.empty()) batch.temperature = temperature_.data();

@@ -9,7 +9,8 @@
 
 namespace mpm {
 
-/// Particles of one material and phase, each at rest and then strained by F - I over a time of 1.
+/// Particles of one material and phase, each at rest and then strained by F - I, so slowly that no
+/// stress depends on the rate.
 class MaterialAtRest {
  public:
   /// `temperature` may be empty: the material's reference temperature.

@@ -108,6 +108,46 @@ TEST_CASE("plastic work in simple shear warms a body as much as it dissipates", 
     }
 }
 
+TEST_CASE("Johnson-Cook metal in fast shear softens by its own heat", "[temperature]") {
+  // With B = 0 and m = 1 the flow stress is R A (1 - T*), R the factor of the rate, and the heat of d alpha raises T* by
+  // k R A (1 - T*) d alpha, k = share/(density capacity (T_melt - T_room)): 1 - T* falls as exp(-k R A alpha).
+  const double shear_modulus = 5e5, yield_stress = 200, room = 300, melting = 1300, share = 0.9, capacity = 1e-4;
+  const double strain_rate = 0.01, end_time = 0.5,
+               rate_factor = 1 + 0.05 * std::log(strain_rate / std::sqrt(3.0) / 1e-4);
+  for (const std::string& backend : heat_backends()) {
+    INFO(backend);
+    Scene scene(R"J({"dimension": 2, "backend": ")J" + backend + R"J(",
+      "grid": {"cell_size": 0.25, "domain": [[0, 0], [1, 1]], "boundaries": {
+        "x_min": "periodic", "x_max": "periodic", "y_min": {"type": "prescribed", "velocity": ["0.01*y", 0]},
+        "y_max": {"type": "prescribed", "velocity": ["0.01*y", 0]}}},
+      "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
+      "materials": {"m": {"type": "johnson_cook", "youngs_modulus": 1e6, "poisson_ratio": 0, "density": 10,
+        "yield_stress": )J" +
+                digits(yield_stress) + R"J(, "hardening_coefficient": 0, "hardening_exponent": 1,
+        "rate_coefficient": 0.05, "reference_rate": 1e-4, "room_temperature": 300, "melting_temperature": 1300,
+        "thermal": {"conductivity": 1e-9, "heat_capacity": )J" +
+                digits(capacity) + R"J(,
+                    "dissipation_to_heat": 0.9}}},
+      "bodies": [{"name": "b", "material": "m", "temperature": 300, "velocity": ["0.01*y", 0],
+                  "geometry": {"type": "box", "lower": [0, 0], "upper": [1, 1]}}],
+      "solver": {"time_step": 2e-4, "end_time": 0.5}})J");
+    const Totals end = scene.run();
+    const double fade = share / (10 * capacity * (melting - room)) * rate_factor * yield_stress;
+    double plastic = 0;  // gamma - tau/G, tau by what is left of the strength
+    for (int k = 0; k < 50; ++k)
+      plastic = (strain_rate * end_time -
+                 rate_factor * yield_stress * std::exp(-fade * plastic) / std::sqrt(3.0) / shear_modulus) /
+                std::sqrt(3.0);
+    const double rise = (melting - room) * (1 - std::exp(-fade * plastic));
+    INFO("rise " << end.highest_temperature - 300 << " and " << end.lowest_temperature - 300 << " K, exact " << rise);
+    CHECK(end.highest_temperature - 300 == Approx(rise).epsilon(0.005));
+    CHECK(end.lowest_temperature - 300 == Approx(rise).epsilon(0.005));
+    const BodyState state = scene.body();
+    for (const double found : state.material_state.at("equivalent_plastic_strain"))
+      CHECK(found == Approx(plastic).epsilon(0.002));
+  }
+}
+
 TEST_CASE("the heat ledger closes to rounding whatever heats, moves and melts", "[temperature]") {
   for (const std::string& backend : heat_backends()) {
     const auto check = [](Scene& scene) {

@@ -99,7 +99,8 @@ TEST_CASE("rings begin stretched around the axis", "[verification][seeding][axis
 
 TEST_CASE("every elastic material begins with the stress that is asked for", "[verification][seeding]") {
   const std::string moduli = R"(", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000)";
-  for (const std::string type : {"neo_hookean", "linear_elastic", "fixed_corotated", "von_mises", "drucker_prager"}) {
+  for (const std::string type :
+       {"neo_hookean", "linear_elastic", "fixed_corotated", "corotated", "hencky", "von_mises", "drucker_prager"}) {
     INFO(type);
     const std::string more = type == "von_mises"        ? R"(, "yield_stress": 400})"
                              : type == "drucker_prager" ? R"(, "friction_angle": 0.6})"
@@ -123,6 +124,28 @@ TEST_CASE("every elastic material begins with the stress that is asked for", "[v
       at_rest(R"("initial_stress": {"xx": -10, "yy": -20, "zz": -30})", rubber, 2, R"(, "symmetry": "axisymmetric")"));
   const std::vector<double> stress = cauchy_of(rings);
   for (std::size_t p = 0; p < stress.size() / 4; ++p) CHECK(stress[4 * p + 2] == Approx(-30).epsilon(1e-8));
+}
+
+TEST_CASE("materials with a rate begin in equilibrium: no stress of the rate, and what relaxes has relaxed",
+          "[verification][seeding]") {
+  const std::string sheared = R"("initial_deformation_gradient": {"xy": 0.2})";
+  // Beside the strain by the first step, of 1e-5 s from rest, shear stress is the equilibrium modulus times 0.2.
+  const std::pair<std::string, double> rows[] = {
+      {R"({"type": "kelvin_voigt", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000, "viscosity": 50})",
+       mu * 0.2},
+      {R"({"type": "prony", "shear_modulus": 300, "bulk_modulus": 800, "density": 1000, "branch_modulus_1": 400,
+           "relaxation_time_1": 2, "branch_modulus_2": 0, "relaxation_time_2": 1})",
+       300 * 0.2},
+      {R"({"type": "oldroyd_b", "bulk_modulus": 800, "density": 1000, "polymer_viscosity": 50, "relaxation_time": 2,
+           "solvent_viscosity": 5})",
+       0.0}};
+  for (const auto& [material, expected] : rows) {
+    CAPTURE(material);
+    const Scene scene(at_rest(sheared, material));
+    const std::vector<double> stress = cauchy_of(scene);
+    for (std::size_t p = 0; p < stress.size() / 4; ++p)
+      REQUIRE(stress[4 * p + 3] == Approx(expected).epsilon(1e-9).margin(1e-9));
+  }
 }
 
 TEST_CASE("stress that a material cannot have, and displacements that cannot be, are refused with their place",

@@ -1,0 +1,58 @@
+#pragma once
+// Isochoric left Cauchy-Green tensors b, det b = 1, of laws whose elastic strain is returned to a yield surface: Simo &
+// Hughes (1998), Computational Inelasticity, sec. 9.3. After a return tr b follows from det b = 1 (box 9.1 there keeps
+// the trial trace, which would store energy that was dissipated).
+
+#include "kernel/tensor.hpp"
+
+namespace mpm {
+
+/// f b f^T; in plane strain f_zz = 1.
+template <int D, class S>
+MPM_HD Sym<D, S> pushed(const Mat<D, S>& f, const Sym<D, S>& b) {
+  Sym<D, S> r = b;
+  for (int i = 0; i < D; ++i)
+    for (int j = i; j < D; ++j) {
+      S t = S(real<S>(0));
+      for (int k = 0; k < D; ++k)
+        for (int l = 0; l < D; ++l) t = t + f(i, k) * b(k, l) * f(j, l);
+      r(i, j) = t;
+    }
+  return r;
+}
+template <class S>
+MPM_HD Sym<2, S> pushed(const Deformation<2, S>& f, const Sym<2, S>& b) {
+  Sym<2, S> r = pushed(f.plane, b);
+  r.s[2] = f.zz * f.zz * b.s[2];
+  return r;
+}
+
+/// The tensor det(b)^-1/3 b. It is divided by b's own determinant, not by that of the increments, so that rounding does
+/// not pile up over many steps.
+template <int D, class S>
+MPM_HD Sym<D, S> unimodular(Sym<D, S> b) {
+  const S scale = exp(real<S>(-1.0 / 3.0) * log(determinant(b)));
+  for (int k = 0; k < Sym<D, S>::size; ++k) b.s[k] = scale * b.s[k];
+  return b;
+}
+
+/// The mean of tr(b)/3 that makes det(d + t I) = 1 for a deviatoric d: largest root of t^3 - (d:d/2) t + det d - 1.
+/// Newton from a start at or above the root is monotone, the cubic being convex there.
+template <int D, class S>
+MPM_HD S unimodular_mean(const Sym<D, S>& d, S start) {
+  const S half_norm = real<S>(0.5) * squared_norm(d), offset = determinant(d) - real<S>(1);
+  S t = start;
+  for (int iteration = 0; iteration < 8; ++iteration)
+    t = t - (t * (t * t - half_norm) + offset) / (real<S>(3) * t * t - half_norm);
+  return t;
+}
+
+/// The factor -(3 mu / 2) dt / d(shrink of d), over mu |d|^2 / 2, by which the stress that does plastic work differs
+/// from |s|. t(d) follows from det(d + t I) = 1, and the factor is 1 + O(elastic strain).
+template <int D, class S>
+MPM_HD S conjugate_factor(const Sym<D, S>& d, S t) {
+  const S norm = max(squared_norm(d), S(real<S>(1e-30)));
+  return (t - real<S>(3) * determinant(d) / norm) / (t * t - real<S>(1.0 / 6.0) * norm);
+}
+
+}  // namespace mpm

@@ -1,0 +1,54 @@
+#pragma once
+// Finite-strain J2 plasticity with power-law hardening, sigma = sigma_0 (1 + alpha/eps_0)^n. Swift, J. Mech. Phys. Solids
+// 1 (1952) 1; the return is that of kernel/j2_plasticity.hpp.
+
+#include "kernel/j2_plasticity.hpp"
+#if MPM_HOST
+#include "plugin/tables.hpp"
+#endif
+
+namespace mpm {
+
+struct VonMisesPower : J2Plasticity {
+  struct Parameters {
+    double youngs_modulus, poisson_ratio, density, yield_stress, reference_strain, hardening_exponent,
+        volumetric_energy;
+  };
+  template <class T>
+  struct Constants : J2Constants<T, PowerLawHardening<T>> {
+    MPM_HD explicit Constants(const Parameters& p)
+        : J2Constants<T, PowerLawHardening<T>>(
+              p, {T(p.yield_stress), T(1 / p.reference_strain), T(p.hardening_exponent)}) {}
+  };
+  template <int D, class S>
+  using State = J2State<D, S>;
+  template <class S>
+  using AxisymmetricState = J2State<2, S>;
+
+#if MPM_HOST
+  static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
+  static constexpr mpm_parameter parameters[] = {
+      MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
+                           "Young's modulus at small strain"),
+      MPM_NUMBER_PARAMETER(poisson_ratio, "", required, -1.0, 0.5, MPM_ABOVE_MINIMUM | MPM_BELOW_MAXIMUM,
+                           "Poisson's ratio at small strain"),
+      MPM_NUMBER_PARAMETER(density, "kg/m^3", required, 0.0, unbounded, MPM_ABOVE_MINIMUM, "initial density"),
+      MPM_NUMBER_PARAMETER(yield_stress, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
+                           "initial uniaxial yield stress sigma_0 (Kirchhoff)"),
+      MPM_NUMBER_PARAMETER(reference_strain, "", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
+                           "eps_0: plastic strain over which hardening starts with the slope n sigma_0/eps_0"),
+      MPM_NUMBER_PARAMETER(hardening_exponent, "", required, 0.0, 1.0, 0,
+                           "n: 0 is perfect plasticity, 1 linear hardening"),
+      MPM_CHOICE_PARAMETER(volumetric_energy, "logarithmic|quadratic|simo", 2, "u(J), see neo_hookean"),
+  };
+  static constexpr mpm_state state[] = {
+      {"elastic_left_cauchy_green", "", "isochoric elastic left Cauchy-Green tensor, det = 1", MPM_STATE_SYMMETRIC,
+       MPM_INITIAL_IDENTITY},
+      {"volume_ratio", "", "total J = det F", MPM_STATE_SCALAR, MPM_INITIAL_ONE},
+      {"equivalent_plastic_strain", "", "accumulated equivalent plastic strain", MPM_STATE_SCALAR, MPM_INITIAL_ZERO},
+  };
+#endif
+};
+
+}  // namespace mpm

@@ -1,0 +1,128 @@
+// Material points: files that `mpm run` takes, and `mpm drive`.
+
+#include <cmath>
+
+#include "cli/program.hpp"
+#include "support/csv.hpp"
+
+using namespace mpm::test;
+
+namespace {
+
+const Words rubber{"--param", "youngs_modulus=1e6", "--param", "poisson_ratio=0.3", "--param", "density=1 g/cm^3"};
+
+Result drive(const Folder& folder, const std::string& id, Words more) {
+  Words words{"drive", id};
+  words.insert(words.end(), more.begin(), more.end());
+  return call(folder, words);
+}
+
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+Json pulled() {
+  return Json::parse(R"({
+    "title": "Pulled", "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000}},
+    "solver": {"type": "material_point",
+               "stages": [{"name": "pull", "steps": 10, "deformation_gradient": {"xx": "1 + t"}, "stress": {"yy": 0, "zz": 0}}]}
+  })");
+}
+
+}  // namespace
+
+TEST_CASE("drive: a row of each standard path, with the moduli of the material") {
+  const Folder folder;
+  const Result result = drive(folder, "neo_hookean", with(rubber, {"--strain", "1e-6", "--steps", "10"}));
+  INFO(result.out << result.err);
+  CHECK(result.code == 0);
+  for (const char* part : {"uniaxial", "E = 1.000e+06", "simple_shear", "G = 3.846e+05", "isotropic", "K = 8.333e+05",
+                           "cyclic", "oedometer", "M = 1.346e+06"})
+    CHECK(has(result.out, part));
+  CHECK(folder.names().empty());
+  const Result one = drive(folder, "neo_hookean", with(rubber, {"--path", "oedometer", "--out", "runs"}));
+  INFO(one.err);
+  CHECK(one.code == 0);
+  CHECK(!has(one.out, "uniaxial"));
+  const auto table = mpm::support::read_csv(folder / "runs/oedometer/metrics.csv");
+  CHECK(table.rows() == 201);
+  CHECK(table.find("deformation gradient xx")->at(100) == Approx(0.9));
+  CHECK(table.find("work")->back() == Approx(0).margin(1e-6));
+  for (const char* name :
+       {"figures/stress.png", "figures/stress_over_time.svg", "figures/energy_per_volume.csv", "report.html"})
+    CHECK(fs::is_regular_file(folder / "runs/oedometer" / name));
+  // What it wrote runs by itself.
+  CHECK(call(folder, {"run", "runs/oedometer/experiment.json", "--out", "again"}).code == 0);
+  CHECK(slurp(folder / "again/metrics.csv") == slurp(folder / "runs/oedometer/metrics.csv"));
+}
+
+TEST_CASE("drive: what is missing or wrong is code 2, and a path that cannot be followed code 3") {
+  const Folder folder;
+  const auto refused = [&](const std::string& id, const Words& more, const std::string& message) {
+    const Result result = drive(folder, id, more);
+    INFO(result.err);
+    INFO("expected: " << message);
+    CHECK(result.code == 2);
+    CHECK(has(result.err, message));
+    CHECK(result.out.empty());
+  };
+  refused("neo_hookean", {"--param", "density=1000"}, "youngs_modulus (Pa): Young's modulus at small strain");
+  refused("neo_hookean", {}, "add --param youngs_modulus=… --param poisson_ratio=… --param density=…");
+  refused("neo_hookaen", rubber, R"(no material is called "neo_hookaen"; did you mean "neo_hookean"?)");
+  refused("neo_hookean", with(rubber, {"--param", "poisson_ratio=0.7"}),
+          "mpm drive neo_hookean: /materials/m/poisson_ratio: out of range: expected a number above -1 and below 0.5");
+  refused("neo_hookean", with(rubber, {"--param", "colour=red"}), R"(unknown key "colour")");
+  refused("neo_hookean", with(rubber, {"--param", "colour"}), R"("colour" is not of the form name=value)");
+  refused("neo_hookean", with(rubber, {"--path", "bent"}), "--path");
+  refused("scene.json", {}, "runs with `mpm run`");
+  Json scene = pulled();
+  scene["solver"]["stages"][0]["deformation_gradient"]["xx"] = "1 - 2*t";
+  spill(folder / "scene.json", scene.dump());
+  const Result stopped = call(folder, {"run", "scene.json", "--out", "run"});
+  INFO(stopped.err);
+  CHECK(stopped.code == 3);
+  CHECK(has(stopped.err, "the run failed: step "));
+  CHECK(has(stopped.err, "remedy: "));
+  CHECK(json_in(folder / "run/summary.json")["outcome"]["status"] == "failed");
+  CHECK(has(slurp(folder / "run/report.html"), "exit code 3"));
+}
+
+TEST_CASE("run and check take material points, plan and options of scenes do not") {
+  const Folder folder;
+  Json scene = pulled();
+  scene["compare"]["expect"] = {{{"metric", "stages.pull.stress.xx"}, {"equals", 1015.412883}, {"tolerance", 1e-5}}};
+  spill(folder / "scene.json", scene.dump());
+  const Result checked = call(folder, {"check", "scene.json"});
+  CHECK(checked.code == 0);
+  CHECK(has(checked.out, "scene.json: ok, a material point of neo_hookean, 3-D, 1 stage, 10 steps"));
+  const Result ran = call(folder, {"run", "scene.json", "--out", "run"});
+  INFO(ran.err);
+  CHECK(ran.code == 0);
+  CHECK(has(ran.out, "report: run/report.html"));
+  CHECK(json_in(folder / "run/summary.json")["expect"][0]["held"] == true);
+  const Result missed = call(folder, {"run", "scene.json", "--out", "run", "--set", "/compare/expect/0/equals=1000"});
+  CHECK(missed.code == 4);
+  CHECK(has(missed.err, "expected stages.pull.stress.xx 1000 within 1e-05, got 1015.41"));
+  for (const auto& [words, message] :
+       {std::pair{Words{"plan", "scene.json"}, "a material point has no plan"},
+        std::pair{Words{"run", "scene.json", "--backend", "cpu"}, "it takes no backend"},
+        std::pair{Words{"run", "scene.json", "--out", "run", "--resume"}, "it takes no checkpoints"}}) {
+    const Result result = call(folder, words);
+    INFO(result.err);
+    CHECK(result.code == 2);
+    CHECK(has(result.err, message));
+  }
+}
+
+TEST_CASE("the shipped material points hold what they expect") {
+  const Folder folder;
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(MPM_SOURCE_DIR) / "experiments/material_point")) {
+    const Result result = call(folder, {"run", entry.path().string(), "--out", entry.path().stem().string()});
+    INFO(entry.path() << result.err);
+    CHECK(result.code == 0);
+    ++files;
+  }
+  CHECK(files >= 3);
+}
