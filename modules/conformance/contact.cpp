@@ -216,22 +216,24 @@ void check_friction(const Plugin& plugin, const ContactBatch& b, const Parameter
                    "|heat - J_t . mean velocity| over reduced mass of pairs that slide" + where);
 }
 
-/// Checks that what acts over time acts once in a step: before the forces its impulse does not depend on the step's length.
+/// Checks that what acts over time acts once in a step: before the forces its impulse does not depend on the step's length;
+/// nor does it after them where a law says nothing of time.
 void check_stages(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const Pairs& pairs,
                   const std::string& where, Findings& findings) {
-  if (!acts_over_time(plugin)) return;
+  const std::uint32_t stage = acts_over_time(plugin) ? MPM_BEFORE_FORCES : MPM_AFTER_FORCES;
   Pairs longer = pairs, shorter = pairs;
   // Springs of all stiffnesses that are tried are soft in a microsecond: a stiffer one would hold the pair.
-  if (ContactBatch::compliant(plugin))
+  if (ContactBatch::compliant(plugin) && acts_over_time(plugin))
     for (Pair& pair : longer) pair.dt = 0x1p-20;
   for (int lane = 0; lane < full; ++lane) shorter[lane].dt = longer[lane].dt * 0x1p-20;
-  const ContactBatch whole = applied(plugin, v, parameters, longer, full, MPM_BEFORE_FORCES),
-                     part = applied(plugin, v, parameters, shorter, full, MPM_BEFORE_FORCES);
+  const ContactBatch whole = applied(plugin, v, parameters, longer, full, stage),
+                     part = applied(plugin, v, parameters, shorter, full, stage);
   Worst change;
   for (int lane = 0; lane < full; ++lane)
     change.add(impulse_difference(whole, part, lane, 1) / pairs[lane].reduced_mass(), lane);
-  findings.at_most("acts_once_a_step", v, change, 256 * v.epsilon(),
-                   "|J - J in a step 2^20 times shorter| over reduced mass, before the forces" + where);
+  findings.at_most(acts_over_time(plugin) ? "acts_once_a_step" : "acts_in_no_time", v, change, 256 * v.epsilon(),
+                   std::string("|J - J in a step 2^20 times shorter| over reduced mass, ") +
+                       (acts_over_time(plugin) ? "before" : "after") + " the forces" + where);
 }
 
 /// Checks that springs store what they take, in a step so short that neither speed nor displacement change much in it.

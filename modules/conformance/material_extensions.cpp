@@ -140,7 +140,8 @@ Increments plus(const Increments& a, const Increments& b, double factor) {
 }
 
 /// The error of a tangent against differences of the stress: the central one, or that of one side, as a law with a kink
-/// has the tangent of one side. Where both sides disagree by much (a yield surface) the particle is left out, as a
+/// has the tangent of one side, beyond what the stress bends by within `put_apart`, by which functors of singular values
+/// hold equal stretches apart. Where both sides disagree by much (a yield surface) the particle is left out, as a
 /// difference may then hold some of both.
 struct TangentError {
   Worst error;
@@ -148,7 +149,7 @@ struct TangentError {
 };
 TangentError tangent_error(const Context& c, const MaterialBatch& from, const Increments& increments,
                            const Increments& direction) {
-  constexpr double h = 0x1p-23;
+  constexpr double h = 0x1p-23, put_apart = 0x1p-26;
   MaterialBatch here = from, ahead = from, behind = from, asked = from;
   here.advance(increments);
   ahead.advance(plus(increments, direction, h));
@@ -170,7 +171,8 @@ TangentError tangent_error(const Context& c, const MaterialBatch& from, const In
     }
     if (kink > 1e-3 * size && finite) continue;
     ++result.compared;
-    result.error.add(finite ? std::min({central, ahead_only, behind_only}) / size : std::nan(""), lane);
+    const double error = std::min({central, ahead_only, behind_only}) - kink * put_apart / h;
+    result.error.add(finite ? std::max(error, 0.0) / size : std::nan(""), lane);
   }
   return result;
 }

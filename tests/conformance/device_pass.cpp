@@ -217,19 +217,28 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
 /// Normals that look at particles run on the host alone: their text has to compile.
 constexpr const char* host_body = "template <int D, class S> MPM_HD void run(const Task&, int) {}\n";
 
+/// A state with a temperature ends with it: the host brings it, and here it is that of reference.
 constexpr const char* material_body = R"(
+template <class F, class State, class S> MPM_HD auto warm(State& state, S) -> decltype((void)(state.temperature), int()) {
+  state.temperature = real<S>(F::reference_temperature);
+  return 1;
+}
+template <class F, class State> MPM_HD int warm(State&, ...) { return 0; }
+template <class State, class S, class = void> constexpr int declared = scalars<State, S>;
+template <class State, class S> constexpr int declared<State, S, decltype((void)(State::temperature))> = scalars<State, S> - 1;
 template <int D, class S> MPM_HD void run(const Task& t, int lane) {
   const Functor::Constants<S> constants(*static_cast<const Functor::Parameters*>(t.parameters));
   using State = typename Functor::template State<D, S>;
   State state{};
-  load<scalars<State, S>>(t.out[0], lane, reinterpret_cast<S*>(&state));
+  load<declared<State, S>>(t.out[0], lane, reinterpret_cast<S*>(&state));
+  warm<Functor>(state, S());
   Mat<D, S> L;
   load<D * D>(t.in[0], lane, L.m);
   const S heat = Functor::advance(constants, L, real<S>(t.dt), state);
   const Sym<D, S> tau = Functor::kirchhoff_stress(constants, state);
   const S energy = Functor::stored_energy(constants, state), speed = Functor::wave_speed(constants, state);
   const S J = Functor::volume_ratio(state);
-  store<scalars<State, S>>(t.out[0], lane, reinterpret_cast<const S*>(&state));
+  store<declared<State, S>>(t.out[0], lane, reinterpret_cast<const S*>(&state));
   store<Sym<D, S>::size>(t.out[1], lane, tau.s);
   store<1>(t.out[2], lane, &energy);
   store<1>(t.out[3], lane, &heat);

@@ -207,18 +207,18 @@ class Trial:
 
 
 class Shared:
-    """Plugins and test programs of one file that hold most of its mutants, made once. Of a header that libraries and more
-    than one plugin are made from only the tests that include it are made."""
+    """Plugin and test programs of one file that hold most of its mutants, made once. Of a header that more than one
+    plugin is made from only the tests that include it are made."""
 
     def __init__(self, build, folder, file, mutants):
         self.build, self.file, self.bench = build, file, Bench(build, folder)
         self.text = Together((build.tree / file).read_text(), mutants)
         self.trial = Trial(build, self.bench, mutants[0])
-        self.plugins, self.programs, self.tests, self.number_of, self.kills = [], {}, [], {}, Counter()
-        self.everywhere = len(self.trial.plugins) > 1 and bool(self.trial.libraries)
+        self.plugin, self.programs, self.tests, self.number_of, self.kills = None, {}, [], {}, Counter()
+        self.everywhere = len(self.trial.plugins) > 1
         if self.everywhere:
             self.trial.plugins, self.trial.libraries = [], []
-        if self.make_plugins() if self.trial.plugins else self.make_libraries():
+        if self.make_plugin() if self.trial.plugins else self.make_libraries():
             self.make_programs()
             self.number_of = {mutants[number - 1]: number for number in self.text.numbers()}
 
@@ -230,22 +230,19 @@ class Shared:
         changed.write_text(self.text.written())
         (self.bench.folder / "overlay/modules" / SWITCH_FILE).write_text(SWITCH)
 
-    def make_plugins(self):
-        """Makes the plugins without the mutants that the compiler refuses here; whether they then do as the program."""
+    def make_plugin(self):
+        """Makes the plugin without the mutants that the compiler refuses here; whether it then does as the program."""
+        name = self.trial.plugins[0]
+        plugin = self.bench.folder / "plugins" / f"{self.build.plugin_of(name)}.so"
         for _ in range(6):
             self.write_text()
             try:
-                self.plugins = [self.trial.plugin_made(name, FIRST_LOOK) for name in self.trial.plugins]
-                return self.verdict() is None
+                self.plugin = self.trial.linked(plugin, self.trial.compiled(name, FIRST_LOOK))
+                return self.trial.verdict_on(plugin, self.bench.folder / "bin/mpm") is None
             except Refused as refusal:
                 if not self.text.refuse(str(refusal)):
                     return False
         return False
-
-    def verdict(self, number=0):
-        """The first failure of a plugin's own checks with one of the mutants, 0 for none."""
-        verdicts = (self.trial.verdict_on(plugin, self.bench.folder / "bin/mpm", number) for plugin in self.plugins)
-        return next(filter(None, verdicts), None)
 
     def make_libraries(self):
         """Compiles what is no plugin, without the mutants that the compiler refuses here; whether that went well."""
@@ -293,7 +290,7 @@ class Shared:
     def result(self, mutant):
         """The first failure with a mutant; none where nothing here fails."""
         number = self.number_of[mutant]
-        verdict = self.verdict(number)
+        verdict = self.plugin and self.trial.verdict_on(self.plugin, self.bench.folder / "bin/mpm", number)
         if verdict:
             return verdict
         for test in sorted(self.tests, key=lambda test: -self.kills[test.name]):  # what killed most comes first
