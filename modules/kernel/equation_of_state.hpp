@@ -16,7 +16,7 @@ enum class EquationOfState {
   ideal_gas = 5       ///< p = K/g (J^-g - 1), the isentrope; K = g p0
 };
 
-/// C of Tait's law for water (Dymond & Malhotra 1988, Int. J. Thermophys. 9:941), a pure number.
+/// C of Tait's law, a pure number that nearly all polymers share (Rodgers 1993, J. Appl. Polym. Sci. 48:1061).
 inline constexpr double tait_constant = 0.0894;
 /// s x beyond which mie_gruneisen goes on along its tangent: 1 - s x vanishes at 1, and p with it is infinite.
 inline constexpr double mie_gruneisen_reach = 0.9;
@@ -186,9 +186,9 @@ struct Barotropic {
                        "bulk modulus K at rest; density (10 v)^2 keeps the density of flows at speed v within 1 %"), \
       MPM_CHOICE_PARAMETER(equation_of_state, "linear|power|tait|mie_gruneisen|stiffened_gas|ideal_gas", 0,          \
                            "p(J), see newtonian_fluid"),                                                             \
-      MPM_NUMBER_PARAMETER(exponent, "", 7.0, 1.0, unbounded, MPM_ABOVE_MINIMUM, "n of `power`; 7 is water"),        \
-      MPM_NUMBER_PARAMETER(heat_capacity_ratio, "", 1.4, 1.0, unbounded, MPM_ABOVE_MINIMUM,                          \
+      MPM_NUMBER_PARAMETER(exponent, "", 7.0, 1.01, unbounded, 0, "n of `power`; 7 is water"),                       \
+      MPM_NUMBER_PARAMETER(heat_capacity_ratio, "", 1.4, 1.01, unbounded, 0,                                         \
                            "g of `stiffened_gas` and `ideal_gas`; 1.4 is air"),                                      \
-      MPM_NUMBER_PARAMETER(hugoniot_slope, "", 1.489, 0.0, unbounded, MPM_ABOVE_MINIMUM,                             \
+      MPM_NUMBER_PARAMETER(hugoniot_slope, "", 1.489, 0.01, unbounded, 0,                                            \
                            "s of `mie_gruneisen`, by which shocks are faster than sound; 1.489 is copper"),          \
       MPM_CHOICE_PARAMETER(tension, "kept|none", 0, "none: there is no pressure below zero")

@@ -37,11 +37,12 @@ MPM_HD Sym<D, S> unimodular(Sym<D, S> b) {
 }
 
 /// The mean of tr(b)/3 that makes det(d + t I) = 1 for a deviatoric d: largest root of t^3 - (d:d/2) t + det d - 1.
-/// Newton from a start at or above the root is monotone, the cubic being convex there.
+/// Newton from a start at or above the root is monotone, the cubic being convex there. 2 sqrt(d:d/6) + 1 is no less than
+/// the root either, and near it where a large trial was returned to a small d.
 template <int D, class S>
 MPM_HD S unimodular_mean(const Sym<D, S>& d, S start) {
   const S half_norm = real<S>(0.5) * squared_norm(d), offset = determinant(d) - real<S>(1);
-  S t = start;
+  S t = min(start, real<S>(1.1547005383792517) * sqrt(half_norm) + real<S>(1));
   for (int iteration = 0; iteration < 8; ++iteration)
     t = t - (t * (t * t - half_norm) + offset) / (real<S>(3) * t * t - half_norm);
   return t;

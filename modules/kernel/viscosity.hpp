@@ -3,6 +3,7 @@
 // Maxwell element in closed form, and what viscosity asks of the time step.
 
 #include "kernel/elasticity.hpp"
+#include "kernel/unimodular.hpp"
 
 namespace mpm {
 
@@ -72,26 +73,6 @@ MPM_HD Sym<D, S> newtonian_stress(scalar_of<S> shear, scalar_of<S> bulk, const S
   for (int k = 0; k < Sym<D, S>::size; ++k) stress.s[k] = real<S>(2) * shear * stress.s[k];
   for (int i = 0; i < 3; ++i) stress.s[i] = stress.s[i] + pressure;
   return stress;
-}
-
-/// f b f^T of the step f; in plane strain f_zz = 1.
-template <int D, class S>
-MPM_HD Sym<D, S> pushed_forward(const Mat<D, S>& f, const Sym<D, S>& b) {
-  Sym<D, S> r = b;
-  for (int i = 0; i < D; ++i)
-    for (int j = i; j < D; ++j) {
-      S t = S(real<S>(0));
-      for (int k = 0; k < D; ++k)
-        for (int l = 0; l < D; ++l) t = t + f(i, k) * b(k, l) * f(j, l);
-      r(i, j) = t;
-    }
-  return r;
-}
-template <class S>
-MPM_HD Sym<2, S> pushed_forward(const Deformation<2, S>& f, const Sym<2, S>& b) {
-  Sym<2, S> r = pushed_forward(f.plane, b);
-  r.s[2] = f.zz * f.zz * b.s[2];
-  return r;
 }
 
 /// The speed, m/s, by which a step of `courant` cells over speed stands viscosity besides waves of speed c: of the

@@ -605,9 +605,9 @@ void run_composed(void* library, int D, const ParameterSample& parameters, Call&
   for (std::size_t k = 0; k < out.size(); ++k) call.out[k].assign(out[k].begin(), out[k].end());
 }
 
-/// An output may be off by 64 roundings of its size, or by 16 of the state: F is advanced by two sums of three products (4),
-/// taken apart by turns of its columns (5) and put together as U S V^T (7); what is stored is rounded once more.
-constexpr double roundings_of_state = 16.0 / 64;
+/// An output may be off by 64 roundings of its size, or by 8 of the state: it is advanced by a sum of three products (3),
+/// taken apart, put together by such sums again (3), and stored, and taken apart again for the stress. Snow needs 7.4.
+constexpr double roundings_of_state = 8.0 / 64;
 
 /// The size by which each output's error is judged: the output's own. Stress and energy of a material both have that of
 /// the stress, or what rounding of the state makes of them where that is more. It is for laws that hold strains small:

@@ -337,9 +337,12 @@ TEST_CASE("newtonian_fluid: compressed by a closed loop it gives back what it to
 TEST_CASE("newtonian_fluid: sound at rest, and the step that viscosity leaves") {
   NewtonianFluid::Parameters p = water(power);
   CHECK(Particle(p).speed() == Approx(std::sqrt(2.2e9 / 1000)).epsilon(1e-12));
-  p.viscosity = 1e5, p.bulk_viscosity = 1e4;                              // nu = 143.3 m^2/s
-  const double nu = (4e5 / 3 + 1e4) / 1000, x = 1 / Particle(p).speed();  // dt/h
-  CHECK(2.2e6 * x * x + 2 * nu / 0.01 * x == Approx(1).epsilon(1e-12));
+  p.viscosity = 1e5, p.bulk_viscosity = 1e4;  // nu = 143.3 m^2/s
+  // A wave of w = k c that is damped at the rate nu k^2 of the velocity one step before is at its limit where nu k^2 dt +
+  // (w dt)^2/2 = 2. Of waves alone, k = 2 sqrt(3)/h, that is dt = h/(sqrt(3) c).
+  const double nu = (4e5 / 3 + 1e4) / 1000, k = 2 * std::sqrt(3.0) / 0.01,
+               dt = 0.01 / (std::sqrt(3.0) * Particle(p).speed());
+  CHECK(nu * k * k * dt + 2.2e6 * k * k * dt * dt / 2 == Approx(2).epsilon(1e-12));
   p.cell_size = 1e9;
   CHECK(Particle(p).speed() == Approx(std::sqrt(2.2e9 / 1000)).epsilon(1e-6));
 }

@@ -10,6 +10,7 @@
 #include "contacts/stick/stick.hpp"
 #include "filters/fmpm/fmpm.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
+#include "materials/prony/prony.hpp"
 #include "normals/average_volume_gradient/average_volume_gradient.hpp"
 #include "normals/own_gradient/own_gradient.hpp"
 #include "normals/widest_gap/widest_gap.hpp"
@@ -521,6 +522,13 @@ struct SlowWave : NeoHookean {
   }
 };
 
+struct SlowBranches : Prony {  // leaves out half of what its branches carry at once
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const PronyState<G>& state) {
+    return real<S>(0.7) * Prony::wave_speed(c, state);
+  }
+};
+
 struct SpeedWithoutDensity : NeoHookean {
   template <int D, class S>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
@@ -782,6 +790,7 @@ TEST_CASE("wrong contact laws are caught") {
 TEST_CASE("wrong materials are caught") {
   check_caught(wrong_material<StressOffEnergy>, "stress_from_energy");
   check_caught(wrong_material<SlowWave>, "wave_speed_bounds_tangent");
+  check_caught(wrong_material<SlowBranches>, "wave_speed_bounds_tangent");
   check_caught(wrong_material<SpeedWithoutDensity>, "scales_with_density");
   check_caught(wrong_material<SquaredPascals>, "scales_with_moduli");
   check_caught(wrong_material<NotObjective>, "objective_stress");

@@ -53,7 +53,7 @@ double scaled_difference(const Experiment& experiment, const BodyState& expected
   for (const auto& [name, values] : expected.transfer_state)
     worst = std::max(worst, difference(values, found.transfer_state.at(name), speed / h));
   for (const auto& [name, values] : expected.material_state)
-    worst = std::max(worst, difference(values, found.material_state.at(name), 1.0));
+    worst = std::max(worst, difference(values, found.material_state.at(name), size_of(values)));
   return worst;
 }
 

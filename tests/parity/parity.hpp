@@ -29,7 +29,7 @@ inline double required_value(const mpm_parameter& parameter) {
                                                     {"shear_stiffness", 2e4},
                                                     {"viscosity", 50},
                                                     {"slip_length", 0.1},
-                                                    {"consistency", 5},
+                                                    {"consistency", 2},
                                                     {"reference_strain", 0.02},
                                                     {"hardening_exponent", 0.3},
                                                     {"saturation_hardening", 40},
@@ -212,7 +212,8 @@ inline double scale_of(const std::string& field, double h) {
   return field.rfind(temperature_state, 0) == 0 ? 30 / h : 1;
 }
 
-/// The coefficients of polynomials are compared by their means alone: beside a node the weight of the stencil's last node
+/// The coefficients of polynomials are compared one by one on stencils of three nodes, else by their means alone. Of two
+/// nodes one may be barely reached (check_parity says what that does). Of four, beside a node the weight of the stencil's last node
 /// vanishes, and with it the norm of the cubic polynomial. Its coefficient there is rounding over next to nothing (2e4
 /// epsilon, of velocities that agree to 10), and gives the nodes next to nothing.
 inline void compare_states(const Scene& reference, const Scene& cpu, double epsilon, const Tolerance& allowed) {
@@ -226,7 +227,7 @@ inline void compare_states(const Scene& reference, const Scene& cpu, double epsi
     CHECK(difference(expected.velocity, found.velocity, speed) <= allowed.velocity * epsilon);
     REQUIRE(expected.transfer_state.size() == found.transfer_state.size());
     for (const auto& [name, values] : expected.transfer_state)
-      if (name != polynomial_coefficients)
+      if (name != polynomial_coefficients || reference.experiment.shape.plugin->shape().width == 3)
         CHECK(difference(values, found.transfer_state.at(name), speed / h) <= allowed.transfer * epsilon);
     REQUIRE(expected.material_state.size() == found.material_state.size());
     for (const auto& [name, values] : expected.material_state)

@@ -7,7 +7,7 @@
 
 #include "kernel/elasticity.hpp"
 #include "kernel/functor.hpp"
-#include "kernel/svd.hpp"
+#include "kernel/hencky.hpp"
 #if MPM_HOST
 #include "plugin/tables.hpp"
 #endif
@@ -27,13 +27,8 @@ struct Hencky : ElasticSolid {
           inverse_density(T(1 / p.density)) {}
   };
 
-  /// Principal directions and logarithmic strains: what stress, energy and wave speed share. In 2-D the last strain is
-  /// that of z.
   template <int D, class S>
-  struct Principal {
-    Mat<D, S> directions;
-    Vec<3, S> strain;
-  };
+  using Principal = HenckySolid::Principal<D, S>;
 
   template <class S>
   MPM_HD static S strain_of_z(const Mat<2, S>&) {
@@ -55,38 +50,26 @@ struct Hencky : ElasticSolid {
     return p;
   }
 
-  /// Principal Kirchhoff stresses.
-  template <class S>
-  MPM_HD static Vec<3, S> stresses(const Constants<scalar_of<S>>& c, const Vec<3, S>& strain) {
-    const S mean = c.lambda * (strain[0] + strain[1] + strain[2]);
-    Vec<3, S> tau;
-    for (int i = 0; i < 3; ++i) tau[i] = real<S>(2) * c.mu * strain[i] + mean;
-    return tau;
-  }
-
   template <int D, class S>
   MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const Principal<D, S>& p) {
-    return from_principal(p.directions, stresses(c, p.strain));
+    return HenckySolid::kirchhoff_stress(c, p);
   }
 
   template <int D, class S>
   MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const Principal<D, S>& p) {
-    const Vec<3, S>& e = p.strain;
-    const S trace = e[0] + e[1] + e[2];
-    return c.mu * (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]) + real<S>(0.5) * c.lambda * (trace * trace);
+    return HenckySolid::stored_energy(c, p);
   }
 
   /// The fastest wave. Along the principal axes longitudinal waves have rho0 c^2 = lambda + 2 mu - tau_i, and shear
   /// waves between strains that differ by x have mu x (1 + coth x); sqrt(1 + x^2) stands for x coth x, which it exceeds
-  /// by so little that the sum is 5 % too large at most. Waves askew of the axes are faster where stretches differ, by
-  /// mu/2 x^2/(1 + x) at most: found by trial of 2.5e7 states and waves.
+  /// by so little that the sum is 5 % too large at most. Waves askew of the axes are faster where stretches differ.
   template <int D, class S>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const Principal<D, S>& p) {
     const Vec<3, S>& e = p.strain;
     const S least = min(min(e[0], e[1]), e[2]), x = max(max(e[0], e[1]), e[2]) - least, one = S(real<S>(1));
     const S longitudinal = c.lambda + real<S>(2) * c.mu - (real<S>(2) * c.mu * least + c.lambda * (e[0] + e[1] + e[2]));
-    const S shear = c.mu * (x + sqrt(x * x + one)), askew = real<S>(0.5) * c.mu * (x * x / (one + x));
-    return sqrt(c.inverse_density * (max(longitudinal, shear) + askew));
+    const S shear = c.mu * (x + sqrt(x * x + one));
+    return sqrt(c.inverse_density * (max(longitudinal, shear) + c.mu * HenckySolid::askew(x)));
   }
 
   /// Stress, energy and wave speed of a state whose principal strains are not known yet.

@@ -5,15 +5,16 @@
 MPM_EXPORT_PLUGIN(
     material<mpm::NewtonianFluid>,
     {"newtonian_fluid", "1.0.0", "Weakly compressible viscous fluid with six equations of state",
-     "Monaghan (1994), J. Comput. Phys. 110:399; Murnaghan (1944), PNAS 30:244; Dymond & Malhotra (1988), Int. J. "
-     "Thermophys. 9:941 (Tait); Meyers (1994), Dynamic Behavior of Materials, ch. 4 and 5 (Mie-Gruneisen); Menikoff & "
+     "Monaghan (1994), J. Comput. Phys. 110:399; Murnaghan (1944), PNAS 30:244; Rodgers (1993), J. Appl. "
+     "Polym. Sci. 48:1061 (Tait); Meyers (1994), Dynamic Behavior of Materials, ch. 4 and 5 (Mie-Gruneisen); Menikoff "
+     "& "
      "Plohr (1989), Rev. Mod. Phys. 61:75 (gases)",
      R"(tau = -p J I + 2 mu J dev(D) + zeta J tr(D) I with mu = `viscosity`, zeta = `bulk_viscosity` and the rate of deformation D.
 The pressure p(J), J = density at rest over density, has the modulus K = `bulk_modulus` at rest:
 
     linear         p = K (1/J - 1)               linear in the density; sound has one speed
     power          p = K/n (J^-n - 1)            Murnaghan; n = `exponent`, 7 for water
-    tait           p = K C (exp((1 - J)/C) - 1)  Tait's logarithmic law, C = 0.0894 of water; finite at J = 0
+    tait           p = K C (exp((1 - J)/C) - 1)  Tait's logarithmic law, C = 0.0894 of polymers; finite at J = 0
     mie_gruneisen  p = K x/(1 - s x)^2, x = 1-J  on the Hugoniot of shocks at c + s u_p; s = `hugoniot_slope`; K (1/J - 1) where J > 1
     stiffened_gas  p = K/g (J^-g - 1)            isentrope; g = `heat_capacity_ratio`, K = g (p0 + p_infinity)
     ideal_gas      p = K/g (J^-g - 1)            isentrope; K = g p0
@@ -21,7 +22,7 @@ The pressure p(J), J = density at rest over density, has the modulus K = `bulk_m
 They agree near J = 1. Pressures are those above the pressure p0 at rest, and depend on J alone: what viscosity turns to heat does not
 come back as pressure. A strong shock through a gas so ends too dense (a gas that is heated resists more), and `mie_gruneisen` is
 right on its Hugoniot, where shocks end, and has no thermal part beside it. An ideal gas at one temperature is `linear` with K = p0.
-Gases are for confined use: at a free surface a gas expands without end against p0.
+Gases are for confined use: what lies outside presses with p0 on every free surface.
 
 For flows at speeds up to v take K = density (10 v)^2 or more: the density then varies by 1 %. Real water has K = 2.2 GPa, and the
 time step falls with sqrt(K).
@@ -38,7 +39,7 @@ No warning says so during a run: compare `stability.smallest_volume_ratio` of it
 /limits/volume_ratio. In single precision J^-n is infinite where n ln J < -87 (J = 4e-6 for n = 7), and the run stops.
 J <= 0 is refused: the run stops and names the particle.
 
-Wave speed: nu/h + sqrt((nu/h)^2 + c^2) with c^2 = dp/d(density), nu = (4 mu/3 + zeta) J/density and the cell size h. With it a
-step within the limit of waves is also within that of explicit viscosity: on a line, where a wave changes sign from cell to cell,
-(c dt/h)^2 + 2 nu dt/h^2 = 1.)",
+Wave speed: z + sqrt(z^2 + c^2) with c^2 = dp/d(density), z = sqrt(3) nu/h, nu = (4 mu/3 + zeta) J/density and the cell size h. With
+it a step within the limit of waves is also within that of explicit viscosity, for the largest wave number 2 sqrt(3)/h that a
+grid's velocities hold.)",
      "NewtonianFluid"})

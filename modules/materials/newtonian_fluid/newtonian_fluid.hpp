@@ -7,6 +7,7 @@
 
 #include "kernel/equation_of_state.hpp"
 #include "kernel/functor.hpp"
+#include "kernel/viscosity.hpp"
 #if MPM_HOST
 #include "plugin/tables.hpp"
 #endif
@@ -23,14 +24,15 @@ struct NewtonianFluid {
   struct Constants {
     Barotropic<T> fluid;
     T inverse_density;
-    T two_mu, bulk_viscosity;
-    T viscous_speed;  ///< (4 mu/3 + zeta)/(density h), m/s
+    T viscosity, bulk_viscosity, inverse_cell_size;
+    T longitudinal;  ///< (4 mu/3 + zeta)/density, m^2/s
     MPM_HD explicit Constants(const Parameters& p)
         : fluid(p),
           inverse_density(T(1 / p.density)),
-          two_mu(T(2 * p.viscosity)),
+          viscosity(T(p.viscosity)),
           bulk_viscosity(T(p.bulk_viscosity)),
-          viscous_speed(T((4 * p.viscosity / 3 + p.bulk_viscosity) / (p.density * p.cell_size))) {}
+          inverse_cell_size(T(1 / p.cell_size)),
+          longitudinal(T((4 * p.viscosity / 3 + p.bulk_viscosity) / p.density)) {}
   };
   template <int D, class S>
   struct State {
@@ -40,35 +42,17 @@ struct NewtonianFluid {
   template <class S>
   using AxisymmetricState = State<2, S>;
 
-  /// D of a whole step.
-  template <class G, class S = typename G::Scalar>
-  MPM_HD static Sym<G::dimension, S> rate_of_deformation(const G& L, scalar_of<S> dt) {
-    constexpr int D = G::dimension;
-    const Mat<D, S>& l = in_plane(L);
-    const scalar_of<S> half = real<S>(0.5);
-    Sym<D, S> rate{};
-    for (int i = 0; i < D; ++i)
-      for (int j = i; j < D; ++j) {
-        S square = l(i, 0) * l(j, 0);
-        for (int k = 1; k < D; ++k) square = square + l(i, k) * l(j, k);
-        rate(i, j) = half * (l(i, j) + l(j, i) + dt * square);
-      }
-    if constexpr (has_zz<G>) rate.s[2] = L.zz + half * dt * L.zz * L.zz;
-    return rate;
-  }
-
   /// Returns the energy dissipated by viscous flow, J/m^3.
   template <class G, int D, class S>
   MPM_HD static S advance(const Constants<scalar_of<S>>& c, const G& L, scalar_of<S> dt, State<D, S>& state) {
     state.log_volume_ratio = state.log_volume_ratio + log_of_change(volume_change(L, dt));
-    const Sym<D, S> rate = rate_of_deformation(L, dt);
-    const S expansion = trace(rate), J = volume_ratio(state);
-    Sym<D, S> stress = deviator(rate);
-    const S power = c.two_mu * squared_norm(stress) + c.bulk_viscosity * expansion * expansion;
-    for (int k = 0; k < Sym<D, S>::size; ++k) stress.s[k] = c.two_mu * J * stress.s[k];
-    for (int i = 0; i < 3; ++i) stress.s[i] = stress.s[i] + c.bulk_viscosity * J * expansion;
-    state.viscous_stress = stress;
-    return dt * J * power;
+    const S J = volume_ratio(state);
+    Sym<D, S> rate = strain_rate(L, dt);
+    for (int k = 0; k < Sym<D, S>::size; ++k) rate.s[k] = real<S>(0.5) * rate.s[k];
+    state.viscous_stress = newtonian_stress(c.viscosity, c.bulk_viscosity, rate);
+    const S power = contraction(state.viscous_stress, rate);
+    for (int k = 0; k < Sym<D, S>::size; ++k) state.viscous_stress.s[k] = J * state.viscous_stress.s[k];
+    return dt * J * max(power, S(real<S>(0)));
   }
 
   /// tau = -p J I + the viscous stress.
@@ -85,13 +69,10 @@ struct NewtonianFluid {
     return c.fluid.energy(state.log_volume_ratio);
   }
 
-  /// The speed s whose step h/s is the longest of a wave that changes sign from cell to cell: with x = dt/h it has
-  /// c^2 x^2 + 2 (nu/h) x = 1 where waves run at c and viscosity damps them with nu = (4 mu/3 + zeta) J/density.
   template <int D, class S>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
-    const S square = c.inverse_density * c.fluid.wave_modulus(state.log_volume_ratio);
-    const S viscous = c.viscous_speed * volume_ratio(state);
-    return viscous + sqrt(viscous * viscous + square);
+    const S squared = c.inverse_density * c.fluid.wave_modulus(state.log_volume_ratio);
+    return damped_wave_speed(squared, c.longitudinal * volume_ratio(state), c.inverse_cell_size);
   }
 
   template <int D, class S>

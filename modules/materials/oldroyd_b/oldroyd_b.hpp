@@ -52,7 +52,7 @@ struct OldroydB {
     Sym<D, S> strain;
     for (int k = 0; k < Sym<D, S>::size; ++k) strain.s[k] = dt * e.s[k];
     const Relaxation<scalar_of<S>> relaxation(dt * c.inverse_time);
-    state.conformation = relaxed(pushed_forward(f, before), strain, relaxation);
+    state.conformation = relaxed(pushed(f, before), strain, relaxation);
     state.solvent_stress = newtonian_stress(c.solvent_viscosity, scalar_of<S>(0), d);
     for (int k = 0; k < Sym<D, S>::size; ++k)
       state.solvent_stress.s[k] = state.volume_ratio * state.solvent_stress.s[k];

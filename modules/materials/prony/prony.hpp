@@ -62,7 +62,7 @@ struct Prony {
     for (int i = 0; i < branches; ++i) {
       const Relaxation<scalar_of<S>> relaxation(dt * c.inverse_time[i]);
       const Sym<D, S> before = state.branch[i];
-      Sym<D, S> convected = pushed_forward(f, before);
+      Sym<D, S> convected = pushed(f, before);
       for (int k = 0; k < Sym<D, S>::size; ++k) convected.s[k] = scale * convected.s[k];
       state.branch[i] = relaxed(convected, strain, relaxation);
       heat = heat + c.modulus[i] * network_heat(before, state.branch[i], relaxation);
