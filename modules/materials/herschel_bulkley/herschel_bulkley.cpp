@@ -17,7 +17,7 @@ sqrt(2 d:d) of the viscous flow d. The pressures p(J) are those of `newtonian_fl
 
 G is what the yield law has beside the fluid: yield is sharp, and nothing creeps below it, which a regularised viscosity
 (Papanastasiou 1987) does. Take G large beside the stresses (ten times or more): elastic strains, and with them normal stresses in
-shear, then stay small; waves of G lengthen no step where G is below K. A flow has the stress of its rate after the time k/G.
+shear, then stay small; waves of G shorten the step by sqrt(1 + 4 G/(3 K)). A flow has the stress of its rate after the time k/G.
 
 The return is implicit and radial: k g^n + a g = overstress with a = G dt tr(b_e)/3, in closed form for n = 1, else by Newton's method
 on the logarithm of the rate, which cannot overshoot. Steps are as long as elastic waves allow at any viscosity.

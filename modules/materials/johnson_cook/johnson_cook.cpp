@@ -24,6 +24,6 @@ have 293.15 K everywhere.
 The rate is that of the step, so that a state has no yield surface of its own: a projection is not offered.
 
 Elasticity, return and state are those of `von_mises`; nothing but the yield stress differs. The plastic strain of a step
-solves one equation a particle by Newton's method, which a bracket around the root keeps from running away: 6 to 8 evaluations of
+solves one equation a particle by Newton's method, which a bracket around the root keeps from running away: about six evaluations of
 the law. A particle that does not yield costs one.)",
      "JohnsonCook"})

@@ -2,12 +2,11 @@
 
 #include "plugin/sdk.hpp"
 
-MPM_EXPORT_PLUGIN(
-    material<mpm::KelvinVoigt>,
-    {"kelvin_voigt", "1.0.0", "Kelvin-Voigt solid: a Neo-Hookean spring beside a Newtonian dashpot",
-     "Simo & Hughes (1998), Computational Inelasticity, sec. 9.2 (the spring) and 1.2; Landau & Lifshitz, Fluid "
-     "Mechanics, sec. 15 (the dashpot)",
-     R"(tau = mu dev(J^-2/3 b) + K J u' I + J (2 eta dev d + zeta tr(d) I)
+MPM_EXPORT_PLUGIN(material<mpm::KelvinVoigt>,
+                  {"kelvin_voigt", "1.0.0", "Kelvin-Voigt solid: a Neo-Hookean spring beside a Newtonian dashpot",
+                   "Simo & Hughes (1998), Computational Inelasticity, sec. 9.2 (the spring); Landau & Lifshitz, Fluid "
+                   "Mechanics, sec. 15 (the dashpot)",
+                   R"(tau = mu dev(J^-2/3 b) + K J u' I + J (2 eta dev d + zeta tr(d) I)
 
 The spring is the split form of `neo_hookean`; the dashpot gives the Cauchy stress of a compressible Newtonian fluid. d is the rate of
 deformation over the last step, ln(f f^T)/(2 dt) of f = I + dt L by a Cayley transform, so that no rigid turn makes stress. The
@@ -22,4 +21,4 @@ Rates need a state: the viscous stress (4 or 6 scalars).
 **Time step.** Viscosity limits explicit steps by h^2, so the law asks for the cell size h, and what it reports as wave speed is the
 speed by which `courant` holds: a + sqrt(c^2 + a^2), c the elastic wave's and a = sqrt(3) J (4/3 eta + zeta)/(rho0 h). Without
 viscosity that is c. Steps then fall as 1/eta where a is large.)",
-     "KelvinVoigt"})
+                   "KelvinVoigt"})

@@ -14,6 +14,6 @@ MPM_EXPORT_PLUGIN(material<mpm::VonMisesPower>,
 Swift's k (eps_0 + alpha)^n has k = yield_stress/eps_0^n. The strain at which a bar in tension necks is about n - eps_0.
 
 Elasticity, return and state are those of `von_mises`; nothing but the yield stress differs. The plastic strain of a step
-solves one equation a particle by Newton's method, which a bracket around the root keeps from running away: 6 to 8 evaluations of
+solves one equation a particle by Newton's method, which a bracket around the root keeps from running away: about six evaluations of
 the law. A particle that does not yield costs one.)",
                    "VonMisesPower"})

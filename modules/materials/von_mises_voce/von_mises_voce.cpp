@@ -15,6 +15,6 @@ Papers that write exp(-delta alpha) have saturation_strain = 1/delta, and those 
 final stress - yield_stress.
 
 Elasticity, return and state are those of `von_mises`; nothing but the yield stress differs. The plastic strain of a step
-solves one equation a particle by Newton's method, which a bracket around the root keeps from running away: 6 to 8 evaluations of
+solves one equation a particle by Newton's method, which a bracket around the root keeps from running away: about six evaluations of
 the law. A particle that does not yield costs one.)",
      "VonMisesVoce"})
