@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <csignal>
+#include <functional>
 #include <iostream>
 #include <new>
 
@@ -11,6 +12,7 @@
 #include "backends/device/program.hpp"
 #include "drive/standard_paths.hpp"
 #include "experiment/diagnostics.hpp"
+#include "experiment/units.hpp"
 #include "metrics/exact.hpp"
 #include "metrics/particle_quantities.hpp"
 #include "mpm/drive.hpp"
@@ -114,6 +116,15 @@ void add_compare(CLI::App& verb, CompareOptions& options) {
       "Exit codes: 0 all agree within the tolerance; 2 bad input; 4 something does not agree.");
 }
 
+/// A check that takes a number from one bound to the other, and says them as they are written here.
+std::function<std::string(const std::string&)> number_between(const std::string& least, const std::string& most) {
+  return [=](const std::string& word) {
+    const auto number = parse_number(word);
+    const bool fits = number && *number >= parse_number(least) && *number <= parse_number(most);
+    return fits ? "" : "expected a number from " + least + " to " + most + ", got " + word;
+  };
+}
+
 void add_drive(CLI::App& verb, DriveOptions& options) {
   verb.add_option("ID", options.id, "material")->required();
   verb.add_option("--param", options.parameters,
@@ -127,19 +138,24 @@ void add_drive(CLI::App& verb, DriveOptions& options) {
   }
   verb.add_option("--path", options.path, "one path; default all")->check(CLI::IsMember(names));
   verb.add_option("--strain", options.strain, "largest displacement gradient; default 0.1")
-      ->check(CLI::Range(1e-12, 0.999));
+      ->check(number_between("1e-9", "0.999"));
   verb.add_option("--steps", options.steps, "steps of one way; default 100")->check(CLI::Range(1, 1000000));
   verb.add_option("--duration", options.duration, "seconds of one way, for materials that flow or creep; default 1")
-      ->check(CLI::PositiveNumber);
+      ->check(number_between("1e-12", "1e12"));
   verb.add_option("--dimension", options.dimension, "3, or 2: plane strain; default 3 where the material can")
       ->check(CLI::IsMember({2, 3}));
   verb.add_option("--cell-size", options.cell_size, "of a grid, m, for materials that read it");
-  verb.add_option("--out", options.out, "folder that gets a run folder of each path: numbers, figures, report.html");
-  verb.add_flag("--replace", options.replace, "replaces whatever runs are there");
-  verb.footer("Paths:\n" + list +
-              "The first slope is that of the first step: E, G, K or the modulus M of uniaxial strain at small strains "
-              "(E' in plane strain). The residual is work less stored and dissipated energy, over the turnover.\n"
-              "Exit codes: 0 done; 2 bad input; 3 a path could not be followed to its end.");
+  auto* out =
+      verb.add_option("--out", options.out, "folder that gets a run folder of each path: numbers, figures, report.html")
+          ->check([](const std::string& word) { return word.empty() ? "names no folder" : ""; });
+  verb.add_flag("--replace", options.replace, "replaces whatever runs are there")->needs(out);
+  verb.footer(
+      "Paths:\n" + list +
+      "The first slope is that of the first step: E, G, K or the modulus M of uniaxial strain at small strains "
+      "(E' in plane strain); of a material with viscosity also that over the step's time. The residual is work less "
+      "stored and dissipated energy, over the turnover.\n"
+      "Exit codes: 0 done; 2 bad input; 3 a path could not be followed to its end; 5 the machine failed; 130 stopped "
+      "by Ctrl-C between two steps.");
 }
 
 std::string quoted_for_a_shell(const std::string& word) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <optional>
 
 #include "drive/read_drive.hpp"
@@ -12,6 +13,7 @@
 #include "drive/standard_paths.hpp"
 #include "experiment/diagnostics.hpp"
 #include "mpm/drive.hpp"
+#include "mpm/stop_on_signal.hpp"
 #include "output/manifest.hpp"
 #include "output/report.hpp"
 #include "output/run_folder.hpp"
@@ -65,6 +67,14 @@ std::string stop_text(const DriveExperiment& path, const drive::Stop& stop) {
          ", t = " + number_text(stop.time) + " s: " + stop.reason;
 }
 
+std::string interruption_text(const Course& course) {
+  return "stopped by a signal after step " + std::to_string(course.rows.back().step);
+}
+
+int code_of(const Course& course) {
+  return course.stop ? run_failed : course.is_interrupted ? interrupted : done;
+}
+
 /// Follows the path into a run folder. Returns the course and the exit code.
 std::pair<Course, int> follow_into(const DriveExperiment& path, const fs::path& place, bool replace,
                                    const std::string& command, const std::string& text) {
@@ -73,10 +83,10 @@ std::pair<Course, int> follow_into(const DriveExperiment& path, const fs::path& 
   folder.write_json("manifest.json", manifest(path, command, text));
   folder.remove_temporary_files();
   folder.write_json("experiment.json", path.experiment.resolved);
-  Course course = drive::follow(path);
+  Course course = drive::follow(path, drive::Slopes::tangent, stop_requested);
   drive::write_table(path, course, folder.root() / "metrics.csv");
   Json summary = drive::summary_of(path, course);
-  int code = course.stop ? run_failed : done;
+  int code = code_of(course);
   Json outcome{{"exit_code", code}, {"status", "done"}, {"reason", ""}};
   if (course.stop) {
     outcome = {{"exit_code", code},
@@ -84,6 +94,9 @@ std::pair<Course, int> follow_into(const DriveExperiment& path, const fs::path& 
                {"reason", stop_text(path, *course.stop)},
                {"remedy", course.stop->remedy}};
     std::cerr << "the run failed: " << stop_text(path, *course.stop) << "\nremedy: " << course.stop->remedy << "\n";
+  } else if (course.is_interrupted) {
+    outcome = {{"exit_code", code}, {"status", "interrupted"}, {"reason", interruption_text(course)}};
+    std::cerr << interruption_text(course) << "\n";
   } else if (const auto failed = judge_expectations(path.experiment, summary); !failed.empty()) {
     for (const std::string& sentence : failed) std::cerr << sentence << "\n";
     code = expectation_failed;
@@ -105,11 +118,6 @@ void refuse_options(const RunOptions& options) {
 
 // ---- the verb drive ------------------------------------------------------------------------------------------------
 
-std::string padded(const std::string& text, int width) {
-  const int missing = width - static_cast<int>(text.size());
-  return std::string(static_cast<std::size_t>(std::max(0, missing)), ' ') + text;
-}
-
 std::string four_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3e", value + 0.0);  // a negative zero becomes zero
@@ -119,13 +127,18 @@ std::string four_digits(double value) {
 /// The material of the command line as it would stand in a file. Throws InputError where a parameter is missing.
 Json material_of(const Plugin& plugin, const DriveOptions& options) {
   Json material{{"type", plugin.id()}};
+  std::map<std::string, std::string> texts;  // as typed
   for (const std::string& given : options.parameters) {
     const std::size_t equals = given.find('=');
     if (equals == std::string::npos || equals == 0)
       refuse("--param", in_quotes(given) + " is not of the form name=value, e.g. density=1000");
-    const std::string text = given.substr(equals + 1);
+    const std::string name = given.substr(0, equals), text = given.substr(equals + 1);
+    if (name == "type") refuse("--param", "\"type\" is no parameter: the material is the word after `mpm drive`");
+    if (const auto before = texts.find(name); before != texts.end())
+      refuse("--param", in_quotes(name) + " is given twice: " + before->second + " and " + text);
+    texts[name] = text;
     const Json value = Json::parse(text, nullptr, false);
-    material[given.substr(0, equals)] = value.is_discarded() || value.is_structured() ? Json(text) : value;
+    material[name] = value.is_discarded() || value.is_structured() ? Json(text) : value;
   }
   std::string list, example;
   for (const mpm_parameter& declared : plugin.parameters()) {
@@ -157,12 +170,15 @@ std::string modulus_of(const drive::StandardPath& standard, const DriveExperimen
   const drive::Row &start = course.rows[0], &next = course.rows[1];
   const auto [i, j] = drive::driven_component(path, course);
   const bool by_volume = *standard.modulus == 'K';
+  const bool flat = path.experiment.dimension == 2 && *standard.modulus == 'E';
+  const std::string name = std::string(standard.modulus) + (flat ? "'" : "") + " = ";
+  constexpr double least = 1e-12;  // what is smaller has too few digits beside the 1 of F
+  if (std::abs(next.F(i, j) - start.F(i, j)) < least) return name + "-";
   const double slope =
       by_volume ? -(pressure(next.response) - pressure(start.response)) /
                       std::log(next.response.volume_ratio / start.response.volume_ratio)
                 : (next.response.cauchy(i, j) - start.response.cauchy(i, j)) / (next.F(i, j) - start.F(i, j));
-  const bool flat = path.experiment.dimension == 2 && *standard.modulus == 'E';
-  return std::string(standard.modulus) + (flat ? "'" : "") + " = " + four_digits(slope);
+  return name + four_digits(slope);
 }
 
 void print_row(const drive::StandardPath& standard, const DriveExperiment& path, const Course& course) {
@@ -214,6 +230,7 @@ int run_material_point(const RunOptions& options) {
   const ComponentLookup lookup(registry);
   const DriveExperiment path = drive::read_drive(options.file, lookup, options.overrides);
   const auto place = options.out.empty() ? fs::path("runs") / options.file.stem() : options.out;
+  const StopOnSignal signals;
   const auto [course, code] =
       follow_into(path, place, options.replace, options.command, support::read_file(options.file));
   const drive::Row& end = course.rows.back();
@@ -237,6 +254,13 @@ int check_material_point(const RunOptions& options) {
   return done;
 }
 
+void refuse_material_point(const fs::path& base, const fs::path& study, const std::vector<std::string>& overrides) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(base, ignored) || !drive::is_material_point(base, overrides)) return;
+  refuse(study.string(), "a study runs scenes, and " + base.filename().string() +
+                             " is a material point: run it by itself with `mpm run`");
+}
+
 int drive_material(const DriveOptions& options) {
   const Registry registry = load_registry();
   const ComponentLookup lookup(registry);
@@ -247,21 +271,30 @@ int drive_material(const DriveOptions& options) {
   size.dimension = options.dimension ? options.dimension : plugin.descriptor->dimensions & MPM_3D ? 3 : 2;
   int worst = done;
   bool has_head = false;
+  const StopOnSignal signals;
   for (const drive::StandardPath& standard : drive::standard_paths()) {
     if (!options.path.empty() && options.path != standard.name) continue;
+    if (stop_requested()) {
+      std::printf("stopped by a signal before %s\n", standard.name);
+      worst = interrupted;
+      break;
+    }
     const std::string text = drive::standard_path(standard.name, size, material).dump(2);
     const DriveExperiment path = read_standard(options, standard.name, text, lookup);
     if (!has_head) print_head(options, size), has_head = true;
     Course course;
     if (options.out.empty()) {
-      course = drive::follow(path);
-      if (course.stop) worst = run_failed;
+      course = drive::follow(path, drive::Slopes::tangent, stop_requested);
+      worst = std::max(worst, code_of(course));
     } else {
       auto [followed, code] = follow_into(path, options.out / standard.name, options.replace, options.command, text);
       course = std::move(followed), worst = std::max(worst, code);
     }
     print_row(standard, path, course);
-    if (course.stop) std::printf("  stopped in %s\n", stop_text(path, *course.stop).c_str());
+    if (course.stop)
+      std::printf("  stopped in %s\n  remedy: %s\n", stop_text(path, *course.stop).c_str(),
+                  course.stop->remedy.c_str());
+    if (course.is_interrupted) std::printf("  %s\n", interruption_text(course).c_str());
     std::fflush(stdout);
   }
   return worst;

@@ -28,5 +28,8 @@ int drive_material(const DriveOptions& options);
 /// Runs, and validates, a file whose solver is a material point. Throws InputError and FolderRefused.
 int run_material_point(const RunOptions& options);
 int check_material_point(const RunOptions& options);
+/// Throws InputError where the base of a study is a material point.
+void refuse_material_point(const std::filesystem::path& base, const std::filesystem::path& study,
+                           const std::vector<std::string>& overrides);
 
 }  // namespace mpm::app

@@ -163,6 +163,7 @@ int check_study(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.backend) overrides.push_back("/backend=" + *options.backend);
   const study::Study plan = study::read_study(options.file, overrides);
+  refuse_material_point(plan.base, plan.file, overrides);
   const Registry registry = load_registry();
   read_located(plan.base);  // a base that is no JSON is one mistake, not one a combination
   const std::vector<study::Combination> combinations = study::expand(plan);

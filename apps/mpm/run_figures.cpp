@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "backends/make_backend.hpp"
+#include "drive/read_drive.hpp"
 #include "experiment/diagnostics.hpp"
 #include "experiment/parameter.hpp"
 #include "mpm/cli.hpp"
@@ -286,6 +287,7 @@ struct RecordedRun {
   Table metrics;
   std::vector<ColumnFigure> column_figures = {};
   std::string experiment_file = "";  ///< as the run was given it
+  bool is_material_point = false;
 };
 
 /// The figures of columns that a run's experiment asks for and its numbers have.
@@ -324,6 +326,9 @@ RecordedRun recorded(const std::filesystem::path& folder) {
     if (experiment.is_object() && experiment.contains("title") && experiment["title"].is_string())
       run.title = experiment["title"].get<std::string>();
     if (experiment.is_object()) run.column_figures = column_figures_of(experiment, run.metrics);
+    const auto type = nlohmann::json::json_pointer("/solver/type");
+    run.is_material_point =
+        experiment.is_object() && experiment.contains(type) && experiment[type] == drive::solver_name;
   }
   if (const auto file = run.folder / "manifest.json"; std::filesystem::is_regular_file(file, ignored)) {
     const auto manifest = nlohmann::json::parse(support::read_file(file), nullptr, false);
@@ -495,6 +500,12 @@ int figure(const std::vector<std::filesystem::path>& folders, const std::filesys
   tell_apart(runs);
   std::optional<Specification> specified;
   if (!specification.empty()) specified = read_specification(specification, runs);
+  for (const RecordedRun& run : runs)
+    if (run.is_material_point && !specified)
+      refuse(
+          run.folder,
+          "a material point's run has its figures since it ran, in figures/; others are drawn with --spec FILE, which "
+          "names columns of metrics.csv, such as {\"x\": \"deformation gradient xx\", \"y\": \"stress xx\"}");
   const std::filesystem::path target = !out.empty()       ? out
                                        : runs.size() == 1 ? runs.front().folder / "figures"
                                                           : std::filesystem::path("runs/overlay");

@@ -7,6 +7,7 @@
 #include "experiment/diagnostics.hpp"
 #include "experiment/units.hpp"
 #include "mpm/cli.hpp"
+#include "mpm/drive.hpp"
 #include "mpm/stop_on_signal.hpp"
 #include "output/manifest.hpp"
 #include "output/run_folder.hpp"
@@ -244,6 +245,7 @@ const study::Measure& measure_or_refuse(const Results& results, const std::strin
 
 int study(const StudyOptions& options) {
   const study::Study plan = study::read_study(options.file, options.overrides);
+  refuse_material_point(plan.base, plan.file, options.overrides);
   const Registry registry = load_registry();
   const fs::path folder = folder_for(options);
   const output::FolderLock lock(folder);

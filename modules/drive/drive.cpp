@@ -118,6 +118,7 @@ class StepProblem {
   bool solve(Open& open) {
     Trial now = attempt(open);
     if (!now.response.is_admissible) open = Open(), now = attempt(open);
+    began_ = now.response;
     for (int round = 0; round < 60 && now.response.is_admissible; ++round) {
       missing_ = now.missing;
       if (reached(now)) return true;
@@ -131,6 +132,10 @@ class StepProblem {
     }
     return false;
   }
+
+  /// The answer that the search began from, with the open components as the step before left them. Where the material
+  /// does not take that state no stress was found, and none missed.
+  const Response& began() const { return began_; }
 
   /// The stress that misses its value by most, in words, after a search that failed.
   std::string miss_text() const {
@@ -247,12 +252,16 @@ class StepProblem {
   const bool by_tangent_;
   const Matrix inverse_F_;
   Open missing_;
+  Response began_;
 };
 
 class Follower {
  public:
-  Follower(const DriveExperiment& path, Slopes slopes)
-      : path_(path), slopes_(slopes), point_(path.material(), path.experiment.dimension) {
+  Follower(const DriveExperiment& path, Slopes slopes, const std::function<bool()>& stop_requested)
+      : path_(path),
+        slopes_(slopes),
+        stop_requested_(stop_requested),
+        point_(path.material(), path.experiment.dimension) {
     course_.columns = point_.columns();
     Row start;
     start.response = point_.look();
@@ -263,7 +272,8 @@ class Follower {
   Course run() {
     if (!course_.rows.front().response.is_admissible)
       return stop(0, 0, 0, "the plugin does not take its own initial state", "check its parameters: mpm test-plugin");
-    for (std::size_t k = 0; k < path_.stages.size() && !course_.stop; ++k) follow_stage(static_cast<int>(k));
+    for (std::size_t k = 0; k < path_.stages.size() && !course_.stop && !course_.is_interrupted; ++k)
+      follow_stage(static_cast<int>(k));
     return std::move(course_);
   }
 
@@ -285,12 +295,18 @@ class Follower {
     const double began = last().time, dt = stage.duration / stage.steps;
     Open open;  // what the step before found: the next one begins its search there
     for (int step = 1; step <= stage.steps; ++step) {
+      if (stop_requested_ && stop_requested_()) {
+        course_.is_interrupted = true;
+        return;
+      }
       const double modulus = density_ * last().response.wave_speed * last().response.wave_speed;
       StepProblem problem(point_, stage, last().F, dt, modulus, slopes_);
       const double end = stage.duration * step / stage.steps;
       if (!impose(stage, step, began, end, dt, problem)) return;
       const bool found = stage.stresses.empty() || problem.solve(open);
       course_.iterations += problem.iterations;
+      if (!found && !problem.began().is_admissible)
+        return refuse_state(index, step, began + end, problem.increment(open), problem.began());
       if (!found) {
         stop(
             index, step, began + end, "no strain was found with the prescribed stress: " + problem.miss_text(),
@@ -329,20 +345,24 @@ class Follower {
   /// Advances the point by dt L and books the step. Returns false, with the reason kept, where the state is none.
   bool take(int stage, int step, double time, double dt, const Matrix& H) {
     Row row;
-    row.time = time, row.stage = stage;
+    row.time = time, row.stage = stage, row.step = last().step + 1;
     row.F = sum(last().F, H * last().F);
     row.work = last().work + work_of(H, dt);
     row.response = point_.advance(scaled(H, 1 / dt), dt);
     row.dissipated = last().dissipated + row.response.dissipated;
     if (!row.response.is_admissible || !std::isfinite(row.work)) {
-      stop(stage, step, time,
-           "the material does not take the state: det F is " + number_text(determinant(row.F)) + ", J " +
-               number_text(row.response.volume_ratio),
-           "impose a smaller strain, in smaller steps");
+      refuse_state(stage, step, time, H, row.response);
       return false;
     }
     add(std::move(row));
     return true;
+  }
+
+  void refuse_state(int stage, int step, double time, const Matrix& H, const Response& response) {
+    stop(stage, step, time,
+         "the material does not take the state: det F is " + number_text(determinant(sum(last().F, H * last().F))) +
+             ", J " + number_text(response.volume_ratio),
+         "impose a smaller strain, in smaller steps");
   }
 
   /// The work of a step per initial volume: the integral over s of tau(s) : H (I + s H)^-1.
@@ -359,6 +379,7 @@ class Follower {
 
   const DriveExperiment& path_;
   const Slopes slopes_;
+  const std::function<bool()>& stop_requested_;
   MaterialPoint point_;
   double density_ = 0;
   Course course_;
@@ -366,8 +387,8 @@ class Follower {
 
 }  // namespace
 
-Course follow(const DriveExperiment& path, Slopes slopes) {
-  return Follower(path, slopes).run();
+Course follow(const DriveExperiment& path, Slopes slopes, const std::function<bool()>& stop_requested) {
+  return Follower(path, slopes, stop_requested).run();
 }
 
 }  // namespace mpm::drive

@@ -2,6 +2,7 @@
 // A material point along a path: stages of imposed deformation or velocity gradient, of prescribed Cauchy stress, or of
 // both, component by component.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +49,7 @@ struct DriveExperiment {
 /// The state after a step.
 struct Row {
   double time = 0;  ///< s, since the path began
+  long step = 0;    ///< since the path began
   int stage = 0;
   Matrix F = Matrix::identity();
   Response response;
@@ -66,7 +68,8 @@ struct Course {
   std::vector<StateColumn> columns;
   std::vector<Row> rows;  ///< the start, then a row a step
   std::optional<Stop> stop;
-  long iterations = 0;  ///< of Newton's method
+  bool is_interrupted = false;  ///< it was asked to stop before its end
+  long iterations = 0;          ///< of Newton's method
 };
 
 /// How the stress depends on the open components: by the plugin's tangent where it has one, or by central differences.
@@ -75,6 +78,8 @@ enum class Slopes { tangent, differences };
 /// Follows the path. In each step the open components are found by Newton's method, up to 1e-12 of the stress and the 1e-13
 /// of rho c^2 that rounding of the strain leaves. The work is that of the Kirchhoff stress on the velocity gradient, by
 /// three Gauss points a step, each a shorter step from the same state.
-Course follow(const DriveExperiment& path, Slopes slopes = Slopes::tangent);
+/// Before each step it asks whether it is to stop.
+Course follow(const DriveExperiment& path, Slopes slopes = Slopes::tangent,
+              const std::function<bool()>& stop_requested = {});
 
 }  // namespace mpm::drive

@@ -131,7 +131,7 @@ double turnover(const Course& course) {
 }
 
 std::vector<std::string> headings(const DriveExperiment& path, const Course& course) {
-  std::vector<std::string> names{"time (s)", "stage"};
+  std::vector<std::string> names{"time (s)", "step", "stage"};
   for (const std::string& name : components_of_matrix(path.experiment.dimension))
     names.push_back("deformation gradient " + name);
   names.emplace_back("volume ratio");
@@ -149,7 +149,7 @@ std::vector<std::string> headings(const DriveExperiment& path, const Course& cou
 }
 
 std::vector<double> numbers(const DriveExperiment& path, const Course& course, const Row& row) {
-  std::vector<double> values{row.time, static_cast<double>(row.stage + 1)};
+  std::vector<double> values{row.time, static_cast<double>(row.step), static_cast<double>(row.stage + 1)};
   for (const std::string& name : components_of_matrix(path.experiment.dimension))
     values.push_back(row.F(name[0] - 'x', name[1] - 'x'));
   values.push_back(row.response.volume_ratio);

@@ -70,7 +70,7 @@ TEST_CASE("drive: what is missing or wrong is code 2, and a path that cannot be 
   refused("neo_hookean", {"--param", "density=1000"}, "youngs_modulus (Pa): Young's modulus at small strain");
   refused("neo_hookean", {}, "add --param youngs_modulus=… --param poisson_ratio=… --param density=…");
   refused("neo_hookaen", rubber, R"(no material is called "neo_hookaen"; did you mean "neo_hookean"?)");
-  refused("neo_hookean", with(rubber, {"--param", "poisson_ratio=0.7"}),
+  refused("neo_hookean", {"--param", "youngs_modulus=1e6", "--param", "density=1000", "--param", "poisson_ratio=0.7"},
           "mpm drive neo_hookean: /materials/m/poisson_ratio: out of range: expected a number above -1 and below 0.5");
   refused("neo_hookean", with(rubber, {"--param", "colour=red"}), R"(unknown key "colour")");
   refused("neo_hookean", with(rubber, {"--param", "colour"}), R"("colour" is not of the form name=value)");
@@ -112,6 +112,121 @@ TEST_CASE("run and check take material points, plan and options of scenes do not
     INFO(result.err);
     CHECK(result.code == 2);
     CHECK(has(result.err, message));
+  }
+}
+
+TEST_CASE("a material point's run can be held against another, and its figures are drawn by specification") {
+  const Folder folder;
+  spill(folder / "scene.json", pulled().dump());
+  CHECK(call(folder, {"run", "scene.json", "--out", "a"}).code == 0);
+  const auto table = mpm::support::read_csv(folder / "a/metrics.csv");
+  REQUIRE(table.find("step"));
+  CHECK(table.find("step")->back() == 10);
+  CHECK(call(folder, {"run", "scene.json", "--out", "b", "--set", "/materials/m/youngs_modulus=1001"}).code == 0);
+  const Result same = call(folder, {"compare", "a", "a"});
+  INFO(same.out << same.err);
+  CHECK(same.code == 0);
+  CHECK(has(same.out, "all numbers that both have are the same"));
+  CHECK(call(folder, {"compare", "a", "b"}).code == 4);
+  for (const Words& runs : {Words{"a"}, Words{"a", "b"}}) {
+    const Result bare = call(folder, with(with({"figure"}, runs), {"--out", "drawn"}));
+    INFO(bare.err);
+    CHECK(bare.code == 2);
+    CHECK(has(bare.err,
+              "a material point's run has its figures since it ran, in figures/; others are drawn with "
+              "--spec FILE"));
+    CHECK(!fs::exists(folder / "drawn"));
+  }
+  spill(folder / "spec.json", R"({"x": "deformation gradient xx", "y": "stress xx"})");
+  CHECK(call(folder, {"figure", "a", "b", "--spec", "spec.json", "--out", "drawn"}).code == 0);
+  CHECK(fs::is_regular_file(folder / "drawn/spec.png"));
+}
+
+TEST_CASE("a signal stops a material point between two steps, and what was followed is written") {
+  const Folder folder;
+  Json scene = pulled();
+  Json& stages = scene["solver"]["stages"];
+  stages[0]["steps"] = 1000000;
+  stages[0]["deformation_gradient"]["xx"] = "1 + 1e-3*t";
+  stages.push_back(stages[0]);
+  stages[1]["name"] = "on";
+  spill(folder / "scene.json", scene.dump());
+  const auto stopped = [&](const Words& words, const fs::path& run) {
+    Process process(folder, program(words));
+    REQUIRE(process.wait_until([&] { return fs::exists(folder / run / "experiment.json"); }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    process.send(SIGINT);
+    Result result = process.finish();
+    INFO(result.err);
+    REQUIRE(result.code == 130);
+    const Json summary = json_in(folder / run / "summary.json");
+    CHECK(summary["outcome"]["exit_code"] == 130);
+    CHECK(summary["outcome"]["status"] == "interrupted");
+    CHECK(has(result.err, "stopped by a signal after step " + summary["steps"].dump()));
+    const auto table = mpm::support::read_csv(folder / run / "metrics.csv");
+    CHECK(table.find("step")->back() == summary["steps"].get<double>());
+    CHECK(table.find("time")->back() == summary["simulated_time"].get<double>());
+    CHECK(has(slurp(folder / run / "report.html"), "</html>"));
+    return result;
+  };
+  stopped({"run", "scene.json", "--out", "run"}, "run");
+  const Result drive =
+      stopped(with({"drive", "neo_hookean", "--steps", "1000000", "--out", "runs"}, rubber), "runs/uniaxial");
+  CHECK(has(drive.out, "uniaxial"));
+  CHECK(!fs::exists(folder / "runs/simple_shear"));
+}
+
+TEST_CASE("drive: options that say nothing or two things are refused, and numbers have their range") {
+  const Folder folder;
+  const auto refused = [&](const Words& more, const std::string& message) {
+    const Result result = drive(folder, "neo_hookean", with(rubber, more));
+    INFO(result.err);
+    INFO("expected: " << message);
+    CHECK(result.code == 2);
+    CHECK(has(result.err, message));
+    CHECK(result.out.empty());
+  };
+  refused({"--param", "type=hencky"}, "\"type\" is no parameter: the material is the word after `mpm drive`");
+  refused({"--param", "density=2000"}, "\"density\" is given twice: 1 g/cm^3 and 2000");
+  refused({"--replace"}, "--replace requires --out");
+  refused({"--out", ""}, "--out: names no folder");
+  for (const char* strain : {"nan", "1e-12", "0", "1", "-0.1", "wide"})
+    refused({"--strain", strain}, std::string("--strain: expected a number from 1e-9 to 0.999, got ") + strain);
+  for (const char* duration : {"nan", "0", "-1", "inf", "1e13"})
+    refused({"--duration", duration}, std::string("--duration: expected a number from 1e-12 to 1e12, got ") + duration);
+  const Result least = drive(folder, "neo_hookean", with(rubber, {"--strain", "1e-9", "--path", "uniaxial"}));
+  INFO(least.out);
+  CHECK(has(least.out, "E = 1.000e+06"));
+  // A step of less keeps no digit of its strain: a dash in place of a number that says nothing.
+  const Result lost =
+      drive(folder, "neo_hookean", with(rubber, {"--strain", "1e-9", "--steps", "1000000", "--path", "simple_shear"}));
+  INFO(lost.out);
+  CHECK(has(lost.out, "G = -  "));
+}
+
+TEST_CASE("drive: a path that stops is told with its remedy also where nothing is written") {
+  const Folder folder;
+  const Result result = drive(folder, "neo_hookean", with(rubber, {"--strain", "0.999", "--steps", "1"}));
+  INFO(result.out << result.err);
+  CHECK(has(call(folder, {"drive", "--help"}).out, "5 the machine failed"));
+  CHECK(result.code == 3);
+  CHECK(has(result.out, "  stopped in step 1 of way_"));
+  CHECK(has(result.out, "\n  remedy: "));
+}
+
+TEST_CASE("a study of a material point is refused in a sentence") {
+  const Folder folder;
+  spill(folder / "scene.json", pulled().dump());
+  spill(folder / "study.json",
+        R"({"base": "scene.json", "axes": {"/materials/m/youngs_modulus": {"values": [1000, 2000]}},
+                                   "measure": {"work": {"value": "/energy_per_volume/work"}}})");
+  for (const char* verb : {"study", "check"}) {
+    const Result result = call(folder, {verb, "study.json"});
+    INFO(result.err);
+    CHECK(result.code == 2);
+    CHECK(has(result.err, "a study runs scenes, and scene.json is a material point: run it by itself with `mpm run`"));
+    CHECK(!has(result.err, "missing key"));
+    CHECK(!fs::exists(folder / "runs"));
   }
 }
 

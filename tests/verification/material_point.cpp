@@ -432,12 +432,30 @@ TEST_CASE("material point: the standard paths measure E, G, K and M") {
   CHECK(-pressure(pressed) / std::log(pressed.volume_ratio) == Approx(k).epsilon(1e-5));
 }
 
+TEST_CASE("material point: a request to stop is heard between two steps") {
+  const DriveExperiment path = path_of(elastic("neo_hookean"), Json::array({stage({{"xx", "1 + t"}}, 10), stage({})}));
+  int asked = 0;
+  const Course course = follow(path, Slopes::tangent, [&] { return ++asked > 4; });
+  CHECK(course.is_interrupted);
+  CHECK(!course.stop);
+  REQUIRE(course.rows.size() == 5);
+  CHECK(course.rows.back().step == 4);
+  CHECK(course.rows.back().time == Approx(0.4));
+  CHECK(!follow(path).is_interrupted);
+}
+
 TEST_CASE("material point: a path that cannot be followed stops with place, reason and remedy") {
   const Course inverted = driven(rubber("simo"), Json::array({stage({{"xx", "1 - 2*t"}}, 10)}));
   REQUIRE(inverted.stop);
   CHECK(inverted.stop->step == 5);
   CHECK(inverted.rows.size() == 5);
   CHECK(inverted.stop->reason.starts_with("the material does not take the state: det F is"));
+
+  // The same where a stress is prescribed too: no stress was missed, for none was found.
+  const Course pushed = driven(rubber("simo"), Json::array({stage({{"xx", -0.5}}, 1, {{"yy", 0}, {"zz", 0}})}));
+  REQUIRE(pushed.stop);
+  INFO(pushed.stop->reason);
+  CHECK(pushed.stop->reason == "the material does not take the state: det F is -0.5, J -0.5");
 
   Json sand{{"type", "drucker_prager"}, {"youngs_modulus", 1e7}, {"poisson_ratio", 0.3}, {"density", 1600}};
   sand["friction_angle"] = "30 deg";
