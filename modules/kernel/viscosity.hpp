@@ -65,6 +65,14 @@ MPM_HD Sym<D, S> rate_of_deformation(const Sym<D, S>& e, scalar_of<S> dt) {
   return d;
 }
 
+/// J times a Cauchy stress.
+template <int D, class S>
+MPM_HD Sym<D, S> kirchhoff_of(const Sym<D, S>& cauchy, const S& J) {
+  Sym<D, S> tau;
+  for (int k = 0; k < Sym<D, S>::size; ++k) tau.s[k] = J * cauchy.s[k];
+  return tau;
+}
+
 /// Cauchy stress 2 shear dev d + bulk tr(d) I of a Newtonian fluid; viscosities in Pa s.
 template <int D, class S>
 MPM_HD Sym<D, S> newtonian_stress(scalar_of<S> shear, scalar_of<S> bulk, const Sym<D, S>& d) {

@@ -50,10 +50,8 @@ struct KelvinVoigt {
     state.deformation_gradient = advanced(state.deformation_gradient, L, dt);
     const S J = determinant(state.deformation_gradient);
     const Sym<D, S> d = rate_of_deformation(strain_rate(L, dt), dt);
-    Sym<D, S>& tau = state.viscous_stress;
-    tau = newtonian_stress(c.shear_viscosity, c.bulk_viscosity, d);
-    for (int k = 0; k < Sym<D, S>::size; ++k) tau.s[k] = J * tau.s[k];
-    return dt * contraction(tau, d);
+    state.viscous_stress = kirchhoff_of(newtonian_stress(c.shear_viscosity, c.bulk_viscosity, d), J);
+    return dt * contraction(state.viscous_stress, d);
   }
 
   template <class G, class S = typename G::Scalar>

@@ -49,10 +49,8 @@ struct NewtonianFluid {
     const S J = volume_ratio(state);
     Sym<D, S> rate = strain_rate(L, dt);
     for (int k = 0; k < Sym<D, S>::size; ++k) rate.s[k] = real<S>(0.5) * rate.s[k];
-    state.viscous_stress = newtonian_stress(c.viscosity, c.bulk_viscosity, rate);
-    const S power = contraction(state.viscous_stress, rate);
-    for (int k = 0; k < Sym<D, S>::size; ++k) state.viscous_stress.s[k] = J * state.viscous_stress.s[k];
-    return dt * J * max(power, S(real<S>(0)));
+    state.viscous_stress = kirchhoff_of(newtonian_stress(c.viscosity, c.bulk_viscosity, rate), J);
+    return dt * max(contraction(state.viscous_stress, rate), S(real<S>(0)));
   }
 
   /// tau = -p J I + the viscous stress.
