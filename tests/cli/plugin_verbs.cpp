@@ -73,17 +73,20 @@ TEST_CASE("new: a folder that cannot be made is the machine's fault") {
 }
 
 TEST_CASE("new: no class of the kernel headers can be an id") {
-  // Each `struct Name` or `enum class Name` of kernel/ is given as the id that would make it.
+  // Each `struct Name` or `enum class Name` that begins a line of kernel/ is given as the id that would make it.
   const Folder folder;
   int found = 0;
   for (const auto& header : fs::directory_iterator(MPM_SOURCE_DIR "/modules/kernel")) {
-    std::istringstream words(slurp(header.path()));
-    for (std::string word, before, first; words >> word; first = before, before = word) {
-      const bool declared = before == "struct" || (first == "enum" && before == "class");
-      if (!declared || !std::isupper(static_cast<unsigned char>(word[0]))) continue;
+    std::istringstream lines(slurp(header.path()));
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream words(line);
+      std::string word, before;
+      if (line.rfind("struct ", 0) == 0) words >> before >> word;  // a class within another is none of the headers'
+      if (line.rfind("enum class ", 0) == 0) words >> before >> before >> word;
+      if (word.empty() || !std::isupper(static_cast<unsigned char>(word[0]))) continue;
       std::string id;
       for (const char c :
-           word.substr(0, word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"))) {
+           word.substr(0, word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"))) {
         if (std::isupper(static_cast<unsigned char>(c)) && !id.empty()) id += '_';
         id += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
       }

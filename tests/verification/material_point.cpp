@@ -384,9 +384,7 @@ TEST_CASE("material point: the work is that of the closed form, and the ledger c
   CHECK(std::abs(residual(yielding, yielding.rows.back())) < 2e-3 * turnover(yielding));
 }
 
-TEST_CASE(
-    "material point: a constant velocity gradient multiplies F by I + dt L, its mean over a step by a formula's "
-    "middle") {
+TEST_CASE("material point: a velocity gradient multiplies F by I + dt L, a formula by its value in mid-step") {
   const Course constant = driven(elastic("neo_hookean"),
                                  Json::array({{{"duration", 2}, {"steps", 8}, {"velocity_gradient", {{"xx", 0.3}}}}}));
   CHECK(end_of(constant).F(0, 0) == Approx(std::pow(1 + 0.3 * 0.25, 8)).epsilon(1e-13));
