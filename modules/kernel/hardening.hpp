@@ -88,12 +88,12 @@ struct JohnsonCookHardening {
 /// The Johnson-Cook law during one step of one particle: its temperature and the length of the step are known.
 template <class T, class S>
 struct JohnsonCookStep {
-  JohnsonCookHardening<T> law;
   S softening;       ///< 1 - T*^m
   T rate_over_flow;  ///< rate/rate_0 of a unit plastic strain in this step
+  JohnsonCookHardening<T> law;
 
   MPM_HD JohnsonCookStep(const JohnsonCookHardening<T>& constants, S temperature, T dt)
-      : law(constants), rate_over_flow(real<S>(1) / (constants.reference_rate * dt)) {
+      : rate_over_flow(real<S>(1) / (constants.reference_rate * dt)), law(constants) {
     const S one = S(real<S>(1)), zero = S(real<S>(0));
     const S warmth = (temperature - law.room_temperature) * law.inverse_melting_range;
     softening = one - power_of(min(max(warmth, zero), one), law.thermal_exponent);
