@@ -2,7 +2,6 @@
 // digits, with energies by quadrature of the pressures.
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "kernel/equation_of_state.hpp"
@@ -15,8 +14,6 @@ namespace {
 using namespace mpm;
 using enum EquationOfState;
 using Mat3 = Mat<3, double>;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 NewtonianFluid::Parameters water(EquationOfState form, double modulus = 2.2e9) {
   NewtonianFluid::Parameters p{};
