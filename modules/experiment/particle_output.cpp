@@ -36,7 +36,7 @@ bool all_components_known(const Experiment& experiment) {
 
 /// Why a field that some scene may have is not there; an empty string when nothing is known about the name.
 std::string reason_for_lack(const std::string& name) {
-  if (name == "contact_traction") return "no backend keeps the traction of contact with its particles";
+  if (name == "contact_traction") return "no two bodies of this scene meet by \"contact\"";
   if (name == "deformation_gradient") return "no material of this scene keeps a deformation gradient";
   if (name == "velocity_gradient") return "the transfer of this scene keeps no velocity gradient";
   if (name == "temperature" || name == "melted_fraction") return "no material of this scene has it in its \"thermal\"";
@@ -206,6 +206,7 @@ std::vector<ParticleField> particle_fields(const Experiment& experiment) {
                                     {"volume_ratio", "", Shape::scalar},
                                     {"stored_energy", "J/m³", Shape::scalar},
                                     {"wave_speed", "m/s", Shape::scalar}};
+  if (experiment.contact) fields.push_back({"contact_traction", "Pa", Shape::vector});
   if (experiment.has_temperature()) fields.push_back({"temperature", "K", Shape::scalar});
   for (const MaterialSpecification& material : experiment.materials)
     if (material.thermal && material.thermal->phase_change && !knows(fields, "melted_fraction"))

@@ -195,7 +195,6 @@ void ExperimentReader::read_contact_nodes(const Fields& fields) {
   const auto refuse = [&](const char* why) { problem(fields.place("contact_nodes"), why); };
   if (!experiment_.contact) refuse("there are no such nodes without \"contact\"");
   if (experiment_.output.frames <= 0) refuse("they are shown in frames: give \"frames\"");
-  if (experiment_.backend == "cuda") refuse("backend \"cuda\" hands over no single nodes; take backend \"cpu\"");
 }
 
 void ExperimentReader::read_records(const Fields& fields) {

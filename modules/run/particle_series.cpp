@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "metrics/contact_traction.hpp"
 #include "metrics/mapped_grid.hpp"
 #include "metrics/particle_values.hpp"
 #include "output/vtk.hpp"
@@ -51,8 +52,12 @@ void ParticleSeries::record() {
   const Experiment& experiment = simulation_.experiment();
   const ParticleOutput& wanted = *experiment.particle_output;
   std::vector<BodyState> states;
-  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body)
-    states.push_back(simulation_.backend().body_state(body));
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    BodyState& state = states.emplace_back(simulation_.backend().body_state(body));
+    if (wanted.asks("contact_traction"))
+      state.host_state["contact_traction"] =
+          contact_traction(experiment, body, state, simulation_.backend().contact_nodes());
+  }
   const std::size_t index = particles_.size();
   Files particles = particles_, grids = grids_;
   particles.emplace_back(simulation_.time(), numbered("particles", index, ".vtu"));

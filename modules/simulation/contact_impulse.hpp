@@ -77,9 +77,13 @@ struct ContactGiven {
   double stored = 0;               ///< J, taken up by the springs of the law
 };
 
-/// Whether the nodes of a step are recorded.
+/// Whether a run records the nodes where fields meet, and whether it does in this step.
+inline bool records_nodes(const Experiment& experiment) {
+  const bool for_particles = experiment.particle_output && experiment.particle_output->asks("contact_traction");
+  return experiment.contact && (experiment.output.contact_nodes || for_particles);
+}
 inline bool records_nodes(const Experiment& experiment, const StepInfo& step) {
-  return step.observed && experiment.contact && experiment.output.contact_nodes;
+  return step.observed && records_nodes(experiment);
 }
 
 /// The impulses of contact on the first bodies of all pairs through the parts of one step, and the heat of friction.

@@ -181,9 +181,6 @@ TEST_CASE("names that no record has are mistakes of the file, with place and nea
   scene = asking();
   scene["output"]["contact_nodes"] = true;
   CHECK(has(refusal(scene), "/output/contact_nodes: they are shown in frames: give \"frames\""));
-  scene["output"]["frames"] = 2, scene["backend"] = "cuda";
-  CHECK(
-      has(refusal(scene), "/output/contact_nodes: backend \"cuda\" hands over no single nodes; take backend \"cpu\""));
   scene = two_balls();
   scene["output"]["ledger"] = false;
   scene["figures"] = {{{"type", "columns"}, {"name", "energy"}, {"columns", {"total energy"}}}, "ledger"};

@@ -118,7 +118,7 @@ TEST_CASE("what a scene does not hold is refused at its place, with what there i
           {"/output/particles/fields: there is no field \"deformation_gradient\" here: no material of this scene keeps "
            "a deformation gradient"},
           metal);
-  refused({{"count", 2}, {"fields", {"contact_traction"}}}, {"no backend keeps the traction of contact"}, two_balls());
+  refused({{"count", 2}, {"fields", {"contact_traction"}}}, {"no two bodies of this scene meet by \"contact\""});
   refused({{"count", 2}, {"fields", {"temperature"}}}, {"no material of this scene has it in its \"thermal\""});
   refused({{"count", 2}, {"fields", {"presure"}}}, {"there is no field \"presure\" here; did you mean \"pressure\"?"});
   refused({{"count", 2}, {"fields", {"mass", "mass"}}}, {"/fields/1: \"mass\" stands twice in the list"});
@@ -133,6 +133,29 @@ TEST_CASE("what a scene does not hold is refused at its place, with what there i
           {"/grid: acts on VTK files alone: add \"vtk\" to \"format\", or remove \"grid\"", "remove \"shape\"",
            "remove \"compress\""});
   refused({{"count", 2}, {"every", 3}}, {"/every: unknown key"});
+}
+
+TEST_CASE("the traction of contact stands on the particles that touch, and presses them apart") {
+  const Folder folder;
+  Json scene = with_particles(two_balls(), {{"times", {0, 0.2}}, {"format", "csv"}, {"fields", {"contact_traction"}}});
+  scene["solver"]["end_time"] = 0.2;  // in the middle of the impact
+  runs(folder, scene);
+  std::string text = slurp(folder / "run/particles/particles_0000.csv");
+  const auto before = *mpm::support::read_numbers(text).find("contact_traction x (Pa)");
+  CHECK(*std::max_element(before.begin(), before.end()) == 0);  // there has been no step
+  text = slurp(folder / "run/particles/particles_0001.csv");
+  const auto table = mpm::support::read_numbers(text);
+  const auto &x = *table.find("x (m)"), &y = *table.find("y (m)"), &along = *table.find("contact_traction x (Pa)"),
+             &up = *table.find("contact_traction y (Pa)");
+  int touched = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (along[k] == 0 && up[k] == 0) continue;
+    ++touched;
+    CHECK((k < x.size() / 2) == (along[k] + up[k] < 0));  // the first ball is the lower left one
+    CHECK(std::abs(x[k] + y[k] - 0.9) < 0.3);             // near the plane between the balls
+  }
+  CHECK(touched > 4);
+  CHECK(touched < static_cast<int>(x.size()));
 }
 
 TEST_CASE("a transfer that keeps the velocity gradient writes it") {

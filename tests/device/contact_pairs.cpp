@@ -39,3 +39,46 @@ TEST_CASE("the parts of a pair's force and its area are those of the other backe
     }
   }
 }
+
+TEST_CASE("the nodes where bodies meet are those of the reference backend, in every step that is observed") {
+  const std::vector<std::string> noting{"/output/frames=2", "/output/contact_nodes=true"};
+  const auto same = [](Simulation& expected, Simulation& found) {
+    using Key = std::tuple<int, int, std::array<int, 3>>;
+    const auto by_place = [](const std::vector<ContactNode>& nodes) {
+      std::map<Key, ContactNode> sorted;
+      for (const ContactNode& node : nodes) sorted[{node.a, node.b, node.node}] = node;
+      CHECK(sorted.size() == nodes.size());
+      return sorted;
+    };
+    const auto of_reference = by_place(expected.backend().contact_nodes()),
+               of_device = by_place(found.backend().contact_nodes());
+    REQUIRE(of_device.size() == of_reference.size());
+    CHECK(!of_device.empty());
+    for (const auto& [place, node] : of_reference) {
+      REQUIRE(of_device.count(place) == 1);
+      const ContactNode& other = of_device.at(place);
+      CHECK(other.status == node.status);
+      CHECK(other.area == Approx(node.area).epsilon(1e-10));
+      CHECK(other.separation == Approx(node.separation).margin(1e-12));
+      for (std::size_t c = 0; c < 3; ++c) {
+        CHECK(other.normal[c] == Approx(node.normal[c]).margin(1e-9));
+        CHECK(other.force[c] == Approx(node.force[c]).epsilon(1e-8).margin(1e-6));
+      }
+    }
+  };
+  for (const auto& [transfer, filter] : stacked_schemes()) {
+    INFO(transfer << filter);
+    const std::string text = stacked_blocks("reference", transfer, filter, "[0.3, -0.2]");
+    std::vector<std::string> overrides = noting;
+    overrides.emplace_back(R"(/contact={"type": "stick"})");  // faces without a gap touch or not by rounding
+    Scene reference(text, overrides);
+    DeviceScene device(text, "double", {}, overrides);
+    // Steps that nobody looks at leave no nodes, and come to run as one graph.
+    for (Simulation* const simulation : {&reference.simulation, &device.simulation})
+      simulation->observe_when([](double, long step) { return step % 4 == 0; });
+    for (int k = 1; k <= 16; ++k) {
+      reference.simulation.step(), device.simulation.step();
+      if (k % 4 == 0) same(reference.simulation, device.simulation);
+    }
+  }
+}

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "metrics/contact_traction.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 #include "support/stacked_blocks.hpp"
@@ -115,6 +116,50 @@ TEST_CASE("the parts of a pair's force are the weight that presses and friction"
     const auto [held_normal, held_along, unused] = means(0.6);
     CHECK(held_normal == Approx(pressing).epsilon(0.01));
     CHECK(held_along == Approx(weight / 2).epsilon(0.02));
+  }
+}
+
+TEST_CASE("the tractions on a block's face have the weight that presses, and friction, for their mean",
+          "[pairs][nodes]") {
+  const double pressure = 80 * 9.81 * std::sqrt(0.75) / 0.4, friction = 0.3;
+  for (const double angle : {0.0, 30.0}) {
+    INFO(angle << " degrees");
+    Scene scene(leaning_block(angle, friction), {"/output/frames=2", "/output/contact_nodes=true"});
+    while (scene.simulation.time() < 0.3) scene.simulation.step();
+    const double turn = angle * std::numbers::pi / 180;
+    const std::array<double, 2> up{std::sin(turn), std::cos(turn)}, down_slope{std::cos(turn), -std::sin(turn)};
+    const BodyState begin = scene.body(1);
+    std::vector<std::size_t> face;  // the block's lowest row of particles, less the two cells at its ends
+    double lowest = INFINITY, first = INFINITY;
+    const auto along = [&](const BodyState& state, std::size_t p, const std::array<double, 2>& axis) {
+      return state.position[2 * p] * axis[0] + state.position[2 * p + 1] * axis[1];
+    };
+    const std::size_t count = begin.position.size() / 2;
+    for (std::size_t p = 0; p < count; ++p) {
+      lowest = std::min(lowest, along(begin, p, up)), first = std::min(first, along(begin, p, down_slope));
+    }
+    for (std::size_t p = 0; p < count; ++p) {
+      const double place = along(begin, p, down_slope) - first;
+      if (along(begin, p, up) < lowest + 0.0125 && place > 0.07 && place < 0.3) face.push_back(p);
+    }
+    CHECK(face.size() >= 8);
+    // The mean over a tenth of a second: a soft block shakes.
+    double pressed = 0, rubbed = 0;
+    int steps = 0;
+    for (; !scene.simulation.finished(); ++steps) {
+      scene.simulation.step();
+      const BodyState block = scene.body(1);
+      const std::vector<double> traction =
+          contact_traction(scene.experiment, 1, block, scene.simulation.backend().contact_nodes());
+      REQUIRE(traction.size() == 3 * count);
+      for (const std::size_t p : face) {
+        pressed += (traction[3 * p] * up[0] + traction[3 * p + 1] * up[1]) / static_cast<double>(face.size());
+        rubbed -=
+            (traction[3 * p] * down_slope[0] + traction[3 * p + 1] * down_slope[1]) / static_cast<double>(face.size());
+      }
+    }
+    CHECK(pressed / steps == Approx(pressure).epsilon(0.03));
+    CHECK(rubbed / pressed == Approx(friction).epsilon(0.01));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "experiment/device_settings.hpp"
 #include "kernel/polynomial_basis.hpp"
 #include "plugin/extension_of.hpp"
+#include "simulation/contact_impulse.hpp"
 #include "simulation/contact_points.hpp"
 #include "support/hash.hpp"
 
@@ -210,7 +211,8 @@ std::string scene_text(const Choice& choice) {
   const bool weld = choice.contact && (choice.contact->contact().traits & MPM_BYPASSES_DETECTION);
   out << "  static constexpr bool contact = " << yes(choice.contact) << ", bypasses_detection = " << yes(weld)
       << ", contact_by_particles = " << yes(choice.contact_by_particles) << ", own_normals = " << yes(own)
-      << ", list = " << yes(list) << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
+      << ", notes_contact = " << yes(choice.notes_contact) << ", list = " << yes(list)
+      << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
       << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
       << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
       << "  static constexpr int width = " << (list ? 1 : shape.width)
@@ -336,6 +338,7 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
   choice.reactions = experiment.notes_reactions();
   choice.deterministic = sums_deterministically(experiment);
   choice.contact_by_particles = ContactPoints(experiment).needed();
+  choice.notes_contact = records_nodes(experiment);
   choice.node_fields = node_fields(experiment, plan);
   choice.particle_fields = particle_fields(experiment, plan, 0);
   if (experiment.filter) choice.filter = experiment.filter->plugin;

@@ -26,6 +26,7 @@ struct Choice {
   std::vector<const Plugin*> rigid_laws;            ///< of rigid bodies, each once (number_of_law)
   bool deterministic = false;                       ///< scatters sum to the same bits in any order of lanes
   bool contact_by_particles = false;                ///< the host finds how fields meet (contact_pairs.hpp)
+  bool notes_contact = false;                       ///< what contact does at single nodes is written down
   bool reactions = false;                           ///< what supports give is summed
   int basis_order = 0;                              ///< as in Plan
   std::vector<Field> node_fields, particle_fields;  ///< numbered (backends/device/fields.hpp); those of any one body

@@ -21,6 +21,7 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, 
     *given = {};
     if (after_forces) contact_ = {};
   });
+  const bool notes = records_nodes(experiment_, step);
   for (std::size_t a = 0; a < fields_.size(); ++a)
     for (std::size_t b = a + 1; b < fields_.size(); ++b) {
       Arguments<T> arguments = scene_;
@@ -28,6 +29,7 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, 
       arguments.edges[0] = edges_.of(a), arguments.edges[1] = edges_.of(b);
       arguments.after_forces = stage == Stage::after_forces;
       if (contact_pairs_) arguments.found = contact_pairs_->of(static_cast<int>(a), static_cast<int>(b));
+      if (notes) arguments.noted = contact_notes_->of(static_cast<int>(a), static_cast<int>(b));
       const std::size_t at = place(contact_sums);
       join("contact", arguments, nodes(), contact_sums, at, 1);
       results_.later([this, at, given, unbalanced, after_forces](const double* sums) {
@@ -36,6 +38,10 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, 
         take_pair(found, *given, after_forces);
       });
     }
+  if (notes) {
+    look();
+    contact_notes_->read(given->nodes);
+  }
   meet_rigid_bodies(time, given, stage, /*record=*/after_forces);
   Ledger* const ledger = scene_.records ? &ledger_ : nullptr;
   later([this, recorded, given, ledger, filtered = step.filtered] {

@@ -113,6 +113,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
   }
 
   if (ContactPoints(experiment).needed()) contact_pairs_.emplace(*device_, experiment, plan, scene_);
+  if (records_nodes(experiment)) contact_notes_.emplace(*device_, experiment, scene_);
   if (experiment.has_temperature()) heat_conditions_.emplace(*device_, experiment, scene_);
   for (std::size_t body = 0; body < seeded.size(); ++body) {
     bodies_.emplace_back(*device_, experiment, plan, scene_, static_cast<int>(body), seeded[body]);

@@ -11,6 +11,7 @@
 
 #include "backends/device/conditions.hpp"
 #include "backends/device/contact_edges.hpp"
+#include "backends/device/contact_notes.hpp"
 #include "backends/device/contact_pairs.hpp"
 #include "backends/device/device.hpp"
 #include "backends/device/device_arrays.hpp"
@@ -295,6 +296,7 @@ class DeviceBackend final : public Backend {
   std::vector<int> images_, walls_;  ///< axes with periodic images, and those with walls
   ContactEdges edges_;
   std::optional<ContactPairs<T>> contact_pairs_;  ///< where contact looks at particles
+  std::optional<ContactNotes<T>> contact_notes_;  ///< where single nodes are recorded
   TimeStepLimit limit_;
   Ledger ledger_;
   HeatLedger heat_ledger_;

@@ -7,6 +7,7 @@
 #include "backends/device/results.hpp"
 #include "backends/device/sorting.hpp"
 #include "experiment/device_settings.hpp"
+#include "simulation/contact_impulse.hpp"
 #include "simulation/contact_points.hpp"
 
 namespace mpm::device {
@@ -35,6 +36,12 @@ std::vector<TakenMemory> taken_by_each(const Experiment& experiment, const Plan&
     const double pairs = 0.5 * experiment.field_count * (experiment.field_count - 1);
     all.push_back({"contact", TakenMemory::of_nodes, 2 + experiment.dimension,
                    static_cast<double>(nodes) * pairs * ((2 + experiment.dimension) * scalar + sizeof(int)), true});
+  }
+  if (records_nodes(experiment)) {
+    const double pairs = 0.5 * experiment.field_count * (experiment.field_count - 1);
+    const int numbers = 2 + 2 * experiment.dimension;
+    all.push_back({"contact nodes", TakenMemory::of_nodes, numbers,
+                   static_cast<double>(nodes) * pairs * (numbers * scalar + sizeof(int)), true});
   }
   if (sums_deterministically(experiment)) {
     const int channels = most_channels(choice_of(experiment, plan));

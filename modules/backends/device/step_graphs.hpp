@@ -18,7 +18,7 @@ namespace mpm::device {
 struct StepKind {
   std::vector<const Pass*> passes;
   double dt = 0;
-  bool filtered = false, accounted = false;
+  bool filtered = false, accounted = false, notes_contact = false;
   Vector3 gravity{};
 
   bool operator==(const StepKind&) const = default;

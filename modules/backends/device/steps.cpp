@@ -43,6 +43,7 @@ StepKind DeviceBackend<T>::kind_of(const std::vector<WaitingPass>& passes) const
   for (const WaitingPass& waiting : passes) kind.passes.push_back(waiting.pass);
   const StepInfo& step = passes.back().step;
   kind.dt = step.dt, kind.filtered = step.filtered, kind.accounted = plan_.accounts_at(step.step);
+  kind.notes_contact = records_nodes(experiment_, step);
   kind.gravity = experiment_.gravity_at(step.time);
   return kind;
 }

@@ -91,6 +91,13 @@ struct FoundContact {
   const T* values;   ///< [node] separation, then area, then [D][node] normal (ContactGeometry)
 };
 
+/// What contact does to a pair at each node, for the host to read; null in steps that record no nodes.
+template <class T>
+struct NotedContact {
+  int* met;   ///< [node] -1 where the pair does not meet, else the law's ContactStatus
+  T* values;  ///< [node] separation, then area, then [D][node] normal, then [D][node] impulse on the first field
+};
+
 /// The nodes near a rigid body, as the host found them for the step, and how it moves in this stage of it.
 struct RigidArrays {
   const int* node;       ///< [count] index of the node
@@ -124,6 +131,7 @@ struct Arguments {
   NodeArrays<T> grid, other;
   EdgeTable edges[2];     ///< contact: of `grid` and of `other`
   FoundContact<T> found;  ///< contact: in scenes that look at particles
+  NotedContact<T> noted;  ///< contact: in scenes that record nodes
   RigidArrays rigid;      ///< rigid_contact
   BlockArrays blocks;
   int teams;                             ///< that share the blocks with particles

@@ -102,6 +102,20 @@ MPM_HD Vec<Scene::dimension, T> ask_law(const Arguments<T>& a, const ContactGeom
   }
 }
 
+/// Writes down what the law did at a node.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD void note_node(const Arguments<T>& a, int node, const ContactGeometry& geometry,
+                      const ContactPair<Scene::dimension, T>& pair, const ContactResult<Scene::dimension, T>& result) {
+  constexpr int D = Scene::dimension;
+  const NotedContact<T>& noted = a.noted;
+  noted.met[node] = static_cast<int>(result.status);
+  noted.values[node] = pair.separation, noted.values[a.node_count + node] = pair.area;
+  for (int c = 0; c < D; ++c) {
+    noted.values[(2 + c) * a.node_count + node] = geometry.valid ? static_cast<T>(geometry.normal[c]) : T(0);
+    noted.values[(2 + D + c) * a.node_count + node] = result.impulse[c];
+  }
+}
+
 /// Gives the velocities of `grid` and `other` the law's impulse at every node where they meet, and sums what it does.
 template <class Scene>
 MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a) {
@@ -111,6 +125,8 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
   sum_over<contact_sums, 1>(team, a, a.node_count, [&](int node, double* sums) {
     const int nodes = a.node_count;
     const bool weld = Scene::bypasses_detection;
+    if constexpr (Scene::notes_contact)
+      if (a.noted.met) a.noted.met[node] = -1;
     ContactPair<D, T> pair;
     pair.mass_a = a.grid.field[N::mass][node], pair.mass_b = a.other.field[N::mass][node];
     if (!meet(pair.mass_a, pair.mass_b, weld)) return;
@@ -143,6 +159,8 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
                       sums[contact_pressing]);
     sums[contact_dissipated] += result.dissipated;
     if constexpr (N::mass_displacement >= 0) sums[contact_stored] += result.stored;
+    if constexpr (Scene::notes_contact)
+      if (a.noted.met) note_node<Scene>(a, node, geometry, pair, result);
     const int status = static_cast<int>(result.status);
     if (status == contact_apart) return;
     sums[status == contact_sticks ? contact_sticking : contact_slipping] += 1;
