@@ -227,7 +227,7 @@ struct ContactCase {
     momentum_a = v.random(random, D, -1, 1), momentum_b = v.random(random, D, -1, 1);
     separation = v.random(random, 1, -0.1, 0.1), area = v.random(random, 1, 0.5, 1);
     normal = v.buffer(D), impulse = v.buffer(D), dissipated = v.buffer(1), status = v.indices(1);
-    displacement = v.random(random, D, -step, step), stored = v.buffer(1);
+    displacement = v.random(random, D, -step, step), stored = v.buffer(1), traction = v.random(random, D, -1, 1);
     for (int lane = 0; lane < batch; ++lane) {
       const conformance::Vector3 n = random.direction(D);
       for (int a = 0; a < D; ++a) normal.set(a, lane, n[a]);
@@ -240,6 +240,8 @@ struct ContactCase {
     q.separation = separation.data(), q.area = area.data(), q.impulse = impulse.data();
     q.dissipated = dissipated.data(), q.status = static_cast<std::int32_t*>(status.data());
     if (v.plugin->contact().traits & MPM_COMPLIANT) q.displacement = displacement.data(), q.stored = stored.data();
+    if (v.plugin->contact().traits & MPM_READS_TRACTION) q.traction = traction.data();
+    q.cell_size = 0.2;
     v.plugin->contact().apply[v.precision()][v.dimension - 2](v.parameters->data(), &q);
   }
   std::string problem() { return sound({&impulse, &dissipated}); }

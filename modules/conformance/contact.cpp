@@ -11,11 +11,13 @@ namespace mpm::conformance {
 namespace {
 
 constexpr int full = MPM_BATCH;
+/// m: pairs that touch overlap by up to half of it, those that are apart are so by more than two of it.
+constexpr double cell_size = 0.2;
 
 /// One node where two velocity fields meet.
 struct Pair {
   double mass_a, mass_b, separation, area;
-  Vector3 velocity_a, velocity_b, normal, displacement{};
+  Vector3 velocity_a, velocity_b, normal, displacement{}, traction{};
   double dt;
 
   double reduced_mass() const { return mass_a * mass_b / (mass_a + mass_b); }
@@ -33,7 +35,9 @@ Pairs random_pairs(Random& random, int dimension) {
     p.separation = lane % 4 < 2 ? random.uniform(-0.1, -0.001) : random.uniform(0.5, 1);
     p.area = random.logarithmic(1e-3, 1);
     p.dt = 0x1p-10;
-    const Vector3 tangent = random.direction(dimension);
+    const Vector3 tangent = random.direction(dimension), pull = random.direction(dimension);
+    const double size = random.logarithmic(1e-2, 1e8);
+    for (int i = 0; i < 3; ++i) p.traction[i] = size * pull[i];
     const double approach = (lane % 4 == 1 || lane % 4 == 3 ? -1 : 1) * random.uniform(0.1, 1),
                  slide = random.uniform(0, 1);
     const double along = dot(tangent, p.normal);
@@ -52,14 +56,14 @@ struct ContactBatch {
   int count;
   double dt;
   std::uint32_t stage = MPM_AFTER_FORCES;
-  Array mass_a, mass_b, momentum_a, momentum_b, normal, separation, area, displacement;
+  Array mass_a, mass_b, momentum_a, momentum_b, normal, separation, area, displacement, traction;
   Array impulse, dissipated, stored, status;
 
   ContactBatch(const Variant& v, const Pairs& pairs, int entries) : variant(v), count(entries), dt(pairs[0].dt) {
     const Element element = element_of(v);
     const std::uint32_t n = static_cast<std::uint32_t>(entries);
     for (Array* scalar : {&mass_a, &mass_b, &separation, &area, &dissipated, &stored}) *scalar = Array(element, 1, n);
-    for (Array* vector : {&momentum_a, &momentum_b, &normal, &displacement, &impulse})
+    for (Array* vector : {&momentum_a, &momentum_b, &normal, &displacement, &traction, &impulse})
       *vector = Array(element, v.dimension, n);
     status = Array(Element::index, 1, n);
     for (int lane = 0; lane < entries; ++lane) {
@@ -73,10 +77,12 @@ struct ContactBatch {
         momentum_b.set(i, lane, p.mass_b * p.velocity_b[i]);
         normal.set(i, lane, p.normal[i]);
         displacement.set(i, lane, p.displacement[i]);
+        traction.set(i, lane, p.traction[i]);
       }
     }
   }
 
+  static bool reads_traction(const Plugin& plugin) { return plugin.contact().traits & MPM_READS_TRACTION; }
   static bool compliant(const Plugin& plugin) { return plugin.contact().traits & MPM_COMPLIANT; }
   void apply(const Plugin& plugin, const ParameterSample& parameters) {
     const mpm_contact_batch batch{static_cast<std::uint32_t>(count),
@@ -95,7 +101,9 @@ struct ContactBatch {
                                   dissipated.data(),
                                   static_cast<std::int32_t*>(status.data()),
                                   compliant(plugin) ? displacement.data() : nullptr,
-                                  compliant(plugin) ? stored.data() : nullptr};
+                                  compliant(plugin) ? stored.data() : nullptr,
+                                  reads_traction(plugin) ? traction.data() : nullptr,
+                                  cell_size};
     plugin.contact().apply[variant.precision][variant.dimension - 2](parameters.data(), &batch);
   }
 
@@ -201,6 +209,8 @@ void check_friction(const Plugin& plugin, const ContactBatch& b, const Parameter
   if (mu < 0) return;
   Worst excess, work;
   for (int lane = 0; lane < full; ++lane) {
+    // What holds by a strength is not held by friction.
+    if (b.reads_traction(plugin) && static_cast<int>(b.status(0, lane)) == MPM_STICKS) continue;
     const Vector3 n = b.vector(b.normal, lane), J = b.vector(b.impulse, lane);
     const double normal = -dot(J, n);
     Vector3 tangential;
@@ -264,10 +274,12 @@ void check_symmetry(const Plugin& plugin, const ContactBatch& b, const Parameter
     std::swap(swapped[lane].velocity_a, swapped[lane].velocity_b);
     swapped[lane].normal = product(scaled(Matrix3::identity(), -1), pairs[lane].normal);
     swapped[lane].displacement = product(scaled(Matrix3::identity(), -1), pairs[lane].displacement);
+    swapped[lane].traction = product(scaled(Matrix3::identity(), -1), pairs[lane].traction);
     turned[lane].velocity_a = product(rotation, pairs[lane].velocity_a);
     turned[lane].velocity_b = product(rotation, pairs[lane].velocity_b);
     turned[lane].normal = product(rotation, pairs[lane].normal);
     turned[lane].displacement = product(rotation, pairs[lane].displacement);
+    turned[lane].traction = product(rotation, pairs[lane].traction);
     for (int i = 0; i < b.variant.dimension; ++i)
       for (Vector3* velocity : {&moving[lane].velocity_a, &moving[lane].velocity_b}) (*velocity)[i] += i + 1;
   }
@@ -368,7 +380,7 @@ void check_batches(const Plugin& plugin, const ContactBatch& reference, const Pa
     inputs &= b.mass_a == untouched.mass_a && b.mass_b == untouched.mass_b && b.momentum_a == untouched.momentum_a &&
               b.momentum_b == untouched.momentum_b && b.normal == untouched.normal &&
               b.separation == untouched.separation && b.area == untouched.area &&
-              b.displacement == untouched.displacement;
+              b.displacement == untouched.displacement && b.traction == untouched.traction;
     for (int lane = 0; lane < count; ++lane)
       for (int i = 0; i < b.variant.dimension; ++i) same &= b.impulse(i, lane) == reference.impulse(i, lane);
   }
@@ -376,7 +388,7 @@ void check_batches(const Plugin& plugin, const ContactBatch& reference, const Pa
   findings.require("writes_inside_arrays" + variant, guards, "guards around the outputs" + where);
   findings.require("writes_every_output" + variant, written, "no output element is left out" + where);
   findings.require("inputs_untouched" + variant, inputs,
-                   "masses, momenta, normal, separation, area, displacement" + where);
+                   "masses, momenta, normal, separation, area, displacement, traction" + where);
   findings.require("independent_of_batch" + variant, same, "counts of 16 to 64" + where);
 }
 

@@ -79,6 +79,10 @@ std::string Experiment::why_it_meets() const {
   return law.pointer + " \"" + std::string(law.plugin->id()) + "\"";
 }
 
+bool Experiment::measures_traction() const {
+  return contact && (contact->plugin->contact().traits & MPM_READS_TRACTION);
+}
+
 bool Experiment::has_compliant_contact() const {
   return contact && (contact->plugin->contact().traits & MPM_COMPLIANT);
 }

@@ -401,6 +401,8 @@ struct Experiment {
   std::string why_it_meets() const;
   /// Whether a law joins bodies by springs, which pull by how far they have moved beside one another (MPM_COMPLIANT).
   bool has_compliant_contact() const;
+  /// Whether the law asks for the traction that would hold bodies together (MPM_READS_TRACTION).
+  bool measures_traction() const;
   /// Whether what supports give is noted: where reactions are asked for, and in scenes with rigid bodies.
   bool notes_reactions() const { return !output.reactions.empty() || !rigid_bodies.empty(); }
   /// Whether a formula of body forces or grips reads where particles began.

@@ -36,6 +36,8 @@ struct ContactPair {
   scalar_of<S> dt;                   ///< s
   bool after_forces = true;          ///< asked about v+, not about the v- that particles bring
   Vec<D, S> displacement{};          ///< m, how far b has moved beside a; only laws with MPM_COMPLIANT have it
+  Vec<D, S> traction{};              ///< Pa, what would hold a to b; only laws with MPM_READS_TRACTION have it
+  scalar_of<S> cell_size;            ///< m
 };
 
 template <int D, class S>

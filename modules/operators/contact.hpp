@@ -29,6 +29,30 @@ MPM_HD Sum strike_pair(S& velocity_a, S& velocity_b, S mass_a, S mass_b, S impul
   return mass_a * (velocity_a - before_a) + mass_b * (velocity_b - before_b);
 }
 
+/// How far around a node, in cells, welds are summed for the traction that a law is told of (MPM_READS_TRACTION). Splines
+/// spread a face over up to four rows of nodes, whose shares of the force and of the area are unlike: only their sums make
+/// the traction of the face.
+inline constexpr int traction_reach = 2;
+
+/// What a weld would give a pair at a node. Sums of them, over a step, make a traction.
+struct WeldOfPair {
+  double impulse[3] = {};  ///< on a, kg m/s
+  double area = 0;         ///< m^2
+
+  MPM_HD void add(const WeldOfPair& other) {
+    for (int c = 0; c < 3; ++c) impulse[c] += other.impulse[c];
+    area += other.area;
+  }
+  /// The traction along one axis, Pa; zero where nothing touches.
+  MPM_HD double traction(int axis, double dt) const { return area > 0 ? impulse[axis] / (area * dt) : 0; }
+};
+
+/// One component of the impulse on a with which both fields of a pair would move as one.
+template <class S>
+MPM_HD double welding_impulse(S velocity_a, S velocity_b, S mass_a, S mass_b) {
+  return double(mass_a) / (1 + double(mass_a) / double(mass_b)) * (double(velocity_b) - double(velocity_a));
+}
+
 /// Adds to `along` the part of field a's impulse along the pair's unit normal, kg m/s, and to `pressing` how hard that
 /// presses the fields together: positive where it pushes a back from b.
 template <class Impulse, class Normal>

@@ -219,7 +219,9 @@ enum mpm_contact_trait {
   MPM_COMPLIANT = 4,
   /* Its impulse follows from a force over the step, which it gives after the forces: hosts refuse filters whose loop would
    * add it again in every pass. */
-  MPM_ACTS_OVER_TIME = 8
+  MPM_ACTS_OVER_TIME = 8,
+  /* Reads traction. A scene measures it for such a law alone. */
+  MPM_READS_TRACTION = 16
 };
 /* A law is asked twice in a step: before the forces about the velocity v- that particles bring, and after them about v+. */
 enum mpm_contact_stage { MPM_BEFORE_FORCES = 0, MPM_AFTER_FORCES = 1 };
@@ -243,6 +245,11 @@ typedef struct mpm_contact_batch {
   /* [stride] out: energy that springs take up over the step, J, negative where they give it back. Null unless
    * MPM_COMPLIANT. */
   void* stored;
+  /* [D][stride], Pa: the traction on a that would hold the pair together through the step, which is what a weld would give
+   * at all nodes within two cells where the pair meets, over dt and the area of these nodes. Null unless
+   * MPM_READS_TRACTION. */
+  const void* traction;
+  double cell_size; /* m */
 } mpm_contact_batch;
 typedef struct mpm_contact {
   uint32_t traits, reserved;

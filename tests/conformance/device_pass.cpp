@@ -187,7 +187,8 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
   load<1>(t.in[5], lane, &pair.separation);
   load<1>(t.in[6], lane, &pair.area);
   load<D>(t.in[7], lane, pair.displacement.v);
-  pair.dt = real<S>(t.dt);
+  load<D>(t.in[8], lane, pair.traction.v);
+  pair.dt = real<S>(t.dt), pair.cell_size = real<S>(1);
   result.stored = S(0);
   Functor::apply(p, pair, result);
   store<D>(t.out[0], lane, result.impulse.v);
@@ -395,7 +396,8 @@ Call inputs(const Plugin& plugin, int D, Random& random) {
                  zeros(D),
                  random_column(random, 1, -0.1, 0.05),
                  random_column(random, 1, 0.1, 1),
-                 random_column(random, D, -step, step)};
+                 random_column(random, D, -step, step),
+                 random_column(random, D, -2, 2)};
       for (int lane = 0; lane < particles; ++lane) {
         const mpm::conformance::Vector3 n = random.direction(D);
         for (int i = 0; i < D; ++i)
@@ -535,7 +537,9 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
                                     out[1].data(),
                                     indices.data(),
                                     compliant ? in[7].data() : nullptr,
-                                    compliant ? out[3].data() : nullptr};
+                                    compliant ? out[3].data() : nullptr,
+                                    plugin.contact().traits & MPM_READS_TRACTION ? in[8].data() : nullptr,
+                                    1.0};
       plugin.contact().apply[MPM_SCALAR_DOUBLE][axis](parameters.data(), &batch);
       out[2] = as_column(indices);
       break;

@@ -108,6 +108,10 @@ std::string yes(bool value) {
   return value ? "true" : "false";
 }
 
+bool reads_traction(const Choice& choice) {
+  return choice.contact && (choice.contact->contact().traits & MPM_READS_TRACTION);
+}
+
 /// Whether the scatter itself sums particles into a field. The weight follows from the masses, and loads and heat have
 /// kernels of their own, as shared memory has no room for everything at once.
 bool is_scattered(const Field& field) {
@@ -211,7 +215,8 @@ std::string scene_text(const Choice& choice) {
   const bool weld = choice.contact && (choice.contact->contact().traits & MPM_BYPASSES_DETECTION);
   out << "  static constexpr bool contact = " << yes(choice.contact) << ", bypasses_detection = " << yes(weld)
       << ", contact_by_particles = " << yes(choice.contact_by_particles) << ", own_normals = " << yes(own)
-      << ", notes_contact = " << yes(choice.notes_contact) << ", list = " << yes(list)
+      << ", notes_contact = " << yes(choice.notes_contact)
+      << ", reads_traction = " << yes(reads_traction(choice)) << ", list = " << yes(list)
       << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
       << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
       << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
@@ -251,6 +256,7 @@ std::string scene_text(const Choice& choice) {
   if (has_loads(choice)) out << "MPM_DEVICE_LOAD_ENTRIES\n";
   if (keeps_ledger(choice)) out << "MPM_DEVICE_LEDGER_ENTRIES\n";
   if (choice.contact) out << "MPM_DEVICE_CONTACT_ENTRIES\n";
+  if (reads_traction(choice)) out << "MPM_DEVICE_TRACTION_ENTRIES\n";
   if (choice.reactions) out << "MPM_DEVICE_REACTION_ENTRIES\n";
   if (has_grips(choice)) out << "MPM_DEVICE_GRIP_ENTRIES\n";
   if (choice.filter) out << "MPM_DEVICE_FILTER_ENTRIES\n";
@@ -281,6 +287,7 @@ std::vector<std::string> entry_names(const Choice& choice) {
     if (macro == "MPM_DEVICE_LOAD_ENTRIES" && !has_loads(choice)) continue;
     if (macro == "MPM_DEVICE_LEDGER_ENTRIES" && !keeps_ledger(choice)) continue;
     if (macro == "MPM_DEVICE_CONTACT_ENTRIES" && !choice.contact) continue;
+    if (macro == "MPM_DEVICE_TRACTION_ENTRIES" && !reads_traction(choice)) continue;
     if (macro == "MPM_DEVICE_REACTION_ENTRIES" && !choice.reactions) continue;
     if (macro == "MPM_DEVICE_GRIP_ENTRIES" && !has_grips(choice)) continue;
     if (macro == "MPM_DEVICE_FILTER_ENTRIES" && !choice.filter) continue;

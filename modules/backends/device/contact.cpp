@@ -9,6 +9,19 @@
 namespace mpm::device {
 
 template <class T>
+Arguments<T> DeviceBackend<T>::pair_arguments(std::size_t a, std::size_t b, Stage stage, bool notes) const {
+  const int first = static_cast<int>(a), second = static_cast<int>(b);
+  Arguments<T> arguments = scene_;
+  arguments.grid = fields_[a].table(), arguments.other = fields_[b].table();
+  arguments.edges[0] = edges_.of(a), arguments.edges[1] = edges_.of(b);
+  arguments.after_forces = stage == Stage::after_forces;
+  if (contact_pairs_) arguments.found = contact_pairs_->of(first, second);
+  if (notes) arguments.noted = contact_notes_->of(first, second);
+  if (!welds_.empty()) arguments.welds = welds_[pair_index(first, second, experiment_.field_count)].data();
+  return arguments;
+}
+
+template <class T>
 void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time) {
   if (contact_pairs_ && recorded == Recorded::before_forces) {
     look();  // a particle that has failed is nowhere
@@ -22,14 +35,13 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, 
     if (after_forces) contact_ = {};
   });
   const bool notes = records_nodes(experiment_, step);
-  for (std::size_t a = 0; a < fields_.size(); ++a)
-    for (std::size_t b = a + 1; b < fields_.size(); ++b) {
-      Arguments<T> arguments = scene_;
-      arguments.grid = fields_[a].table(), arguments.other = fields_[b].table();
-      arguments.edges[0] = edges_.of(a), arguments.edges[1] = edges_.of(b);
-      arguments.after_forces = stage == Stage::after_forces;
-      if (contact_pairs_) arguments.found = contact_pairs_->of(static_cast<int>(a), static_cast<int>(b));
-      if (notes) arguments.noted = contact_notes_->of(static_cast<int>(a), static_cast<int>(b));
+  const auto visit_pairs = [&](auto&& visit) {
+    for (std::size_t a = 0; a < fields_.size(); ++a)
+      for (std::size_t b = a + 1; b < fields_.size(); ++b) visit(pair_arguments(a, b, stage, notes));
+  };
+  if (experiment_.measures_traction())
+    visit_pairs([&](const Arguments<T>& arguments) { launch("measure_welds", arguments, nodes()); });
+  visit_pairs([&](const Arguments<T>& arguments) {
       const std::size_t at = place(contact_sums);
       join("contact", arguments, nodes(), contact_sums, at, 1);
       results_.later([this, at, given, unbalanced, after_forces](const double* sums) {
@@ -37,7 +49,7 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, 
         for (std::size_t c = 0; c < 3; ++c) (*unbalanced)[c] += found[contact_unbalanced + c];
         take_pair(found, *given, after_forces);
       });
-    }
+  });
   if (notes) {
     look();
     contact_notes_->read(given->nodes);

@@ -205,6 +205,7 @@ class DeviceBackend final : public Backend {
   // ---- contact.cpp
   /// Applies the law to every pair of fields, and then those of rigid bodies, whose velocities are those of a time, s.
   void resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time);
+  Arguments<T> pair_arguments(std::size_t a, std::size_t b, Stage stage, bool notes) const;
   /// Lets all fields meet rigid bodies one after another, and adds what these give.
   void meet_rigid_bodies(double time, const std::shared_ptr<ContactGiven>& all, Stage stage, bool record);
   /// Adds what contact did to a pair, as its phase has summed it, to what all pairs were given, and to the record.
@@ -297,6 +298,7 @@ class DeviceBackend final : public Backend {
   ContactEdges edges_;
   std::optional<ContactPairs<T>> contact_pairs_;  ///< where contact looks at particles
   std::optional<ContactNotes<T>> contact_notes_;  ///< where single nodes are recorded
+  std::vector<DeviceArray<double>> welds_;        ///< [pair_index] where the law reads the traction
   TimeStepLimit limit_;
   Ledger ledger_;
   HeatLedger heat_ledger_;

@@ -19,23 +19,58 @@ ContactFieldNode ReferenceBackend::contact_view(std::size_t i) const {
   return view;
 }
 
-std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::size_t a, std::size_t b,
-                                                                           const Vector& momentum_a,
-                                                                           const Vector& momentum_b, double dt) const {
-  const Component& law = *experiment_.contact;
-  const bool weld = law.plugin->contact().traits & MPM_BYPASSES_DETECTION;
+std::optional<MetPair> ReferenceBackend::meet_pair(std::size_t a, std::size_t b) const {
+  const bool weld = experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION;
   if (!meet(mass_[a], mass_[b], weld)) return {};
   const Eigen::Vector3i& at = grid_.coordinates(a % grid_.node_count());
   MetPair met{{at[0], at[1], at[2]}, contact_view(a), contact_view(b), {}};
   pair_geometry_.find(contact_points_, grid_.velocity_field_of(a), grid_.velocity_field_of(b), {&met, 1});
-  const ContactGeometry& geometry = met.geometry;
-  if (!geometry.valid && !weld) return {};
+  if (!met.geometry.valid && !weld) return {};
+  return met;
+}
+
+/// Sums up, for each pair of fields, what a weld would give at every node where they meet.
+template <class MomentumOf>
+void ReferenceBackend::measure_welds(MomentumOf momentum) {
+  welds_.clear();
+  if (!experiment_.measures_traction()) return;
+  for_each_pair([&](std::size_t a, std::size_t b) {
+    const auto met = meet_pair(a, b);
+    if (!met) return;
+    const Vector common = (momentum(a) + momentum(b)) / (mass_[a] + mass_[b]);
+    Weld& weld = welds_[{grid_.velocity_field_of(a), grid_.velocity_field_of(b)}][met->node];
+    weld.impulse = mass_[a] * common - momentum(a);
+    weld.area = met->geometry.area;
+  });
+}
+
+/// The traction that would hold a pair together through the step, Pa, on a.
+Vector ReferenceBackend::traction_at(std::size_t a, std::size_t b, double dt) const {
+  Weld sum;
+  const Eigen::Vector3i& at = grid_.coordinates(a % grid_.node_count());
+  for (const auto& [node, weld] : welds_.at({grid_.velocity_field_of(a), grid_.velocity_field_of(b)})) {
+    const int away =
+        std::max({std::abs(node[0] - at[0]), std::abs(node[1] - at[1]), std::abs(node[2] - at[2])});
+    if (away > traction_reach) continue;
+    sum.impulse += weld.impulse, sum.area += weld.area;
+  }
+  return sum.area > 0 ? Vector(sum.impulse / (sum.area * dt)) : Vector(Vector::Zero());
+}
+
+std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::size_t a, std::size_t b,
+                                                                           const Vector& momentum_a,
+                                                                           const Vector& momentum_b, double dt) const {
+  const Component& law = *experiment_.contact;
+  const auto met = meet_pair(a, b);
+  if (!met) return {};
+  const ContactGeometry& geometry = met->geometry;
   const bool own = experiment_.contact_normal->plugin->normal().traits & MPM_OWN_NORMALS;
   Vector displacement = Vector::Zero();
   for (int c = 0; c < experiment_.dimension && sums_displacements_; ++c)
-    displacement[c] = displacement_of_pair(met.a, met.b, c);
+    displacement[c] = displacement_of_pair(met->a, met->b, c);
+  const Vector traction = experiment_.measures_traction() ? traction_at(a, b, dt) : Vector(Vector::Zero());
   const auto apply = [&](const double* normal) {
-    return apply_law(law, {mass_[a], mass_[b], momentum_a, momentum_b, geometry, normal, dt, displacement});
+    return apply_law(law, {mass_[a], mass_[b], momentum_a, momentum_b, geometry, normal, dt, displacement, traction});
   };
   if (!own) return apply(geometry.normal);
   PairResult result = apply(geometry.own_a);
@@ -52,7 +87,7 @@ ReferenceBackend::PairResult ReferenceBackend::apply_law(const Component& law, c
   const int D = experiment_.dimension;
   constexpr int n = MPM_LANES;
   std::array<double, n> mass_a, mass_b, separation, area, dissipated{}, stored{};
-  std::array<double, 3 * n> p_a, p_b, normal, displacement, impulse{};
+  std::array<double, 3 * n> p_a, p_b, normal, displacement, traction, impulse{};
   std::array<std::int32_t, n> status{};
   mass_a.fill(input.mass_a), mass_b.fill(input.mass_b);
   separation.fill(input.geometry.separation), area.fill(input.geometry.area);
@@ -62,6 +97,7 @@ ReferenceBackend::PairResult ReferenceBackend::apply_law(const Component& law, c
       p_b[c * n + lane] = input.momentum_b[c];
       normal[c * n + lane] = input.normal[c];
       displacement[c * n + lane] = input.displacement[c];
+      traction[c * n + lane] = input.traction[c];
     }
   const bool compliant = law.plugin->contact().traits & MPM_COMPLIANT;
   const mpm_contact_batch batch{n,
@@ -80,7 +116,9 @@ ReferenceBackend::PairResult ReferenceBackend::apply_law(const Component& law, c
                                 dissipated.data(),
                                 status.data(),
                                 compliant ? displacement.data() : nullptr,
-                                compliant ? stored.data() : nullptr};
+                                compliant ? stored.data() : nullptr,
+                                law.plugin->contact().traits & MPM_READS_TRACTION ? traction.data() : nullptr,
+                                experiment_.grid.cell_size};
   law.plugin->contact().apply[MPM_SCALAR_DOUBLE][D - 2](law.parameters.data(), &batch);
   PairResult result{Vector::Zero(), Vector::Zero(), dissipated[0], stored[0], status[0], input.geometry};
   for (int c = 0; c < D; ++c) result.impulse[c] = result.returned[c] = impulse[c * n];
@@ -175,6 +213,7 @@ void ReferenceBackend::resolve_contact(const StepInfo& step, bool after_forces, 
 Vector ReferenceBackend::resolve_pairs(const StepInfo& step, bool after_forces, ContactGiven& given) {
   Vector total_change = Vector::Zero();
   const bool notes_nodes = records_nodes(experiment_, step);
+  measure_welds([&](std::size_t i) { return Vector(momentum_[i]); });
   for_each_pair([&](std::size_t a, std::size_t b) {
     const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step.dt);
     if (!pair) return;
@@ -199,6 +238,7 @@ Vector ReferenceBackend::resolve_pairs(const StepInfo& step, bool after_forces, 
 ContactGiven ReferenceBackend::resolve_contact_of_velocity(double time, const StepInfo& step) {
   ContactGiven given = nothing_given();
   const bool notes_nodes = records_nodes(experiment_, step);
+  measure_welds([&](std::size_t i) { return Vector(mass_[i] * velocity_[i]); });
   for_each_pair([&](std::size_t a, std::size_t b) {
     const auto pair = resolve_pair(a, b, mass_[a] * velocity_[a], mass_[b] * velocity_[b], step.dt);
     if (!pair) return;

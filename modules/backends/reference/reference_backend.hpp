@@ -95,6 +95,11 @@ class ReferenceBackend final : public Backend {
   std::optional<PairResult> resolve_pair(std::size_t a, std::size_t b, const Vector& momentum_a,
                                          const Vector& momentum_b, double dt) const;
   ContactFieldNode contact_view(std::size_t i) const;
+  /// Two fields that meet at a node, with how they lie there; nothing when a pair is skipped.
+  std::optional<MetPair> meet_pair(std::size_t a, std::size_t b) const;
+  template <class MomentumOf>
+  void measure_welds(MomentumOf momentum);
+  Vector traction_at(std::size_t a, std::size_t b, double dt) const;
   /// What a law is told of a pair.
   struct LawInput {
     double mass_a, mass_b;
@@ -103,6 +108,7 @@ class ReferenceBackend final : public Backend {
     const double* normal;  ///< from a to b, along which the law acts
     double dt;
     Vector displacement = Vector::Zero();  ///< of b beside a, m, where the law reads it
+    Vector traction = Vector::Zero();      ///< on a, Pa, where the law reads it
   };
   PairResult apply_law(const Component& law, const LawInput& input) const;
   /// Lets the material of all fields meet rigid bodies, whose velocities are those of a time, s. velocity(i) is that of a
@@ -180,6 +186,14 @@ class ReferenceBackend final : public Backend {
       for (int b = a + 1; b < grid_.velocity_fields(); ++b)
         for (std::size_t node = 0; node < grid_.node_count(); ++node) visit(grid_.at(a, node), grid_.at(b, node));
   }
+
+  /// What a weld would give a pair at a node: the impulse on its first field, kg m/s, and the area, m^2.
+  struct Weld {
+    Vector impulse = Vector::Zero();
+    double area = 0;
+  };
+  /// By the numbers of both fields and the coordinates of the node, where the law reads the traction.
+  std::map<std::pair<int, int>, std::map<std::array<int, 3>, Weld>> welds_;
 
   const Experiment& experiment_;
   const Plan& plan_;

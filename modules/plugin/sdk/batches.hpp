@@ -540,6 +540,9 @@ void contact_batch(const void* parameters, const mpm_contact_batch* request) {
     pair.dt = real<S>(q.dt), pair.after_forces = q.stage == MPM_AFTER_FORCES;
     constexpr bool compliant = (F::traits & MPM_COMPLIANT) != 0;
     if constexpr (compliant) load_components<D, S>(q.displacement, q.stride, lane, pair.displacement.v);
+    if constexpr ((F::traits & MPM_READS_TRACTION) != 0)
+      load_components<D, S>(q.traction, q.stride, lane, pair.traction.v);
+    pair.cell_size = real<S>(q.cell_size);
     F::apply(p, pair, result);
     if constexpr (compliant) store_components<1, S>(q.stored, q.stride, lane, &result.stored);
     store_components<D, S>(q.impulse, q.stride, lane, result.impulse.v);

@@ -30,6 +30,7 @@ struct GridStep<D, T>::ContactBatch {
   // Where each body has a normal of its own, `normal` is that of a, and these are of b.
   alignas(64) T normal_of_b[D * block_nodes], impulse_of_b[D * block_nodes], dissipated_of_b[block_nodes];
   alignas(64) std::int32_t status_of_b[block_nodes];
+  alignas(64) T traction[D * block_nodes];  // for laws that read it
   // These are for laws with springs.
   alignas(64) T displacement[D * block_nodes], stored[block_nodes], stored_of_b[block_nodes];
   alignas(64) std::int32_t status[block_nodes];
@@ -53,6 +54,20 @@ struct GridStep<D, T>::ContactBatch {
     for (int c = 0; c < D; ++c)
       displacement[c * block_nodes + count - 1] = static_cast<T>(displacement_of_pair(a, b, c));
   }
+  /// What a weld would give a pair.
+  WeldOfPair weld(int i) const {
+    WeldOfPair weld;
+    for (int c = 0; c < D; ++c) {
+      const T p_a = momentum_a[c * block_nodes + i], p_b = momentum_b[c * block_nodes + i];
+      weld.impulse[c] = welding_impulse(p_a / mass_a[i], p_b / mass_b[i], mass_a[i], mass_b[i]);
+    }
+    weld.area = area[i];
+    return weld;
+  }
+  /// Says which traction would hold a pair together.
+  void set_traction(int i, const WeldOfPair& welds, double dt) {
+    for (int c = 0; c < D; ++c) traction[c * block_nodes + i] = static_cast<T>(welds.traction(c, dt));
+  }
   /// Adds what the law did to its pair.
   void add_to(PairGiven& pair) const {
     for (int i = 0; i < count; ++i) {
@@ -62,13 +77,14 @@ struct GridStep<D, T>::ContactBatch {
     }
   }
   /// Copies the last pair so that whole lanes may be computed.
-  int pad(bool own, bool compliant) {
+  int pad(bool own, bool compliant, bool reads_traction) {
     const int last = count - 1, end = padded(count);
     for (int i = count; i < end; ++i) {
       mass_a[i] = mass_a[last], mass_b[i] = mass_b[last], separation[i] = separation[last], area[i] = area[last];
       for (int c = 0; c < D; ++c)
-        for (T* array : {momentum_a, momentum_b, normal, normal_of_b, displacement})
-          if ((array != normal_of_b || own) && (array != displacement || compliant))
+        for (T* array : {momentum_a, momentum_b, normal, normal_of_b, displacement, traction})
+          if ((array != normal_of_b || own) && (array != displacement || compliant) &&
+              (array != traction || reads_traction))
             array[c * block_nodes + i] = array[c * block_nodes + last];
     }
     return end;
@@ -116,7 +132,9 @@ void GridStep<D, T>::call_law(const Component& law, ContactBatch& batch, std::ui
                                   of_b ? batch.dissipated_of_b : batch.dissipated,
                                   of_b ? batch.status_of_b : batch.status,
                                   compliant ? batch.displacement : nullptr,
-                                  compliant ? (of_b ? batch.stored_of_b : batch.stored) : nullptr};
+                                  compliant ? (of_b ? batch.stored_of_b : batch.stored) : nullptr,
+                                  reads_traction(law) ? batch.traction : nullptr,
+                                  scene_.experiment.grid.cell_size};
   law.plugin->contact().apply[lane_precision<T>][D - 2](law.parameters.data(), &request);
 }
 
@@ -125,7 +143,7 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
   const Component& law = *scene_.experiment.contact;
   const bool own = own_normals_;
   const bool compliant = mass_displacement >= 0;
-  const std::uint32_t end = static_cast<std::uint32_t>(batch.pad(own, compliant));
+  const std::uint32_t end = static_cast<std::uint32_t>(batch.pad(own, compliant, reads_traction(law)));
   call_law(law, batch, end, step.dt, false);
   if (own) {
     call_law(law, batch, end, step.dt, true);
@@ -175,8 +193,10 @@ void GridStep<D, T>::note_nodes(const ContactBatch& batch, int a, int b, std::ve
   }
 }
 
+/// Calls visit(a, b, batch) for each pair of fields that meets in a slot, with the nodes where it does.
 template <int D, class T>
-void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums) {
+template <class Visit>
+void GridStep<D, T>::visit_pairs(std::uint32_t slot, Visit&& visit) {
   const bool weld = (scene_.experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION) != 0;
   const std::uint32_t first = slot * block_nodes;
   const auto contact_field = [&](int field) {
@@ -206,11 +226,37 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
         batch.add(first + node, of_a.motion[node], of_b.motion[node], geometry, own_normals_);
         if (mass_displacement >= 0) batch.displace(met[i].a, met[i].b);
       }
-      if (batch.count == 0) continue;
-      apply_law(batch, a, b, step, sums);
-      if (records_nodes(scene_.experiment, step)) note_nodes(batch, a, b, sums.nodes);
-      if (sums.pairs) batch.add_to(sums.pairs[pair_index(a, b, grid_.fields())]);
+      if (batch.count > 0) visit(a, b, batch);
     }
+}
+
+template <int D, class T>
+void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums) {
+  const bool traction = scene_.experiment.measures_traction();
+  visit_pairs(slot, [&](int a, int b, ContactBatch& batch) {
+    const int pair = pair_index(a, b, grid_.fields());
+    for (int i = 0; traction && i < batch.count; ++i)
+      batch.set_traction(i, welds_.around(pair, grid_.coordinates_of(batch.node[i])), step.dt);
+    apply_law(batch, a, b, step, sums);
+    if (records_nodes(scene_.experiment, step)) note_nodes(batch, a, b, sums.nodes);
+    if (sums.pairs) batch.add_to(sums.pairs[pair]);
+  });
+}
+
+/// Sums up what a weld would give at all nodes where fields meet, for laws that read the traction around a node.
+template <int D, class T>
+void GridStep<D, T>::measure_welds() {
+  const auto& slots = grid_.shared_slots();
+  std::vector<std::vector<ContactWelds::Entry>> found(slots.size());
+  scene_.team->for_each(slots.size(), 4, [&](std::size_t k, int) {
+    visit_pairs(slots[k], [&](int a, int b, ContactBatch& batch) {
+      for (int i = 0; i < batch.count; ++i)
+        found[k].push_back({pair_index(a, b, grid_.fields()), grid_.coordinates_of(batch.node[i]), batch.weld(i)});
+    });
+  });
+  welds_.begin(grid_.fields());
+  for (const auto& of_slot : found)
+    for (const ContactWelds::Entry& entry : of_slot) welds_.add(entry);
 }
 
 /// Shows the particles to all nodes where fields meet.
@@ -231,6 +277,7 @@ void GridStep<D, T>::find_contact_points() {
 template <int D, class T>
 void GridStep<D, T>::resolve_pairs(const StepInfo& step, std::vector<ContactSums>& sums, ContactGiven& given) {
   if (!scene_.experiment.contact) return;
+  if (scene_.experiment.measures_traction()) measure_welds();
   const auto& slots = grid_.shared_slots();
   const std::size_t pairs = impulse_.pairs().size();
   sums.resize(slots.size());

@@ -47,7 +47,7 @@ void GridStep<D, T>::meet_rigid_body(const RigidChunk& chunk, const StepInfo& st
     std::size_t listed[block_nodes];
     see_rigid_body(chunk, field, batch, listed);
     if (batch.count == 0) continue;
-    call_law(rigid_.law(chunk.body), batch, static_cast<std::uint32_t>(batch.pad(false, false)), step.dt, false);
+    call_law(rigid_.law(chunk.body), batch, static_cast<std::uint32_t>(batch.pad(false, false, false)), step.dt, false);
     for (int i = 0; i < batch.count; ++i) {
       const RigidNode& node = rigid_.nodes(chunk.body)[listed[i]];
       Q& v = motion_at(field, batch.node[i]);

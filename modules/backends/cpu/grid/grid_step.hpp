@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "backends/cpu/grid/contact_welds.hpp"
 #include "backends/cpu/grid/grid.hpp"
 #include "operators/edges.hpp"
 #include "operators/filter.hpp"
@@ -187,7 +188,13 @@ class GridStep : NamedChannels {
   void find_contact_points();
   /// Records the force that particles take when they gather the velocity as it is now.
   void record_force(const StepInfo& step);
+  template <class Visit>
+  void visit_pairs(std::uint32_t slot, Visit&& visit);
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
+  void measure_welds();
+  static bool reads_traction(const Component& law) {
+    return (law.plugin->contact().traits & MPM_READS_TRACTION) != 0;
+  }
   /// Calls the law along the pairs' normals, or along those of the second body's own.
   void call_law(const Component& law, ContactBatch& batch, std::uint32_t end, double dt, bool of_b) const;
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
@@ -211,6 +218,7 @@ class GridStep : NamedChannels {
   const std::vector<EdgeModel> edges_;           ///< of each velocity field, beside rigid bodies
   RigidBodies rigid_;
   ContactPoints contact_points_;
+  ContactWelds welds_;  ///< where the law reads the traction around a node
   std::function<void(ContactPoints&)> show_particles_;
   std::array<std::vector<Channel>, 3> folded_;  ///< [when]
   struct Signs {

@@ -132,6 +132,7 @@ struct Arguments {
   EdgeTable edges[2];     ///< contact: of `grid` and of `other`
   FoundContact<T> found;  ///< contact: in scenes that look at particles
   NotedContact<T> noted;  ///< contact: in scenes that record nodes
+  double* welds;          ///< contact: [D + 1][node] impulse and area of WeldOfPair, where the law reads the traction
   RigidArrays rigid;      ///< rigid_contact
   BlockArrays blocks;
   int teams;                             ///< that share the blocks with particles

@@ -102,6 +102,52 @@ MPM_HD Vec<Scene::dimension, T> ask_law(const Arguments<T>& a, const ContactGeom
   }
 }
 
+/// Writes what a weld would give the pair of `grid` and `other` at each node, zero where they do not meet.
+template <class Scene>
+MPM_HD void measure_welds(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using N = typename Scene::Node;
+  constexpr int D = Scene::dimension;
+  for_each_index(team, a.node_count, [&](int node) {
+    const int nodes = a.node_count;
+    for (int c = 0; c <= D; ++c) a.welds[c * nodes + node] = 0;
+    const auto mass_a = a.grid.field[N::mass][node], mass_b = a.other.field[N::mass][node];
+    if (!meet(mass_a, mass_b, Scene::bypasses_detection)) return;
+    const ContactGeometry geometry = geometry_of_pair<Scene>(a, node);
+    if (!geometry.valid) return;
+    for (int c = 0; c < D; ++c)
+      a.welds[c * nodes + node] = welding_impulse(a.grid.field[N::velocity][c * nodes + node],
+                                                  a.other.field[N::velocity][c * nodes + node], mass_a, mass_b);
+    a.welds[D * nodes + node] = geometry.area;
+  });
+}
+
+/// The sum of these over the nodes up to traction_reach away along each axis.
+template <class Scene>
+MPM_HD WeldOfPair welds_around(const Arguments<typename Scene::Scalar>& a, int node) {
+  constexpr int D = Scene::dimension;
+  int at[3] = {0, 0, 0}, reach[3] = {0, 0, 0}, stride[3] = {0, 0, 0};
+  for (int c = 0, rest = node, step = 1; c < D; rest /= a.extent[c], step *= a.extent[c], ++c)
+    at[c] = rest % a.extent[c], reach[c] = traction_reach, stride[c] = step;
+  WeldOfPair sum;
+  for (int k = -reach[2]; k <= reach[2]; ++k)
+    for (int j = -reach[1]; j <= reach[1]; ++j)
+      for (int i = -reach[0]; i <= reach[0]; ++i) {
+        const int away[3] = {i, j, k};
+        int other = node;
+        bool exists = true;
+        for (int c = 0; c < D; ++c) {
+          exists = exists && at[c] + away[c] >= 0 && at[c] + away[c] < a.extent[c];
+          other += away[c] * stride[c];
+        }
+        if (!exists) continue;
+        WeldOfPair weld;
+        for (int c = 0; c < D; ++c) weld.impulse[c] = a.welds[c * a.node_count + other];
+        weld.area = a.welds[D * a.node_count + other];
+        sum.add(weld);
+      }
+  return sum;
+}
+
 /// Writes down what the law did at a node.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD void note_node(const Arguments<T>& a, int node, const ContactGeometry& geometry,
@@ -137,7 +183,11 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
       pair.momentum_b[c] = momentum_of(a.other.field[N::velocity][c * nodes + node], pair.mass_b);
     }
     pair.separation = static_cast<T>(geometry.separation), pair.area = static_cast<T>(geometry.area);
-    pair.dt = a.dt, pair.after_forces = a.after_forces;
+    pair.dt = a.dt, pair.after_forces = a.after_forces, pair.cell_size = a.cell_size;
+    if constexpr (Scene::reads_traction) {
+      const WeldOfPair welds = welds_around<Scene>(a, node);
+      for (int c = 0; c < D; ++c) pair.traction[c] = static_cast<T>(welds.traction(c, double(a.dt)));
+    }
     if constexpr (N::mass_displacement >= 0) {
       const ContactFieldNode of_a = contact_field<Scene>(a, a.grid, node),
                              of_b = contact_field<Scene>(a, a.other, node);

@@ -82,6 +82,8 @@
 #define MPM_DEVICE_CONTACT_ENTRIES \
   MPM_DEVICE_PHASE(mpm_contact, contact<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::contact_sums>))
 
+#define MPM_DEVICE_TRACTION_ENTRIES MPM_DEVICE_PHASE(mpm_measure_welds, measure_welds<Scene>, 1)
+
 #define MPM_DEVICE_RIGID_ENTRIES(n)                                     \
   MPM_DEVICE_PHASE(mpm_rigid_contact_##n, rigid_contact<RigidScene##n>, \
                    (mpm::device::sum_scalars<Scene, mpm::device::rigid_sums>))

@@ -1,0 +1,115 @@
+// A block glued to a plate and pulled off it: slowly it comes off where rho H b is the strength N, suddenly where 2 rho H b
+// is, as the wave from its free end doubles the traction.
+
+#include "support/catch.hpp"
+#include "support/scene.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+constexpr double strength = 5000, density = 1000, modulus = 1e6;
+
+/// A block 1 m high in a shaft of three cells, whose lower face lies `place` cells above a node, on a plate that is held.
+/// `pull` is what acts along y, N/kg; the strain is uniaxial, with Poisson's ratio 0.
+std::string glued(const std::string& pull, double place = 0.3, double h = 0.1) {
+  const double wide = 3 * h, face = place * h;
+  const auto box = [&](double from, double to) {
+    return R"({"type": "box", "lower": [0, )" + digits(from) + R"(], "upper": [)" + digits(wide) + ", " + digits(to) +
+           "]}";
+  };
+  return R"J({"title": "glued block", "dimension": 2, "grid": {"cell_size": )J" + digits(h) +
+         R"J(, "domain": [[0, -0.6], [)J" + digits(wide) +
+         R"J(, 2.2]], "boundaries": {"all": "free", "x_min": "slip", "x_max": "slip"}},
+  "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
+  "contact": {"type": "adhesion", "normal_strength": 5000, "shear_strength": 5000},
+  "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e6, "poisson_ratio": 0, "density": 1000}},
+  "bodies": [{"name": "plate", "material": "m", "seeding": "fitted", "geometry": )J" +
+         box(face - 4 * h, face) + R"J(}, {"name": "block", "material": "m", "seeding": "fitted", "geometry": )J" +
+         box(face, face + 1) + R"J(}],
+  "grips": [{"name": "held", "body": "plate", "velocity": [0, 0], "where": )J" +
+         box(face - 4 * h, face - 0.1 * h) + R"J(}],
+  "body_force": ["0", ")J" +
+         pull + R"J("], "solver": {"time_step": "auto", "courant": 0.3, "end_time": 2},
+  "output": {"ledger": false, "bodies": true}})J";
+}
+
+/// The pull, N/kg, at which a block comes off that is pulled by 3 N/kg a second.
+double slow_pull(Scene& scene) {
+  bool held = false;
+  while (!scene.simulation.finished()) {
+    scene.simulation.step();
+    const long nodes = scene.simulation.backend().contact_record().sticking;
+    if (held && nodes == 0) return 3 * scene.simulation.time();
+    held = held || nodes > 0;
+  }
+  return 0;
+}
+
+double momentum_of_block(const Scene& scene) {
+  const BodyState state = scene.body(1);
+  double sum = 0;
+  for (std::size_t p = 1; p < state.velocity.size(); p += 2) sum += state.mass * state.velocity[p];
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a block that is pulled slowly comes off where its weight is the strength, wherever its face lies", "[adhesion]") {
+  for (const double place : {0.0, 0.15, 0.3, 0.5, 0.7, 0.85}) {
+    Scene scene(glued("3*t", place));
+    INFO("face " << place << " cells above a node");
+    CHECK(slow_pull(scene) == Approx(strength / density).epsilon(0.02));
+  }
+}
+
+TEST_CASE("so it does by every transfer, shape and backend, and in 3-D", "[adhesion]") {
+  for (const std::string transfer : {"pic", "flip", "mls"})
+    for (const std::string backend : {"reference", "cpu"}) {
+      Scene scene(glued("3*t"), {set("/transfer/type", transfer), set("/backend", backend)});
+      INFO(transfer << ", " << backend);
+      CHECK(slow_pull(scene) == Approx(strength / density).epsilon(0.02));
+    }
+  for (const std::string shape : {"bspline_cubic", "gimp", "cpdi"}) {
+    Scene scene(glued("3*t"), {set("/shape/type", shape)});
+    INFO(shape);
+    CHECK(slow_pull(scene) == Approx(strength / density).epsilon(0.02));
+  }
+}
+
+TEST_CASE("a block that has come off moves with the pull alone", "[adhesion]") {
+  Scene scene(glued("3*t"));
+  slow_pull(scene);
+  scene.run_steps(5);
+  const double mass = density * 0.3, start = scene.simulation.time(), before = momentum_of_block(scene);
+  double given = 0;
+  while (scene.simulation.time() < start + 0.1) {
+    given += mass * 3 * scene.simulation.time() * scene.simulation.last_time_step();  // of the step that comes
+    const double dt = scene.simulation.last_time_step();
+    scene.simulation.step();
+    given += mass * 3 * (scene.simulation.time() - dt) * (scene.simulation.last_time_step() - dt);
+  }
+  CHECK(momentum_of_block(scene) - before == Approx(given).epsilon(2e-3));
+}
+
+TEST_CASE("a block that is pulled suddenly lets go by half of what it bears slowly", "[adhesion]") {
+  // In so many steps the wave has come back from the free end, and the traction has begun to fall again.
+  const auto lets_go = [](double pull, double h) {
+    Scene scene(glued(digits(pull), 0.3, h));
+    const double there_and_back = 2 / std::sqrt(modulus / density);
+    bool held = false, gone = false;
+    while (scene.simulation.time() < 1.6 * there_and_back) {
+      scene.simulation.step();
+      const long nodes = scene.simulation.backend().contact_record().sticking;
+      gone = gone || (held && nodes == 0);
+      held = held || nodes > 0;
+    }
+    return gone;
+  };
+  const double exact = strength / (2 * density);
+  CHECK_FALSE(lets_go(0.95 * exact, 0.1));
+  CHECK(lets_go(1.05 * exact, 0.1));
+  CHECK_FALSE(lets_go(0.97 * exact, 0.05));
+  CHECK(lets_go(1.03 * exact, 0.05));
+}
