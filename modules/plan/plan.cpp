@@ -90,10 +90,11 @@ void refuse_laws(const Experiment& experiment) {
                  " joins particles by springs, and a rigid body has none; let a body that grips "
                  "hold be the partner, or take another law");
     if (body.contact.plugin->contact().traits & MPM_READS_TRACTION)
-      refuse(experiment, body.contact.pointer,
-             name_of(body.contact) +
-                 " asks for the traction around a node, which is measured between bodies of particles alone; let a body "
-                 "that grips hold be the partner, or take another law");
+      refuse(
+          experiment, body.contact.pointer,
+          name_of(body.contact) +
+              " asks for the traction around a node, which is measured between bodies of particles alone; let a body "
+              "that grips hold be the partner, or take another law");
   }
   if (!experiment.contact) return;
   refuse_in_filter(*experiment.contact);
@@ -105,7 +106,8 @@ void refuse_laws(const Experiment& experiment) {
   if (experiment.measures_traction() && experiment.any_face(ConditionType::periodic))
     refuse(experiment, experiment.contact->pointer,
            name_of(*experiment.contact) +
-               " asks for the traction around a node, whose neighbours end at a periodic face; close the periodic axis, or "
+               " asks for the traction around a node, whose neighbours end at a periodic face; close the periodic "
+               "axis, or "
                "take another law");
 }
 

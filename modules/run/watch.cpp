@@ -34,8 +34,8 @@ const BodySpecification* finite_block(const Experiment& experiment) {
 
 Watch::Watch(const Simulation& simulation)
     : simulation_(simulation),
-      watches_(simulation.experiment().contact &&
-               !(simulation.experiment().contact->plugin->contact().traits & (MPM_BYPASSES_DETECTION | MPM_COMPLIANT | MPM_READS_TRACTION))),
+      watches_(simulation.experiment().contact && !(simulation.experiment().contact->plugin->contact().traits &
+                                                    (MPM_BYPASSES_DETECTION | MPM_COMPLIANT | MPM_READS_TRACTION))),
       watches_slide_(watches_ && simulation.experiment().field_count == 2 && finite_block(simulation.experiment())) {}
 
 void Watch::look() {

@@ -71,6 +71,20 @@ TEST_CASE("laws that act over time are refused where a filter would add them aga
   CHECK(refusal(beside_rigid_body(liquid)) == "accepted");
 }
 
+TEST_CASE("a law that reads the traction is refused where that is not measured", "[interface]") {
+  const std::string glue = R"({"type": "adhesion", "normal_strength": 10, "shear_strength": 10})";
+  CHECK(refusal(scene(glue)) == "accepted");
+  CHECK(refusal(scene(glue, filtered("every_increment"))) == "accepted");
+  for (const auto& [said, why] :
+       {std::pair{refusal(scene(glue, filtered("at_end"))), "take \"constraints\": \"every_increment\""},
+        std::pair{refusal(beside_rigid_body(glue)),
+                  "/rigid_bodies/0/contact: contact \"adhesion\" asks for the traction around a node"},
+        std::pair{refusal(scene(glue, "", "\"periodic\"")), "whose neighbours end at a periodic face"}}) {
+    INFO(said);
+    CHECK(said.find(why) != std::string::npos);
+  }
+}
+
 TEST_CASE("springs are refused beside rigid bodies and across periodic axes", "[interface]") {
   const std::string rigid = refusal(beside_rigid_body(springs)), periodic = refusal(scene(springs, "", "\"periodic\""));
   INFO(rigid << "\n" << periodic);

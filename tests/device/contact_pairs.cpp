@@ -82,3 +82,16 @@ TEST_CASE("the nodes where bodies meet are those of the reference backend, in ev
     }
   }
 }
+
+TEST_CASE("adhesion that holds and gives way on the host-run device", "[device]") {
+  const std::string weak = R"({"type": "adhesion", "normal_strength": 300, "shear_strength": 200, "friction": 0.2})";
+  for (const int dimension : {2, 3}) {
+    Mix mix;
+    mix.dimension = dimension, mix.contact = weak;
+    check_on_device(mix, {"double"});
+  }
+  Mix walls;
+  walls.contact = weak, walls.close = true, walls.boundaries = R"({"all": "separate"})";
+  walls.filter = R"({"type": "fmpm", "order": 2})";
+  check_on_device(walls, {"double"});
+}

@@ -28,7 +28,8 @@ TEST_CASE("parity of adhesion that holds and gives way", "[parity]") {
   Mix walls;
   walls.contact = weak, walls.close = true, walls.boundaries = R"({"all": "separate"})";
   check_parity(walls);
-  Mix three_fields;
-  three_fields.contact = R"({"type": "adhesion", "normal_strength": 300, "shear_strength": 200, "normal": "widest_gap"})";
-  check_parity(three_fields);
+  Mix by_particles;
+  by_particles.contact =
+      R"({"type": "adhesion", "normal_strength": 300, "shear_strength": 200, "normal": "widest_gap"})";
+  check_parity(by_particles);
 }

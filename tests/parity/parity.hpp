@@ -27,6 +27,8 @@ inline double required_value(const mpm_parameter& parameter) {
                                                     {"tension_stiffness", 1e4},
                                                     {"compression_stiffness", 5e4},
                                                     {"shear_stiffness", 2e4},
+                                                    {"normal_strength", 1e5},
+                                                    {"shear_strength", 1e5},
                                                     {"viscosity", 50},
                                                     {"slip_length", 0.1},
                                                     {"consistency", 2},

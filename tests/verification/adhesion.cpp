@@ -56,7 +56,8 @@ double momentum_of_block(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("a block that is pulled slowly comes off where its weight is the strength, wherever its face lies", "[adhesion]") {
+TEST_CASE("a block that is pulled slowly comes off where its weight is the strength, wherever its face lies",
+          "[adhesion]") {
   for (const double place : {0.0, 0.15, 0.3, 0.5, 0.7, 0.85}) {
     Scene scene(glued("3*t", place));
     INFO("face " << place << " cells above a node");

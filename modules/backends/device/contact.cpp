@@ -42,13 +42,13 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, 
   if (experiment_.measures_traction())
     visit_pairs([&](const Arguments<T>& arguments) { launch("measure_welds", arguments, nodes()); });
   visit_pairs([&](const Arguments<T>& arguments) {
-      const std::size_t at = place(contact_sums);
-      join("contact", arguments, nodes(), contact_sums, at, 1);
-      results_.later([this, at, given, unbalanced, after_forces](const double* sums) {
-        const double* const found = sums + at;
-        for (std::size_t c = 0; c < 3; ++c) (*unbalanced)[c] += found[contact_unbalanced + c];
-        take_pair(found, *given, after_forces);
-      });
+    const std::size_t at = place(contact_sums);
+    join("contact", arguments, nodes(), contact_sums, at, 1);
+    results_.later([this, at, given, unbalanced, after_forces](const double* sums) {
+      const double* const found = sums + at;
+      for (std::size_t c = 0; c < 3; ++c) (*unbalanced)[c] += found[contact_unbalanced + c];
+      take_pair(found, *given, after_forces);
+    });
   });
   if (notes) {
     look();

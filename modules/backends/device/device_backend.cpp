@@ -115,8 +115,8 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
   if (ContactPoints(experiment).needed()) contact_pairs_.emplace(*device_, experiment, plan, scene_);
   if (records_nodes(experiment)) contact_notes_.emplace(*device_, experiment, scene_);
   for (int k = 0; experiment.measures_traction() && k < experiment.field_count * (experiment.field_count - 1) / 2; ++k)
-    welds_.emplace_back(*device_, "welds", static_cast<std::size_t>(experiment.dimension + 1) *
-                                               static_cast<std::size_t>(nodes()));
+    welds_.emplace_back(*device_, "welds",
+                        static_cast<std::size_t>(experiment.dimension + 1) * static_cast<std::size_t>(nodes()));
   if (experiment.has_temperature()) heat_conditions_.emplace(*device_, experiment, scene_);
   for (std::size_t body = 0; body < seeded.size(); ++body) {
     bodies_.emplace_back(*device_, experiment, plan, scene_, static_cast<int>(body), seeded[body]);

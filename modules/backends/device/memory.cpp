@@ -40,8 +40,8 @@ std::vector<TakenMemory> taken_by_each(const Experiment& experiment, const Plan&
   if (experiment.measures_traction()) {
     const double pairs = 0.5 * experiment.field_count * (experiment.field_count - 1);
     const int numbers = experiment.dimension + 1;
-    all.push_back({"welds", TakenMemory::of_nodes, numbers,
-                   static_cast<double>(nodes) * pairs * numbers * sizeof(double), true});
+    all.push_back(
+        {"welds", TakenMemory::of_nodes, numbers, static_cast<double>(nodes) * pairs * numbers * sizeof(double), true});
   }
   if (records_nodes(experiment)) {
     const double pairs = 0.5 * experiment.field_count * (experiment.field_count - 1);

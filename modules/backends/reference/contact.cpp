@@ -49,8 +49,7 @@ Vector ReferenceBackend::traction_at(std::size_t a, std::size_t b, double dt) co
   Weld sum;
   const Eigen::Vector3i& at = grid_.coordinates(a % grid_.node_count());
   for (const auto& [node, weld] : welds_.at({grid_.velocity_field_of(a), grid_.velocity_field_of(b)})) {
-    const int away =
-        std::max({std::abs(node[0] - at[0]), std::abs(node[1] - at[1]), std::abs(node[2] - at[2])});
+    const int away = std::max({std::abs(node[0] - at[0]), std::abs(node[1] - at[1]), std::abs(node[2] - at[2])});
     if (away > traction_reach) continue;
     sum.impulse += weld.impulse, sum.area += weld.area;
   }

@@ -192,9 +192,7 @@ class GridStep : NamedChannels {
   void visit_pairs(std::uint32_t slot, Visit&& visit);
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
   void measure_welds();
-  static bool reads_traction(const Component& law) {
-    return (law.plugin->contact().traits & MPM_READS_TRACTION) != 0;
-  }
+  static bool reads_traction(const Component& law) { return (law.plugin->contact().traits & MPM_READS_TRACTION) != 0; }
   /// Calls the law along the pairs' normals, or along those of the second body's own.
   void call_law(const Component& law, ContactBatch& batch, std::uint32_t end, double dt, bool of_b) const;
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
