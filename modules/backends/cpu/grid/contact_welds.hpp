@@ -14,7 +14,7 @@ namespace mpm::cpu {
 class ContactWelds {
  public:
   struct Entry {
-    int pair;                 ///< its number (pair_index)
+    std::size_t pair;         ///< its number (pair_index)
     std::array<int, 3> node;  ///< coordinates
     WeldOfPair weld;
   };
@@ -24,10 +24,10 @@ class ContactWelds {
     pairs_.resize(static_cast<std::size_t>(fields * (fields - 1) / 2));
     for (Nodes& nodes : pairs_) nodes.clear();
   }
-  void add(const Entry& entry) { pairs_[static_cast<std::size_t>(entry.pair)][key(entry.node)] = entry.weld; }
+  void add(const Entry& entry) { pairs_[entry.pair][key(entry.node)] = entry.weld; }
   /// The sum over the nodes up to traction_reach away along each axis, in the same order whatever the number of threads.
-  WeldOfPair around(int pair, const std::array<int, 3>& node) const {
-    const Nodes& nodes = pairs_[static_cast<std::size_t>(pair)];
+  WeldOfPair around(std::size_t pair, const std::array<int, 3>& node) const {
+    const Nodes& nodes = pairs_[pair];
     WeldOfPair sum;
     for (int k = -traction_reach; k <= traction_reach; ++k)
       for (int j = -traction_reach; j <= traction_reach; ++j)

@@ -234,7 +234,7 @@ template <int D, class T>
 void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums) {
   const bool traction = scene_.experiment.measures_traction();
   visit_pairs(slot, [&](int a, int b, ContactBatch& batch) {
-    const int pair = pair_index(a, b, grid_.fields());
+    const std::size_t pair = pair_index(a, b, grid_.fields());
     for (int i = 0; traction && i < batch.count; ++i)
       batch.set_traction(i, welds_.around(pair, grid_.coordinates_of(batch.node[i])), step.dt);
     apply_law(batch, a, b, step, sums);
