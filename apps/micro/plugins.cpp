@@ -218,7 +218,7 @@ struct FilterCase {
 struct ContactCase {
   Variant v;
   Buffer mass_a, mass_b, momentum_a, momentum_b, normal, separation, area, impulse, dissipated, status, displacement,
-      stored;
+      traction, stored;
 
   explicit ContactCase(const Variant& variant) : v(variant) {
     Random random(1);
