@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int steps = 12;               ///< in which particles cross cells
-constexpr double cell_size = 0.1;  ///< m
+constexpr double cell_size = 0.1;       ///< m
 constexpr double courant = 0.2;         ///< of the wave speed at rest
 constexpr double bound_of_state = 1e4;  ///< epsilons: nodes that particles barely reach divide by tiny masses
 

@@ -63,7 +63,8 @@ void check_refusals(const Plugin& plugin, Findings& findings) {
         const bool stands = !refuses(plugin, other, place, refusal.limit - aside, refusal.parameter) &&
                             refuses(plugin, other, place, refusal.limit + aside, refusal.parameter);
         if (limited && !stands)
-          where = "; " + sample.text + ", parameter " + std::to_string(changed + 1) + " times " + std::to_string(factor);
+          where =
+              "; " + sample.text + ", parameter " + std::to_string(changed + 1) + " times " + std::to_string(factor);
         limited &= stands;
       }
   }

@@ -263,6 +263,7 @@ double sensible_value(const mpm_parameter& p, double stiffness, Random& random) 
   if (named(p, "youngs_modulus")) return stiffness;
   if (named(p, "poisson")) return random.uniform(0, 0.45);
   if (named(p, "density")) return random.logarithmic(100, 10000);
+  if (named(p, "tensile_strength")) return stiffness * random.logarithmic(1e-3, 0.03);
   if (std::strcmp(p.unit, "Pa") == 0) return stiffness * random.logarithmic(1e-3, 0.3);
   if (std::strcmp(p.unit, "Pa/m") == 0) return random.logarithmic(1e2, 1e9);  // from free to held in a step
   if (std::strcmp(p.unit, "Pa s") == 0) return random.logarithmic(1e-3, 1e4);

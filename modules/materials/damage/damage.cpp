@@ -6,7 +6,8 @@ MPM_EXPORT_PLUGIN(
     material<mpm::Damage>,
     {"damage", "1.0.0", "Elastic solid that cracks: scalar damage with crack-band scaling",
      "Bazant & Oh (1983), Crack band theory for fracture of concrete, Mater. Struct. 16:155; Simo & Ju (1987), Strain- "
-     "and stress-based continuum damage models, Int. J. Solids Struct. 23:821; the split: Freddi & Royer-Carfagni (2010), "
+     "and stress-based continuum damage models, Int. J. Solids Struct. 23:821; the split: Freddi & Royer-Carfagni "
+     "(2010), "
      "Regularized variational theories of fracture, J. Mech. Phys. Solids 58:1154; bilinear: Petersson (1981), report "
      "TVBM-1006, Lund",
      R"(psi = psi(p) + (1 - d) psi(r),   tau = C (e - d r),   r = e - p,   e = ln V, C and psi those of `hencky`
@@ -31,8 +32,7 @@ length. Damage begins where the largest principal stress is ft, if cracks open i
 confined at the sides); two stresses alike along two axes damage from ft/sqrt(2 (1 - nu)) on. Where no principal stress of the whole
 solid pulls there is no damage: nothing is ever crushed.
 
-Closed cracks are as stiff as the whole solid, without friction. `degrades`: `all` takes r = e and y = sqrt(2 psi/E): closed cracks
-carry nothing, and pressing damages as pulling does (Simo & Ju's first model).
+Closed cracks are as stiff as the whole solid, and without friction.
 
 State: F, the largest kappa and d. Stress goes to the origin on unloading, without a strain that stays. Dissipation: psi(r) dd, never
 negative. J <= 0 is refused: the run stops and names the particle. In single precision strains have 1e-7 of rounding: ft/E must be

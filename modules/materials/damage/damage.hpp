@@ -29,16 +29,15 @@ struct DamageState {
 
 struct Damage {
   struct Parameters {
-    double youngs_modulus, poisson_ratio, density, tensile_strength, fracture_energy, softening, degrades, band_cells;
+    double youngs_modulus, poisson_ratio, density, tensile_strength, fracture_energy, softening, band_cells;
     double cell_size;  ///< m, of the grid
   };
   template <class T>
   struct Constants {
     T mu, lambda, inverse_density, rest_modulus;  ///< `rest_modulus` is M = lambda + 2 mu
-    T inverse_degraded;                           ///< 1/M, or 1/E where all energy is degraded, 1/Pa
+    T inverse_modulus;                            ///< 1/M, 1/Pa
     T lateral;  ///< nu: strain across a stress along one direction, over the strain along it
     T across;   ///< nu/(1 - nu): strain across stresses in a plane, over the sum of the strains in it
-    bool tensile;
     BandSoftening<T> softening;
     MPM_HD static double confined(const Parameters& p) {
       return lame_lambda(p.youngs_modulus, p.poisson_ratio) + 2 * shear_modulus(p.youngs_modulus, p.poisson_ratio);
@@ -48,13 +47,11 @@ struct Damage {
           lambda(T(lame_lambda(p.youngs_modulus, p.poisson_ratio))),
           inverse_density(T(1 / p.density)),
           rest_modulus(T(confined(p))),
-          inverse_degraded(T(1 / (p.degrades == 0 ? confined(p) : p.youngs_modulus))),
+          inverse_modulus(T(1 / confined(p))),
           lateral(T(p.poisson_ratio)),
           across(T(p.poisson_ratio / (1 - p.poisson_ratio))),
-          tensile(p.degrades == 0),
           softening(static_cast<SofteningLaw>(static_cast<int>(p.softening)), p.youngs_modulus, p.tensile_strength,
-                    p.fracture_energy, p.band_cells * p.cell_size,
-                    p.degrades == 0 ? 1 - p.youngs_modulus / confined(p) : 0) {}
+                    p.fracture_energy, p.band_cells * p.cell_size, 1 - p.youngs_modulus / confined(p)) {}
   };
 
   template <int D, class S>
@@ -98,7 +95,6 @@ struct Damage {
   template <class S>
   MPM_HD static Vec<3, S> pressed(const Constants<scalar_of<S>>& c, const Vec<3, S>& e) {
     const S zero = S(real<S>(0));
-    if (!c.tensile) return {{zero, zero, zero}};
     const S top = max(max(e[0], e[1]), e[2]), low = min(min(e[0], e[1]), e[2]);
     const S middle = max(min(max(e[0], e[1]), e[2]), min(e[0], e[1]));
     const S third = min(low, zero), second = min(middle, -(c.lateral * third)),
@@ -120,12 +116,11 @@ struct Damage {
 
   /// Returns the energy dissipated, J/m^3.
   template <class G, class L, class S = typename G::Scalar>
-  MPM_HD static S advance(const Constants<scalar_of<S>>& c, const L& gradient, scalar_of<S> dt,
-                          DamageState<G>& state) {
+  MPM_HD static S advance(const Constants<scalar_of<S>>& c, const L& gradient, scalar_of<S> dt, DamageState<G>& state) {
     state.deformation_gradient = advanced(state.deformation_gradient, gradient, dt);
     const Vec<3, S> e = principal(state.deformation_gradient).strain, r = difference(e, pressed(c, e));
     const S first = S(c.softening.first_measure()), onset = S(c.softening.onset);
-    const S measure = sqrt(max(real<S>(2) * c.inverse_degraded * energy(c, r), first * first));
+    const S measure = sqrt(max(real<S>(2) * c.inverse_modulus * energy(c, r), first * first));
     const S before = max(state.equivalent_strain, onset), now = c.softening.strain_of(measure);
     state.equivalent_strain = max(before, now);
     state.damage = max(state.damage, c.softening.damage(state.equivalent_strain));
@@ -156,7 +151,8 @@ struct Damage {
   template <int D, class S>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const Prepared<D, S>& p) {
     const Vec<3, S>& e = p.principal.strain;
-    const Vec<3, S> kept = pressed(c, e), of_all = HenckySolid::stresses(c, e), of_kept = HenckySolid::stresses(c, kept);
+    const Vec<3, S> kept = pressed(c, e), of_all = HenckySolid::stresses(c, e),
+                    of_kept = HenckySolid::stresses(c, kept);
     S least = min(of_all[0], of_kept[0]);
     for (int i = 1; i < 3; ++i) least = min(least, min(of_all[i], of_kept[i]));
     const S one = S(real<S>(1)), x = max(max(e[0], e[1]), e[2]) - min(min(e[0], e[1]), e[2]);
@@ -192,10 +188,11 @@ struct Damage {
                                       p.tensile_strength, p.fracture_energy);
     const double largest = widest / p.band_cells;
     if (p.cell_size < largest) return {nullptr, nullptr, 0};
-    return {"cell_size",
-            "at its strength a band this wide holds more elastic energy than its crack dissipates, so that it would snap "
-            "back; take smaller cells or a larger fracture_energy",
-            largest};
+    return {
+        "cell_size",
+        "at its strength a band this wide holds more elastic energy than its crack dissipates, so that it would snap "
+        "back; take smaller cells or a larger fracture_energy",
+        largest};
   }
 
   static constexpr mpm_parameter parameters[] = {
@@ -209,15 +206,14 @@ struct Damage {
       MPM_NUMBER_PARAMETER(fracture_energy, "J/m^2", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Gc: energy that a crack of unit area dissipates"),
       MPM_CHOICE_PARAMETER(softening, "linear|exponential|bilinear", 0, "how stress falls as a crack opens"),
-      MPM_CHOICE_PARAMETER(degrades, "tensile|all", 0,
-                           "energy that damage takes; with `all` closed cracks carry nothing, and pressing damages too"),
       MPM_NUMBER_PARAMETER(band_cells, "", 1.0, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "width of the band in which a crack localises, in cells"),
   };
   static constexpr mpm_state state[] = {
       {"deformation_gradient", "", "deformation gradient F", MPM_STATE_PLANE_DEFORMATION, MPM_INITIAL_IDENTITY},
-      {"equivalent_strain", "", "largest equivalent strain so far, ft/E where it was less", MPM_STATE_SCALAR, MPM_INITIAL_ZERO},
-      {"damage", "", "share of the degraded energy that is lost, 0 to 1", MPM_STATE_SCALAR, MPM_INITIAL_ZERO},
+      {"equivalent_strain", "", "largest equivalent strain so far, ft/E where it was less", MPM_STATE_SCALAR,
+       MPM_INITIAL_ZERO},
+      {"damage", "", "share of the energy of tension that is lost, 0 to 1", MPM_STATE_SCALAR, MPM_INITIAL_ZERO},
   };
 #endif
 };
