@@ -58,9 +58,10 @@ void check_refusals(const Plugin& plugin, Findings& findings) {
         named &= place >= 0;
         if (place < 0 || !std::isfinite(refusal.limit)) continue;
         const double value = other.block[static_cast<std::size_t>(place)];
-        const double aside = 1e-9 * std::max(std::abs(refusal.limit), 1e-9 * std::abs(value - refusal.limit)) *
-                             (value > refusal.limit ? 1 : -1);
-        const bool stands = !refuses(plugin, other, place, refusal.limit - aside, refusal.parameter) &&
+        const double away = value > refusal.limit ? 1 : -1;
+        const double aside = away * (refusal.limit != 0 ? 1e-9 * std::abs(refusal.limit) : 1e-6 * std::abs(value));
+        const double inside = refusal.limit != 0 ? refusal.limit - aside : 0;  // 0 may be the only value left
+        const bool stands = !refuses(plugin, other, place, inside, refusal.parameter) &&
                             refuses(plugin, other, place, refusal.limit + aside, refusal.parameter);
         if (limited && !stands)
           where =
