@@ -78,6 +78,7 @@ std::vector<ConformanceFinding> check_plugin(const Plugin& plugin, const Conform
   for (const conformance::Variant& v : conformance::variants_of(*plugin.descriptor)) callable &= has_entries(plugin, v);
   findings.require("entry_points", callable, "every declared precision and dimension has an entry point");
   if (!callable) return findings.take();
+  conformance::check_refusals(plugin, findings);
   conformance::check_costs(plugin, findings);
   switch (plugin.descriptor->kind) {
     case MPM_SHAPE:

@@ -263,6 +263,7 @@ double sensible_value(const mpm_parameter& p, double stiffness, Random& random) 
   if (named(p, "youngs_modulus")) return stiffness;
   if (named(p, "poisson")) return random.uniform(0, 0.45);
   if (named(p, "density")) return random.logarithmic(100, 10000);
+  if (named(p, "tensile_strength")) return stiffness * random.logarithmic(1e-3, 0.03);
   if (std::strcmp(p.unit, "Pa") == 0) return stiffness * random.logarithmic(1e-3, 0.3);
   if (std::strcmp(p.unit, "Pa/m") == 0) return random.logarithmic(1e2, 1e9);  // from free to held in a step
   if (std::strcmp(p.unit, "Pa s") == 0) return random.logarithmic(1e-3, 1e4);
@@ -302,7 +303,45 @@ ParameterSample sample(const Plugin& plugin, int combination, bool defaults, Ran
   return s;
 }
 
+/// Moves values that the plugin refuses to the accepted side of their limits, well away from them.
+void accept(const Plugin& plugin, Random& random, ParameterSample& sample) {
+  constexpr int most = 8;
+  for (int k = 0; k < most; ++k) {
+    const mpm_refusal refusal = refusal_of(plugin, sample);
+    const int place = place_of(plugin, refusal);
+    if (place < 0 || !std::isfinite(refusal.limit)) return;
+    double& value = sample.block[static_cast<std::size_t>(place)];
+    const bool towards_zero = value > refusal.limit ? refusal.limit > 0 : refusal.limit < 0;
+    value = refusal.limit * (towards_zero ? random.uniform(0.1, 0.5) : random.uniform(2, 10));
+    sample.text += std::string(" ") + refusal.parameter + "=" + std::to_string(value);
+  }
+}
+
 }  // namespace
+
+mpm_refusal refusal_of(const Plugin& plugin, const ParameterSample& sample) {
+  mpm_refusal refusal{nullptr, nullptr, 0};
+  const auto* table = extension_of<mpm_refusals>(plugin);
+  if (!table || !table->ask) return refusal;
+  const bool around_axis =
+      plugin.descriptor->kind == MPM_MATERIAL && (plugin.material().traits & MPM_STRAINS_AROUND_AXIS);
+  for (const mpm_refusal_case& scene : {mpm_refusal_case{2, 0}, mpm_refusal_case{2, 1}, mpm_refusal_case{3, 0}}) {
+    if (!(plugin.descriptor->dimensions & (scene.dimension == 2 ? MPM_2D : MPM_3D))) continue;
+    if (scene.axisymmetric && !around_axis) continue;
+    table->ask(sample.data(), &scene, &refusal);
+    if (refusal.parameter) break;
+  }
+  return refusal;
+}
+
+int place_of(const Plugin& plugin, const mpm_refusal& refusal) {
+  if (!refusal.parameter) return -1;
+  for (const mpm_parameter& p : plugin.parameters())
+    if (std::strcmp(p.name, refusal.parameter) == 0) return static_cast<int>(p.offset / sizeof(double));
+  const auto* cells = extension_of<mpm_material_cell_size>(plugin);
+  return cells && std::strcmp(refusal.parameter, "cell_size") == 0 ? static_cast<int>(cells->offset / sizeof(double))
+                                                                   : -1;
+}
 
 std::vector<ParameterSample> sample_parameters(const Plugin& plugin, Random& random) {
   constexpr int most = 24;  // keeps a plugin with many choices checkable in seconds
@@ -310,7 +349,10 @@ std::vector<ParameterSample> sample_parameters(const Plugin& plugin, Random& ran
   for (const mpm_parameter& p : plugin.parameters()) combinations = std::min(most / 2, combinations * choices_in(p));
   std::vector<ParameterSample> samples;
   for (int k = 0; k < combinations; ++k)
-    for (bool defaults : {true, false}) samples.push_back(sample(plugin, k, defaults, random));
+    for (bool defaults : {true, false}) {
+      samples.push_back(sample(plugin, k, defaults, random));
+      accept(plugin, random, samples.back());
+    }
   return samples;
 }
 

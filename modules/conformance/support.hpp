@@ -11,6 +11,7 @@
 
 #include "conformance/conformance.hpp"
 #include "kernel/tensor.hpp"
+#include "plugin/extensions.h"
 
 namespace mpm::conformance {
 
@@ -134,14 +135,22 @@ struct ParameterSample {
 
   const void* data() const { return block.data(); }
 };
-/// Every combination of choices, with defaults where there are some and then with random values inside the ranges.
+/// Every combination of choices, with defaults where there are some and then with random values inside the ranges, none
+/// of which the plugin refuses.
 std::vector<ParameterSample> sample_parameters(const Plugin& plugin, Random& random);
+/// What a plugin refuses of a block (mpm.refusal): the first refusal in plane strain, around an axis and in 3-D, as far as
+/// it works there. Its `parameter` is null where nothing is.
+mpm_refusal refusal_of(const Plugin& plugin, const ParameterSample& sample);
+/// The place in a block of the parameter that a refusal names, or -1.
+int place_of(const Plugin& plugin, const mpm_refusal& refusal);
 /// The value of a parameter in a block, or `otherwise` when the plugin has none of that name.
 double parameter_value(const Plugin& plugin, const ParameterSample& sample, std::string_view name, double otherwise);
 
 /// What a new particle holds in one component of a state field.
 double initial_value(const mpm_state& field, int component, int dimension);
 
+/// Checks of the parameters that a plugin refuses.
+void check_refusals(const Plugin& plugin, Findings& findings);
 void check_shape(const Plugin& plugin, Findings& findings);
 void check_list_shape(const Plugin& plugin, Findings& findings);
 void check_transfer(const Plugin& plugin, Findings& findings);

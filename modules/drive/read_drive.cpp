@@ -91,6 +91,8 @@ class DriveReader {
     const Plugin& plugin = *components_.find(MPM_MATERIAL, kind->name);
     const Fields fields(&member.value, *kind, context_);
     check_plugin(plugin, *member.value.find("type"));
+    material_node_ = &member.value;
+    material_fields_.emplace(fields);
     if (fields.given("thermal"))
       context_.problem(*fields.node("thermal"),
                        "a material point does not conduct: it has the material's reference temperature; remove it");
@@ -136,6 +138,9 @@ class DriveReader {
       context_.problem(fields.place("cell_size"),
                        "material " + in_quotes(material.plugin->id()) + " does not read a cell size: remove it");
     if (extension) material.parameters[extension->offset / sizeof(double)] = fields.number("cell_size");
+    if (material_fields_)
+      refuse_parameters(material, *material_fields_, {static_cast<std::uint32_t>(context_.dimension), 0},
+                        *material_node_, fields.place("cell_size"), context_);
   }
 
   OrderedJson read_stage(const Node& node) {
@@ -203,6 +208,8 @@ class DriveReader {
   Node root_;
   const ComponentLookup& components_;
   ReadContext context_;
+  const Node* material_node_ = nullptr;
+  std::optional<Fields> material_fields_;
   DriveExperiment drive_;
 };
 

@@ -1,4 +1,7 @@
 // The plugins an experiment chooses, and whether they can do what it asks.
+#include <algorithm>
+#include <cmath>
+
 #include "experiment/reader.hpp"
 #include "experiment/thermal.hpp"
 #include "plugin/extension_of.hpp"
@@ -31,6 +34,35 @@ Component component_of(const Plugin& plugin, const Fields& fields, const std::st
     component.parameters[slot] = fields.number(declared.name);
   }
   return component;
+}
+
+void refuse_parameters(const Component& component, const Fields& fields, mpm_refusal_case scene,
+                       const Node& component_node, const Node& cell_size, ReadContext& context) {
+  const Plugin& plugin = *component.plugin;
+  const auto* table = extension_of<mpm_refusals>(plugin);
+  if (!table || scene.dimension == 0) return;
+  for (const mpm_parameter& declared : plugin.parameters())
+    if ((fields.given(declared.name) || (declared.flags & MPM_REQUIRED)) && !fields.valid(declared.name))
+      return;  // what is wrong with it has been said
+  const auto* cells = extension_of<mpm_material_cell_size>(plugin);
+  if (cells && !(component.parameters[cells->offset / sizeof(double)] > 0)) return;
+  mpm_refusal refusal{nullptr, nullptr, 0};
+  table->ask(component.parameters.data(), &scene, &refusal);
+  if (!refusal.parameter) return;
+  const std::string_view name = refusal.parameter;
+  const auto parameters = plugin.parameters();
+  const auto declared = std::find_if(parameters.begin(), parameters.end(),
+                                     [&](const mpm_parameter& parameter) { return name == parameter.name; });
+  const bool own = declared != parameters.end();
+  const std::string unit = own ? declared->unit : "m";
+  const double value = component.parameters[(own ? declared->offset : cells ? cells->offset : 0) / sizeof(double)];
+  const auto quantity = [&](double number) { return number_text(number) + (unit.empty() ? "" : " " + unit); };
+  std::string text = std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))) + " " +
+                     in_quotes(plugin.id()) + " cannot have " + in_quotes(name) + " " + quantity(value);
+  if (std::isfinite(refusal.limit))
+    text += std::string(", ") + (value > refusal.limit ? "at most " : "at least ") + quantity(refusal.limit);
+  const Node& place = !own ? cell_size : fields.given(declared->name) ? *fields.node(declared->name) : component_node;
+  context.problem(place, text + ": " + (refusal.why ? refusal.why : ""));
 }
 
 void ExperimentReader::check_capability(const Plugin& plugin, mpm_kind kind, const Node& place) {
@@ -77,6 +109,9 @@ ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_
   chosen.component = component_of(*plugin, *chosen.fields, node.pointer);
   if (const auto* cell_size = extension_of<mpm_material_cell_size>(*plugin))
     chosen.component.parameters[cell_size->offset / sizeof(double)] = experiment_.grid.cell_size;
+  refuse_parameters(chosen.component, *chosen.fields,
+                    {static_cast<std::uint32_t>(context_.dimension), experiment_.axisymmetric()}, node,
+                    nearest_node(root_, "/grid/cell_size"), context_);
   chosen.resolved = chosen.fields->resolved;
   return chosen;
 }

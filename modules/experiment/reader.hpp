@@ -8,6 +8,7 @@
 #include "experiment/parameter.hpp"
 #include "experiment/read.hpp"
 #include "experiment/sections.hpp"
+#include "plugin/extensions.h"
 
 namespace mpm {
 
@@ -139,6 +140,11 @@ Expectation read_expectation(const Node& node, ReadContext& context, OrderedJson
 
 /// The plugin with the parameters that its fields hold.
 Component component_of(const Plugin& plugin, const Fields& fields, const std::string& pointer);
+
+/// Asks the plugin whether its parameters fit one another and the scene. What does not is a problem of the context, at
+/// the key of that parameter (`component_node` where the file leaves it out), or at `cell_size`.
+void refuse_parameters(const Component& component, const Fields& fields, mpm_refusal_case scene,
+                       const Node& component_node, const Node& cell_size, ReadContext& context);
 
 /// Reads a geometry and everything in it; null, with problems recorded, when it is not usable.
 GeometryPointer read_geometry(const Node& node, ReadContext& context, OrderedJson& resolved);

@@ -75,6 +75,17 @@ MPM_HD Sym<3, S> cofactors(const Sym<3, S>& a) {
   return {{y * z - yz * yz, x * z - xz * xz, x * y - xy * xy, xz * xy - x * yz, xy * yz - y * xz, xz * yz - z * xy}};
 }
 
+/// The largest n.a.n with unit vectors n in the space of D dimensions; in 3-D an upper bound of it.
+template <class S>
+MPM_HD S largest_in_space(const Sym<2, S>& a) {
+  const S mean = real<S>(0.5) * (a.s[0] + a.s[1]), half = real<S>(0.5) * (a.s[0] - a.s[1]);
+  return mean + sqrt(half * half + a.s[3] * a.s[3]);
+}
+template <class S>
+MPM_HD S largest_in_space(const Sym<3, S>& a) {
+  return largest_eigenvalue_bound(a);
+}
+
 /// The symmetric tensor U diag(values) U^T of space; in 2-D the third value is that of z.
 template <int D, class S>
 MPM_HD Sym<D, S> from_principal(const Mat<D, S>& U, const Vec<3, S>& values) {

@@ -20,6 +20,7 @@ inline constexpr KnownExtension extension_info{};
   template <>                                  \
   inline constexpr KnownExtension extension_info<table>{NAME##_ID, NAME##_VERSION, kind};
 MPM_KNOWN_EXTENSION(mpm_costs, MPM_COSTS, 0)
+MPM_KNOWN_EXTENSION(mpm_refusals, MPM_REFUSAL, 0)
 MPM_KNOWN_EXTENSION(mpm_shape_boxes, MPM_SHAPE_BOXES, MPM_SHAPE)
 MPM_KNOWN_EXTENSION(mpm_shape_courant_limit, MPM_SHAPE_COURANT_LIMIT, MPM_SHAPE)
 MPM_KNOWN_EXTENSION(mpm_transfer_polynomials, MPM_TRANSFER_POLYNOMIALS, MPM_TRANSFER)

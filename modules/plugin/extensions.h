@@ -37,6 +37,26 @@ typedef struct mpm_costs {
   void (*count)(const void* parameters, const mpm_cost_case* of, mpm_cost* cost);
 } mpm_costs;
 
+/* ---- mpm.refusal: every kind -----------------------------------------------------------------------------------
+ * Parameters that lie in their ranges and yet do not fit one another, or the scene. The host asks once when it has read
+ * them, and refuses the experiment in these words; with parameters that are refused it calls nothing else. */
+#define MPM_REFUSAL_ID "mpm.refusal"
+#define MPM_REFUSAL_VERSION 1u
+typedef struct mpm_refusal_case {
+  uint32_t dimension; /* 2 or 3 */
+  uint32_t axisymmetric;
+} mpm_refusal_case;
+typedef struct mpm_refusal {
+  /* The parameter at fault, a declared one or "cell_size" (mpm.material.cell_size); null: nothing is refused. */
+  const char* parameter;
+  const char* why; /* why, and what helps, without a capital at the start and a stop at the end */
+  double limit;    /* the nearest value that is not refused while the others stay; not a number where there is none */
+} mpm_refusal;
+typedef struct mpm_refusals {
+  uint32_t version, reserved;
+  void (*ask)(const void* parameters, const mpm_refusal_case* of, mpm_refusal* refusal);
+} mpm_refusals;
+
 /* ---- mpm.shape.boxes: lists of nodes ----------------------------------------------------------------------------
  * The same particles' nodes as dense boxes, for hosts that take rows of nodes at once. A particle's nodes lie within
  * `extent` nodes an axis from `base`; a node (i, j, k) of the box has entry (i * MPM_BOX_WIDTH + j) * MPM_BOX_WIDTH +

@@ -228,6 +228,7 @@ std::span<const mpm_kind> all_kinds() {
 std::span<const KnownExtension> known_extensions() {
   static constexpr KnownExtension all[] = {
       extension_info<mpm_costs>,
+      extension_info<mpm_refusals>,
       extension_info<mpm_shape_boxes>,
       extension_info<mpm_shape_courant_limit>,
       extension_info<mpm_transfer_polynomials>,

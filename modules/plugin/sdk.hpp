@@ -59,11 +59,11 @@ constexpr mpm_descriptor transfer(const Manual& m, const char* source) {
 }
 template <class F>
 constexpr mpm_descriptor contact(const Manual& m, const char* source) {
-  return descriptor<F>(MPM_CONTACT, contact_table<F>, nullptr, m, source);
+  return descriptor<F>(MPM_CONTACT, contact_table<F>, &refusal_extension<F>, m, source);
 }
 template <class F>
 constexpr mpm_descriptor normal(const Manual& m, const char* source) {
-  return descriptor<F>(MPM_NORMAL, NormalTable<F>::value, nullptr, m, source);
+  return descriptor<F>(MPM_NORMAL, NormalTable<F>::value, &refusal_extension<F>, m, source);
 }
 template <class F>
 constexpr mpm_descriptor material(const Manual& m, const char* source) {

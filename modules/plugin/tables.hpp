@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "plugin/abi.h"
+#include "plugin/extensions.h"
 
 namespace mpm {
 inline constexpr double unbounded = std::numeric_limits<double>::infinity();

@@ -1,6 +1,7 @@
 // What materials, filters and others offer beyond their core tables is held to its words: right ones pass, and each
 // planted mistake is caught by the check that names it.
 
+#include <cmath>
 #include <set>
 
 #include "conformance/conformance.hpp"
@@ -140,6 +141,41 @@ struct IgnoresCells : BandHardening {
 };
 constexpr mpm_material_cell_size shared_place{MPM_MATERIAL_CELL_SIZE_VERSION, 0};
 
+/// Hardening by cells that refuses those above a size, as laws that soften do; and mistakes of it.
+struct NarrowBand : BandHardening {
+  static double largest(const Parameters& p) { return 0.01 * p.yield_stress / p.stiffness; }
+  static mpm_refusal refusal(const Parameters& p, const mpm_refusal_case&) {
+    if (p.cell_size <= largest(p)) return {nullptr, nullptr, 0};
+    return {"cell_size", "cells are too large for the band; take smaller ones", largest(p)};
+  }
+};
+template <class Change>
+struct WronglyRefused : NarrowBand {
+  static mpm_refusal refusal(const Parameters& p, const mpm_refusal_case& of) {
+    mpm_refusal refused = NarrowBand::refusal(p, of);
+    if (refused.parameter) Change::apply(refused);
+    return refused;
+  }
+};
+struct ShortLimit {
+  static void apply(mpm_refusal& refused) { refused.limit *= 0.999; }
+};
+struct LongLimit {
+  static void apply(mpm_refusal& refused) { refused.limit *= 1.001; }
+};
+struct OtherName {
+  static void apply(mpm_refusal& refused) { refused.parameter = "cell_width"; }
+};
+struct NoReason {
+  static void apply(mpm_refusal& refused) { refused.why = ""; }
+};
+struct NoWayOut {
+  static void apply(mpm_refusal& refused) { refused.limit = std::nan(""); }
+};
+constexpr mpm_refusals never{MPM_REFUSAL_VERSION, 0, [](const void*, const mpm_refusal_case*, mpm_refusal* refusal) {
+                               *refusal = {nullptr, nullptr, 0};
+                             }};
+
 /// Sand that books its heat with the wrong sign; and one that excuses itself for it.
 struct CoolingSand : DruckerPrager {
   template <class G, int D, class S>
@@ -247,6 +283,19 @@ TEST_CASE("temperatures and cell sizes that do nothing are caught") {
   check_caught(with_extension<other_reference>(material_of<WarmRubber>), "absent_temperature_is_reference");
   check_caught(material_of<IgnoresCells>, "cell_size_matters");
   check_caught(with_extension<shared_place>(material_of<BandHardening>), "cell_size_has_own_place");
+}
+
+TEST_CASE("parameters that are refused are held to the name, the reason and the limit that the plugin gives") {
+  CHECK(failures(material_of<NarrowBand>).empty());
+  CHECK(was_checked(material_of<NarrowBand>, "refusal_limit"));
+  CHECK(was_checked(material_of<NarrowBand>, "cell_size_matters"));
+  CHECK_FALSE(was_checked(material_of<BandHardening>, "refusal_limit"));
+  check_caught(material_of<WronglyRefused<ShortLimit>>, "refusal_limit");
+  check_caught(material_of<WronglyRefused<LongLimit>>, "refusal_limit");
+  check_caught(material_of<WronglyRefused<OtherName>>, "refusal_names_parameter");
+  check_caught(material_of<WronglyRefused<NoReason>>, "refusal_says_why");
+  check_caught(material_of<WronglyRefused<NoWayOut>>, "refusal_leaves_values");
+  check_caught(with_extension<never>(material_of<VonMises>), "refusal_refuses");
 }
 
 TEST_CASE("wrong operation counts are caught") {

@@ -102,17 +102,6 @@ struct Corotated : ElasticSolid {
     return sqrt(c.inverse_density * (real<S>(2) * c.mu * squared + spread));
   }
 
-  /// The largest n.b.n with n in the space of D dimensions; in 3-D an upper bound of it.
-  template <class S>
-  MPM_HD static S largest_in_space(const Sym<2, S>& b) {
-    const S mean = real<S>(0.5) * (b.s[0] + b.s[1]), half = real<S>(0.5) * (b.s[0] - b.s[1]);
-    return mean + sqrt(half * half + b.s[3] * b.s[3]);
-  }
-  template <class S>
-  MPM_HD static S largest_in_space(const Sym<3, S>& b) {
-    return largest_eigenvalue_bound(b);
-  }
-
 #if MPM_HOST
   static constexpr unsigned traits = MPM_HYPERELASTIC | MPM_OBJECTIVE;
   static constexpr mpm_parameter parameters[] = {

@@ -1,8 +1,8 @@
 #pragma once
 // The extensions of extensions.h as the SDK makes them from a functor. Some every functor gets for nothing (costs, a
 // material's trial and tangent); others come with a member of the functor: `box` and its fellows, `basis_order`,
-// `courant_limits`, `step_limit`, `projects`, `makes_energy`, a `temperature` at the end of State, a `cell_size` at the
-// end of Parameters.
+// `courant_limits`, `step_limit`, `projects`, `makes_energy`, `refusal`, a `temperature` at the end of State, a
+// `cell_size` at the end of Parameters.
 
 #include <cmath>
 #include <cstring>
@@ -75,6 +75,13 @@ concept RefusesTangent = requires {
 template <class F>
 concept MakesEnergy = requires {
   { F::makes_energy } -> std::convertible_to<const char*>;
+};
+
+/// A functor some of whose parameters do not fit one another, or the scene, says which: `static mpm_refusal
+/// refusal(const Parameters&, const mpm_refusal_case&)`, with a null `parameter` for those that do.
+template <class F>
+concept RefusesParameters = requires(const typename F::Parameters& p, const mpm_refusal_case& of) {
+  { F::refusal(p, of) } -> std::same_as<mpm_refusal>;
 };
 
 /// A functor that only runs over float, double and lanes says so: `static constexpr bool counted = false`.
@@ -211,6 +218,20 @@ void count_cost(const void* parameters, const mpm_cost_case* of, mpm_cost* cost)
 }
 template <class F>
 inline constexpr mpm_costs costs_table{MPM_COSTS_VERSION, 0, &count_cost<F>};
+
+// ---- refusal ----------------------------------------------------------------------------------------------------
+
+template <RefusesParameters F>
+inline constexpr mpm_refusals refusals_table{
+    MPM_REFUSAL_VERSION, 0, [](const void* parameters, const mpm_refusal_case* of, mpm_refusal* refusal) {
+      *refusal = F::refusal(parameters_of<F>(parameters), *of);
+    }};
+template <class F>
+const void* refusal_extension(const char* id) {
+  if constexpr (RefusesParameters<F>)
+    if (same_text(id, MPM_REFUSAL_ID)) return &refusals_table<F>;
+  return nullptr;
+}
 
 // ---- trial -------------------------------------------------------------------------------------------------------
 
@@ -407,24 +428,29 @@ const void* costs_extension(const char* id) {
   return nullptr;
 }
 template <class F>
+const void* costs_or_refusal(const char* id) {
+  const void* refusal = refusal_extension<F>(id);
+  return refusal ? refusal : costs_extension<F>(id);
+}
+template <class F>
 const void* shape_extension(const char* id) {
   if constexpr (BoxShapeFunctor<F>)
     if (same_text(id, MPM_SHAPE_BOXES_ID)) return &boxes_table<F>;
   if constexpr (CourantLimitFunctor<F>)
     if (same_text(id, MPM_SHAPE_COURANT_LIMIT_ID)) return &CourantLimitTable<F>::value;
-  return costs_extension<F>(id);
+  return costs_or_refusal<F>(id);
 }
 template <class F>
 const void* transfer_extension(const char* id) {
   if constexpr (PolynomialFunctor<F>)
     if (same_text(id, MPM_TRANSFER_POLYNOMIALS_ID)) return &polynomials_table<F>;
-  return costs_extension<F>(id);
+  return costs_or_refusal<F>(id);
 }
 template <class F>
 const void* filter_extension(const char* id) {
   if constexpr (StepLimitFunctor<F>)
     if (same_text(id, MPM_FILTER_STEP_LIMIT_ID)) return &step_limit_table<F>;
-  return costs_extension<F>(id);
+  return costs_or_refusal<F>(id);
 }
 /// The extensions of a material that run its functor over scalars of their own.
 #if defined(MPM_PLUGIN_PART) && MPM_PLUGIN_PART == 1
@@ -448,6 +474,7 @@ const void* material_extension(const char* id) {
     if (same_text(id, MPM_MATERIAL_TEMPERATURE_ID)) return &temperature_table<F>;
   if constexpr (CellSizeFunctor<F>)
     if (same_text(id, MPM_MATERIAL_CELL_SIZE_ID)) return &cell_size_table<F>;
+  if (const void* refusal = refusal_extension<F>(id)) return refusal;
   return extension_over_other_scalars<F>(id);
 }
 

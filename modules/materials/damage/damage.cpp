@@ -1,0 +1,43 @@
+#include "damage.hpp"
+
+#include "plugin/sdk.hpp"
+
+MPM_EXPORT_PLUGIN(
+    material<mpm::Damage>,
+    {"damage", "1.0.0", "Elastic solid that cracks: scalar damage with crack-band scaling",
+     "Bazant & Oh (1983), Crack band theory for fracture of concrete, Mater. Struct. 16:155; Simo & Ju (1987), Strain- "
+     "and stress-based continuum damage models, Int. J. Solids Struct. 23:821; the split: Freddi & Royer-Carfagni "
+     "(2010), "
+     "Regularized variational theories of fracture, J. Mech. Phys. Solids 58:1154; bilinear: Petersson (1981), report "
+     "TVBM-1006, Lund",
+     R"(psi = psi(p) + (1 - d) psi(r),   tau = C (e - d r),   r = e - p,   e = ln V, C and psi those of `hencky`
+
+p is the part of the strain that a solid without any tension would feel, r >= 0 what its cracks would take: of all such r the one
+that leaves the least energy psi(e - r). Damage d grows with the largest y = sqrt(2 psi(r)/(lambda + 2 mu)) so far, so that uniaxial
+tension has a stress sigma(kappa) at kappa = ln s: E kappa up to `tensile_strength` ft, then
+
+    linear       a straight line down to 0 at kappa = 2 Gc/(ft b)
+    exponential  ft exp(-(kappa - ft/E)/eps_s),   eps_s = Gc/(b ft) - ft/(2 E)
+    bilinear     lines to ft/3 where a crack is open by 0.8 Gc/ft, and to 0 at 3.6 Gc/ft (concrete)
+
+b = `band_cells` times the cell size is the width of the band in which strain localises. The area below sigma(kappa) is Gc/b, so
+that a crack through a bar dissipates Gc = `fracture_energy` a unit of area on any grid. It is one cell for linear shapes; smoother
+ones spread a band over more. A band that crosses the cells askew is wider than a cell: b does not know it.
+
+A band may not be so wide that it holds more elastic energy at its strength than its crack dissipates (snap-back): b < 2 E Gc/ft^2,
+for `bilinear` b < 1.2 E Gc/ft^2. An experiment with larger cells is refused, with the largest usable size.
+
+Exact in uniaxial tension at any strain, in Kirchhoff stress and logarithmic strain, and the dissipated energy for steps of any
+length. Damage begins where the largest principal stress is ft, if cracks open in one direction alone (in tension, shear, and strain
+confined at the sides); two stresses alike along two axes damage from ft/sqrt(2 (1 - nu)) on. Where no principal stress of the whole
+solid pulls there is no damage: nothing is ever crushed.
+
+Closed cracks are as stiff as the whole solid, and without friction.
+
+State: F, the largest kappa and d. Stress goes to the origin on unloading, without a strain that stays. Dissipation: psi(r) dd, never
+negative. J <= 0 is refused: the run stops and names the particle. In single precision strains have 1e-7 of rounding: ft/E must be
+well above that.
+
+Wave speed: that of `hencky`, as if undamaged where anything is pressed, else with the share that is left, and never below that at
+rest, as cracks close in no time.)",
+     "Damage"})

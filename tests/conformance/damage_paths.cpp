@@ -1,0 +1,283 @@
+// Scalar damage with crack-band scaling under imposed deformation, in closed form. In uniaxial tension kappa = ln s, the
+// sides shrink by nu sigma/E, and the area below sigma(kappa) is Gc over the band width (Bazant & Oh, Mater. Struct. 16
+// (1983) 155).
+
+#include <cmath>
+#include <random>
+
+#include "materials/damage/damage.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+using namespace mpm;
+using Mat3 = Mat<3, double>;
+
+constexpr double linear = 0, exponential = 1, bilinear = 2;
+/// Concrete: E = 30 GPa, ft = 3 MPa, Gc = 100 J/m^2, which is usable on bands below 2/3 m.
+constexpr double young = 30e9, poisson = 0.2, strength = 3e6, toughness = 100;
+
+Damage::Parameters concrete(double width, double softening = linear) {
+  return {young, poisson, 2400, strength, toughness, softening, 1, width};
+}
+
+/// A particle whose principal strains are imposed along the axes.
+struct Particle {
+  Damage::Constants<double> constants;
+  Damage::State<3, double> state{Mat3::identity(), 0, 0};
+  Vec<3, double> strain{};
+  double heat = 0;  ///< dissipated so far, J/m^3
+
+  explicit Particle(const Damage::Parameters& p) : constants(p) {}
+
+  void strain_to(const Vec<3, double>& next, int steps) {
+    Mat3 L{};
+    for (int i = 0; i < 3; ++i) L(i, i) = std::exp((next[i] - strain[i]) / steps) - 1;
+    for (int k = 0; k < steps; ++k) heat += Damage::advance(constants, L, 1.0, state);
+    strain = next;
+  }
+  /// Uniaxial tension: the strain along x is `along`, and the sides are free of stress where that along x is `sigma`.
+  void pull_to(double along, double sigma, int steps = 16) {
+    const double side = -poisson * sigma / young;
+    strain_to({{along, side, side}}, steps);
+  }
+  Sym<3, double> stress() const { return Damage::kirchhoff_stress(constants, state); }
+  double energy() const { return Damage::stored_energy(constants, state); }
+};
+
+/// Pulls to a strain in one step and in many: stress sigma along x, none at the sides, and the energy of a straight way back.
+void check_curve(const Damage::Parameters& p, double along, double sigma) {
+  for (const int steps : {1, 200}) {
+    Particle particle(p);
+    particle.pull_to(along, sigma, steps);
+    CAPTURE(along, steps, sigma, p.poisson_ratio);
+    const Sym<3, double> tau = particle.stress();
+    CHECK(tau(0, 0) == Approx(sigma).epsilon(1e-9).margin(1e-9 * strength));
+    for (int k = 1; k < 6; ++k) CHECK(std::abs(tau.s[k]) < 1e-9 * strength);
+    CHECK(particle.state.equivalent_strain == Approx(std::max(along, strength / young)).epsilon(1e-9));
+    CHECK(particle.energy() == Approx(sigma * along / 2).epsilon(1e-9).margin(1e-12 * strength));
+  }
+}
+
+/// Pulls until nothing is left: a crack of unit area dissipates Gc, whatever the band and however long the steps.
+void check_fracture_energy(const Damage::Parameters& p, double end) {
+  for (const int steps : {1, 3, 1000}) {
+    Particle particle(p);
+    particle.pull_to(end, 0, steps);
+    CAPTURE(p.cell_size, p.softening, steps);
+    CHECK(particle.heat * p.band_cells * p.cell_size == Approx(p.fracture_energy).epsilon(1e-9));
+    CHECK(std::abs(particle.stress()(0, 0)) < 1e-9 * p.tensile_strength);
+    CHECK(particle.energy() < 1e-9 * p.tensile_strength);
+    CHECK(particle.state.damage <= 1);
+  }
+}
+
+double elastic_energy(const Vec<3, double>& e) {
+  const double mu = young / (2 * (1 + poisson)), lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+  const double trace = e[0] + e[1] + e[2];
+  return mu * (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]) + lambda / 2 * trace * trace;
+}
+
+/// psi(p) by trial: the least energy of e - r over all r that are not negative, one component after the other.
+double pressed_energy(const Vec<3, double>& e) {
+  const double mu = young / (2 * (1 + poisson)), lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+  Vec<3, double> r{};
+  for (int sweep = 0; sweep < 2000; ++sweep)
+    for (int i = 0; i < 3; ++i) {
+      double others = 0;
+      for (int j = 0; j < 3; ++j) others += j == i ? 0 : e[j] - r[j];
+      r[i] = std::max(0.0, e[i] + lambda * others / (lambda + 2 * mu));
+    }
+  return elastic_energy({{e[0] - r[0], e[1] - r[1], e[2] - r[2]}});
+}
+
+}  // namespace
+
+TEST_CASE("damage: linear softening of concrete ends at 2 Gc/(ft h) on bands of three widths") {
+  const double widths[] = {0.01, 0.02, 0.05}, ends[] = {6.6666667e-3, 3.3333333e-3, 1.3333333e-3}, onset = 1e-4;
+  for (int k = 0; k < 3; ++k) {
+    const Damage::Parameters p = concrete(widths[k], linear);
+    check_curve(p, 0.5 * onset, 0.5 * strength);
+    check_curve(p, onset, strength);
+    for (const double share : {0.1, 0.5, 0.9})
+      check_curve(p, onset + share * (2 * toughness / (strength * widths[k]) - onset), (1 - share) * strength);
+    check_curve(p, ends[k] * (1 + 1e-7), 0);
+    check_fracture_energy(p, 1.5 * ends[k]);
+  }
+}
+
+TEST_CASE("damage: exponential softening of concrete decays over Gc/(h ft) - ft/(2 E) on bands of three widths") {
+  const double widths[] = {0.01, 0.02, 0.05}, decays[] = {3.2833333e-3, 1.6166667e-3, 6.1666667e-4}, onset = 1e-4;
+  for (int k = 0; k < 3; ++k) {
+    const Damage::Parameters p = concrete(widths[k], exponential);
+    CHECK(toughness / (widths[k] * strength) - onset / 2 == Approx(decays[k]).epsilon(1e-7));
+    for (const double lengths : {0.0, 0.2, 1.0, 3.0})
+      check_curve(p, onset + lengths * (toughness / (widths[k] * strength) - onset / 2), strength * std::exp(-lengths));
+    check_fracture_energy(p, onset + 40 * decays[k]);
+  }
+}
+
+TEST_CASE("damage: bilinear softening bends at a third of the strength where 0.8 Gc/ft is open") {
+  for (const double width : {0.01, 0.02, 0.05}) {
+    const Damage::Parameters p = concrete(width, bilinear);
+    const double opening = toughness / (strength * width), onset = 1e-4;
+    const double kink = onset / 3 + 0.8 * opening, end = 3.6 * opening;
+    check_curve(p, kink, strength / 3);
+    check_curve(p, (onset + kink) / 2, strength * 2 / 3);
+    check_curve(p, (kink + end) / 2, strength / 6);
+    check_curve(p, end, 0);
+    check_fracture_energy(p, 1.2 * end);
+  }
+}
+
+TEST_CASE("damage: cells above 2 E Gc/ft^2 would snap back and are refused, with the largest usable size") {
+  const auto refusal = [](double E, double ft, double Gc, double softening, double band, double size) {
+    return Damage::refusal({E, poisson, 2400, ft, Gc, softening, band, size}, {3, 0});
+  };
+  for (const double law : {linear, exponential}) {
+    CHECK(refusal(10e9, 5e6, 50, law, 1, 0.01).parameter == nullptr);
+    CHECK(refusal(10e9, 5e6, 50, law, 1, 0.0399999).parameter == nullptr);
+    for (const double size : {0.04, 0.05, 1e3}) {
+      const mpm_refusal refused = refusal(10e9, 5e6, 50, law, 1, size);
+      REQUIRE(refused.parameter != nullptr);
+      CHECK(refused.parameter == std::string("cell_size"));
+      CHECK(refused.limit == Approx(0.04).epsilon(1e-12));
+    }
+    CHECK(refusal(young, strength, toughness, law, 1, 1).limit == Approx(2.0 / 3).epsilon(1e-12));
+    CHECK(refusal(10e9, 5e6, 50, law, 2, 0.03).limit == Approx(0.02).epsilon(1e-12));
+  }
+  CHECK(refusal(10e9, 5e6, 50, bilinear, 1, 0.025).limit == Approx(0.024).epsilon(1e-12));
+  // On the band of C11h: eps_f = 2e-3, above ft/E = 5e-4.
+  Particle particle({10e9, poisson, 2400, 5e6, 50, linear, 1, 0.01});
+  particle.strain_to({{1.25e-3, -poisson * 2.5e-4, -poisson * 2.5e-4}}, 4);
+  CHECK(particle.stress()(0, 0) == Approx(2.5e6).epsilon(1e-9));
+}
+
+TEST_CASE("damage: unloading goes to the origin, reloading does not damage, and a closed path loses what it says") {
+  for (const double law : {linear, exponential, bilinear}) {
+    CAPTURE(law);
+    Particle particle(concrete(0.02, law));
+    const double sigma = particle.constants.softening.stress(1e-3);
+    particle.pull_to(1e-3, sigma, 50);
+    const double damage = particle.state.damage, heat = particle.heat;
+    CHECK(particle.stress()(0, 0) == Approx(sigma).epsilon(1e-9));
+    CHECK(damage > 0.5);
+    for (const double share : {0.5, 0.0, 0.7, 1.0}) {
+      particle.pull_to(share * 1e-3, share * sigma);
+      CHECK(particle.stress()(0, 0) == Approx(share * sigma).epsilon(1e-9).margin(1e-9 * strength));
+      CHECK(std::abs(particle.stress()(1, 1)) < 1e-9 * strength);
+      CHECK(particle.state.damage == Approx(damage).epsilon(1e-9));
+      CHECK(particle.heat == Approx(heat).epsilon(1e-9));
+    }
+    // A path that closes, along x, y and z, by small steps: all work is heat, as no strain and no energy stay.
+    Particle loop(concrete(0.02, law));
+    double work = 0;
+    const int steps = 4000;
+    for (int k = 1; k <= 2 * steps; ++k) {
+      const Sym<3, double> before = loop.stress();
+      const double next = static_cast<double>(k <= steps ? k : 2 * steps - k) / steps;
+      const Vec<3, double> last = loop.strain;
+      loop.strain_to({{1e-3 * next, 4e-4 * next, -5e-4 * next}}, 1);
+      for (int i = 0; i < 3; ++i) work += 0.5 * (before.s[i] + loop.stress().s[i]) * (loop.strain[i] - last[i]);
+    }
+    CHECK(loop.energy() < 1e-12 * strength);
+    CHECK(work == Approx(loop.heat).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("damage: closed cracks press as if they were whole") {
+  const double bulk = young / (3 * (1 - 2 * poisson)), plate = young / (1 - poisson * poisson);
+  Particle split(concrete(0.05));
+  split.pull_to(2e-3, 0);
+  CHECK(split.state.damage == 1);
+  CHECK(std::abs(split.stress()(0, 0)) < 1e-9 * strength);
+  split.strain_to({{-1e-3, -1e-3, -1e-3}}, 16);
+  for (int i = 0; i < 3; ++i) CHECK(split.stress().s[i] == Approx(-3e-3 * bulk).epsilon(1e-9));
+  CHECK(split.energy() == Approx(bulk / 2 * 9e-6).epsilon(1e-9));
+  split.pull_to(-1e-3, -1e-3 * young);  // pressed with free sides: Young's modulus
+  CHECK(split.stress()(0, 0) == Approx(-1e-3 * young).epsilon(1e-9));
+  CHECK(std::abs(split.stress()(1, 1)) < 1e-9 * strength);
+  // Open along x, pressed along y and held along z: a plate that is free of stress along x.
+  split.strain_to({{1e-3, -1e-3, 0}}, 16);
+  CHECK(std::abs(split.stress()(0, 0)) < 1e-9 * strength);
+  CHECK(split.stress()(1, 1) == Approx(-1e-3 * plate).epsilon(1e-9));
+  CHECK(split.stress()(2, 2) == Approx(-1e-3 * plate * poisson).epsilon(1e-9));
+}
+
+TEST_CASE("damage: begins where the largest principal stress is the strength, and never under pressure") {
+  const double shear = young / (2 * (1 + poisson)), onset = strength / young;
+  const double modulus = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson));
+  const auto damage = [](double x, double y, double z) {
+    Particle particle(concrete(0.05));
+    particle.strain_to({{x, y, z}}, 4);
+    return particle.state.damage;
+  };
+  CHECK(damage(-0.1, -0.1, -0.1) == 0);
+  CHECK(damage(-0.1, 0, 0) == 0);
+  CHECK(damage(-0.1, -0.03, 0) == 0);
+  CHECK(damage(-0.1, 0.9999 * poisson * 0.1, 0.9999 * poisson * 0.1) == 0);  // free sides
+  const auto begins_at = [&](double x, double y, double z) {
+    CAPTURE(x, y, z);
+    CHECK(damage(0.9999 * x, 0.9999 * y, 0.9999 * z) == 0);
+    CHECK(damage(1.0001 * x, 1.0001 * y, 1.0001 * z) > 0);
+  };
+  begins_at(onset, -poisson * onset, -poisson * onset);
+  begins_at(strength / modulus, 0, 0);                            // confined at the sides
+  begins_at(strength / (2 * shear), -strength / (2 * shear), 0);  // pure shear
+  const double twice = onset * std::sqrt((1 - poisson) / 2);      // stresses ft/sqrt(2 (1 - nu)) along x and y
+  begins_at(twice, twice, -2 * poisson / (1 - poisson) * twice);
+}
+
+TEST_CASE("damage: what it leaves of a strain is that of a solid without tension, of the least energy") {
+  std::mt19937 numbers(3);
+  const auto entry = [&] { return std::ldexp(static_cast<double>(numbers()), -31) - 1; };
+  const Damage::Constants<double> constants(concrete(0.05));
+  const double modulus = constants.rest_modulus;
+  int parts[4] = {};
+  for (int k = 0; k < 4000; ++k) {
+    Vec<3, double> e{{entry(), entry(), entry()}};
+    if (k % 5 == 0) e[1] = e[0];
+    if (k % 7 == 0) e[2] = e[1];
+    const Vec<3, double> p = Damage::pressed(constants, e), stress = HenckySolid::stresses(constants, p);
+    CAPTURE(e[0], e[1], e[2], p[0], p[1], p[2]);
+    CHECK(elastic_energy(p) == Approx(pressed_energy(e)).epsilon(1e-9).margin(1e-9 * modulus));
+    int open = 0;
+    for (int i = 0; i < 3; ++i) {
+      CHECK(stress[i] <= 1e-12 * modulus);
+      CHECK(e[i] - p[i] >= -1e-15);
+      CHECK(std::abs(stress[i] * (e[i] - p[i])) < 1e-12 * modulus);  // an open crack bears nothing
+      open += e[i] - p[i] > 1e-15;
+    }
+    ++parts[open];
+    CHECK(elastic_energy(e) ==
+          Approx(elastic_energy(p) + elastic_energy({{e[0] - p[0], e[1] - p[1], e[2] - p[2]}})).epsilon(1e-12));
+  }
+  for (const int count : parts) CHECK(count > 100);
+}
+
+TEST_CASE("damage: what softening dissipates is the integral of the degraded energy over the damage") {
+  const double confined = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson));
+  for (const double modulus : {young, confined})  // of what is degraded: all of tension, or strain across a crack alone
+    for (const SofteningLaw law : {SofteningLaw::linear, SofteningLaw::exponential, SofteningLaw::bilinear}) {
+      const BandSoftening<double> band(law, young, strength, toughness, 0.02, 1 - young / modulus);
+      const int steps = 20000;
+      double sum = 0, furthest = 0;
+      bool grows = true;
+      for (int k = 0; k < steps; ++k) {
+        const double before = 1e-4 + 7e-3 * k / steps, after = 1e-4 + 7e-3 * (k + 1) / steps;
+        const double middle = 0.5 * (before + after);
+        const double measure = middle - (1 - young / modulus) * band.stress(middle) / young;
+        furthest = std::max(furthest, std::abs(band.strain_of(measure) / middle - 1));
+        sum += modulus / 2 * measure * measure * (band.damage(after) - band.damage(before));
+        grows &= band.damage(after) >= band.damage(before);
+      }
+      CAPTURE(static_cast<int>(law), modulus);
+      CHECK(grows);
+      CHECK(furthest < 1e-12);
+      CHECK(sum == Approx(band.dissipated(1e-4, 7.1e-3)).epsilon(1e-5));
+      CHECK(band.dissipated(1e-4, 3e-3) + band.dissipated(3e-3, 7.1e-3) ==
+            Approx(band.dissipated(1e-4, 7.1e-3)).epsilon(1e-12));
+      CHECK(band.dissipated(3e-3, 3e-3) == 0);
+      CHECK(band.damage(0.99e-4) == 0);
+    }
+}
