@@ -140,11 +140,10 @@ TEST_CASE("the traction of contact stands on the particles that touch, and press
   Json scene = with_particles(two_balls(), {{"times", {0, 0.2}}, {"format", "csv"}, {"fields", {"contact_traction"}}});
   scene["solver"]["end_time"] = 0.2;  // in the middle of the impact
   runs(folder, scene);
-  std::string text = slurp(folder / "run/particles/particles_0000.csv");
-  const auto before = *mpm::support::read_numbers(text).find("contact_traction x (Pa)");
+  const auto before =
+      *mpm::support::read_csv(folder / "run/particles/particles_0000.csv").find("contact_traction x (Pa)");
   CHECK(*std::max_element(before.begin(), before.end()) == 0);  // there has been no step
-  text = slurp(folder / "run/particles/particles_0001.csv");
-  const auto table = mpm::support::read_numbers(text);
+  const auto table = mpm::support::read_csv(folder / "run/particles/particles_0001.csv");
   const auto &x = *table.find("x (m)"), &y = *table.find("y (m)"), &along = *table.find("contact_traction x (Pa)"),
              &up = *table.find("contact_traction y (Pa)");
   int touched = 0;
