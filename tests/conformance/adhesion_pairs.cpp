@@ -60,6 +60,17 @@ TEST_CASE("beyond the ellipse a pair that parts is let go, and one that presses 
   }
 }
 
+TEST_CASE("nothing holds before the forces, where bodies that press rub", "[adhesion]") {
+  for (const double along : {-2.0, 2.0}) {
+    ContactPair<3, double> pair = pair_of(along, {{0, 1, 0}});
+    pair.after_forces = false;
+    if (along < 0)
+      check(result(pair), 0, 0, 0, 0);
+    else
+      check(result(pair), -0.5 * 1.5 * 2, -1.5 * 2, 0.5 * 1.5 * 2 * 2.5, 2);
+  }
+}
+
 TEST_CASE("a pair holds up to its reach", "[adhesion]") {
   check(result(pair_of(-2, {{0, 1, 0}}, 0.0199)), -1.5 * 3, 1.5 * 2, 0, 1);
   check(result(pair_of(-2, {{0, 1, 0}}, 0.0201)), 0, 0, 0, 0);

@@ -17,7 +17,8 @@ struct Adhesion {
     double reach;            ///< separation up to which they hold, cells
   };
 
-  /// 1 where the pair holds, else 0.
+  /// 1 where the pair holds, else 0. Nothing holds before the forces: what resists in both stages resists with twice the
+  /// strength over the step.
   template <int D, class S>
   MPM_HD static S holds(const Parameters& p, const ContactPair<D, S>& pair) {
     const scalar_of<S> zero = 0, one = 1;
@@ -28,7 +29,8 @@ struct Adhesion {
       const S shear = (pair.traction[i] - along * pair.normal[i]) / real<S>(p.shear_strength);
       shear_used = shear_used + shear * shear;
     }
-    const S inside = select(tension_used * tension_used + shear_used < one, S(one), S(zero));
+    const S most(pair.after_forces ? one : zero);
+    const S inside = select(tension_used * tension_used + shear_used < most, S(one), S(zero));
     return select(pair.separation <= real<S>(p.reach) * pair.cell_size, inside, S(zero));
   }
 
