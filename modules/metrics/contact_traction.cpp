@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "operators/contact.hpp"
 #include "plugin/abi.h"
 
 namespace mpm {
@@ -12,9 +13,9 @@ struct Share {
   Vector3 force{};
   double area = 0;
 
-  void add(double weight, const Share& other) {
-    for (std::size_t c = 0; c < 3; ++c) force[c] += weight * other.force[c];
-    area += weight * other.area;
+  void add(const Share& other) {
+    for (std::size_t c = 0; c < 3; ++c) force[c] += other.force[c];
+    area += other.area;
   }
 };
 
@@ -38,9 +39,23 @@ Nodes nodes_of(const Experiment& experiment, int field, const std::vector<Contac
     std::array<int, 3> at{};
     for (std::size_t c = 0; c < static_cast<std::size_t>(experiment.dimension); ++c)
       at[c] = counted(experiment, c, node.node[c]);
-    nodes[at].add(1, given);
+    nodes[at].add(given);
   }
   return nodes;
+}
+
+/// The sum over the nodes from `first` on, `count` along each axis.
+Share sum_of(const Experiment& experiment, const Nodes& nodes, const std::array<int, 3>& first, int count) {
+  Share sum;
+  const int depth = experiment.dimension == 3 ? count : 1;
+  for (int k = 0; k < depth; ++k)
+    for (int j = 0; j < count; ++j)
+      for (int i = 0; i < count; ++i) {
+        std::array<int, 3> at{first[0] + i, first[1] + j, first[2] + k};
+        for (std::size_t c = 0; c < 3; ++c) at[c] = counted(experiment, c, at[c]);
+        if (const auto found = nodes.find(at); found != nodes.end()) sum.add(found->second);
+      }
+  return sum;
 }
 
 }  // namespace
@@ -52,19 +67,15 @@ std::vector<double> contact_traction(const Experiment& experiment, int body, con
   std::vector<double> traction(3 * count);
   const Nodes touching = nodes_of(experiment, experiment.bodies[static_cast<std::size_t>(body)].field, nodes);
   for (std::size_t p = 0; p < count && !touching.empty(); ++p) {
-    Share sum;
-    for (unsigned corner = 0; corner < 1U << D; ++corner) {
-      std::array<int, 3> at{};
-      double weight = 1;
-      for (std::size_t c = 0; c < D; ++c) {
-        const double x = (state.position[p * D + c] - experiment.grid.lower[c]) / experiment.grid.cell_size;
-        const bool above = (corner >> c & 1) != 0;
-        at[c] = counted(experiment, c, static_cast<int>(std::floor(x)) + (above ? 1 : 0));
-        weight *= above ? x - std::floor(x) : 1 - (x - std::floor(x));
-      }
-      if (const auto found = touching.find(at); found != touching.end()) sum.add(weight, found->second);
+    std::array<int, 3> cell{}, around{};
+    for (std::size_t c = 0; c < D; ++c) {
+      const double x = (state.position[p * D + c] - experiment.grid.lower[c]) / experiment.grid.cell_size;
+      cell[c] = static_cast<int>(std::floor(x));
+      around[c] = static_cast<int>(std::floor(x + 0.5)) - traction_reach;
     }
-    for (std::size_t c = 0; c < 3 && sum.area > 0; ++c) traction[3 * p + c] = sum.force[c] / sum.area;
+    if (!(sum_of(experiment, touching, cell, 2).area > 0)) continue;
+    const Share sum = sum_of(experiment, touching, around, 2 * traction_reach + 1);
+    for (std::size_t c = 0; c < 3; ++c) traction[3 * p + c] = sum.force[c] / sum.area;
   }
   return traction;
 }

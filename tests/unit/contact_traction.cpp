@@ -61,10 +61,14 @@ TEST_CASE(
   for (const double none : contact_traction(experiment, 0, low, {})) CHECK(none == 0);
 }
 
-TEST_CASE("between two nodes of unlike traction a particle has their mean by area and distance") {
+TEST_CASE("a particle has the mean by area of the nodes up to two cells around") {
   const Experiment experiment = two_bodies();
-  const std::vector<ContactNode> nodes{node(9, 5, 0.1, {0, -100, 0}), node(0, 5, 0.3, {0, -900, 0})};
-  // A quarter of the last cell lies between the particle and node 9; node 0 is the image at the cell's other side.
-  const std::vector<double> found = contact_traction(experiment, 0, at({0.425, 0.5}), nodes);
-  CHECK(found[1] == Approx(-(0.75 * 0.1 * 100 + 0.25 * 0.3 * 900) / (0.75 * 0.1 + 0.25 * 0.3)));
+  std::vector<ContactNode> nodes{node(9, 5, 0.1, {0, -100, 0}), node(0, 5, 0.3, {0, -900, 0}),
+                                 node(1, 7, 0.2, {0, -40, 0})};
+  // In the last cell of the periodic axis, nearer to node 9: node 0 is the image at the cell's other side, 1 lies two away.
+  const BodyState particle = at({0.425, 0.5});
+  const double expected = -(0.1 * 100 + 0.3 * 900 + 0.2 * 40) / (0.1 + 0.3 + 0.2);
+  CHECK(contact_traction(experiment, 0, particle, nodes)[1] == Approx(expected));
+  nodes.push_back(node(2, 5, 7, {0, -1e9, 0}));  // three away
+  CHECK(contact_traction(experiment, 0, particle, nodes)[1] == Approx(expected));
 }
