@@ -29,6 +29,7 @@ ContactNode node(int i, int j, double area, const Vector3& traction, int status 
   ContactNode made;
   made.node = {i, j, 0}, made.a = 0, made.b = 1, made.area = area, made.status = status;
   for (std::size_t c = 0; c < 3; ++c) made.force[c] = area * traction[c];
+  made.separation = status == MPM_APART ? 0.011 : -0.001;
   return made;
 }
 
