@@ -278,11 +278,15 @@ const std::vector<Sentence>& study_sentences() {
     all.push_back({plates, "the mean at 500 m/s is off by # %", column(behind, {"bspline_quadratic-500_m_s-c_h"})});
     const std::string beam = "cantilever_loads", sags = "error of the sag of the end (%)",
                       reach = "error of the reach of the end (%)";
-    for (const std::string shape : {"cpdi", "bspline_cubic", "bspline_quadratic", "gimp"}) {
+    const std::vector<std::array<std::string, 2>> shapes{{"CPDI", "cpdi"},
+                                                         {"cubic B-spline", "bspline_cubic"},
+                                                         {"quadratic B-spline", "bspline_quadratic"},
+                                                         {"GIMP", "gimp"}};
+    for (const auto& [words, shape] : shapes) {
       std::vector<std::string> runs;
       for (const char* load : {"1", "2", "5"})
         for (const char* cells : {"2", "4"}) runs.push_back(shape + "-" + cells + "_cells_across-" + load);
-      all.push_back({beam, "| `" + shape + "` | # % | # % | # % | # % | # % | # % |", column(sags, runs)});
+      all.push_back({beam, "| " + words + " | # % | # % | # % | # % | # % | # % |", column(sags, runs)});
     }
     all.push_back({beam,
                    "the end's reach is # % too short on 4 cells, with CPDI # %",
