@@ -504,6 +504,14 @@ TEST_CASE("every scene of papers comes to its exact numbers, and to those that t
   }
 }
 
+TEST_CASE("a column of fluid on linear shapes stops, as the page of papers says", "[papers]") {
+  const Folder folder;
+  const Result result = call(folder, {"run", (root / "experiments/papers/hydrostatic_column.json").string(), "--out",
+                                      "run", "--set", "/shape/type=linear"});
+  CHECK(result.code == 3);
+  CHECK(has(result.err, "its deformation is no longer finite"));
+}
+
 TEST_CASE("a drop of rows of particles begins too large, as the page of papers says", "[papers]") {
   const Folder folder;
   const Result result = call(folder, {"run", (root / "experiments/papers/elliptical_drop.json").string(), "--out",
