@@ -407,7 +407,7 @@ std::vector<std::pair<std::string, std::vector<double>>> exact_sentences() {
           {"at 120, 150 and 180 MPa up to #, # and # mm",
            {1000 * Tube(120e6).radius, 1000 * Tube(150e6).radius, 1000 * Tube(180e6).radius}},
           {"At # MPa it flows as a whole", {480 / std::sqrt(3.0) * std::log(2.0)}},
-          {"where # MPa are exact, and", {1e-6 * Tube(150e6).hoop}},
+          {"where # MPa are exact,", {1e-6 * Tube(150e6).hoop}},
           {"where # µm are exact", {1e6 * Tube(150e6).displacement}}};
 }
 
@@ -427,9 +427,7 @@ TEST_CASE("every number on the page of papers is read by a test or given by the 
       {"a column of 50 m, E = 1 MPa, ν = 0, Hencky", "the weight grows over 12 s", "σ = −800 Pa/m (50 m − Y)",
        "That of what began at 10 m,", "radius 1 m", "at 1.5 s, from the mean", "with sound at 20 m/s",
        // the cantilever and the tube
-       "(K. E. Bisshopp & D. C. Drucker 1945, Large deflection of cantilever beams, Quart. Appl. Math. 3:272; numbers "
-       "in K. "
-       "Mattiasson 1981, Int. J. Numer. Meth. Engng 17:145)",
+       "Drucker 1945, Large deflection", "Appl. Math. 3:272", "Mattiasson 1981, ", "Engng 17:145)",
        "At P L²/EI = 1, 2 and 5", "a beam of rubber with H / L = 1/20 in plane", "sinks, on 2 and on 4 cells across",
        "| | load 1, 2 cells | 4 | load 2, 2 cells | 4 | load 5, 2 cells | 4 |",
        "comes near on 4 cells; what is left is that of a beam with H / L = 1/20", "At load 5 its sag",
