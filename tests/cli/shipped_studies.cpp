@@ -1,4 +1,4 @@
-// Every study in experiments/: the file is read, its first combination passes the checks of `mpm check`, and none of
+// Every study in experiments/studies and experiments/papers: the file is read, its first combination passes the checks of `mpm check`, and none of
 // the others is refused but for what the list of combinations names.
 
 #include "cli/program.hpp"
@@ -22,8 +22,9 @@ bool is_study(const fs::path& file) {
 
 std::vector<fs::path> shipped() {
   std::vector<fs::path> studies;
-  for (const auto& entry : fs::directory_iterator(root / "experiments/studies"))  // the extremes: extremes.cpp
-    if (entry.path().extension() == ".json" && is_study(entry.path())) studies.push_back(entry.path());
+  for (const char* folder : {"experiments/studies", "experiments/papers"})  // the extremes: extremes.cpp
+    for (const auto& entry : fs::directory_iterator(root / folder))
+      if (entry.path().extension() == ".json" && is_study(entry.path())) studies.push_back(entry.path());
   std::sort(studies.begin(), studies.end());
   return studies;
 }

@@ -1,0 +1,538 @@
+// docs/papers.md: its scenes of experiments/papers run and come to the exact numbers that they expect, these are the closed
+// forms' own, and what the page prints is what the runs say. Tables of studies are compared with figures/papers/*_table.csv,
+// which [slow] runs of the studies bring forth again.
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "cli/program.hpp"
+#include "support/csv.hpp"
+#include "support/page.hpp"
+
+using namespace mpm::test;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+const fs::path root = MPM_SOURCE_DIR;
+
+/// The integral from a to b by Simpson's rule.
+template <typename Function>
+double integral(const Function& f, double a, double b) {
+  constexpr int n = 2000;
+  const double d = (b - a) / n;
+  double sum = f(a) + f(b);
+  for (int k = 1; k < n; ++k) sum += (k % 2 == 1 ? 4 : 2) * f(a + k * d);
+  return sum * d / 3;
+}
+
+// ---- Closed forms
+
+/// The stretch of a Hencky column (E = 1 MPa) under a stress, Pa: the root of E ln(l) / l = stress by Newton's method.
+double stretch_of(double stress) {
+  double l = 1;
+  for (int k = 0; k < 50; ++k) l -= (1e6 * std::log(l) / l - stress) / (1e6 * (1 - std::log(l)) / (l * l));
+  return l;
+}
+/// The height at rest of what began at Y of the column of 50 m that weighs 800 Pa/m, and of its centre of mass, m.
+double column_height(double Y) {
+  return integral([](double q) { return stretch_of(-800 * (50 - q)); }, 0, Y);
+}
+double column_centre() {
+  return integral([](double q) { return stretch_of(-800 * (50 - q)) * (50 - q); }, 0, 50) / 50;
+}
+
+/// The same of a fluid 2 m deep with J = (1 + n p / K)^(-1/n), p = 9810 Pa/m (2 m - Y); n = 1 is the linear law.
+double fluid_stretch(double Y, double K, double n) {
+  return std::pow(1 + n * 9810 * (2 - Y) / K, -1 / n);
+}
+double fluid_height(double Y, double K, double n) {
+  return integral([&](double q) { return fluid_stretch(q, K, n); }, 0, Y);
+}
+double fluid_centre(double K, double n) {
+  return integral([&](double q) { return fluid_stretch(q, K, n) * (2 - q); }, 0, 2) / 2;
+}
+
+/// The longer semi-axis of the drop, m, by the Runge-Kutta method of fourth order.
+double drop_semi_axis(double time) {
+  using State = std::array<double, 2>;
+  const auto slope = [](const State& s) {
+    const double a2 = s[0] * s[0], b2 = 1 / a2;
+    return State{s[0] * s[1], s[1] * s[1] * (b2 - a2) / (a2 + b2)};
+  };
+  const auto along = [](State s, double by, const State& way) { return State{s[0] + by * way[0], s[1] + by * way[1]}; };
+  constexpr int n = 4000;
+  const double d = time / n;
+  State s{1, 1};
+  for (int k = 0; k < n; ++k) {
+    const State k1 = slope(s), k2 = slope(along(s, d / 2, k1)), k3 = slope(along(s, d / 2, k2)),
+                k4 = slope(along(s, d, k3));
+    for (int c = 0; c < 2; ++c) s[c] += d / 6 * (k1[c] + 2 * k2[c] + 2 * k3[c] + k4[c]);
+  }
+  return s[0];
+}
+
+/// u / U at the height y H and at the time t H^2 / nu.
+double couette(double y, double t) {
+  double u = y;
+  for (int m = 1; m < 200; ++m)
+    u += 2 / pi * (m % 2 ? -1 : 1) / m * std::exp(-m * m * pi * pi * t) * std::sin(m * pi * y);
+  return u;
+}
+double poiseuille(double y, double t) {
+  double u = 4 * y * (1 - y);
+  for (int m = 1; m < 200; m += 2)
+    u -= 32 / (pi * pi * pi) / (m * m * m) * std::exp(-m * m * pi * pi * t) * std::sin(m * pi * y);
+  return u;
+}
+
+/// The state behind a shock in copper.
+struct Shock {
+  explicit Shock(double u) : particle(u), speed(3940 + 1.489 * u), pressure(8930 * speed * u), ratio(1 - u / speed) {}
+  double particle, speed;  ///< m/s
+  double pressure;         ///< Pa
+  double ratio;            ///< J
+  /// The mean velocity of a plate of 10 mm after 1.5 us, m/s.
+  double mean() const { return particle * (1 - speed * 1.5e-6 / 0.01); }
+};
+
+/// How far a cantilever of length 1 sinks at its tip and, on the mean, along its last twentieth; load P L^2 / EI = k. It is
+/// the elastica theta'' = -k cos(theta) from the tip back to the clamp, shot for theta = 0 there.
+std::array<double, 2> sag(double k) {
+  constexpr int n = 2000;
+  constexpr double d = 1.0 / n;
+  using State = std::array<double, 3>;  // theta, theta', way across the beam, from the tip
+  const auto slope = [&](const State& s) { return State{s[1], -k * std::cos(s[0]), std::sin(s[0])}; };
+  const auto along = [](State s, double by, const State& way) {
+    for (int c = 0; c < 3; ++c) s[c] += by * way[c];
+    return s;
+  };
+  std::vector<double> ways;
+  const auto clamp = [&](double angle) {
+    State s{angle, 0, 0};
+    ways.assign(1, 0);
+    for (int step = 0; step < n; ++step) {
+      const State k1 = slope(s), k2 = slope(along(s, d / 2, k1)), k3 = slope(along(s, d / 2, k2)),
+                  k4 = slope(along(s, d, k3));
+      for (int c = 0; c < 3; ++c) s[c] += d / 6 * (k1[c] + 2 * k2[c] + 2 * k3[c] + k4[c]);
+      ways.push_back(s[2]);
+    }
+    return s[0];
+  };
+  double low = 0, high = pi / 2;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (clamp(middle) < 0 ? low : high) = middle;
+  }
+  clamp(low);
+  double mean = 0;
+  for (int step = 0; step < n / 20; ++step) mean += 10.0 / n * (ways[step] + ways[step + 1]);
+  return {ways.back(), ways.back() - mean};
+}
+
+/// Hill's tube: the radius up to which it flows, m, and at 0.19 m the hoop stress, Pa, and the displacement, m.
+struct Tube {
+  explicit Tube(double pressure) {
+    const double k = 240e6 / std::sqrt(3.0);
+    double low = 0.1, high = 0.2;
+    for (int i = 0; i < 80; ++i) {
+      radius = 0.5 * (low + high);
+      (2 * k * (std::log(radius / 0.1) + 0.5 * (1 - radius * radius / 0.04)) < pressure ? low : high) = radius;
+    }
+    const double mean = k * radius * radius / 0.04, turn = k * radius * radius / (0.19 * 0.19);
+    hoop = mean + turn;
+    displacement = 1.3 / 210e9 * 0.19 * (0.4 * mean + turn);
+  }
+  double radius, hoop, displacement;
+};
+
+// ---- What the page prints
+
+struct Number {
+  std::string where;  ///< of runs a pointer into summary.json, of studies "run: column"
+  double factor = 1;  ///< what it is multiplied by before it is printed
+};
+struct Sentence {
+  std::string from;  ///< name of the experiment or of the study
+  std::string text;  ///< with a # for each number
+  std::vector<Number> numbers;
+};
+
+/// Sentences whose numbers runs of single experiments print.
+const std::vector<Sentence>& run_sentences() {
+  static const std::vector<Sentence> list{
+      {"hydrostatic_column",
+       "are #, # and # Pa at three, two and one quarter of the depth",
+       {{"/probes/low/pressure/final"}, {"/probes/middle/pressure/final"}, {"/probes/high/pressure/final"}}},
+      {"hydrostatic_column", "the middle has sunk by # m", {{"/probes/middle/displacement_y/final", -1}}},
+      {"channel",
+       "has #, # and # U at a quarter, half and three quarters of the height",
+       {{"/probes/quarter/velocity_x/final", 10},
+        {"/probes/middle/velocity_x/final", 10},
+        {"/probes/three_quarters/velocity_x/final", 10}}},
+      {"plate_impact",
+       "has # GPa and the volume ratio # behind the shock",
+       {{"/probes/behind/pressure/final", 1e-9}, {"/probes/behind/volume_ratio/final"}}},
+      {"thick_cylinder", "has # MPa there", {{"/probes/outer/stress_zz/final", 1e-6}}},
+      {"thick_cylinder", "and a displacement of # µm", {{"/probes/outer/displacement_x/final", 1e6}}},
+  };
+  return list;
+}
+
+/// Numbers of one column of a study's table, run by run.
+std::vector<Number> column(const std::string& name, const std::vector<std::string>& runs) {
+  std::vector<Number> numbers;
+  for (const std::string& run : runs) numbers.push_back({run + ": " + name});
+  return numbers;
+}
+
+/// Sentences whose numbers studies print.
+const std::vector<Sentence>& study_sentences() {
+  static const std::vector<Sentence> list = [] {
+    std::vector<Sentence> all;
+    const std::string column_study = "self_weight_column_shapes";
+    for (const std::string cells : {"20", "40", "80", "160"}) {
+      std::vector<std::string> runs;
+      for (const char* shape : {"linear", "gimp", "gimp_contiguous", "cpdi", "bspline_quadratic", "bspline_cubic"})
+        runs.push_back(shape + ("-" + cells + "_cells"));
+      all.push_back({column_study, "| " + cells + " | # % | # % | # % | # % | # % | # % |",
+                     column("error of the settlement of the centre of mass (%)", runs)});
+    }
+    all.push_back(
+        {column_study, "ends with # times the exact stress on 160 cells; with CPDI with # times",
+         column("largest stress of a particle over that at the foot", {"linear-160_cells", "cpdi-160_cells"})});
+    all.push_back(
+        {column_study,
+         "is off by # % of the stress at the foot with CPDI on 160 cells, but by # % with `gimp` and # % with "
+         "quadratic B-splines",
+         column("error of the stress at 10 m over the stress at the foot (%)",
+                {"cpdi-160_cells", "gimp-160_cells", "bspline_quadratic-160_cells"})});
+    const std::string fluid = "hydrostatic_column_laws";
+    for (const std::string shape : {"gimp_contiguous", "cpdi", "bspline_cubic", "bspline_quadratic"})
+      all.push_back({fluid, "| `" + shape + "` | # % | # % | # % | # % |",
+                     column("error of the settlement of the centre of mass (%)",
+                            {"linear-" + shape + "-20_cells", "linear-" + shape + "-80_cells",
+                             "power_7-" + shape + "-20_cells", "power_7-" + shape + "-80_cells"})});
+    all.push_back(
+        {fluid, "it is off by #, # and # % on 20, 40 and 80 cells with quadratic B-splines; with CPDI by #, # and # %",
+         column("error of the pressure at half the depth (%)",
+                {"linear-bspline_quadratic-20_cells", "linear-bspline_quadratic-40_cells",
+                 "linear-bspline_quadratic-80_cells", "linear-cpdi-20_cells", "linear-cpdi-40_cells",
+                 "linear-cpdi-80_cells"})});
+    const std::string drop = "elliptical_drop_grids", a = "semi-axis a (m)", b = "semi-axis b (m)",
+                      error = "error of the semi-axis a (%)";
+    for (const std::string cells : {"10", "20", "40"}) {
+      const std::string apic = "apic-" + cells + "_cells_across-1.5_s: ",
+                        flip = "flip-" + cells + "_cells_across-1.5_s: ";
+      all.push_back({drop,
+                     "| " + cells + " | # m | # % | # m | # m | # % | # m |",
+                     {{apic + a}, {apic + error}, {apic + b}, {flip + a}, {flip + error}, {flip + b}}});
+    }
+    all.push_back({drop, "the energy falls by # % with APIC and by # % with FLIP on 40 cells",
+                   column("energy lost (%)", {"apic-40_cells_across-1.5_s", "flip-40_cells_across-1.5_s"})});
+    all.push_back({drop, "particles are cut by the rim, and begin with # m",
+                   column("semi-axis a at the start (m)", {"apic-20_cells_across-1.5_s"})});
+    const std::string grids = "channel_grids";
+    for (const std::string transfer : {"APIC", "FLIP"})
+      for (const std::string shape : {"gimp", "bspline_quadratic", "bspline_cubic"}) {
+        if (transfer == "FLIP" && shape == "bspline_cubic") continue;
+        std::vector<std::string> runs;
+        for (const std::string flow : {"Couette", "Poiseuille"})
+          for (const char* cells : {"8", "16", "32"})
+            runs.push_back(flow + (transfer == "APIC" ? "-apic-" : "-flip-") + shape + "-" + cells + "_cells");
+        all.push_back({grids, "| " + transfer + ", `" + shape + "` | # % | # % | # % | # % | # % | # % |",
+                       column("error of the velocity in the middle over U (%)", runs)});
+      }
+    const std::string times = "channel_times", middle = "velocity in the middle over U";
+    all.push_back({times, "Couette flow has # U in the middle with APIC and # U with FLIP",
+                   column(middle, {"Couette-apic-1", "Couette-flip-1"})});
+    all.push_back({times, "but Poiseuille flow # U with APIC and # U with FLIP",
+                   column(middle, {"Poiseuille-apic-1", "Poiseuille-flip-1"})});
+    const std::string plates = "plate_impact_speeds", fast = "error of the speed of the shock (%)",
+                      behind = "error of the pressure behind it (%)",
+                      excess = "excess of the largest pressure over the exact one (%)";
+    const std::vector<std::array<std::string, 3>> rows{{"500", "no viscosity", "no_bulk_viscosity"},
+                                                       {"500", "ρ c h", "c_h"},
+                                                       {"1000", "no viscosity", "no_bulk_viscosity"},
+                                                       {"1000", "ρ c h / 2", "c_h_2"},
+                                                       {"1000", "ρ c h", "c_h"},
+                                                       {"1000", "2 ρ c h", "2_c_h"},
+                                                       {"2000", "no viscosity", "no_bulk_viscosity"},
+                                                       {"2000", "ρ c h", "c_h"}};
+    for (const auto& [speed, viscosity, name] : rows) {
+      const std::string run = "bspline_cubic-" + speed + "_m_s-" + name + ": ";
+      all.push_back({plates,
+                     "| " + speed + " m/s, " + viscosity + " | # % | # % | # % |",
+                     {{run + fast}, {run + behind}, {run + excess}}});
+    }
+    all.push_back(
+        {plates, "with a bulk viscosity of ρ c h by # % at 1000 m/s", column(excess, {"bspline_cubic-1000_m_s-c_h"})});
+    all.push_back({plates, "at 2000 m/s the same one leaves # %", column(excess, {"bspline_cubic-2000_m_s-c_h"})});
+    all.push_back(
+        {plates, "the speed at 500 m/s is off by # % with 2 ρ c h", column(fast, {"bspline_cubic-500_m_s-2_c_h"})});
+    all.push_back(
+        {plates,
+         "the mean over a cut is off by # %, but a particle has # % too much; at 2000 m/s # %",
+         {{"cpdi-1000_m_s-c_h: " + behind}, {"cpdi-1000_m_s-c_h: " + excess}, {"cpdi-2000_m_s-c_h: " + excess}}});
+    all.push_back({plates, "the mean at 500 m/s is off by # %", column(behind, {"bspline_quadratic-500_m_s-c_h"})});
+    const std::string beam = "cantilever_loads", sags = "error of the sag of the end (%)",
+                      reach = "error of the reach of the end (%)";
+    const std::vector<std::array<std::string, 2>> shapes{{"CPDI", "cpdi"},
+                                                         {"cubic B-spline", "bspline_cubic"},
+                                                         {"quadratic B-spline", "bspline_quadratic"},
+                                                         {"GIMP", "gimp"}};
+    for (const auto& [words, shape] : shapes) {
+      std::vector<std::string> runs;
+      for (const char* load : {"1", "2", "5"})
+        for (const char* cells : {"2", "4"}) runs.push_back(shape + "-" + cells + "_cells_across-" + load);
+      all.push_back({beam, "| " + words + " | # % | # % | # % | # % | # % | # % |", column(sags, runs)});
+    }
+    all.push_back({beam,
+                   "the end's reach is # % too short on 4 cells, with CPDI # %",
+                   {{"gimp-4_cells_across-5: " + reach, -1}, {"cpdi-4_cells_across-5: " + reach, -1}}});
+    const std::vector<std::array<std::string, 2>> steels{{"E = 210 GPa, ν = 0.3", "E_210_GPa_0.3"},
+                                                         {"E = 210 GPa, ν = 0.49", "E_210_GPa_0.49"},
+                                                         {"E = 2100 GPa, ν = 0.49", "E_2100_GPa_0.49"}};
+    for (const auto& [steel, name] : steels) {
+      std::vector<std::string> runs;
+      for (const char* pressure : {"120", "150", "180"})
+        for (const char* cells : {"10", "20"}) runs.push_back(name + "-" + pressure + "-" + cells + "_cells");
+      all.push_back({"thick_cylinder_pressures", "| " + steel + " | # % | # % | # % | # % | # % | # % |",
+                     column("error of the radius of the plastic zone (%)", runs)});
+    }
+    return all;
+  }();
+  return list;
+}
+
+/// The number of a study's table.
+double in_table(const fs::path& file, const std::string& where) {
+  const auto cells = mpm::support::read_csv_cells(file);
+  const std::size_t colon = where.find(": ");
+  const auto& head = cells.at(0);
+  const auto at = std::find(head.begin(), head.end(), where.substr(colon + 2));
+  if (at == head.end()) throw std::runtime_error(file.string() + " has no column " + where);
+  for (const auto& row : cells)
+    if (row.at(0) == where.substr(0, colon)) return std::stod(row.at(static_cast<std::size_t>(at - head.begin())));
+  throw std::runtime_error(file.string() + " has no run " + where);
+}
+
+const std::string volume_ratios = "stays between # and #;", small_errors = "it is below # % from 20 cells on",
+                  fitted = "rows of the particles' own lattice make a drop of # m on 20 cells",
+                  whole_page = "semi-axis right to # % on 20 cells", bends = "CPDI bends right to # %;",
+                  flows = "the plastic zone is right to # % at 150 MPa";
+
+const Page& page() {
+  static const Page page("docs/papers.md");
+  return page;
+}
+
+fs::path table_of(const std::string& study) {
+  return root / "figures/papers" / (study + "_table.csv");
+}
+
+void compare_with_table(const Sentence& sentence, const fs::path& table) {
+  INFO(sentence.text);
+  const auto printed = page().read(sentence.text);
+  REQUIRE(printed.size() == sentence.numbers.size());
+  for (std::size_t k = 0; k < printed.size(); ++k) {
+    INFO(sentence.numbers[k].where);
+    CHECK(in_table(table, sentence.numbers[k].where) * sentence.numbers[k].factor == printed[k].rounded());
+  }
+}
+
+Json experiment(const std::string& name) {
+  return Json::parse(slurp(root / "experiments/papers" / (name + ".json")), nullptr, true, true);
+}
+
+/// What the experiment expects of a metric.
+double expected(const std::string& name, const std::string& metric) {
+  const Json file = experiment(name);
+  for (const Json& row : file["compare"]["expect"])
+    if (row["metric"] == metric) return row["equals"];
+  throw std::runtime_error(name + " expects nothing of " + metric);
+}
+
+}  // namespace
+
+TEST_CASE("scenes of papers expect what closed forms say", "[papers]") {
+  const std::string column = "self_weight_column", fluid = "hydrostatic_column", drop = "elliptical_drop",
+                    channel = "channel", plates = "plate_impact";
+  CHECK(expected(column, "centre_of_mass.final.y") == Approx(column_centre()).epsilon(0).margin(1e-7));
+  CHECK(expected(column, "probes.began_at_10_m.displacement_y.final") ==
+        Approx(column_height(10) - 10).epsilon(0).margin(1e-8));
+  CHECK(expected(fluid, "centre_of_mass.final.y") == Approx(fluid_centre(2e5, 1)).epsilon(0).margin(1e-8));
+  CHECK(expected(fluid, "probes.middle.displacement_y.final") ==
+        Approx(fluid_height(1, 2e5, 1) - 1).epsilon(0).margin(1e-8));
+  const double a = drop_semi_axis(1.5);
+  CHECK(expected(drop, "groups.right.centre_of_mass_x.final") == Approx(4 * a / (3 * pi)).epsilon(0).margin(1e-8));
+  CHECK(expected(drop, "groups.upper.centre_of_mass_y.final") == Approx(4 / a / (3 * pi)).epsilon(0).margin(1e-8));
+  CHECK(expected(channel, "probes.quarter.velocity_x.final") ==
+        Approx(0.1 * couette(0.25, 0.1)).epsilon(0).margin(5e-8));
+  CHECK(expected(channel, "probes.middle.velocity_x.final") == Approx(0.1 * couette(0.5, 0.1)).epsilon(0).margin(5e-8));
+  CHECK(expected(channel, "probes.three_quarters.velocity_x.final") ==
+        Approx(0.1 * couette(0.75, 0.1)).epsilon(0).margin(5e-8));
+  const Shock shock(500);
+  CHECK(expected(plates, "probes.behind.pressure.final") == Approx(shock.pressure).epsilon(1e-6));
+  CHECK(expected(plates, "probes.behind.volume_ratio.final") == Approx(shock.ratio).epsilon(1e-6));
+  CHECK(expected(plates, "bodies.left.velocity_x.final") == Approx(shock.mean()).epsilon(1e-6));
+  const Tube tube_at_150(150e6);
+  CHECK(expected("thick_cylinder", "probes.outer.stress_zz.final") == Approx(tube_at_150.hoop).epsilon(1e-6));
+  CHECK(expected("thick_cylinder", "probes.outer.displacement_x.final") ==
+        Approx(tube_at_150.displacement).epsilon(1e-6));
+}
+
+namespace {
+
+/// Sentences whose numbers closed forms give.
+std::vector<std::pair<std::string, std::vector<double>>> exact_sentences() {
+  const double a = drop_semi_axis(1.5);
+  const Shock shock(500);
+  return {{"which is exactly # m:", {25 - column_centre()}},
+          {"which comes to # m and bears 32 kPa", {column_height(10)}},
+          {"For p = K (1/J − 1) a column of H = 2 m with K = 200 kPa has the height # m", {fluid_height(2, 2e5, 1)}},
+          {"for p = K/7 (J⁻⁷ − 1) with K = 420 kPa # m", {fluid_height(2, 4.2e5, 7)}},
+          {"where #, # and # Pa are exact", {14715, 9810, 4905}},
+          {", exactly # m.", {1 - fluid_height(1, 2e5, 1)}},
+          {"a = # m at 1.5 s", {a}},
+          {"| exact | # m | | # m | # m | | # m |", {a, 1 / a, a, 1 / a}},
+          {"where #, # and # U are exact", {couette(0.25, 0.1), couette(0.5, 0.1), couette(0.75, 0.1)}},
+          {"(exactly # U),", {couette(0.5, 1)}},
+          {"(exactly # U): APIC", {poiseuille(0.5, 1)}},
+          {"shocks of U_s = # m/s", {shock.speed}},
+          {"pressure is ρ U_s u_p = # GPa and the volume ratio #.", {1e-9 * shock.pressure, shock.ratio}},
+          {"its tip sinks by #, # and # L", {sag(1)[0], sag(2)[0], sag(5)[0]}},
+          {"its last twentieth on the mean by #, # and # L.", {sag(1)[1], sag(2)[1], sag(5)[1]}},
+          {"at 120, 150 and 180 MPa up to #, # and # mm",
+           {1000 * Tube(120e6).radius, 1000 * Tube(150e6).radius, 1000 * Tube(180e6).radius}},
+          {"At # MPa it flows as a whole", {480 / std::sqrt(3.0) * std::log(2.0)}},
+          {"where # MPa are exact,", {1e-6 * Tube(150e6).hoop}},
+          {"where # µm are exact", {1e6 * Tube(150e6).displacement}}};
+}
+
+}  // namespace
+
+TEST_CASE("every number on the page of papers is read by a test or given by the scene", "[papers][docs]") {
+  Page whole("docs/papers.md");
+  for (const auto* list : {&run_sentences(), &study_sentences()})
+    for (const Sentence& sentence : *list) whole.add_measured(sentence.text);
+  for (const auto& [text, values] : exact_sentences()) whole.add_measured(text);
+  for (const std::string& text : {volume_ratios, small_errors, fitted, whole_page, bends, flows})
+    whole.add_measured(text);
+  whole.add_names({"(?:Augarde|Monaghan|Batchelor|Meyers|Murnaghan) [0-9]{4}", "139:102748", "110:399", "30:244",
+                   "ch. 4(?:.3)?", "H²/ν", "(?:20, )?[0-9]+ (?:and [0-9]+ )?cells", "(?:500|1000|2000) m/s",
+                   "(?:16|32|80) [|]", "law, [28]0"});
+  whole.add_given(
+      {"a column of 50 m, E = 1 MPa, ν = 0, Hencky", "the weight grows over 12 s", "σ = −800 Pa/m (50 m − Y)",
+       "That of what began at 10 m,", "radius 1 m", "at 1.5 s, from the mean", "with sound at 20 m/s",
+       // the cantilever and the tube
+       "Drucker 1945, Large deflection", "Appl. Math. 3:272", "Mattiasson 1981, ", "Engng 17:145)",
+       "At P L²/EI = 1, 2 and 5", "a beam of rubber with H / L = 1/20 in plane", "sinks, on 2 and on 4 cells across",
+       "| | load 1, 2 cells | 4 | load 2, 2 cells | 4 | load 5, 2 cells | 4 |",
+       "comes near on 4 cells; what is left is that of a beam with H / L = 1/20", "At load 5 its sag",
+       "| Bisshopp & Drucker 1945 |", "| Hill 1950 |", "(R. Hill 1950, ", "Owen 2008, ", "ch. 7.5.1)",
+       "radii 100 and 200 mm, Mises' yield stress 240 MPa", "With k = 240 MPa/√3", "p = 2 k (ln(c/a) + (1 − c²/b²)/2)",
+       "grows over 2 ms", "the hoop stress at 190 mm", "command, at 150 MPa, ",
+       "| | 120 MPa, 10 cells | 20 | 150 MPa, 10 cells | 20 | 180 MPa, 10 cells | 20 |",
+       "tube flows, on 10 and 20 cells"});
+  CHECK(whole.numbers_of_nobody() == std::vector<std::string>{});
+}
+
+TEST_CASE("the exact numbers on the page of papers are those of closed forms", "[papers][docs]") {
+  for (const auto& [text, values] : exact_sentences()) {
+    INFO(text);
+    const auto printed = page().read(text);
+    REQUIRE(printed.size() == values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) CHECK(values[k] == printed[k].rounded());
+  }
+}
+
+TEST_CASE("the tables on the page of papers are those of the studies", "[papers][docs]") {
+  for (const Sentence& sentence : study_sentences()) compare_with_table(sentence, table_of(sentence.from));
+  // "The volume ratio of every particle stays between 0.997 and 1.003."
+  const auto cells = mpm::support::read_csv_cells(table_of("elliptical_drop_grids"));
+  const auto range = page().read(volume_ratios);
+  for (std::size_t row = 1; row < cells.size(); ++row) {
+    const std::string run = cells[row][0];
+    CHECK(in_table(table_of("elliptical_drop_grids"), run + ": smallest volume ratio J") >
+          range[0].value - range[0].half_unit);
+    CHECK(in_table(table_of("elliptical_drop_grids"), run + ": largest volume ratio J") < range[1].value);
+    const double error = in_table(table_of("elliptical_drop_grids"), run + ": error of the semi-axis a (%)");
+    if (has(run, "apic") && !has(run, "-10_")) CHECK(error < page().read(small_errors)[0].value);
+    if (run == "apic-20_cells_across-1.5_s") CHECK(error == page().read(whole_page)[0].rounded());
+  }
+}
+
+TEST_CASE("bounds on the page of papers hold in the tables of its studies", "[papers][docs]") {
+  for (const char* load : {"1", "2", "5"})
+    for (const char* cells : {"2", "4"}) {
+      const std::string run = std::string("cpdi-") + cells + "_cells_across-" + load;
+      CHECK(in_table(table_of("cantilever_loads"), run + ": error of the sag of the end (%)") <
+            page().read(bends)[0].value);
+    }
+  for (const char* cells : {"10", "20"}) {
+    const std::string run = std::string("E_210_GPa_0.3-150-") + cells + "_cells";
+    CHECK(in_table(table_of("thick_cylinder_pressures"), run + ": error of the radius of the plastic zone (%)") ==
+          page().read(flows)[0].rounded());
+  }
+}
+
+TEST_CASE("every scene of papers comes to its exact numbers, and to those that the page prints", "[papers]") {
+  for (const std::string name :
+       {"self_weight_column", "hydrostatic_column", "elliptical_drop", "channel", "plate_impact", "thick_cylinder"}) {
+    INFO(name);
+    const Folder folder;
+    const Result result = call(folder, {"run", (root / "experiments/papers" / (name + ".json")).string(), "--out",
+                                        "run", "--threads", "1", "--set", "/output/frames=0"});
+    INFO(result.err);
+    CHECK(result.code == 0);
+    const Json summary = json_in(folder / "run/summary.json");
+    for (const Sentence& sentence : run_sentences()) {
+      if (sentence.from != name) continue;
+      INFO(sentence.text);
+      const auto printed = page().read(sentence.text);
+      REQUIRE(printed.size() == sentence.numbers.size());
+      for (std::size_t k = 0; k < printed.size(); ++k) {
+        const Number& number = sentence.numbers[k];
+        const double value = summary.at(Json::json_pointer(number.where));
+        CHECK(value * number.factor == printed[k].rounded());
+      }
+    }
+  }
+}
+
+TEST_CASE("a column of fluid on linear shapes stops, as the page of papers says", "[papers]") {
+  const Folder folder;
+  const Result result = call(folder, {"run", (root / "experiments/papers/hydrostatic_column.json").string(), "--out",
+                                      "run", "--set", "/shape/type=linear"});
+  CHECK(result.code == 3);
+  CHECK(has(result.err, "its deformation is no longer finite"));
+}
+
+TEST_CASE("a drop of rows of particles begins too large, as the page of papers says", "[papers]") {
+  const Folder folder;
+  const Result result = call(folder, {"run", (root / "experiments/papers/elliptical_drop.json").string(), "--out",
+                                      "run", "--set", "/bodies/0/seeding=fitted", "--set", "/output/frames=0", "--set",
+                                      "/solver/end_time=0.001", "--set", "/compare/expect=[]"});
+  INFO(result.err);
+  CHECK(result.code == 0);
+  const Json summary = json_in(folder / "run/summary.json");
+  const double centre = summary["groups"]["right"]["centre_of_mass_x"]["initial"];
+  CHECK(0.75 * pi * centre == page().read(fitted)[0].rounded());
+}
+
+TEST_CASE("studies of papers print the tables of the page", "[papers][slow]") {
+  for (const std::string study :
+       {"self_weight_column_shapes", "hydrostatic_column_laws", "elliptical_drop_grids", "channel_times",
+        "channel_grids", "plate_impact_speeds", "cantilever_loads", "thick_cylinder_pressures"}) {
+    INFO(study);
+    const Folder folder;
+    const Result result =
+        call(folder, {"study", (root / "experiments/papers" / (study + ".json")).string(), "--out", "study"});
+    INFO(result.err);
+    CHECK(result.code == 0);
+    for (const Sentence& sentence : study_sentences())
+      if (sentence.from == study) compare_with_table(sentence, folder / "study/table.csv");
+  }
+}
