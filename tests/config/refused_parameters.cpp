@@ -21,7 +21,7 @@ std::string refusal(const std::string& material, const std::string& cell_size, i
   const std::string text = R"J({ "dimension": )J" + std::to_string(dimension) + R"J(, "grid": {"cell_size": )J" +
                            cell_size + R"J(, "domain": )J" +
                            (flat ? "[[0, 0], [1, 1]], \"symmetry\": \"" + symmetry + "\"" : "[[0, 0, 0], [1, 1, 1]]") +
-                           R"J(}, "shape": "linear", "transfer": "apic",
+                           R"J(}, "shape": {"type": "linear"}, "transfer": {"type": "apic"},
     "materials": {"m": )J" +
                            material + R"J(},
     "bodies": [{"name": "b", "material": "m", "geometry": {"type": "box", )J" +
@@ -56,10 +56,10 @@ const std::string upright = R"J(, "poisson_ratio_axial": 0.42, "axis_x": 0, "axi
 TEST_CASE("cells on which damage would snap back are refused with the largest usable one", "[config]") {
   CHECK(refusal("{" + brittle + "}", "0.01") == "accepted");
   CHECK(refusal("{" + brittle + "}", "0.05") ==
-        "test.json:1:43: /grid/cell_size: material \"damage\" cannot have \"cell_size\" 0.05 m, at most 0.04 m: " +
+        "test.json:1:41: /grid/cell_size: material \"damage\" cannot have \"cell_size\" 0.05 m, at most 0.04 m: " +
             snaps_back);
   CHECK(refusal("{" + brittle + ", \"softening\": \"bilinear\"}", "\"25 mm\"") ==
-        "test.json:1:43: /grid/cell_size: material \"damage\" cannot have \"cell_size\" 0.025 m, at most 0.024 m: " +
+        "test.json:1:41: /grid/cell_size: material \"damage\" cannot have \"cell_size\" 0.025 m, at most 0.024 m: " +
             snaps_back);
   CHECK(refusal("{" + brittle + ", \"band_cells\": 2}", "0.03", 3).find("at most 0.02 m") != std::string::npos);
   // Of a value that is no cell size nothing more is said.
