@@ -433,6 +433,11 @@ TEST_CASE("a table of yield stresses passes through its points, and is refused w
   for (int k = 0; k < 8; ++k)
     CHECK(VonMisesTable::Constants<double>(six).hardening.yield_stress(strains[k]) ==
           Approx(stresses[k]).epsilon(1e-12));
+  // Its slopes: 20 in 0.01, as much again, 10 in 0.03, 5 in 0.05, none, 15 in 0.2, and none beyond the last point.
+  const double middles[] = {0.005, 0.015, 0.04, 0.07, 0.15, 0.3, 5}, slopes[] = {2000, 2000, 1e3 / 3, 100, 0, 75, 0};
+  for (int k = 0; k < 7; ++k)
+    CHECK(VonMisesTable::Constants<double>(six).hardening.flow(middles[k], 0.0).slope ==
+          Approx(slopes[k]).epsilon(1e-12));
   const auto refused = [](const VonMisesTable::Parameters& p) {
     const mpm_refusal refusal = VonMisesTable::refusal(p, {3, 0});
     return refusal.parameter ? std::string(refusal.parameter) : "";
