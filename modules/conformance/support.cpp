@@ -305,14 +305,14 @@ ParameterSample sample(const Plugin& plugin, int combination, bool defaults, Ran
 
 /// Moves values that the plugin refuses to the accepted side of their limits, well away from them.
 void accept(const Plugin& plugin, Random& random, ParameterSample& sample) {
-  constexpr int most = 8;
+  constexpr int most = 32;
   for (int k = 0; k < most; ++k) {
     const mpm_refusal refusal = refusal_of(plugin, sample);
     const int place = place_of(plugin, refusal);
     if (place < 0 || !std::isfinite(refusal.limit)) return;
     double& value = sample.block[static_cast<std::size_t>(place)];
     const bool towards_zero = value > refusal.limit ? refusal.limit > 0 : refusal.limit < 0;
-    value = refusal.limit * (towards_zero ? random.uniform(0.1, 0.5) : random.uniform(2, 10));
+    value = refusal.limit * (towards_zero ? random.uniform(0.1, 0.5) : random.uniform(1.1, 2));
     sample.text += std::string(" ") + refusal.parameter + "=" + std::to_string(value);
   }
 }

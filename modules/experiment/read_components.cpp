@@ -61,7 +61,8 @@ void refuse_parameters(const Component& component, const Fields& fields, mpm_ref
                      in_quotes(plugin.id()) + " cannot have " + in_quotes(name) + " " + quantity(value);
   if (std::isfinite(refusal.limit))
     text += std::string(", ") + (value > refusal.limit ? "at most " : "at least ") + quantity(refusal.limit);
-  const Node& place = !own ? cell_size : fields.given(declared->name) ? *fields.node(declared->name) : component_node;
+  const Node* in_component = own ? component_node.find(declared->name) : nullptr;
+  const Node& place = !own ? cell_size : in_component ? *in_component : component_node;
   context.problem(place, text + ": " + (refusal.why ? refusal.why : ""));
 }
 
@@ -203,6 +204,14 @@ void ExperimentReader::read_materials(const Node* node) {
     Chosen chosen = read_component(member.value, MPM_MATERIAL);
     std::optional<Thermal> thermal;
     if (chosen.fields) thermal = read_thermal(*chosen.fields, chosen.component, context_, chosen.resolved);
+    if (thermal && thermal->phase_change && thermal->phase_change->melted_parameters != chosen.component.parameters) {
+      Component melted = chosen.component;
+      melted.parameters = thermal->phase_change->melted_parameters;
+      refuse_parameters(melted, *chosen.fields,
+                        {static_cast<std::uint32_t>(context_.dimension), experiment_.axisymmetric()},
+                        nearest_node(root_, thermal->phase_change->pointer + "/melted"),
+                        nearest_node(root_, "/grid/cell_size"), context_);
+    }
     experiment_.materials.push_back({member.key, std::move(chosen.component), std::move(thermal)});
     resolved[member.key] = std::move(chosen.resolved);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// How the yield stress of a metal grows, shared by the plastic materials: linear, power law (Swift), Voce, Johnson-Cook; and
+// How the yield stress of a metal grows, shared by the plastic materials: linear, power law (Swift), Voce, a table, Johnson-Cook; and
 // the plastic strain of a step under a law that has no closed form.
 //
 // A law is a small struct of constants in the precision T. It gives `yield_stress(strain)`, the stress in Pa from which the
@@ -70,6 +70,31 @@ struct VoceHardening {
   MPM_HD FlowStress<S> flow(S strain, S) const {
     const S missing = saturation * exp(-(inverse_saturation_strain * strain));
     return {initial + (saturation - missing) + modulus * strain, inverse_saturation_strain * missing + modulus};
+  }
+  template <class S>
+  MPM_HD S yield_stress(S strain) const {
+    return flow(strain, strain).stress;
+  }
+};
+
+/// sigma along straight lines between points (alpha, sigma), from (0, sigma_0) on; beyond the last it stays. The points' strains
+/// grow, and their stresses do not fall.
+template <class T, int Points>
+struct TableHardening {
+  T initial;
+  T start[Points], width[Points],
+      modulus[Points];  ///< of each line: the strain it begins at, its length in strain, its slope
+
+  template <class S>
+  MPM_HD FlowStress<S> flow(S strain, S) const {
+    const S zero = S(real<S>(0));
+    FlowStress<S> r{S(initial), zero};
+    for (int k = 0; k < Points; ++k) {
+      const S along = strain - start[k];
+      r.stress = r.stress + modulus[k] * min(max(along, zero), S(width[k]));
+      r.slope = select(along < zero, r.slope, select(along < width[k], S(modulus[k]), zero));
+    }
+    return r;
   }
   template <class S>
   MPM_HD S yield_stress(S strain) const {

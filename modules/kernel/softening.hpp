@@ -101,7 +101,8 @@ struct BandSoftening {
   template <class S>
   MPM_HD S damage(const S& kappa) const {
     const S above = max(kappa, S(onset)), left = stress(above) / (young * above);
-    return max((real<S>(1) - left) / (real<S>(1) - coupling * left), S(real<S>(0)));
+    return select(kappa > onset, max((real<S>(1) - left) / (real<S>(1) - coupling * left), S(real<S>(0))),
+                  S(real<S>(0)));
   }
 
   /// The energy dissipated, J/m^3, while kappa grows from `before` to `after`, both from the onset on: what the area

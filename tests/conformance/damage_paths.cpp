@@ -228,6 +228,16 @@ TEST_CASE("damage: begins where the largest principal stress is the strength, an
   begins_at(twice, twice, -2 * poisson / (1 - poisson) * twice);
 }
 
+TEST_CASE("damage: no rounding damages what stays below the strength") {
+  for (int k = 0; k < 2000; ++k) {
+    const double ft = strength * (0.5 + 1e-3 * k);
+    Particle particle({young, poisson, 2400, ft, toughness, k % 3 + 0.0, 1, 0.01});
+    particle.pull_to(0.999 * ft / young, 0.999 * ft, 1);
+    if (particle.state.damage != 0) FAIL("ft = " << ft << ", damage " << particle.state.damage);
+    if (particle.heat != 0) FAIL("ft = " << ft << ", heat " << particle.heat);
+  }
+}
+
 TEST_CASE("damage: what it leaves of a strain is that of a solid without tension, of the least energy") {
   std::mt19937 numbers(3);
   const auto entry = [&] { return std::ldexp(static_cast<double>(numbers()), -31) - 1; };
@@ -278,6 +288,6 @@ TEST_CASE("damage: what softening dissipates is the integral of the degraded ene
       CHECK(band.dissipated(1e-4, 3e-3) + band.dissipated(3e-3, 7.1e-3) ==
             Approx(band.dissipated(1e-4, 7.1e-3)).epsilon(1e-12));
       CHECK(band.dissipated(3e-3, 3e-3) == 0);
-      CHECK(band.damage(0.99e-4) == 0);
+      for (const double below : {0.0, 0.99e-4, 0.999999e-4}) CHECK(band.damage(below) == 0);
     }
 }

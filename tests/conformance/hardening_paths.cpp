@@ -1,4 +1,4 @@
-// Metals that harden by a power law, by Voce's law and by Johnson & Cook's: flow curves, rates and temperatures against the
+// Metals that harden by a power law, by Voce's law, by a table and by Johnson & Cook's: flow curves, rates and temperatures against the
 // published formulas, which stand here once more, and the equation of a step against plain Newton. In uniaxial Kirchhoff
 // stress tau is the flow stress itself, at any strain.
 
@@ -9,6 +9,7 @@
 #include "materials/johnson_cook/johnson_cook.hpp"
 #include "materials/von_mises/von_mises.hpp"
 #include "materials/von_mises_power/von_mises_power.hpp"
+#include "materials/von_mises_table/von_mises_table.hpp"
 #include "materials/von_mises_voce/von_mises_voce.hpp"
 #include "support/catch.hpp"
 
@@ -25,6 +26,8 @@ using FlowCurve = std::function<double(double strain, double rate, double temper
 
 constexpr VonMisesPower::Parameters power{young, poisson, density, 100, 0.02, 0.2, 2};
 constexpr VonMisesVoce::Parameters voce{young, poisson, density, 100, 60, 0.05, 40, 2};
+constexpr VonMisesTable::Parameters table{young, poisson, density, 100, 0.02, 150, 0.1, 180, 0.3,
+                                          200,   0,       0,       0,   0,    0,   0,   2};
 /// OFHC copper and 4340 steel of the paper, MPa.
 constexpr JohnsonCook::Parameters copper{124e3, 0.34, density, 90, 292, 0.31, 0.025, 1, 1356, 1.09, room, 2};
 constexpr JohnsonCook::Parameters steel{young, 0.29, density, 792, 510, 0.26, 0.014, 1, 1793, 1.03, room, 2};
@@ -34,6 +37,12 @@ double power_curve(double strain, double, double) {
 }
 double voce_curve(double strain, double, double) {
   return 100 + 60 * (1 - std::exp(-strain / 0.05)) + 40 * strain;
+}
+double table_curve(double strain, double, double) {
+  return strain < 0.02  ? 100 + 2500 * strain
+         : strain < 0.1 ? 150 + 375 * (strain - 0.02)
+         : strain < 0.3 ? 180 + 100 * (strain - 0.1)
+                        : 200;
 }
 FlowCurve johnson_cook_curve(const JohnsonCook::Parameters& p) {
   return [p](double strain, double rate, double temperature) {
@@ -218,9 +227,10 @@ JohnsonCookStep<double, double> copper_step(double dt) {
 
 }  // namespace
 
-TEST_CASE("metals: the flow curves of power law, Voce and Johnson-Cook") {
+TEST_CASE("metals: the flow curves of power law, Voce, a table and Johnson-Cook") {
   check_flow_curve<VonMisesPower>(power, power_curve);
   check_flow_curve<VonMisesVoce>(voce, voce_curve);
+  check_flow_curve<VonMisesTable>(table, table_curve);
   check_flow_curve<JohnsonCook>(copper, johnson_cook_curve(copper));
   check_flow_curve<JohnsonCook>(steel, johnson_cook_curve(steel));
 }
@@ -257,6 +267,7 @@ TEST_CASE("Johnson-Cook: numbers of copper and 4340 steel, by a calculator") {
 TEST_CASE("metals: the stress stays on the yield surface to 1e-10") {
   check_consistency<VonMisesPower>(power, power_curve, room, 1e-3);
   check_consistency<VonMisesVoce>(voce, voce_curve, room, 1e-3);
+  check_consistency<VonMisesTable>(table, table_curve, room, 1e-3);
   for (const double temperature : {200.0, room, 900.0, 1350.0})
     for (const double dt : {1e-9, 1e-6, 1e-3, 1.0, 1e4})
       check_consistency<JohnsonCook>(copper, johnson_cook_curve(copper), temperature, dt);
@@ -265,6 +276,7 @@ TEST_CASE("metals: the stress stays on the yield surface to 1e-10") {
 TEST_CASE("metals: heat is the area under the flow curve, and hardening stores nothing") {
   check_heat<VonMisesPower>(power, [](double a) { return 100 * 0.02 / 1.2 * (std::pow(1 + a / 0.02, 1.2) - 1); });
   check_heat<VonMisesVoce>(voce, [](double a) { return 160 * a - 60 * 0.05 * (1 - std::exp(-a / 0.05)) + 20 * a * a; });
+  check_heat<VonMisesTable>(table, [](double a) { return 2.5 + 13.2 + 180 * (a - 0.1) + 50 * (a - 0.1) * (a - 0.1); });
   check_heat<JohnsonCook>(copper, [](double a) { return 90 * a + 292 * std::pow(a, 1.31) / 1.31; });
 }
 
@@ -272,6 +284,10 @@ TEST_CASE("metals: where the laws are linear they are von_mises") {
   check_is_linear<VonMisesPower>(VonMisesPower::Parameters{young, poisson, density, 100, 0.1, 1, 2}, 100, 1000);
   check_is_linear<VonMisesPower>(VonMisesPower::Parameters{young, poisson, density, 100, 0.1, 0, 2}, 100, 0);
   check_is_linear<VonMisesVoce>(VonMisesVoce::Parameters{young, poisson, density, 100, 0, 0.1, 700, 2}, 100, 700);
+  check_is_linear<VonMisesTable>(
+      VonMisesTable::Parameters{young, poisson, density, 100, 5, 3600, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2}, 100, 700);
+  check_is_linear<VonMisesTable>(
+      VonMisesTable::Parameters{young, poisson, density, 100, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2}, 100, 0);
   JohnsonCook::Parameters plain{young, poisson, density, 100, 500, 1, 0, 1, 1500, 1, room, 2};
   check_is_linear<JohnsonCook>(plain, 100, 500);
   plain.hardening_coefficient = 0;
@@ -321,6 +337,7 @@ TEST_CASE("metals: the slope of a law is the derivative of its stress by the pla
   check(LinearHardening<double>{100, 30});
   check(VonMisesPower::Constants<double>(power).hardening);
   check(VonMisesVoce::Constants<double>(voce).hardening);
+  check(VonMisesTable::Constants<double>(table).hardening);
   for (const double dt : {1e-7, 0.3, 1e5})  // no rate is the reference rate, where the law turns
     for (const double temperature : {room, 700.0})
       check(JohnsonCookStep<double, double>(JohnsonCook::Constants<double>(steel).hardening, temperature, dt));
@@ -339,6 +356,7 @@ void check_return(const Parameters& parameters, const FlowCurve& curve) {
 TEST_CASE("metals: states beyond the yield surface return to it without strain or time") {
   check_return<VonMisesPower>(power, power_curve);
   check_return<VonMisesVoce>(voce, voce_curve);
+  check_return<VonMisesTable>(table, table_curve);
 }
 
 /// A huge stretch in one step, volumes far from rest, steps of any length, a metal that has flowed by anything, in precision
@@ -384,6 +402,8 @@ TEST_CASE("metals: huge stretches, volumes, strains, and steps of any length") {
   check_extremes<float, VonMisesPower>(power, power_curve);
   check_extremes<double, VonMisesVoce>(voce, voce_curve);
   check_extremes<float, VonMisesVoce>(voce, voce_curve);
+  check_extremes<double, VonMisesTable>(table, table_curve);
+  check_extremes<float, VonMisesTable>(table, table_curve);
   check_extremes<double, JohnsonCook>(copper, johnson_cook_curve(copper));
   check_extremes<float, JohnsonCook>(copper, johnson_cook_curve(copper));
 }
@@ -403,4 +423,35 @@ TEST_CASE("Johnson-Cook: molten metal has no strength, and cold metal no more th
   cold.warm_to(4);
   for (int k = 0; k < 50; ++k) cold.pull(1e-3), at_room.pull(1e-3);
   CHECK(cold.stress()(0, 0) == at_room.stress()(0, 0));
+}
+
+TEST_CASE("a table of yield stresses passes through its points, and is refused where it turns back or softens") {
+  VonMisesTable::Parameters six{young, poisson, density, 100, 0.01, 120, 0.02, 140, 0.05,
+                                150,   0.1,     155,     0.2, 155,  0.4, 170,  2};
+  const double strains[] = {0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 5},
+               stresses[] = {100, 120, 140, 150, 155, 155, 170, 170};
+  for (int k = 0; k < 8; ++k)
+    CHECK(VonMisesTable::Constants<double>(six).hardening.yield_stress(strains[k]) ==
+          Approx(stresses[k]).epsilon(1e-12));
+  // Its slopes: 20 in 0.01, as much again, 10 in 0.03, 5 in 0.05, none, 15 in 0.2, and none beyond the last point.
+  const double middles[] = {0.005, 0.015, 0.04, 0.07, 0.15, 0.3, 5}, slopes[] = {2000, 2000, 1e3 / 3, 100, 0, 75, 0};
+  for (int k = 0; k < 7; ++k)
+    CHECK(VonMisesTable::Constants<double>(six).hardening.flow(middles[k], 0.0).slope ==
+          Approx(slopes[k]).epsilon(1e-12));
+  const auto refused = [](const VonMisesTable::Parameters& p) {
+    const mpm_refusal refusal = VonMisesTable::refusal(p, {3, 0});
+    return refusal.parameter ? std::string(refusal.parameter) : "";
+  };
+  CHECK(refused(six).empty());
+  CHECK(refused(table).empty());
+  six.strain_3 = 0.02;
+  CHECK(refused(six) == "strain_3");
+  CHECK(VonMisesTable::refusal(six, {3, 0}).limit == 0.02);
+  six.strain_3 = 0.05, six.stress_5 = 154;
+  CHECK(refused(six) == "stress_5");
+  CHECK(VonMisesTable::refusal(six, {3, 0}).limit == 155);
+  six.stress_5 = 155, six.stress_1 = 99;
+  CHECK(refused(six) == "stress_1");
+  six.strain_1 = 0;  // no points at all
+  CHECK(refused(six).empty());
 }

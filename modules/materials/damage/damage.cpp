@@ -21,8 +21,9 @@ tension has a stress sigma(kappa) at kappa = ln s: E kappa up to `tensile_streng
     bilinear     lines to ft/3 where a crack is open by 0.8 Gc/ft, and to 0 at 3.6 Gc/ft (concrete)
 
 b = `band_cells` times the cell size is the width of the band in which strain localises. The area below sigma(kappa) is Gc/b, so
-that a crack through a bar dissipates Gc = `fracture_energy` a unit of area on any grid. It is one cell for linear shapes; smoother
-ones spread a band over more. A band that crosses the cells askew is wider than a cell: b does not know it.
+that a crack through a bar dissipates Gc = `fracture_energy` a unit of area on any grid. It is one cell for linear shapes and two for
+quadratic B-splines: bars that crack along the cells then dissipate Gc, and 1.02 to 1.04 Gc. A band that crosses the cells askew is wider: b
+does not know it.
 
 A band may not be so wide that it holds more elastic energy at its strength than its crack dissipates (snap-back): b < 2 E Gc/ft^2,
 for `bilinear` b < 1.2 E Gc/ft^2. An experiment with larger cells is refused, with the largest usable size.
