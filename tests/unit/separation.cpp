@@ -146,6 +146,45 @@ TEST_CASE("rows of particles have the normal across them, at the end of a block 
     }
 }
 
+// Rounding keeps the iteration from ending by its bound: that a corner comes again ends it.
+TEST_CASE("a gap of a hundred-thousandth has its plane too", "[separation]") {
+  std::mt19937 random(10);
+  for (const int dimension : {2, 3})
+    for (int scene = 0; scene < 200; ++scene) {
+      const Vector3 between = direction(random, dimension);
+      const Clouds clouds = beside_plane(random, dimension, between, 1e-5, 10);
+      const Plane found = clouds.plane(dimension);
+      REQUIRE(found.found);
+      CHECK(found.gap >= clouds.gap(between) * (1 - 1e-9));
+    }
+}
+
+TEST_CASE("the plane is the same in any unit of length", "[separation]") {
+  std::mt19937 random(11);
+  for (const int dimension : {2, 3})
+    for (const double apart : {0.5, 1e-3})
+      for (const double unit : {0x1p-30, 0x1p30}) {
+        const Clouds clouds = beside_plane(random, dimension, direction(random, dimension), apart, 20);
+        Clouds scaled = clouds;
+        for (std::vector<Vector3>* cloud : {&scaled.a, &scaled.b})
+          for (Vector3& x : *cloud)
+            for (double& component : x) component *= unit;
+        const Plane one = clouds.plane(dimension), other = scaled.plane(dimension);
+        REQUIRE((one.found && other.found));
+        CHECK(one.normal == other.normal);
+      }
+}
+
+TEST_CASE("of places equally far along a direction the first counts, in whichever lanes they are", "[separation]") {
+  for (const int other : {4, 5, 8, 9, 14, 15}) {
+    std::vector<Vector3> places(16, {0, 0, 0});
+    places[3] = {1, -1, 0}, places[static_cast<std::size_t>(other)] = {1, 1, 0};
+    const Row row(places);
+    const WidestGap::Cloud cloud{row.places.data(), 16, row.stride};
+    CHECK(cloud.farthest({1, 0, 0})[1] == -1);
+  }
+}
+
 TEST_CASE("clouds that mix have no plane", "[separation]") {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> place(-1, 1);
