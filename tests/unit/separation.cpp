@@ -146,17 +146,21 @@ TEST_CASE("rows of particles have the normal across them, at the end of a block 
     }
 }
 
-// Rounding keeps the iteration from ending by its bound: that a corner comes again ends it.
-TEST_CASE("a gap of a hundred-thousandth has its plane too", "[separation]") {
-  std::mt19937 random(10);
-  for (const int dimension : {2, 3})
-    for (int scene = 0; scene < 200; ++scene) {
-      const Vector3 between = direction(random, dimension);
-      const Clouds clouds = beside_plane(random, dimension, between, 1e-5, 10);
-      const Plane found = clouds.plane(dimension);
-      REQUIRE(found.found);
-      CHECK(found.gap >= clouds.gap(between) * (1 - 1e-9));
-    }
+// The first two places that are looked at lie close beside each other; that the clouds are wide is found later.
+TEST_CASE("clouds closer than a millionth of the farthest places that are compared count as meeting", "[separation]") {
+  const auto clouds = [](double apart) {
+    return Clouds{{{0, 0, 0}, {-1000, 2100, 0}}, {{apart, apart / 2, 0}, {2000, 2100 - apart / 2, 0}}};
+  };
+  CHECK_FALSE(clouds(1e-3).plane(2).found);
+  CHECK(clouds(1e-2).plane(2).found);
+}
+
+// The first guess is the corner at 1 along z or y, and the next differs from it in this coordinate alone.
+TEST_CASE("a place that differs from an earlier one in a single coordinate is another place", "[separation]") {
+  const Plane in_y = Clouds{{{0, 0, 0}}, {{1, 1, 0}, {1, -0.2, 0}, {10, -1, 0}}}.plane(2);
+  CHECK(in_y.normal[0] == Approx(1).epsilon(1e-12));
+  const Plane in_z = Clouds{{{0, 0, 0}}, {{1, 0, 1}, {1, 0, -0.2}, {10, 0, -1}}}.plane(3);
+  CHECK(in_z.normal[0] == Approx(1).epsilon(1e-12));
 }
 
 TEST_CASE("the plane is the same in any unit of length", "[separation]") {
