@@ -435,6 +435,7 @@ TEST_CASE("herschel_bulkley: below the yield stress its deviator is that of the 
   const Sym<3, double> tau = HerschelBulkley::kirchhoff_stress(paste.constants, paste.state);
   CHECK(tau(0, 0) - tau(2, 2) == Approx(factor * (1.1 * 1.1 - 1)).epsilon(1e-12));
   CHECK(tau(1, 1) - tau(2, 2) == Approx(factor * (1.2 * 1.2 - 1)).epsilon(1e-12));
+  for (int k = 3; k < 6; ++k) CHECK(tau.s[k] == 0);  // pressure acts on the normal ones alone
 }
 
 TEST_CASE("herschel_bulkley: a Bingham fluid that is held goes back to its yield stress with the time k/G") {
@@ -472,6 +473,19 @@ TEST_CASE("herschel_bulkley: one large step of a Bingham fluid ends on its line,
     const double expected = (trial + elastic / k * yield_stress) / (1 + elastic / k);
     const Sym<3, double> tau = HerschelBulkley::kirchhoff_stress(paste.constants, paste.state);
     CHECK(std::sqrt(squared_norm(deviator(tau)) / 2) == Approx(expected).epsilon(1e-12));
+    // The heat is 1 - share times the derivative by the share of the elastic energy 3/2 G (t - 1), det(share dev b + t) = 1.
+    const double share = expected / trial;
+    const auto stored = [&](double scale) {
+      double low = 0, high = 10;
+      for (int k = 0; k < 60; ++k) {
+        const double t = 0.5 * (low + high), xx = scale * (1 + square - of_trace / 3) + t, xy = scale * strain,
+                     rest = scale * (1 - of_trace / 3) + t;
+        (rest > 0 && (xx * rest - xy * xy) * rest > 1 ? high : low) = t;
+      }
+      return 1.5 * mud_modulus * (low - 1);
+    };
+    const double h = 1e-4, slope = (stored(share + h) - stored(share - h)) / (2 * h);
+    CHECK(paste.heat == Approx((1 - share) * slope).epsilon(1e-6));
   }
 }
 
