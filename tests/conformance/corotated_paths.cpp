@@ -148,8 +148,10 @@ TEST_CASE("corotated: stress turns with the particle, also around the axis of a 
   CHECK(after(0, 2) == Approx(c * before(0, 2) - s * before(1, 2)).epsilon(1e-11));
   CHECK(after(2, 2) == Approx(before(2, 2)).epsilon(1e-11));
   const Sym<3, double> space = kirchhoff(Mat3{{1.2, 0.3, 0, -0.1, 0.9, 0, 0, 0, 0.7}});
-  const auto ring =
-      Corotated::kirchhoff_stress(constants, Corotated::AxisymmetricState<double>{{{{1.2, 0.3, -0.1, 0.9}}, 0.7}});
+  const Corotated::AxisymmetricState<double> around{{{{1.2, 0.3, -0.1, 0.9}}, 0.7}};
+  CHECK(Corotated::stored_energy(constants, around) ==
+        Approx(energy(Mat3{{1.2, 0.3, 0, -0.1, 0.9, 0, 0, 0, 0.7}})).epsilon(1e-12));
+  const auto ring = Corotated::kirchhoff_stress(constants, around);
   for (int i = 0; i < 3; ++i) CHECK(ring.s[i] == Approx(space.s[i]).epsilon(1e-11));
   CHECK(ring(0, 1) == Approx(space(0, 1)).epsilon(1e-11));
 }
@@ -164,6 +166,18 @@ TEST_CASE("corotated: the wave along the largest stretch has the reported speed,
   CHECK(second_derivative(diagonal(s, s, s), {{0, 1, 0}}, {{1, 0, 0}}) == Approx(shear).epsilon(1e-5));
   CHECK(shear > (2 * mu + lambda) * s * s);
   CHECK(wave_modulus(diagonal(s, s, s)) >= shear);
+  // In the plane the largest stretch is that of the principal axes, however they and the particle are turned.
+  const auto turn = [](double angle) {
+    return Mat<2, double>{{std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle)}};
+  };
+  CHECK(wave_modulus(turn(0.4) * Mat<2, double>{{1.5, 0, 0, 0.8}} * turn(0.9)) ==
+        Approx((lambda + 2 * mu) * 1.5 * 1.5).epsilon(1e-12));
+  // The bound 2 mu s^2 + K s is attained where one stretch vanishes beside two of s, and is what is reported where all are s.
+  const auto bound = [](double largest, double sum) {
+    return 2 * mu * largest * largest + (lambda * (sum - 3) - 2 * mu) * largest;
+  };
+  CHECK(second_derivative(diagonal(1e-3, 20, 20), {{1, 0, 0}}, {{0, 1, 0}}) == Approx(bound(20, 40)).epsilon(1e-4));
+  CHECK(wave_modulus(diagonal(s, s, s)) == Approx(bound(s, 3 * s)).epsilon(1e-12));
   std::mt19937 numbers(5);
   const auto entry = [&] { return std::ldexp(static_cast<double>(numbers()), -31) - 1; };
   double fastest = 0;

@@ -245,6 +245,36 @@ TEST_CASE("fluids: without tension there is neither pressure nor energy where J 
   }
 }
 
+TEST_CASE("fluids: the change of volume of a step is det(I + dt L) - 1, in space, in the plane and around an axis") {
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> entry(-1, 1);
+  const double dt = 0.3;
+  for (int sample = 0; sample < 20; ++sample) {
+    Mat3 L;
+    for (double& e : L.m) e = entry(random);
+    const auto f = [&](int i, int j) { return (i == j ? 1 : 0) + dt * L(i, j); };
+    const double plane = f(0, 0) * f(1, 1) - f(0, 1) * f(1, 0);
+    const double space = f(0, 0) * (f(1, 1) * f(2, 2) - f(1, 2) * f(2, 1)) -
+                         f(0, 1) * (f(1, 0) * f(2, 2) - f(1, 2) * f(2, 0)) +
+                         f(0, 2) * (f(1, 0) * f(2, 1) - f(1, 1) * f(2, 0));
+    const Mat<2, double> flat{{L(0, 0), L(0, 1), L(1, 0), L(1, 1)}};
+    CHECK(volume_change(L, dt) == Approx(space - 1).margin(1e-14));
+    CHECK(volume_change(flat, dt) == Approx(plane - 1).margin(1e-14));
+    CHECK(volume_change(Deformation<2, double>{flat, L(2, 2)}, dt) == Approx(plane * f(2, 2) - 1).margin(1e-14));
+  }
+}
+
+TEST_CASE("fluids: exponentials and logarithms of small changes are those of the library to a few roundings") {
+  for (int k = -400; k <= 400; ++k) {
+    const double x = 0.00123 * k;
+    const long double change = std::expm1(static_cast<long double>(x));
+    CHECK(exponential_change(x) == Approx(static_cast<double>(change)).epsilon(1e-15));
+    CHECK(exponential_excess(x) == Approx(static_cast<double>(change - static_cast<long double>(x))).epsilon(1e-15));
+  }
+  for (const double x : {-0.9, -1e-3, 1e-9, 0.7, 33.3, 1e3 / 3, 1e5 / 3, 1e7 / 3})
+    CHECK(log_of_change(x) == Approx(std::log1p(x)).epsilon(1e-15));
+}
+
 TEST_CASE("newtonian_fluid: in simple shear the stress is mu times the rate, and the heat tau : D") {
   NewtonianFluid::Parameters p = water(linear);
   p.viscosity = 3;
@@ -340,6 +370,11 @@ TEST_CASE("newtonian_fluid: sound at rest, and the step that viscosity leaves") 
   const double nu = (4e5 / 3 + 1e4) / 1000, k = 2 * std::sqrt(3.0) / 0.01,
                dt = 0.01 / (std::sqrt(3.0) * Particle(p).speed());
   CHECK(nu * k * k * dt + 2.2e6 * k * k * dt * dt / 2 == Approx(2).epsilon(1e-12));
+  // At half the density nu is twice as much, and of the power law K J^(1 - n)/rho0 is the squared speed.
+  Particle thin(p);
+  thin.state.log_volume_ratio = std::log(2.0);
+  const double thin_dt = 0.01 / (std::sqrt(3.0) * thin.speed());
+  CHECK(2 * nu * k * k * thin_dt + 2.2e6 / 64 * k * k * thin_dt * thin_dt / 2 == Approx(2).epsilon(1e-12));
   p.cell_size = 1e9;
   CHECK(Particle(p).speed() == Approx(std::sqrt(2.2e9 / 1000)).epsilon(1e-6));
 }
@@ -400,6 +435,7 @@ TEST_CASE("herschel_bulkley: below the yield stress its deviator is that of the 
   const Sym<3, double> tau = HerschelBulkley::kirchhoff_stress(paste.constants, paste.state);
   CHECK(tau(0, 0) - tau(2, 2) == Approx(factor * (1.1 * 1.1 - 1)).epsilon(1e-12));
   CHECK(tau(1, 1) - tau(2, 2) == Approx(factor * (1.2 * 1.2 - 1)).epsilon(1e-12));
+  for (int k = 3; k < 6; ++k) CHECK(tau.s[k] == 0);  // pressure acts on the normal ones alone
 }
 
 TEST_CASE("herschel_bulkley: a Bingham fluid that is held goes back to its yield stress with the time k/G") {
@@ -421,6 +457,46 @@ TEST_CASE("herschel_bulkley: one implicit step solves k g^n + a g = overstress, 
           const double rate = HerschelBulkley::flow_rate(c, overstress, elastic);
           CHECK(consistency * std::pow(rate, index) + elastic * rate == Approx(overstress).epsilon(1e-11));
         }
+}
+
+// Simo & Hughes (1998), box 9.1: the trial stress t falls by mu tr(b)/3 times the flow, here g dt, and g is the
+// overstress over k.
+TEST_CASE("herschel_bulkley: one large step of a Bingham fluid ends on its line, with the elastic part of the trial") {
+  for (const double strain : {0.5, 2.0}) {
+    const double dt = 1e-3, k = 20;
+    Mud paste(mud(k, 1));
+    paste.shear(strain, dt, 1);
+    // b = f f^T of simple shear: dev b : dev b = |b|^2 - (tr b)^2/3.
+    const double square = strain * strain, of_trace = 3 + square;
+    const double norm = (1 + square) * (1 + square) + 2 * square + 2 - of_trace * of_trace / 3;
+    const double trial = mud_modulus * std::sqrt(norm / 2), elastic = mud_modulus * dt * of_trace / 3;
+    const double expected = (trial + elastic / k * yield_stress) / (1 + elastic / k);
+    const Sym<3, double> tau = HerschelBulkley::kirchhoff_stress(paste.constants, paste.state);
+    CHECK(std::sqrt(squared_norm(deviator(tau)) / 2) == Approx(expected).epsilon(1e-12));
+    // The heat is 1 - share times the derivative by the share of the elastic energy 3/2 G (t - 1), det(share dev b + t) = 1.
+    const double share = expected / trial;
+    const auto stored = [&](double scale) {
+      double low = 0, high = 10;
+      for (int k = 0; k < 60; ++k) {
+        const double t = 0.5 * (low + high), xx = scale * (1 + square - of_trace / 3) + t, xy = scale * strain,
+                     rest = scale * (1 - of_trace / 3) + t;
+        (rest > 0 && (xx * rest - xy * xy) * rest > 1 ? high : low) = t;
+      }
+      return 1.5 * mud_modulus * (low - 1);
+    };
+    const double h = 1e-4, slope = (stored(share + h) - stored(share - h)) / (2 * h);
+    CHECK(paste.heat == Approx((1 - share) * slope).epsilon(1e-6));
+  }
+}
+
+// From another start the six steps leave a few parts in 10^12 here.
+TEST_CASE("herschel_bulkley: six steps of Newton's method solve the hardest of these equations to rounding") {
+  const double rows[][3] = {{1.503439e-3, 1.522998e-8, 6.737947e-3}, {12.18249, 1.522998e-8, 148.4132}};
+  for (const auto& [consistency, elastic, overstress] : rows) {
+    const HerschelBulkley::Constants<double> c(mud(consistency, 0.1));
+    const double rate = HerschelBulkley::flow_rate(c, overstress, elastic);
+    CHECK(consistency * std::pow(rate, 0.1) + elastic * rate == Approx(overstress).epsilon(1e-13));
+  }
 }
 
 TEST_CASE("herschel_bulkley: work is stored energy and heat, to the order of the step") {

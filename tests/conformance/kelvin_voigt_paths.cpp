@@ -163,6 +163,26 @@ TEST_CASE("Kelvin-Voigt: the reported speed is the elastic wave's without viscos
   }
 }
 
+TEST_CASE("Kelvin-Voigt: the stored energy is that of the spring, mu/2 (tr b' - 3) + K/2 ((J^2 - 1)/2 - ln J)") {
+  for (double s : {0.3, 0.9, 1.0, 1.4, 5.0}) {
+    Particle particle;
+    particle.state.deformation_gradient(0, 0) = s;
+    const double spring = mu / 2 * ((s * s + 2) / std::cbrt(s * s) - 3), volume = (s * s - 1) / 2 - std::log(s);
+    CHECK(particle.energy() == Approx(spring + bulk / 2 * volume).epsilon(1e-12).margin(1e-12 * young));
+  }
+}
+
+TEST_CASE("Kelvin-Voigt: of a swollen particle the viscosity per density at rest is J times as much") {
+  Particle particle;
+  particle.state.deformation_gradient = {{1.5, 0, 0, 0, 1.5, 0, 0, 0, 1.5}};
+  const KelvinVoigt::Constants<double> elastic({young, poisson, density, 0, 0, 2, cell});
+  const double wave = KelvinVoigt::wave_speed(elastic, particle.state), J = 1.5 * 1.5 * 1.5;
+  const double dt = cell / (std::sqrt(3.0) * KelvinVoigt::wave_speed(particle.constants, particle.state));
+  // As at rest: a dt + (w dt)^2/2 = 2 with the rate a that both viscosities damp by.
+  const double k = 2 * std::sqrt(3.0) / cell, a = (4.0 / 3 * eta + zeta) * J / density * k * k;
+  CHECK(a * dt + wave * wave * k * k * dt * dt / 2 == Approx(2).epsilon(1e-12));
+}
+
 TEST_CASE("Kelvin-Voigt: plane strain and a strain around the axis are those of 3-D") {
   const KelvinVoigt::Constants<double> c({young, poisson, density, eta, zeta, 2, cell});
   const Mat<2, double> L{{0.2, 0.3, -0.1, -0.15}};

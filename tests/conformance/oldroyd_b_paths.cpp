@@ -242,6 +242,21 @@ TEST_CASE("Oldroyd-B: the wave of the instant, K J^2 u'' + G (1 + A), and none t
   CHECK((particle.stress()(0, 0) - before) / s - before == Approx(exact).epsilon(1e-4));
 }
 
+TEST_CASE(
+    "Oldroyd-B: of a swollen particle the solvent's Kirchhoff stress and its share of the step's limit are J times") {
+  Particle particle;
+  particle.step({{1, 0, 0, 0, 0, 0, 0, 0, 0}}, 1);
+  particle.step({{0.3, 0, 0, 0, 0, 0, 0, 0, 0}}, 1e-4);  // a rate of 0.3 / s at J = 2
+  CHECK(particle.state.solvent_stress(0, 0) == Approx(2 * 4.0 / 3 * solvent * 0.3).epsilon(1e-4));
+  CHECK(particle.state.solvent_stress(1, 1) == Approx(-2 * 2.0 / 3 * solvent * 0.3).epsilon(1e-4));
+  // The stiffest mode of cells of size h has the wave number 2 sqrt(3)/h, and its longest step a dt + (w dt)^2/2 = 2.
+  const OldroydB::Constants<double> thin({bulk, density, polymer, time_constant, 0, 2, cell});
+  const double wave = OldroydB::wave_speed(thin, particle.state), k = 2 * std::sqrt(3.0) / cell;
+  const double a = 4.0 / 3 * solvent * particle.state.volume_ratio / density * k * k;
+  const double dt = cell / (std::sqrt(3.0) * OldroydB::wave_speed(particle.constants, particle.state));
+  CHECK(a * dt + wave * wave * k * k * dt * dt / 2 == Approx(2).epsilon(1e-12));
+}
+
 TEST_CASE("Oldroyd-B: plane strain and a strain around the axis are those of 3-D") {
   const OldroydB::Constants<double> c({bulk, density, polymer, time_constant, solvent, 2, cell});
   const Mat<2, double> L{{0.2, 0.3, -0.1, -0.15}};

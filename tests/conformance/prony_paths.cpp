@@ -65,6 +65,16 @@ TEST_CASE("Prony: after a step of shear the modulus is the series, whatever the 
       }
 }
 
+TEST_CASE("Prony: every number of the series counts, none of them 1") {
+  const Prony::Constants<double> c({5, bulk, density, 4, 0.1, 2, 3, 2});
+  Prony::State<3, double> state{Mat3::identity(), {Sym<3, double>::identity(), Sym<3, double>::identity()}};
+  Prony::advance(c, shear(0.3e12), 1e-12, state);
+  CHECK(Prony::kirchhoff_stress(c, state)(0, 1) / 0.3 == Approx(11).epsilon(1e-8));
+  Prony::advance(c, Mat3{}, 0.2, state);
+  const double expected = 5 + 4 * std::exp(-2.0) + 2 * std::exp(-0.2 / 3);
+  CHECK(Prony::kirchhoff_stress(c, state)(0, 1) / 0.3 == Approx(expected).epsilon(1e-8));
+}
+
 TEST_CASE("Prony: after any sudden strain stress is dev(J^-2/3 b) times the series, and the pressure stays") {
   const Mat3 F{{1.5, 0.3, -0.2, 0.1, 0.7, 0.4, -0.3, 0.2, 1.2}};
   Mat3 H = F;

@@ -1,9 +1,12 @@
-// The normal of linear regression against the same least squares solved by QR, with the penalty as rows of their own.
+// The normal of linear regression against the same least squares solved by QR, with the penalty as rows of their own, and
+// that of logistic regression against the same sum of squares minimized by Levenberg and Marquardt's method of MINPACK.
 
 #include <Eigen/Dense>
 #include <random>
+#include <unsupported/Eigen/NonLinearOptimization>
 
 #include "normals/linear_regression/linear_regression.hpp"
+#include "normals/logistic_regression/logistic_regression.hpp"
 #include "support/catch.hpp"
 
 namespace {
@@ -25,11 +28,11 @@ struct Cloud {
   }
 };
 
-template <int D>
+template <class Regression, int D>
 bool regression(double penalty, const Cloud& a, const Cloud& b, double* normal) {
   const mpm_normal_points points{a.count,           a.count,         b.count,         b.count, a.position.data(),
                                  b.position.data(), a.weight.data(), b.weight.data(), normal};
-  return LinearRegression::find<D>({penalty}, points, normal);
+  return Regression::template find<D>({penalty}, points, normal);
 }
 
 /// The unit slope that minimizes sum w (c - b - s . x)^2 + penalty s^2.
@@ -50,8 +53,62 @@ Eigen::VectorXd least_squares(double penalty, const Cloud& a, const Cloud& b) {
   return Eigen::VectorXd(A.colPivHouseholderQr().solve(labels)).head(D).normalized();
 }
 
+/// What MINPACK is asked: residuals sqrt(w) (c - tanh(z/2)), z = s . x + b, and sqrt(penalty) s with their derivatives.
 template <int D>
-void check_random_clouds(double penalty) {
+struct LogisticResiduals {
+  using Scalar = double;
+  enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
+  using InputType = Eigen::VectorXd;
+  using ValueType = Eigen::VectorXd;
+  using JacobianType = Eigen::MatrixXd;
+
+  double penalty;
+  const Cloud &a, &b;
+
+  int inputs() const { return D + 1; }
+  int values() const { return static_cast<int>(a.count + b.count) + D; }
+  int operator()(const Eigen::VectorXd& plane, Eigen::VectorXd& residuals) const {
+    each(plane, [&](int row, double root, double label, double z, const Eigen::VectorXd&) {
+      residuals(row) = root * (label - std::tanh(0.5 * z));
+    });
+    for (int i = 0; i < D; ++i) residuals(values() - D + i) = std::sqrt(penalty) * plane(i);
+    return 0;
+  }
+  int df(const Eigen::VectorXd& plane, Eigen::MatrixXd& jacobian) const {
+    jacobian.setZero();
+    each(plane, [&](int row, double root, double, double z, const Eigen::VectorXd& x) {
+      jacobian.row(row) = -0.5 * root / std::pow(std::cosh(0.5 * z), 2) * x.transpose();
+    });
+    for (int i = 0; i < D; ++i) jacobian(values() - D + i, i) = std::sqrt(penalty);
+    return 0;
+  }
+
+ private:
+  template <class Visit>
+  void each(const Eigen::VectorXd& plane, const Visit& visit) const {
+    int row = 0;
+    for (const Cloud* cloud : {&a, &b})
+      for (std::uint32_t k = 0; k < cloud->count; ++k, ++row) {
+        Eigen::VectorXd x = Eigen::VectorXd::Ones(D + 1);
+        for (int i = 0; i < D; ++i) x(i) = cloud->position[static_cast<std::size_t>(i) * cloud->count + k];
+        visit(row, std::sqrt(cloud->weight[k]), cloud == &a ? -1.0 : 1.0, plane.dot(x), x);
+      }
+  }
+};
+
+/// The unit slope that minimizes sum w (c - tanh((b + s . x)/2))^2 + penalty s^2.
+template <int D>
+Eigen::VectorXd logistic_fit(double penalty, const Cloud& a, const Cloud& b) {
+  LogisticResiduals<D> residuals{penalty, a, b};
+  Eigen::LevenbergMarquardt<LogisticResiduals<D>> method(residuals);
+  method.parameters.ftol = method.parameters.xtol = 1e-15, method.parameters.maxfev = 4000;
+  Eigen::VectorXd plane = Eigen::VectorXd::Zero(D + 1);
+  method.minimize(plane);
+  return Eigen::VectorXd(plane.head(D)).normalized();
+}
+
+template <class Regression, int D, class Fit>
+void check_random_clouds(double penalty, const Fit& fit, double bound) {
   std::mt19937 random(29);
   std::uniform_real_distribution<double> along(-1.5, 1.5), across(-1.2, 0.3);
   for (int k = 0; k < 20; ++k) {
@@ -63,9 +120,9 @@ void check_random_clouds(double penalty) {
     }
     const Cloud a(first, &random), b(second, &random);
     double normal[3] = {};
-    REQUIRE(regression<D>(penalty, a, b, normal));
-    const Eigen::VectorXd expected = least_squares<D>(penalty, a, b);
-    for (int i = 0; i < D; ++i) CHECK(normal[i] == Approx(expected(i)).margin(1e-10));
+    REQUIRE(regression<Regression, D>(penalty, a, b, normal));
+    const Eigen::VectorXd expected = fit(penalty, a, b);
+    for (int i = 0; i < D; ++i) CHECK(normal[i] == Approx(expected(i)).margin(bound));
   }
 }
 
@@ -73,8 +130,15 @@ void check_random_clouds(double penalty) {
 
 TEST_CASE("linear regression has the normal of least squares solved by QR") {
   for (const double penalty : {1e-6, 0.5}) {
-    check_random_clouds<2>(penalty);
-    check_random_clouds<3>(penalty);
+    check_random_clouds<LinearRegression, 2>(penalty, least_squares<2>, 1e-10);
+    check_random_clouds<LinearRegression, 3>(penalty, least_squares<3>, 1e-10);
+  }
+}
+
+TEST_CASE("logistic regression has the normal of the same squares minimized by MINPACK's method") {
+  for (const double penalty : {1e-6, 1e-2, 0.5}) {
+    check_random_clouds<LogisticRegression, 2>(penalty, logistic_fit<2>, 1e-7);
+    check_random_clouds<LogisticRegression, 3>(penalty, logistic_fit<3>, 1e-7);
   }
 }
 
@@ -82,7 +146,7 @@ TEST_CASE("where particles leave a direction open, the penalty of linear regress
   // All particles lie on the line y = x / 2: the slope across it is free, and the least one lies along the line.
   const Cloud a({{{-0.8, -0.4, 0}}, {{-0.2, -0.1, 0}}}), b({{{0.4, 0.2, 0}}, {{1, 0.5, 0}}});
   double normal[3] = {};
-  REQUIRE(regression<2>(1e-6, a, b, normal));
+  REQUIRE(regression<LinearRegression, 2>(1e-6, a, b, normal));
   CHECK(normal[0] == Approx(2 / std::sqrt(5)).epsilon(1e-9));
   CHECK(normal[1] == Approx(1 / std::sqrt(5)).epsilon(1e-9));
 }

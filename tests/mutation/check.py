@@ -73,6 +73,13 @@ class WritesThemTogether(unittest.TestCase):
         self.assertTrue(together.refuse("unchanged_8:1:3: error: not an integer constant\n"))
         self.assertEqual(together.numbers(), [7])
 
+    def test_what_stands_behind_the_head_of_a_loop(self):
+        text = "for (int i = 0; i < n; ++i) x[i] += y;\nif (a < b)\n  x -= f(c);\nelse\n  x *= 2;\n"
+        mutants = mutants_of("file.hpp", text)
+        spans = Together(text, mutants).spans
+        whole = {text[begin:end] for begin, end in spans}
+        self.assertLessEqual({"x[i] += y", "x -= f(c)"}, whole)
+
     def test_constants_are_not_among_them(self):
         text = """constexpr int size = D + 1;
 constexpr int f(int x) { return x - 1; }

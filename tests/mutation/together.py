@@ -48,13 +48,24 @@ def expression_around(tokens, mutant):
     first, last, depth = inside[0], inside[-1], 0
     while True:
         text = tokens[first - 1].text
-        if depth == 0 and (text in ("(", "[", "{", "}") or text in delimiters):
+        if depth == 0 and (text in ("(", "[", "{", "}", "else") or text in delimiters or heads_statement(tokens, first - 1)):
             break
         depth += (text in (")", "]", "}")) - (text in ("(", "[", "{"))
         first -= 1
     while tokens[last + 1].text not in (")", "]", "}", *delimiters):
         last = closing(tokens, last + 1) if tokens[last + 1].text in ("(", "[", "{") else last + 1
     return tokens[first].begin, tokens[last].end
+
+
+def heads_statement(tokens, at):
+    """Whether the token is the bracket that ends the head of a for, while or if, behind which a statement begins."""
+    if tokens[at].text != ")":
+        return False
+    depth = 1
+    while depth:
+        at -= 1
+        depth += (tokens[at].text == ")") - (tokens[at].text == "(")
+    return tokens[at - 1].text in ("for", "while", "if") or tokens[at - 2].text == "if"  # if constexpr
 
 
 def declaration_end(tokens, at):

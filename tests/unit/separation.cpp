@@ -146,6 +146,49 @@ TEST_CASE("rows of particles have the normal across them, at the end of a block 
     }
 }
 
+// The first two places that are looked at lie close beside each other; that the clouds are wide is found later.
+TEST_CASE("clouds closer than a millionth of the farthest places that are compared count as meeting", "[separation]") {
+  const auto clouds = [](double apart) {
+    return Clouds{{{0, 0, 0}, {-1000, 2100, 0}}, {{apart, apart / 2, 0}, {2000, 2100 - apart / 2, 0}}};
+  };
+  CHECK_FALSE(clouds(1e-3).plane(2).found);
+  CHECK(clouds(1e-2).plane(2).found);
+}
+
+// The first guess is the corner at 1 along z or y, and the next differs from it in this coordinate alone.
+TEST_CASE("a place that differs from an earlier one in a single coordinate is another place", "[separation]") {
+  const Plane in_y = Clouds{{{0, 0, 0}}, {{1, 1, 0}, {1, -0.2, 0}, {10, -1, 0}}}.plane(2);
+  CHECK(in_y.normal[0] == Approx(1).epsilon(1e-12));
+  const Plane in_z = Clouds{{{0, 0, 0}}, {{1, 0, 1}, {1, 0, -0.2}, {10, 0, -1}}}.plane(3);
+  CHECK(in_z.normal[0] == Approx(1).epsilon(1e-12));
+}
+
+TEST_CASE("the plane is the same in any unit of length", "[separation]") {
+  std::mt19937 random(11);
+  for (const int dimension : {2, 3})
+    for (const double apart : {0.5, 1e-3})
+      for (const double unit : {0x1p-30, 0x1p30}) {
+        const Clouds clouds = beside_plane(random, dimension, direction(random, dimension), apart, 20);
+        Clouds scaled = clouds;
+        for (std::vector<Vector3>* cloud : {&scaled.a, &scaled.b})
+          for (Vector3& x : *cloud)
+            for (double& component : x) component *= unit;
+        const Plane one = clouds.plane(dimension), other = scaled.plane(dimension);
+        REQUIRE((one.found && other.found));
+        CHECK(one.normal == other.normal);
+      }
+}
+
+TEST_CASE("of places equally far along a direction the first counts, in whichever lanes they are", "[separation]") {
+  for (const int other : {4, 5, 8, 9, 14, 15}) {
+    std::vector<Vector3> places(16, {0, 0, 0});
+    places[3] = {1, -1, 0}, places[static_cast<std::size_t>(other)] = {1, 1, 0};
+    const Row row(places);
+    const WidestGap::Cloud cloud{row.places.data(), 16, row.stride};
+    CHECK(cloud.farthest({1, 0, 0})[1] == -1);
+  }
+}
+
 TEST_CASE("clouds that mix have no plane", "[separation]") {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> place(-1, 1);
