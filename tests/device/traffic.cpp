@@ -94,6 +94,11 @@ TEST_CASE("a race is told with both lanes, the field's pointer and the bytes fro
   launches.recorder.begin_lane(2), launches.read(5);
   REQUIRE(texts().size() == 3);
   CHECK(texts()[2].find("mpm_b, phase 0: lane 1 of team 0 adds to and lane 2 of team 0 reads argument 8") == 0);
+  launches.begin("mpm_c");  // the last that read the word is who writes it, but another one has read it too
+  launches.begin_team(0), launches.recorder.begin_lane(0);
+  launches.read(5), launches.recorder.begin_lane(1), launches.read(5), launches.write(5);
+  REQUIRE(texts().size() == 4);
+  CHECK(texts()[3].find("mpm_c, phase 0: lane 0 of team 0 reads and lane 1 of team 0 writes argument 8") == 0);
 }
 
 TEST_CASE("averages are of one step and one particle", "[device][traffic]") {
