@@ -1,6 +1,7 @@
 // Scenes run through the host driver of the device backend and through the reference backend, compared value by value.
 #pragma once
 
+#include <cstdlib>
 #include <future>
 #include <map>
 #include <mutex>
@@ -73,7 +74,14 @@ inline device::Choice device_choice_of(const Experiment& experiment) {
   return device::choice_of(experiment, make_plan(experiment));
 }
 
-/// Compiled compositions, each once. They are kept in the build folder for other suites and the next run of this one.
+/// Where programs are kept for other suites and the next run: a folder of the build, or of the environment's
+/// MPM_PROGRAMS_OF_TESTS, which tests/mutation sets, as a changed program may keep what is wrong.
+inline std::filesystem::path folder_of_programs(const std::string& name) {
+  const char* const chosen = std::getenv("MPM_PROGRAMS_OF_TESTS");
+  return std::filesystem::path(chosen ? chosen : MPM_BUILD_DIR) / name;
+}
+
+/// Compiled compositions, each once.
 class Programs {
  public:
   static Programs& shared() {
@@ -115,7 +123,7 @@ class Programs {
 
   device::HostCompiler compiler_;
   std::string identity_;  ///< all that a program depends on beside its text
-  const device::ProgramCache kept_{std::filesystem::path(MPM_BUILD_DIR) / "host_programs_of_tests", 512ull << 20};
+  const device::ProgramCache kept_{folder_of_programs("host_programs_of_tests"), 512ull << 20};
   std::mutex mutex_;
   std::map<std::string, std::string> images_;  ///< by the composition's hash
 };

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <regex>
 
 #include "backends/device/device.hpp"
 #include "backends/device/memory.hpp"
@@ -129,7 +130,10 @@ TEST_CASE("a run that does not fit on its device is refused before it begins", "
   CHECK(has(message, "on device a small one, which has 48.8 KiB free"));
   CHECK(has(message, "most is taken by"));
   CHECK(has(message, " of the nodes ("));
-  CHECK(has(message, "KiB"));
+  // The three that take most, each with its owner and what it takes.
+  const std::string part = R"([\w ]+ of (the nodes|the particles of \w+|the run) \([\d.e+]+ KiB\))";
+  CHECK(
+      std::regex_search(message, std::regex("most is taken by " + part + ", " + part + ", " + part + ": use larger")));
   CHECK(has(message, "--backend cpu"));
   CHECK(device::calls_on_host("cuModuleLoadData") == compiled);
 }
@@ -139,17 +143,19 @@ namespace {
 /// The bytes that a run has asked a device for after one step, and those that are counted before it begins.
 struct Memory {
   double asked = 0, counted = 0;
-  int blocks = 0;  ///< of the grid
+  double held = 0, of_fields = 0;  ///< by fields, as the backend says and as they are counted
+  int blocks = 0;                  ///< of the grid
 };
 
-/// 20 small bodies, so that what a body takes of the grid outweighs its particles; every second one is another velocity
-/// field where there is contact.
-Memory memory_of_many_bodies(double cell_size, const std::string& contact) {
+/// 20 small bodies, so that what a body takes of the grid outweighs its particles; with contact they are of three velocity
+/// fields in turn.
+Memory memory_of_many_bodies(double cell_size, const std::string& contact, const std::string& precision,
+                             const std::vector<std::string>& overrides) {
   std::string bodies;
   for (int k = 0; k < 20; ++k) {
     const int column = k % 5, row = k / 5;
     const double x = 0.1 + 0.4 * column, y = 0.1 + 0.5 * row;
-    const std::string field = contact.empty() ? "" : k % 2 ? R"("field": "odd", )" : R"("field": "even", )";
+    const std::string field = contact.empty() ? "" : R"("field": "f)" + std::to_string(k % 3) + "\", ";
     bodies += (k ? ", " : "") + std::string(R"({"name": "b)") + std::to_string(k) + R"(", "material": "m", )" + field +
               R"("geometry": {"type": "box", "lower": [)" + digits(x) + ", " + digits(y) + R"(], "upper": [)" +
               digits(x + 0.08) + ", " + digits(y + 0.08) + "]}}";
@@ -161,7 +167,7 @@ Memory memory_of_many_bodies(double cell_size, const std::string& contact) {
           "poisson_ratio": 0.3, "density": 1000}},)" +
                             (contact.empty() ? "" : "\"contact\": " + contact + ",") + "\"bodies\": [" + bodies +
                             R"(], "solver": {"time_step": 0.001, "end_time": 0.1}})",
-                        "double");
+                        precision, overrides);
   const Plan plan = make_plan(experiment);
   Simulation simulation(experiment, device_factory());
   simulation.step();
@@ -174,23 +180,73 @@ Memory memory_of_many_bodies(double cell_size, const std::string& contact) {
   size.blocks = device::table_of_blocks(scene, 2).table;
   for (int body = 0; body < 20; ++body)
     size.particles.push_back(simulation.backend().body_state(body).position.size() / 2);
-  Memory memory{static_cast<double>(device::bytes_on_host(0)), 0, size.blocks};
-  for (const device::TakenMemory& taken : device::taken_memory(experiment, plan, size)) memory.counted += taken.bytes;
+  const Backend& backend = simulation.backend();
+  Memory memory{static_cast<double>(device::bytes_on_host(0)), 0,
+                static_cast<double>(backend.particle_bytes() + backend.grid_bytes()), 0, size.blocks};
+  const std::set<std::string> beside{"blocks", "contact", "exact sums", "tables of blocks", "sums"};
+  for (const device::TakenMemory& taken : device::taken_memory(experiment, plan, size)) {
+    memory.counted += taken.bytes;
+    if (!beside.count(taken.field)) memory.of_fields += taken.bytes;
+  }
   return memory;
 }
 
 }  // namespace
 
 TEST_CASE("what a device is asked for is counted before a run begins, in a scene of many bodies", "[device][driver]") {
-  for (const std::string contact : {"", R"({"type": "coulomb", "friction": 0.2})"}) {
-    INFO(contact);
-    const Memory coarse = memory_of_many_bodies(0.04, contact), fine = memory_of_many_bodies(0.01, contact);
+  const std::string by_nodes = R"({"type": "coulomb", "friction": 0.2})",
+                    by_particles = R"({"type": "coulomb", "friction": 0.2, "normal": "widest_gap"})";
+  for (const auto& [contact, precision, sums] : {std::tuple{std::string(), "double", "fast"},
+                                                 {by_nodes, "float", "fast"},
+                                                 {by_particles, "double", "fast"},
+                                                 {std::string(), "float", "deterministic"}}) {
+    INFO(contact << ", " << precision << ", " << sums << " sums");
+    const std::vector<std::string> overrides(sums == std::string("fast") ? 0 : 1, deterministic_sums);
+    const Memory coarse = memory_of_many_bodies(0.04, contact, precision, overrides),
+                 fine = memory_of_many_bodies(0.01, contact, precision, overrides);
     // What is not counted is the same on any grid: parameters, and with contact the edges of bodies.
     CHECK(fine.asked - coarse.asked == fine.counted - coarse.counted);
     CHECK(coarse.asked >= coarse.counted);
-    CHECK(coarse.asked - coarse.counted < 30000);
+    CHECK(coarse.asked - coarse.counted < 15000 * (contact.empty() ? 1 : 3));
     CHECK(fine.blocks > 2 * device::chunk_of_blocks);  // so that chunks of the table count too
+    CHECK(fine.held == fine.of_fields);
   }
+}
+
+TEST_CASE("partial sums have room for every team of the largest body and of the nodes", "[device][driver]") {
+  for (const int lanes : {1, 7, 32})
+    for (const auto& [particles, nodes] : {std::pair{std::vector<std::size_t>{1000, 37}, 64}, {{5, 6}, 640}}) {
+      const int most = std::max(static_cast<int>(particles[0]), nodes), teams = (most + lanes - 1) / lanes;
+      const std::size_t room = device::room_for_sums({particles, static_cast<std::size_t>(nodes), 9, lanes});
+      CHECK(room >= static_cast<std::size_t>(device::most_sums * teams));
+      CHECK(room <= static_cast<std::size_t>(device::most_sums * (teams + 1)));
+    }
+}
+
+TEST_CASE("sizes are said in the largest unit that leaves a number above one", "[device][driver]") {
+  for (const auto& [bytes, words] : {std::pair{0.0, "0 bytes"},
+                                     {1023.0, "1023 bytes"},
+                                     {1536.0, "1.5 KiB"},
+                                     {48.8 * 1024, "48.8 KiB"},
+                                     {0x1p20, "1 MiB"},
+                                     {0x1.8p31, "3 GiB"},
+                                     {0x1p42, "4 TiB"},
+                                     {0x1p54, "1.64e+04 TiB"}})
+    CHECK(device::bytes_in_words(bytes) == words);
+}
+
+TEST_CASE("a device that cannot be opened is said with its number", "[device][driver]") {
+  const OtherDevices two({{"one", 0, false}, {"another", 0, false}});
+  const Injected failure("cuDeviceGet", 2, device::driver_invalid_device);
+  CHECK_THROWS_WITH(device::devices_of(device::host_driver()),
+                    ContainsSubstring("the driver failed to open device 1: CUDA_ERROR_INVALID_DEVICE, invalid device "
+                                      "ordinal; see mpm list --devices"));
+}
+
+TEST_CASE("a result that the driver has no words for is said by its number", "[device][driver]") {
+  const Injected failure("cuDeviceGetCount", 1, 12345);
+  CHECK_THROWS_WITH(device::devices_of(device::host_driver()),
+                    ContainsSubstring("the driver failed to count devices: error 12345; what was written is kept"));
 }
 
 TEST_CASE("memory that runs out all the same is said with what is asked and free", "[device][driver]") {
@@ -201,6 +257,26 @@ TEST_CASE("memory that runs out all the same is said with what is asked and free
   CHECK(has(message, "device 0 (host) failed to give "));
   CHECK(has(message, " free: CUDA_ERROR_OUT_OF_MEMORY"));
   CHECK(has(message, "--set /precision=float"));
+}
+
+TEST_CASE("whatever memory is asked for, what for is said", "[device][driver]") {
+  std::map<std::string, int> asked;  // by what for
+  for (long call = 1;; ++call) {
+    const Injected failure("cuMemAlloc_v2", call, device::driver_out_of_memory);
+    const std::string message = message_of_run();
+    if (message.empty()) break;
+    std::smatch found;
+    INFO(message);
+    REQUIRE(std::regex_search(message, found, std::regex("failed to give [\\d.]+ (bytes|KiB) to (.+), with ")));
+    ++asked[found[2]];
+  }
+  for (const std::string body : {"a", "b"}) {
+    CHECK(asked["the particles of " + body] == 1);
+    CHECK(asked["the blocks of " + body] ==
+          5);  // of each particle, of the table, its chunks, those in use, their number
+  }
+  CHECK(asked["the nodes"] >= 2);
+  CHECK(asked.count("the blocks of ") == 0);
 }
 
 TEST_CASE("whichever function of the driver fails, a run stops with its name and gives its memory back",
@@ -253,6 +329,10 @@ TEST_CASE("a program that is none is refused", "[device][driver]") {
   device::DeviceSetup setup = device_setup();
   setup.compile = [](const device::Composition&, const std::string&) { return std::string("no program at all"); };
   CHECK(has(message_of_run(setup), "CUDA_ERROR_INVALID_IMAGE"));
+  device::Device device(*setup.driver, 0);
+  CHECK_NOTHROW(device.synchronise());
+  device::ModuleHandle module = nullptr;
+  CHECK(setup.driver->cuModuleLoadData(&module, nullptr) == device::driver_invalid_image);
 }
 
 TEST_CASE("devices are counted from 0, and one that is not there is refused", "[device][driver]") {

@@ -33,7 +33,7 @@ class Shipped {
 
 /// Programs of the device are kept beside the build, as compiling one takes longer than these runs.
 struct KeptPrograms {
-  KeptPrograms() { setenv("MPM_CACHE", (fs::path(MPM_BUILD_DIR) / "programs_of_tests").c_str(), 1); }
+  KeptPrograms() { setenv("MPM_CACHE", folder_of_programs("programs_of_tests").c_str(), 1); }
   ~KeptPrograms() { unsetenv("MPM_CACHE"); }
 };
 

@@ -75,6 +75,11 @@ TEST_CASE("every backend names the axis and the place at which a particle leaves
   const Failure corner = common_failure(thrown("bspline_quadratic", "pic", R"J(["-200", "-200"])J"));
   CHECK(corner.cause == Cause::left_domain);
   CHECK(corner.axis == 0);
+  // The upper end of a domain is where cells of this size end.
+  const Failure above = common_failure(thrown("bspline_quadratic", "pic", R"J(["1", "30"])J"), {"/grid/cell_size=0.5"});
+  CHECK(above.cause == Cause::left_domain);
+  CHECK(above.axis == 1);
+  CHECK(above.value > 4);
 }
 
 TEST_CASE("every backend names what is not a number", "[device][failure]") {

@@ -115,6 +115,13 @@ TEST_CASE("steps that ask the host for something are no graphs", "[device][graph
   }
 }
 
+TEST_CASE("steps beside walls that move evenly are graphs", "[device][graphs]") {
+  const std::string even = set("/grid/boundaries/y_min", R"({"type": "prescribed", "velocity": ["0.1*x", 0.05]})");
+  const Run plain = run(touching().text(), false, {even}), found = run(touching().text(), true, {even});
+  check_same(plain, found);
+  CHECK(found.graph_launches >= found.steps - 3);
+}
+
 TEST_CASE("a step of another length, and one with a filter, run beside graphs", "[device][graphs]") {
   Mix mix = touching();
   mix.filter = R"({"type": "fmpm", "order": 2, "every_steps": 5})";

@@ -29,7 +29,7 @@ bool has_nvrtc() {
 }
 
 struct KeptPrograms {
-  KeptPrograms() { setenv("MPM_CACHE", (fs::path(MPM_BUILD_DIR) / "programs_of_tests").c_str(), 1); }
+  KeptPrograms() { setenv("MPM_CACHE", folder_of_programs("programs_of_tests").c_str(), 1); }
   ~KeptPrograms() { unsetenv("MPM_CACHE"); }
 };
 

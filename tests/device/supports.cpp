@@ -86,5 +86,8 @@ TEST_CASE("grips on the host-run device", "[device]") {
                   (flat ? "[0.22, 0], \"normal\": [1, 0]}" : "[0.22, 0, 0], \"normal\": [1, 0, 0]}") +
                   R"J(, "velocity": ["1.2+t-0.9*(y-0.4)", null)J" + (flat ? "]}]" : ", \"X\"]}]");
       check(mix);
+      if (!flat) continue;
+      mix.filter = R"({"type": "fmpm", "order": 3})";
+      check(mix);
     }
 }

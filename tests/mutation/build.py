@@ -12,8 +12,7 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-SUITES = ["conformance", "config", "unit", "parity", "verification"]
-TARGETS = ["mpm_sandbox", "plugins", *(f"test_{suite}" for suite in SUITES)]
+SUITES = ["conformance", "config", "unit", "parity", "verification"]  # those that try plugins
 
 
 class BuildFailed(Exception):
@@ -43,8 +42,10 @@ class Test:
 
 
 class Build:
-    def __init__(self, tree, folder, work, longest, say):
+    def __init__(self, tree, folder, work, longest, say, suites=()):
+        """`suites` are wanted beside those that try plugins."""
         self.tree, self.folder, self.work, self.longest, self.say = tree, folder, work, longest, say
+        self.wanted = [*SUITES, *(suite for suite in suites if suite not in SUITES)]
 
     # ---- what cmake and ninja know -----------------------------------------------------------------------------
 
@@ -53,7 +54,8 @@ class Build:
         if not (self.folder / "build.ninja").is_file():
             self.must("cmake", "-S", self.tree, "-B", self.folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release")
         jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL")
-        self.must("ninja", "-C", self.folder, *(["-j", jobs] if jobs else []), *TARGETS)
+        targets = ["mpm_sandbox", "plugins", *(f"test_{suite}" for suite in self.wanted)]
+        self.must("ninja", "-C", self.folder, *(["-j", jobs] if jobs else []), *targets)
 
     def read(self):
         """Learns what there is."""
@@ -63,8 +65,8 @@ class Build:
             self.compile_of[words[words.index("-o") + 1]] = words
         self.source_of = {name: words[words.index("-c") + 1] for name, words in self.compile_of.items()}
         self.read_dependencies()
-        self.suites = [suite for suite in SUITES if (self.folder / f"bin/test_{suite}").is_file()]
-        if self.suites != SUITES:
+        self.suites = [suite for suite in self.wanted if (self.folder / f"bin/test_{suite}").is_file()]
+        if self.suites != self.wanted:
             self.say("mutation: only the suites", *self.suites, "are built and tried")
         programs = ["mpm", *(f"test_{suite}" for suite in self.suites)]
         self.links = {program: self.link_of(f"bin/{program}") for program in programs}
@@ -108,7 +110,7 @@ class Build:
         kept = self.work / "times.json"
         times = json.loads(kept.read_text()) if kept.is_file() else {}
         self.tests = []
-        for suite in self.suites:
+        for suite in [suite for suite in self.suites if suite in SUITES]:
             for path in sorted((self.tree / "tests" / suite).glob("*.cpp")):
                 text = path.read_text()
                 if text.count("TEST_CASE") <= text.count("[slow]"):

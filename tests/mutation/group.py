@@ -10,22 +10,36 @@ import resource
 import shutil
 import subprocess
 from collections import Counter
+from pathlib import Path
 
 from build import environment, hash_of
 from results import Result
-from together import SWITCH, SWITCH_FILE, Together
+from together import SWITCH, SWITCH_FILE, SWITCH_ON_DEVICE, Together
 from trial import NOT_OF_THE_PROGRAM, Bench, Refused
 
 KINDS = ("backends", "kernel", "operators")
 OPTIMISATION = "-O2"  # that of the published runs; the compiler's fault with -O1 is mended (modules/MpmBuild.cmake)
 SUITES = ["parity", "unit", "conformance", "verification", "config"]
+DEVICE, DEVICE_SUITES = "modules/backends/device", ["device"]  # no other suite knows the device's objects
+KERNELS, COMPOSER = f"{DEVICE}/kernels/", "mpm_device_backend.dir/compose.cpp.o"  # the composer's object holds their text
+KEPT_PROGRAMS = ("host_programs_of_tests", "programs_of_tests")  # folders of the build (tests/device/device_support.hpp)
+TABLE, TABLE_FILE = "-DMPM_KERNEL_HEADERS=", "kernel_headers.inc"
+COMPILER = """#!/bin/sh
+# Compiles programs of the device without warnings of changed text, and keeps what the compiler says where it refuses.
+{} "$@" -w 2> "$0.$$"
+status=$?
+cat "$0.$$" >&2
+test $status = 0 || cat "$0.$$" > "$0.messages"
+rm "$0.$$"
+exit $status
+"""
 INSTANTIATION = re.compile(r"_([23]_(?:float|double))\.cpp\.o$")
 
 
 def cases_of(build, suites):
     """The quick cases of the suites."""
     cases = []
-    for suite in [suite for suite in SUITES if suite in build.suites]:
+    for suite in [suite for suite in (*SUITES, *DEVICE_SUITES) if suite in build.suites]:
         for path in sorted((build.tree / "tests" / suite).glob("*.cpp")):
             name = f"{suite}.{path.stem}"
             if name in NOT_OF_THE_PROGRAM or suite not in suites and name not in suites:
@@ -75,6 +89,7 @@ class Group:
         self.build, self.mutants, self.longest, self.patience = build, mutants, longest, patience
         self.instantiations, self.suites, self.alone, self.say = instantiations, suites, alone, say
         self.bench = Bench(build, build.work / "group")
+        self.read_programs()
         self.texts, self.number_of, self.noted_as = {}, {}, {}
         for file in dict.fromkeys(mutant.file for mutant in mutants):
             of_file = [mutant for mutant in mutants if mutant.file == file]
@@ -83,7 +98,8 @@ class Group:
             self.texts[file].refuse_constants()
             self.number_of |= {mutant: number for number, mutant in enumerate(of_file, first)}
             self.noted_as |= self.texts[file].expression_of()
-        words = [SWITCH, *instantiations, *(f"{m.name}\n{m.code}" for m in mutants), *(t.text for t in self.texts.values())]
+        self.kernels = [file for file in self.texts if file.startswith(KERNELS)]
+        words = [SWITCH, SWITCH_ON_DEVICE, *instantiations, *(f"{m.name}\n{m.code}" for m in mutants), *(t.text for t in self.texts.values())]
         self.kept = build.work / "kept" / hashlib.sha256("\n".join(words).encode()).hexdigest()[:16]
         self.kept.mkdir(parents=True, exist_ok=True)
         self.objects = self.chosen_objects(set(self.texts))
@@ -100,7 +116,7 @@ class Group:
 
     def chosen_objects(self, files):
         """Of what is made from the files: libraries that include one in their own text, the cpu backend in the chosen
-        dimensions and precisions, tests that include one in their own text."""
+        dimensions and precisions, the device backend for its own files, tests that include one in their own text."""
         chosen = []
         for name in sorted(set().union(*(self.build.objects_of.get(file, ()) for file in files))):
             source = os.path.relpath(self.build.source_of[name], self.build.tree)
@@ -110,13 +126,21 @@ class Group:
                 wanted = test and any(s.split(".")[0] == test[0] for s in self.suites) and self.includes_one(name, files)
             elif found or "mpm_cpu_backend.dir" in name:
                 wanted = found[1] in self.instantiations if found else any(self.instantiations)
-            elif self.build.plugin_of(name) or "/device/" in name or not name.startswith("modules/"):
+            elif "mpm_device_backend.dir" in name:
+                wanted = name in self.of_device(files)
+            elif self.build.plugin_of(name) or not name.startswith("modules/"):
                 wanted = False
             else:
                 wanted = source in files or "mpm_reference_backend.dir" in name or self.includes_one(name, files)
             if wanted and "modules/bench" not in name:
                 chosen.append(name)
         return chosen
+
+    def of_device(self, files):
+        """What is made from those of the files that are the device's: these alone are worth the time there."""
+        own = [file for file in files if file.startswith(DEVICE + "/")]
+        composer = [name for name in self.build.compile_of if name.endswith(COMPOSER) and any(f.startswith(KERNELS) for f in own)]
+        return set(composer).union(*(self.build.objects_of.get(file, ()) for file in own))
 
     def includes_one(self, name, files):
         text = (self.build.folder / self.build.source_of[name]).read_text()
@@ -139,9 +163,12 @@ class Group:
                     break
                 if not any([text.refuse(output) for text in self.texts.values()]):
                     raise Refused(output)
-                refused = {n for m, n in self.number_of.items() if n not in self.texts[m.file].numbers()}
-                self.say(f"mutation: {len(refused)} of {len(self.mutants)} mutants are refused among the others")
-                state.write_text(json.dumps(sorted(refused)))
+                self.note_refused()
+
+    def note_refused(self):
+        refused = {n for m, n in self.number_of.items() if n not in self.texts[m.file].numbers()}
+        self.say(f"mutation: {len(refused)} of {len(self.mutants)} mutants are refused among the others")
+        (self.kept / "refused.json").write_text(json.dumps(sorted(refused)))
 
     def path_of(self, name):
         """A test's object is made anew when its text has changed."""
@@ -157,6 +184,21 @@ class Group:
         for file, text in texts.items():
             (overlay / file).write_text(text)
         (overlay / "modules" / SWITCH_FILE).write_text(SWITCH)
+        if self.kernels:
+            self.write_table(overlay, texts)
+
+    def write_table(self, overlay, texts):
+        """The table of texts that the device's programs are composed of, with these in the place of the build's."""
+        composer = next(words for name, words in self.build.compile_of.items() if name.endswith(COMPOSER))
+        define = next(word for word in composer if word.startswith(TABLE))
+        entry = '{{"{}", R"MPM_SOURCE({})MPM_SOURCE"}}'.format
+        table = Path(define.removeprefix(TABLE).strip('"')).read_text()
+        for file in [file for file in self.kernels if file in texts]:
+            name, old = file.removeprefix("modules/"), (self.build.tree / file).read_text()
+            if entry(name, old) not in table:
+                raise Refused(f"the build is older than {file}")
+            table = table.replace(entry(name, old), entry(name, texts[file]))
+        (overlay / TABLE_FILE).write_text(table + entry(SWITCH_FILE, SWITCH_ON_DEVICE) + ",\n")
 
     def compile(self, name, out, overlay):
         """The compiler's messages where it refuses."""
@@ -166,6 +208,8 @@ class Group:
         words[words.index("-o") + 1] = str(out.with_suffix(".new"))
         words[words.index("-c") + 1] = str(own) if own.is_file() else source
         words.insert(1, f"-I{overlay / 'modules'}")
+        if self.kernels:
+            words = [f'{TABLE}"{overlay / TABLE_FILE}"' if word.startswith(TABLE) else word for word in words]
         code, output = self.bench.run([*words, "-w", OPTIMISATION], 900)
         if code != 0:
             return output
@@ -190,6 +234,51 @@ class Group:
             self.programs[suite] = out
         return out
 
+    # ---- programs of the device ----------------------------------------------------------------------------------
+
+    def read_programs(self):
+        """Begins with the programs that the build has compiled for its tests of the device."""
+        self.programs_kept = self.build.work / "programs"
+        for name in KEPT_PROGRAMS:
+            if (self.build.folder / name).is_dir() and not (self.programs_kept / name).is_dir():
+                shutil.copytree(self.build.folder / name, self.programs_kept / name)
+        self.programs_kept.mkdir(exist_ok=True)
+        compiler = self.bench.folder / "tools/c++"
+        compiler.parent.mkdir()
+        compiler.write_text(COMPILER.format(shutil.which("c++")))
+        compiler.chmod(0o755)
+        self.messages = compiler.with_name("c++.messages")
+        self.tools = f"{compiler.parent}:{os.environ['PATH']}"
+
+    def run(self, case, program, seconds, programs, **variables):
+        """Runs a case that finds programs of the device in a folder, and has one for temporary files that it leaves empty."""
+        scratch = self.bench.folder / "scratch"
+        shutil.rmtree(scratch, ignore_errors=True)
+        scratch.mkdir()
+        return self.bench.run([program, *case.call], seconds, MPM_PROGRAMS_OF_TESTS=str(programs), TMPDIR=str(scratch),
+                              **({"PATH": self.tools} if self.kernels else {}), **variables)[0]  # fmt: skip
+
+    def compositions_refuse(self):
+        """Takes out the mutants of kernels that the compiler of the device's programs refused; whether there were any."""
+        output = self.messages.read_text() if self.messages.is_file() else ""
+        self.messages.unlink(missing_ok=True)
+        if not any([self.texts[file].refuse(output) for file in self.kernels]):
+            return False
+        for name in self.objects:
+            if name.endswith(COMPOSER):
+                self.path_of(name).unlink()
+        self.note_refused()
+        self.programs.clear()
+        self.make()
+        return True
+
+    def programs_of_mutant(self):
+        """Programs as the unchanged device compiled them, in a folder of their own: a mutant may keep wrong ones."""
+        folder = self.bench.folder / "programs"
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(self.programs_kept, folder, copy_function=os.link)
+        return folder
+
     # ---- one mutant --------------------------------------------------------------------------------------------
 
     def spent(self):
@@ -197,12 +286,17 @@ class Group:
         return used.ru_utime + used.ru_stime
 
     def look_at(self, case):
-        """Runs the unchanged program once: whether the case passes, how long it takes, what it comes to."""
+        """Runs the unchanged program once, and once more where programs of the device had to be compiled first: whether
+        the case passes, how long it takes, what it comes to."""
         seen = self.bench.folder / "seen"
         seen.write_bytes(bytes(len(self.mutants) + 1))
-        before = self.spent()
-        code, _ = self.bench.run([self.program_of(case.suite), *case.call], self.longest,
-                                 MPM_MUTANT="-1", MPM_MUTANT_SEEN=str(seen))  # fmt: skip
+        compiled = None
+        while compiled != (compiled := sum(1 for _ in self.programs_kept.glob("*/*"))):
+            before = self.spent()
+            code = self.run(case, self.program_of(case.suite), self.longest, self.programs_kept,
+                            MPM_MUTANT="-1", MPM_MUTANT_SEEN=str(seen))  # fmt: skip
+            if code not in (0, None) and self.compositions_refuse():
+                compiled = None
         case.seconds, case.broken_off, case.usable = self.spent() - before, code is None, code in (0, None)
         case.comes_to = frozenset(n for n, byte in enumerate(seen.read_bytes()) if byte)
         if not case.usable:
@@ -218,7 +312,7 @@ class Group:
 
     def result_alone(self, mutant):
         objects = [name for name in self.chosen_objects({mutant.file}) if not self.build.test_of(name)]
-        if not objects or len(objects) > self.alone:  # without one the program would be the unchanged one
+        if not objects or len(objects) > self.alone or mutant.file in self.kernels:  # without one the program would be the unchanged one
             return None
         overlay = self.bench.folder / "overlay"
         self.write_texts(overlay, {mutant.file: mutant.applied(self.texts[mutant.file].text)})
@@ -237,7 +331,7 @@ class Group:
         return self.tried(mutant, 0, program_of, None)
 
     def tried(self, mutant, number, program_of, noted):
-        begin, left, came = self.spent(), list(self.cases), 0
+        begin, left, came, programs = self.spent(), list(self.cases), 0, self.programs_of_mutant()
         while left:
             case = max(left, key=lambda case: case.promise(mutant.file))
             left.remove(case)
@@ -249,7 +343,9 @@ class Group:
                 continue
             came += 1
             most = self.longest if case.broken_off else 3 * case.seconds + 1
-            code, _ = self.bench.run([program_of(case.suite), *case.call], most, MPM_MUTANT=str(number))
+            code = self.run(case, program_of(case.suite), most, programs, MPM_MUTANT=str(number))
+            if code is None and not case.broken_off:  # a machine with much to do makes processor time longer
+                code = self.run(case, program_of(case.suite), 4 * most, programs, MPM_MUTANT=str(number))
             case.tries[mutant.file] += 1
             if code is None and case.broken_off:
                 code = 0

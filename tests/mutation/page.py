@@ -20,15 +20,19 @@ def what_became(mutant, results, equivalents):
     return result.status
 
 
-def table(mutants, results, equivalents):
-    """One row a folder."""
-    killers = ["test-plugin", "conformance", "config", "unit", "parity", "verification"]
+def file_of(mutant):
+    return mutant.file.removeprefix(folder_of(mutant) + "/")
+
+
+def table(mutants, results, equivalents, row_of=folder_of):
+    """One row a folder, or what else `row_of` says."""
+    killers = ["test-plugin", "conformance", "config", "unit", "parity", "verification", "device"]
     columns = [*killers, "same code", "uncompiled", "equivalent", "survived", "not tried"]
     rows = {}
     for mutant in mutants:
-        rows.setdefault(folder_of(mutant), Counter())[what_became(mutant, results, equivalents)] += 1
+        rows.setdefault(row_of(mutant), Counter())[what_became(mutant, results, equivalents)] += 1
     columns = [c for c in columns if c in ("survived", "equivalent") or any(row[c] for row in rows.values())]
-    title = ["folder", "mutants", *(f"killed by {c}" if c in killers else c for c in columns)]
+    title = ["folder" if row_of is folder_of else "file", "mutants", *(f"killed by {c}" if c in killers else c for c in columns)]
     lines = ["| " + " | ".join(title) + " |", "|" + "---|" + "--:|" * (len(title) - 1)]
     for folder, row in rows.items():
         lines.append("| " + " | ".join([f"`{folder}`", str(sum(row.values())), *(str(row[c]) for c in columns)]) + " |")
@@ -81,7 +85,7 @@ def write(path, part, mutants, results, equivalents):
     tried = [mutant for mutant in mutants if results.of(mutant)]
     by_hand = [
         samples(mutants, results),
-        table(tried, results, equivalents),
+        table(tried, results, equivalents, file_of if part == "device" else folder_of),
         with_reasons(mutants, results, equivalents),
     ]
     path.write_text(head + begin + "\n\n" + "\n\n".join(by_hand) + "\n\n" + end + tail)

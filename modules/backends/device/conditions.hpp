@@ -13,11 +13,6 @@ namespace mpm::device {
 struct NodeRange {
   int lower[3], upper[3];
 
-  std::size_t count() const {
-    std::size_t n = 1;
-    for (int c = 0; c < 3; ++c) n *= static_cast<std::size_t>(upper[c] - lower[c] + 1);
-    return n;
-  }
   /// The positions of the nodes, x first.
   std::vector<Vector3> positions(const Experiment& experiment) const {
     std::vector<Vector3> all;

@@ -35,12 +35,14 @@ struct Nvrtc::Functions {
 };
 
 std::optional<Nvrtc> Nvrtc::find(std::string& why) {
-  std::vector<std::string> folders{""};
+  std::vector<std::string> folders{""};  // what the user names comes before the usual place
+  const auto add = [&](const std::string& root) {
+    const std::string folder = root + "/lib64/";
+    if (std::find(folders.begin(), folders.end(), folder) == folders.end()) folders.push_back(folder);
+  };
   for (const char* variable : {"CUDA_PATH", "CUDA_HOME"})
-    if (const char* root = std::getenv(variable); root && *root) folders.push_back(std::string(root) + "/lib64/");
-  folders.emplace_back("/usr/local/cuda/lib64/");
-  std::sort(folders.begin() + 1, folders.end());
-  folders.erase(std::unique(folders.begin(), folders.end()), folders.end());
+    if (const char* root = std::getenv(variable); root && *root) add(root);
+  add("/usr/local/cuda");
   for (const std::string& folder : folders)
     for (const char* name : {"libnvrtc.so", "libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so.11.2"}) {
       // The library stays loaded until the process ends, as it keeps threads and memory of its own.

@@ -1,0 +1,142 @@
+// What a step moves: the words that launches read and write, by rules that a hand can follow, and the counts of a step.
+
+#include "backends/device/traffic.hpp"
+
+#include <array>
+
+#include "device/device_support.hpp"
+#include "simulation/boundary.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+/// Two arrays of words that launches share, and one launch after the other on them.
+class Launches {
+ public:
+  Launches() { recorder.add_memory(address(0), sizeof words_), recorder.add_memory(other(), sizeof other_); }
+  /// The kernel's second argument leads to the third word, its third one to the first word of the other array.
+  void begin(const std::string& kernel) { recorder.begin_launch(kernel, {7, address(2), other()}); }
+  std::uintptr_t address(std::size_t word) const { return reinterpret_cast<std::uintptr_t>(words_.data() + word); }
+  std::uintptr_t other() const { return reinterpret_cast<std::uintptr_t>(other_.data()); }
+  void read(std::size_t word, std::size_t bytes = 4) { recorder.access(words_.data() + word, bytes, false, false); }
+  void write(std::size_t word, std::size_t bytes = 4) { recorder.access(words_.data() + word, bytes, true, false); }
+  void add(std::size_t word, std::size_t bytes = 4) { recorder.access(words_.data() + word, bytes, true, true); }
+  void write_other(std::size_t word) { recorder.access(other_.data() + word, 4, true, false); }
+  void begin_team(int team) { recorder.begin_team(team, nullptr, 0); }
+
+  device::RaceRecorder recorder;
+
+ private:
+  std::array<float, 64> words_{}, other_{};
+};
+
+}  // namespace
+
+TEST_CASE("each word counts once a launch and direction, and what is written first is not read", "[device][traffic]") {
+  Launches launches;
+  launches.begin("mpm_a");
+  launches.begin_team(0), launches.recorder.begin_lane(0);
+  launches.read(0, 8), launches.read(1), launches.read(0);  // two words
+  launches.write(1, 12), launches.write(2);                 // three words, of which one was read
+  launches.read(3);                                         // written before
+  launches.add(10), launches.add(10);                       // a sum is read and written
+  launches.begin_team(1), launches.recorder.begin_lane(0);
+  launches.read(0), launches.add(10), launches.read(20);  // one word more
+  const device::Traffic first = launches.recorder.traffic().at("mpm_a");
+  CHECK(first.launches == 1);
+  CHECK(first.bytes_read == 4 * (2 + 1 + 1));
+  CHECK(first.bytes_written == 4 * (3 + 1));
+  launches.begin("mpm_a");  // all words are as new
+  launches.begin_team(0), launches.recorder.begin_lane(0);
+  launches.read(0), launches.write(3);
+  launches.begin("mpm_b");
+  const device::Traffic second = launches.recorder.traffic().at("mpm_a");
+  CHECK(second.launches == 2);
+  CHECK(second.bytes_read == first.bytes_read + 4);
+  CHECK(second.bytes_written == first.bytes_written + 4);
+  CHECK(second.bytes() == second.bytes_read + second.bytes_written);
+  CHECK(launches.recorder.traffic().at("mpm_b").bytes() == 0);
+}
+
+TEST_CASE("a race is told with both lanes, the field's pointer and the bytes from there", "[device][traffic]") {
+  Launches launches;
+  const auto texts = [&] {
+    std::vector<std::string> all;
+    for (const device::Race& race : launches.recorder.races())
+      all.push_back(race.text("argument " + std::to_string(race.argument)));
+    return all;
+  };
+  launches.begin("mpm_a");
+  launches.begin_team(0), launches.recorder.begin_lane(3);
+  launches.write(5), launches.read(1);
+  launches.recorder.begin_lane(4), launches.read(1);
+  launches.recorder.end_phase();  // orders the lanes of the team
+  launches.recorder.begin_lane(4), launches.read(5);
+  CHECK(texts().empty());
+  launches.recorder.begin_lane(5), launches.write(5);
+  CHECK(texts() == std::vector<std::string>{
+                       "mpm_a, phase 1: lane 4 of team 0 reads and lane 5 of team 0 writes argument 8, byte 12"});
+  launches.begin_team(1), launches.recorder.begin_lane(3);  // no phase orders two teams
+  launches.write_other(9);
+  launches.begin_team(2), launches.recorder.begin_lane(3);
+  launches.recorder.end_phase(), launches.recorder.begin_lane(3);
+  launches.write_other(9);
+  REQUIRE(texts().size() == 2);
+  CHECK(texts()[1] == "mpm_a, phase 1: lane 3 of team 1 writes and lane 3 of team 2 writes argument 16, byte 36");
+  launches.begin("mpm_b");  // the next launch comes after all of it
+  launches.begin_team(0), launches.recorder.begin_lane(0);
+  launches.add(5), launches.write_other(9);
+  launches.recorder.begin_lane(1), launches.add(5);  // sums may meet
+  CHECK(texts().size() == 2);
+  launches.recorder.begin_lane(2), launches.read(5);
+  REQUIRE(texts().size() == 3);
+  CHECK(texts()[2].find("mpm_b, phase 0: lane 1 of team 0 adds to and lane 2 of team 0 reads argument 8") == 0);
+  launches.begin("mpm_c");  // the last that read the word is who writes it, but another one has read it too
+  launches.begin_team(0), launches.recorder.begin_lane(0);
+  launches.read(5), launches.recorder.begin_lane(1), launches.read(5), launches.write(5);
+  REQUIRE(texts().size() == 4);
+  CHECK(texts()[3].find("mpm_c, phase 0: lane 0 of team 0 reads and lane 1 of team 0 writes argument 8") == 0);
+}
+
+TEST_CASE("averages are of one step and one particle", "[device][traffic]") {
+  device::StepTraffic traffic;
+  traffic.kernels = {{"one", {4, 100, 20}}, {"other", {2, 30, 10}}};
+  traffic.steps = 2, traffic.particles = 10, traffic.bytes_copied = 40;
+  CHECK(traffic.bytes_per_particle_step() == 8);
+  CHECK(traffic.copied_per_particle_step() == 2);
+  CHECK(traffic.launches_per_step() == 3);
+}
+
+TEST_CASE("a step is counted with all that it launches, copies and clears", "[device][traffic]") {
+  device_setup();  // so that the usual devices are not set later
+  const TemporaryFolder folder;
+  setenv("MPM_CACHE", folder.path().c_str(), 1);
+  const Experiment experiment = device_experiment(Mix{}.text(), "double");
+  const device::StepTraffic counted = device::count_traffic(experiment, 3);
+  unsetenv("MPM_CACHE");
+  use_usual_devices();
+  device::DeviceSetup setup = device_setup();
+  setup.graphs = false;
+  Simulation simulation(experiment, device_factory(setup));
+  simulation.observe_when([](double, long) { return false; });
+  simulation.step();
+  long launches = -device::calls_on_host("cuLaunchKernel");
+  std::uint64_t copied = -device::bytes_copied_on_host();
+  for (int step = 0; step < 3; ++step) simulation.step();
+  launches += device::calls_on_host("cuLaunchKernel"), copied += device::bytes_copied_on_host();
+  CHECK(counted.steps == 3);
+  CHECK(counted.particles == simulation.particle_count());
+  CHECK(3 * counted.launches_per_step() == Approx(launches));
+  CHECK(counted.bytes_copied == static_cast<double>(copied));
+  double nodes = 1, components = 0;
+  for (int c = 0; c < 2; ++c)
+    nodes *= experiment.grid.cells[c] + 1 + 2 * grid_padding_of(experiment.shape.plugin->shape());
+  for (const Field& field : device_choice_of(experiment).node_fields)
+    components += field.cleared ? field.components : 0;
+  CHECK(counted.kernels.at("clear").bytes_read == 0);
+  CHECK(counted.kernels.at("clear").bytes_written ==
+        3 * nodes * (components * sizeof(double) + sizeof(int)));  // and whether it is folded
+}
