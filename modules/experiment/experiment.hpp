@@ -208,6 +208,7 @@ struct SolverSpecification {
   double courant = 0.3;             ///< fraction of h / (wave speed + particle speed) when automatic
   double end_time = 0;              ///< s
   PassChoice passes = PassChoice::automatic;
+  bool averages_dilation = false;  ///< particles are strained by the mean dilation around them, against locking
   long max_steps = 1000000000;  ///< stops with an error message when reached before end_time
 };
 

@@ -249,11 +249,22 @@ void temperature_fields(FieldList& fields) {
       if (passes_heat(face)) return heated_wall_fields(fields, face.thermal.pointer);
 }
 
+/// The sums by volume of what strains the particles, and their mean. A step may strain twice: the scatter itself clears
+/// them, and they are folded as they are divided.
+void dilation_fields(FieldList& fields) {
+  const Operator* const averages = fields.plan.find(Act::average_dilation);
+  if (!averages) return;
+  const std::string& because = averages->because;
+  fields.summed("volume_rate", "m^3/s", 1, AtWall::even, Folded::never, because).cleared = false;
+  fields.summed("strained_volume", "m^3", 1, AtWall::even, Folded::never, because, "volume_rate").cleared = false;
+  fields.in_place_of("volume_rate", fields.of_nodes("dilation", "1/s", 1, because));
+}
+
 }  // namespace
 
 void declare_node_fields(FieldList& fields) {
   for (const auto declare : {transfer_fields, fused_fields, filter_fields, increment_fields, force_fields,
-                             impulse_fields, contact_fields, grip_fields, temperature_fields})
+                             impulse_fields, contact_fields, grip_fields, temperature_fields, dilation_fields})
     declare(fields);
   for (Field& field : fields.plan.fields)
     if (field.name == field.id) std::replace(field.name.begin(), field.name.end(), '_', ' ');

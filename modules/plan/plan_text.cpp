@@ -46,6 +46,10 @@ std::string Pass::name() const {
       return "heat";
     case Act::change_phase:
       return "change phase";
+    case Act::scatter_dilation:
+      return "scatter dilation";
+    case Act::average_dilation:
+      return "average dilation";
     case Act::strain:
       return half ? "half strain" : "strain";
     case Act::move:

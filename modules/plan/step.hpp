@@ -33,6 +33,8 @@ enum class Act {
   add_correction,      ///< grid velocity += the correction kept aside; conditions and contact
   gather,              ///< grid -> particle velocity and the transfer's state
   gather_heat,         ///< grid -> particle temperature and the transfer's state for it
+  scatter_dilation,    ///< on particles: velocity gradient -> dilation; its sum by volume -> nodes
+  average_dilation,    ///< fold, mean dilation = sum by volume / volume
   strain,              ///< grid velocity -> velocity gradient -> material state
   move,                ///< x += dt times the advection velocity of the gather
   change_phase         ///< heat beyond the melting temperature becomes latent, and back

@@ -107,6 +107,10 @@ void DeviceBackend<T>::perform(const Pass& pass, const StepInfo& step) {
       return conduct();
     case Act::heat:
       return warm(step);
+    case Act::scatter_dilation:
+      return scatter_dilation(pass);
+    case Act::average_dilation:
+      return average_dilation();
     case Act::change_phase:
       return change_phase();
     case Act::restore_velocity:

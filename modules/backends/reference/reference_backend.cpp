@@ -53,6 +53,10 @@ void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
       return change_phase();
     case Act::gather:
       return gather(pass, step);
+    case Act::scatter_dilation:
+      return scatter_dilation(pass, step);
+    case Act::average_dilation:
+      return average_dilation();
     case Act::strain:
       return strain(pass, step);
     case Act::move:

@@ -2,7 +2,7 @@
 // The reference backend is the material point method of the textbook in plain double precision: one pass after another,
 // every particle and node spelled out. It is slow on purpose, and every faster backend is tested against it.
 //  transfers.cpp: particles to grid and back; grid_step.cpp: momenta, conditions and forces; contact.cpp: pairs of
-//  fields; filter.cpp: velocity filters; temperature.cpp: heat; reference_backend.cpp: the rest.
+//  fields; filter.cpp: velocity filters; temperature.cpp: heat; dilation.cpp: mean dilation; reference_backend.cpp: the rest.
 
 #include <array>
 #include <deque>
@@ -168,6 +168,11 @@ class ReferenceBackend final : public Backend {
   double sum(const ScalarField& field);
   double heat_of_temperature();
 
+  // ---- dilation.cpp
+  void scatter_dilation(const Pass& pass, const StepInfo& step);
+  void average_dilation();
+  void gather_dilation(Particles& body);
+
   /// Calls `visit(i)` for every node of every velocity field.
   template <class Visit>
   void for_each_node(Visit visit) {
@@ -226,6 +231,8 @@ class ReferenceBackend final : public Backend {
   ScalarField &heat_rate_ = grid_.scalar("heat_rate"), &heated_volume_ = grid_.scalar("heated_volume");
   ScalarField& volume_conductivity_ = grid_.scalar("volume_conductivity");
   VectorField& capacity_position_ = grid_.vector("capacity_position");
+  ScalarField &volume_rate_ = grid_.scalar("volume_rate"), &strained_volume_ = grid_.scalar("strained_volume");
+  ScalarField& dilation_ = grid_.scalar("dilation");  ///< mean by volume of the particles', 1/s
   const WallWeights wall_weights_ = plan_.node_field("heated_volume") ? wall_weights(experiment_) : WallWeights();
   std::deque<Particles> bodies_;
   const PairGeometry pair_geometry_{experiment_, MPM_SCALAR_DOUBLE};

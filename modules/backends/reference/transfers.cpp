@@ -274,6 +274,7 @@ void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {
 }
 
 void ReferenceBackend::strain(Particles& body, double dt) {
+  if (plan_.does(Act::average_dilation)) gather_dilation(body);
   const StrainEnergies energies = body.strain(dt, accounted_);
   if (accounted_) book_strain(energies);
   account(heat_ledger_.dissipation, body.share_of_heat() * energies.dissipated);

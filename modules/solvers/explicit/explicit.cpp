@@ -117,6 +117,11 @@ std::vector<ParameterSpec> explicit_parameters() {
           .to(2)
           .standard(0.3),
       end_time_parameter(),
+      parameter("dilation", Type::choice, "",
+                "Dilation that strains a particle: its own, or the mean around it by the nodes, which keeps nearly "
+                "incompressible materials from locking.")
+          .of({"own", "averaged"})
+          .standard("own"),
       parameter("passes", Type::choice, "",
                 "Whether a gather also scatters for the next step: auto fuses them where that is legal.")
           .of({"auto", "separate", "fused"})
@@ -129,6 +134,7 @@ void read_explicit(const Fields& fields, SolverSpecification& solver) {
   solver.stress_update = static_cast<StressUpdate>(fields.choice("stress_update"));
   if (fields.text("time_step").empty()) solver.time_step = fields.number("time_step");
   solver.courant = fields.number("courant");
+  solver.averages_dilation = fields.choice("dilation") == 1;
   solver.passes = static_cast<PassChoice>(fields.choice("passes"));
 }
 
@@ -151,6 +157,13 @@ void explicit_step(StepBuilder& step) {
         return (void)step.perform(Act::change_phase, material.thermal->phase_change->pointer, Stage::after_forces);
   };
 
+  const auto average = [&](Stage stage) {
+    if (!scene.solver.averages_dilation) return;
+    const std::string dilation = "/solver/dilation \"averaged\"";
+    step.perform(Act::scatter_dilation, dilation, stage).share = share;
+    step.perform(Act::average_dilation, dilation, stage);
+  };
+
   step.perform(Act::clear, transfer);
   step.perform(Act::scatter_momentum, transfer);
   if (!stress_first) step.perform(Act::scatter_force, transfer);
@@ -165,6 +178,7 @@ void explicit_step(StepBuilder& step) {
   }
   filter.before_forces(stress_first);
   if (stress_first) {
+    average(Stage::before_forces);
     step.perform(Act::strain, first).share = share;
     step.perform(Act::scatter_force, first + ": stress at the new strain");
   }
@@ -174,6 +188,7 @@ void explicit_step(StepBuilder& step) {
                Stage::after_forces);
   filter.after_forces();
 
+  if (stress_last) average(Stage::after_forces);
   if (filter.for_particles_only() && stress_last)
     step.perform(Act::strain, order + ": by the unfiltered velocity", Stage::after_forces).share = share;
   filter.before_gather();
@@ -187,6 +202,7 @@ void explicit_step(StepBuilder& step) {
   step.perform(Act::scatter_momentum, again + ": updated velocities, old positions", Stage::remapped);
   step.perform(Act::divide, again, Stage::remapped);
   filter.remapped();
+  average(Stage::remapped);
   step.perform(Act::strain, again, Stage::remapped);
   step.perform(Act::move, again + ": positions by the velocity gathered before", Stage::remapped);
   melts();

@@ -98,6 +98,7 @@ struct alignas(page) Workspace {
     alignas(64) T S[D * D * chunk_size<T>];
   };
   alignas(64) T advection[D * chunk_size<T>];
+  alignas(64) T mean_dilation[chunk_size<T>];  ///< 1/s, where the nodes average it
   /// Moments of particles that have their own, cells^2, and inverses in 1/m^2: [D] of a product, [D * D] of a list.
   alignas(64) T second_moment[D * D * chunk_size<T>], inverse_moment[D * D * chunk_size<T>];
   alignas(64) T transfer_moment[D * D * chunk_size<T>];  ///< moment that the transfer reads, unless it is second_moment
@@ -110,7 +111,7 @@ struct alignas(page) Workspace {
   /// Tiles are zero between uses, so that the scatter may add.
   std::vector<AlignedArray<T>> tile;  ///< [channel], for those that particles add to
   /// From these tiles a block gathers; only what it reaches is valid.
-  AlignedArray<T> velocity_tile, increment_tile;
+  AlignedArray<T> velocity_tile, increment_tile, dilation_tile;
   AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
   AlignedArray<T> scratch_velocity, scratch_state;  ///< for the filter's projections
   AlignedArray<T> moved_corners;                    ///< [corner][D][chunk_size] cells, from the particle
@@ -173,6 +174,7 @@ class ParticleStep : NamedChannels {
   struct Gathered {
     double kinetic_energy = 0, dissipated = 0;  ///< J, with the ledger on
     double stress_power = 0, stored = 0;        ///< J, with the ledger on
+    double averaged = 0;                        ///< J, with the ledger on
     double heat = 0, heat_of_dissipation = 0;   ///< J, with temperature
   };
   /// What a grip gave its particles in the last gather.
@@ -180,6 +182,8 @@ class ParticleStep : NamedChannels {
   /// The sum of the heat that the last scatter of momenta took along, J.
   double scattered_heat() const;
   void conduct();
+  /// Scatters how the grid's velocity changes the particles' volumes.
+  void scatter_dilation(const Pass& pass, const StepInfo& step);
   /// Returns the energy that the ledger calls dissipated, J.
   double change_phases(const StepInfo& step);
   Gathered gather(const Pass& pass, const StepInfo& step);
@@ -352,6 +356,12 @@ class ParticleStep : NamedChannels {
   void change_phases(const Chunk& chunk, Work& work);
   std::int32_t update_by_phase(const Chunk& chunk, const mpm_material_batch& request);
 
+  void find_hoop_rates(const Chunk& chunk, const Work& work, T* hoop) const;
+  void scatter_dilation(const Chunk& chunk, Work& work, T dt);
+  void gather_dilation(const Chunk& chunk, Work& work);
+  void take_mean_dilations(const Chunk& chunk, const Work& work, T* gradient, T* hoop, T dt) const;
+  void load_dilation(int body, const Block<D>& block, Work& work);
+
   void load_velocities(int body, const Block<D>& block, Work& work);
   void flush(int body, const Block<D>& block, Work& work, Channel channel);
   Moved gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
@@ -361,6 +371,7 @@ class ParticleStep : NamedChannels {
     bool transfer = false, strain = false;
     Channel channel = -1;
     Channel increments = -1;  ///< channel that transfers of increments take
+    Channel dilation = -1;    ///< channel that a strain by the mean dilation takes
   };
   void gather_chunk(const Chunk& chunk, Work& work, const Wanted& wanted);
   void gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment, bool gradient);
@@ -376,6 +387,8 @@ class ParticleStep : NamedChannels {
   void add_scattered(const Chunk& chunk) const;
   Scattered sum_scattered() const;
   void evaluate_moments(const Chunk& chunk, Work& work);
+  double work_of_stress(const Chunk& chunk, const mpm_material_batch& now, const mpm_material_batch& strain,
+                        bool after) const;
   void book_stress(const Chunk& chunk, const mpm_material_batch& now, const mpm_material_batch& strain, bool after);
   void advance_domain(const Chunk& chunk, const T* velocity_gradient, double dt, bool again) const;
   void advance_columns(const T* from, T* to, const T* velocity_gradient, double dt, int count) const;
