@@ -150,7 +150,6 @@ void draw_ledger(const Table& table, const RunLabel& label, const std::filesyste
                                         {"ledger filtered strain", "strain by filtered velocity"},
                                         {"ledger filtered gravity", "rise by filtered velocity"},
                                         {"ledger remapped strain", "strain by remapped velocity"},
-                                        {"ledger averaged strain", "strain by averaged dilation"},
                                         {"ledger second moment", "change of the second moment D"}});
   auto dissipated = column(table, "ledger material dissipation", -1);
   if (std::any_of(dissipated.begin(), dissipated.end(), [](double e) { return e != 0; }))
@@ -176,7 +175,6 @@ void draw_dissipation(const Table& table, const RunLabel& label, const std::file
   add_if_any("ledger filtered strain", "strain by filtered velocity", -1);
   add_if_any("ledger filtered gravity", "rise by filtered velocity", -1);
   add_if_any("ledger remapped strain", "strain by remapped velocity", -1);
-  add_if_any("ledger averaged strain", "strain by averaged dilation", -1);
   add_if_any("ledger boundary", "boundary", -1);
   add_if_any("ledger contact", "contact", -1);
   add_if_any("ledger damping", "damping", -1);

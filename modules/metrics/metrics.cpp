@@ -107,7 +107,6 @@ std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
            (!(plan.filters() && falls) && row.name == "filtered gravity") ||
            (!simulation_.experiment().damping.acts() && row.name == "damping") ||
            (!remaps && row.name == "remapped strain") ||
-           (!plan.does(Act::average_dilation) && row.name == "averaged strain") ||
            (simulation_.experiment().rigid_bodies.empty() && row.name == "rigid bodies") ||
            (!simulation_.experiment().has_compliant_contact() && row.name == "interface springs") ||
            (!moves_second_moment(simulation_.experiment(), plan) && row.name == "second moment") ||

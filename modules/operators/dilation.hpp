@@ -35,7 +35,8 @@ MPM_HD S stretch_to_mean(S own, S mean, S dt) {
     stretch = change / (one + sqrt(one + change));
   } else {
     stretch = change * real<S>(1.0 / 3);
-    for (int k = 0; k < 3; ++k) {  // Newton's method; what it starts from is wrong by a ninth of the square of the change
+    for (int k = 0; k < 3;
+         ++k) {  // Newton's method; what it starts from is wrong by a ninth of the square of the change
       const S length = one + stretch, three = S(scalar_of<S>(3));
       stretch = stretch - (stretch * (three + stretch * (three + stretch)) - change) / (three * length * length);
     }

@@ -63,7 +63,7 @@ std::string why_no_change_is_judged(const Experiment& experiment, const Json& su
 double numerical_gain(const Ledger& ledger) {
   return ledger.scatter + ledger.gather + ledger.boundary + (ledger.contact + ledger.friction + ledger.interface) +
          ledger.filter + ledger.filtered_strain + ledger.filtered_gravity + ledger.remapped_strain +
-         ledger.averaged_strain + ledger.second_moment;
+         ledger.second_moment;
 }
 
 std::string work_from_outside(const Experiment& experiment) {

@@ -154,7 +154,6 @@ struct Ledger {
   double filtered_strain = 0;      ///< what strain by the filtered velocity stores less than by the unfiltered one
   double filtered_gravity = 0;     ///< potential energy that particles gain less as the filtered velocity moves them
   double remapped_strain = 0;      ///< what strain by the remapped velocity (MUSL) stores less than by v+
-  double averaged_strain = 0;      ///< what strain by the mean dilation stores more than by the particle's own
   double second_moment = 0;  ///< change of the affine part's kinetic energy, as D changes with the place of a particle
   double stress_power = 0;   ///< work of the stresses on the strain of the particles
   double stored = 0;         ///< stored by the materials while they strain
@@ -205,7 +204,6 @@ inline constexpr LedgerEntry<Ledger> ledger_entries[] = {
     {"filtered strain", &Ledger::filtered_strain, 1, 5},
     {"filtered gravity", &Ledger::filtered_gravity, 1, 5},
     {"remapped strain", &Ledger::remapped_strain, 1, 5},
-    {"averaged strain", &Ledger::averaged_strain, 1, 5},
     {"second moment", &Ledger::second_moment, 1, 5},
     {"stress power", &Ledger::stress_power, 0},
     {"stored", &Ledger::stored, 0},

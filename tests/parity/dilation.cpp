@@ -71,9 +71,8 @@ TEST_CASE("parity of the mean dilation in every order, with filters and contact"
 }
 
 TEST_CASE("parity of the mean dilation at walls, around an axis and of temperature", "[parity][dilation]") {
-  for (const std::string walls :
-       {R"({"all": "stick"})", R"({"all": "separate"})",
-        R"({"all": "slip", "x_min": "periodic", "x_max": "periodic",
+  for (const std::string walls : {R"({"all": "stick"})", R"({"all": "separate"})",
+                                  R"({"all": "slip", "x_min": "periodic", "x_max": "periodic",
             "y_min": {"type": "prescribed", "velocity": ["0.3+t", "0.1*x"]}})"})
     for (const std::string shape : {"bspline_cubic", "cpdi"}) {
       Mix mix = averaged_mix();

@@ -260,7 +260,6 @@ std::string scene_text(const Choice& choice) {
   if (has_temperature(choice)) out << "MPM_DEVICE_HEAT_ENTRIES\n";
   if (has_temperature(choice) && keeps_ledger(choice)) out << "MPM_DEVICE_HEAT_LEDGER_ENTRIES\n";
   if (averages_dilation(choice)) out << "MPM_DEVICE_DILATION_ENTRIES\n";
-  if (averages_dilation(choice) && keeps_ledger(choice)) out << "MPM_DEVICE_DILATION_LEDGER_ENTRIES\n";
   for (std::size_t k = 0; k < choice.materials.size(); ++k) {
     out << "MPM_DEVICE_MATERIAL_ENTRIES(" << k << ")\n";
     if (melts(choice)) out << "MPM_DEVICE_MELTING_ENTRIES(" << k << ")\n";
@@ -292,7 +291,6 @@ std::vector<std::string> entry_names(const Choice& choice) {
     if (macro == "MPM_DEVICE_HEAT_ENTRIES" && !has_temperature(choice)) continue;
     if (macro == "MPM_DEVICE_HEAT_LEDGER_ENTRIES" && !(has_temperature(choice) && keeps_ledger(choice))) continue;
     if (macro == "MPM_DEVICE_DILATION_ENTRIES" && !averages_dilation(choice)) continue;
-    if (macro == "MPM_DEVICE_DILATION_LEDGER_ENTRIES" && !(averages_dilation(choice) && keeps_ledger(choice))) continue;
     if (macro == "MPM_DEVICE_MELTING_ENTRIES" && !melts(choice)) continue;
     const std::size_t number = name.find("##");
     if (number == name.npos) names.push_back(name);

@@ -202,9 +202,9 @@ class DeviceBackend final : public Backend {
   void change_phase();
 
   // ---- dilation.cpp
+  void scatter_mean_stress();
   void scatter_dilation(const Pass& pass);
-  void average_dilation();
-  void book_averaging(Body<T>& body);
+  void average(const std::string& what);
 
   // ---- contact.cpp
   /// Applies the law to every pair of fields, and then those of rigid bodies, whose velocities are those of a time, s.

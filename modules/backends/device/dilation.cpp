@@ -2,6 +2,15 @@
 
 namespace mpm::device {
 
+template <class T>
+void DeviceBackend<T>::scatter_mean_stress() {
+  for_each_field("clear_mean_stress", nodes());
+  for (Body<T>& body : bodies_) {
+    run_material("stress", body);
+    run_blocks("scatter_mean_stress", arguments_of(body), body);
+  }
+}
+
 /// The volumes are those of the last stress or strain: a step that strains first has had neither.
 template <class T>
 void DeviceBackend<T>::scatter_dilation(const Pass& pass) {
@@ -15,17 +24,10 @@ void DeviceBackend<T>::scatter_dilation(const Pass& pass) {
 }
 
 template <class T>
-void DeviceBackend<T>::average_dilation() {
-  for_each_axis("fold_dilation", folded_axes());
-  for_each_field("divide_dilation", nodes());
-  for_each_axis("fill_dilation", filled_axes());
-}
-
-template <class T>
-void DeviceBackend<T>::book_averaging(Body<T>& body) {
-  const Tally<1> work = tally<1>();
-  sum_over_particles("work_of_averaging", body, work);
-  later([this, work] { ledger_.averaged_strain += (*work)[0]; });
+void DeviceBackend<T>::average(const std::string& what) {
+  for_each_axis("fold_" + what, folded_axes());
+  for_each_field("divide_" + what, nodes());
+  for_each_axis("fill_" + what, filled_axes());
 }
 
 template class DeviceBackend<float>;

@@ -163,11 +163,9 @@ template <class T>
 void DeviceBackend<T>::run_strain(const Pass& pass, Body<T>& body) {
   Arguments<T> a = arguments_of(body);
   a.dt *= static_cast<T>(pass.share);
-  const bool averages = plan_.does(Act::average_dilation);
-  if (averages) run("gather_dilation", a, body, Checks::stencil);
+  if (plan_.does(Act::average_dilation)) run("gather_dilation", a, body, Checks::stencil);
   run_material("strain", a, body);
   if (accounted_) book_material(body);
-  if (accounted_ && averages) book_averaging(body);
   if (!plan_.has_heat_ledger() || !(body.heat.warming > 0)) return;
   const Tally<1> heat = tally<1>();
   sum_over_particles("heat_of_dissipation", body, heat);

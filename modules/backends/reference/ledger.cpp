@@ -155,7 +155,6 @@ void ReferenceBackend::book_gather(const Pass& pass, double dt) {
 void ReferenceBackend::book_strain(const StrainEnergies& energies) {
   ledger_.material += energies.dissipated;
   ledger_.stress_power += energies.power;
-  ledger_.averaged_strain += energies.averaged;
   ledger_.stored += energies.stored;
   ledger_.material_book += energies.power - energies.stored - energies.dissipated;
 }

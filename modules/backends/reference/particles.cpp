@@ -280,10 +280,7 @@ StrainEnergies Particles::strain(double dt, bool booked) {
   pad(velocity_gradient);
   find_hoop_rate();
   StrainEnergies energies;
-  const bool averages = mean_dilation.rows() > 0;
-  const Array own_gradient = averages ? velocity_gradient : Array(), own_hoop_rate = averages ? hoop_rate : Array();
-  double own_work = booked && averages ? 0.5 * work_of_stress(dt, false) : 0;
-  if (averages) take_mean_dilation(dt);
+  if (mean_dilation.rows() > 0) take_mean_dilation(dt);
   if (booked) energies.power = 0.5 * work_of_stress(dt, false), energies.stored = -stored_energy();
   Array dissipated = make(1);
   mpm_material_batch batch{};
@@ -292,13 +289,6 @@ StrainEnergies Particles::strain(double dt, bool booked) {
   batch.dissipated_energy = dissipated.data();
   refuse_inverted(update_material(batch));
   if (booked) energies.power += 0.5 * work_of_stress(dt, true), energies.stored += stored_energy();
-  if (booked && averages) {
-    const Array gradient = velocity_gradient, around = hoop_rate;
-    velocity_gradient = own_gradient, hoop_rate = own_hoop_rate;
-    own_work += 0.5 * work_of_stress(dt, true);
-    velocity_gradient = gradient, hoop_rate = around;
-    energies.averaged = energies.power - own_work;
-  }
   if (plan_.particle_field(0, "domain") && !frozen_) {
     Array& domain = values("domain");  // the domain becomes (I + dt L) domain, like F
     for (std::size_t p = 0; p < padded_; ++p)

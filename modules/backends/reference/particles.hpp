@@ -18,7 +18,6 @@ struct Moments {
 struct StrainEnergies {
   double dissipated = 0;
   double power = 0, stored = 0;  ///< work of the stresses on the strain, and change of the stored energy
-  double averaged = 0;           ///< that work less what it would be with each particle's own dilation
 };
 
 class Particles {
@@ -78,6 +77,10 @@ class Particles {
   // ---- dilation.cpp
   /// The relative change of particle p's volume by dt with `velocity_gradient`, over dt, 1/s.
   double dilation(std::size_t p, double dt) const;
+  /// The mean of the normal Kirchhoff stresses in the directions that a dilation strains, Pa.
+  double mean_stress(std::size_t p) const;
+  /// Replaces that mean of the evaluated stress by that of a Cauchy stress, Pa.
+  void take_mean_stress(const Array& cauchy);
   /// Finds the rate of strain around the axis from the gathered velocity.
   void find_hoop_rate();
 
@@ -135,6 +138,8 @@ class Particles {
   std::vector<Array> state_of_temperature() const;
   /// The velocity gradient in all three directions.
   Matrix whole_gradient(std::size_t p) const;
+  /// In how many directions a dilation strains: z stays as it is in plane strain.
+  int dilated_directions() const { return dimension_ == 2 && !axisymmetric() ? 2 : 3; }
   /// Replaces the dilation of the velocity gradient by the mean one.
   void take_mean_dilation(double dt);
   double stored_energy();  ///< sum over all particles, J

@@ -118,8 +118,8 @@ std::vector<ParameterSpec> explicit_parameters() {
           .standard(0.3),
       end_time_parameter(),
       parameter("dilation", Type::choice, "",
-                "Dilation that strains a particle: its own, or the mean around it by the nodes, which keeps nearly "
-                "incompressible materials from locking.")
+                "Dilation that strains a particle, and mean stress of its force: its own, or averages by the nodes "
+                "around it, which keep nearly incompressible materials from locking.")
           .of({"own", "averaged"})
           .standard("own"),
       parameter("passes", Type::choice, "",
@@ -157,16 +157,17 @@ void explicit_step(StepBuilder& step) {
         return (void)step.perform(Act::change_phase, material.thermal->phase_change->pointer, Stage::after_forces);
   };
 
-  const auto average = [&](Stage stage) {
-    if (!scene.solver.averages_dilation) return;
-    const std::string dilation = "/solver/dilation \"averaged\"";
-    step.perform(Act::scatter_dilation, dilation, stage).share = share;
-    step.perform(Act::average_dilation, dilation, stage);
+  const bool averages = scene.solver.averages_dilation;
+  const std::string mean = "/solver/dilation \"averaged\"";
+  const auto average_dilation = [&](Stage stage) {
+    if (!averages) return;
+    step.perform(Act::scatter_dilation, mean, stage).share = share;
+    step.perform(Act::average_dilation, mean, stage);
   };
 
   step.perform(Act::clear, transfer);
   step.perform(Act::scatter_momentum, transfer);
-  if (!stress_first) step.perform(Act::scatter_force, transfer);
+  if (!stress_first && !averages) step.perform(Act::scatter_force, transfer);
   if (scene.meets()) step.perform(Act::scatter_contact, contact);
   if (heats) step.perform(Act::scatter_heat, thermal);
   step.perform(Act::divide, scene.meets() ? contact + " before the forces; boundaries" : "boundaries");
@@ -178,17 +179,22 @@ void explicit_step(StepBuilder& step) {
   }
   filter.before_forces(stress_first);
   if (stress_first) {
-    average(Stage::before_forces);
+    average_dilation(Stage::before_forces);
     step.perform(Act::strain, first).share = share;
-    step.perform(Act::scatter_force, first + ": stress at the new strain");
   }
+  if (averages) {
+    step.perform(Act::scatter_mean_stress, mean);
+    step.perform(Act::average_mean_stress, mean);
+  }
+  if (stress_first || averages)
+    step.perform(Act::scatter_force, stress_first ? first + ": stress at the new strain" : mean);
   filter.unfilter_for_forces(stress_first);
 
   step.perform(Act::accelerate, scene.meets() ? contact + " after the forces; boundaries" : "boundaries",
                Stage::after_forces);
   filter.after_forces();
 
-  if (stress_last) average(Stage::after_forces);
+  if (stress_last) average_dilation(Stage::after_forces);
   if (filter.for_particles_only() && stress_last)
     step.perform(Act::strain, order + ": by the unfiltered velocity", Stage::after_forces).share = share;
   filter.before_gather();
@@ -202,7 +208,7 @@ void explicit_step(StepBuilder& step) {
   step.perform(Act::scatter_momentum, again + ": updated velocities, old positions", Stage::remapped);
   step.perform(Act::divide, again, Stage::remapped);
   filter.remapped();
-  average(Stage::remapped);
+  average_dilation(Stage::remapped);
   step.perform(Act::strain, again, Stage::remapped);
   step.perform(Act::move, again + ": positions by the velocity gathered before", Stage::remapped);
   melts();

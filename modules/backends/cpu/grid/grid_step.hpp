@@ -49,8 +49,8 @@ class GridStep : NamedChannels {
   void set_particle_heat(double sum) { particle_heat_ = sum; }
   double heat_after() const { return heat_after_; }
 
-  /// Divides the volume rates that particles have scattered by their volumes.
-  void average_dilation();
+  /// Divides what particles have summed by their volumes in a channel.
+  void average(Channel channel);
 
   /// These passes make the filter's loop (see Act). project_increment takes what the particles have scattered.
   void begin_filter(const Pass& pass);

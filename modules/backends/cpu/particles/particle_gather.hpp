@@ -21,11 +21,11 @@ void ParticleStep<D, T, Components>::load_velocities(int body, const Block<D>& b
   work.clock.lap(Phase::tiles);
 }
 
-/// Copies what a block reaches of the mean dilation into the thread's tile, where the scene has one.
+/// Copies what a block reaches of an average of the nodes into the thread's tile, where the scene has it.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::load_dilation(int body, const Block<D>& block, Work& work) {
-  if (!grid_.has(dilation)) return;
-  kernels_.load(work.dilation_tile.data(), grid_.channel(dilation, bodies_[body].field), block.neighbours.data(),
+void ParticleStep<D, T, Components>::load_mean(int body, const Block<D>& block, Work& work, Channel channel) {
+  if (channel < 0) return;
+  kernels_.load(work.mean_tile.data(), grid_.channel(channel, bodies_[body].field), block.neighbours.data(),
                 block.reach);
 }
 
@@ -59,7 +59,6 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
       sum.dissipated += block.dissipated;
       sum.stress_power += block.stress_power;
       sum.stored += block.stored;
-      sum.averaged += block.averaged;
       sum.heat += block.heat;
       sum.heat_of_dissipation += block.heat_of_dissipation;
     }
@@ -75,9 +74,9 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       block.kinetic_energy = block.dissipated = block.heat_of_dissipation = 0;
-      block.stress_power = block.stored = block.averaged = 0;
+      block.stress_power = block.stored = 0;
       if (pass.has(Act::gather_heat)) gather_heat(body, block, work, step);
-      if (pass.has(Act::strain)) load_dilation(body, block, work);
+      if (pass.has(Act::strain)) load_mean(body, block, work, dilation);
       load_velocities(body, block, work);
       block.bounds.clear();
       for_each_chunk_of(body, block,
@@ -200,8 +199,8 @@ auto ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& st
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       kernels_.load(work.velocity_tile.data(), grid_.channel(motion, bodies_[body].field), block.neighbours.data(),
                     block.reach);
-      load_dilation(body, block, work);
-      block.dissipated = block.heat_of_dissipation = block.stress_power = block.stored = block.averaged = 0;
+      load_mean(body, block, work, dilation);
+      block.dissipated = block.heat_of_dissipation = block.stress_power = block.stored = 0;
       block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         gather_chunk(chunk, work, wanted);
@@ -258,7 +257,7 @@ void ParticleStep<D, T, Components>::gather_chunk(const Chunk& chunk, Work& work
       for (int c = 0; c < D; ++c) increment[c].store(work.increment + c * chunk_size<T> + p);
     }
   }
-  if (wanted.dilation >= 0) gather_dilation(chunk, work);
+  if (wanted.dilation >= 0) gather_mean(chunk, work, wanted.dilation);
 }
 
 /// Turns quads into velocity, C = h (sum k w v - f sum w v) D^-1 about the particle (without the D^-1 of moments a
@@ -399,21 +398,7 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
     find_hoop_rates(chunk, work, work.b);
     request.velocity_gradient_zz = work.b;
   }
-  const bool averages = dilation >= 0;
-  alignas(64) T own_gradient[D * D * chunk_size<T>], own_hoop[chunk_size<T>];
-  if (averages && accounted_) {
-    std::copy_n(velocity_gradient, D * D * chunk_size<T>, own_gradient);
-    std::copy_n(work.b, chunk_size<T>, own_hoop);
-  }
-  if (averages) take_mean_dilations(chunk, work, velocity_gradient, work.b, static_cast<T>(request.dt));
-  const auto book = [&](const mpm_material_batch& now, bool after) {
-    book_stress(chunk, now, request, after);
-    if (!averages) return;
-    mpm_material_batch own = request;
-    own.velocity_gradient = own_gradient;
-    if (scene_.axisymmetric) own.velocity_gradient_zz = own_hoop;
-    chunk.block.averaged += work_of_stress(chunk, now, request, after) - work_of_stress(chunk, now, own, after);
-  };
+  if (dilation >= 0) take_mean_dilations(chunk, work, velocity_gradient, work.b, static_cast<T>(request.dt));
   if (dissipation) request.dissipated_energy = work.scalar;
   if (evaluates_for_scatter(pass)) want_of_material(pass, work, request);
   alignas(64) T stored_energy[chunk_size<T>];
@@ -421,11 +406,11 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
     mpm_material_batch now{};
     now.kirchhoff_stress = work.stress, now.stored_energy = stored_energy;
     update_material(chunk, now);
-    book(now, false);
+    book_stress(chunk, now, request, false);
     request.kirchhoff_stress = work.stress, request.stored_energy = stored_energy;
   }
   update_material(chunk, request);
-  if (accounted_) book(request, true);
+  if (accounted_) book_stress(chunk, request, request, true);
   if (chunk.particles.domain >= 0 && !chunk.body.frozen)
     advance_domain(chunk, velocity_gradient, request.dt, pass.second_half());
   if (chunk.particles.deformation >= 0 && !chunk.body.frozen) {
@@ -442,17 +427,18 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   chunk.block.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
 }
 
-/// Half of the work of the stresses `now` on a strain, J: `after` it of what dt L is of the strained body,
-/// dt L (I + dt L)^-1 to second order.
+/// Adds half of the work of the stresses `now` on a strain, and the stored energy: before the strain with the other sign,
+/// `after` it of what dt L is of the strained body, dt L (I + dt L)^-1 to second order.
 template <int D, class T, class Components>
-double ParticleStep<D, T, Components>::work_of_stress(const Chunk& chunk, const mpm_material_batch& now,
-                                                      const mpm_material_batch& strain, bool after) const {
-  const T* const stress = static_cast<const T*>(now.kirchhoff_stress);
+void ParticleStep<D, T, Components>::book_stress(const Chunk& chunk, const mpm_material_batch& now,
+                                                 const mpm_material_batch& strain, bool after) {
+  const T *const stress = static_cast<const T*>(now.kirchhoff_stress), *const energy =
+                                                                           static_cast<const T*>(now.stored_energy);
   const T* const L = static_cast<const T*>(strain.velocity_gradient);
   const T* const hoop = static_cast<const T*>(strain.velocity_gradient_zz);
   const T* const size = sizes(chunk);
   const auto of_strained = [&](double rate, double squared) { return after ? rate - strain.dt * squared : rate; };
-  double power = 0;
+  double power = 0, stored = 0;
   for (int p = 0; p < chunk.count; ++p) {
     const auto at = [&](const T* values, int component) { return double(values[component * chunk_size<T> + p]); };
     double sum = hoop ? at(stress, 2) * of_strained(hoop[p], double(hoop[p]) * hoop[p]) : 0.0;
@@ -462,21 +448,11 @@ double ParticleStep<D, T, Components>::work_of_stress(const Chunk& chunk, const 
         for (int k = 0; k < D; ++k) squared += at(L, i * D + k) * at(L, k * D + j);
         sum += at(stress, Sym<D, T>::index(i, j)) * of_strained(at(L, i * D + j), squared);
       }
-    power += (size ? double(size[p]) : 1.0) * sum;
+    const double share = size ? double(size[p]) : 1.0;
+    power += share * sum;
+    stored += share * at(energy, 0);
   }
-  return 0.5 * strain.dt * chunk.body.volume * power;
-}
-
-/// Adds half of the work of the stresses `now` on a strain, and the stored energy: before the strain with the other
-/// sign.
-template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::book_stress(const Chunk& chunk, const mpm_material_batch& now,
-                                                 const mpm_material_batch& strain, bool after) {
-  const T* const energy = static_cast<const T*>(now.stored_energy);
-  const T* const size = sizes(chunk);
-  double stored = 0;
-  for (int p = 0; p < chunk.count; ++p) stored += (size ? double(size[p]) : 1.0) * double(energy[p]);
-  chunk.block.stress_power += work_of_stress(chunk, now, strain, after);
+  chunk.block.stress_power += 0.5 * strain.dt * chunk.body.volume * power;
   chunk.block.stored += (after ? 1 : -1) * chunk.body.volume * stored;
 }
 

@@ -39,7 +39,6 @@ struct Block {
   std::uint32_t far = 0;                       ///< number of particles whose lists leave the tile
   double kinetic_energy = 0, dissipated = 0;   ///< partial sums of the ledger, J
   double stress_power = 0, stored = 0;         ///< the same: work of the stresses, change of the stored energy, J
-  double averaged = 0;                         ///< the same: work that strain by the mean dilation has more, J
   double scattered_energy = 0;                 ///< kinetic energy of the particles when they scatter, J
   double scattered_mass = 0;                   ///< their mass, kg
   std::array<double, D> scattered_momentum{};  ///< their momentum, kg m/s

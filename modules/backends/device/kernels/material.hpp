@@ -107,12 +107,17 @@ MPM_HD void stress(const Team& team, const Arguments<typename Scene::Scalar>& a)
   });
 }
 
-/// The power of a stress on L, or for a time `share` after a strain began on what L dt is of the strained body over dt,
-/// L (I + dt L)^-1 to second order.
-template <class Scene, class Stress, class Gradient, class T = typename Scene::Scalar>
-MPM_HD T power_of_stress(const Stress& tau, const Gradient& L, T share) {
+/// Notes half of the work of the stress as it is on a strain, and the stored energy: before the strain with the other
+/// sign, `after` it of what dt L is of the strained body, dt L (I + dt L)^-1 to second order.
+template <class Scene, class Constants, class State, class Gradient, class T = typename Scene::Scalar>
+MPM_HD void note_stress(const Arguments<T>& a, int p, const Constants& constants, const State& state, const Gradient& L,
+                        bool after) {
+  using Material = typename Scene::Material;
+  using P = typename Scene::Particle;
   constexpr int D = Scene::dimension;
+  const Sym<D, T> tau = Material::kirchhoff_stress(constants, state);
   const Mat<D, T> plane = in_plane(L);
+  const T share = after ? a.dt : T(0);
   T power = T(0);
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
@@ -120,29 +125,14 @@ MPM_HD T power_of_stress(const Stress& tau, const Gradient& L, T share) {
       for (int k = 0; k < D; ++k) squared += plane(i, k) * plane(k, j);
       power += tau.s[Sym<D, T>::index(i, j)] * (plane(i, j) - share * squared);
     }
-  if constexpr (Scene::axisymmetric) power += tau.s[2] * (L.zz - share * L.zz * L.zz);
-  return power;
-}
-
-/// Notes half of the work of the stress as it is on a strain, and the stored energy: before the strain with the other
-/// sign, `after` it of what dt L is of the strained body. `own` is L with the particle's own dilation.
-template <class Scene, class Constants, class State, class Gradient, class T = typename Scene::Scalar>
-MPM_HD void note_stress(const Arguments<T>& a, int p, const Constants& constants, const State& state, const Gradient& L,
-                        [[maybe_unused]] const Gradient& own, bool after) {
-  using Material = typename Scene::Material;
-  using P = typename Scene::Particle;
-  const Sym<Scene::dimension, T> tau = Material::kirchhoff_stress(constants, state);
-  const T share = after ? a.dt : T(0);
-  const T power = power_of_stress<Scene>(tau, L, share);
+  if constexpr (Scene::axisymmetric) {
+    const T hoop = L.zz;
+    power += tau.s[2] * (hoop - share * hoop * hoop);
+  }
   const T energy = Material::stored_energy(constants, state), half = a.dt / 2 * power;
   T &work = a.particles.field[P::stress_power][p], &stored = a.particles.field[P::stored][p];
   work = after ? work + half : half;
   stored = after ? stored + energy : -energy;
-  if constexpr (P::averaged >= 0) {
-    const T more = a.dt / 2 * (power - power_of_stress<Scene>(tau, own, share));
-    T& averaged = a.particles.field[P::averaged][p];
-    averaged = after ? averaged + more : more;
-  }
 }
 
 /// Advances state and domain by dt with the gathered velocity gradient; what is dissipated warms the particle.
@@ -152,15 +142,14 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
   using P = typename Scene::Particle;
   constexpr int D = Scene::dimension;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, auto& state) {
-    const auto own = velocity_gradient_of<Scene>(a.particles, p);
-    auto L = own;
+    auto L = velocity_gradient_of<Scene>(a.particles, p);
     if constexpr (P::mean_dilation >= 0) take_mean_dilation(L, a.particles.field[P::mean_dilation][p], a.dt);
     if constexpr (P::stress_power >= 0)
-      if (a.records) note_stress<Scene>(a, p, constants, state, L, own, false);
+      if (a.records) note_stress<Scene>(a, p, constants, state, L, false);
     [[maybe_unused]] const auto dissipated = Material::advance(constants, L, a.dt, state);
     if constexpr (P::dissipated >= 0) a.particles.field[P::dissipated][p] = dissipated;
     if constexpr (P::stress_power >= 0)
-      if (a.records) note_stress<Scene>(a, p, constants, state, L, own, true);
+      if (a.records) note_stress<Scene>(a, p, constants, state, L, true);
     if constexpr (P::temperature >= 0)
       a.particles.field[P::temperature][p] +=
           a.particles.heat.warming * dissipated / heat_capacity_of<Scene>(a.particles, p);
