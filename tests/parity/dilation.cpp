@@ -93,6 +93,22 @@ TEST_CASE("parity of the mean dilation at walls, around an axis and of temperatu
   check_parity(plain);
 }
 
+TEST_CASE("parity of the mean dilation with loads, grips, damping and boxes of particles", "[parity][dilation]") {
+  for (const std::string& order : orders)
+    for (const std::string shape : {"bspline_quadratic", "gimp_contiguous"}) {
+      Mix mix = averaged_mix();
+      mix.stress_update = order, mix.shape = transfer_named(shape);
+      mix.more = R"J(, "damping": {"viscous": 3, "local": 0.2}, "body_force": ["2*sin(3*X)+t", "x-Y*y"], "loads": [
+        {"type": "pressure", "body": "a", "where": {"type": "half_space", "point": [0.31, 0], "normal": [1, 0.3]},
+         "pressure": "400+100*sin(9*t)"},
+        {"type": "spring", "body": "b", "where": {"type": "half_space", "point": [0.52, 0], "normal": [1, 0]},
+         "stiffness": [2e3, 1e3], "damping": [50, 100]}],
+        "grips": [{"body": "a", "where": {"type": "half_space", "point": [0.22, 0], "normal": [1, 0]},
+                   "velocity": ["1.2+t", null]}])J";
+      check_parity(mix);
+    }
+}
+
 TEST_CASE("the mean dilation is another one in the scenes of parity", "[parity][dilation]") {
   CHECK(effect(averaged_mix()) > 1e-4);
   CHECK(effect(averaged_mix(3)) > 1e-4);
