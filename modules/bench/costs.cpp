@@ -163,7 +163,8 @@ std::optional<double> mean_material_cost(const Experiment& experiment, const Run
 
 template <int D, class T>
 std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, const RunFacts& run) {
-  if (experiment.has_temperature()) return std::nullopt;  // nobody has counted what heat takes
+  // Nobody has counted what heat and the mean dilation take.
+  if (experiment.has_temperature() || plan.does(Act::average_dilation)) return std::nullopt;
   const mpm_shape& shape_table = experiment.shape.plugin->shape();
   Wanted w;
   w.D = D;

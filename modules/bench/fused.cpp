@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "backends/cpu/cpu_backend.hpp"
+#include "backends/cpu/particles/particle_dilation.hpp"
 #include "backends/cpu/particles/particle_gather.hpp"
 #include "backends/cpu/particles/particle_heat.hpp"
 #include "backends/cpu/particles/particle_scatter.hpp"

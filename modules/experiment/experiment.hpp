@@ -208,7 +208,8 @@ struct SolverSpecification {
   double courant = 0.3;             ///< fraction of h / (wave speed + particle speed) when automatic
   double end_time = 0;              ///< s
   PassChoice passes = PassChoice::automatic;
-  long max_steps = 1000000000;  ///< stops with an error message when reached before end_time
+  bool averages_dilation = false;  ///< nodes average what strains particles, against locking
+  long max_steps = 1000000000;     ///< stops with an error message when reached before end_time
 };
 
 /// When a filter acts and what acts on it. One of the three intervals is given; the others are zero.

@@ -102,6 +102,8 @@ std::string why_of_another_shape(const Step& step, const Experiment& experiment)
 }  // namespace
 
 std::string why_not_fused(const Step& step, const Experiment& experiment) {
+  if (const Pass* averages = find_pass(step, Act::scatter_dilation))
+    return asker(averages->operators.front().because) + ": nodes average before the forces and before the gather";
   const std::string of_another_shape = why_of_another_shape(step, experiment);
   if (experiment.solver.stress_update != StressUpdate::last)
     return "/solver/stress_update: only USL strains and scatters at the same particle state";

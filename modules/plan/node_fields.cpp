@@ -113,6 +113,8 @@ std::string why_separate_force(const FieldList& fields) {
     const std::string giver = experiment.giver_of(external);
     if (!joins_force(external) && !giver.empty()) return giver + ": work of the forces";
   }
+  if (const Operator* const averages = fields.plan.find(Act::average_mean_stress))
+    return asker(averages->because) + ": forces of the mean stress after the momenta";
   const Pass* const strain = fields.plan.pass_of(Act::strain);
   const Operator* const scatters = fields.plan.find(Act::scatter_force);
   if (strain && scatters && strain->stage == Stage::before_forces)
@@ -249,11 +251,29 @@ void temperature_fields(FieldList& fields) {
       if (passes_heat(face)) return heated_wall_fields(fields, face.thermal.pointer);
 }
 
+/// Sums by volume over the particles around a node, and their mean. A step may strain twice: the scatters themselves clear
+/// what they sum, and it is folded as it is divided. Forces have taken the mean stress before the next dilation comes.
+void averaged_fields(FieldList& fields) {
+  const auto average = [&](Act act, const std::string& sum, const std::string& volume, const std::string& mean,
+                           const std::string& unit) {
+    const Operator* const averages = fields.plan.find(act);
+    if (!averages) return;
+    const std::string because = averages->because;
+    Field& summed = fields.summed(sum, "m^3 " + unit, 1, AtWall::even, Folded::never, because);
+    summed.cleared = false;
+    if (sum != "volume_stress" && fields.plan.node_field("volume_stress")) fields.in_place_of("volume_stress", summed);
+    fields.summed(volume, "m^3", 1, AtWall::even, Folded::never, because, sum).cleared = false;
+    fields.in_place_of(sum, fields.of_nodes(mean, unit, 1, because));
+  };
+  average(Act::average_mean_stress, "volume_stress", "stressed_volume", "mean_stress", "Pa");
+  average(Act::average_dilation, "volume_rate", "strained_volume", "dilation", "1/s");
+}
+
 }  // namespace
 
 void declare_node_fields(FieldList& fields) {
   for (const auto declare : {transfer_fields, fused_fields, filter_fields, increment_fields, force_fields,
-                             impulse_fields, contact_fields, grip_fields, temperature_fields})
+                             impulse_fields, contact_fields, grip_fields, temperature_fields, averaged_fields})
     declare(fields);
   for (Field& field : fields.plan.fields)
     if (field.name == field.id) std::replace(field.name.begin(), field.name.end(), '_', ' ');

@@ -165,6 +165,11 @@ void refuse_work_for_nobody(const Step& step, const Experiment& experiment) {
       case Act::gather_heat:
       case Act::change_phase:
         return experiment.has_temperature() ? nullptr : "temperature";
+      case Act::scatter_mean_stress:
+      case Act::average_mean_stress:
+      case Act::scatter_dilation:
+      case Act::average_dilation:
+        return experiment.solver.averages_dilation ? nullptr : "average of the dilation";
       default:
         return nullptr;
     }

@@ -46,6 +46,14 @@ std::string Pass::name() const {
       return "heat";
     case Act::change_phase:
       return "change phase";
+    case Act::scatter_mean_stress:
+      return "scatter mean stress";
+    case Act::average_mean_stress:
+      return "average mean stress";
+    case Act::scatter_dilation:
+      return "scatter dilation";
+    case Act::average_dilation:
+      return "average dilation";
     case Act::strain:
       return half ? "half strain" : "strain";
     case Act::move:

@@ -10,32 +10,36 @@
 namespace mpm {
 
 enum class Act {
-  estimate_time_step,  ///< wave and particle speeds -> dt, the limiting particle named
-  sort,                ///< particles into blocks of cells, when they have moved
-  sort_ahead,          ///< the same between scatter and gather, for where the move that follows leads
-  clear,               ///< what is summed on nodes to zero
-  scatter_momentum,    ///< particles -> mass and momentum of nodes
-  scatter_force,       ///< particles -> forces of nodes (into the momentum, times dt, where they have no field)
-  scatter_contact,     ///< particles -> volume, its gradient and the place of the surface
-  scatter_heat,        ///< particles -> heat and heat capacity of nodes
-  divide,              ///< fold walls and periodic images, v- = p / m, conditions, contact before the forces
-  accelerate,          ///< p+ = p + dt f with conditions, contact after the forces, v+
-  divide_heat,         ///< fold, temperature before = heat / capacity, fixed temperatures
-  conduct,             ///< on particles: gradient of the temperature -> heat flux -> rates of nodes
-  heat,                ///< temperature after: rates, walls' flux and convection, heating of boxes, fixed temperatures
-  begin_filter,        ///< increment <- grid velocity
-  keep_velocity,       ///< and the grid velocity is kept aside
-  project,             ///< projection <- S+ S increment, by the transfer's own gather and scatter
-  update_filter,       ///< the plugin's update at every node; conditions and contact; the increment's mass norm
-  end_filter,          ///< constraints where they act at the end only; the ledger's entry; ghosts
-  restore_velocity,    ///< grid velocity <- what was kept aside
-  keep_correction,     ///< and what the filter had added is kept aside instead
-  add_correction,      ///< grid velocity += the correction kept aside; conditions and contact
-  gather,              ///< grid -> particle velocity and the transfer's state
-  gather_heat,         ///< grid -> particle temperature and the transfer's state for it
-  strain,              ///< grid velocity -> velocity gradient -> material state
-  move,                ///< x += dt times the advection velocity of the gather
-  change_phase         ///< heat beyond the melting temperature becomes latent, and back
+  estimate_time_step,   ///< wave and particle speeds -> dt, the limiting particle named
+  sort,                 ///< particles into blocks of cells, when they have moved
+  sort_ahead,           ///< the same between scatter and gather, for where the move that follows leads
+  clear,                ///< what is summed on nodes to zero
+  scatter_momentum,     ///< particles -> mass and momentum of nodes
+  scatter_force,        ///< particles -> forces of nodes (into the momentum, times dt, where they have no field)
+  scatter_contact,      ///< particles -> volume, its gradient and the place of the surface
+  scatter_heat,         ///< particles -> heat and heat capacity of nodes
+  divide,               ///< fold walls and periodic images, v- = p / m, conditions, contact before the forces
+  accelerate,           ///< p+ = p + dt f with conditions, contact after the forces, v+
+  divide_heat,          ///< fold, temperature before = heat / capacity, fixed temperatures
+  conduct,              ///< on particles: gradient of the temperature -> heat flux -> rates of nodes
+  heat,                 ///< temperature after: rates, walls' flux and convection, heating of boxes, fixed temperatures
+  begin_filter,         ///< increment <- grid velocity
+  keep_velocity,        ///< and the grid velocity is kept aside
+  project,              ///< projection <- S+ S increment, by the transfer's own gather and scatter
+  update_filter,        ///< the plugin's update at every node; conditions and contact; the increment's mass norm
+  end_filter,           ///< constraints where they act at the end only; the ledger's entry; ghosts
+  restore_velocity,     ///< grid velocity <- what was kept aside
+  keep_correction,      ///< and what the filter had added is kept aside instead
+  add_correction,       ///< grid velocity += the correction kept aside; conditions and contact
+  gather,               ///< grid -> particle velocity and the transfer's state
+  gather_heat,          ///< grid -> particle temperature and the transfer's state for it
+  scatter_mean_stress,  ///< on particles: stress -> mean normal stress; its sum by volume -> nodes
+  average_mean_stress,  ///< fold, average = sum by volume / volume
+  scatter_dilation,     ///< on particles: velocity gradient -> dilation; its sum by volume -> nodes
+  average_dilation,     ///< fold, average = sum by volume / volume
+  strain,               ///< grid velocity -> velocity gradient -> material state
+  move,                 ///< x += dt times the advection velocity of the gather
+  change_phase          ///< heat beyond the melting temperature becomes latent, and back
 };
 inline constexpr int act_count = static_cast<int>(Act::change_phase) + 1;
 

@@ -42,7 +42,7 @@ TEST_CASE("a solver without a type is the explicit one, and resolves as ever", "
   CHECK(silent.solver.type == "explicit");
   CHECK(silent.resolved["solver"].dump() ==
         R"({"type":"explicit","stress_update":"modified_last","time_step":0.001,"courant":0.3,"end_time":3.5,)"
-        R"("passes":"auto","max_steps":1000000000})");
+        R"("dilation":"own","passes":"auto","max_steps":1000000000})");
   const Experiment named = read_with(R"("solver": {"type": "explicit", "stress_update": "modified_last",
     "time_step": "1 ms", "end_time": 3.5})",
                                      options());
@@ -80,7 +80,7 @@ TEST_CASE("a solver has its own keys and those that all have", "[config]") {
         R"(FILE:32:34: /solver/courant: unknown key "courant"; valid keys: "type", "sweeps", "end_time", "max_steps")");
   CHECK(refusal(R"("solver": {"sweeps": 7, "end_time": 1})", offered) ==
         R"(FILE:32:14: /solver/sweeps: unknown key "sweeps"; valid keys: "type", "stress_update", "time_step", )"
-        R"("courant", "end_time", "passes", "max_steps")");
+        R"("courant", "end_time", "dilation", "passes", "max_steps")");
 }
 
 TEST_CASE("the schema lists the solvers, and lets the type be left out for the explicit one alone", "[schema]") {
@@ -91,9 +91,10 @@ TEST_CASE("the schema lists the solvers, and lets the type be left out for the e
   const Json &standard = solver["allOf"][0], &other = solver["allOf"][1];
   CHECK(!standard["if"].contains("required"));
   CHECK(standard["then"]["required"] == Json({"end_time"}));
-  for (const char* key : {"type", "stress_update", "time_step", "courant", "end_time", "passes", "max_steps"})
+  for (const char* key :
+       {"type", "stress_update", "time_step", "courant", "end_time", "dilation", "passes", "max_steps"})
     CHECK(standard["then"]["properties"].contains(key));
-  CHECK(standard["then"]["properties"].size() == 7);
+  CHECK(standard["then"]["properties"].size() == 8);
   CHECK(other["if"]["required"] == Json({"type"}));
   CHECK(other["then"]["required"] == Json({"type", "end_time"}));
   CHECK(other["then"]["properties"].contains("sweeps"));

@@ -58,7 +58,7 @@ inline Mix warm_mix(int dimension, const std::string& transfer) {
 
 /// Scenes that launch between them every kernel that there is (kernels/kernels.hpp): all plugins, temperature with melting,
 /// loads at points, springs, grips, boxes of conditions, moving and periodic walls, both filters' loops, contact, by
-/// particles too, the ledger, rings, polynomials, lists, domains, the orders of the stress update, and deterministic sums.
+/// particles too, the ledger, rings, polynomials, lists, domains, the orders of the stress update, the mean dilation, and deterministic sums.
 inline std::vector<Mix> every_kernel(int dimension) {
   std::vector<Mix> mixes = every_plugin_once(dimension);
   const bool flat = dimension == 2;
@@ -71,7 +71,7 @@ inline std::vector<Mix> every_kernel(int dimension) {
   Mix loaded;
   loaded.dimension = dimension, loaded.contact = R"({"type": "coulomb", "friction": 0.2})", loaded.close = true;
   loaded.filter = R"({"type": "fmpm", "order": 3, "position_update": "mean_velocity"})";
-  loaded.stress_update = "averaged";
+  loaded.stress_update = "averaged", loaded.overrides = {set("/solver/dilation", "averaged")};
   loaded.boundaries =
       flat ? R"({"all": "slip", "x_max": "stick", "y_min": {"type": "prescribed", "velocity": ["0.1+t", 0]}})"
            : R"({"all": "slip", "x_max": "stick", "y_max": "separate"})";

@@ -405,6 +405,14 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
       return particle_step_->conduct();
     case Act::heat:
       return grid_step_->apply_heat(step);
+    case Act::scatter_mean_stress:
+      return particle_step_->scatter_mean_stress();
+    case Act::average_mean_stress:
+      return grid_step_->average(mean_stress);
+    case Act::scatter_dilation:
+      return particle_step_->scatter_dilation(pass, step);
+    case Act::average_dilation:
+      return grid_step_->average(dilation);
     case Act::change_phase:
       return account_for_phases(particle_step_->change_phases(step));
     case Act::move:

@@ -202,6 +202,11 @@ class DeviceBackend final : public Backend {
   void warm_box(int box, double dt);
   void change_phase();
 
+  // ---- dilation.cpp
+  void scatter_mean_stress();
+  void scatter_dilation(const Pass& pass);
+  void average(const std::string& what);
+
   // ---- contact.cpp
   /// Applies the law to every pair of fields, and then those of rigid bodies, whose velocities are those of a time, s.
   void resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time);

@@ -63,6 +63,7 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   work("wave_speed", "m/s", 1);
   if (plan.has_ledger())
     for (const char* id : {"dissipated", "stress_power", "stored"}) work(id, "J/m^3", 1);
+  if (plan.does(Act::average_dilation)) work("mean_dilation", "1/s", 1);
   if (!experiment.grips.empty())
     for (const char* id : {"told_velocity", "gathered_velocity"}) work(id, "m/s", D);
   if (gives_loads(plan)) work("load_force", "N", D);

@@ -163,6 +163,7 @@ template <class T>
 void DeviceBackend<T>::run_strain(const Pass& pass, Body<T>& body) {
   Arguments<T> a = arguments_of(body);
   a.dt *= static_cast<T>(pass.share);
+  if (plan_.does(Act::average_dilation)) run("gather_dilation", a, body, Checks::stencil);
   run_material("strain", a, body);
   if (accounted_) book_material(body);
   if (!plan_.has_heat_ledger() || !(body.heat.warming > 0)) return;

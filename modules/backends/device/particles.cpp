@@ -47,6 +47,7 @@ void DeviceBackend<T>::scatter(const Pass& pass, const StepInfo& step) {
     if (enters) sort(body);
     if (force || heat || pass.has(Act::scatter_contact)) run_material("stress", body);  // with the volume ratio
     Arguments<T> a = arguments_of(body);
+    if (force && plan_.does(Act::average_mean_stress)) run("take_mean_stress", a, body, Checks::stencil);
     a.momentum = pass.has(Act::scatter_momentum), a.force = force;
     a.contact_fields = pass.has(Act::scatter_contact), a.remap = pass.remap();
     run_blocks("scatter", a, body);

@@ -108,6 +108,14 @@ void DeviceBackend<T>::perform(const Pass& pass, const StepInfo& step) {
       return conduct();
     case Act::heat:
       return warm(step);
+    case Act::scatter_mean_stress:
+      return scatter_mean_stress();
+    case Act::average_mean_stress:
+      return average("mean_stress");
+    case Act::scatter_dilation:
+      return scatter_dilation(pass);
+    case Act::average_dilation:
+      return average("dilation");
     case Act::change_phase:
       return change_phase();
     case Act::restore_velocity:

@@ -278,8 +278,9 @@ double Particles::work_of_stress(double dt, bool after) {
 
 StrainEnergies Particles::strain(double dt, bool booked) {
   pad(velocity_gradient);
-  if (axisymmetric()) hoop_rate = gathered_velocity.row(0).array() / position.row(0).array(), pad(hoop_rate);
+  find_hoop_rate();
   StrainEnergies energies;
+  if (mean_dilation.rows() > 0) take_mean_dilation(dt);
   if (booked) energies.power = 0.5 * work_of_stress(dt, false), energies.stored = -stored_energy();
   Array dissipated = make(1);
   mpm_material_batch batch{};

@@ -74,6 +74,16 @@ class Particles {
   /// that goes with stiffer parameters, J, where `accounted`; else 0.
   double change_phase(bool accounted);
 
+  // ---- dilation.cpp
+  /// The relative change of particle p's volume by dt with `velocity_gradient`, over dt, 1/s.
+  double dilation(std::size_t p, double dt) const;
+  /// The mean of the normal Kirchhoff stresses in the directions that a dilation strains, Pa.
+  double mean_stress(std::size_t p) const;
+  /// Replaces that mean of the evaluated stress by that of a Cauchy stress, Pa.
+  void take_mean_stress(const Array& cauchy);
+  /// Finds the rate of strain around the axis from the gathered velocity.
+  void find_hoop_rate();
+
   /// Computes the momentum coefficients b and A of all particles.
   void scatter_coefficients();
   /// Computes those of the velocity that the transfer makes of the gathered moments alone, as if particles had been at
@@ -126,6 +136,12 @@ class Particles {
   const ThermalProperties& thermal(std::size_t p) const;
   /// The transfer's state for the velocity (T, 0, 0), in declared order.
   std::vector<Array> state_of_temperature() const;
+  /// The velocity gradient in all three directions.
+  Matrix whole_gradient(std::size_t p) const;
+  /// In how many directions a dilation strains: z stays as it is in plane strain.
+  int dilated_directions() const { return dimension_ == 2 && !axisymmetric() ? 2 : 3; }
+  /// Replaces the dilation of the velocity gradient by the mean one.
+  void take_mean_dilation(double dt);
   double stored_energy();  ///< sum over all particles, J
   double size(std::size_t p) const { return size_ ? (*size_)(0, p) : 1.0; }
   void refuse_inverted(std::int32_t particle);
@@ -160,6 +176,7 @@ class Particles {
   Array& higher = work(plan_.basis_functions * dimension_);           ///< the same times the mass, like b and A
   Array& velocity_gradient = work(dimension_ * dimension_);           ///< velocity gradient that strains the particle
   Array& hoop_rate = work(axisymmetric() ? 1 : 0);                    ///< 1/s, v_r / r
+  Array& mean_dilation = work(plan_.does(Act::average_dilation) ? 1 : 0);  ///< 1/s, gathered from the nodes
 };
 
 }  // namespace mpm::reference

@@ -53,6 +53,14 @@ void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
       return change_phase();
     case Act::gather:
       return gather(pass, step);
+    case Act::scatter_mean_stress:
+      return scatter_mean_stress();
+    case Act::average_mean_stress:
+      return average(volume_stress_, stressed_volume_, mean_stress_);
+    case Act::scatter_dilation:
+      return scatter_dilation(pass, step);
+    case Act::average_dilation:
+      return average(volume_rate_, strained_volume_, dilation_);
     case Act::strain:
       return strain(pass, step);
     case Act::move:

@@ -2,7 +2,7 @@
 // The reference backend is the material point method of the textbook in plain double precision: one pass after another,
 // every particle and node spelled out. It is slow on purpose, and every faster backend is tested against it.
 //  transfers.cpp: particles to grid and back; grid_step.cpp: momenta, conditions and forces; contact.cpp: pairs of
-//  fields; filter.cpp: velocity filters; temperature.cpp: heat; reference_backend.cpp: the rest.
+//  fields; filter.cpp: velocity filters; temperature.cpp: heat; dilation.cpp: averages against locking; reference_backend.cpp: the rest.
 
 #include <array>
 #include <deque>
@@ -174,6 +174,14 @@ class ReferenceBackend final : public Backend {
   double sum(const ScalarField& field);
   double heat_of_temperature();
 
+  // ---- dilation.cpp
+  void scatter_mean_stress();
+  void scatter_dilation(const Pass& pass, const StepInfo& step);
+  /// Computes the mean of what was summed by volume, as masses were folded.
+  void average(ScalarField& sum, ScalarField& volume, ScalarField& mean);
+  /// The sum of w times a value of the nodes, at each particle.
+  Array gathered(Particles& body, const ScalarField& of_nodes);
+
   /// Calls `visit(i)` for every node of every velocity field.
   template <class Visit>
   void for_each_node(Visit visit) {
@@ -240,6 +248,10 @@ class ReferenceBackend final : public Backend {
   ScalarField &heat_rate_ = grid_.scalar("heat_rate"), &heated_volume_ = grid_.scalar("heated_volume");
   ScalarField& volume_conductivity_ = grid_.scalar("volume_conductivity");
   VectorField& capacity_position_ = grid_.vector("capacity_position");
+  ScalarField &volume_rate_ = grid_.scalar("volume_rate"), &strained_volume_ = grid_.scalar("strained_volume");
+  ScalarField& dilation_ = grid_.scalar("dilation");  ///< mean by volume of the particles', 1/s
+  ScalarField &volume_stress_ = grid_.scalar("volume_stress"), &stressed_volume_ = grid_.scalar("stressed_volume");
+  ScalarField& mean_stress_ = grid_.scalar("mean_stress");  ///< the same of their mean normal stress, Pa
   const WallWeights wall_weights_ = plan_.node_field("heated_volume") ? wall_weights(experiment_) : WallWeights();
   std::deque<Particles> bodies_;
   const PairGeometry pair_geometry_{experiment_, MPM_SCALAR_DOUBLE};

@@ -15,6 +15,8 @@ void ReferenceBackend::scatter(const Pass& pass, const StepInfo& step) {
     if (!pass.remap() && pass.has(Act::scatter_momentum)) body.find_stencils(grid_);
     if (pass.has(Act::scatter_momentum)) scatter_momentum(body, step.time, pass.remap());
     if (pass.has(Act::scatter_force) || pass.has(Act::scatter_contact)) body.evaluate_stress();
+    if (pass.has(Act::scatter_force) && plan_.does(Act::average_mean_stress))
+      body.take_mean_stress(gathered(body, mean_stress_));
     if (pass.has(Act::scatter_force)) scatter_force(body);
     if (pass.has(Act::scatter_force)) scatter_loads(body, loads_[number], step.time);
     if (pass.has(Act::scatter_contact)) scatter_contact_fields(body);
@@ -274,6 +276,7 @@ void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {
 }
 
 void ReferenceBackend::strain(Particles& body, double dt) {
+  if (plan_.does(Act::average_dilation)) body.mean_dilation = gathered(body, dilation_);
   const StrainEnergies energies = body.strain(dt, accounted_);
   if (accounted_) book_strain(energies);
   account(heat_ledger_.dissipation, body.share_of_heat() * energies.dissipated);

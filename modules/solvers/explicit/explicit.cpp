@@ -117,6 +117,11 @@ std::vector<ParameterSpec> explicit_parameters() {
           .to(2)
           .standard(0.3),
       end_time_parameter(),
+      parameter("dilation", Type::choice, "",
+                "Dilation that strains a particle, and mean stress of its force: its own, or averages by the nodes "
+                "around it, which keep nearly incompressible materials from locking.")
+          .of({"own", "averaged"})
+          .standard("own"),
       parameter("passes", Type::choice, "",
                 "Whether a gather also scatters for the next step: auto fuses them where that is legal.")
           .of({"auto", "separate", "fused"})
@@ -129,6 +134,7 @@ void read_explicit(const Fields& fields, SolverSpecification& solver) {
   solver.stress_update = static_cast<StressUpdate>(fields.choice("stress_update"));
   if (fields.text("time_step").empty()) solver.time_step = fields.number("time_step");
   solver.courant = fields.number("courant");
+  solver.averages_dilation = fields.choice("dilation") == 1;
   solver.passes = static_cast<PassChoice>(fields.choice("passes"));
 }
 
@@ -151,9 +157,17 @@ void explicit_step(StepBuilder& step) {
         return (void)step.perform(Act::change_phase, material.thermal->phase_change->pointer, Stage::after_forces);
   };
 
+  const bool averages = scene.solver.averages_dilation;
+  const std::string mean = "/solver/dilation \"averaged\"";
+  const auto average_dilation = [&](Stage stage) {
+    if (!averages) return;
+    step.perform(Act::scatter_dilation, mean, stage).share = share;
+    step.perform(Act::average_dilation, mean, stage);
+  };
+
   step.perform(Act::clear, transfer);
   step.perform(Act::scatter_momentum, transfer);
-  if (!stress_first) step.perform(Act::scatter_force, transfer);
+  if (!stress_first && !averages) step.perform(Act::scatter_force, transfer);
   if (scene.meets()) step.perform(Act::scatter_contact, contact);
   if (heats) step.perform(Act::scatter_heat, thermal);
   step.perform(Act::divide, scene.meets() ? contact + " before the forces; boundaries" : "boundaries");
@@ -165,15 +179,22 @@ void explicit_step(StepBuilder& step) {
   }
   filter.before_forces(stress_first);
   if (stress_first) {
+    average_dilation(Stage::before_forces);
     step.perform(Act::strain, first).share = share;
-    step.perform(Act::scatter_force, first + ": stress at the new strain");
   }
+  if (averages) {
+    step.perform(Act::scatter_mean_stress, mean);
+    step.perform(Act::average_mean_stress, mean);
+  }
+  if (stress_first || averages)
+    step.perform(Act::scatter_force, stress_first ? first + ": stress at the new strain" : mean);
   filter.unfilter_for_forces(stress_first);
 
   step.perform(Act::accelerate, scene.meets() ? contact + " after the forces; boundaries" : "boundaries",
                Stage::after_forces);
   filter.after_forces();
 
+  if (stress_last) average_dilation(Stage::after_forces);
   if (filter.for_particles_only() && stress_last)
     step.perform(Act::strain, order + ": by the unfiltered velocity", Stage::after_forces).share = share;
   filter.before_gather();
@@ -187,6 +208,7 @@ void explicit_step(StepBuilder& step) {
   step.perform(Act::scatter_momentum, again + ": updated velocities, old positions", Stage::remapped);
   step.perform(Act::divide, again, Stage::remapped);
   filter.remapped();
+  average_dilation(Stage::remapped);
   step.perform(Act::strain, again, Stage::remapped);
   step.perform(Act::move, again + ": positions by the velocity gathered before", Stage::remapped);
   melts();

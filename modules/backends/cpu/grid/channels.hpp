@@ -71,6 +71,8 @@ struct NamedChannels {
   const Channel temperature_before = channel_of(plan_, "temperature_before");  ///< later the increment
   const Channel heated_volume = channel_of(plan_, "heated_volume");            ///< with volume times conductivity
   const Channel capacity_position = channel_of(plan_, "capacity_position");
+  /// Hold volume times dilation, or times mean stress, with the volume; the average with it once that has been divided.
+  const Channel dilation = channel_of(plan_, "dilation"), mean_stress = channel_of(plan_, "mean_stress");
   const Channel filter_increment = channel_of(plan_, "increment");  ///< v* of the filter's loop
   /// Holds the momentum S+ S v* and mass while scattered, then velocity; then the velocity before conditions.
   const Channel filter_projection = channel_of(plan_, "projection");

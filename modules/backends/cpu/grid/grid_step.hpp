@@ -50,6 +50,9 @@ class GridStep : NamedChannels {
   void set_particle_heat(double sum) { particle_heat_ = sum; }
   double heat_after() const { return heat_after_; }
 
+  /// Divides what particles have summed by their volumes in a channel.
+  void average(Channel channel);
+
   /// These passes make the filter's loop (see Act). project_increment takes what the particles have scattered.
   void begin_filter(const Pass& pass);
   void project_increment(const Pass& pass, const StepInfo& step);

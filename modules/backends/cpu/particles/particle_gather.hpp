@@ -21,6 +21,14 @@ void ParticleStep<D, T, Components>::load_velocities(int body, const Block<D>& b
   work.clock.lap(Phase::tiles);
 }
 
+/// Copies what a block reaches of an average of the nodes into the thread's tile, where the scene has it.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::load_mean(int body, const Block<D>& block, Work& work, Channel channel) {
+  if (channel < 0) return;
+  kernels_.load(work.mean_tile.data(), grid_.channel(channel, bodies_[body].field), block.neighbours.data(),
+                block.reach);
+}
+
 /// Adds the thread's tile of a channel to the grid.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::flush(int body, const Block<D>& block, Work& work, Channel channel) {
@@ -68,6 +76,7 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
       block.kinetic_energy = block.dissipated = block.heat_of_dissipation = 0;
       block.stress_power = block.stored = 0;
       if (pass.has(Act::gather_heat)) gather_heat(body, block, work, step);
+      if (pass.has(Act::strain)) load_mean(body, block, work, dilation);
       load_velocities(body, block, work);
       block.bounds.clear();
       for_each_chunk_of(body, block,
@@ -131,7 +140,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
 template <int D, class T, class Components>
 [[gnu::noinline]] auto ParticleStep<D, T, Components>::gather_one(const Pass& pass, const StepInfo& step,
                                                                   const Chunk& chunk, Work& work) -> Moved {
-  const Wanted wanted{true, pass.has(Act::strain), motion, velocity_before};
+  const Wanted wanted{true, pass.has(Act::strain), motion, velocity_before, pass.has(Act::strain) ? dilation : -1};
   gather_chunk(chunk, work, wanted);
   work.clock.lap(Phase::coefficients);
   States state = transfer_states(chunk);
@@ -185,11 +194,12 @@ template <int D, class T, class Components>
 template <int D, class T, class Components>
 auto ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& step) -> Gathered {
   account_for(step);
-  const Wanted wanted{false, true, motion};
+  const Wanted wanted{false, true, motion, -1, dilation};
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       kernels_.load(work.velocity_tile.data(), grid_.channel(motion, bodies_[body].field), block.neighbours.data(),
                     block.reach);
+      load_mean(body, block, work, dilation);
       block.dissipated = block.heat_of_dissipation = block.stress_power = block.stored = 0;
       block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
@@ -247,6 +257,7 @@ void ParticleStep<D, T, Components>::gather_chunk(const Chunk& chunk, Work& work
       for (int c = 0; c < D; ++c) increment[c].store(work.increment + c * chunk_size<T> + p);
     }
   }
+  if (wanted.dilation >= 0) gather_mean(chunk, work, wanted.dilation);
 }
 
 /// Turns quads into velocity, C = h (sum k w v - f sum w v) D^-1 about the particle (without the D^-1 of moments a
@@ -381,13 +392,13 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   const bool dissipation = chunk.body.warms_itself || (accounted_ && chunk.body.dissipates);
   mpm_material_batch request{};
   request.dt = pass.share * dt;
-  const T* const velocity_gradient = scene_.has(MPM_STRAIN_BY_AFFINE) ? work.affine : work.gradient_of_velocity;
+  T* const velocity_gradient = scene_.has(MPM_STRAIN_BY_AFFINE) ? work.affine : work.gradient_of_velocity;
   request.velocity_gradient = velocity_gradient;
   if (scene_.axisymmetric) {  // b is free between gather and scatter
-    for (int p = 0; p < chunk.end; p += Lanes<T>::width)
-      (Lanes<T>::load(work.velocity + p) / radius(chunk, p)).store(work.b + p);
+    find_hoop_rates(chunk, work, work.b);
     request.velocity_gradient_zz = work.b;
   }
+  if (dilation >= 0) take_mean_dilations(chunk, work, velocity_gradient, work.b, static_cast<T>(request.dt));
   if (dissipation) request.dissipated_energy = work.scalar;
   if (evaluates_for_scatter(pass)) want_of_material(pass, work, request);
   alignas(64) T stored_energy[chunk_size<T>];

@@ -48,6 +48,7 @@ Scattered ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepIn
       block.scattered_energy = block.scattered_mass = 0, block.scattered_momentum = {};
       if (pass.has(Act::scatter_heat)) block.heat = 0;
       block.far = 0;
+      if (pass.has(Act::scatter_force)) load_mean(body, block, work, mean_stress);
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         if (!scatter_chunk(pass, step, chunk, work, motion, false)) {
           if (stencils_hold(chunk, work)) throw std::logic_error("a particle left the tile of its block");
@@ -101,7 +102,8 @@ double ParticleStep<D, T, Components>::scattered_heat() const {
 /// Whether current volumes are scattered.
 template <int D, class T, class Components>
 bool ParticleStep<D, T, Components>::wants_volume(const Pass& pass) const {
-  return pass.has(Act::scatter_contact) || (pass.has(Act::scatter_heat) && grid_.has(heated_volume));
+  return pass.has(Act::scatter_contact) || (pass.has(Act::scatter_heat) && grid_.has(heated_volume)) ||
+         (pass.has(Act::scatter_force) && mean_stress >= 0);
 }
 
 /// Asks the material for what a pass that scatters wants of it.
@@ -131,6 +133,10 @@ template <int D, class T, class Components>
     want_of_material(pass, work, request);
     update_material(chunk, request);
     work.clock.lap(Phase::material);
+  }
+  if (pass.has(Act::scatter_force) && mean_stress >= 0) {
+    gather_mean(chunk, work, mean_stress);
+    take_mean_stress(chunk, work);
   }
   if (chunk.particles.size >= 0 && pass.has(Act::scatter_force)) weigh_stress(chunk, work);
   if (pass.has(Act::scatter_momentum)) {

@@ -98,6 +98,7 @@ struct alignas(page) Workspace {
     alignas(64) T S[D * D * chunk_size<T>];
   };
   alignas(64) T advection[D * chunk_size<T>];
+  alignas(64) T mean[chunk_size<T>];  ///< an average of the nodes at the particles: of the dilation or the stress
   /// Moments of particles that have their own, cells^2, and inverses in 1/m^2: [D] of a product, [D * D] of a list.
   alignas(64) T second_moment[D * D * chunk_size<T>], inverse_moment[D * D * chunk_size<T>];
   alignas(64) T transfer_moment[D * D * chunk_size<T>];  ///< moment that the transfer reads, unless it is second_moment
@@ -110,7 +111,7 @@ struct alignas(page) Workspace {
   /// Tiles are zero between uses, so that the scatter may add.
   std::vector<AlignedArray<T>> tile;  ///< [channel], for those that particles add to
   /// From these tiles a block gathers; only what it reaches is valid.
-  AlignedArray<T> velocity_tile, increment_tile;
+  AlignedArray<T> velocity_tile, increment_tile, mean_tile;
   AlignedArray<T> passing_motion;  ///< velocity and the transfer's state on their way from gather to scatter
   AlignedArray<T> scratch_velocity, scratch_state;  ///< for the filter's projections
   AlignedArray<T> moved_corners;                    ///< [corner][D][chunk_size] cells, from the particle
@@ -180,6 +181,10 @@ class ParticleStep : NamedChannels {
   /// The sum of the heat that the last scatter of momenta took along, J.
   double scattered_heat() const;
   void conduct();
+  /// Scatters the particles' mean normal stresses by their volumes.
+  void scatter_mean_stress();
+  /// Scatters how the grid's velocity changes the particles' volumes.
+  void scatter_dilation(const Pass& pass, const StepInfo& step);
   /// Returns the energy that the ledger calls dissipated, J.
   double change_phases(const StepInfo& step);
   Gathered gather(const Pass& pass, const StepInfo& step);
@@ -352,6 +357,19 @@ class ParticleStep : NamedChannels {
   void change_phases(const Chunk& chunk, Work& work);
   std::int32_t update_by_phase(const Chunk& chunk, const mpm_material_batch& request);
 
+  void find_hoop_rates(const Chunk& chunk, const Work& work, T* hoop) const;
+  int dilated_directions() const { return D == 2 && !scene_.axisymmetric ? 2 : 3; }
+  Lanes<T> mean_normal_stress(const Work& work, int p) const;
+  template <class Visit>
+  void scatter_average(Channel channel, bool velocity, Visit&& visit);
+  void scatter_sum_by_volume(const Chunk& chunk, Work& work, Channel channel);
+  void scatter_mean_stress(const Chunk& chunk, Work& work);
+  void scatter_dilation(const Chunk& chunk, Work& work, T dt);
+  void load_mean(int body, const Block<D>& block, Work& work, Channel channel);
+  void gather_mean(const Chunk& chunk, Work& work, Channel channel);
+  void take_mean_stress(const Chunk& chunk, Work& work) const;
+  void take_mean_dilations(const Chunk& chunk, const Work& work, T* gradient, T* hoop, T dt) const;
+
   void load_velocities(int body, const Block<D>& block, Work& work);
   void flush(int body, const Block<D>& block, Work& work, Channel channel);
   Moved gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
@@ -361,6 +379,7 @@ class ParticleStep : NamedChannels {
     bool transfer = false, strain = false;
     Channel channel = -1;
     Channel increments = -1;  ///< channel that transfers of increments take
+    Channel dilation = -1;    ///< channel that a strain by the mean dilation takes
   };
   void gather_chunk(const Chunk& chunk, Work& work, const Wanted& wanted);
   void gather_moments(const Chunk& chunk, Work& work, const T* tile, Channel channel, bool moment, bool gradient);

@@ -10,7 +10,7 @@ namespace mpm::device {
 inline constexpr int block_cells = 4;
 
 /// The number of arrays that a table has room for; the host checks it.
-inline constexpr int most_fields = 32;
+inline constexpr int most_fields = 40;
 
 /// The arrays of one velocity field.
 template <class T>

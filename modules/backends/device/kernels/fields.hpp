@@ -26,6 +26,8 @@ struct NoNodeFields {
   static constexpr int heat = -1, heat_capacity = -1, heat_rate = -1, folded_capacity = -1;
   static constexpr int heated_volume = -1, volume_conductivity = -1, capacity_position = -1;
   static constexpr int temperature = -1, temperature_before = -1;
+  static constexpr int volume_rate = -1, strained_volume = -1, dilation = -1;
+  static constexpr int volume_stress = -1, stressed_volume = -1, mean_stress = -1;
 };
 
 /// The same numbers for particles. A plugin's state goes by the number of its first field.
@@ -38,8 +40,9 @@ struct NoParticleFields {
   static constexpr int stress = -1, volume_ratio = -1, wave_speed = -1, velocity_gradient = -1, hoop_rate = -1;
   static constexpr int dissipated = -1;  ///< energy dissipated by the last strain
   static constexpr int stress_power = -1,
-                       stored = -1;       ///< work of the stress, and change of the energy, of that strain
-  static constexpr int deformation = -1;  ///< deformation gradient, for loads
+                       stored = -1;         ///< work of the stress, and change of the energy, of that strain
+  static constexpr int mean_dilation = -1;  ///< as the nodes average it
+  static constexpr int deformation = -1;    ///< deformation gradient, for loads
   static constexpr int load_force = -1, load_moment = -1;  ///< b and S of a load, as the host evaluated them
   static constexpr int second_moment = -1;                 ///< what `second_moments` makes
   static constexpr int temperature = -1, melted_fraction = -1;

@@ -21,12 +21,6 @@ MPM_HD T capacity_of_particle(const ParticleArrays<T>& particles, int p) {
   return of_size<Scene>(particles, particles.mass, p) * heat_capacity_of<Scene>(particles, p);
 }
 
-/// The volume J V0 of a particle, m^3 (in plane strain for a metre of depth).
-template <class Scene, class T = typename Scene::Scalar>
-MPM_HD T volume_of_particle(const ParticleArrays<T>& particles, int p) {
-  return of_size<Scene>(particles, particles.volume, p) * particles.field[Scene::Particle::volume_ratio][p];
-}
-
 /// The conductivity k of a particle, W/(m K).
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T conductivity_of(const ParticleArrays<T>& particles, int p) {

@@ -2,12 +2,14 @@
 // This file includes all kernels and makes their entries. The composer defines Scene, and Scene0, Scene1 ... with a
 // material each, in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_LOAD_ENTRIES, MPM_DEVICE_LEDGER_ENTRIES,
 // MPM_DEVICE_CONTACT_ENTRIES, MPM_DEVICE_REACTION_ENTRIES, MPM_DEVICE_GRIP_ENTRIES, MPM_DEVICE_FILTER_ENTRIES,
-// MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES and MPM_DEVICE_HEAT_LEDGER_ENTRIES where the scene has these,
+// MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES, MPM_DEVICE_HEAT_LEDGER_ENTRIES and MPM_DEVICE_DILATION_ENTRIES where the
+// scene has these,
 // for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and, where any melts, MPM_DEVICE_MELTING_ENTRIES(n), and for each law of
 // rigid bodies MPM_DEVICE_RIGID_ENTRIES(n), with RigidScene0, RigidScene1 ...
 
 #include "backends/device/kernels/conditions.hpp"
 #include "backends/device/kernels/contact.hpp"
+#include "backends/device/kernels/dilation.hpp"
 #include "backends/device/kernels/filter.hpp"
 #include "backends/device/kernels/gather.hpp"
 #include "backends/device/kernels/grid.hpp"
@@ -126,6 +128,20 @@
   MPM_DEVICE_PHASE(mpm_heat_of_temperatures, heat_of_temperatures<Scene>, (mpm::device::sum_scalars<Scene, 1>)) \
   MPM_DEVICE_PHASE(mpm_heat_of_particles, heat_of_particles<Scene>, (mpm::device::sum_scalars<Scene, 1>))       \
   MPM_DEVICE_PHASE(mpm_heat_of_dissipation, heat_of_dissipation<Scene>, (mpm::device::sum_scalars<Scene, 1>))
+
+#define MPM_DEVICE_DILATION_ENTRIES                                                                       \
+  MPM_DEVICE_PHASE(mpm_clear_mean_stress, clear_mean_stress<Scene>, 1)                                    \
+  MPM_DEVICE_PHASE(mpm_scatter_mean_stress, scatter_mean_stress<Scene>, mpm::device::mean_scalars<Scene>) \
+  MPM_DEVICE_PHASE(mpm_fold_mean_stress, fold_mean_stress<Scene>, 1)                                      \
+  MPM_DEVICE_PHASE(mpm_divide_mean_stress, divide_mean_stress<Scene>, 1)                                  \
+  MPM_DEVICE_PHASE(mpm_fill_mean_stress, fill_mean_stress<Scene>, 1)                                      \
+  MPM_DEVICE_PHASE(mpm_take_mean_stress, take_mean_stress<Scene>, 1)                                      \
+  MPM_DEVICE_PHASE(mpm_clear_dilation, clear_dilation<Scene>, 1)                                          \
+  MPM_DEVICE_PHASE(mpm_scatter_dilation, scatter_dilation<Scene>, mpm::device::mean_scalars<Scene>)       \
+  MPM_DEVICE_PHASE(mpm_fold_dilation, fold_dilation<Scene>, 1)                                            \
+  MPM_DEVICE_PHASE(mpm_divide_dilation, divide_dilation<Scene>, 1)                                        \
+  MPM_DEVICE_PHASE(mpm_fill_dilation, fill_dilation<Scene>, 1)                                            \
+  MPM_DEVICE_PHASE(mpm_gather_dilation, gather_dilation<Scene>, 1)
 
 #define MPM_DEVICE_MELTING_ENTRIES(n) MPM_DEVICE_PHASE(mpm_change_phase_##n, change_phase<Scene##n>, 1)
 

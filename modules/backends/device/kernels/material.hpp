@@ -4,6 +4,7 @@
 
 #include "backends/device/kernels/arrays.hpp"
 #include "backends/device/kernels/sums.hpp"
+#include "operators/dilation.hpp"
 #include "operators/heat.hpp"
 
 namespace mpm::device {
@@ -125,7 +126,7 @@ MPM_HD void note_stress(const Arguments<T>& a, int p, const Constants& constants
       power += tau.s[Sym<D, T>::index(i, j)] * (plane(i, j) - share * squared);
     }
   if constexpr (Scene::axisymmetric) {
-    const T hoop = a.particles.field[P::hoop_rate][p];
+    const T hoop = L.zz;
     power += tau.s[2] * (hoop - share * hoop * hoop);
   }
   const T energy = Material::stored_energy(constants, state), half = a.dt / 2 * power;
@@ -141,7 +142,8 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
   using P = typename Scene::Particle;
   constexpr int D = Scene::dimension;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, auto& state) {
-    const auto L = velocity_gradient_of<Scene>(a.particles, p);
+    auto L = velocity_gradient_of<Scene>(a.particles, p);
+    if constexpr (P::mean_dilation >= 0) take_mean_dilation(L, a.particles.field[P::mean_dilation][p], a.dt);
     if constexpr (P::stress_power >= 0)
       if (a.records) note_stress<Scene>(a, p, constants, state, L, false);
     [[maybe_unused]] const auto dissipated = Material::advance(constants, L, a.dt, state);

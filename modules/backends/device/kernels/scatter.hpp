@@ -99,6 +99,12 @@ MPM_HD T of_size(const ParticleArrays<T>& particles, T of_body, int p) {
   return of_body;
 }
 
+/// The volume J V0 of a particle, m^3 (in plane strain for a metre of depth).
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD T volume_of_particle(const ParticleArrays<T>& particles, int p) {
+  return of_size<Scene>(particles, particles.volume, p) * particles.field[Scene::Particle::volume_ratio][p];
+}
+
 /// Scatters w m, w (b + A d), -V0 tau grad w (or w D^-1 d), and the contact fields, as `a` says, around an
 /// axis also -w V0 tau_zz / r. The weight follows from the masses (weigh).
 template <class Scene>
