@@ -131,6 +131,21 @@ TEST_CASE("the table of curved bodies in contact is the figure's", "[docs]") {
   }
 }
 
+TEST_CASE("the table of locking is the figure's", "[docs]") {
+  const Page page("docs/method.md");
+  const Cells cells = figure("locking");
+  for (const std::string shape : {"linear", "gimp", "cpdi", "bspline_quadratic"})
+    for (const std::string dilation : {"own", "averaged"}) {
+      const auto numbers =
+          page.read("| `" + shape + (dilation == "own" ? "`, its own" : "`, averaged") + " | # | # | # | # | # |");
+      std::size_t column = 0;
+      for (const char* nu : {"0.40000000000000002", "0.20000000000000001", "0.10000000000000001", "0.02", "0.002"}) {
+        INFO(shape << ", " << dilation << ", 1 - 2 nu = " << nu);
+        CHECK(value(cells, {"shape: " + shape, dilation, "computed", nu}, 4) == numbers[column++].rounded());
+      }
+    }
+}
+
 TEST_CASE("the table of the ledger's errors is the figures'", "[docs]") {
   const std::map<std::string, std::string> figures{
       {"scatter", "scatter"},       {"gather", "gather"},    {"internal force", "internal_force"},
