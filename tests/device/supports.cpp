@@ -44,6 +44,9 @@ void check(const Mix& mix) {
     CHECK(scene_difference(reference, device) <= device_bound(mix) * epsilon_of(precision));
     CHECK(difference_of_reactions(reference.simulation.backend().reactions(),
                                   device.simulation.backend().reactions()) <= 1e4 * epsilon_of(precision));
+    CHECK(device.simulation.backend().contact_record().largest_penetration ==
+          Approx(reference.simulation.backend().contact_record().largest_penetration)
+              .epsilon(1e6 * epsilon_of(precision)));
   }
 }
 
