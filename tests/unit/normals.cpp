@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "normals/given/given.hpp"
 #include "simulation/normal_errors.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
@@ -112,19 +111,6 @@ TEST_CASE("the volume gradient of one body is that of the larger, and of both wh
   CHECK(direction("volume_gradient", {1, 0, 0}, {0, -2, 0}, 1, 1) == Approx(90).epsilon(1e-14));
   CHECK(direction("volume_gradient", {1, 0, 0}, {0, -1, 0}, 1, 1) == Approx(45).epsilon(1e-14));
   CHECK(direction("own_gradient", {5, 0, 0}, {0, -1, 0}, 1, 1) == Approx(45).epsilon(1e-14));
-}
-
-TEST_CASE("a normal that is given is the unit vector along its components", "[normals]") {
-  NormalResult<3, double> in_space{};
-  Given::find<3, double>({2, -3, 6}, {}, in_space);
-  CHECK(in_space.found == 1);
-  CHECK(in_space.normal[0] == Approx(2.0 / 7).epsilon(1e-15));
-  CHECK(in_space.normal[1] == Approx(-3.0 / 7).epsilon(1e-15));
-  CHECK(in_space.normal[2] == Approx(6.0 / 7).epsilon(1e-15));
-  NormalResult<2, double> in_the_plane{};
-  Given::find<2, double>({3, 4, 12}, {}, in_the_plane);
-  CHECK(in_the_plane.normal[0] == Approx(0.6).epsilon(1e-15));
-  CHECK(in_the_plane.normal[1] == Approx(0.8).epsilon(1e-15));
 }
 
 TEST_CASE("along the grid every normal of a flat face is right", "[normals]") {

@@ -1,4 +1,4 @@
-// The plane with the widest gap between two clouds of points: no other direction has a wider one.
+// The plane with the widest gap between two clouds of points: no other direction has a wider one. And the normal that is given.
 
 #include <algorithm>
 #include <array>
@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "normals/given/given.hpp"
 #include "normals/widest_gap/widest_gap.hpp"
 #include "support/catch.hpp"
 
@@ -204,4 +205,17 @@ TEST_CASE("clouds that mix have no plane", "[separation]") {
   Clouds ring{{{0.1, 0.2, 0}}, {}};
   for (int k = 0; k < 12; ++k) ring.b.push_back({std::cos(k * 0.5236), std::sin(k * 0.5236), 0});
   CHECK_FALSE(ring.plane(2).found);
+}
+
+TEST_CASE("a normal that is given is the unit vector along its components, in the plane without z", "[separation]") {
+  NormalResult<3, double> in_space{};
+  Given::find<3, double>({2, -3, 6}, {}, in_space);
+  CHECK(in_space.found == 1);
+  CHECK(in_space.normal[0] == Approx(2.0 / 7).epsilon(1e-15));
+  CHECK(in_space.normal[1] == Approx(-3.0 / 7).epsilon(1e-15));
+  CHECK(in_space.normal[2] == Approx(6.0 / 7).epsilon(1e-15));
+  NormalResult<2, double> in_the_plane{};
+  Given::find<2, double>({3, 4, 12}, {}, in_the_plane);
+  CHECK(in_the_plane.normal[0] == Approx(0.6).epsilon(1e-15));
+  CHECK(in_the_plane.normal[1] == Approx(0.8).epsilon(1e-15));
 }
