@@ -227,7 +227,8 @@ inline std::vector<std::string> precisions_in_turn(bool both, std::size_t turn) 
 }
 
 /// Runs a mix on the reference (in double) and on the device in these precisions; both go 14 steps, in which bodies
-/// cross cells. The bound is that of tests/parity in units of the precision's epsilon.
+/// cross cells. The bound is that of tests/parity in units of the precision's epsilon. A node that a particle barely reaches
+/// may break a run with linear shapes, on both.
 inline void check_on_device(const Mix& mix, const std::vector<std::string>& precisions = {"double", "float"}) {
   INFO(mix.name());
   const std::string text = mix.text();
@@ -235,7 +236,13 @@ inline void check_on_device(const Mix& mix, const std::vector<std::string>& prec
   std::erase(overrides, deterministic_sums);
   for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
   Scene reference(text, overrides);
-  while (!reference.simulation.finished()) reference.simulation.step();
+  try {
+    while (!reference.simulation.finished()) reference.simulation.step();
+  } catch (const std::exception& stop) {
+    REQUIRE(mix.shape.find("linear") != mix.shape.npos);
+    CHECK_THROWS_WITH(DeviceScene(text, "double", {}, mix.overrides).run(), stop.what());
+    return;
+  }
   for (const std::string& precision : precisions) {
     INFO(precision);
     DeviceScene scene(text, precision, {}, mix.overrides);
