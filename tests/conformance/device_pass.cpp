@@ -36,7 +36,7 @@ constexpr double step = 0x1p-6;
 
 /// The text before a functor. Arrays are [component][64] of S; `state` and all that a functor fills are in `out`.
 constexpr const char* prologue = R"(#include "functor.hpp"
-struct Task { const void* parameters; const void* in[8]; void* out[8]; int count; double dt; };
+struct Task { const void* parameters; const void* in[9]; void* out[8]; int count; double dt; };
 namespace mpm {
 template <int N, class S> MPM_HD void load(const void* array, int lane, S* to) {
   for (int k = 0; k < N; ++k) to[k] = static_cast<const S*>(array)[k * 64 + lane];
@@ -603,7 +603,7 @@ std::vector<Column> response_to_start(const Plugin& plugin, int D, const Paramet
 
 struct Task {
   const void* parameters;
-  const void* in[8];
+  const void* in[9];
   void* out[8];
   int count;
   double dt;

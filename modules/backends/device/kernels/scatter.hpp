@@ -27,36 +27,51 @@ struct Tile {
   }
 };
 
-/// Sums over the particles of each block. `contribute(p, add)` calls add(node, values[Channels]); `channel[k]` is the
+/// The shared memory that every device gives a team without being asked for more, bytes.
+inline constexpr int shared_bytes = 48 * 1024;
+
+/// How many of the channels of a scatter have a tile at the same time: all of them, where there is room.
+template <int D, int Channels, class T>
+inline constexpr int channels_together = Channels* Tile<D>::nodes* static_cast<int>(sizeof(T)) <= shared_bytes
+                                             ? Channels
+                                             : shared_bytes / (Tile<D>::nodes * static_cast<int>(sizeof(T)));
+
+/// Sums over the particles of each block, which are visited once more for channels that find no room. `contribute(p, add)` calls add(node, values[Channels]); `channel[k]` is the
 /// grid's array of channel k, or null where nothing is given to it.
 template <int D, int Channels, class T, class Contribute>
 MPM_HD void scatter_block(const Team& team, const Arguments<T>& a, int block, T* const* channel,
                           Contribute& contribute) {
+  constexpr int together = channels_together<D, Channels, T>;
   T* const tile = team.template shared<T>();
   const int* const first_cell = a.blocks.cell + 3 * block;
-  team.for_each_lane([&](int lane) {
-    for (int k = lane; k < Channels * Tile<D>::nodes; k += team.lanes()) tile[k] = T(0);
-  });
-  team.for_each_lane([&](int lane) {
-    const int end = a.blocks.begin[block + 1];
-    for (int i = a.blocks.begin[block] + lane; i < end; i += team.lanes())
-      contribute(a.blocks.order[i], [&](const int* node, const T* values) {
-        const int at = Tile<D>::index(first_cell, node);
-        for (int k = 0; k < Channels; ++k)
-          if (channel[k])
-            Team::add(at >= 0 ? tile + k * Tile<D>::nodes + at : channel[k] + node_index<D>(a, node), values[k]);
-      });
-  });
-  team.for_each_lane([&](int lane) {
-    for (int at = lane; at < Tile<D>::nodes; at += team.lanes())
-      for (int k = 0; k < Channels; ++k) {
-        const T value = tile[k * Tile<D>::nodes + at];
-        if (value == T(0)) continue;  // nodes outside the grid are among these
-        int node[D];
-        Tile<D>::coordinates(first_cell, at, node);
-        Team::add(channel[k] + node_index<D>(a, node), value);
-      }
-  });
+  for (int first = 0; first < Channels; first += together) {
+    const int count = Channels - first < together ? Channels - first : together;
+    team.for_each_lane([&](int lane) {
+      for (int k = lane; k < count * Tile<D>::nodes; k += team.lanes()) tile[k] = T(0);
+    });
+    team.for_each_lane([&](int lane) {
+      const int end = a.blocks.begin[block + 1];
+      for (int i = a.blocks.begin[block] + lane; i < end; i += team.lanes())
+        contribute(a.blocks.order[i], [&](const int* node, const T* values) {
+          const int at = Tile<D>::index(first_cell, node);
+          for (int k = 0; k < count; ++k) {
+            T* const to = channel[first + k];
+            if (to)
+              Team::add(at >= 0 ? tile + k * Tile<D>::nodes + at : to + node_index<D>(a, node), values[first + k]);
+          }
+        });
+    });
+    team.for_each_lane([&](int lane) {
+      for (int at = lane; at < Tile<D>::nodes; at += team.lanes())
+        for (int k = 0; k < count; ++k) {
+          const T value = tile[k * Tile<D>::nodes + at];
+          if (value == T(0)) continue;  // nodes outside the grid are among these
+          int node[D];
+          Tile<D>::coordinates(first_cell, at, node);
+          Team::add(channel[first + k] + node_index<D>(a, node), value);
+        }
+    });
+  }
 }
 template <class Scene, int Channels, class T, class Contribute>
 MPM_HD void scatter_blocks(const Team& team, const Arguments<T>& a, T* const* channel, Contribute contribute) {
@@ -75,7 +90,8 @@ MPM_HD void scatter_blocks(const Team& team, const Arguments<T>& a, T* const* ch
 }
 
 template <class Scene>
-inline constexpr int scatter_scalars = Scene::scattered* Tile<Scene::dimension>::nodes;
+inline constexpr int scatter_scalars =
+    channels_together<Scene::dimension, Scene::scattered, typename Scene::Scalar>* Tile<Scene::dimension>::nodes;
 
 /// Finds the grid's arrays of what particles give, one a component; null where this scatter leaves one alone.
 template <class Scene, class T = typename Scene::Scalar>
