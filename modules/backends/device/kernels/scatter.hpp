@@ -36,8 +36,8 @@ inline constexpr int channels_together = Channels* Tile<D>::nodes* static_cast<i
                                              ? Channels
                                              : shared_bytes / (Tile<D>::nodes * static_cast<int>(sizeof(T)));
 
-/// Sums over the particles of each block, which are visited once more for channels that find no room. `contribute(p, add)` calls add(node, values[Channels]); `channel[k]` is the
-/// grid's array of channel k, or null where nothing is given to it.
+/// Sums over the particles of each block, which are visited once more for channels that find no room. `contribute(p, add)`
+/// calls add(node, values[Channels]); `channel[k]` is the grid's array of channel k, or null where nothing is given to it.
 template <int D, int Channels, class T, class Contribute>
 MPM_HD void scatter_block(const Team& team, const Arguments<T>& a, int block, T* const* channel,
                           Contribute& contribute) {
