@@ -64,7 +64,7 @@ std::string in_process_with(const std::vector<fs::path>& libraries, const std::f
 }
 
 /// An NVRTC of CUDA 11.7 that makes of a text that text and the options, one a line; with -v it says what a kernel takes,
-/// and of a text with "wrong" in it that it is wrong.
+/// and of a text that begins with "wrong" that it is wrong.
 const std::string compiler_text = R"(
 #include <cstring>
 #include <string>
@@ -87,7 +87,7 @@ int nvrtcCompileProgram(Program* p, int count, const char* const* options) {
                "    0 bytes stack frame, 0 bytes spill stores, 0 bytes spill loads\n"
                "ptxas info    : Used 32 registers\n";
   }
-  if (p->text.find("wrong") == std::string::npos) return 0;
+  if (p->text.rfind("wrong", 0) != 0) return 0;
   p->log = "it is wrong";
   return 6;
 }
