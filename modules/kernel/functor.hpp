@@ -28,7 +28,7 @@ struct NodeList {
 /// Two velocity fields that meet at a node.
 template <int D, class S>
 struct ContactPair {  // NOLINT(clang-analyzer-optin.performance.Padding): in the order of the batch, for readers
-  S mass_a, mass_b;                  ///< kg
+  S mass_a, mass_b;   ///< kg
   Vec<D, S> momentum_a, momentum_b;  ///< kg m/s
   Vec<D, S> normal;                  ///< unit, from a to b
   S separation;                      ///< m, negative when the surfaces overlap
