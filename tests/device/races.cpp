@@ -145,15 +145,15 @@ TEST_CASE("a race that is planted in a kernel is reported with its kernel, its p
   for (const unsigned order : {0u, 1u, 5u}) {
     INFO("order " << order);
     // The tile's node is added to the grid as if no other block had it.
-    CHECK_THAT(found_in({"Team::add(channel[k] + node_index<D>(a, node), value);",
-                         "channel[k][node_index<D>(a, node)] += value;"},
+    CHECK_THAT(found_in({"Team::add(channel[first + k] + node_index<D>(a, node), value);",
+                         "channel[first + k][node_index<D>(a, node)] += value;"},
                         order),
                ContainsSubstring("mpm_scatter, phase 2: ") && ContainsSubstring("mass of nodes, byte "));
     // A lane adds to the tile while others do.
-    CHECK_THAT(found_in({"Team::add(at >= 0 ? tile + k * Tile<D>::nodes + at : channel[k] + node_index<D>(a, node), "
-                         "values[k]);",
-                         "*(at >= 0 ? tile + k * Tile<D>::nodes + at : channel[k] + node_index<D>(a, node)) += "
-                         "values[k];"},
+    CHECK_THAT(found_in({"Team::add(at >= 0 ? tile + k * Tile<D>::nodes + at : to + node_index<D>(a, node), "
+                         "values[first + k]);",
+                         "*(at >= 0 ? tile + k * Tile<D>::nodes + at : to + node_index<D>(a, node)) += "
+                         "values[first + k];"},
                         order),
                ContainsSubstring("mpm_scatter, phase 1: ") && ContainsSubstring("shared memory, byte "));
   }
