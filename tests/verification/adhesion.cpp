@@ -1,6 +1,9 @@
 // A block glued to a plate and pulled off it: slowly it comes off where rho H b is the strength N, suddenly where 2 rho H b
 // is, as the wave from its free end doubles the traction.
 
+#include <cmath>
+#include <tuple>
+
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 
@@ -36,13 +39,13 @@ std::string glued(const std::string& pull, double place = 0.3, double h = 0.1) {
   "output": {"ledger": false, "bodies": true}})J";
 }
 
-/// The pull, N/kg, at which a block comes off that is pulled by 3 N/kg a second.
-double slow_pull(Scene& scene) {
+/// The pull, N/kg, at which a block comes off whose pull grows by `rate`, N/kg a second.
+double slow_pull(Scene& scene, double rate = 3) {
   bool held = false;
   while (!scene.simulation.finished()) {
     scene.simulation.step();
     const long nodes = scene.simulation.backend().contact_record().sticking;
-    if (held && nodes == 0) return 3 * scene.simulation.time();
+    if (held && nodes == 0) return rate * scene.simulation.time();
     held = held || nodes > 0;
   }
   return 0;
@@ -78,6 +81,28 @@ TEST_CASE("so it does by every transfer, shape and backend, and in 3-D", "[adhes
     INFO(shape);
     CHECK(slow_pull(scene) == Approx(strength / density).epsilon(0.02));
   }
+}
+
+// A pull that grows by r a second makes the block swing. A sudden pull of one makes the traction at the foot go from 0 to
+// twice that at rest and back, in triangles of the period 4 H / c; the integral of what is off swings by an eighth of the
+// period to either side. So the traction over rho H is r t to r H / (2 c).
+TEST_CASE("the slower the pull the nearer, whatever the step, the cells and the particles", "[adhesion]") {
+  const double exact = strength / density, swing = 1 / (2 * std::sqrt(modulus / density));
+  for (const std::string transfer : {"flip", "apic"})
+    for (const auto& [rate, h, courant, particles] : {std::tuple{3.0, 0.1, 0.03, 2},
+                                                      {3.0, 0.05, 0.3, 2},
+                                                      {1.0, 0.1, 0.1, 2},
+                                                      {1.0, 0.05, 0.3, 2},
+                                                      {1.0, 0.1, 0.3, 4}}) {
+      Scene scene(glued(digits(rate) + "*t", 0.3, h),
+                  {set("/transfer/type", transfer), set("/solver/courant", digits(courant)),
+                   set("/solver/end_time", digits(6 / rate)),
+                   set("/bodies/0/particles_per_cell_axis", std::to_string(particles)),
+                   set("/bodies/1/particles_per_cell_axis", std::to_string(particles))});
+      INFO(transfer << ", " << rate << " N/kg a second, cells of " << h << " m, courant " << courant << ", "
+                    << particles << " particles a cell and axis");
+      CHECK(std::abs(slow_pull(scene, rate) - exact) <= rate * swing + 0.002 * exact);
+    }
 }
 
 TEST_CASE("a block that has come off moves with the pull alone", "[adhesion]") {

@@ -30,7 +30,6 @@ struct JohnsonCook : J2Plasticity {
   using AxisymmetricState = WarmJ2State<2, S>;
 
 #if MPM_HOST
-  static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Young's modulus at small strain"),
@@ -50,12 +49,6 @@ struct JohnsonCook : J2Plasticity {
       MPM_NUMBER_PARAMETER(thermal_exponent, "", 1.0, 0.0, 3.0, MPM_ABOVE_MINIMUM, "m of the softening T*^m"),
       MPM_NUMBER_PARAMETER(room_temperature, "K", 293.15, 0.0, 320.0, 0, "T_room, up to which there is no softening"),
       MPM_CHOICE_PARAMETER(volumetric_energy, "logarithmic|quadratic|simo", 2, "u(J), see neo_hookean"),
-  };
-  static constexpr mpm_state state[] = {
-      {"elastic_left_cauchy_green", "", "isochoric elastic left Cauchy-Green tensor, det = 1", MPM_STATE_SYMMETRIC,
-       MPM_INITIAL_IDENTITY},
-      {"volume_ratio", "", "total J = det F", MPM_STATE_SCALAR, MPM_INITIAL_ONE},
-      {"equivalent_plastic_strain", "", "accumulated equivalent plastic strain", MPM_STATE_SCALAR, MPM_INITIAL_ZERO},
   };
 #endif
 };

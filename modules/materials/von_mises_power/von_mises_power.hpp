@@ -26,7 +26,6 @@ struct VonMisesPower : J2Plasticity {
   using AxisymmetricState = J2State<2, S>;
 
 #if MPM_HOST
-  static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
   static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
@@ -41,12 +40,6 @@ struct VonMisesPower : J2Plasticity {
       MPM_NUMBER_PARAMETER(hardening_exponent, "", required, 0.0, 1.0, 0,
                            "n: 0 is perfect plasticity, 1 linear hardening"),
       MPM_CHOICE_PARAMETER(volumetric_energy, "logarithmic|quadratic|simo", 2, "u(J), see neo_hookean"),
-  };
-  static constexpr mpm_state state[] = {
-      {"elastic_left_cauchy_green", "", "isochoric elastic left Cauchy-Green tensor, det = 1", MPM_STATE_SYMMETRIC,
-       MPM_INITIAL_IDENTITY},
-      {"volume_ratio", "", "total J = det F", MPM_STATE_SCALAR, MPM_INITIAL_ONE},
-      {"equivalent_plastic_strain", "", "accumulated equivalent plastic strain", MPM_STATE_SCALAR, MPM_INITIAL_ZERO},
   };
 #endif
 };

@@ -51,9 +51,7 @@ struct VonMisesTable : J2Plasticity {
   using AxisymmetricState = J2State<2, S>;
 
 #if MPM_HOST
-  static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
   static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
-
   /// Refuses a table whose strains do not grow or whose stresses fall.
   static mpm_refusal refusal(const Parameters& p, const mpm_refusal_case&) {
     constexpr const char* strains[] = {"", "strain_1", "strain_2", "strain_3", "strain_4", "strain_5", "strain_6"};
@@ -90,12 +88,6 @@ struct VonMisesTable : J2Plasticity {
       MPM_CHOICE_PARAMETER(volumetric_energy, "logarithmic|quadratic|simo", 2, "u(J), see neo_hookean"),
   };
 #undef MPM_TABLE_POINT
-  static constexpr mpm_state state[] = {
-      {"elastic_left_cauchy_green", "", "isochoric elastic left Cauchy-Green tensor, det = 1", MPM_STATE_SYMMETRIC,
-       MPM_INITIAL_IDENTITY},
-      {"volume_ratio", "", "total J = det F", MPM_STATE_SCALAR, MPM_INITIAL_ONE},
-      {"equivalent_plastic_strain", "", "accumulated equivalent plastic strain", MPM_STATE_SCALAR, MPM_INITIAL_ZERO},
-  };
 #endif
 };
 

@@ -26,7 +26,6 @@ struct VonMisesVoce : J2Plasticity {
   using AxisymmetricState = J2State<2, S>;
 
 #if MPM_HOST
-  static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
   static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
@@ -42,12 +41,6 @@ struct VonMisesVoce : J2Plasticity {
                            "eps_s: plastic strain after which 1 - 1/e of Q is there"),
       MPM_NUMBER_PARAMETER(hardening_modulus, "Pa", 0.0, 0.0, unbounded, 0, "slope H that is left when Q is there"),
       MPM_CHOICE_PARAMETER(volumetric_energy, "logarithmic|quadratic|simo", 2, "u(J), see neo_hookean"),
-  };
-  static constexpr mpm_state state[] = {
-      {"elastic_left_cauchy_green", "", "isochoric elastic left Cauchy-Green tensor, det = 1", MPM_STATE_SYMMETRIC,
-       MPM_INITIAL_IDENTITY},
-      {"volume_ratio", "", "total J = det F", MPM_STATE_SCALAR, MPM_INITIAL_ONE},
-      {"equivalent_plastic_strain", "", "accumulated equivalent plastic strain", MPM_STATE_SCALAR, MPM_INITIAL_ZERO},
   };
 #endif
 };
