@@ -72,4 +72,6 @@ TEST_CASE("a particle has the mean by area of the nodes up to two cells around")
   CHECK(contact_traction(experiment, 0, particle, nodes)[1] == Approx(expected));
   nodes.push_back(node(2, 5, 7, {0, -1e9, 0}));  // three away
   CHECK(contact_traction(experiment, 0, particle, nodes)[1] == Approx(expected));
+  // In the upper half of the cell node 0 is the nearest one, and that node two away.
+  CHECK(contact_traction(experiment, 0, at({0.475, 0.5}), nodes)[1] == Approx(-(280 + 8 + 7e9) / 7.6));
 }
