@@ -8,9 +8,6 @@
 #include "kernel/functor.hpp"
 #include "kernel/hardening.hpp"
 #include "kernel/unimodular.hpp"
-#if MPM_HOST
-#include "plugin/tables.hpp"
-#endif
 
 namespace mpm {
 
@@ -110,16 +107,14 @@ struct J2Plasticity {
   MPM_HD static S volume_ratio(const State<D, S>& state) {
     return state.volume_ratio;
   }
-
-#if MPM_HOST
-  static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
-  static constexpr mpm_state state[] = {
-      {"elastic_left_cauchy_green", "", "isochoric elastic left Cauchy-Green tensor, det = 1", MPM_STATE_SYMMETRIC,
-       MPM_INITIAL_IDENTITY},
-      {"volume_ratio", "", "total J = det F", MPM_STATE_SCALAR, MPM_INITIAL_ONE},
-      {"equivalent_plastic_strain", "", "accumulated equivalent plastic strain", MPM_STATE_SCALAR, MPM_INITIAL_ZERO},
-  };
-#endif
 };
 
 }  // namespace mpm
+
+/// The state table of a material that is a J2Plasticity.
+#define MPM_J2_STATE                                                                                             \
+  {"elastic_left_cauchy_green", "", "isochoric elastic left Cauchy-Green tensor, det = 1", MPM_STATE_SYMMETRIC,  \
+   MPM_INITIAL_IDENTITY},                                                                                        \
+      {"volume_ratio", "", "total J = det F", MPM_STATE_SCALAR, MPM_INITIAL_ONE}, {                              \
+    "equivalent_plastic_strain", "", "accumulated equivalent plastic strain", MPM_STATE_SCALAR, MPM_INITIAL_ZERO \
+  }

@@ -8,6 +8,7 @@
 
 #include "cli/program.hpp"
 #include "support/csv.hpp"
+#include "support/gas_dynamics.hpp"
 #include "support/page.hpp"
 
 using namespace mpm::test;
@@ -174,6 +175,14 @@ const std::vector<Sentence>& run_sentences() {
       {"plate_impact",
        "has # GPa and the volume ratio # behind the shock",
        {{"/probes/behind/pressure/final", 1e-9}, {"/probes/behind/volume_ratio/final"}}},
+      {"gas_shock",
+       "has # Pa, a volume ratio of # and a mean velocity of # m/s",
+       {{"/probes/behind/pressure/final"}, {"/probes/behind/volume_ratio/final"}, {"/bodies/gas/velocity_x/final"}}},
+      {"shock_tube",
+       "has # m/s for the right gas, and a volume ratio of # on the left of the contact and # on its right",
+       {{"/bodies/right/velocity_x/final"},
+        {"/probes/left_of_contact/volume_ratio/final"},
+        {"/probes/right_of_contact/volume_ratio/final"}}},
       {"thick_cylinder", "has # MPa there", {{"/probes/outer/stress_zz/final", 1e-6}}},
       {"thick_cylinder", "and a displacement of # µm", {{"/probes/outer/displacement_x/final", 1e6}}},
   };
@@ -276,6 +285,38 @@ const std::vector<Sentence>& study_sentences() {
          "the mean over a cut is off by # %, but a particle has # % too much; at 2000 m/s # %",
          {{"cpdi-1000_m_s-c_h: " + behind}, {"cpdi-1000_m_s-c_h: " + excess}, {"cpdi-2000_m_s-c_h: " + excess}}});
     all.push_back({plates, "the mean at 500 m/s is off by # %", column(behind, {"bspline_quadratic-500_m_s-c_h"})});
+    const std::string gas = "gas_shock_transfers", tube = "shock_tube_grids";
+    const std::vector<std::array<std::string, 2>> transfers{
+        {"FLIP", "FLIP"}, {"FMPM(4)", "FMPM_4"}, {"APIC", "APIC"}, {"PIC", "PIC"}};
+    for (const auto& [transfer, name] : transfers)
+      for (const std::string courant : {"0.3", "0.1"}) {
+        std::vector<Number> row;
+        for (const char* cells : {"50", "100", "200"})
+          row.push_back({name + "-" + cells + "_cells-" + courant + ": error of the density behind the shock (%)"});
+        for (const char* what :
+             {"error of the pressure behind the shock (%)", "error of the speed of the shock (%)", "energy lost (%)"})
+          row.push_back({name + "-200_cells-" + courant + ": " + what});
+        all.push_back({gas, "| " + transfer + ", " + courant + " | # % | # % | # % | # % | # % | # % |", row});
+      }
+    all.push_back(
+        {gas, "APIC is # % too dense", column("error of the density behind the shock (%)", {"APIC-200_cells-0.3"})});
+    all.push_back({gas, "on the way through the shock: # % with a third",
+                   column("error of the density behind the shock (%)", {"APIC-200_cells-0.1"})});
+    all.push_back({gas,
+                   "FLIP has density and pressure to # %;",
+                   {{"FLIP-100_cells-0.3: error of the pressure behind the shock (%)", -1}}});
+    all.push_back(
+        {tube, "APIC stops falling at # %", {{"APIC-400_cells: error of the mean velocity of the right gas (%)", -1}}});
+    for (const auto& [transfer, name] : transfers) {
+      if (transfer == "PIC") continue;
+      std::vector<std::string> runs;
+      for (const char* cells : {"50", "100", "200", "400"}) runs.push_back(name + "-" + cells + "_cells");
+      std::vector<Number> row = column("error of the mean velocity of the right gas (%)", runs);
+      for (const char* what :
+           {"error of the density left of the contact (%)", "error of the density right of the contact (%)"})
+        row.push_back({runs.back() + ": " + what});
+      all.push_back({tube, "| " + transfer + " | # % | # % | # % | # % | # % | # % |", row});
+    }
     const std::string beam = "cantilever_loads", sags = "error of the sag of the end (%)",
                       reach = "error of the reach of the end (%)";
     const std::vector<std::array<std::string, 2>> shapes{{"CPDI", "cpdi"},
@@ -377,6 +418,20 @@ TEST_CASE("scenes of papers expect what closed forms say", "[papers]") {
   CHECK(expected(plates, "probes.behind.pressure.final") == Approx(shock.pressure).epsilon(1e-6));
   CHECK(expected(plates, "probes.behind.volume_ratio.final") == Approx(shock.ratio).epsilon(1e-6));
   CHECK(expected(plates, "bodies.left.velocity_x.final") == Approx(shock.mean()).epsilon(1e-6));
+  const gas::PistonShock piston(2);
+  CHECK(expected("gas_shock", "probes.behind.pressure.final") == Approx(piston.pressure - 1).epsilon(1e-8));
+  CHECK(expected("gas_shock", "probes.behind.volume_ratio.final") == Approx(1 / piston.density).epsilon(1e-7));
+  CHECK(expected("gas_shock", "bodies.gas.velocity_x.final") == Approx(-2 * (1 - 0.25 * piston.speed)).epsilon(1e-7));
+  const gas::ShockTube sod({1, 0, 1}, {0.125, 0, 0.1});
+  const double rest = std::pow(0.1, 1 / gas::g);  // density of the left gas at the right one's pressure
+  CHECK(expected("shock_tube", "bodies.right.velocity_x.final") ==
+        Approx(0.2 * sod.shock * sod.velocity / 0.5).epsilon(1e-7));
+  CHECK(expected("shock_tube", "probes.left_of_contact.pressure.final") == Approx(sod.pressure - 0.1).epsilon(1e-7));
+  CHECK(expected("shock_tube", "probes.left_of_contact.velocity_x.final") == Approx(sod.velocity).epsilon(1e-7));
+  CHECK(expected("shock_tube", "probes.left_of_contact.volume_ratio.final") ==
+        Approx(rest / sod.left_density).epsilon(1e-7));
+  CHECK(expected("shock_tube", "probes.right_of_contact.volume_ratio.final") ==
+        Approx(0.125 / sod.right_density).epsilon(1e-7));
   const Tube tube_at_150(150e6);
   CHECK(expected("thick_cylinder", "probes.outer.stress_zz.final") == Approx(tube_at_150.hoop).epsilon(1e-6));
   CHECK(expected("thick_cylinder", "probes.outer.displacement_x.final") ==
@@ -389,26 +444,37 @@ namespace {
 std::vector<std::pair<std::string, std::vector<double>>> exact_sentences() {
   const double a = drop_semi_axis(1.5);
   const Shock shock(500);
-  return {{"which is exactly # m:", {25 - column_centre()}},
-          {"which comes to # m and bears 32 kPa", {column_height(10)}},
-          {"For p = K (1/J − 1) a column of H = 2 m with K = 200 kPa has the height # m", {fluid_height(2, 2e5, 1)}},
-          {"for p = K/7 (J⁻⁷ − 1) with K = 420 kPa # m", {fluid_height(2, 4.2e5, 7)}},
-          {"where #, # and # Pa are exact", {14715, 9810, 4905}},
-          {", exactly # m.", {1 - fluid_height(1, 2e5, 1)}},
-          {"a = # m at 1.5 s", {a}},
-          {"| exact | # m | | # m | # m | | # m |", {a, 1 / a, a, 1 / a}},
-          {"where #, # and # U are exact", {couette(0.25, 0.1), couette(0.5, 0.1), couette(0.75, 0.1)}},
-          {"(exactly # U),", {couette(0.5, 1)}},
-          {"(exactly # U): APIC", {poiseuille(0.5, 1)}},
-          {"shocks of U_s = # m/s", {shock.speed}},
-          {"pressure is ρ U_s u_p = # GPa and the volume ratio #.", {1e-9 * shock.pressure, shock.ratio}},
-          {"its tip sinks by #, # and # L", {sag(1)[0], sag(2)[0], sag(5)[0]}},
-          {"its last twentieth on the mean by #, # and # L.", {sag(1)[1], sag(2)[1], sag(5)[1]}},
-          {"at 120, 150 and 180 MPa up to #, # and # mm",
-           {1000 * Tube(120e6).radius, 1000 * Tube(150e6).radius, 1000 * Tube(180e6).radius}},
-          {"At # MPa it flows as a whole", {480 / std::sqrt(3.0) * std::log(2.0)}},
-          {"where # MPa are exact,", {1e-6 * Tube(150e6).hoop}},
-          {"where # µm are exact", {1e6 * Tube(150e6).displacement}}};
+  const gas::PistonShock piston(2);
+  const gas::ShockTube sod({1, 0, 1}, {0.125, 0, 0.1});
+  return {
+      {"a shock of # m/s, and behind it # Pa and # kg/m³", {piston.speed, piston.pressure, piston.density}},
+      {"p J^γ grows by # %", {100 * (piston.pressure * std::pow(piston.density, -gas::g) - 1)}},
+      {"Exact are # Pa, # and # m/s", {piston.pressure - 1, 1 / piston.density, -2 * (1 - 0.25 * piston.speed)}},
+      {"where the density is # kg/m³ on one side and # kg/m³ on the other, the pressure # Pa and the velocity # m/s",
+       {sod.left_density, sod.right_density, sod.pressure, sod.velocity}},
+      {"begins with # kg/m³ at rest", {std::pow(0.1, 1 / gas::g)}},
+      {"Exact are # m/s, # and #.",
+       {0.2 * sod.shock * sod.velocity / 0.5, std::pow(0.1, 1 / gas::g) / sod.left_density, 0.125 / sod.right_density}},
+      {"which is exactly # m:", {25 - column_centre()}},
+      {"which comes to # m and bears 32 kPa", {column_height(10)}},
+      {"For p = K (1/J − 1) a column of H = 2 m with K = 200 kPa has the height # m", {fluid_height(2, 2e5, 1)}},
+      {"for p = K/7 (J⁻⁷ − 1) with K = 420 kPa # m", {fluid_height(2, 4.2e5, 7)}},
+      {"where #, # and # Pa are exact", {14715, 9810, 4905}},
+      {", exactly # m.", {1 - fluid_height(1, 2e5, 1)}},
+      {"a = # m at 1.5 s", {a}},
+      {"| exact | # m | | # m | # m | | # m |", {a, 1 / a, a, 1 / a}},
+      {"where #, # and # U are exact", {couette(0.25, 0.1), couette(0.5, 0.1), couette(0.75, 0.1)}},
+      {"(exactly # U),", {couette(0.5, 1)}},
+      {"(exactly # U): APIC", {poiseuille(0.5, 1)}},
+      {"shocks of U_s = # m/s", {shock.speed}},
+      {"pressure is ρ U_s u_p = # GPa and the volume ratio #.", {1e-9 * shock.pressure, shock.ratio}},
+      {"its tip sinks by #, # and # L", {sag(1)[0], sag(2)[0], sag(5)[0]}},
+      {"its last twentieth on the mean by #, # and # L.", {sag(1)[1], sag(2)[1], sag(5)[1]}},
+      {"at 120, 150 and 180 MPa up to #, # and # mm",
+       {1000 * Tube(120e6).radius, 1000 * Tube(150e6).radius, 1000 * Tube(180e6).radius}},
+      {"At # MPa it flows as a whole", {480 / std::sqrt(3.0) * std::log(2.0)}},
+      {"where # MPa are exact,", {1e-6 * Tube(150e6).hoop}},
+      {"where # µm are exact", {1e6 * Tube(150e6).displacement}}};
 }
 
 }  // namespace
@@ -420,12 +486,20 @@ TEST_CASE("every number on the page of papers is read by a test or given by the 
   for (const auto& [text, values] : exact_sentences()) whole.add_measured(text);
   for (const std::string& text : {volume_ratios, small_errors, fitted, whole_page, bends, flows})
     whole.add_measured(text);
-  whole.add_names({"(?:Augarde|Monaghan|Batchelor|Meyers|Murnaghan) [0-9]{4}", "139:102748", "110:399", "30:244",
-                   "ch. 4(?:.3)?", "H²/ν", "(?:20, )?[0-9]+ (?:and [0-9]+ )?cells", "(?:500|1000|2000) m/s",
+  whole.add_names({"FMPM\\(4\\)", "(?:Augarde|Monaghan|Batchelor|Meyers|Murnaghan) [0-9]{4}", "139:102748", "110:399",
+                   "30:244", "ch. 4(?:.3)?", "H²/ν", "(?:20, )?[0-9]+ (?:and [0-9]+ )?cells", "(?:500|1000|2000) m/s",
                    "(?:16|32|80) [|]", "law, [28]0"});
   whole.add_given(
       {"a column of 50 m, E = 1 MPa, ν = 0, Hencky", "the weight grows over 12 s", "σ = −800 Pa/m (50 m − Y)",
        "That of what began at 10 m,", "radius 1 m", "at 1.5 s, from the mean", "with sound at 20 m/s",
+       // the gas
+       "Friedrichs 1948, ", "A piston comes at 2 m/s", "the density 1 kg/m³, the pressure 1 Pa and γ = 1.4",
+       "thrown at a wall with 2 m/s", "command, FLIP on 100 cells, has", "with FLIP on 100 cells as well",
+       "after 0.25 s", "density, 50 cells | 100 | 200 | pressure",
+       "and of the density on both sides of the contact on 400 cells", "| Sod 1978 |", "(G. A. Sod 1978, ",
+       "Phys. 27:1)", "1 kg/m³ with 1 Pa and 0.125 kg/m³ with 0.1 Pa, meet at 0.5 m", "both gases have 0.1 Pa at rest",
+       "compresses it to 1 kg/m³", "after 0.2 s", "| | 50 cells | 100 | 200 | 400 |", "left of 0 m",
+       "`\"linear_viscosity\": 1`", "on 100 and on 200 cells",
        // the cantilever and the tube
        "Drucker 1945, Large deflection", "Appl. Math. 3:272", "Mattiasson 1981, ", "Engng 17:145)",
        "At P L²/EI = 1, 2 and 5", "a beam of rubber with H / L = 1/20 in plane", "sinks, on 2 and on 4 cells across",
@@ -479,8 +553,8 @@ TEST_CASE("bounds on the page of papers hold in the tables of its studies", "[pa
 }
 
 TEST_CASE("every scene of papers comes to its exact numbers, and to those that the page prints", "[papers]") {
-  for (const std::string name :
-       {"self_weight_column", "hydrostatic_column", "elliptical_drop", "channel", "plate_impact", "thick_cylinder"}) {
+  for (const std::string name : {"self_weight_column", "hydrostatic_column", "elliptical_drop", "channel",
+                                 "plate_impact", "thick_cylinder", "gas_shock", "shock_tube"}) {
     INFO(name);
     const Folder folder;
     const Result result = call(folder, {"run", (root / "experiments/papers" / (name + ".json")).string(), "--out",

@@ -22,6 +22,7 @@ inline double required_value(const mpm_parameter& parameter) {
                                                     {"c10", 140},
                                                     {"c01", 50},
                                                     {"bulk_modulus", 800},
+                                                    {"pressure", 500},
                                                     {"decay_speed", 2},
                                                     {"normal_stiffness", 3e4},
                                                     {"tension_stiffness", 1e4},

@@ -30,6 +30,8 @@ struct JohnsonCook : J2Plasticity {
   using AxisymmetricState = WarmJ2State<2, S>;
 
 #if MPM_HOST
+  static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_state state[] = {MPM_J2_STATE};
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Young's modulus at small strain"),

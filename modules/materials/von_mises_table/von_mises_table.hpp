@@ -51,7 +51,10 @@ struct VonMisesTable : J2Plasticity {
   using AxisymmetricState = J2State<2, S>;
 
 #if MPM_HOST
+  static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_state state[] = {MPM_J2_STATE};
   static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
+
   /// Refuses a table whose strains do not grow or whose stresses fall.
   static mpm_refusal refusal(const Parameters& p, const mpm_refusal_case&) {
     constexpr const char* strains[] = {"", "strain_1", "strain_2", "strain_3", "strain_4", "strain_5", "strain_6"};

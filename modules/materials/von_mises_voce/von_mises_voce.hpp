@@ -26,6 +26,8 @@ struct VonMisesVoce : J2Plasticity {
   using AxisymmetricState = J2State<2, S>;
 
 #if MPM_HOST
+  static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_state state[] = {MPM_J2_STATE};
   static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
