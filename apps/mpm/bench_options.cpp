@@ -56,61 +56,70 @@ bench::Table remarks(const bench::Table& options) {
   return table;
 }
 
-/// Measures options that share the standard's motion, at most three beside it: memory holds four large contenders.
-void run_group(BenchContext& context, const BenchScene& scene, const std::vector<const BenchOption*>& options,
-               bench::Table& table, std::vector<bench::Target>& targets) {
-  const std::string& motion = options.front()->motion;
-  std::string names;
-  for (const BenchOption* option : options) names += (names.empty() ? "" : ", ") + option->name;
-  context.say("options: " + scene.name + ", " + names);
-  std::vector<std::unique_ptr<Product>> products;
-  products.push_back(std::make_unique<Product>(context.suite.experiment(scene, motion, {}), 1));
-  for (const BenchOption* option : options)
-    products.push_back(
-        std::make_unique<Product>(context.suite.experiment(scene, motion, option->edits(scene.name)), 1));
-  std::vector<bench::Contender*> contenders;
-  for (const auto& product : products) contenders.push_back(product.get());
-  const bench::Rates rates = context.run_in_turns(contenders);
-
-  for (std::size_t k = 0; k < options.size(); ++k) {
-    const BenchOption& option = *options[k];
-    const double rate = rates.rate(k + 1), cost = rates.ratio(0, k + 1);
-    const Account account = account_of(*products[k + 1], rate, motion != "rest");
-    const double peak = context.limits().one.gflops(products[k + 1]->experiment().precision);
-    const auto counted = [&](double value) { return account.flops ? Cell(value) : Cell(); };
-    table.rows.push_back({scene.name, option.name, option.group, option.motion, rate / 1e6, 100 * rates.spread(k + 1),
-                          cost, counted(account.flops.value_or(0)), account.bytes, counted(account.gflops()),
-                          counted(100 * account.gflops() / peak),
-                          100 * account.gigabytes() / context.limits().one.memory.update});
-    if (scene.name != "cube_3d") continue;
-    if (account.flops && option.figure && option.group != "precision")
-      context.roofline.push_back({option.name, *account.flops / account.bytes, account.gflops()});
-    if (option.name == "cpdi") targets.push_back({"cpdi", "cube_3d cpdi float, one thread (M/s)", rate / 1e6, 8, true});
-    // The ledger of every step cannot cost as little: docs/design/decisions.md.
-    if (option.name == "ledger of every 8th step")
-      targets.push_back({"ledger", "cube_3d cost of the ledger of every 8th step over none", cost, 1.1, false});
-  }
+/// Adds a row for each option, which share the standard's motion.
+void run_group(BenchContext& context, const BenchScene& scene, const std::string& motion,
+               const std::vector<const BenchOption*>& options, bench::Table& table,
+               std::vector<bench::Target>& targets) {
+  std::vector<BenchVariant> variants;
+  for (const BenchOption* option : options) variants.push_back({option->name, option->edits(scene.name)});
+  measure_beside_standard(
+      context, "options", scene, motion, variants,
+      [&](std::size_t k, Product& product, const BesideStandard& measured) {
+        const BenchOption& option = *options[k];
+        const Account account = account_of(product, measured.rate, motion != "rest");
+        const double peak = context.limits().one.gflops(product.experiment().precision);
+        const auto counted = [&](double value) { return account.flops ? Cell(value) : Cell(); };
+        table.rows.push_back({scene.name, option.name, option.group, option.motion, measured.rate / 1e6,
+                              100 * measured.spread, measured.cost, counted(account.flops.value_or(0)), account.bytes,
+                              counted(account.gflops()), counted(100 * account.gflops() / peak),
+                              100 * account.gigabytes() / context.limits().one.memory.update});
+        if (scene.name != "cube_3d") return;
+        if (account.flops && option.figure && option.group != "precision")
+          context.roofline.push_back({option.name, *account.flops / account.bytes, account.gflops()});
+        if (option.name == "cpdi")
+          targets.push_back({"cpdi", "cube_3d cpdi float, one thread (M/s)", measured.rate / 1e6, 8, true});
+        // The ledger of every step cannot cost as little: docs/design/decisions.md.
+        if (option.name == "ledger of every 8th step")
+          targets.push_back(
+              {"ledger", "cube_3d cost of the ledger of every 8th step over none", measured.cost, 1.1, false});
+      });
 }
 
 }  // namespace
 
+void measure_beside_standard(BenchContext& context, const std::string& section, const BenchScene& scene,
+                             const std::string& motion, const std::vector<BenchVariant>& variants,
+                             const std::function<void(std::size_t, Product&, const BesideStandard&)>& take) {
+  constexpr std::size_t beside_the_standard = 3;  // memory holds four large contenders
+  for (std::size_t first = 0; first < variants.size(); first += beside_the_standard) {
+    const std::size_t end = std::min(first + beside_the_standard, variants.size());
+    std::string names;
+    std::vector<std::unique_ptr<Product>> products;
+    products.push_back(std::make_unique<Product>(context.suite.experiment(scene, motion, {}), 1));
+    for (std::size_t k = first; k < end; ++k) {
+      names += (k == first ? "" : ", ") + variants[k].name;
+      products.push_back(std::make_unique<Product>(context.suite.experiment(scene, motion, variants[k].edits), 1));
+    }
+    context.say(section + ": " + scene.name + ", " + names);
+    std::vector<bench::Contender*> contenders;
+    for (const auto& product : products) contenders.push_back(product.get());
+    const bench::Rates rates = context.run_in_turns(contenders);
+    for (std::size_t k = first; k < end; ++k) {
+      const std::size_t at = k - first + 1;
+      take(k, *products[at], {rates.rate(at), rates.spread(at), rates.ratio(0, at)});
+    }
+  }
+}
+
 bench::SectionResult bench_options(BenchContext& context) {
   context.limits();
   bench::SectionResult result{"options", {options_table()}, {}};
-  constexpr std::size_t beside_the_standard = 3;
   for (const BenchScene& scene : context.suite.scenes())
     for (const char* motion : {"rest", "deforming"}) {
       std::vector<const BenchOption*> group;
-      const auto flush = [&] {
-        if (!group.empty()) run_group(context, scene, group, result.tables[0], result.targets);
-        group.clear();
-      };
-      for (const BenchOption& option : context.suite.options()) {
-        if (option.motion != motion) continue;
-        group.push_back(&option);
-        if (group.size() == beside_the_standard) flush();
-      }
-      flush();
+      for (const BenchOption& option : context.suite.options())
+        if (option.motion == motion) group.push_back(&option);
+      run_group(context, scene, motion, group, result.tables[0], result.targets);
     }
   result.tables.push_back(remarks(result.tables[0]));
   return result;

@@ -69,6 +69,22 @@ struct Account {
 };
 Account account_of(Product& product, double rate, bool deforming);
 
+/// A change of the standard scene.
+struct BenchVariant {
+  std::string name;
+  Edits edits;
+};
+/// What was measured of a variant: particle-steps/s, the spread of that over the rounds, and the time a particle-step over
+/// that of the standard in the same rounds.
+struct BesideStandard {
+  double rate = 0, spread = 0, cost = 0;
+};
+/// Runs variants of a scene in turns with the scene as it is, on one thread, and hands each to `take` with its place in
+/// the list.
+void measure_beside_standard(BenchContext& context, const std::string& section, const BenchScene& scene,
+                             const std::string& motion, const std::vector<BenchVariant>& variants,
+                             const std::function<void(std::size_t, Product&, const BesideStandard&)>& take);
+
 struct BenchSection {
   const char* name;
   const char* summary;
@@ -80,6 +96,7 @@ const std::vector<BenchSection>& bench_sections();
 bench::SectionResult bench_machine(BenchContext& context);
 bench::SectionResult bench_standard(BenchContext& context);
 bench::SectionResult bench_options(BenchContext& context);
+bench::SectionResult bench_materials(BenchContext& context);
 bench::SectionResult bench_freedom(BenchContext& context);
 bench::SectionResult bench_required(BenchContext& context);
 bench::SectionResult bench_growth(BenchContext& context);

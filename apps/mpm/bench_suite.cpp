@@ -43,6 +43,7 @@ BenchSuite::BenchSuite(const Registry& registry, bool quick) : registry_(registr
   for (const auto& [name, scene] : file.at("scenes").items())
     scenes_.push_back({name, scene.at("rest"), scene.at("deforming"), scene.at("quick")});
   for (const auto& [name, edits] : file.at("materials").items()) materials_.push_back({name, edits_in(edits)});
+  parameters_ = file.at("parameters").get<std::map<std::string, double>>();
   for (const Json& option : file.at("options")) {
     BenchOption read{
         option.at("name"), option.at("group"), option.value("motion", "deforming"), option.value("figure", true), {}};
@@ -54,6 +55,11 @@ BenchSuite::BenchSuite(const Registry& registry, bool quick) : registry_(registr
     }
     options_.push_back(std::move(read));
   }
+}
+
+std::optional<double> BenchSuite::parameter(const std::string& name) const {
+  const auto found = parameters_.find(name);
+  return found == parameters_.end() ? std::nullopt : std::optional(found->second);
 }
 
 const BenchScene& BenchSuite::scene(const std::string& name) const {

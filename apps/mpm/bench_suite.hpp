@@ -2,7 +2,9 @@
 // The scenes and variants of `mpm bench`: experiments/benchmarks, compiled in, so that the program needs no files
 // beside it.
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +51,8 @@ class BenchSuite {
   const std::vector<BenchScene>& scenes() const { return scenes_; }
   const std::vector<BenchMaterial>& materials() const { return materials_; }
   const std::vector<BenchOption>& options() const { return options_; }
+  /// The value that a parameter without default has in the scenes, if the file names it.
+  std::optional<double> parameter(const std::string& name) const;
   /// The scene of a name. Throws std::out_of_range.
   const BenchScene& scene(const std::string& name) const;
 
@@ -61,6 +65,7 @@ class BenchSuite {
   std::vector<BenchScene> scenes_;
   std::vector<BenchMaterial> materials_;
   std::vector<BenchOption> options_;
+  std::map<std::string, double> parameters_;
 };
 
 /// The sandbox on one experiment, as between two outputs of a run: no step is observed unless the simulation is told

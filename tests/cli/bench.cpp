@@ -93,6 +93,18 @@ TEST_CASE("bench --quick measures every section", "[bench]") {
       CHECK(is_rate(*row));
       CHECK(is_rate(*row, "cost"));
     }
+  // Every law that is shipped has a row in every scene. F is 9 or 4 numbers of 4 bytes, a gas keeps three scalars.
+  for (const auto& folder : fs::directory_iterator(fs::path(MPM_SOURCE_DIR) / "modules/materials"))
+    for (const char* scene : {"cube_3d", "block_2d"}) {
+      const std::string law = folder.path().filename().string();
+      INFO(scene << " " << law);
+      const Json* row = row_with(sections["materials"]["laws"], {{"scene", scene}, {"law", law}});
+      REQUIRE(row);
+      for (const char* key : {"rate", "cost", "flops", "state"}) CHECK(is_rate(*row, key));
+      CHECK((*row)["all_flops"] > (*row)["flops"]);
+      if (law == "neo_hookean") CHECK((*row)["state"] == (std::string(scene) == "cube_3d" ? 36 : 16));
+      if (law == "ideal_gas") CHECK((*row)["state"] == 12);
+    }
   CHECK(sections["growth"]["growth"].size() == 4);
   for (const Json& row : sections["growth"]["growth"])
     for (const char* key : {"rate", "cost", "particle_memory", "peak_memory"}) CHECK(is_rate(row, key));
