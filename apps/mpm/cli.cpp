@@ -126,7 +126,8 @@ std::function<std::string(const std::string&)> number_between(const std::string&
 }
 
 void add_drive(CLI::App& verb, DriveOptions& options) {
-  verb.add_option("ID", options.id, "material")->required();
+  verb.add_option("ID", options.id, "material; or, with --extremes, the word every: a row of each that is installed")
+      ->required();
   verb.add_option("--param", options.parameters,
                   "name=value: a parameter of the material, with a unit if wanted; may be repeated")
       ->allow_extra_args(false);
@@ -136,7 +137,7 @@ void add_drive(CLI::App& verb, DriveOptions& options) {
     names.emplace_back(path.name);
     list += std::string("  ") + path.name + std::string(14 - names.back().size(), ' ') + path.doc + "\n";
   }
-  verb.add_option("--path", options.path, "one path; default all")->check(CLI::IsMember(names));
+  auto* path = verb.add_option("--path", options.path, "one path; default all")->check(CLI::IsMember(names));
   verb.add_option("--strain", options.strain, "largest displacement gradient; default 0.1")
       ->check(number_between("1e-9", "0.999"));
   verb.add_option("--steps", options.steps, "steps of one way; default 100")->check(CLI::Range(1, 1000000));
@@ -145,17 +146,30 @@ void add_drive(CLI::App& verb, DriveOptions& options) {
   verb.add_option("--dimension", options.dimension, "3, or 2: plane strain; default 3 where the material can")
       ->check(CLI::IsMember({2, 3}));
   verb.add_option("--cell-size", options.cell_size, "of a grid, m, for materials that read it");
+  auto* extremes =
+      verb.add_flag("--extremes", options.extremes,
+                    "in place of the paths: crushed to a millionth of its volume and torn to a million times, "
+                    "drawn, pressed flat and sheared by 1e4, turned inside out, shaken by small cycles");
+  extremes->excludes(path);
+  verb.add_option("--cycles", options.cycles, "of the extremes' small cycles; default 100000")
+      ->check(CLI::Range(1, 100000000))
+      ->needs(extremes);
   auto* out =
       verb.add_option("--out", options.out, "folder that gets a run folder of each path: numbers, figures, report.html")
           ->check([](const std::string& word) { return word.empty() ? "names no folder" : ""; });
+  out->excludes(extremes);
   verb.add_flag("--replace", options.replace, "replaces whatever runs are there")->needs(out);
   verb.footer(
       "Paths:\n" + list +
       "The first slope is that of the first step: E, G, K or the modulus M of uniaxial strain at small strains "
       "(E' in plane strain); of a material with viscosity also that over the step's time. The residual is work less "
       "stored and dissipated energy, over the turnover.\n"
-      "Exit codes: 0 done; 2 bad input; 3 a path could not be followed to its end; 5 the machine failed; 130 stopped "
-      "by Ctrl-C between two steps.");
+      "At an extreme a material is right, or refuses the particle, and a run would stop there and name it; a number "
+      "that is "
+      "none, a wrong J, a negative energy and a state that no body can have and that is taken are failures.\n"
+      "Exit codes: 0 done; 2 bad input; 3 a path could not be followed to its end, or an extreme failed; 5 the machine "
+      "failed; 130 stopped "
+      "by Ctrl-C between two steps or two extremes.");
 }
 
 std::string quoted_for_a_shell(const std::string& word) {

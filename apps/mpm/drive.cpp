@@ -8,15 +8,19 @@
 #include <map>
 #include <optional>
 
+#include "drive/extremes.hpp"
 #include "drive/read_drive.hpp"
 #include "drive/results.hpp"
 #include "drive/standard_paths.hpp"
 #include "experiment/diagnostics.hpp"
+#include "mpm/bench_suite.hpp"
+#include "mpm/default_component.hpp"
 #include "mpm/drive.hpp"
 #include "mpm/stop_on_signal.hpp"
 #include "output/manifest.hpp"
 #include "output/report.hpp"
 #include "output/run_folder.hpp"
+#include "plugin/extension_of.hpp"
 #include "run/earlier_run.hpp"
 #include "run/summary.hpp"
 #include "support/files.hpp"
@@ -222,6 +226,87 @@ void print_head(const DriveOptions& options, const drive::PathSize& size) {
   }
 }
 
+/// Prints a row of each extreme. Returns the exit code.
+int print_extremes(const std::string& id, const Component& material, const drive::ExtremeSize& size, int dimension) {
+  const auto rows = drive::extremes(material, dimension, size, stop_requested);
+  std::printf(
+      "%s, %d-D, volume ratios of %s to %s, stretches and shears of %s, each in %d steps and in one, within %s s\n",
+      id.c_str(), dimension, number_text(size.smallest_ratio).c_str(), number_text(1 / size.smallest_ratio).c_str(),
+      number_text(size.stretch).c_str(), size.steps, number_text(size.duration).c_str());
+  std::printf("%-24s%-17s%12s%12s%12s%12s%12s\n", "extreme", "outcome", "J", "pressure", "von Mises", "stored",
+              "speed");
+  std::printf("%-24s%-17s%12s%12s%12s%12s%12s\n", "", "", "", "(Pa)", "(Pa)", "(J/m^3)", "(m/s)");
+  bool all_hold = true;
+  for (const drive::Extreme& row : rows) {
+    all_hold = all_hold && row.holds();
+    std::printf("%-24s%-17s%12s%12s%12s%12s%12s\n", row.name.c_str(), row.outcome_text().c_str(),
+                four_digits(row.end.volume_ratio).c_str(), four_digits(pressure(row.end)).c_str(),
+                four_digits(von_mises_stress(row.end)).c_str(), four_digits(row.end.stored).c_str(),
+                four_digits(row.end.wave_speed).c_str());
+    if (row.drift > 0) std::printf("  stress drifts by %.2g of stiffness x cycles x rounding\n", row.drift);
+  }
+  std::printf("The numbers are those of the last state that was taken.\n");
+  if (!stop_requested()) return all_hold ? done : run_failed;
+  std::printf("stopped by a signal before the next extreme\n");
+  return interrupted;
+}
+
+/// The material with the parameters of the benchmarks where one has no default, in cells of theirs. Throws InputError.
+Component benchmark_material(const BenchSuite& suite, const Plugin& plugin) {
+  constexpr double cell_size = 0.0078125;  // m, of the benchmarks' cube
+  Component material = default_component(plugin);
+  const auto set = [&](std::size_t offset, double value) { material.parameters.at(offset / sizeof(double)) = value; };
+  for (const mpm_parameter& declared : plugin.parameters()) {
+    if (!(declared.flags & MPM_REQUIRED)) continue;
+    const auto value = suite.parameter(declared.name);
+    if (!value)
+      refuse("mpm drive every", "the benchmarks have no value for " + std::string(declared.name) + " of " +
+                                    in_quotes(plugin.id()) + ": drive it by its name");
+    set(declared.offset, *value);
+  }
+  if (const auto* cells = extension_of<mpm_material_cell_size>(plugin)) set(cells->offset, cell_size);
+  return material;
+}
+
+/// Prints a row of each material that is installed: what it answers at the extremes, or where it fails.
+int drive_every_material(const DriveOptions& options) {
+  const Registry registry = load_registry();
+  const BenchSuite suite(registry, false);
+  const StopOnSignal signals;
+  drive::ExtremeSize size;
+  size.duration = options.duration, size.cycles = options.cycles;
+  std::printf("%-25s%24s%24s%12s%12s%12s%12s\n", "", "J = 1e-6", "J = 1e6", "drawn", "pressed", "sheared", "drift of");
+  std::printf("%-25s%12s%12s%12s%12s%12s%12s%12s%12s\n", "material", "pressure", "speed", "pressure", "speed", "by 1e4",
+              "to 1e-4", "by 1e4", "cycles");
+  std::printf("%-25s%12s%12s%12s%12s%36s%12s\n", "", "(Pa)", "(m/s)", "(Pa)", "(m/s)", "von Mises stress (Pa)", "");
+  int worst = done;
+  for (const Plugin* plugin : registry.of_kind(MPM_MATERIAL)) {
+    const int dimension = options.dimension ? options.dimension : plugin->descriptor->dimensions & MPM_3D ? 3 : 2;
+    const Component material = benchmark_material(suite, *plugin);
+    const auto rows = drive::extremes(material, dimension, size, stop_requested);
+    if (stop_requested()) {
+      std::printf("stopped by a signal in %s\n", std::string(plugin->id()).c_str());
+      return interrupted;
+    }
+    const auto at = [&](const char* name) -> const drive::Extreme& {
+      return *std::find_if(rows.begin(), rows.end(), [&](const drive::Extreme& row) { return row.name == name; });
+    };
+    std::printf("%-25s", std::string(plugin->id()).c_str());
+    for (const char* name : {"pressed evenly", "torn evenly"})
+      std::printf("%12.1e%12.1e", pressure(at(name).end) + 0.0, at(name).end.wave_speed);
+    for (const char* name : {"drawn out", "pressed flat", "sheared"})
+      std::printf("%12.1e", von_mises_stress(at(name).end));
+    std::printf("%12.1g\n", rows.back().drift);
+    for (const drive::Extreme& row : rows) {
+      const bool as_expected = row.must_be_refused ? row.holds() : row.outcome == drive::Outcome::right;
+      if (!as_expected) std::printf("  %s: %s\n", row.name.c_str(), row.outcome_text().c_str());
+      if (!row.holds()) worst = run_failed;
+    }
+    std::fflush(stdout);
+  }
+  return worst;
+}
+
 }  // namespace
 
 int run_material_point(const RunOptions& options) {
@@ -262,6 +347,12 @@ void refuse_material_point(const fs::path& base, const fs::path& study, const st
 }
 
 int drive_material(const DriveOptions& options) {
+  if (options.id == "every") {
+    if (!options.extremes || !options.parameters.empty() || !options.cell_size.empty())
+      refuse("mpm drive every",
+             "takes --extremes, --cycles, --duration and --dimension alone; other paths want one material");
+    return drive_every_material(options);
+  }
   const Registry registry = load_registry();
   const ComponentLookup lookup(registry);
   const Plugin& plugin = material_plugin(registry, options.id);
@@ -272,6 +363,13 @@ int drive_material(const DriveOptions& options) {
   int worst = done;
   bool has_head = false;
   const StopOnSignal signals;
+  if (options.extremes) {
+    const std::string text = drive::standard_path("isotropic", size, material).dump(2);
+    const DriveExperiment path = read_standard(options, "extremes", text, lookup);
+    drive::ExtremeSize extremes;
+    extremes.duration = options.duration, extremes.cycles = options.cycles;
+    return print_extremes(options.id, path.material(), extremes, size.dimension);
+  }
   for (const drive::StandardPath& standard : drive::standard_paths()) {
     if (!options.path.empty() && options.path != standard.name) continue;
     if (stop_requested()) {

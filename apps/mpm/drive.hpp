@@ -13,6 +13,8 @@ struct DriveOptions {
   std::string id;                       ///< material
   std::vector<std::string> parameters;  ///< name=value each
   std::string path;                     ///< a standard path; empty: all
+  bool extremes = false;                ///< in place of the paths: what becomes of it at extremes
+  long cycles = 100000;                 ///< of the extremes
   std::string cell_size;                ///< of materials that read it, as typed
   double strain = 0.1;                  ///< largest displacement gradient
   double duration = 1;                  ///< s, of one way

@@ -18,17 +18,6 @@ struct Open {
 };
 using Slope = std::array<Open, most_open>;  ///< [open component], the derivative of each stress
 
-Matrix inverse(const Matrix& a) {
-  Matrix r;
-  const double over = 1 / determinant(a);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const int p = (j + 1) % 3, q = (j + 2) % 3, s = (i + 1) % 3, t = (i + 2) % 3;
-      r(i, j) = over * (a(p, s) * a(q, t) - a(p, t) * a(q, s));
-    }
-  return r;
-}
-
 Matrix sum(const Matrix& a, const Matrix& b, double factor = 1) {
   Matrix r;
   for (int k = 0; k < 9; ++k) r.m[k] = a.m[k] + factor * b.m[k];

@@ -28,6 +28,17 @@ std::string letters(mpm_state_shape shape, int component, int dimension) {
 
 }  // namespace
 
+Matrix inverse(const Matrix& a) {
+  Matrix r;
+  const double over = 1 / determinant(a);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int p = (j + 1) % 3, q = (j + 2) % 3, s = (i + 1) % 3, t = (i + 2) % 3;
+      r(i, j) = over * (a(p, s) * a(q, t) - a(p, t) * a(q, s));
+    }
+  return r;
+}
+
 MaterialPoint::MaterialPoint(const Component& material, int dimension) : material_(material), dimension_(dimension) {
   const auto* tangent = extension_of<mpm_material_tangent>(*material.plugin);
   if (tangent && !tangent->refusal && tangent->evaluate[MPM_SCALAR_DOUBLE][dimension - 2]) tangent_ = tangent;
@@ -85,7 +96,8 @@ Response MaterialPoint::update(std::vector<Field>& fields, const Matrix* velocit
   batch.volume_ratio = &scalars[3];
   const auto& entry = material_.plugin->material().update[MPM_SCALAR_DOUBLE][dimension_ - 2];
   Response response;
-  response.is_admissible = entry(material_.parameters.data(), &batch) < 0;
+  response.is_taken = entry(material_.parameters.data(), &batch) < 0;
+  response.is_admissible = response.is_taken;
   response.kirchhoff = symmetric_of(stress);
   response.stored = scalars[0][0];
   response.dissipated = velocity_gradient ? scalars[1][0] : 0;

@@ -15,6 +15,8 @@ namespace mpm::drive {
 using Matrix = Mat<3, double>;
 using Symmetric = Sym<3, double>;
 
+Matrix inverse(const Matrix& a);
+
 /// What a material answers in one state. Energies are per initial volume.
 struct Response {
   Symmetric kirchhoff{};       ///< Pa
@@ -22,7 +24,8 @@ struct Response {
   double dissipated = 0;       ///< J/m^3, of the step that led here
   double wave_speed = 0;       ///< m/s
   double volume_ratio = 1;     ///< J
-  bool is_admissible = false;  ///< the plugin takes the state, and every number is finite
+  bool is_taken = false;       ///< the plugin takes the state
+  bool is_admissible = false;  ///< and every number is finite
 
   double cauchy(int i, int j) const { return kirchhoff(i, j) / volume_ratio; }
 };

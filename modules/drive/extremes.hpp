@@ -1,0 +1,45 @@
+#pragma once
+// What becomes of a material that is crushed, torn, drawn out, turned inside out, or shaken a million times.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "drive/material_point.hpp"
+
+namespace mpm::drive {
+
+enum class Outcome {
+  right,           ///< J is that of the path, all numbers are finite and the energy is not negative
+  refused,         ///< the plugin takes the particle no further, so that a run would stop and name it
+  wrong_volume,    ///< J is off by more than a millionth
+  not_finite,      ///< a number is infinite or none, and the plugin says nothing
+  negative_energy  ///< the stored energy is below that at rest
+};
+const char* name_of(Outcome outcome);
+
+struct Extreme {
+  std::string name;
+  Outcome outcome = Outcome::right;
+  bool must_be_refused = false;  ///< a state that no body can have
+  Response end;                  ///< the last state that was taken
+  /// Of the cycles: the change of the stress over stiffness at rest, cycles and rounding, 2^-52.
+  double drift = 0;
+  /// The outcome in words.
+  std::string outcome_text() const { return must_be_refused && !holds() ? "TAKEN" : name_of(outcome); }
+  bool holds() const { return must_be_refused ? outcome == Outcome::refused : outcome <= Outcome::refused; }
+};
+
+struct ExtremeSize {
+  double smallest_ratio = 1e-6;  ///< of volumes; the largest is its inverse
+  double stretch = 1e4;          ///< along x at J = 1, and the shear
+  double duration = 1;           ///< s, of each path
+  int steps = 1000;              ///< of each path
+  long cycles = 100000;
+};
+
+/// Follows every extreme in double precision. `stop` is asked between two of them. Throws nothing.
+std::vector<Extreme> extremes(const Component& material, int dimension, const ExtremeSize& size,
+                              const std::function<bool()>& stop);
+
+}  // namespace mpm::drive

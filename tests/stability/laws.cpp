@@ -1,0 +1,166 @@
+// Every material at its extremes, by the driver that `mpm drive --extremes` has; and laws with planted mistakes, which it
+// must name.
+
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "cli/program.hpp"
+#include "drive/extremes.hpp"
+#include "materials/ideal_gas/ideal_gas.hpp"
+#include "materials/neo_hookean/neo_hookean.hpp"
+#include "mpm/bench_suite.hpp"
+#include "mpm/default_component.hpp"
+#include "plugin/sdk.hpp"
+#include "support/page.hpp"
+
+using namespace mpm::test;
+
+namespace mpm {  // so that functors find mpm::log and its like, as those of the modules do
+namespace {
+
+constexpr sdk::Manual manual{"wrong", "1.0.0", "a wrong one", "none", "for tests", "Wrong"};
+constexpr const char* source = "struct Wrong {};";
+
+struct NoEnergyWhenCrushed : NeoHookean {  // its energy is no number below J = 1e-3
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
+    return NeoHookean::stored_energy(c, state) + real<S>(0) * log(volume_ratio(state) - real<S>(1e-3));
+  }
+};
+struct LosesVolume : NeoHookean {  // its volume changes by a hundredth more than it should
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S volume_ratio(const ElasticState<G>& state) {
+    return exp(real<S>(1.01) * log(NeoHookean::volume_ratio(state)));
+  }
+};
+struct TakesInsideOut : NeoHookean {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S volume_ratio(const ElasticState<G>& state) {
+    return abs(NeoHookean::volume_ratio(state));
+  }
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static Sym<G::dimension, S> kirchhoff_stress(const Constants<scalar_of<S>>&, const ElasticState<G>&) {
+    return {};
+  }
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S stored_energy(const Constants<scalar_of<S>>&, const ElasticState<G>&) {
+    return S(real<S>(0));
+  }
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S wave_speed(const Constants<scalar_of<S>>&, const ElasticState<G>&) {
+    return S(real<S>(1));
+  }
+};
+struct OwesEnergy : NeoHookean {
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S stored_energy(const Constants<scalar_of<S>>& c, const ElasticState<G>& state) {
+    return -NeoHookean::stored_energy(c, state);
+  }
+};
+struct Creeps
+    : NeoHookean {  // takes steps for a thousandth longer than they are, so that the way back is not the way there
+  template <class G, class S = typename G::Scalar>
+  MPM_HD static S advance(const Constants<scalar_of<S>>& c, const G& L, scalar_of<S> dt, ElasticState<G>& state) {
+    return NeoHookean::advance(c, L, real<S>(1.001) * dt, state);
+  }
+};
+
+std::vector<drive::Extreme> extremes_of(const Plugin& plugin, int dimension, long cycles) {
+  static const Registry registry = Registry::from_folders(Registry::default_folders());
+  static const app::BenchSuite suite(registry, true);
+  Component material = app::default_component(plugin);
+  for (const mpm_parameter& declared : plugin.parameters())
+    if (declared.flags & MPM_REQUIRED)
+      material.parameters.at(declared.offset / sizeof(double)) = suite.parameter(declared.name).value();
+  if (const auto* cells = static_cast<const mpm_material_cell_size*>(plugin.extension(MPM_MATERIAL_CELL_SIZE_ID)))
+    material.parameters.at(cells->offset / sizeof(double)) = 0.01;
+  drive::ExtremeSize size;
+  size.cycles = cycles;
+  return drive::extremes(material, dimension, size, [] { return false; });
+}
+
+/// The outcomes that are not as they should be, in 3-D.
+template <class F>
+std::set<std::string> failures() {
+  static constexpr mpm_descriptor descriptor = sdk::material<F>(manual, source);
+  std::set<std::string> names;
+  for (const drive::Extreme& extreme : extremes_of(Plugin{&descriptor, "test"}, 3, 10))
+    if (!extreme.holds()) names.insert(extreme.outcome_text());
+  return names;
+}
+
+using Names = std::set<std::string>;
+
+}  // namespace
+
+TEST_CASE("every law is right at its extremes or refuses the particle, and small cycles drift by less than rounding") {
+  const Registry registry = Registry::from_folders(Registry::default_folders());
+  int laws = 0;
+  for (const Plugin* plugin : registry.of_kind(MPM_MATERIAL))
+    for (const int dimension : {2, 3}) {
+      for (const drive::Extreme& extreme : extremes_of(*plugin, dimension, 2000)) {
+        INFO(plugin->id() << ", " << dimension << "-D, " << extreme.name << ": " << extreme.outcome_text());
+        CHECK(extreme.holds());
+        // None of those that are shipped has to refuse what a body can be.
+        CHECK((extreme.must_be_refused || extreme.outcome == drive::Outcome::right));
+        CHECK(extreme.drift < 1);
+      }
+      ++laws;
+    }
+  CHECK(laws >= 48);
+}
+
+TEST_CASE("a million small cycles of every law drift by less than a rounding each", "[slow]") {
+  const Registry registry = Registry::from_folders(Registry::default_folders());
+  for (const Plugin* plugin : registry.of_kind(MPM_MATERIAL)) {
+    const drive::Extreme cycles = extremes_of(*plugin, 3, 1000000).back();
+    INFO(plugin->id() << ": " << cycles.drift);
+    CHECK(cycles.outcome == drive::Outcome::right);
+    CHECK(cycles.drift < 1);
+  }
+}
+
+TEST_CASE("mistakes at the extremes are named") {
+  CHECK(failures<NeoHookean>().empty());
+  CHECK(failures<IdealGas>().empty());
+  CHECK(failures<NoEnergyWhenCrushed>() == Names{"NOT FINITE"});
+  CHECK(failures<LosesVolume>() == Names{"WRONG J"});
+  CHECK(failures<TakesInsideOut>().count("TAKEN") == 1);
+  CHECK(failures<OwesEnergy>() == Names{"NEGATIVE ENERGY"});
+  static constexpr mpm_descriptor creeping = sdk::material<Creeps>(manual, source);
+  CHECK(extremes_of(Plugin{&creeping, "test"}, 3, 2000).back().drift > 100);
+}
+
+TEST_CASE("the page of the material point has what mpm drive every says", "[docs]") {
+  const Folder folder;
+  const Result result = call(folder, {"drive", "every", "--extremes", "--cycles", "1000"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  std::istringstream printed(result.out);
+  const std::string page = slurp(std::string(MPM_SOURCE_DIR) + "/docs/material_point.md");
+  int rows = 0;
+  for (std::string line; std::getline(printed, line);) {
+    std::istringstream words(line);
+    std::string law, word;
+    words >> law;
+    const std::size_t at = page.find("\n" + law + " ");
+    if (law.empty() || line.front() == ' ' || law == "material") continue;
+    INFO(line);
+    REQUIRE(at != std::string::npos);
+    std::istringstream there(page.substr(at + 1 + law.size(), page.find('\n', at + 1) - at - 1 - law.size()));
+    // Pressures and speeds to their last digit. What is rounding, a stress of sand and the drift, differs by machines.
+    for (int column = 0; column < 4; ++column) {
+      double now = 0, then = 0;
+      words >> now, there >> then;
+      CHECK(now == Approx(then).epsilon(0.06));
+    }
+    ++rows;
+  }
+  CHECK(rows >= 24);
+  const Result wrong = call(folder, {"drive", "every"});
+  CHECK(wrong.code == 2);
+  CHECK(has(wrong.err, "takes --extremes"));
+}
+
+}  // namespace mpm
