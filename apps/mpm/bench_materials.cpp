@@ -26,23 +26,12 @@ bench::Table laws_table() {
       "fused). Bytes of state are those that the law keeps of a particle."};
 }
 
-/// The law in the place of the standard's, or the parameter that the benchmarks have no value for.
-struct Law {
-  BenchVariant variant;
-  std::string unknown;
-};
-
-Law law_of(const BenchSuite& suite, const Plugin& plugin) {
-  Law law{{std::string(plugin.id()), {}}, ""};
+/// The law in the place of the standard's.
+BenchVariant variant_of(const BenchSuite& suite, const Plugin& plugin) {
   nlohmann::ordered_json material{{"type", plugin.id()}};
-  for (const mpm_parameter& parameter : plugin.parameters()) {
-    if (!(parameter.flags & MPM_REQUIRED)) continue;
-    const auto value = suite.parameter(parameter.name);
-    if (!value) law.unknown = parameter.name;
-    material[parameter.name] = value.value_or(0);
-  }
-  law.variant.edits.push_back({"/materials/jelly", material});
-  return law;
+  for (const mpm_parameter& declared : plugin.parameters())
+    if (declared.flags & MPM_REQUIRED) material[declared.name] = suite.parameter(declared.name).value();
+  return {std::string(plugin.id()), {{"/materials/jelly", material}}};
 }
 
 /// Bytes that the law keeps of a particle.
@@ -60,14 +49,12 @@ double state_bytes(const Product& product) {
 bench::SectionResult bench_materials(BenchContext& context) {
   bench::SectionResult result{"materials", {laws_table()}, {}};
   std::vector<BenchVariant> laws;
-  for (const Plugin* plugin : context.suite.registry().of_kind(MPM_MATERIAL)) {
-    Law law = law_of(context.suite, *plugin);
-    if (law.unknown.empty())
-      laws.push_back(std::move(law.variant));
+  for (const Plugin* plugin : context.suite.registry().of_kind(MPM_MATERIAL))
+    if (const std::string unknown = context.suite.unknown_parameter(*plugin); unknown.empty())
+      laws.push_back(variant_of(context.suite, *plugin));
     else
       context.say("materials: " + std::string(plugin->id()) +
-                  " is left out, the benchmarks have no value for its parameter " + law.unknown);
-  }
+                  " is left out, the benchmarks have no value for its parameter " + unknown);
   for (const BenchScene& scene : context.suite.scenes())
     measure_beside_standard(
         context, "materials", scene, "deforming", laws,

@@ -5,6 +5,8 @@
 
 #include "backends/make_backend.hpp"
 #include "mpm/cli.hpp"
+#include "mpm/default_component.hpp"
+#include "plugin/extension_of.hpp"
 
 namespace mpm::app {
 namespace {
@@ -60,6 +62,22 @@ BenchSuite::BenchSuite(const Registry& registry, bool quick) : registry_(registr
 std::optional<double> BenchSuite::parameter(const std::string& name) const {
   const auto found = parameters_.find(name);
   return found == parameters_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::string BenchSuite::unknown_parameter(const Plugin& plugin) const {
+  for (const mpm_parameter& declared : plugin.parameters())
+    if ((declared.flags & MPM_REQUIRED) && !parameter(declared.name)) return declared.name;
+  return "";
+}
+
+Component BenchSuite::material(const Plugin& plugin) const {
+  constexpr double cell_size = 0.0078125;  // m, of the cube
+  Component material = default_component(plugin);
+  const auto set = [&](std::size_t offset, double value) { material.parameters.at(offset / sizeof(double)) = value; };
+  for (const mpm_parameter& declared : plugin.parameters())
+    if (declared.flags & MPM_REQUIRED) set(declared.offset, parameter(declared.name).value());
+  if (const auto* cells = extension_of<mpm_material_cell_size>(plugin)) set(cells->offset, cell_size);
+  return material;
 }
 
 const BenchScene& BenchSuite::scene(const std::string& name) const {

@@ -53,6 +53,11 @@ class BenchSuite {
   const std::vector<BenchOption>& options() const { return options_; }
   /// The value that a parameter without default has in the scenes, if the file names it.
   std::optional<double> parameter(const std::string& name) const;
+  /// The first parameter of a plugin that has neither a default nor a value here; empty where there is none.
+  std::string unknown_parameter(const Plugin& plugin) const;
+  /// The material with these values where it has no defaults, in cells of the cube. Throws std::bad_optional_access where
+  /// one is unknown.
+  Component material(const Plugin& plugin) const;
   /// The scene of a name. Throws std::out_of_range.
   const BenchScene& scene(const std::string& name) const;
 

@@ -14,13 +14,11 @@
 #include "drive/standard_paths.hpp"
 #include "experiment/diagnostics.hpp"
 #include "mpm/bench_suite.hpp"
-#include "mpm/default_component.hpp"
 #include "mpm/drive.hpp"
 #include "mpm/stop_on_signal.hpp"
 #include "output/manifest.hpp"
 #include "output/report.hpp"
 #include "output/run_folder.hpp"
-#include "plugin/extension_of.hpp"
 #include "run/earlier_run.hpp"
 #include "run/summary.hpp"
 #include "support/files.hpp"
@@ -251,23 +249,6 @@ int print_extremes(const std::string& id, const Component& material, const drive
   return interrupted;
 }
 
-/// The material with the parameters of the benchmarks where one has no default, in cells of theirs. Throws InputError.
-Component benchmark_material(const BenchSuite& suite, const Plugin& plugin) {
-  constexpr double cell_size = 0.0078125;  // m, of the benchmarks' cube
-  Component material = default_component(plugin);
-  const auto set = [&](std::size_t offset, double value) { material.parameters.at(offset / sizeof(double)) = value; };
-  for (const mpm_parameter& declared : plugin.parameters()) {
-    if (!(declared.flags & MPM_REQUIRED)) continue;
-    const auto value = suite.parameter(declared.name);
-    if (!value)
-      refuse("mpm drive every", "the benchmarks have no value for " + std::string(declared.name) + " of " +
-                                    in_quotes(plugin.id()) + ": drive it by its name");
-    set(declared.offset, *value);
-  }
-  if (const auto* cells = extension_of<mpm_material_cell_size>(plugin)) set(cells->offset, cell_size);
-  return material;
-}
-
 /// Prints a row of each material that is installed: what it answers at the extremes, or where it fails.
 int drive_every_material(const DriveOptions& options) {
   const Registry registry = load_registry();
@@ -282,7 +263,10 @@ int drive_every_material(const DriveOptions& options) {
   int worst = done;
   for (const Plugin* plugin : registry.of_kind(MPM_MATERIAL)) {
     const int dimension = options.dimension ? options.dimension : plugin->descriptor->dimensions & MPM_3D ? 3 : 2;
-    const Component material = benchmark_material(suite, *plugin);
+    if (const std::string unknown = suite.unknown_parameter(*plugin); !unknown.empty())
+      refuse("mpm drive every", "the benchmarks have no value for " + unknown + " of " + in_quotes(plugin->id()) +
+                                    ": drive it by its name");
+    const Component material = suite.material(*plugin);
     const auto rows = drive::extremes(material, dimension, size, stop_requested);
     if (stop_requested()) {
       std::printf("stopped by a signal in %s\n", std::string(plugin->id()).c_str());

@@ -10,7 +10,6 @@
 #include "materials/ideal_gas/ideal_gas.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
 #include "mpm/bench_suite.hpp"
-#include "mpm/default_component.hpp"
 #include "plugin/sdk.hpp"
 #include "support/page.hpp"
 
@@ -69,12 +68,7 @@ struct Creeps
 std::vector<drive::Extreme> extremes_of(const Plugin& plugin, int dimension, long cycles) {
   static const Registry registry = Registry::from_folders(Registry::default_folders());
   static const app::BenchSuite suite(registry, true);
-  Component material = app::default_component(plugin);
-  for (const mpm_parameter& declared : plugin.parameters())
-    if (declared.flags & MPM_REQUIRED)
-      material.parameters.at(declared.offset / sizeof(double)) = suite.parameter(declared.name).value();
-  if (const auto* cells = static_cast<const mpm_material_cell_size*>(plugin.extension(MPM_MATERIAL_CELL_SIZE_ID)))
-    material.parameters.at(cells->offset / sizeof(double)) = 0.01;
+  const Component material = suite.material(plugin);
   drive::ExtremeSize size;
   size.cycles = cycles;
   return drive::extremes(material, dimension, size, [] { return false; });
