@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "metrics/probes.hpp"
 #include "simulation/contact_impulse.hpp"
@@ -33,12 +34,17 @@ Vector3 place_of(const BodyState& state, std::size_t p, int dimension) {
   return x;
 }
 
+/// How many particles the backend has: fewer than were seeded where only the names of records are asked for.
+std::size_t particles_of(const BodyState& state, int dimension) {
+  return state.position.size() / static_cast<std::size_t>(dimension);
+}
+
 }  // namespace
 
 ChosenNumbers::ChosenNumbers(const Simulation& simulation) : simulation_(simulation) {
   choose_parts();
   follow();
-  count_ = rows().size();
+  for (ChosenRow& row : rows()) paths_.push_back(std::move(row.path));
 }
 
 void ChosenNumbers::choose_parts() {
@@ -48,7 +54,8 @@ void ChosenNumbers::choose_parts() {
     const std::string& name = experiment.bodies[body].name;
     Part& part = parts_.emplace_back(Part{"body " + name + " ", {"bodies", name}, {}});
     part.particles.resize(bodies);
-    for (std::size_t p = 0; p < simulation_.particle_count(body); ++p) part.particles[body].push_back(p);
+    part.particles[body].resize(particles_of(simulation_.backend().body_state(body), experiment.dimension));
+    std::iota(part.particles[body].begin(), part.particles[body].end(), std::size_t{0});
   }
   for (const GroupSpecification& group : experiment.output.groups) {
     Part& part = parts_.emplace_back(Part{"group " + group.name + " ", {"groups", group.name}, {}});
@@ -56,8 +63,7 @@ void ChosenNumbers::choose_parts() {
     for (int body = 0; body < static_cast<int>(bodies); ++body) {
       if (group.body >= 0 && group.body != body) continue;
       const BodyState state = simulation_.backend().body_state(body);
-      const std::size_t n = state.position.size() / static_cast<std::size_t>(experiment.dimension);
-      for (std::size_t p = 0; p < n; ++p)
+      for (std::size_t p = 0; p < particles_of(state, experiment.dimension); ++p)
         if (group.where->contains(place_of(state, p, experiment.dimension))) part.particles[body].push_back(p);
     }
   }

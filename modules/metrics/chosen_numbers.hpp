@@ -29,7 +29,9 @@ class ChosenNumbers {
 
   /// The numbers as they are now. Which there are never changes.
   std::vector<ChosenRow> rows() const;
-  std::size_t count() const { return count_; }
+  std::size_t count() const { return paths_.size(); }
+  /// Their places in summary.json, which are known whatever has become of the particles.
+  const std::vector<std::vector<std::string>>& paths() const { return paths_; }
   Profile profile(const ProbeSpecification& line) const;
 
  private:
@@ -54,7 +56,7 @@ class ChosenNumbers {
   const Simulation& simulation_;
   std::vector<Part> parts_;
   std::vector<Followed> followed_;
-  std::size_t count_ = 0;
+  std::vector<std::vector<std::string>> paths_;
 };
 
 }  // namespace mpm

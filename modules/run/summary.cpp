@@ -133,10 +133,10 @@ Json rigid_bodies(const Simulation& simulation) {
 /// Puts the chosen numbers under their paths.
 void add_chosen(const Metrics& metrics, const RunRecord& rows, Json& json) {
   if (rows.chosen().empty()) return;
-  const std::vector<ChosenRow> names = metrics.chosen().rows();
-  for (std::size_t k = 0; k < names.size(); ++k) {
+  const auto& paths = metrics.chosen().paths();
+  for (std::size_t k = 0; k < paths.size(); ++k) {
     Json* place = &json;
-    for (const std::string& name : names[k].path) place = &(*place)[name];
+    for (const std::string& name : paths[k]) place = &(*place)[name];
     const RunRecord::Range& range = rows.chosen()[k];
     *place = {
         {"initial", range.initial}, {"final", range.latest}, {"smallest", range.smallest}, {"largest", range.largest}};

@@ -220,3 +220,35 @@ TEST_CASE("the nodes where bodies meet stand in a table beside each frame, and a
   CHECK(touching == table.find("pair ball other nodes")->back());
   CHECK(force == Approx(table.find("pair ball other force x (N/m)")->back()));
 }
+
+// A run asks for the names of its records of a few particles alone, and had counted those of the whole body there.
+TEST_CASE("a body of any number of particles has its numbers") {
+  const Folder folder;
+  Json scene = asking();
+  scene["output"]["bodies"] = true;
+  scene["bodies"][0]["particles_per_cell_axis"] = 8;
+  scene["grid"]["cell_size"] = scene["grid"]["cell_size"].get<double>() / 8;
+  spill(folder / "scene.json", scene.dump(1));
+  const Result result = call(folder, {"check", "scene.json"});
+  INFO(result.err << result.out);
+  CHECK(result.code == 0);
+  const std::size_t end = result.out.find(" particles");
+  REQUIRE(end != std::string::npos);
+  const std::string before = result.out.substr(0, end);
+  CHECK(std::stol(before.substr(before.rfind(' ') + 1)) > 40000);
+}
+
+// The particles' affine velocities are not kept in steps that nobody records, so that nothing can be summed anew there.
+TEST_CASE("a run that fails between two records keeps what was chosen, up to the last record") {
+  const Folder folder;
+  const Result result = call(folder, {"run", std::string(MPM_SOURCE_DIR) + "/experiments/papers/granular_collapse.json",
+                                      "--out", "run", "--threads", "1", "--set", "/output/frames=0", "--set",
+                                      "/grid/cell_size=0.01", "--set", "/grid/domain=[[0, 0], [0.14, 0.25]]"});
+  INFO(result.err);
+  CHECK(result.code == 3);
+  CHECK(has(result.err, "left the domain"));
+  const Json summary = json_in(folder / "run/summary.json");
+  CHECK(summary["outcome"]["exit_code"] == 3);
+  const auto table = metrics_of(folder / "run");
+  CHECK(summary["bodies"]["column"]["velocity_x"]["final"] == Approx(table.find("body column velocity x")->back()));
+}
