@@ -635,6 +635,83 @@ TEST_CASE("Cam-Clay: the slope of hardening is held at half of that at which str
     }
 }
 
+TEST_CASE(
+    "Cam-Clay: clay that is larger than the exponential law reaches hardens along the straight part from the start") {
+  for (double M : {0.6, 1.2})
+    for (double beta : {0.0, 0.5}) {
+      CAPTURE(M, beta);
+      const double size = consolidation / bulk, xi = 5000;
+      const CamClay::Hardening<double> law(size, xi, M, beta, shear / bulk);
+      const CamClay::Hardening<double> gentle(1e-3 * size, 0.5 * xi, M, beta, shear / bulk);
+      double slope, gentle_slope;
+      CHECK(law(0.0, slope) == Approx(size).epsilon(1e-12));
+      CHECK(gentle(1.0, gentle_slope) > 0);
+      CHECK(slope == Approx(gentle_slope).epsilon(1e-12));  // the steepest does not depend on where it is reached
+      const double at_rest = slope;
+      CHECK(law(0.01, slope) == Approx(size + 0.01 * at_rest).epsilon(1e-12));
+      CHECK(slope == at_rest);
+      // Below p_c = slope/xi it is exponential.
+      const double first = (at_rest / xi - size) / at_rest;
+      CHECK(law(first - 1e-4, slope) == Approx(at_rest / xi * std::exp(-0.5)).epsilon(1e-9));
+      CHECK(slope == Approx(at_rest * std::exp(-0.5)).epsilon(1e-9));
+    }
+}
+
+TEST_CASE(
+    "Cam-Clay: the function that Newton's method solves has the sign of the ellipse's, and its slope the derivative") {
+  std::mt19937 generator(17);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int central = 0, tips = 0;
+  for (int sample = 0; sample < 3000; ++sample) {
+    const double beta = sample % 3 ? 0.9 * unit(generator) : 0, M = 0.5 + 1.5 * unit(generator),
+                 xi = 30 * unit(generator);
+    const CamClay::Constants<double> c({young, poisson, 1600, consolidation, M, xi, beta});
+    CamClay::Trial<double> t;
+    t.compaction = 0.02 * (unit(generator) - 0.5);
+    double rate;
+    const double size = c.hardening(t.compaction, rate), centre = (1 - beta) * size / 2;
+    t.side = sample % 2 ? 1 : -1;
+    t.pressure = centre + t.side * 2 * (1 + beta) * size * unit(generator);
+    t.shear = 2 * M * size * unit(generator);
+    const double farthest = std::abs(t.pressure - centre), X = farthest * (0.02 + 0.96 * unit(generator)),
+                 h = 1e-6 * size;
+    const CamClay::Point<double> here = CamClay::at(c, t, X), before = CamClay::at(c, t, X - h),
+                                 after = CamClay::at(c, t, X + h);
+    const double p = t.pressure - t.side * X, p_c = c.hardening(t.compaction + t.side * X, rate), a = 1 + 2 * beta;
+    const double N = t.side * M * M * (2 * p - (1 - beta) * p_c), half = 0.5 * M * M * (1 + beta) * p_c;
+    if (!(N > 1e-3 * half) || std::abs(N - half) < 1e-3 * half) continue;
+    CAPTURE(sample, beta, M, xi, X / farthest, N / half);
+    (N < half ? central : tips) += 1;
+    const double q = t.shear * N / (N + 6 * shear / bulk * a * X);
+    const double off = a * q * q + M * M * (p + beta * p_c) * (p - p_c);
+    CHECK(here.pressure == Approx(p).margin(1e-14 * size));
+    CHECK(here.size == Approx(p_c).epsilon(1e-13));
+    CHECK(here.flow == Approx(N).margin(1e-13 * half));
+    if (std::abs(off) > 1e-9 * M * M * p_c * p_c) CHECK((here.value > 0) == (off > 0));
+    CHECK(here.slope == Approx((after.value - before.value) / (2 * h)).epsilon(1e-5).margin(1e-5));
+  }
+  CHECK(std::min(central, tips) > 300);
+}
+
+TEST_CASE("Cam-Clay: the return is found to the same share of the ellipse, however small the ellipse is") {
+  for (double size : {1e-2, 1e-9, 1e-18})
+    for (double beta : {0.0, 0.4}) {
+      const CamClay::Constants<double> c({young, poisson, 1600, size * bulk, critical, 5, beta});
+      for (double side : {1.0, -1.0}) {
+        CAPTURE(size, beta, side);
+        const double centre = (1 - beta) * size / 2, farthest = 1.5 * size;
+        const CamClay::Trial<double> t{centre + side * farthest, 1.3 * size, 0, side};
+        const double X = CamClay::solved(c, t, farthest);
+        double rate;
+        const double p = t.pressure - side * X, p_c = c.hardening(side * X, rate), M2 = critical * critical;
+        const double N = side * M2 * (2 * p - (1 - beta) * p_c),
+                     q = t.shear * N / (N + 6 * shear / bulk * (1 + 2 * beta) * X);
+        CHECK(N > 0);
+        CHECK(std::abs((1 + 2 * beta) * q * q + M2 * (p + beta * p_c) * (p - p_c)) < 1e-11 * size * size);
+      }
+    }
+}
+
 TEST_CASE("Cam-Clay: within the ellipse it closes its loops, beyond work is stored plus dissipated energy") {
   Particle<CamClay> elastic = clay();
   elastic.strain(-2e-3, -2e-3, -2e-3);
