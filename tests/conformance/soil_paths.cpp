@@ -1,6 +1,7 @@
 // Mohr-Coulomb on triaxial paths, on faces, edges and the apex; modified Cam-Clay from virgin compression to the critical
 // state; mu(I) rheology in shear at several rates. Stresses are Kirchhoff's.
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -432,6 +433,30 @@ TEST_CASE("Mohr-Coulomb: the fastest waves at psi = phi are elastic, and flow th
       }
     }
   CHECK(modulus(soil(30, 0, 0)) == Approx(bulk + 4 * shear / 3 + 2 * shear * most).epsilon(1e-4));
+}
+
+TEST_CASE("Mohr-Coulomb: at other angles and Poisson ratios the fastest waves are those of a face or of an edge") {
+  const double cases[][3] = {{-0.8, 60, 10}, {-0.5, 30, 0}, {0, 5, 0}, {0.3, 30, 10}, {0.45, 60, 10}, {0.45, 60, 0}};
+  for (const auto& [nu, friction, dilation] : cases) {
+    CAPTURE(nu, friction, dilation);
+    const double sine = std::sin(friction * degree), flow = std::sin(dilation * degree), r = nu / (1 - 2 * nu);
+    const Eigen::Matrix3d C = Eigen::Matrix3d::Identity() + r * Eigen::Matrix3d::Ones();  // in units of 2 G
+    const Eigen::Vector3d n(1 + sine, 0, sine - 1), m(1 + flow, 0, flow - 1);
+    double most = 0;
+    // The most that the tangent of normal strains has over the elastic one.
+    const auto grows_to = [&](const Eigen::Matrix3d& tangent) {
+      const Eigen::Matrix3d change = tangent - C, symmetric = 0.5 * (change + change.transpose());
+      most = std::max(most, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(symmetric).eigenvalues().maxCoeff());
+    };
+    grows_to(C - C * m * n.transpose() * C / n.dot(C * m));
+    for (double middle : {-1.0, 1.0}) {
+      const Eigen::Vector3d l(1 - sine, 1 - middle * sine, 1 + sine), g(1 - flow, 1 - middle * flow, 1 + flow);
+      grows_to(l * g.transpose() / g.dot(C.inverse() * l));
+    }
+    const double G = young / (2 * (1 + nu));
+    const MohrCoulomb::Constants<double> c({young, nu, 1600, friction * degree, 0, dilation * degree});
+    CHECK(c.longitudinal == Approx(2 * G * (1 + r + most)).epsilon(1e-12));
+  }
 }
 
 TEST_CASE("Mohr-Coulomb: J from 1e-6 to 1e6, thin and long particles, and inverted ones") {
