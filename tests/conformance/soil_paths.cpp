@@ -906,6 +906,16 @@ TEST_CASE("mu(I): of a step that closes a gap and presses, only the pressing is 
   CHECK(particle.energy() == Approx(0.5 * bulk * 0.02 * 0.02).epsilon(1e-9));
 }
 
+TEST_CASE("mu(I): grains that close a gap and do not flow keep their shear beside the pressure of their volume") {
+  Particle<MuI> particle = grains();
+  particle.strain(0.003, 0.003, 0.003);
+  CHECK(particle.q() == 0);
+  const double e[3] = {-0.005, -0.0049, -0.0048}, mean = -0.0049, volume = -0.0147 + 0.009;
+  particle.strain(e[0], e[1], e[2]);
+  for (int i = 0; i < 3; ++i)
+    CHECK(particle.stress().s[i] == Approx(bulk * volume + 2 * shear * (e[i] - mean)).epsilon(1e-9));
+}
+
 TEST_CASE("mu(I): below mu_s it is Hencky's law, keeps F_e to the last bit and closes its loops") {
   Particle<MuI> particle = grains();
   press(particle, 1e5);
