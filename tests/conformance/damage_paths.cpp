@@ -369,3 +369,18 @@ TEST_CASE(
       }
   }
 }
+
+TEST_CASE("damage: the strain of a measure is found where softening is steep and cracks pull hard on what is whole") {
+  // k = 1 - E/M at nu = 0.45, on bands of a tenth to a half of the widest: the loss per strain is up to 1.5 of the measure.
+  const double nu = 0.45, share = 1 - (1 + nu) * (1 - 2 * nu) / (1 - nu), onset = strength / young;
+  for (double part : {0.1, 0.3, 0.5}) {
+    const double width = part * 2 * young * toughness / (strength * strength);
+    const BandSoftening<double> band(SofteningLaw::exponential, young, strength, toughness, width, share);
+    for (double times : {1.001, 1.1, 2.0, 10.0}) {
+      CAPTURE(part, times);
+      const double decay = toughness / (width * strength) - onset / 2, kappa = times * onset;
+      const double measure = kappa - share * onset * std::exp(-(kappa - onset) / decay);
+      CHECK(band.strain_of(measure) == Approx(kappa).epsilon(1e-10));
+    }
+  }
+}
