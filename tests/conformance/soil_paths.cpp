@@ -986,3 +986,33 @@ TEST_CASE("mu(I): J from 1e-6 to 1e6, thin and long particles, and inverted ones
   inverted.advance(diagonal(-2, 0, 0));
   CHECK_FALSE(inverted.state.volume_ratio > 0);
 }
+
+TEST_CASE("soils: around an axis the hoop stretches as the third axis of space does") {
+  const MohrCoulomb::Constants<double> c({young, poisson, 1600, 30 * degree, 1e9, 0});  // elastic
+  MohrCoulomb::AxisymmetricState<double> ring{Deformation<2, double>::identity(), 1};
+  Particle<MohrCoulomb> space = soil(30, 1e9, 0);
+  for (const auto& [x, shearing, hoop] : {std::array{0.1, 0.05, 0.3}, std::array{-0.05, 0.1, 0.2}}) {
+    MohrCoulomb::advance(c, Deformation<2, double>{{{x, shearing, 0, 0}}, hoop}, 1.0, ring);
+    space.advance({{x, shearing, 0, 0, 0, 0, 0, 0, hoop}});
+  }
+  CHECK(ring.elastic_deformation_gradient.zz == Approx(1.3 * 1.2).epsilon(1e-14));
+  const Sym<2, double> around = MohrCoulomb::kirchhoff_stress(c, ring);
+  for (int k = 0; k < 3; ++k) CHECK(around.s[k] == Approx(space.stress().s[k]).epsilon(1e-12));
+  CHECK(around(0, 1) == Approx(space.stress()(0, 1)).epsilon(1e-12));
+}
+
+TEST_CASE(
+    "soils: pressure makes longitudinal waves faster, by the least principal stress, and tension does not slow them") {
+  const double at_rest = bulk + 4 * shear / 3;
+  const auto modulus = [](double x, double y, double z) {
+    const MohrCoulomb::Constants<double> c(
+        {young, poisson, 1600, 30 * degree, 1e9, 30 * degree});  // elastic, associated
+    const MohrCoulomb::State<3, double> state{{diagonal(std::exp(x), std::exp(y), std::exp(z))}, 1};
+    const double speed = MohrCoulomb::wave_speed(c, state);
+    return 1600 * speed * speed;
+  };
+  CHECK(modulus(-0.1, -0.1, -0.1) == Approx(at_rest + 0.3 * bulk).epsilon(1e-9));
+  const Vec3 tau = elastic_stress({{-0.2, 0.05, 0.1}});
+  CHECK(modulus(0.05, -0.2, 0.1) == Approx(at_rest - tau[0]).epsilon(1e-9));
+  CHECK(modulus(0.1, 0.1, 0.1) == Approx(at_rest).epsilon(1e-9));
+}
