@@ -291,3 +291,96 @@ TEST_CASE("damage: what softening dissipates is the integral of the degraded ene
       for (const double below : {0.0, 0.99e-4, 0.999999e-4}) CHECK(band.damage(below) == 0);
     }
 }
+
+TEST_CASE(
+    "damage: a turned particle has the turned stress, in the plane and around an axis that of the same stretches") {
+  const double c = std::cos(0.7), s = std::sin(0.7), onset = strength / young;
+  const Damage::Constants<double> constants(concrete(0.05));
+  const double shear = young / (2 * (1 + poisson)), lambda = 2 * shear * poisson / (1 - 2 * poisson);
+  for (const double zz : {1.0, std::exp(-0.5 * onset)}) {
+    const double e[3] = {0.6 * onset, -0.4 * onset, std::log(zz)};
+    double tau[3];
+    for (int i = 0; i < 3; ++i) tau[i] = lambda * (e[0] + e[1] + e[2]) + 2 * shear * e[i];
+    // R diag(e^e) of a turn R about z.
+    const double x = std::exp(e[0]), y = std::exp(e[1]);
+    const Mat<2, double> plane{{c * x, -s * y, s * x, c * y}};
+    const auto check = [&](const auto& stress) {
+      CHECK(stress(0, 0) == Approx(c * c * tau[0] + s * s * tau[1]).epsilon(1e-9));
+      CHECK(stress(1, 1) == Approx(s * s * tau[0] + c * c * tau[1]).epsilon(1e-9));
+      CHECK(stress(0, 1) == Approx(c * s * (tau[0] - tau[1])).epsilon(1e-9));
+      CHECK(stress.s[2] == Approx(tau[2]).epsilon(1e-9).margin(1e-9 * strength));
+    };
+    const Mat3 space{{c * x, -s * y, 0, s * x, c * y, 0, 0, 0, zz}};
+    const Damage::State<3, double> whole{space, 0, 0};
+    const Damage::AxisymmetricState<double> ring{{plane, zz}, 0, 0};
+    const Damage::State<2, double> flat{plane, 0, 0};
+    check(Damage::kirchhoff_stress(constants, whole));
+    check(Damage::kirchhoff_stress(constants, ring));
+    if (zz == 1) check(Damage::kirchhoff_stress(constants, flat));
+    const double energy =
+        shear * (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]) + lambda / 2 * std::pow(e[0] + e[1] + e[2], 2);
+    CHECK(Damage::stored_energy(constants, whole) == Approx(energy).epsilon(1e-9));
+    CHECK(Damage::stored_energy(constants, ring) == Approx(energy).epsilon(1e-9));
+    if (zz == 1) CHECK(Damage::stored_energy(constants, flat) == Approx(energy).epsilon(1e-9));
+  }
+}
+
+TEST_CASE(
+    "damage: the fastest wave is that of the whole solid where anything is pressed, else of what is left, at least "
+    "that at rest") {
+  // Bounds of kernel/hencky.hpp, where the principal strains differ by x: longitudinal waves have lambda + 2 mu less the least
+  // principal stress, shear waves 2 mu x/(1 - e^-2x) <= mu (x + sqrt(x^2 + 1)), and askew of the axes mu x^2/(2 (1 + x)) more.
+  const auto modulus = [](double nu, const Vec<3, double>& e, double damage) {
+    const Damage::Constants<double> c({young, nu, 2400, strength, toughness, linear, 1, 0.05});
+    const Damage::State<3, double> state{
+        {{std::exp(e[0]), 0, 0, 0, std::exp(e[1]), 0, 0, 0, std::exp(e[2])}}, 0, damage};
+    const double speed = Damage::wave_speed(c, state);
+    return 2400 * speed * speed;
+  };
+  const auto askew = [](double x) { return x * x / (2 * (1 + x)); };
+  const double bulk = young / (3 * (1 - 2 * poisson)), shear = young / (2 * (1 + poisson)), rest = bulk + 4 * shear / 3;
+  CHECK(modulus(poisson, {{0, 0, 0}}, 0) == Approx(rest).epsilon(1e-12));
+  for (const double damage : {0.0, 0.3, 1.0}) {
+    CAPTURE(damage);
+    CHECK(modulus(poisson, {{-0.1, -0.1, -0.1}}, damage) == Approx(rest + 0.3 * bulk).epsilon(1e-9));
+    // All permutations of axes.
+    for (int axis = 0; axis < 3; ++axis)
+      for (int next = 1; next < 3; ++next) {
+        const auto along = [&](double first, double second, double third) {
+          Vec<3, double> e{};
+          e[axis] = first, e[(axis + next) % 3] = second, e[(axis + 3 - next) % 3] = third;
+          return e;
+        };
+        CAPTURE(axis, next);
+        // Pressed with free sides: the least stress is -0.3 E.
+        CHECK(modulus(poisson, along(-0.3, 0.06, 0.06), damage) ==
+              Approx(rest + 0.3 * young + shear * askew(0.36)).epsilon(1e-9));
+        // Open along the first axis, pressed along the others: there -E/(1 - nu) 0.2 without tension from the crack.
+        CHECK(modulus(poisson, along(0.5, -0.2, -0.2), damage) ==
+              Approx(rest + 0.2 * young / (1 - poisson) + shear * askew(0.7)).epsilon(1e-9));
+        // With nu = -0.3 the crack's tension presses on the others: 2 mu (-0.02) + lambda (0.46 - 0.02 - 0.01).
+        const double mu = young / 1.4, lambda = 2 * mu * -0.3 / 1.6;
+        CHECK(modulus(-0.3, along(0.46, -0.02, -0.01), damage) ==
+              Approx(lambda + 2 * mu + 0.04 * mu - 0.43 * lambda + mu * askew(0.48)).epsilon(1e-9));
+        // Nothing is pressed, and shear waves between strains that differ by 3 are the fastest.
+        const double solid = shear * (3 + std::sqrt(10.0) + askew(3));
+        CHECK(modulus(poisson, along(3, 0, 1), damage) == Approx(std::max(rest, (1 - damage) * solid)).epsilon(1e-9));
+        CHECK(modulus(poisson, along(3, 0, 1), damage) >= (1 - damage) * shear * 6 / (1 - std::exp(-6.0)));
+      }
+  }
+}
+
+TEST_CASE("damage: the strain of a measure is found where softening is steep and cracks pull hard on what is whole") {
+  // k = 1 - E/M at nu = 0.45, on bands up to all but the widest, where sigma falls within a hundredth of the onset.
+  const double nu = 0.45, share = 1 - (1 + nu) * (1 - 2 * nu) / (1 - nu), onset = strength / young;
+  for (double part : {0.1, 0.5, 0.9, 0.99}) {
+    const double width = part * 2 * young * toughness / (strength * strength);
+    const BandSoftening<double> band(SofteningLaw::exponential, young, strength, toughness, width, share);
+    for (double times : {1.001, 1.1, 2.0, 10.0}) {
+      CAPTURE(part, times);
+      const double decay = toughness / (width * strength) - onset / 2, kappa = times * onset;
+      const double measure = kappa - share * onset * std::exp(-(kappa - onset) / decay);
+      CHECK(band.strain_of(measure) == Approx(kappa).epsilon(1e-10));
+    }
+  }
+}

@@ -162,6 +162,25 @@ TEST_CASE("fixed corotated: the wave along the largest stretch has the reported 
   CHECK(wave_modulus(Mat<3, double>::identity()) == Approx(lambda + 2 * mu).epsilon(1e-14));
 }
 
+TEST_CASE("fixed corotated: around an axis the hoop stretch counts as those of the plane do") {
+  // In principal stretches l: tau_i = 2 mu (l_i - 1) l_i + lambda (J - 1) J, psi = mu sum (l_i - 1)^2 + lambda/2 (J - 1)^2.
+  const double l[3] = {1.2, 0.9, 1.4}, J = l[0] * l[1] * l[2];
+  const FixedCorotated::AxisymmetricState<double> ring{{{{l[0], 0, 0, l[1]}}, l[2]}};
+  const Sym<2, double> tau = FixedCorotated::kirchhoff_stress(constants, ring);
+  double energy = lambda / 2 * (J - 1) * (J - 1);
+  for (int i = 0; i < 3; ++i) {
+    CHECK(tau.s[i] == Approx(2 * mu * (l[i] - 1) * l[i] + lambda * (J - 1) * J).epsilon(1e-12));
+    energy += mu * (l[i] - 1) * (l[i] - 1);
+  }
+  CHECK(FixedCorotated::stored_energy(constants, ring) == Approx(energy).epsilon(1e-12));
+}
+
+TEST_CASE("fixed corotated: in the plane the fastest wave does not depend on how the particle is turned") {
+  const double c = std::cos(0.6), s = std::sin(0.6), x = 0.8, y = 1.7;
+  const Mat<2, double> turned{{c * x, -s * y, s * x, c * y}};
+  CHECK(wave_modulus(turned) == Approx(2 * mu * y * y + lambda * x * x * y * y).epsilon(1e-12));
+}
+
 TEST_CASE("fixed corotated: lanes of float keep the digits of small strains") {
   // sigma_11 of a strain of 1e-3 is good to rounding over the strain, whatever the particle's turn.
   using L = Lanes<float>;

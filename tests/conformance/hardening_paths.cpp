@@ -2,10 +2,13 @@
 // published formulas, which stand here once more, and the equation of a step against plain Newton. In uniaxial Kirchhoff
 // stress tau is the flow stress itself, at any strain.
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
+#include "kernel/dual.hpp"
+#include "kernel/lanes.hpp"
 #include "materials/johnson_cook/johnson_cook.hpp"
 #include "materials/von_mises/von_mises.hpp"
 #include "materials/von_mises_power/von_mises_power.hpp"
@@ -321,6 +324,116 @@ TEST_CASE("Johnson-Cook: where plain Newton cycles, and where it leaves the law,
         check_root(start, (90 + 292 * std::pow(start, 0.31)) * (1 + excess), step);
 }
 
+TEST_CASE("Johnson-Cook: a step's plastic strain is the same in any units of stress") {
+  for (const double unit : {1e-18, 1e-9, 1.0, 1e9}) {
+    JohnsonCook::Parameters scaled = copper;
+    scaled.yield_stress *= unit, scaled.hardening_coefficient *= unit;
+    const double stiffness = 3 * 46e3, dt = 1e-3, before = 0.1, trial = 2 * (90 + 292 * std::pow(before, 0.31));
+    const JohnsonCookStep<double, double> law(JohnsonCook::Constants<double>(scaled).hardening, room, dt);
+    const double x = plastic_increment(law, before, unit * trial, unit * stiffness, dt, true);
+    CAPTURE(unit, x);
+    CHECK(trial - stiffness * x == Approx(johnson_cook_curve(copper)(before + x, x / dt, room)).epsilon(1e-12));
+  }
+  // Of a metal that is soft beside its strength the strain of one step is large.
+  const double stiffness = 1, dt = 100, trial = 20 * 90;
+  const double x = plastic_increment(copper_step(dt), 0.0, trial, stiffness, dt, true);
+  CHECK(x > 100);
+  CHECK(trial - stiffness * x == Approx(johnson_cook_curve(copper)(x, x / dt, room)).epsilon(1e-12));
+}
+
+TEST_CASE("Johnson-Cook: an overstress of next to nothing flows by what the tangent says") {
+  const double before = 0.1, stiffness = 3 * 46e3, slow = 90 + 292 * std::pow(before, 0.31);
+  const double tangent = stiffness + 292 * 0.31 * std::pow(before, 0.31 - 1);
+  for (const double excess : {1e-11, 1e-9, 1e-7}) {
+    const double over = excess * slow, trial = slow + over;
+    const double x = plastic_increment(copper_step(1e3), before, trial, stiffness, 1e3, true);
+    CHECK(x == Approx((trial - slow) / tangent).epsilon(4e-16 / excess + 1e-4));
+  }
+}
+
+TEST_CASE(
+    "Johnson-Cook: the yield stress is that of the paper at no rate, and the law has numbers where nothing flowed") {
+  for (const double strain : {0.0, 1e-9, 0.3, 4.0})
+    for (const double temperature : {room, 700.0}) {
+      const JohnsonCookStep<double, double> law(JohnsonCook::Constants<double>(copper).hardening, temperature, 1e-3);
+      CHECK(law.yield_stress(strain) == Approx(johnson_cook_curve(copper)(strain, 0, temperature)).epsilon(1e-12));
+    }
+  const JohnsonCookStep<float, float> single(JohnsonCook::Constants<float>(copper).hardening, static_cast<float>(room),
+                                             1e-3F);
+  const FlowStress<float> untouched = single.flow(0.0F, 0.0F);
+  CHECK(untouched.stress == 90.0F);
+  CHECK(std::isfinite(untouched.slope));
+}
+
+TEST_CASE("Johnson-Cook: a particle flows as it would by itself, whichever particles share its pack") {
+  using L = Lanes<double>;
+  alignas(lane_bytes) double before[L::width], trial[L::width], temperature[L::width];
+  for (int lane = 0; lane < L::width; ++lane) {
+    before[lane] = 0.02 * lane;
+    temperature[lane] = room + 40 * lane;
+    // From a strain of one decade of rates to one of ten.
+    trial[lane] = (90 + 292 * std::pow(before[lane], 0.31)) * (lane == 0 ? 0.5 : 1 + std::pow(10, 1.5 * lane - 6));
+  }
+  const double stiffness = 3 * 46e3, dt = 1e-7;
+  const JohnsonCookStep<double, L> law(JohnsonCook::Constants<double>(copper).hardening, L::load(temperature), dt);
+  const L start = L::load(before), stress = L::load(trial);
+  const L x = plastic_increment(law, start, stress, L(stiffness), dt, stress > law.yield_stress(start));
+  for (int lane = 0; lane < L::width; ++lane) {
+    CAPTURE(lane);
+    const JohnsonCookStep<double, double> own(JohnsonCook::Constants<double>(copper).hardening, temperature[lane], dt);
+    const bool yields = trial[lane] > own.yield_stress(before[lane]);
+    CHECK((x[lane] > 0) == yields);
+    CHECK(x[lane] == Approx(plastic_increment(own, before[lane], trial[lane], stiffness, dt, yields)).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("Johnson-Cook: dual numbers have the derivative of the root, one over stiffness and slope") {
+  using X = Dual<double>;
+  const double stiffness = 3 * 46e3;
+  for (const double dt : {1e-6, 1e-2, 1e3})
+    for (const double before : {0.0, 0.01, 1.0})
+      for (const double excess : {1e-4, 0.1, 3.0}) {
+        const double trial = (90 + 292 * std::pow(before, 0.31)) * (1 + excess);
+        const JohnsonCookStep<double, double> plain = copper_step(dt);
+        const JohnsonCookStep<double, X> law(JohnsonCook::Constants<double>(copper).hardening, X(room), dt);
+        const double root = plastic_increment(plain, before, trial, stiffness, dt, true);
+        const X x = plastic_increment(law, X(before), X(trial, 1), X(stiffness), dt, true);
+        CAPTURE(dt, before, excess, root);
+        CHECK(x.value == Approx(root).epsilon(1e-12));
+        CHECK(x.derivative == Approx(1 / (stiffness + plain.flow(before + root, root).slope)).epsilon(1e-11));
+      }
+}
+
+/// A law that counts how often it is asked.
+struct Counted {
+  const JohnsonCookStep<double, double>& law;
+  int* asked;
+
+  double yield_stress(double strain) const { return law.yield_stress(strain); }
+  FlowStress<double> flow(double strain, double increment) const {
+    ++*asked;
+    return law.flow(strain, increment);
+  }
+};
+
+TEST_CASE("Johnson-Cook: the increment is found by Newton's method and not by halving") {
+  // Halving a bracket of a decade to rounding takes 50 rounds, Newton's method a handful beyond the decades of the rate.
+  const double stiffness = 3 * 46e3;
+  int steps = 0, asked = 0, most = 0;
+  for (double dt = 1e-9; dt < 1e3; dt *= 10)
+    for (double excess = 1e-5; excess < 10; excess *= 10)
+      for (const double start : {0.0, 1e-6, 1e-2, 1.0}) {
+        const JohnsonCookStep<double, double> law = copper_step(dt);
+        int own = 0;
+        const double trial = (90 + 292 * std::pow(start, 0.31)) * (1 + excess);
+        plastic_increment(Counted{law, &own}, start, trial, stiffness, dt, true);
+        asked += own, ++steps, most = std::max(most, own);
+      }
+  CAPTURE(static_cast<double>(asked) / steps, most);
+  CHECK(asked < 15 * steps);
+  CHECK(most < 40);
+}
+
 TEST_CASE("metals: the slope of a law is the derivative of its stress by the plastic strain of the step") {
   // A wrong slope would not change results: it makes the iteration slow.
   const auto check = [](const auto& law) {
@@ -447,6 +560,9 @@ TEST_CASE("a table of yield stresses passes through its points, and is refused w
   six.strain_3 = 0.02;
   CHECK(refused(six) == "strain_3");
   CHECK(VonMisesTable::refusal(six, {3, 0}).limit == 0.02);
+  six.strain_3 = 0.015;
+  CHECK(refused(six) == "strain_3");
+  CHECK(VonMisesTable::refusal(six, {3, 0}).limit == 0.02);  // the strain before it, not its own
   six.strain_3 = 0.05, six.stress_5 = 154;
   CHECK(refused(six) == "stress_5");
   CHECK(VonMisesTable::refusal(six, {3, 0}).limit == 155);

@@ -1,6 +1,8 @@
 // J2 plasticity at strains of 1e-4 and less. The exact numbers belong to small strain; the law here is one of finite
 // strain, so its answers differ from them by terms of the order of the strain, relative: 3e-4 is asked.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "materials/von_mises/von_mises.hpp"
@@ -169,4 +171,57 @@ TEST_CASE("von Mises: at rest the fastest wave is the elastic longitudinal one")
   const Particle particle(0);
   const double speed = VonMises::wave_speed(particle.constants, particle.state);
   CHECK(1000 * speed * speed == Approx(bulk + 4 * shear / 3).epsilon(1e-12));  // the density is 1000
+}
+
+TEST_CASE("von Mises: a change of volume stores the work of its pressure, by each of the three energies") {
+  for (double form : {0.0, 1.0, 2.0}) {
+    const VonMises::Constants<double> c({young, poisson, 1000, yield, 0, form});
+    State3 state = initial();
+    for (double J : {0.7, 1.6}) {
+      CAPTURE(form, J);
+      const int intervals = 200;  // of Simpson's rule, for the integral of tau/J
+      double work = 0;
+      for (int k = 0; k <= intervals; ++k) {
+        state.volume_ratio = 1 + (J - 1) * k / intervals;
+        const double tau = trace(VonMises::kirchhoff_stress(c, state)) / 3;
+        work += (k == 0 || k == intervals ? 1 : k % 2 ? 4 : 2) * tau / state.volume_ratio;
+      }
+      work *= (J - 1) / intervals / 3;
+      CHECK(work > 0.01 * bulk);
+      CHECK(VonMises::stored_energy(c, state) == Approx(work).epsilon(1e-6));
+    }
+  }
+}
+
+TEST_CASE("von Mises: around an axis the hoop stretches as the third axis of space does") {
+  const VonMises::Constants<double> c({young, poisson, 1000, 1e9, 0, 2});
+  VonMises::AxisymmetricState<double> ring{Sym<2, double>{{1, 1, 1, 0}}, 1, 0};
+  State3 space = initial();
+  for (const auto& [x, shearing, hoop] : {std::array{0.1, 0.05, 0.3}, std::array{-0.05, 0.1, 0.2}}) {
+    VonMises::advance(c, Deformation<2, double>{{{x, shearing, 0, 0}}, hoop}, 1.0, ring);
+    VonMises::advance(c, Mat3{{x, shearing, 0, 0, 0, 0, 0, 0, hoop}}, 1.0, space);
+  }
+  const Sym<2, double>& around = ring.elastic_left_cauchy_green;
+  const Sym<3, double>& whole = space.elastic_left_cauchy_green;
+  for (int k = 0; k < 3; ++k) CHECK(around.s[k] == Approx(whole.s[k]).epsilon(1e-12));
+  CHECK(around(0, 1) == Approx(whole(0, 1)).epsilon(1e-12));
+}
+
+TEST_CASE(
+    "metals: the mean that makes a returned deviator unimodular, from a start far above it and to the end of the "
+    "range") {
+  // det(d + t) = 1 for d = diag(a, b, -a - b), by halving.
+  for (double size : {1e-6, 0.1, 1.0, 3.0})
+    for (double ratio : {-0.5, 0.0, 0.4, 1.0})
+      for (double start : {1.0, 1e3, 1e6}) {
+        const Sym<3, double> d{{size, ratio * size, -(1 + ratio) * size, 0, 0, 0}};
+        double low = std::max({-d.s[0], -d.s[1], -d.s[2]}), high = 4 * size + 2;
+        for (int k = 0; k < 200; ++k) {
+          const double t = 0.5 * (low + high);
+          ((d.s[0] + t) * (d.s[1] + t) * (d.s[2] + t) < 1 ? low : high) = t;
+        }
+        if (start < high) continue;  // a start is the trial's mean, at or above the root
+        CAPTURE(size, ratio, start);
+        CHECK(unimodular_mean(d, start) == Approx(high).epsilon(1e-10));
+      }
 }

@@ -148,6 +148,21 @@ TEST_CASE("a gap opened in tension must close before pressure returns") {
   CHECK(least < -0.05);
 }
 
+TEST_CASE(
+    "sand that closes a gap and is pressed without yielding feels the pressure of its volume beside its own shear") {
+  Particle sand(40 * degree, 0);
+  sand.advance(3e-3, 3e-3, 3e-3);  // parted, free of stress
+  CHECK(std::abs(sand.mean_strain()) < 1e-14);
+  const double steps[3] = {-0.011, -0.0105, -0.010};
+  double strain[3], trace = 0;
+  for (int i = 0; i < 3; ++i) trace += strain[i] = std::log1p(steps[i]);
+  sand.advance(steps[0], steps[1], steps[2]);
+  const double volume = trace + 3 * std::log1p(3e-3), shear = young / (2 * (1 + poisson));
+  REQUIRE(volume < 0);
+  for (int i = 0; i < 3; ++i)
+    CHECK(sand.stress().s[i] == Approx(bulk * volume + 2 * shear * (strain[i] - trace / 3)).epsilon(1e-9));
+}
+
 TEST_CASE("without volume correction pressure returns at once") {
   Particle sand(30 * degree, 0, false);
   for (int step = 0; step < 50; ++step) sand.advance(1e-3, 1e-3, 1e-3);

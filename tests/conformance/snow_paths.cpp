@@ -1,9 +1,11 @@
 // Snow under imposed deformation against the law written out for stretches along the axes: F_E is the clamped stretch,
 // J_P the rest, h = exp(xi (1 - J_P)). E = 1000, nu = 0.2 unless said otherwise.
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "kernel/lanes.hpp"
 #include "materials/fixed_corotated/fixed_corotated.hpp"
 #include "materials/snow/snow.hpp"
 #include "support/catch.hpp"
@@ -260,4 +262,55 @@ TEST_CASE("snow: in plane strain z stays elastic, around an axis it yields like 
   CHECK(ring.elastic_deformation_gradient.zz == Approx(0.975).epsilon(1e-13));
   CHECK(ring.plastic_volume_ratio == Approx(0.92307692).epsilon(1e-8));
   CHECK(Snow::kirchhoff_stress(c, ring).s[2] == Approx(2.15810553 * Uniaxial(0.975).axial).epsilon(1e-8));
+}
+
+TEST_CASE("snow: the reported wave is the elastic one, and what hardening and the carried stress add, along any axis") {
+  // rho0 c^2 = h (2 mu s^2 + lambda J_E^2 + (1 + xi J_P) max |tau_i|), s the largest stretch; no xi where h is at its bound.
+  double stretch[3] = {0.98, 1.0, 1.005};
+  do {
+    for (double plastic : {0.9, 1.1, 0.5, 1.5})  // at the last two exp(xi (1 - J_P)) is beyond 100 and 1/100
+      for (double nu : {0.2, -0.4}) {
+        CAPTURE(stretch[0], stretch[1], stretch[2], plastic, nu);
+        const double G = young / (2 * (1 + nu)), lame = young * nu / ((1 + nu) * (1 - 2 * nu));
+        const double J = 0.98 * 1.005, pressure = lame * (J - 1) * J;
+        const double strongest =
+            std::max(std::abs(2 * G * -0.02 * 0.98 + pressure), std::abs(2 * G * 0.005 * 1.005 + pressure));
+        const bool bounded = plastic == 0.5 || plastic == 1.5;
+        const double h = std::exp(10 * (1 - plastic)), factor = std::min(std::max(h, 0.01), 100.0);
+        const double rate = bounded ? 0 : 10 * plastic;
+        const auto modulus = [&](const auto& state) {
+          const Snow::Constants<double> c({young, nu, density, 0.025, 0.0075, 10, 100});
+          const double speed = Snow::wave_speed(c, state);
+          return density * speed * speed;
+        };
+        const auto expected = [&](double s) {
+          return factor * (2 * G * s * s + std::max(lame * J * J, 0.0) + (1 + rate) * strongest);
+        };
+        const State3 state{Mat3{{stretch[0], 0, 0, 0, stretch[1], 0, 0, 0, stretch[2]}}, plastic};
+        CHECK(modulus(state) == Approx(expected(1.005)).epsilon(1e-9));
+        // In the plane waves run along two axes alone.
+        const Mat<2, double> plane{{stretch[0], 0, 0, stretch[1]}};
+        const Snow::AxisymmetricState<double> ring{{plane, stretch[2]}, plastic};
+        CHECK(modulus(ring) == Approx(expected(std::max(stretch[0], stretch[1]))).epsilon(1e-9));
+      }
+  } while (std::next_permutation(stretch, stretch + 3));
+}
+
+TEST_CASE("snow: of a pack in which some particles yield the others advance as they would by themselves") {
+  using L = Lanes<double>;
+  const Snow::Constants<double> c({young, poisson, density, 0.025, 0.0075, 10, 100});
+  alignas(lane_bytes) double strain[L::width];
+  for (int lane = 0; lane < L::width; ++lane) strain[lane] = lane % 2 ? -0.1 : -0.01;
+  Snow::AxisymmetricState<L> pack{Deformation<2, L>::identity(), L(1.0)};
+  const L along = L::load(strain), none(0.0);
+  Snow::advance(c, Deformation<2, L>{{{along, none, none, none}}, along}, 1.0, pack);
+  for (int lane = 0; lane < L::width; ++lane) {
+    Snow::AxisymmetricState<double> one{Deformation<2, double>::identity(), 1};
+    Snow::advance(c, Deformation<2, double>{{{strain[lane], 0, 0, 0}}, strain[lane]}, 1.0, one);
+    for (int k = 0; k < 4; ++k)
+      CHECK(pack.elastic_deformation_gradient.plane.m[k][lane] ==
+            Approx(one.elastic_deformation_gradient.plane.m[k]).epsilon(1e-14).margin(1e-14));
+    CHECK(pack.elastic_deformation_gradient.zz[lane] == Approx(one.elastic_deformation_gradient.zz).epsilon(1e-14));
+    CHECK(pack.plastic_volume_ratio[lane] == Approx(one.plastic_volume_ratio).epsilon(1e-14));
+  }
 }

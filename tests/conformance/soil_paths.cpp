@@ -1,6 +1,7 @@
 // Mohr-Coulomb on triaxial paths, on faces, edges and the apex; modified Cam-Clay from virgin compression to the critical
 // state; mu(I) rheology in shear at several rates. Stresses are Kirchhoff's.
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -434,6 +435,30 @@ TEST_CASE("Mohr-Coulomb: the fastest waves at psi = phi are elastic, and flow th
   CHECK(modulus(soil(30, 0, 0)) == Approx(bulk + 4 * shear / 3 + 2 * shear * most).epsilon(1e-4));
 }
 
+TEST_CASE("Mohr-Coulomb: at other angles and Poisson ratios the fastest waves are those of a face or of an edge") {
+  const double cases[][3] = {{-0.8, 60, 10}, {-0.5, 30, 0}, {0, 5, 0}, {0.3, 30, 10}, {0.45, 60, 10}, {0.45, 60, 0}};
+  for (const auto& [nu, friction, dilation] : cases) {
+    CAPTURE(nu, friction, dilation);
+    const double sine = std::sin(friction * degree), flow = std::sin(dilation * degree), r = nu / (1 - 2 * nu);
+    const Eigen::Matrix3d C = Eigen::Matrix3d::Identity() + r * Eigen::Matrix3d::Ones();  // in units of 2 G
+    const Eigen::Vector3d n(1 + sine, 0, sine - 1), m(1 + flow, 0, flow - 1);
+    double most = 0;
+    // The most that the tangent of normal strains has over the elastic one.
+    const auto grows_to = [&](const Eigen::Matrix3d& tangent) {
+      const Eigen::Matrix3d change = tangent - C, symmetric = 0.5 * (change + change.transpose());
+      most = std::max(most, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(symmetric).eigenvalues().maxCoeff());
+    };
+    grows_to(C - C * m * n.transpose() * C / n.dot(C * m));
+    for (double middle : {-1.0, 1.0}) {
+      const Eigen::Vector3d l(1 - sine, 1 - middle * sine, 1 + sine), g(1 - flow, 1 - middle * flow, 1 + flow);
+      grows_to(l * g.transpose() / g.dot(C.inverse() * l));
+    }
+    const double G = young / (2 * (1 + nu));
+    const MohrCoulomb::Constants<double> c({young, nu, 1600, friction * degree, 0, dilation * degree});
+    CHECK(c.longitudinal == Approx(2 * G * (1 + r + most)).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("Mohr-Coulomb: J from 1e-6 to 1e6, thin and long particles, and inverted ones") {
   for (double J : {1e-6, 1e-3, 1e3, 1e6}) {
     CAPTURE(J);
@@ -635,6 +660,83 @@ TEST_CASE("Cam-Clay: the slope of hardening is held at half of that at which str
     }
 }
 
+TEST_CASE(
+    "Cam-Clay: clay that is larger than the exponential law reaches hardens along the straight part from the start") {
+  for (double M : {0.6, 1.2})
+    for (double beta : {0.0, 0.5}) {
+      CAPTURE(M, beta);
+      const double size = consolidation / bulk, xi = 5000;
+      const CamClay::Hardening<double> law(size, xi, M, beta, shear / bulk);
+      const CamClay::Hardening<double> gentle(1e-3 * size, 0.5 * xi, M, beta, shear / bulk);
+      double slope, gentle_slope;
+      CHECK(law(0.0, slope) == Approx(size).epsilon(1e-12));
+      CHECK(gentle(1.0, gentle_slope) > 0);
+      CHECK(slope == Approx(gentle_slope).epsilon(1e-12));  // the steepest does not depend on where it is reached
+      const double at_rest = slope;
+      CHECK(law(0.01, slope) == Approx(size + 0.01 * at_rest).epsilon(1e-12));
+      CHECK(slope == at_rest);
+      // Below p_c = slope/xi it is exponential.
+      const double first = (at_rest / xi - size) / at_rest;
+      CHECK(law(first - 1e-4, slope) == Approx(at_rest / xi * std::exp(-0.5)).epsilon(1e-9));
+      CHECK(slope == Approx(at_rest * std::exp(-0.5)).epsilon(1e-9));
+    }
+}
+
+TEST_CASE(
+    "Cam-Clay: the function that Newton's method solves has the sign of the ellipse's, and its slope the derivative") {
+  std::mt19937 generator(17);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int central = 0, tips = 0;
+  for (int sample = 0; sample < 3000; ++sample) {
+    const double beta = sample % 3 ? 0.9 * unit(generator) : 0, M = 0.5 + 1.5 * unit(generator),
+                 xi = 30 * unit(generator);
+    const CamClay::Constants<double> c({young, poisson, 1600, consolidation, M, xi, beta});
+    CamClay::Trial<double> t;
+    t.compaction = 0.02 * (unit(generator) - 0.5);
+    double rate;
+    const double size = c.hardening(t.compaction, rate), centre = (1 - beta) * size / 2;
+    t.side = sample % 2 ? 1 : -1;
+    t.pressure = centre + t.side * 2 * (1 + beta) * size * unit(generator);
+    t.shear = 2 * M * size * unit(generator);
+    const double farthest = std::abs(t.pressure - centre), X = farthest * (0.02 + 0.96 * unit(generator)),
+                 h = 1e-6 * size;
+    const CamClay::Point<double> here = CamClay::at(c, t, X), before = CamClay::at(c, t, X - h),
+                                 after = CamClay::at(c, t, X + h);
+    const double p = t.pressure - t.side * X, p_c = c.hardening(t.compaction + t.side * X, rate), a = 1 + 2 * beta;
+    const double N = t.side * M * M * (2 * p - (1 - beta) * p_c), half = 0.5 * M * M * (1 + beta) * p_c;
+    if (!(N > 1e-3 * half) || std::abs(N - half) < 1e-3 * half) continue;
+    CAPTURE(sample, beta, M, xi, X / farthest, N / half);
+    (N < half ? central : tips) += 1;
+    const double q = t.shear * N / (N + 6 * shear / bulk * a * X);
+    const double off = a * q * q + M * M * (p + beta * p_c) * (p - p_c);
+    CHECK(here.pressure == Approx(p).margin(1e-14 * size));
+    CHECK(here.size == Approx(p_c).epsilon(1e-13));
+    CHECK(here.flow == Approx(N).margin(1e-13 * half));
+    if (std::abs(off) > 1e-9 * M * M * p_c * p_c) CHECK((here.value > 0) == (off > 0));
+    CHECK(here.slope == Approx((after.value - before.value) / (2 * h)).epsilon(1e-5).margin(1e-5));
+  }
+  CHECK(std::min(central, tips) > 300);
+}
+
+TEST_CASE("Cam-Clay: the return is found to the same share of the ellipse, however small the ellipse is") {
+  for (double size : {1e-2, 1e-9, 1e-18})
+    for (double beta : {0.0, 0.4}) {
+      const CamClay::Constants<double> c({young, poisson, 1600, size * bulk, critical, 5, beta});
+      for (double side : {1.0, -1.0}) {
+        CAPTURE(size, beta, side);
+        const double centre = (1 - beta) * size / 2, farthest = 1.5 * size;
+        const CamClay::Trial<double> t{centre + side * farthest, 1.3 * size, 0, side};
+        const double X = CamClay::solved(c, t, farthest);
+        double rate;
+        const double p = t.pressure - side * X, p_c = c.hardening(side * X, rate), M2 = critical * critical;
+        const double N = side * M2 * (2 * p - (1 - beta) * p_c),
+                     q = t.shear * N / (N + 6 * shear / bulk * (1 + 2 * beta) * X);
+        CHECK(N > 0);
+        CHECK(std::abs((1 + 2 * beta) * q * q + M2 * (p + beta * p_c) * (p - p_c)) < 1e-11 * size * size);
+      }
+    }
+}
+
 TEST_CASE("Cam-Clay: within the ellipse it closes its loops, beyond work is stored plus dissipated energy") {
   Particle<CamClay> elastic = clay();
   elastic.strain(-2e-3, -2e-3, -2e-3);
@@ -804,6 +906,16 @@ TEST_CASE("mu(I): of a step that closes a gap and presses, only the pressing is 
   CHECK(particle.energy() == Approx(0.5 * bulk * 0.02 * 0.02).epsilon(1e-9));
 }
 
+TEST_CASE("mu(I): grains that close a gap and do not flow keep their shear beside the pressure of their volume") {
+  Particle<MuI> particle = grains();
+  particle.strain(0.003, 0.003, 0.003);
+  CHECK(particle.q() == 0);
+  const double e[3] = {-0.005, -0.0049, -0.0048}, mean = -0.0049, volume = -0.0147 + 0.009;
+  particle.strain(e[0], e[1], e[2]);
+  for (int i = 0; i < 3; ++i)
+    CHECK(particle.stress().s[i] == Approx(bulk * volume + 2 * shear * (e[i] - mean)).epsilon(1e-9));
+}
+
 TEST_CASE("mu(I): below mu_s it is Hencky's law, keeps F_e to the last bit and closes its loops") {
   Particle<MuI> particle = grains();
   press(particle, 1e5);
@@ -873,4 +985,34 @@ TEST_CASE("mu(I): J from 1e-6 to 1e6, thin and long particles, and inverted ones
   Particle<MuI> inverted = grains();
   inverted.advance(diagonal(-2, 0, 0));
   CHECK_FALSE(inverted.state.volume_ratio > 0);
+}
+
+TEST_CASE("soils: around an axis the hoop stretches as the third axis of space does") {
+  const MohrCoulomb::Constants<double> c({young, poisson, 1600, 30 * degree, 1e9, 0});  // elastic
+  MohrCoulomb::AxisymmetricState<double> ring{Deformation<2, double>::identity(), 1};
+  Particle<MohrCoulomb> space = soil(30, 1e9, 0);
+  for (const auto& [x, shearing, hoop] : {std::array{0.1, 0.05, 0.3}, std::array{-0.05, 0.1, 0.2}}) {
+    MohrCoulomb::advance(c, Deformation<2, double>{{{x, shearing, 0, 0}}, hoop}, 1.0, ring);
+    space.advance({{x, shearing, 0, 0, 0, 0, 0, 0, hoop}});
+  }
+  CHECK(ring.elastic_deformation_gradient.zz == Approx(1.3 * 1.2).epsilon(1e-14));
+  const Sym<2, double> around = MohrCoulomb::kirchhoff_stress(c, ring);
+  for (int k = 0; k < 3; ++k) CHECK(around.s[k] == Approx(space.stress().s[k]).epsilon(1e-12));
+  CHECK(around(0, 1) == Approx(space.stress()(0, 1)).epsilon(1e-12));
+}
+
+TEST_CASE(
+    "soils: pressure makes longitudinal waves faster, by the least principal stress, and tension does not slow them") {
+  const double at_rest = bulk + 4 * shear / 3;
+  const auto modulus = [](double x, double y, double z) {
+    const MohrCoulomb::Constants<double> c(
+        {young, poisson, 1600, 30 * degree, 1e9, 30 * degree});  // elastic, associated
+    const MohrCoulomb::State<3, double> state{{diagonal(std::exp(x), std::exp(y), std::exp(z))}, 1};
+    const double speed = MohrCoulomb::wave_speed(c, state);
+    return 1600 * speed * speed;
+  };
+  CHECK(modulus(-0.1, -0.1, -0.1) == Approx(at_rest + 0.3 * bulk).epsilon(1e-9));
+  const Vec3 tau = elastic_stress({{-0.2, 0.05, 0.1}});
+  CHECK(modulus(0.05, -0.2, 0.1) == Approx(at_rest - tau[0]).epsilon(1e-9));
+  CHECK(modulus(0.1, 0.1, 0.1) == Approx(at_rest).epsilon(1e-9));
 }

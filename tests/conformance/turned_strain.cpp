@@ -3,10 +3,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "materials/corotated/corotated.hpp"
 #include "materials/drucker_prager/drucker_prager.hpp"
 #include "materials/fixed_corotated/fixed_corotated.hpp"
+#include "materials/hencky/hencky.hpp"
 #include "materials/linear_elastic/linear_elastic.hpp"
+#include "materials/mooney_rivlin/mooney_rivlin.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
+#include "materials/transversely_isotropic/transversely_isotropic.hpp"
 #include "materials/von_mises/von_mises.hpp"
 #include "support/catch.hpp"
 
@@ -81,6 +85,10 @@ TEST_CASE("laws whose stress turns with the particle say so, and linear elastici
   CHECK((FixedCorotated::traits & MPM_OBJECTIVE) != 0);
   CHECK((VonMises::traits & MPM_OBJECTIVE) != 0);
   CHECK((DruckerPrager::traits & MPM_OBJECTIVE) != 0);
+  CHECK((Hencky::traits & MPM_OBJECTIVE) != 0);
+  CHECK((Corotated::traits & MPM_OBJECTIVE) != 0);
+  CHECK((MooneyRivlin::traits & MPM_OBJECTIVE) != 0);
+  CHECK((TransverselyIsotropic::traits & MPM_OBJECTIVE) != 0);
   CHECK((LinearElastic::traits & MPM_OBJECTIVE) == 0);
   // Those whose stress follows from a stored energy say that too.
   CHECK((NeoHookean::traits & MPM_HYPERELASTIC) != 0);

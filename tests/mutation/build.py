@@ -94,8 +94,8 @@ class Build:
         return shlex.split(command.removeprefix(": && ").removesuffix(" && :"))
 
     def plugin_of(self, name):
-        """KIND_ID of a plugin's object; none for another object."""
-        found = re.match(r"modules/CMakeFiles/(\w+)\.dir/", name)
+        """KIND_ID of a plugin's object, of which a material has two; none for another object."""
+        found = re.match(r"modules/CMakeFiles/(\w+?)(?:_second_part)?\.dir/", name)
         return found and found[1]
 
     def test_of(self, name):

@@ -2,14 +2,17 @@
 """Checks of the script that makes mutants: what it finds in a text, and that it finds its way in every file."""
 
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
+from build import Build
 from group import KINDS
 from mutants import mutants_of, tokens_of
+from results import Equivalents, Result, Results
 from together import Together
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -56,6 +59,26 @@ class FindsMutants(unittest.TestCase):
     def test_brackets_that_never_close_are_refused(self):
         with self.assertRaises(ValueError):
             changes("f(A<B(c), d - e);")
+
+
+class KnowsObjects(unittest.TestCase):
+    def test_a_material_is_one_plugin_of_two_objects(self):
+        names = [f"modules/CMakeFiles/material_damage{part}.dir/materials/damage/damage.cpp.o" for part in ("", "_second_part")]
+        self.assertEqual([Build.plugin_of(None, name) for name in names], ["material_damage"] * 2)
+
+
+class FindsStaleReasons(unittest.TestCase):
+    def test_one_of_two_lines_with_the_same_text_may_be_killed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "equivalent.txt"
+            path.write_text("file: file.hpp\nline: x = a + b;\nchange: + to -\nreason: b is zero.\n")
+            equivalents, results = Equivalents(path), Results(Path(folder) / "results.json")
+            first, second = (m for m in mutants_of("file.hpp", "x = a + b;\nx = a + b;\n") if m.what == "+ to -")
+            results.put(first, Result(Result.SURVIVED))
+            results.put(second, Result(Result.KILLED, "conformance.any"))
+            self.assertEqual(list(equivalents.stale([first, second], results)), [])
+            results.put(first, Result(Result.KILLED, "conformance.any"))
+            self.assertEqual(len(list(equivalents.stale([first, second], results))), 2)
 
 
 class WritesThemTogether(unittest.TestCase):

@@ -85,16 +85,14 @@ class Equivalents:
         return self.reasons.get(mutant.key)
 
     def stale(self, mutants, results):
-        """What the list says of mutants tried here that is not so any more."""
-        by_key = {mutant.key: mutant for mutant in mutants}
-        files = {mutant.file for mutant in mutants}
+        """What the list says of mutants tried here that is not so any more. Of lines with the same text one suffices."""
+        by_key = {}
+        for mutant in mutants:
+            by_key.setdefault(mutant.key, []).append(mutant)
         for key in self.reasons:
-            if key[0] not in files:
-                continue
-            if key in by_key:
-                result = results.of(by_key[key])
-                if result and result.status not in (Result.SURVIVED, Result.SAME_CODE):
-                    yield f"{by_key[key].name} is {result.text()}"
+            found = [(mutant, results.of(mutant)) for mutant in by_key.get(key, [])]
+            if found and all(result and result.status not in (Result.SURVIVED, Result.SAME_CODE) for _, result in found):
+                yield from (f"{mutant.name} is {result.text()}" for mutant, result in found)
 
     def unknown(self, mutants):
         """The entries of these mutants' files that match none of them."""

@@ -79,12 +79,13 @@ class Trial:
     def __init__(self, build, bench, mutant, tried=()):
         self.build, self.bench, self.mutant, self.tried = build, bench, mutant, tried
         self.objects = build.objects_of.get(mutant.file, set())
-        self.plugins = sorted(name for name in self.objects if build.plugin_of(name))
+        names = sorted({build.plugin_of(name) for name in self.objects} - {None})
+        self.plugins = {name: [part for part in build.compile_of if build.plugin_of(part) == name] for name in names}
         self.libraries = sorted(n for n in self.objects if not build.plugin_of(n) and not build.test_of(n))
         self.tests = {build.test_of(name): name for name in self.objects if build.test_of(name)}
 
     def result(self):
-        self.bench.clear([self.build.plugin_of(name) for name in self.plugins])
+        self.bench.clear(self.plugins)
         mutated = self.bench.folder / "overlay/modules" / Path(self.mutant.file).relative_to("modules")
         # Its neighbours come along: sources beside a header include it by its name alone.
         shutil.copytree((self.build.tree / self.mutant.file).parent, mutated.parent)
@@ -114,12 +115,11 @@ class Trial:
 
     def plugin_made(self, name, *flags):
         """Puts the changed plugin in the place of the unchanged one."""
-        plugin = self.bench.folder / "plugins" / f"{self.build.plugin_of(name)}.so"
-        return self.linked(plugin, self.compiled(name, *flags))
-
-    def linked(self, plugin, made):
+        plugin = self.bench.folder / "plugins" / f"{name}.so"
         plugin.unlink(missing_ok=True)
-        code, output = self.bench.run([self.build.compile_of[next(iter(self.plugins))][0], "-shared", "-o", plugin, made], 100)
+        parts = self.plugins[name]
+        made = [self.compiled(part, *flags) if part in self.objects else self.build.folder / part for part in parts]
+        code, output = self.bench.run([self.build.compile_of[parts[0]][0], "-shared", "-o", plugin, *made], 100)
         if code != 0:
             raise Refused(output)
         return plugin
@@ -191,7 +191,7 @@ class Trial:
     def ordered_tests(self):
         """Tests that know the changed file first, then those that name the plugin, then all others; short ones first.
         Of the others only those that take less than a quarter of --longest."""
-        ids = [self.build.plugin_of(name).partition("_")[2] for name in self.plugins]
+        ids = [name.partition("_")[2] for name in self.plugins]
 
         def place(test):
             named = not ids or any(f'"{id}' in test.text for id in ids)
@@ -217,7 +217,7 @@ class Shared:
         self.plugin, self.programs, self.tests, self.number_of, self.kills = None, {}, [], {}, Counter()
         self.everywhere = len(self.trial.plugins) > 1
         if self.everywhere:
-            self.trial.plugins, self.trial.libraries = [], []
+            self.trial.plugins, self.trial.libraries = {}, []
         if self.make_plugin() if self.trial.plugins else self.make_libraries():
             self.make_programs()
             self.number_of = {mutants[number - 1]: number for number in self.text.numbers()}
@@ -232,13 +232,11 @@ class Shared:
 
     def make_plugin(self):
         """Makes the plugin without the mutants that the compiler refuses here; whether it then does as the program."""
-        name = self.trial.plugins[0]
-        plugin = self.bench.folder / "plugins" / f"{self.build.plugin_of(name)}.so"
         for _ in range(6):
             self.write_text()
             try:
-                self.plugin = self.trial.linked(plugin, self.trial.compiled(name, FIRST_LOOK))
-                return self.trial.verdict_on(plugin, self.bench.folder / "bin/mpm") is None
+                self.plugin = self.trial.plugin_made(next(iter(self.trial.plugins)), FIRST_LOOK)
+                return self.trial.verdict_on(self.plugin, self.bench.folder / "bin/mpm") is None
             except Refused as refusal:
                 if not self.text.refuse(str(refusal)):
                     return False

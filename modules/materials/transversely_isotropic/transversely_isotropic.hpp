@@ -40,9 +40,10 @@ struct TransverselyIsotropic : ElasticSolid {
     /// rho c^2 of the fastest wave at rest in any direction, Pa. The waves in a plane through the axis, at an angle of
     /// which u is the squared sine, have rho c^2 <= m + c44 where (m - x u) (m - z (1 - u)) >= d^2 u (1 - u), x = c11 -
     /// c44, z = c33 - c44, d = c13 + c44. Over u this is a parabola, whose least value is at an end, or inside where |d|
-    /// exceeds x and z; so it does where c44 is the largest of all, which therefore is no end to compare with.
+    /// exceeds x and z; so it does where c44 is the largest of all, which therefore is no end to compare with. A negative d
+    /// does not, as |c13| is below the larger of c11 and c33.
     MPM_HD double fastest() const {
-      const double x = c11 - c44, z = c33 - c44, d = c13 + c44 < 0 ? -(c13 + c44) : c13 + c44;
+      const double x = c11 - c44, z = c33 - c44, d = c13 + c44;
       const double ends = max(max(c11, c33), c66);
       return d > max(x, z) ? max(ends, c44 + (d * d - x * z) / (2 * d - x - z)) : ends;
     }
