@@ -325,9 +325,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "damage: the fastest wave is that of the whole solid where anything is pressed, else of what is left, at least "
-    "that at rest") {
+TEST_CASE("damage: the fastest wave is that of the whole solid where anything is pressed, else of what is left") {
   // Bounds of kernel/hencky.hpp, where the principal strains differ by x: longitudinal waves have lambda + 2 mu less the least
   // principal stress, shear waves 2 mu x/(1 - e^-2x) <= mu (x + sqrt(x^2 + 1)), and askew of the axes mu x^2/(2 (1 + x)) more.
   const auto modulus = [](double nu, const Vec<3, double>& e, double damage) {
