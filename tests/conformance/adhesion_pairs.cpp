@@ -76,3 +76,7 @@ TEST_CASE("a pair holds up to its reach", "[adhesion]") {
   check(result(pair_of(-2, {{0, 1, 0}}, 0.0201)), 0, 0, 0, 0);
   check(result(pair_of(2, {{0, 1, 0}}, 0.0201)), 0, 0, 0, 0);
 }
+
+TEST_CASE("adhesion says that it pulls, reads tractions and acts over time", "[adhesion]") {
+  CHECK(Adhesion::traits == (MPM_PULLS | MPM_READS_TRACTION | MPM_ACTS_OVER_TIME));
+}

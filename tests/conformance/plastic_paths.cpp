@@ -207,7 +207,7 @@ TEST_CASE("von Mises: around an axis the hoop stretches as the third axis of spa
   CHECK(around(0, 1) == Approx(whole(0, 1)).epsilon(1e-12));
 }
 
-TEST_CASE("metals: the mean that makes a returned deviator unimodular, from far above it to the end of the range") {
+TEST_CASE("metals: the mean that makes a returned deviator unimodular, from a start far above it too") {
   // det(d + t) = 1 for d = diag(a, b, -a - b), by halving.
   for (double size : {1e-6, 0.1, 1.0, 3.0})
     for (double ratio : {-0.5, 0.0, 0.4, 1.0})

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "materials/corotated/corotated.hpp"
+#include "materials/damage/damage.hpp"
 #include "materials/drucker_prager/drucker_prager.hpp"
 #include "materials/fixed_corotated/fixed_corotated.hpp"
 #include "materials/hencky/hencky.hpp"
@@ -85,6 +86,7 @@ TEST_CASE("laws whose stress turns with the particle say so, and linear elastici
   CHECK((FixedCorotated::traits & MPM_OBJECTIVE) != 0);
   CHECK((VonMises::traits & MPM_OBJECTIVE) != 0);
   CHECK((DruckerPrager::traits & MPM_OBJECTIVE) != 0);
+  CHECK((Damage::traits & MPM_OBJECTIVE) != 0);
   CHECK((Hencky::traits & MPM_OBJECTIVE) != 0);
   CHECK((Corotated::traits & MPM_OBJECTIVE) != 0);
   CHECK((MooneyRivlin::traits & MPM_OBJECTIVE) != 0);

@@ -56,6 +56,8 @@ class Bench:
             Bench.running.add(process.pid)
         try:
             output, _ = process.communicate(timeout=60 * seconds)  # what sleeps takes no processor time
+            if Bench.stopped:  # it was ended from outside, which says nothing of the mutant
+                raise KeyboardInterrupt
             return None if process.returncode in (-signal.SIGKILL, -signal.SIGXCPU) else process.returncode, output
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
