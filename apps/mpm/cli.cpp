@@ -138,9 +138,10 @@ void add_drive(CLI::App& verb, DriveOptions& options) {
     list += std::string("  ") + path.name + std::string(14 - names.back().size(), ' ') + path.doc + "\n";
   }
   auto* path = verb.add_option("--path", options.path, "one path; default all")->check(CLI::IsMember(names));
-  verb.add_option("--strain", options.strain, "largest displacement gradient; default 0.1")
-      ->check(number_between("1e-9", "0.999"));
-  verb.add_option("--steps", options.steps, "steps of one way; default 100")->check(CLI::Range(1, 1000000));
+  auto* strain = verb.add_option("--strain", options.strain, "largest displacement gradient; default 0.1")
+                     ->check(number_between("1e-9", "0.999"));
+  auto* steps =
+      verb.add_option("--steps", options.steps, "steps of one way; default 100")->check(CLI::Range(1, 1000000));
   verb.add_option("--duration", options.duration, "seconds of one way, for materials that flow or creep; default 1")
       ->check(number_between("1e-12", "1e12"));
   verb.add_option("--dimension", options.dimension, "3, or 2: plane strain; default 3 where the material can")
@@ -150,7 +151,7 @@ void add_drive(CLI::App& verb, DriveOptions& options) {
       verb.add_flag("--extremes", options.extremes,
                     "in place of the paths: crushed to a millionth of its volume and torn to a million times, "
                     "drawn, pressed flat and sheared by 1e4, turned inside out, shaken by small cycles");
-  extremes->excludes(path);
+  for (CLI::Option* other : {path, strain, steps}) extremes->excludes(other);
   verb.add_option("--cycles", options.cycles, "of the extremes' small cycles; default 100000")
       ->check(CLI::Range(1, 100000000))
       ->needs(extremes);

@@ -263,9 +263,11 @@ int drive_every_material(const DriveOptions& options) {
   int worst = done;
   for (const Plugin* plugin : registry.of_kind(MPM_MATERIAL)) {
     const int dimension = options.dimension ? options.dimension : plugin->descriptor->dimensions & MPM_3D ? 3 : 2;
-    if (const std::string unknown = suite.unknown_parameter(*plugin); !unknown.empty())
-      refuse("mpm drive every", "the benchmarks have no value for " + unknown + " of " + in_quotes(plugin->id()) +
-                                    ": drive it by its name");
+    if (const std::string unknown = suite.unknown_parameter(*plugin); !unknown.empty()) {
+      std::printf("%-25s  left out, the benchmarks have no value for %s: drive it by its name\n",
+                  std::string(plugin->id()).c_str(), unknown.c_str());
+      continue;
+    }
     const Component material = suite.material(*plugin);
     const auto rows = drive::extremes(material, dimension, size, stop_requested);
     if (stop_requested()) {

@@ -90,6 +90,8 @@ class Extremes {
       }
     }
     extreme.end = point.advance(Matrix{}, ages);
+    extreme.outcome = judge(extreme.end, before.volume_ratio, stiffness_);
+    if (extreme.outcome != Outcome::right) return extreme;
     double change = 0;
     for (int c = 0; c < 6; ++c) change = std::max(change, std::abs(extreme.end.kirchhoff.s[c] - before.kirchhoff.s[c]));
     extreme.drift = change / stiffness_ / static_cast<double>(size_.cycles) / std::numeric_limits<double>::epsilon();

@@ -1,5 +1,5 @@
 #pragma once
-// What becomes of a material that is crushed, torn, drawn out, turned inside out, or shaken a million times.
+// What becomes of a material that is crushed, torn, drawn out, turned inside out, or shaken by many small cycles.
 
 #include <functional>
 #include <string>
@@ -38,7 +38,7 @@ struct ExtremeSize {
   long cycles = 100000;
 };
 
-/// Follows every extreme in double precision. `stop` is asked between two of them. Throws nothing.
+/// Follows every extreme in double precision. `stop` is asked between two of them.
 std::vector<Extreme> extremes(const Component& material, int dimension, const ExtremeSize& size,
                               const std::function<bool()>& stop);
 
