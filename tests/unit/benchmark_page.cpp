@@ -17,9 +17,12 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-/// The table below the first heading of tables.md that begins with these words, its header first.
-std::vector<Cells> table(const std::string& heading) {
-  std::istringstream page(support::read_file(MPM_SOURCE_DIR "/docs/benchmarks/tables.md"));
+/// The pages of tables: that of the first machine, and that of another.
+constexpr const char *first_machine = "tables.md", *intel = "tables_intel.md";
+
+/// The table below the first heading of a page that begins with these words, its header first.
+std::vector<Cells> table(const std::string& heading, const std::string& file = first_machine) {
+  std::istringstream page(support::read_file(MPM_SOURCE_DIR "/docs/benchmarks/" + file));
   std::vector<Cells> rows;
   bool below = false;
   for (std::string line; std::getline(page, line);) {
@@ -33,13 +36,14 @@ std::vector<Cells> table(const std::string& heading) {
       cells.push_back(line.substr(from, bar - from));
     rows.push_back(cells);
   }
-  if (rows.size() < 2) throw std::runtime_error("docs/benchmarks/tables.md has no table below " + heading);
+  if (rows.size() < 2) throw std::runtime_error("docs/benchmarks/" + file + " has no table below " + heading);
   return rows;
 }
 
 /// The numbers of one column in the rows that begin with these cells ("*": any cell).
-std::vector<double> numbers(const std::string& heading, const Cells& first, const std::string& column) {
-  const std::vector<Cells> rows = table(heading);
+std::vector<double> numbers(const std::string& heading, const Cells& first, const std::string& column,
+                            const std::string& file = first_machine) {
+  const std::vector<Cells> rows = table(heading, file);
   const auto at = std::find(rows[0].begin(), rows[0].end(), column) - rows[0].begin();
   std::vector<double> found;
   for (auto row = rows.begin() + 1; row != rows.end(); ++row) {
@@ -52,16 +56,29 @@ std::vector<double> numbers(const std::string& heading, const Cells& first, cons
   if (found.empty()) throw std::runtime_error("no number below " + heading + " in the column " + column);
   return found;
 }
-double number(const std::string& heading, const Cells& first, const std::string& column) {
-  const auto found = numbers(heading, first, column);
+double number(const std::string& heading, const Cells& first, const std::string& column,
+              const std::string& file = first_machine) {
+  const auto found = numbers(heading, first, column, file);
   if (found.size() != 1) throw std::runtime_error("several numbers below " + heading + " in the column " + column);
   return found[0];
 }
-double cube(const std::string& motion, const std::string& precision, int threads, const std::string& column) {
-  return number("Standard scenes", {"cube_3d", motion, "neo_hookean", precision, std::to_string(threads)}, column);
+double cube(const std::string& motion, const std::string& precision, int threads, const std::string& column,
+            const std::string& file = first_machine) {
+  return number("Standard scenes", {"cube_3d", motion, "neo_hookean", precision, std::to_string(threads)}, column,
+                file);
 }
-double cost(const std::string& option) {
-  return number("What an option costs", {"cube_3d", option}, "cost / standard");
+double cost(const std::string& option, const std::string& file = first_machine) {
+  return number("What an option costs", {"cube_3d", option}, "cost / standard", file);
+}
+double law(const std::string& name, const std::string& column) {
+  return number("What a law costs", {"cube_3d", name}, column, intel);
+}
+/// How many targets of a page have this verdict.
+double targets(const std::string& verdict, const std::string& file) {
+  std::istringstream page(support::read_file(MPM_SOURCE_DIR "/docs/benchmarks/" + file));
+  double count = 0;
+  for (std::string line; std::getline(page, line);) count += line.ends_with("| " + verdict + " |");
+  return count;
 }
 
 }  // namespace
@@ -122,6 +139,50 @@ TEST_CASE("the numbers of the benchmarks' page are those of its tables", "[docs]
   page.add_given({"(23 November 2026, two cores of a virtual machine",
                   "with AMD's Zen 5 and AVX-512, no GPU; float, 3-D,", "The aim of 90 million",
                   "With 10⁷ particles a particle"});
+  CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
+}
+
+TEST_CASE("the numbers of another processor and of the laws are those of its tables", "[docs]") {
+  Page page("docs/benchmarks/index.md");
+  page.keep_from_to("## On another processor", "## Scenes");
+  const auto says = [&](const std::string& sentence, const std::vector<double>& values) {
+    INFO(sentence);
+    const auto printed = page.read(sentence);
+    REQUIRE(printed.size() == values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) CHECK(values[k] == printed[k].rounded());
+    page.add_measured(sentence);
+  };
+  const std::string rate = "rate (M/s)", baseline = "/ baseline", peaks = "Peaks", update = "triad (GB/s)";
+  says("whose memory moves # GB/s where that of the first moves #",
+       {number(peaks, {"2"}, update, intel), number(peaks, {"2"}, update)});
+  says("One thread steps # million particles a second at rest and # million deforming; two threads # and # million",
+       {cube("rest", "float", 1, rate, intel), cube("deforming", "float", 1, rate, intel),
+        cube("rest", "float", 2, rate, intel), cube("deforming", "float", 2, rate, intel)});
+  says("That is # and # times the baseline",
+       {cube("rest", "float", 1, baseline, intel), cube("deforming", "float", 1, baseline, intel)});
+  const auto plugins = numbers("Plugins against", {"*"}, "time with plugins / compiled in", intel);
+  says("Plugins cost up to # %", {100 * (*std::max_element(plugins.begin(), plugins.end()) - 1)});
+  says("costs # % where it is entered in every eighth step and # % where",
+       {100 * (cost("ledger of every 8th step", intel) - 1), 100 * (cost("ledger", intel) - 1)});
+  const double missed = targets("missed", intel);
+  says("Of # targets # are missed", {missed + targets("held", intel), missed});
+
+  for (const std::string name : {"linear_elastic", "corotated", "newtonian_fluid", "von_mises", "ideal_gas", "hencky",
+                                 "damage", "drucker_prager", "snow", "cam_clay"})
+    says("| `" + name + "` | # | # | # |",
+         {law(name, "cost / standard"), law(name, "bytes of state"), law(name, "flop of the law")});
+  says("| `prony`, two branches | # | # | # |",
+       {law("prony", "cost / standard"), law("prony", "bytes of state"), law("prony", "flop of the law")});
+  says("the law takes # of the # ns of the standard",
+       {number("Where the time goes", {"phase material"}, "cube_3d deforming float", intel),
+        law("neo_hookean", "ns a particle-step")});
+  // The targets of cheap laws and of von Mises, and the least that a law with principal stretches costs.
+  for (const auto& row : table("What a law costs", intel))
+    if (row[0] == "cube_3d") CHECK(std::stod(row[5]) > 0.9);
+  CHECK(law("von_mises", "cost / standard") <= 1.35);
+  CHECK(law("hencky", "cost / standard") >= 2.3);
+  page.add_given({"27 November 2026", "machine with AVX-512", "at most 0.9 of Neo-Hookean", "at most 1.35 and does",
+                  "at least 2.3 times Neo-Hookean"});
   CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
 }
 
