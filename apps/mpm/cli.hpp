@@ -60,6 +60,7 @@ struct AdviseOptions {
   std::filesystem::path study;  ///< the study's folder, or its file when it ran into the default folder
   std::string error, time;      ///< one of the two, as typed
   std::string by;               ///< measure that ranks; empty: the study's cost
+  std::string measure;          ///< measure that is the error; empty: the study's
   bool json = false;
 };
 

@@ -283,7 +283,8 @@ int advise(const AdviseOptions& options) {
   if (options.error.empty() == options.time.empty())
     refuse("command line", "give either --error, what must be reached, or --time, what may be spent");
   const fs::path folder = study_folder(options.study);
-  const Results results = read_results(folder);
+  Results results = read_results(folder);
+  if (!options.measure.empty()) results.study.error = measure_or_refuse(results, options.measure, "--measure").name;
   if (results.study.error.empty()) refuse(folder.string(), "the study names no \"error\" among its measures");
   const bool by_error = options.time.empty();
   Question question{&measure_or_refuse(results, results.study.error, folder.string()), nullptr, ""};

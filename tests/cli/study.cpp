@@ -130,6 +130,15 @@ TEST_CASE("a study runs every combination once, and only what changed again; adv
   const Result none = call(folder, {"advise", "out", "--error", "1e-9"});
   CHECK(none.code == 4);
   CHECK(has(none.out, "note: All steps are short.\nno combination has energy lost of at most 1e-9\nnearest: "));
+  // Another measure in the place of the error: two of the four take no more than 600 particle-steps.
+  const Json other_error = Json::parse(
+      call(folder, {"advise", "out", "--error", "600", "--by", "seconds", "--measure", "particle_steps", "--json"})
+          .out);
+  REQUIRE(other_error["good"].size() == 2);
+  for (const Json& good : other_error["good"]) CHECK(good["error"] == 520);
+  const Result unknown = call(folder, {"advise", "out", "--error", "600", "--measure", "steps"});
+  CHECK(unknown.code == 2);
+  CHECK(has(unknown.err, "--measure"));
   CHECK(call(folder, {"advise", "out"}).code == 2);
   CHECK(call(folder, {"advise", "out", "--error", "1 mm"}).code == 2);
   CHECK(call(folder, {"advise", "nowhere", "--error", "1"}).code == 2);
