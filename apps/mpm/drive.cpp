@@ -206,7 +206,12 @@ DriveExperiment read_standard(const DriveOptions& options, const std::string& na
     return drive::read_drive_text(text, options.id + "_" + name + ".json", lookup, overrides);
   } catch (const InputError& error) {
     std::vector<Problem> problems = error.problems();
-    for (Problem& problem : problems) problem = {"mpm drive " + options.id, 0, 0, problem.pointer, problem.message};
+    for (Problem& problem : problems) {
+      problem = {"mpm drive " + options.id, 0, 0, problem.pointer, problem.message};
+      const std::string key = "give \"cell_size\"";
+      if (const auto at = problem.message.find(key); at != std::string::npos)
+        problem.message.replace(at, key.size(), "give --cell-size H");
+    }
     throw InputError(std::move(problems));
   }
 }

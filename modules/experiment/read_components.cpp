@@ -59,7 +59,9 @@ void refuse_parameters(const Component& component, const Fields& fields, mpm_ref
   const auto quantity = [&](double number) { return number_text(number) + (unit.empty() ? "" : " " + unit); };
   std::string text = std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))) + " " +
                      in_quotes(plugin.id()) + " cannot have " + in_quotes(name) + " " + quantity(value);
-  if (std::isfinite(refusal.limit))
+  if (value == refusal.limit)
+    text += ", which is the limit itself";
+  else if (std::isfinite(refusal.limit))
     text += std::string(", ") + (value > refusal.limit ? "at most " : "at least ") + quantity(refusal.limit);
   const Node* in_component = own ? component_node.find(declared->name) : nullptr;
   const Node& place = !own ? cell_size : in_component ? *in_component : component_node;

@@ -38,13 +38,23 @@ MPM_HD Sym<D, S> unimodular(Sym<D, S> b) {
 
 /// The mean of tr(b)/3 that makes det(d + t I) = 1 for a deviatoric d: largest root of t^3 - (d:d/2) t + det d - 1.
 /// Newton from a start at or above the root is monotone, the cubic being convex there. 2 sqrt(d:d/6) + 1 is no less than
-/// the root either, and near it where a large trial was returned to a small d.
+/// the root either, and near it where a large trial was returned to a small d. A lane keeps its root once its step says
+/// that the next would not change it, whatever the lanes beside it need: two or three steps for metals, and one for each
+/// halving of the way where the root of a large d is nearly a double one.
 template <int D, class S>
 MPM_HD S unimodular_mean(const Sym<D, S>& d, S start) {
-  const S half_norm = real<S>(0.5) * squared_norm(d), offset = determinant(d) - real<S>(1);
-  S t = min(start, real<S>(1.1547005383792517) * sqrt(half_norm) + real<S>(1));
-  for (int iteration = 0; iteration < 8; ++iteration)
-    t = t - (t * (t * t - half_norm) + offset) / (real<S>(3) * t * t - half_norm);
+  constexpr auto rounding = scalar_of<S>(sizeof(scalar_of<S>) == 4 ? 0x1p-23 : 0x1p-52);
+  const S half_norm = real<S>(0.5) * squared_norm(d), offset = determinant(d) - real<S>(1), norm = sqrt(half_norm);
+  // Where the cubic turns: the largest root lies above, but rounding may not.
+  const S least = real<S>(0.5773502691896257) * norm;
+  S t = min(start, real<S>(1.1547005383792517) * norm + real<S>(1)), active = S(real<S>(1));
+  for (int iteration = 0; iteration < 100 && any(active > real<S>(0.5)); ++iteration) {
+    const S slope = max(real<S>(3) * t * t - half_norm, rounding * half_norm);
+    const S next = max(t - (t * (t * t - half_norm) + offset) / slope, least), down = t - next;
+    t = select(active > real<S>(0.5), next, t);
+    // What is left of a step of Newton is its square times half of the curvature over the slope.
+    active = select(real<S>(3) * down * down > rounding * slope, active, S(real<S>(0)));
+  }
   return t;
 }
 

@@ -107,8 +107,7 @@ void refuse_laws(const Experiment& experiment) {
     refuse(experiment, experiment.contact->pointer,
            name_of(*experiment.contact) +
                " asks for the traction around a node, whose neighbours end at a periodic face; close the periodic "
-               "axis, or "
-               "take another law");
+               "axis, or take another law");
 }
 
 /// A filter and a ledger that skip steps meet always, or never, where their numbers have a common divisor.

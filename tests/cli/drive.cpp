@@ -76,6 +76,10 @@ TEST_CASE("drive: what is missing or wrong is code 2, and a path that cannot be 
   refused("neo_hookean", with(rubber, {"--param", "colour"}), R"("colour" is not of the form name=value)");
   refused("neo_hookean", with(rubber, {"--path", "bent"}), "--path");
   refused("scene.json", {}, "runs with `mpm run`");
+  refused("damage",
+          {"--param", "youngs_modulus=1e9", "--param", "poisson_ratio=0.2", "--param", "density=1000", "--param",
+           "tensile_strength=1e6", "--param", "fracture_energy=100"},
+          R"(material "damage" reads the cell size of a grid: give --cell-size H, m)");
   Json scene = pulled();
   scene["solver"]["stages"][0]["deformation_gradient"]["xx"] = "1 - 2*t";
   spill(folder / "scene.json", scene.dump());

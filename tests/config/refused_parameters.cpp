@@ -58,6 +58,8 @@ TEST_CASE("cells on which damage would snap back are refused with the largest us
   CHECK(refusal("{" + brittle + "}", "0.05") ==
         "test.json:1:41: /grid/cell_size: material \"damage\" cannot have \"cell_size\" 0.05 m, at most 0.04 m: " +
             snaps_back);
+  CHECK(refusal("{" + brittle + "}", "0.04").find("\"cell_size\" 0.04 m, which is the limit itself: at its strength") !=
+        std::string::npos);
   CHECK(refusal("{" + brittle + ", \"softening\": \"bilinear\"}", "\"25 mm\"") ==
         "test.json:1:41: /grid/cell_size: material \"damage\" cannot have \"cell_size\" 0.025 m, at most 0.024 m: " +
             snaps_back);

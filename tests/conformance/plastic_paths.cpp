@@ -209,8 +209,8 @@ TEST_CASE("von Mises: around an axis the hoop stretches as the third axis of spa
 
 TEST_CASE("metals: the mean that makes a returned deviator unimodular, from a start far above it too") {
   // det(d + t) = 1 for d = diag(a, b, -a - b), by halving.
-  for (double size : {1e-6, 0.1, 1.0, 3.0})
-    for (double ratio : {-0.5, 0.0, 0.4, 1.0})
+  for (double size : {1e-6, 0.1, 1.0, 3.0, 100.0, 1e4})
+    for (double ratio : {-2.0, -0.5, 0.0, 0.4, 1.0})
       for (double start : {1.0, 1e3, 1e6}) {
         const Sym<3, double> d{{size, ratio * size, -(1 + ratio) * size, 0, 0, 0}};
         double low = std::max({-d.s[0], -d.s[1], -d.s[2]}), high = 4 * size + 2;

@@ -2,9 +2,8 @@
 // planted mistake is caught by the check that names it.
 
 #include <cmath>
-#include <set>
 
-#include "conformance/conformance.hpp"
+#include "faults/failed_checks.hpp"
 #include "filters/fmpm/fmpm.hpp"
 #include "filters/xpic/xpic.hpp"
 #include "materials/drucker_prager/drucker_prager.hpp"
@@ -17,34 +16,20 @@ namespace mpm {  // so that functors find mpm::floor and its like, as those of t
 namespace {
 
 using test::BandHardening;
+using test::check_caught;
+using test::failures;
+using test::findings;
+using test::name_of;
 using test::WarmRubber;
 
 constexpr const char* source = "struct Fixture {};";
 template <class F>
 constexpr mpm_descriptor material_of = sdk::material<F>(test::fixture_manual, source);
 
-std::vector<ConformanceFinding> findings(const mpm_descriptor& descriptor) {
-  return check_plugin(Plugin{&descriptor, "test"});
-}
-
-/// Names of the failed checks, without precision and dimension.
-std::set<std::string> failures(const mpm_descriptor& descriptor) {
-  std::set<std::string> names;
-  for (const ConformanceFinding& finding : findings(descriptor))
-    if (!finding.passed) names.insert(finding.check.substr(0, finding.check.find(" [")));
-  return names;
-}
-
 bool was_checked(const mpm_descriptor& descriptor, const std::string& check) {
   for (const ConformanceFinding& finding : findings(descriptor))
-    if (finding.check.substr(0, finding.check.find(" [")) == check) return true;
+    if (name_of(finding) == check) return true;
   return false;
-}
-
-void check_caught(const mpm_descriptor& descriptor, const std::string& check) {
-  const std::set<std::string> failed = failures(descriptor);
-  CAPTURE(failed);
-  CHECK(failed.count(check) == 1);
 }
 
 /// A copy of a descriptor with another table as its one extension.

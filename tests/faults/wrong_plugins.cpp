@@ -1,13 +1,12 @@
 // The suite must catch wrong plugins: each functor here has one planted mistake, and the check that names it must fail.
 
 #include <limits>
-#include <set>
 
-#include "conformance/conformance.hpp"
 #include "contacts/coulomb/coulomb.hpp"
 #include "contacts/linear_interface/linear_interface.hpp"
 #include "contacts/liquid_contact/liquid_contact.hpp"
 #include "contacts/stick/stick.hpp"
+#include "faults/failed_checks.hpp"
 #include "filters/fmpm/fmpm.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
 #include "materials/prony/prony.hpp"
@@ -31,13 +30,8 @@
 namespace mpm {  // so that functors find mpm::floor and its like, as those of the modules do
 namespace {
 
-/// Names of the failed checks, without precision and dimension.
-std::set<std::string> failures(const mpm_descriptor& descriptor) {
-  std::set<std::string> names;
-  for (const ConformanceFinding& finding : check_plugin(Plugin{&descriptor, "test"}))
-    if (!finding.passed) names.insert(finding.check.substr(0, finding.check.find(" [")));
-  return names;
-}
+using test::check_caught;
+using test::failures;
 
 constexpr sdk::Manual manual{"wrong", "1.0.0", "a wrong one", "none", "for tests", "Wrong"};
 constexpr const char* source = "struct Wrong {};";
@@ -579,12 +573,6 @@ template <class F>
 constexpr mpm_descriptor wrong_contact = sdk::contact<F>(manual, source);
 template <class F>
 constexpr mpm_descriptor wrong_material = sdk::material<F>(manual, source);
-
-void check_caught(const mpm_descriptor& descriptor, const char* check) {
-  const std::set<std::string> failed = failures(descriptor);
-  CAPTURE(failed);
-  CHECK(failed.count(check) == 1);
-}
 
 TEST_CASE("the plugins that the wrong ones are made from pass") {
   CHECK(failures(wrong_shape<BsplineQuadratic>).empty());

@@ -22,7 +22,7 @@ tension has a stress sigma(kappa) at kappa = ln s: E kappa up to `tensile_streng
 
 b = `band_cells` times the cell size is the width of the band in which strain localises. The area below sigma(kappa) is Gc/b, so
 that a crack through a bar dissipates Gc = `fracture_energy` a unit of area on any grid. It is one cell for linear shapes and two for
-quadratic B-splines: bars that crack along the cells then dissipate Gc, and 1.02 to 1.04 Gc. A band that crosses the cells askew is wider: b
+quadratic B-splines: bars that crack along the cells then dissipate Gc, and 0.95 to 1.04 Gc. A band that crosses the cells askew is wider: b
 does not know it.
 
 A band may not be so wide that it holds more elastic energy at its strength than its crack dissipates (snap-back): b < 2 E Gc/ft^2,
