@@ -39,7 +39,10 @@ OrderedJson ExperimentReader::read_rigid_body(const Node& node) {
 /// Refuses motions that a solid of revolution does not have: its points would not stay together around the axis.
 void ExperimentReader::check_rigid_about_axis(const Fields& fields) {
   if (!experiment_.axisymmetric() || context_.dimension != 2) return;
-  if (fields.valid("angular_velocity") && fields.given("angular_velocity"))
+  // A resolved experiment has the default, zero: it must be read again, as a study and a resumed run do.
+  const VectorExpression turning = fields.expression("angular_velocity");
+  const bool turns = !turning.is_constant() || turning({}, {}, 0) != Vector3{};
+  if (fields.valid("angular_velocity") && fields.given("angular_velocity") && turns)
     problem(fields.place("angular_velocity"),
             "in an axisymmetric scene nothing turns in the plane of radius and axis: the body would not stay rigid "
             "around the axis; remove it");

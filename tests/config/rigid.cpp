@@ -85,6 +85,8 @@ TEST_CASE("around an axis a rigid body stays one", "[config]") {
   const std::string along_radius = "a body that moves along its radius (x) does not stay rigid";
   CHECK(refusal(R"(, "angular_velocity": 1)").find("nothing turns in the plane of radius and axis") !=
         std::string::npos);
+  CHECK(refusal(R"(, "angular_velocity": "t")").find("nothing turns") != std::string::npos);
+  CHECK(refusal(R"(, "angular_velocity": 0)") == "accepted");  // as a resolved experiment has it
   CHECK(refusal(R"(, "velocity": [1, 0])").find(along_radius) != std::string::npos);
   CHECK(refusal(R"(, "velocity": ["t", 0])").find(along_radius) != std::string::npos);
   CHECK(refusal(R"(, "velocity": [0, "t"])") == "accepted");
