@@ -155,28 +155,38 @@ void GridStep<D, T>::fold_walls(bool remap, const StepInfo& step) {
   if (!remap) fold_forces(false, step.time, step.dt);
 }
 
+/// Folds the ghosts of the faces, those of one axis after the other. A wall folds onto itself after all ghosts of its axis:
+/// in a domain of one cell those of the other wall are added to its nodes.
 template <int D, class T>
 void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step) {
   const double dt = remap ? 0.0 : step.dt;
-  for (FaceNodes& face : grid_.faces()) {
-    if (face.periodic() != periodic || (face.pairs.empty() && face.wall.empty())) continue;
-    const bool separate = face.condition->type == ConditionType::separate;
-    find_wall_velocities(face, step.time);
-    signs_.clear();
-    for (const Channel c : folded_[static_cast<int>(Folded::with_mass)])
-      signs_.push_back({mirror_signs(face, grid_.field(c).at_wall)});
-    for (int field = 0; field < grid_.fields(); ++field) {
-      if (!remap && grid_.has(heat) && passes_heat(*face.condition)) find_gradients(face, field, step.time);
-      for (std::size_t i = 0; i < face.pairs.size(); ++i) {
-        const MirrorPair& pair = face.pairs[i];
-        const bool folds = motion_at(field, pair.ghost)[3] > 0 && (!separate || approaches(face, field, pair, dt));
-        face.pair_folds[field * face.pairs.size() + i] = folds;
-        if (notes_reactions_) face.folded_mass[field * face.pairs.size() + i] = motion_at(field, pair.ghost)[3];
-        if (folds) fold_pair(face, i, field, remap, step.time);
-      }
-      if (!remap && grid_.has(capacity_position) && passes_heat(*face.condition)) fold_heat_onto_itself(face, field);
-      if (!periodic && !remap && !slipping_.empty()) fold_wall_onto_itself(face, field, dt);
+  for (int axis = 0; axis < D; ++axis) {
+    if (scene_.domain.periodic(axis) != periodic) continue;
+    for (FaceNodes& face : grid_.faces())
+      if (face.axis == axis && !(face.pairs.empty() && face.wall.empty())) fold_face(face, remap, step.time, dt);
+    if (periodic || remap || slipping_.empty()) continue;
+    for (const FaceNodes& face : grid_.faces())
+      for (int field = 0; face.axis == axis && field < grid_.fields(); ++field) fold_wall_onto_itself(face, field, dt);
+  }
+}
+
+template <int D, class T>
+void GridStep<D, T>::fold_face(FaceNodes& face, bool remap, double time, double dt) {
+  const bool separate = face.condition->type == ConditionType::separate;
+  find_wall_velocities(face, time);
+  signs_.clear();
+  for (const Channel c : folded_[static_cast<int>(Folded::with_mass)])
+    signs_.push_back({mirror_signs(face, grid_.field(c).at_wall)});
+  for (int field = 0; field < grid_.fields(); ++field) {
+    if (!remap && grid_.has(heat) && passes_heat(*face.condition)) find_gradients(face, field, time);
+    for (std::size_t i = 0; i < face.pairs.size(); ++i) {
+      const MirrorPair& pair = face.pairs[i];
+      const bool folds = motion_at(field, pair.ghost)[3] > 0 && (!separate || approaches(face, field, pair, dt));
+      face.pair_folds[field * face.pairs.size() + i] = folds;
+      if (notes_reactions_) face.folded_mass[field * face.pairs.size() + i] = motion_at(field, pair.ghost)[3];
+      if (folds) fold_pair(face, i, field, remap, time);
     }
+    if (!remap && grid_.has(capacity_position) && passes_heat(*face.condition)) fold_heat_onto_itself(face, field);
   }
 }
 

@@ -106,6 +106,7 @@ class GridStep : NamedChannels {
   void fold_momentum(Channel channel, int field, const MirrorPair& pair, Q signs, Q wall_velocity);
   void fold_as_is(Channel channel, int field, const MirrorPair& pair, Q signs);
   void fold_pair(FaceNodes& face, std::size_t pair, int field, bool remap, double time);
+  void fold_face(FaceNodes& face, bool remap, double time, double dt);
   void fold_wall_onto_itself(const FaceNodes& face, int field, double dt);
   bool approaches(const FaceNodes& face, int field, const MirrorPair& pair, double dt);
   void fold_forces(bool periodic, double time, double dt);
