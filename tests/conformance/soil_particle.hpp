@@ -85,4 +85,15 @@ inline double root_of(double a, double b, const std::function<double(double)>& f
   return 0.5 * (a + b);
 }
 
+/// Strains of `size` go round and end where they began, within the elastic range: no heat, and the energy is back.
+template <class Material>
+void check_elastic_loop(Particle<Material>& particle, double size) {
+  const double energy = particle.energy();
+  const double legs[4][3] = {{1, -2, 0.5}, {-2, 1, 0}, {-1, 2, -0.5}, {2, -1, 0}};
+  for (const auto& leg : legs)
+    for (int step = 0; step < 50; ++step) particle.strain(size / 50 * leg[0], size / 50 * leg[1], size / 50 * leg[2]);
+  CHECK(particle.heat == 0);
+  CHECK(particle.energy() == Approx(energy).epsilon(1e-10));
+}
+
 }  // namespace mpm::test::soils

@@ -81,18 +81,23 @@ double targets(const std::string& verdict, const std::string& file) {
   return count;
 }
 
-}  // namespace
-
-TEST_CASE("the numbers of the benchmarks' page are those of its tables", "[docs]") {
-  Page page("docs/benchmarks/index.md");
-  page.keep_from_to("What they say", "A target that is missed");
-  const auto says = [&](const std::string& sentence, const std::vector<double>& values) {
+/// Checks a sentence of a page against the numbers that it must print, and notes it.
+auto numbers_said_by(Page& page) {
+  return [&page](const std::string& sentence, const std::vector<double>& values) {
     INFO(sentence);
     const auto printed = page.read(sentence);
     REQUIRE(printed.size() == values.size());
     for (std::size_t k = 0; k < values.size(); ++k) CHECK(values[k] == printed[k].rounded());
     page.add_measured(sentence);
   };
+}
+
+}  // namespace
+
+TEST_CASE("the numbers of the benchmarks' page are those of its tables", "[docs]") {
+  Page page("docs/benchmarks/index.md");
+  page.keep_from_to("What they say", "A target that is missed");
+  const auto says = numbers_said_by(page);
   const std::string rate = "rate (M/s)", baseline = "/ baseline", rest = "/ rest", peak = "of FMA peak (%)",
                     one = "/ 1 thread";
   says("| one thread, float: million particle-steps a second; over the baseline | #; # | #; # | # |",
@@ -145,13 +150,7 @@ TEST_CASE("the numbers of the benchmarks' page are those of its tables", "[docs]
 TEST_CASE("the numbers of another processor and of the laws are those of its tables", "[docs]") {
   Page page("docs/benchmarks/index.md");
   page.keep_from_to("## On another processor", "## Scenes");
-  const auto says = [&](const std::string& sentence, const std::vector<double>& values) {
-    INFO(sentence);
-    const auto printed = page.read(sentence);
-    REQUIRE(printed.size() == values.size());
-    for (std::size_t k = 0; k < values.size(); ++k) CHECK(values[k] == printed[k].rounded());
-    page.add_measured(sentence);
-  };
+  const auto says = numbers_said_by(page);
   const std::string rate = "rate (M/s)", baseline = "/ baseline", peaks = "Peaks", update = "triad (GB/s)";
   says("whose memory moves # GB/s where that of the first moves #",
        {number(peaks, {"2"}, update, intel), number(peaks, {"2"}, update)});
