@@ -97,7 +97,8 @@ void add_advise(CLI::App& verb, AdviseOptions& options) {
   verb.add_option("--error", options.error, "largest error, such as 1% or \"0.1 mm\": the cheapest that reaches it");
   verb.add_option("--time", options.time, "largest time of stepping, such as 10s: the most exact within it");
   verb.add_option("--by", options.by, "with --error: measure that is to be small, such as particle_steps");
-  verb.add_option("--measure", options.measure, "measure that is the error, in place of the study's own");
+  verb.add_option("--measure", options.measure,
+                  "measure that is the error, zero where nothing is wrong, in place of the study's own");
   verb.add_flag("--json", options.json, "as JSON");
   verb.footer("Exit code 4 when no combination reaches the target; the nearest are then listed.");
 }

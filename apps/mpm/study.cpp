@@ -241,6 +241,16 @@ const study::Measure& measure_or_refuse(const Results& results, const std::strin
          "no measure is called " + in_quotes(name) + suggestion(name, names, "measures: " + quoted_list(names)));
 }
 
+/// The measure that stands for the error. What is below zero somewhere is no error: the least of it is not the best.
+const study::Measure& error_or_refuse(const Results& results, const std::string& name) {
+  const study::Measure& measure = measure_or_refuse(results, name, "--measure");
+  for (const study::Result& result : results.results)
+    if (result.value(name) < 0)
+      refuse("--measure", in_quotes(name) + " is below zero in " + study::label_of(results.study, result.combination) +
+                              ": advice takes the least; give a measure that is zero where nothing is wrong");
+  return measure;
+}
+
 }  // namespace
 
 int study(const StudyOptions& options) {
@@ -284,8 +294,9 @@ int advise(const AdviseOptions& options) {
     refuse("command line", "give either --error, what must be reached, or --time, what may be spent");
   const fs::path folder = study_folder(options.study);
   Results results = read_results(folder);
-  if (!options.measure.empty()) results.study.error = measure_or_refuse(results, options.measure, "--measure").name;
-  if (results.study.error.empty()) refuse(folder.string(), "the study names no \"error\" among its measures");
+  if (!options.measure.empty()) results.study.error = error_or_refuse(results, options.measure).name;
+  if (results.study.error.empty())
+    refuse(folder.string(), "the study names no \"error\" among its measures; give one with --measure");
   const bool by_error = options.time.empty();
   Question question{&measure_or_refuse(results, results.study.error, folder.string()), nullptr, ""};
   study::Advice advice;

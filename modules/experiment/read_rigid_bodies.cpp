@@ -40,7 +40,7 @@ OrderedJson ExperimentReader::read_rigid_body(const Node& node) {
 void ExperimentReader::check_rigid_about_axis(const Fields& fields) {
   if (!experiment_.axisymmetric() || context_.dimension != 2) return;
   // A resolved experiment has the default, zero: it must be read again, as a study and a resumed run do.
-  const VectorExpression turning = fields.expression("angular_velocity");
+  const VectorExpression& turning = fields.expression("angular_velocity");
   const bool turns = !turning.is_constant() || turning({}, {}, 0) != Vector3{};
   if (fields.valid("angular_velocity") && fields.given("angular_velocity") && turns)
     problem(fields.place("angular_velocity"),

@@ -136,6 +136,15 @@ TEST_CASE("a study runs every combination once, and only what changed again; adv
           .out);
   REQUIRE(other_error["good"].size() == 2);
   for (const Json& good : other_error["good"]) CHECK(good["error"] == 520);
+  // Of a change with a sign the least is not the best.
+  Json signed_study = json_in(folder / "out/study.json");
+  for (Json& run : signed_study["runs"]) run["measures"]["loss"] = -1.0;
+  fs::create_directory(folder / "signed");
+  spill(folder / "signed/study.json", signed_study.dump());
+  const Result below = call(folder, {"advise", "signed", "--error", "1", "--measure", "loss"});
+  INFO(below.err);
+  CHECK(below.code == 2);
+  CHECK(has(below.err, R"("loss" is below zero in )"));
   const Result unknown = call(folder, {"advise", "out", "--error", "600", "--measure", "steps"});
   CHECK(unknown.code == 2);
   CHECK(has(unknown.err, "--measure"));

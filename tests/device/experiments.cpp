@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 
 #include "backends/device/program.hpp"
 
@@ -14,11 +15,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Where rounding alone decides how a scene begins, as bodies touch at the very distance at which contact acts, or a grip has
+/// half of a node's mass: jitter of these bodies takes it off the tie.
+std::vector<std::string> settings_of(const fs::path& file, const std::string& precision) {
+  static const std::map<std::string, std::vector<int>> tied{
+      {"studies/bars_of_unlike_mass.json", {0, 1}},
+      {"studies/cracking_bar.json", {0, 2}},
+      {"studies/rigid_corner.json", {0}},
+  };
+  std::vector<std::string> settings{set("/precision", precision)};
+  if (const auto found = tied.find(shipped_name(file)); found != tied.end())
+    for (const int body : found->second) settings.push_back(set("/bodies/" + std::to_string(body) + "/jitter", "0.2"));
+  return settings;
+}
+
 /// A shipped experiment on a backend.
 class Shipped {
  public:
   Shipped(const fs::path& file, const std::string& backend, const std::string& precision)
-      : experiment(read_shipped(file, backend, {set("/precision", precision)})),
+      : experiment(read_shipped(file, backend, settings_of(file, precision))),
         simulation(experiment, backend_factory(1, false, "host")),
         metrics(simulation) {}
   void steps(int count) {

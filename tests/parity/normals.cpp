@@ -102,33 +102,3 @@ TEST_CASE("parity of normals and surfaces of particles beside walls, around an a
     check_parity(sizes);
   }
 }
-
-// The ghosts of one wall are the nodes of the other in a domain of one cell: what points across a wall goes after both.
-TEST_CASE("parity of every normal in a domain of one cell between two walls", "[parity][normals]") {
-  for (const std::string& normal : variants(MPM_NORMAL))
-    for (const std::string wall : {"slip", "stick", "separate"})
-      for (const std::string order : {"last", "modified_last"}) {
-        const std::string text =
-            R"J({"title": "narrow", "dimension": 2, "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
-          "grid": {"cell_size": 0.1, "domain": [[0, 0], [1.2, 0.1]], "boundaries": {"all": ")J" +
-            wall + R"J("}}, "contact": )J" + contact_of(coulomb, normal) + R"J(,
-          "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000}},
-          "bodies": [{"name": "a", "material": "m", "velocity": [0.5, 0.1],
-                      "geometry": {"type": "box", "lower": [0.2, 0], "upper": [0.6, 0.1]}},
-                     {"name": "b", "material": "m", "velocity": [-0.3, -0.2], "jitter": 0.3,
-                      "geometry": {"type": "box", "lower": [0.6, 0], "upper": [1, 0.1]}}],
-          "solver": {"time_step": 0.005, "end_time": 0.2}})J";
-        INFO(text);
-        const std::string ordered = set("/solver/stress_update", order);
-        Scene reference(text, {"/backend=reference", ordered});
-        reference.run();
-        for (const std::string precision : {"double", "float"}) {
-          INFO(precision);
-          const double epsilon =
-              precision == "double" ? std::numeric_limits<double>::epsilon() : std::numeric_limits<float>::epsilon();
-          Scene cpu(text, {"/backend=cpu", set("/precision", precision), ordered});
-          cpu.run();
-          compare_states(reference, cpu, epsilon, parity_tolerance);
-        }
-      }
-}

@@ -157,7 +157,7 @@ TEST_CASE("the numbers of another processor and of the laws are those of its tab
   says("One thread steps # million particles a second at rest and # million deforming; two threads # and # million",
        {cube("rest", "float", 1, rate, intel), cube("deforming", "float", 1, rate, intel),
         cube("rest", "float", 2, rate, intel), cube("deforming", "float", 2, rate, intel)});
-  says("That is # and # times the baseline",
+  says("One thread is # and # times as fast as the baseline",
        {cube("rest", "float", 1, baseline, intel), cube("deforming", "float", 1, baseline, intel)});
   const auto plugins = numbers("Plugins against", {"*"}, "time with plugins / compiled in", intel);
   says("Plugins cost up to # %", {100 * (*std::max_element(plugins.begin(), plugins.end()) - 1)});
@@ -170,6 +170,7 @@ TEST_CASE("the numbers of another processor and of the laws are those of its tab
                                  "damage", "drucker_prager", "snow", "cam_clay"})
     says("| `" + name + "` | # | # | # |",
          {law(name, "cost / standard"), law(name, "bytes of state"), law(name, "flop of the law")});
+  says("the laws, costs # of the standard", {law("neo_hookean", "cost / standard")});
   says("| `prony`, two branches | # | # | # |",
        {law("prony", "cost / standard"), law("prony", "bytes of state"), law("prony", "flop of the law")});
   says("the law takes # of the # ns of the standard",

@@ -156,20 +156,25 @@ void GridStep<D, T>::fold_walls(bool remap, const StepInfo& step) {
 }
 
 /// Folds the ghosts of the faces, those of one axis after the other. A wall folds onto itself after all ghosts of its axis:
-/// in a domain of one cell those of the other wall are added to its nodes.
+/// in a domain of one cell, those of the other wall are added to its nodes.
 template <int D, class T>
 void GridStep<D, T>::fold_faces(bool periodic, bool remap, const StepInfo& step) {
   const double dt = remap ? 0.0 : step.dt;
   for (int axis = 0; axis < D; ++axis) {
     if (scene_.domain.periodic(axis) != periodic) continue;
+    if (!periodic && !remap && grid_.has(heat)) find_gradients(axis, step.time);
     for (FaceNodes& face : grid_.faces())
       if (face.axis == axis && !(face.pairs.empty() && face.wall.empty())) fold_face(face, remap, step.time, dt);
-    if (periodic || remap || slipping_.empty()) continue;
+    if (periodic || remap) continue;
     for (const FaceNodes& face : grid_.faces())
-      for (int field = 0; face.axis == axis && field < grid_.fields(); ++field) fold_wall_onto_itself(face, field, dt);
+      for (int field = 0; face.axis == axis && field < grid_.fields(); ++field) {
+        if (grid_.has(capacity_position) && passes_heat(*face.condition)) fold_heat_onto_itself(face, field);
+        if (!slipping_.empty()) fold_wall_onto_itself(face, field, dt);
+      }
   }
 }
 
+/// Decides which ghosts of a face fold in this step, and folds these.
 template <int D, class T>
 void GridStep<D, T>::fold_face(FaceNodes& face, bool remap, double time, double dt) {
   const bool separate = face.condition->type == ConditionType::separate;
@@ -177,8 +182,7 @@ void GridStep<D, T>::fold_face(FaceNodes& face, bool remap, double time, double 
   signs_.clear();
   for (const Channel c : folded_[static_cast<int>(Folded::with_mass)])
     signs_.push_back({mirror_signs(face, grid_.field(c).at_wall)});
-  for (int field = 0; field < grid_.fields(); ++field) {
-    if (!remap && grid_.has(heat) && passes_heat(*face.condition)) find_gradients(face, field, time);
+  for (int field = 0; field < grid_.fields(); ++field)
     for (std::size_t i = 0; i < face.pairs.size(); ++i) {
       const MirrorPair& pair = face.pairs[i];
       const bool folds = motion_at(field, pair.ghost)[3] > 0 && (!separate || approaches(face, field, pair, dt));
@@ -186,8 +190,6 @@ void GridStep<D, T>::fold_face(FaceNodes& face, bool remap, double time, double 
       if (notes_reactions_) face.folded_mass[field * face.pairs.size() + i] = motion_at(field, pair.ghost)[3];
       if (folds) fold_pair(face, i, field, remap, time);
     }
-    if (!remap && grid_.has(capacity_position) && passes_heat(*face.condition)) fold_heat_onto_itself(face, field);
-  }
 }
 
 /// Returns the work a second of a moving wall on what lies beyond it: a ghost moves at (1 - sign) times the wall's

@@ -66,18 +66,20 @@ double GridStep<D, T>::gradient_at(const FaceNodes& face, int field, const Vecto
   return -flux_through(face, field, x, time, divided) * volume[0] / volume[3];
 }
 
-/// Finds the gradients at a wall that heat comes through before anything of the field is folded there.
+/// Finds the gradients at the walls of an axis that heat comes through before anything is folded along it.
 template <int D, class T>
-void GridStep<D, T>::find_gradients(const FaceNodes& face, int field, double time) {
-  gradients_.clear();
-  for (std::size_t i = 0; i < face.wall.size(); ++i)
-    gradients_[face.wall[i]] = gradient_at(face, field, face.wall_position[i], time, false);
+void GridStep<D, T>::find_gradients(int axis, double time) {
+  gradients_.assign(static_cast<std::size_t>(grid_.fields()), {});
+  for (const FaceNodes& face : grid_.faces())
+    for (int field = 0; face.axis == axis && passes_heat(*face.condition) && field < grid_.fields(); ++field)
+      for (std::size_t i = 0; i < face.wall.size(); ++i)
+        gradients_[field][face.wall[i]] = gradient_at(face, field, face.wall_position[i], time, false);
 }
 
 template <int D, class T>
-double GridStep<D, T>::gradient_before_folds(const FaceNodes& face, const Vector3& x) const {
-  const auto found = gradients_.find(node_at_place(x, face.axis, 0));
-  return found == gradients_.end() ? 0.0 : found->second;
+double GridStep<D, T>::gradient_before_folds(const FaceNodes& face, int field, const Vector3& x) const {
+  const auto found = gradients_[field].find(node_at_place(x, face.axis, 0));
+  return found == gradients_[field].end() ? 0.0 : found->second;
 }
 
 template <int D, class T>
@@ -97,7 +99,7 @@ void GridStep<D, T>::fold_heat(FaceNodes& face, std::size_t index, int field, do
                         : T(0);
   T folded = mirrored(ghost[0], mirror_signs(face, AtWall::heat)[0], ghost[3] * of_wall);
   if (passes_heat(*face.condition))
-    folded += static_cast<T>(heat_beyond_wall(gradient_before_folds(face, pair.foot), pair.distance,
+    folded += static_cast<T>(heat_beyond_wall(gradient_before_folds(face, field, pair.foot), pair.distance,
                                               static_cast<double>(ghost[3]), capacity_inward(face, field, pair.ghost)));
   const double change = static_cast<double>(folded) - ghost[0];
   heat_of_folds_ += change;
@@ -112,7 +114,7 @@ void GridStep<D, T>::fold_heat_onto_itself(const FaceNodes& face, int field) {
   for (std::size_t i = 0; i < face.wall.size(); ++i) {
     Q& of_node = grid_.quad(heat, field, face.wall[i]);
     if (!(of_node[3] > T(0))) continue;
-    const double change = 0.5 * heat_beyond_wall(gradient_before_folds(face, face.wall_position[i]), 0.0, 0.0,
+    const double change = 0.5 * heat_beyond_wall(gradient_before_folds(face, field, face.wall_position[i]), 0.0, 0.0,
                                                  capacity_inward(face, field, face.wall[i]));
     of_node[0] += static_cast<T>(change);
     heat_of_folds_ += change;

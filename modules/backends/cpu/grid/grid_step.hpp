@@ -151,8 +151,8 @@ class GridStep : NamedChannels {
 
   void fold_heat(FaceNodes& face, std::size_t pair, int field, double time);
   void fold_heat_onto_itself(const FaceNodes& face, int field);
-  void find_gradients(const FaceNodes& face, int field, double time);
-  double gradient_before_folds(const FaceNodes& face, const Vector3& x) const;
+  void find_gradients(int axis, double time);
+  double gradient_before_folds(const FaceNodes& face, int field, const Vector3& x) const;
   std::uint32_t node_at_place(const Vector3& x, int axis, int cells) const;
   double flux_through(const FaceNodes& face, int field, const Vector3& x, double time, bool divided);
   double gradient_at(const FaceNodes& face, int field, const Vector3& x, double time, bool divided);
@@ -264,9 +264,9 @@ class GridStep : NamedChannels {
   double early_share_ = 0;           ///< share of a step's strain that comes before the forces
   const WallWeights wall_weights_;   ///< empty where no heat comes through a wall
   double particle_heat_ = 0, heat_after_ = 0;
-  std::unordered_map<std::uint32_t, double> gradients_;  ///< K/m, inward at nodes of the wall that is being folded
-  Beyond beyond_;                                        ///< heat of the temperatures before the forces
-  double heat_of_folds_ = 0, rate_of_folds_ = 0;         ///< J and W that nodes have since their ghosts were folded
+  std::vector<std::unordered_map<std::uint32_t, double>> gradients_;  ///< K/m, inward at nodes of walls, by field
+  Beyond beyond_;                                                     ///< heat of the temperatures before the forces
+  double heat_of_folds_ = 0, rate_of_folds_ = 0;  ///< J and W that nodes have since their ghosts were folded
   bool has_gravity_ = false;
   bool may_merge_ = false;        ///< see merges: momentum_to_velocity leaves the division to apply_forces
   bool accounted_ = false;        ///< the ledger takes its entries from the step under way
