@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "kernel/lanes.hpp"
 #include "materials/von_mises/von_mises.hpp"
 #include "support/catch.hpp"
 
@@ -222,4 +223,38 @@ TEST_CASE("metals: the mean that makes a returned deviator unimodular, from a st
         CAPTURE(size, ratio, start);
         CHECK(unimodular_mean(d, start) == Approx(high).epsilon(1e-10));
       }
+}
+
+TEST_CASE("metals: each lane of a pack finds the mean of its own turned deviator, in float and in double") {
+  const auto check = [](auto zero, double largest, double tolerance) {
+    using T = decltype(zero);
+    using L = Lanes<T>;
+    const double angle = 0.7, cosine = std::cos(angle), sine = std::sin(angle);
+    Sym<3, L> turned;
+    std::array<double, L::width> exact{};
+    for (int lane = 0; lane < L::width; ++lane) {
+      // diag(2 a, -a, -a), turned: (t + 2 a) (t - a)^2 = 1, by halving.
+      const double a = largest * std::pow(0.25, lane);
+      double low = a, high = 4 * a + 2;
+      for (int k = 0; k < 200; ++k) {
+        const double t = 0.5 * (low + high);
+        ((t + 2 * a) * (t - a) * (t - a) < 1 ? low : high) = t;
+      }
+      exact[static_cast<std::size_t>(lane)] = high;
+      const double xx = a * (3 * cosine * cosine - 1), yy = a * (3 * sine * sine - 1), xy = 3 * a * cosine * sine;
+      turned(0, 0).v[lane] = T(xx), turned(1, 1).v[lane] = T(yy), turned(2, 2).v[lane] = T(-a);
+      turned(0, 1).v[lane] = T(xy), turned(0, 2).v[lane] = turned(1, 2).v[lane] = T(0);
+    }
+    const L mean = unimodular_mean(turned, L(T(1e6)));
+    for (int lane = 0; lane < L::width; ++lane) {
+      CAPTURE(lane, largest);
+      CHECK(mean[lane] == Approx(exact[static_cast<std::size_t>(lane)]).epsilon(tolerance));
+      Sym<3, T> alone;
+      for (int k = 0; k < 6; ++k) alone.s[k] = turned.s[k][lane];
+      CHECK(mean[lane] == Approx(unimodular_mean(alone, T(1e6))).epsilon(tolerance));
+    }
+  };
+  // Beside a root that is nearly double, what rounds by epsilon moves the mean by epsilon times a^(3/2).
+  check(1.0, 1e3, 1e-11);
+  check(1.0f, 1e2, 1e-4);
 }

@@ -1,6 +1,7 @@
 // Contact at its extremes, the scenes of docs/contact.md: bodies of unlike mass and stiffness, bodies that graze one another, and
 // a rigid corner. Expected: St. Venant's impact of bars, bars at rest under their weight, flight without a force, Sneddon's
-// cone, and the balance of momentum.
+// cone, and the balance of momentum. How near they are come to on these cells (0.66 of the error before, 0.085, 0.05, 0.01, 0.15) was
+// measured, with some room.
 
 #include <cmath>
 
