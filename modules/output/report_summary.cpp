@@ -152,12 +152,14 @@ std::string requirement(const Json& expectation) {
     const Json* bound = member(expectation, {key});
     if (bound != nullptr) html += (html.empty() ? "" : ", ") + std::string(words) + inline_html({}, *bound);
   }
+  const Json* why_not = member(expectation, {"not_judged"});
+  if (why_not != nullptr) html += (html.empty() ? "" : "; ") + inline_html({}, *why_not);
   return html;
 }
 
 /// What an expectation says beyond the known keys (a tolerance, a note), to be kept beside its requirement.
 std::string other_terms(const Json& expectation) {
-  static const std::set<std::string> known = {"metric", "at_least", "at_most", "equals", "value", "held"};
+  static const std::set<std::string> known = {"metric", "at_least", "at_most", "equals", "value", "held", "not_judged"};
   std::string html;
   for (const auto& item : expectation.items()) {
     if (known.count(item.key()) == 0)
