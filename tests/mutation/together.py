@@ -9,6 +9,7 @@ import re
 from mutants import closing, tokens_of
 
 ASSIGNMENTS = ("=", "+=", "-=", "*=", "/=")
+CHOICE_OF_LANES = ["[", "]", "(", "int", "lane", ")", "{"]  # what shuffled() of modules/kernel/lanes.hpp is told
 SWITCH_FILE = "mpm_mutant_switch.hpp"
 SWITCH = """#pragma once
 #include <fcntl.h>
@@ -131,12 +132,18 @@ class Together:
                 self.refused.update(self.spans.pop((begin, end)))
 
     def refuse_constants(self):
-        """Takes out those of declarations that the compiler evaluates, which spares most of its refusals."""
+        """Takes out those of declarations that the compiler evaluates, which spares most of its refusals, and those of
+        choices of lanes, which it evaluates as well: where one is an argument of a function its refusal names nothing."""
         tokens = tokens_of(self.text)
         for place, token in enumerate(tokens):
             if token.text in ("constexpr", "alignas", "typedef"):
-                end = tokens[declaration_end(tokens, place)].begin
-                self.refused.update(n for n, m in enumerate(self.mutants, self.first) if token.begin < m.begin < end)
+                end = declaration_end(tokens, place)
+            elif [t.text for t in tokens[place : place + len(CHOICE_OF_LANES)]] == CHOICE_OF_LANES:
+                end = closing(tokens, place + len(CHOICE_OF_LANES) - 1)
+            else:
+                continue
+            last = tokens[end].begin
+            self.refused.update(n for n, m in enumerate(self.mutants, self.first) if token.begin < m.begin < last)
 
     def numbers(self):
         return [n for n in range(self.first, self.first + len(self.mutants)) if n not in self.refused]
