@@ -33,6 +33,7 @@ test $status = 0 || cat "$0.$$" > "$0.messages"
 rm "$0.$$"
 exit $status
 """
+PLUGIN_IN_A_TEST = re.compile(r'#include "(?:contacts|filters|materials|normals|shapes|transfers)/')
 INSTANTIATION = re.compile(r"_([23]_(?:float|double))\.cpp\.o$")
 
 
@@ -116,14 +117,15 @@ class Group:
 
     def chosen_objects(self, files):
         """Of what is made from the files: libraries that include one in their own text, the cpu backend in the chosen
-        dimensions and precisions, the device backend for its own files, tests that include one in their own text."""
+        dimensions and precisions, the device backend for its own files, tests that include one or a plugin in their own text."""
         chosen = []
         for name in sorted(set().union(*(self.build.objects_of.get(file, ()) for file in files))):
             source = os.path.relpath(self.build.source_of[name], self.build.tree)
             found = INSTANTIATION.search(name)
             if name.startswith("tests/"):
                 test = self.build.test_of(name)
-                wanted = test and any(s.split(".")[0] == test[0] for s in self.suites) and self.includes_one(name, files)
+                asked = test and (test[0] in self.suites or ".".join(test) in self.suites)
+                wanted = asked and (self.includes_one(name, files) or PLUGIN_IN_A_TEST.search(self.text_of(name)))
             elif found or "mpm_cpu_backend.dir" in name:
                 wanted = found[1] in self.instantiations if found else any(self.instantiations)
             elif "mpm_device_backend.dir" in name:
@@ -142,8 +144,11 @@ class Group:
         composer = [name for name in self.build.compile_of if name.endswith(COMPOSER) and any(f.startswith(KERNELS) for f in own)]
         return set(composer).union(*(self.build.objects_of.get(file, ()) for file in own))
 
+    def text_of(self, name):
+        return (self.build.folder / self.build.source_of[name]).read_text()
+
     def includes_one(self, name, files):
-        text = (self.build.folder / self.build.source_of[name]).read_text()
+        text = self.text_of(name)
         return any(f'#include "{file.removeprefix("modules/")}"' in text for file in files)
 
     def make(self):
