@@ -48,3 +48,21 @@ TEST_CASE("parity of grips", "[parity]") {
               if (!is_refused(mix)) check_parity(mix);
             }
 }
+
+TEST_CASE("parity of contact laws and normals beside gripped bodies", "[parity]") {
+  for (const int dimension : {2, 3})
+    for (const std::string contact :
+         {R"({"type": "stick"})", R"({"type": "coulomb", "friction": 0.2, "normal": "own_gradient"})",
+          R"({"type": "coulomb", "friction": 0.2, "normal": "widest_gap"})",
+          R"({"type": "adhesion", "normal_strength": 100, "shear_strength": 200})",
+          R"({"type": "linear_interface", "normal_stiffness": 4000, "shear_stiffness": 2000})"})
+      for (const std::string held : {"0.3", "null"}) {
+        Mix mix;
+        const bool flat = dimension == 2;
+        mix.dimension = dimension, mix.contact = contact, mix.filter = flat ? R"({"type": "fmpm", "order": 2})" : "";
+        mix.more = std::string(R"(, "grips": [{"body": "a", "where": {"type": "half_space", "point": )") +
+                   (flat ? R"([9, 0], "normal": [1, 0]})" : R"([9, 0, 0], "normal": [1, 0, 0]})") +
+                   R"J(, "velocity": ["1.2+t-0.9*(y-0.4)", )J" + held + (flat ? "]}]" : ", \"X\"]}]");
+        if (!is_refused(mix)) check_parity(mix);
+      }
+}

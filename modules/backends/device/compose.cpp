@@ -220,7 +220,8 @@ std::string scene_text(const Choice& choice) {
   out << "  static constexpr bool contact = " << yes(choice.contact) << ", bypasses_detection = " << yes(weld)
       << ", contact_by_particles = " << yes(choice.contact_by_particles) << ", own_normals = " << yes(own)
       << ", notes_contact = " << yes(choice.notes_contact) << ", reads_traction = " << yes(reads_traction(choice))
-      << ", list = " << yes(list) << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
+      << ", grips = " << yes(has_grips(choice)) << ", list = " << yes(list)
+      << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
       << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
       << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
       << "  static constexpr int width = " << (list ? 1 : shape.width)

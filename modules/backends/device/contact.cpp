@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "backends/device/compose.hpp"
 #include "backends/device/kernels/rigid.hpp"
@@ -13,6 +14,9 @@ Arguments<T> DeviceBackend<T>::pair_arguments(std::size_t a, std::size_t b, Stag
   const int first = static_cast<int>(a), second = static_cast<int>(b);
   Arguments<T> arguments = scene_;
   arguments.grid = fields_[a].table(), arguments.other = fields_[b].table();
+  arguments.grips = fields_[a].grips.data(), arguments.other_grips = fields_[b].grips.data();
+  arguments.grip_count = static_cast<int>(experiment_.grips.size());
+  arguments.rigid.mass = std::numeric_limits<double>::infinity();  // as laws see what a grip holds
   arguments.edges[0] = edges_.of(a), arguments.edges[1] = edges_.of(b);
   arguments.after_forces = stage == Stage::after_forces;
   if (contact_pairs_) arguments.found = contact_pairs_->of(first, second);

@@ -424,11 +424,24 @@ std::vector<Held> Grid::held(std::size_t i, const Vector& predicted, double time
   return held;
 }
 
+/// Whether particles of a grip give the node half of a mass or more.
+bool Grid::is_gripped(std::size_t i, std::size_t grip, double mass) const {
+  const double of_grip = scalar(grip_field(grip) + "_mass")[i];
+  return of_grip > 0 && 2 * of_grip >= mass;
+}
+
+std::array<bool, 3> Grid::gripped(std::size_t i, double mass) const {
+  std::array<bool, 3> held{};
+  for (std::size_t k = 0; k < experiment_.grips.size(); ++k)
+    for (std::size_t c = 0; c < 3; ++c) held[c] = held[c] || (experiment_.grips[k].held[c] && is_gripped(i, k, mass));
+  return held;
+}
+
 /// Adds what grips hold, whose particles give the node half of its mass or more: their mean velocity by mass.
 void Grid::hold_by_grips(std::size_t i, std::vector<Held>& held) const {
   for (std::size_t k = 0; k < experiment_.grips.size(); ++k) {
+    if (!is_gripped(i, k, mass_[i])) continue;
     const double mass = scalar(grip_field(k) + "_mass")[i];
-    if (!(mass > 0) || 2 * mass < mass_[i]) continue;
     const Vector momentum = vector(grip_field(k) + (grips_at_end_ ? "" : "_before"))[i];
     for (int c = 0; c < experiment_.dimension; ++c)
       if (experiment_.grips[k].held[c]) held.push_back({experiment_.support_of_grip(k), c, momentum[c] / mass});

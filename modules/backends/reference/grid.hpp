@@ -139,6 +139,8 @@ class Grid {
   /// What conditions hold at a node whose velocity would be `predicted` without them, in the order in which they do:
   /// of those that hold the same component the last counts.
   std::vector<Held> held(std::size_t i, const Vector& predicted, double time) const;
+  /// Which components of a node grips hold whose particles are half of a mass, kg, or more.
+  std::array<bool, 3> gripped(std::size_t i, double mass) const;
   /// Lets grips hold nodes as their particles are told for the end of the step, or as they were at its start.
   void hold_grips_at_end(bool at_end) { grips_at_end_ = at_end; }
   /// Notes what folding gives and takes, where supports are asked for their reactions; null where nobody asks.
@@ -187,6 +189,7 @@ class Grid {
   double capacity_inward(std::size_t i, const Fold& fold) const;
   Vector wall_velocity(const Fold& fold, double time) const;
   double wall_temperature(const Fold& fold, double time) const;
+  bool is_gripped(std::size_t i, std::size_t grip, double mass) const;
   void hold_by_grips(std::size_t i, std::vector<Held>& held) const;
   Vector image(const Vector& ghost, const Fold& fold, AtWall rule, const OfWall& wall) const;
   MirroredPlaces places(const Fold& fold) const;

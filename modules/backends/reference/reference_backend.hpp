@@ -111,6 +111,13 @@ class ReferenceBackend final : public Backend {
     Vector traction = Vector::Zero();      ///< on a, Pa, where the law reads it
   };
   PairResult apply_law(const Component& law, const LawInput& input) const;
+  std::array<bool, 3> held_in_pair(std::size_t i, std::size_t other) const;
+  /// How much an impulse on a, taken from b, changes each component of their relative velocity, 1/kg: what a grip holds
+  /// does not move.
+  Vector mobility_of_pair(std::size_t a, std::size_t b) const;
+  /// Asks the law about a pair of which a grip holds a component, as of a body of infinite mass: what the law would give
+  /// that component goes to the grip.
+  std::optional<PairResult> resolve_held_pair(const LawInput& pair, const Vector& mobility) const;
   /// Lets the material of all fields meet rigid bodies, whose velocities are those of a time, s. velocity(i) is that of a
   /// node and give(i, impulse) changes it.
   template <class VelocityOf, class Give>

@@ -194,6 +194,7 @@ class GridStep : NamedChannels {
   void record_force(const StepInfo& step);
   template <class Visit>
   void visit_pairs(std::uint32_t slot, Visit&& visit);
+  unsigned held_by_grips(int field, std::uint32_t node, T mass);
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
   void measure_welds();
   static bool reads_traction(const Component& law) { return (law.plugin->contact().traits & MPM_READS_TRACTION) != 0; }

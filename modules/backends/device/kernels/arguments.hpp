@@ -115,6 +115,7 @@ struct Arguments {
   const T* wall_velocity[3][2];  ///< [D][line of the axis], m/s, as evaluated last; null for rest
   const Box<T>* boxes;
   const GripArrays<T>* grips;  ///< of the velocity field `grid`
+  const GripArrays<T>* other_grips;  ///< of the velocity field `other`
   int box_count, grip_count;
   const double *shape_parameters, *transfer_parameters, *filter_parameters, *contact_parameters, *normal_parameters,
       *material_parameters;

@@ -102,6 +102,41 @@ MPM_HD Vec<Scene::dimension, T> ask_law(const Arguments<T>& a, const ContactGeom
   }
 }
 
+/// Bit c is set where grips hold component c of a node of `grid`, whose own they are, beside `other`.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD unsigned held_by_grips(const Arguments<T>& a, const GripArrays<T>* grips, const NodeArrays<T>& grid,
+                              const NodeArrays<T>& other, int node) {
+  unsigned held = 0;
+  const T mass =
+      held_mass(grid.field[Scene::Node::mass][node], other.field[Scene::Node::mass][node], Scene::bypasses_detection);
+  for (int k = 0; k < a.grip_count; ++k)
+    if (grip_holds(grips[k].mass[node], mass)) held |= unsigned(grips[k].given);
+  return held;
+}
+
+/// A pair at a node, with what grips hold of it.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD HeldPair<Scene::dimension> held_pair(const Arguments<T>& a, const ContactGeometry& geometry, int node) {
+  using N = typename Scene::Node;
+  constexpr int D = Scene::dimension;
+  return {held_by_grips<Scene>(a, a.grips, a.grid, a.other, node),
+          held_by_grips<Scene>(a, a.other_grips, a.other, a.grid, node),
+          a.grid.field[N::mass][node],
+          a.other.field[N::mass][node],
+          load<D>(a.grid.field[N::velocity], a.node_count, node),
+          load<D>(a.other.field[N::velocity], a.node_count, node),
+          geometry.normal,
+          Scene::bypasses_detection};
+}
+
+/// Whether grips hold any component of a pair at a node.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD bool is_held(const Arguments<T>& a, int node) {
+  if constexpr (!Scene::grips) return false;
+  return (held_by_grips<Scene>(a, a.grips, a.grid, a.other, node) |
+          held_by_grips<Scene>(a, a.other_grips, a.other, a.grid, node)) != 0;
+}
+
 /// Writes what a weld would give the pair of `grid` and `other` at each node, zero where they do not meet.
 template <class Scene>
 MPM_HD void measure_welds(const Team& team, const Arguments<typename Scene::Scalar>& a) {
@@ -114,6 +149,12 @@ MPM_HD void measure_welds(const Team& team, const Arguments<typename Scene::Scal
     if (!meet(mass_a, mass_b, Scene::bypasses_detection)) return;
     const ContactGeometry geometry = geometry_of_pair<Scene>(a, node);
     if (!geometry.valid) return;
+    if (is_held<Scene>(a, node)) {
+      const HeldPair<D> held = held_pair<Scene>(a, geometry, node);
+      for (int c = 0; c < D; ++c) a.welds[c * nodes + node] = held.welding_impulse(c);
+      a.welds[D * nodes + node] = held.moves() ? geometry.area : 0;
+      return;
+    }
     for (int c = 0; c < D; ++c)
       a.welds[c * nodes + node] = welding_impulse(a.grid.field[N::velocity][c * nodes + node],
                                                   a.other.field[N::velocity][c * nodes + node], mass_a, mass_b);
@@ -178,7 +219,15 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
     if (!meet(pair.mass_a, pair.mass_b, weld)) return;
     const ContactGeometry geometry = geometry_of_pair<Scene>(a, node);
     if (!geometry.valid && !weld) return;
-    for (int c = 0; c < D; ++c) {
+    const T mass_a = pair.mass_a, mass_b = pair.mass_b;
+    const bool held = is_held<Scene>(a, node);
+    if (held) {
+      const HeldPair<D> seen = held_pair<Scene>(a, geometry, node);
+      if (!seen.moves()) return;
+      pair.mass_a = static_cast<T>(seen.mass()), pair.mass_b = static_cast<T>(a.rigid.mass);
+      for (int c = 0; c < D; ++c) pair.momentum_a[c] = static_cast<T>(seen.momentum(c)), pair.momentum_b[c] = T(0);
+    }
+    for (int c = 0; c < D && !held; ++c) {
       pair.momentum_a[c] = momentum_of(a.grid.field[N::velocity][c * nodes + node], pair.mass_a);
       pair.momentum_b[c] = momentum_of(a.other.field[N::velocity][c * nodes + node], pair.mass_b);
     }
@@ -194,12 +243,16 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
       for (int c = 0; c < D; ++c) pair.displacement[c] = static_cast<T>(displacement_of_pair(of_a, of_b, c));
     }
     ContactResult<D, T> result;
-    const Vec<D, T> returned = ask_law<Scene>(a, geometry, pair, result);
+    Vec<D, T> returned = ask_law<Scene>(a, geometry, pair, result);
+    if (held && (N::mass_displacement < 0 || static_cast<int>(result.status) == contact_sticks)) {
+      const HeldPair<D> seen = held_pair<Scene>(a, geometry, node);
+      seen.correct(&result.impulse[0], 1, weld), seen.correct(&returned[0], 1, weld);
+    }
     for (int c = 0; c < D; ++c) {
       const int at = c * nodes + node;
       sums[contact_unbalanced + c] += strike_pair<double>(
-          a.grid.field[N::velocity][at], a.other.field[N::velocity][at], pair.mass_a, pair.mass_b, result.impulse[c],
-          returned[c], [&](bool second, T given) {
+          a.grid.field[N::velocity][at], a.other.field[N::velocity][at], mass_a, mass_b, result.impulse[c], returned[c],
+          [&](bool second, T given) {
             note_impulse<N::contact_impulse, N::standing_contact_impulse>(a, second ? a.other : a.grid, at, given);
           });
       sums[contact_impulse + c] += result.impulse[c];
