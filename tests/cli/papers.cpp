@@ -15,6 +15,7 @@
 #include "support/csv.hpp"
 #include "support/gas_dynamics.hpp"
 #include "support/page.hpp"
+#include "support/solid_shock.hpp"
 
 using namespace mpm::test;
 
@@ -563,6 +564,11 @@ TEST_CASE("scenes of papers expect what closed forms say", "[papers]") {
   CHECK(expected(plates, "probes.behind.pressure.final") == Approx(shock.pressure).epsilon(1e-6));
   CHECK(expected(plates, "probes.behind.volume_ratio.final") == Approx(shock.ratio).epsilon(1e-6));
   CHECK(expected(plates, "bodies.left.velocity_x.final") == Approx(shock.mean()).epsilon(1e-6));
+  const SolidShock solid(1e8, 0.3, 1000, 80);
+  const double passed = solid.speed * 1.5e-3;  // m of the body's 1 m
+  CHECK(expected("solid_shock", "probes.behind.pressure.final") == Approx(solid.pressure).epsilon(1e-7));
+  CHECK(expected("solid_shock", "probes.behind.volume_ratio.final") == Approx(solid.stretch).epsilon(1e-7));
+  CHECK(expected("solid_shock", "bodies.solid.velocity_x.final") == Approx(-80 * (1 - passed)).epsilon(1e-7));
   const gas::PistonShock piston(2);
   CHECK(expected("gas_shock", "probes.behind.pressure.final") == Approx(piston.pressure - 1).epsilon(1e-8));
   CHECK(expected("gas_shock", "probes.behind.volume_ratio.final") == Approx(1 / piston.density).epsilon(1e-7));
