@@ -181,6 +181,11 @@ const std::vector<Sentence>& run_sentences() {
       {"plate_impact",
        "has # GPa and the volume ratio # behind the shock",
        {{"/probes/behind/pressure/final", 1e-9}, {"/probes/behind/volume_ratio/final"}}},
+      {"solid_shock",
+       "has # MPa, the volume ratio # and a mean velocity of # m/s at 1.5 ms",
+       {{"/probes/behind/pressure/final", 1e-6},
+        {"/probes/behind/volume_ratio/final"},
+        {"/bodies/solid/velocity_x/final"}}},
       {"gas_shock",
        "has # Pa, a volume ratio of # and a mean velocity of # m/s",
        {{"/probes/behind/pressure/final"}, {"/probes/behind/volume_ratio/final"}, {"/bodies/gas/velocity_x/final"}}},
@@ -293,6 +298,29 @@ const std::vector<Sentence>& study_sentences() {
          "the mean over a cut is off by # %, but a particle has # % too much; at 2000 m/s # %",
          {{"cpdi-1000_m_s-c_h: " + behind}, {"cpdi-1000_m_s-c_h: " + excess}, {"cpdi-2000_m_s-c_h: " + excess}}});
     all.push_back({plates, "the mean at 500 m/s is off by # %", column(behind, {"bspline_quadratic-500_m_s-c_h"})});
+    const std::string solid = "solid_shock_viscosity";
+    const std::vector<std::array<std::string, 2>> viscosities{
+        {"no viscosity", "no_viscosity"}, {"C₁ = 0.2, C₂ = 2", "C_0.2_C_2"}, {"C₁ = 0.5, C₂ = 2", "C_0.5_C_2"}};
+    for (const std::string transfer : {"FLIP", "APIC", "PIC"})
+      for (const auto& [viscosity, name] : viscosities) {
+        const std::string run = transfer + "-" + name + "-";
+        all.push_back({solid,
+                       "| " + transfer + ", " + viscosity + " | # % | # % | # % | # % | # % |",
+                       {{run + "50_cells-0.3: " + excess},
+                        {run + "100_cells-0.3: " + excess},
+                        {run + "200_cells-0.3: " + excess},
+                        {run + "100_cells-0.3: error of the speed of the shock (%)"},
+                        {run + "100_cells-0.3: error of the pressure behind the shock (%)"}}});
+      }
+    const auto by_step = [&](const std::string& run) {
+      return column(excess, {run + "-100_cells-0.1", run + "-100_cells-0.3", run + "-100_cells-0.5"});
+    };
+    all.push_back({solid, "FLIP has an excess of # %, # % and # % at the Courant", by_step("FLIP-no_viscosity")});
+    all.push_back({solid, "with C₁ = 0.5 # %, # % and # %; APIC", by_step("FLIP-C_0.5_C_2")});
+    all.push_back({solid, "; APIC # %, # % and # %, and with", by_step("APIC-no_viscosity")});
+    all.push_back({solid, "and with C₁ = 0.5 # %, # % and # %.", by_step("APIC-C_0.5_C_2")});
+    all.push_back({solid, "takes an overshoot of # % to # % with FLIP",
+                   column(excess, {"FLIP-no_viscosity-100_cells-0.3", "FLIP-C_0.5_C_2-100_cells-0.3"})});
     const std::string gas = "gas_shock_transfers", tube = "shock_tube_grids";
     const std::vector<std::array<std::string, 2>> transfers{
         {"FLIP", "FLIP"}, {"FMPM(4)", "FMPM_4"}, {"APIC", "APIC"}, {"PIC", "PIC"}};
@@ -754,7 +782,7 @@ TEST_CASE("bounds on the page of papers hold in the tables of its studies", "[pa
 TEST_CASE("every scene of papers comes to its exact numbers, and to those that the page prints", "[papers]") {
   for (const std::string name :
        {"self_weight_column", "hydrostatic_column", "elliptical_drop", "channel", "plate_impact", "thick_cylinder",
-        "gas_shock", "shock_tube", "granular_collapse", "dam_break_front"}) {
+        "gas_shock", "shock_tube", "granular_collapse", "dam_break_front", "solid_shock"}) {
     INFO(name);
     const Folder folder;
     const Result result = call(folder, {"run", (root / "experiments/papers" / (name + ".json")).string(), "--out",
@@ -797,9 +825,9 @@ TEST_CASE("a drop of rows of particles begins too large, as the page of papers s
 }
 
 TEST_CASE("studies of papers print the tables of the page", "[papers][slow]") {
-  for (const std::string study :
-       {"self_weight_column_shapes", "hydrostatic_column_laws", "elliptical_drop_grids", "channel_times",
-        "channel_grids", "plate_impact_speeds", "cantilever_loads", "thick_cylinder_pressures"}) {
+  for (const std::string study : {"self_weight_column_shapes", "hydrostatic_column_laws", "elliptical_drop_grids",
+                                  "channel_times", "channel_grids", "plate_impact_speeds", "cantilever_loads",
+                                  "thick_cylinder_pressures", "solid_shock_viscosity"}) {
     INFO(study);
     const Folder folder;
     const Result result =

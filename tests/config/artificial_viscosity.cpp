@@ -70,7 +70,7 @@ TEST_CASE("artificial viscosity is refused where it makes no sense, by name", "[
 }
 
 TEST_CASE("artificial viscosity is a name of particle data only where a material has it", "[viscosity]") {
-  const std::string asks = R"(/output/particles={"fields": ["artificial_pressure"], "count": 2})";
+  const std::string asks = R"(/output={"particles": {"fields": ["artificial_pressure"], "count": 2}})";
   check_refused({asks}, R"(no material of this scene has "artificial_viscosity")");
   CHECK_NOTHROW(experiment_from(block, {asks, at + "={}"}));
 }

@@ -54,7 +54,8 @@ std::vector<Mix> mixes() {
 
 TEST_CASE("artificial viscosity on the host-run device is the reference backend's", "[device][viscosity]") {
   const std::vector<Mix> all = mixes();
-  for (std::size_t k = 0; k < all.size(); ++k) check_on_device(all[k], precisions_in_turn(false, k));
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (k != 2 && k != 3) check_on_device(all[k], precisions_in_turn(false, k));  // the slow case has these orders too
   Mix plain;
   plain.overrides = {viscous}, plain.more = R"(, "output": {"ledger": false})";
   check_on_device(plain, {"float"});
