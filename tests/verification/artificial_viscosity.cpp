@@ -256,10 +256,8 @@ TEST_CASE("a shock in a solid loses what the jump conditions say on 400 cells", 
   CHECK(found.artificial == Approx(1).margin(0.03));
 }
 
-TEST_CASE(
-    "with artificial viscosity the ledger's residual falls with the step, and its book of the materials with its "
-    "square",
-    "[viscosity]") {
+TEST_CASE("with artificial viscosity the ledger's residual falls with the step, and its book with the square",
+          "[viscosity]") {
   const auto of_step = [](const std::string& step) {
     return shock(with(cells("0.02"), "/solver/time_step=" + step), (step + " s").c_str());
   };
