@@ -182,6 +182,7 @@ void draw_dissipation(const Table& table, const RunLabel& label, const std::file
   add_if_any("ledger friction", takes_back ? "friction that particles keep" : "of it friction", 1);
   add_if_any("ledger interface springs", "of it taken up by springs", 1);
   add_if_any("ledger material dissipation", "material", 1);
+  add_if_any("ledger artificial viscosity", "of it artificial viscosity", 1);
   render::write_figure(plot, stem);
 }
 

@@ -163,8 +163,9 @@ std::optional<double> mean_material_cost(const Experiment& experiment, const Run
 
 template <int D, class T>
 std::optional<Flops> flops_of(const Experiment& experiment, const Plan& plan, const RunFacts& run) {
-  // Nobody has counted what heat and the mean dilation take.
-  if (experiment.has_temperature() || plan.does(Act::average_dilation)) return std::nullopt;
+  // Nobody has counted what heat, the mean dilation and artificial viscosity take.
+  if (experiment.has_temperature() || plan.does(Act::average_dilation) || experiment.has_artificial_viscosity())
+    return std::nullopt;
   const mpm_shape& shape_table = experiment.shape.plugin->shape();
   Wanted w;
   w.D = D;

@@ -7,6 +7,7 @@
 #include "backends/cpu/particles/particle_gather.hpp"
 #include "backends/cpu/particles/particle_heat.hpp"
 #include "backends/cpu/particles/particle_scatter.hpp"
+#include "backends/cpu/particles/particle_viscosity.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
 #include "plugin/sdk.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"

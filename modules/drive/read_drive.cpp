@@ -96,7 +96,11 @@ class DriveReader {
     if (fields.given("thermal"))
       context_.problem(*fields.node("thermal"),
                        "a material point does not conduct: it has the material's reference temperature; remove it");
-    drive_.experiment.materials.push_back({member.key, component_of(plugin, fields, member.value.pointer), {}});
+    if (fields.given("artificial_viscosity"))
+      context_.problem(*fields.node("artificial_viscosity"),
+                       "a material point has no cells over which to spread a shock, and its law is driven by itself; "
+                       "remove it");
+    drive_.experiment.materials.push_back({member.key, component_of(plugin, fields, member.value.pointer), {}, {}});
     drive_.experiment.resolved["materials"] = {{member.key, fields.resolved}};
   }
 

@@ -149,10 +149,17 @@ struct Thermal {
   std::string pointer;
 };
 
+/// A pressure against fast compression, q = density h r (linear c + quadratic h r) (kernel/artificial_viscosity.hpp).
+struct ArtificialViscositySpecification {
+  double linear = 0, quadratic = 0;
+  std::string pointer;
+};
+
 struct MaterialSpecification {
   std::string name;
   Component component;
   std::optional<Thermal> thermal;
+  std::optional<ArtificialViscositySpecification> artificial_viscosity;
 };
 
 /// How the particles of a body are placed: on the lattice of the cells, on one of the body's own, on that of the cells with
@@ -374,6 +381,7 @@ struct Experiment {
 
   /// Whether particles carry a temperature: then every body's material conducts, and every body has one.
   bool has_temperature() const;
+  bool has_artificial_viscosity() const;  ///< of any material
   bool axisymmetric() const { return grid.symmetry == Symmetry::axisymmetric; }
   /// Gravity in the step that begins at a time, s.
   Vector3 gravity_at(double time) const { return changing_gravity ? (*changing_gravity)({}, {}, time) : gravity; }

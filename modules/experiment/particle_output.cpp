@@ -40,6 +40,7 @@ std::string reason_for_lack(const std::string& name) {
   if (name == "deformation_gradient") return "no material of this scene keeps a deformation gradient";
   if (name == "velocity_gradient") return "the transfer of this scene keeps no velocity gradient";
   if (name == "temperature" || name == "melted_fraction") return "no material of this scene has it in its \"thermal\"";
+  if (name == "artificial_pressure") return "no material of this scene has \"artificial_viscosity\"";
   return "";
 }
 
@@ -208,6 +209,7 @@ std::vector<ParticleField> particle_fields(const Experiment& experiment) {
                                     {"wave_speed", "m/s", Shape::scalar}};
   if (experiment.contact) fields.push_back({"contact_traction", "Pa", Shape::vector});
   if (experiment.has_temperature()) fields.push_back({"temperature", "K", Shape::scalar});
+  if (experiment.has_artificial_viscosity()) fields.push_back({"artificial_pressure", "Pa", Shape::scalar});
   for (const MaterialSpecification& material : experiment.materials)
     if (material.thermal && material.thermal->phase_change && !knows(fields, "melted_fraction"))
       fields.push_back({"melted_fraction", "", Shape::scalar});

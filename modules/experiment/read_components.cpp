@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/artificial_viscosity.hpp"
 #include "experiment/reader.hpp"
 #include "experiment/thermal.hpp"
 #include "plugin/extension_of.hpp"
@@ -205,7 +206,11 @@ void ExperimentReader::read_materials(const Node* node) {
     if (member.key.empty()) context_.problem(member.at, member.value.pointer, "a material needs a name");
     Chosen chosen = read_component(member.value, MPM_MATERIAL);
     std::optional<Thermal> thermal;
-    if (chosen.fields) thermal = read_thermal(*chosen.fields, chosen.component, context_, chosen.resolved);
+    std::optional<ArtificialViscositySpecification> viscosity;
+    if (chosen.fields) {
+      thermal = read_thermal(*chosen.fields, chosen.component, context_, chosen.resolved);
+      viscosity = read_artificial_viscosity(*chosen.fields, chosen.component, context_, chosen.resolved);
+    }
     if (thermal && thermal->phase_change && thermal->phase_change->melted_parameters != chosen.component.parameters) {
       Component melted = chosen.component;
       melted.parameters = thermal->phase_change->melted_parameters;
@@ -214,7 +219,8 @@ void ExperimentReader::read_materials(const Node* node) {
                         nearest_node(root_, thermal->phase_change->pointer + "/melted"),
                         nearest_node(root_, "/grid/cell_size"), context_);
     }
-    experiment_.materials.push_back({member.key, std::move(chosen.component), std::move(thermal)});
+    experiment_.materials.push_back(
+        {member.key, std::move(chosen.component), std::move(thermal), std::move(viscosity)});
     resolved[member.key] = std::move(chosen.resolved);
   }
 }

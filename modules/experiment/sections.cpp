@@ -1,5 +1,6 @@
 #include "experiment/sections.hpp"
 
+#include "experiment/artificial_viscosity.hpp"
 #include "experiment/particle_output.hpp"
 #include "experiment/records.hpp"
 #include "experiment/thermal.hpp"
@@ -543,7 +544,10 @@ std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind
                                        .of({"approach_and_position", "particle_surfaces"})
                                        .standard("approach_and_position"));
     }
-    if (wanted == MPM_MATERIAL) section.parameters.push_back(thermal_parameter(*plugin));
+    if (wanted == MPM_MATERIAL) {
+      section.parameters.push_back(thermal_parameter(*plugin));
+      section.parameters.push_back(artificial_viscosity_parameter());
+    }
     if (wanted == MPM_FILTER) {
       for (const ParameterSpec& spec : filter_schedule()) section.parameters.push_back(spec);
     }

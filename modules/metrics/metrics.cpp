@@ -106,6 +106,7 @@ std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
            (!plan.filters() && (row.name == "filter" || row.name == "filtered strain")) ||
            (!(plan.filters() && falls) && row.name == "filtered gravity") ||
            (!simulation_.experiment().damping.acts() && row.name == "damping") ||
+           (!simulation_.experiment().has_artificial_viscosity() && row.name == "artificial viscosity") ||
            (!remaps && row.name == "remapped strain") ||
            (simulation_.experiment().rigid_bodies.empty() && row.name == "rigid bodies") ||
            (!simulation_.experiment().has_compliant_contact() && row.name == "interface springs") ||

@@ -143,6 +143,9 @@ MaterialQuantities material_quantities(const Experiment& experiment, int body, c
   evaluate(experiment, plugin, material.component.parameters, state, solid, result);
   if (!melted.empty())
     evaluate(experiment, plugin, material.thermal->phase_change->melted_parameters, state, melted, result);
+  if (const auto kept = state.host_state.find("artificial_pressure"); kept != state.host_state.end())
+    for (std::size_t p = 0; p < n; ++p)
+      for (std::size_t k = 0; k < 3; ++k) result.stress[p * result.stress.size() / n + k] -= kept->second[p];
   return result;
 }
 

@@ -58,6 +58,18 @@ void material_fields(FieldList& fields, int body) {
     fields.plan.fields[k].first = First::seeded;
 }
 
+/// What artificial viscosity adds to the stress: the strain finds it, and the next forces, that strain's ledger and the
+/// estimate of the step read it.
+void viscosity_fields(FieldList& fields, int body) {
+  const Experiment& experiment = fields.experiment;
+  const auto& viscosity = experiment.materials[experiment.bodies[body].material].artificial_viscosity;
+  if (!viscosity) return;
+  fields
+      .of_particles(body, "artificial_pressure", "Pa", 1, First::zero,
+                    viscosity->pointer + ": J times its pressure in the last strain")
+      .name = "artificial pressure J q";
+}
+
 /// The transfer acts on the temperature as on the first component of a velocity, of a particle whose mass is its heat
 /// capacity: of its state a matrix keeps one row, a vector one scalar.
 void temperature_fields(FieldList& fields, int body) {
@@ -198,8 +210,9 @@ void shape_fields(FieldList& fields, int body) {
 
 void declare_particle_fields(FieldList& fields) {
   for (int body = 0; body < static_cast<int>(fields.experiment.bodies.size()); ++body)
-    for (const auto declare : {body_fields, transfer_fields, material_fields, temperature_fields, backend_fields,
-                               size_fields, grip_fields, deformation_fields, output_fields, move_fields, shape_fields})
+    for (const auto declare :
+         {body_fields, transfer_fields, material_fields, temperature_fields, viscosity_fields, backend_fields,
+          size_fields, grip_fields, deformation_fields, output_fields, move_fields, shape_fields})
       declare(fields, body);
 }
 

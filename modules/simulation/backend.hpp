@@ -144,16 +144,17 @@ struct Ledger {
       0;  ///< the same of gravity that has none: along periodic axes, or changing in time
   double surface_load = 0, point_load = 0, spring = 0, dashpot = 0;  ///< the same (simulation/loads.hpp)
   double boundary = 0, contact = 0;                                  ///< J.(v- + v+)/2 of impulses
-  double rigid_bodies = 0;         ///< share of contact that is work of rigid bodies, J times their own velocity
-  double damping = 0;              ///< the same of what damping takes
-  double friction = 0;             ///< share of contact that the law turned to heat (positive), as particles keep it
-  double friction_taken_back = 0;  ///< more of it, before the forces, that gathering increments undoes (FLIP)
-  double interface = 0;            ///< share of contact that the springs of the law took up (negative: gave back)
-  double material = 0;             ///< dissipated by the materials (positive)
-  double filter = 0;               ///< J.(v + v_filtered)/2 of the filter's impulses
-  double filtered_strain = 0;      ///< what strain by the filtered velocity stores less than by the unfiltered one
-  double filtered_gravity = 0;     ///< potential energy that particles gain less as the filtered velocity moves them
-  double remapped_strain = 0;      ///< what strain by the remapped velocity (MUSL) stores less than by v+
+  double rigid_bodies = 0;          ///< share of contact that is work of rigid bodies, J times their own velocity
+  double damping = 0;               ///< the same of what damping takes
+  double friction = 0;              ///< share of contact that the law turned to heat (positive), as particles keep it
+  double friction_taken_back = 0;   ///< more of it, before the forces, that gathering increments undoes (FLIP)
+  double interface = 0;             ///< share of contact that the springs of the law took up (negative: gave back)
+  double material = 0;              ///< dissipated by the materials and their artificial viscosity (positive)
+  double artificial_viscosity = 0;  ///< share of that which artificial viscosity dissipated
+  double filter = 0;                ///< J.(v + v_filtered)/2 of the filter's impulses
+  double filtered_strain = 0;       ///< what strain by the filtered velocity stores less than by the unfiltered one
+  double filtered_gravity = 0;      ///< potential energy that particles gain less as the filtered velocity moves them
+  double remapped_strain = 0;       ///< what strain by the remapped velocity (MUSL) stores less than by v+
   double second_moment = 0;  ///< change of the affine part's kinetic energy, as D changes with the place of a particle
   double stress_power = 0;   ///< work of the stresses on the strain of the particles
   double stored = 0;         ///< stored by the materials while they strain
@@ -200,6 +201,7 @@ inline constexpr LedgerEntry<Ledger> ledger_entries[] = {
     {"friction taken back", &Ledger::friction_taken_back, 0},
     {"interface springs", &Ledger::interface, 0},
     {"material dissipation", &Ledger::material, -1, 4},
+    {"artificial viscosity", &Ledger::artificial_viscosity, 0},
     {"filter", &Ledger::filter, 1, 1},
     {"filtered strain", &Ledger::filtered_strain, 1, 5},
     {"filtered gravity", &Ledger::filtered_gravity, 1, 5},

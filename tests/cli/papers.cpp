@@ -15,6 +15,7 @@
 #include "support/csv.hpp"
 #include "support/gas_dynamics.hpp"
 #include "support/page.hpp"
+#include "support/solid_shock.hpp"
 
 using namespace mpm::test;
 
@@ -180,6 +181,11 @@ const std::vector<Sentence>& run_sentences() {
       {"plate_impact",
        "has # GPa and the volume ratio # behind the shock",
        {{"/probes/behind/pressure/final", 1e-9}, {"/probes/behind/volume_ratio/final"}}},
+      {"solid_shock",
+       "has # MPa, the volume ratio # and a mean velocity of # m/s at 1.5 ms",
+       {{"/probes/behind/pressure/final", 1e-6},
+        {"/probes/behind/volume_ratio/final"},
+        {"/bodies/solid/velocity_x/final"}}},
       {"gas_shock",
        "has # Pa, a volume ratio of # and a mean velocity of # m/s",
        {{"/probes/behind/pressure/final"}, {"/probes/behind/volume_ratio/final"}, {"/bodies/gas/velocity_x/final"}}},
@@ -292,6 +298,30 @@ const std::vector<Sentence>& study_sentences() {
          "the mean over a cut is off by # %, but a particle has # % too much; at 2000 m/s # %",
          {{"cpdi-1000_m_s-c_h: " + behind}, {"cpdi-1000_m_s-c_h: " + excess}, {"cpdi-2000_m_s-c_h: " + excess}}});
     all.push_back({plates, "the mean at 500 m/s is off by # %", column(behind, {"bspline_quadratic-500_m_s-c_h"})});
+    const std::string solid = "solid_shock_viscosity";
+    const std::vector<std::array<std::string, 2>> viscosities{
+        {"no viscosity", "no_viscosity"}, {"C₁ = 0.2, C₂ = 2", "C_0.2_C_2"}, {"C₁ = 0.5, C₂ = 2", "C_0.5_C_2"}};
+    for (const std::string transfer : {"FLIP", "APIC", "PIC"})
+      for (const auto& [viscosity, name] : viscosities) {
+        const std::string run = transfer + "-" + name + "-";
+        all.push_back({solid,
+                       "| " + transfer + ", " + viscosity + " | # % | # % | # % | # % | # % |",
+                       {{run + "50_cells-0.3: " + excess},
+                        {run + "100_cells-0.3: " + excess},
+                        {run + "200_cells-0.3: " + excess},
+                        {run + "100_cells-0.3: error of the speed of the shock (%)"},
+                        {run + "100_cells-0.3: error of the pressure behind the shock (%)"}}});
+      }
+    const auto by_step = [&](const std::string& run) {
+      return column(excess, {run + "-100_cells-0.1", run + "-100_cells-0.3", run + "-100_cells-0.5"});
+    };
+    all.push_back({solid, "FLIP has an excess of # %, # % and # % at the Courant", by_step("FLIP-no_viscosity")});
+    std::vector<Number> and_apic = by_step("FLIP-C_0.5_C_2");
+    for (const Number& number : by_step("APIC-no_viscosity")) and_apic.push_back(number);
+    all.push_back({solid, "with C₁ = 0.5 # %, # % and # %; APIC # %, # % and # %,", and_apic});
+    all.push_back({solid, "and with C₁ = 0.5 # %, # % and # %.", by_step("APIC-C_0.5_C_2")});
+    all.push_back({solid, "takes an overshoot of # % to # % with FLIP",
+                   column(excess, {"FLIP-no_viscosity-100_cells-0.3", "FLIP-C_0.5_C_2-100_cells-0.3"})});
     const std::string gas = "gas_shock_transfers", tube = "shock_tube_grids";
     const std::vector<std::array<std::string, 2>> transfers{
         {"FLIP", "FLIP"}, {"FMPM(4)", "FMPM_4"}, {"APIC", "APIC"}, {"PIC", "PIC"}};
@@ -563,6 +593,11 @@ TEST_CASE("scenes of papers expect what closed forms say", "[papers]") {
   CHECK(expected(plates, "probes.behind.pressure.final") == Approx(shock.pressure).epsilon(1e-6));
   CHECK(expected(plates, "probes.behind.volume_ratio.final") == Approx(shock.ratio).epsilon(1e-6));
   CHECK(expected(plates, "bodies.left.velocity_x.final") == Approx(shock.mean()).epsilon(1e-6));
+  const SolidShock solid(1e8, 0.3, 1000, 80);
+  const double passed = solid.speed * 1.5e-3;  // m of the body's 1 m
+  CHECK(expected("solid_shock", "probes.behind.pressure.final") == Approx(solid.pressure).epsilon(1e-7));
+  CHECK(expected("solid_shock", "probes.behind.volume_ratio.final") == Approx(solid.stretch).epsilon(1e-7));
+  CHECK(expected("solid_shock", "bodies.solid.velocity_x.final") == Approx(-80 * (1 - passed)).epsilon(1e-7));
   const gas::PistonShock piston(2);
   CHECK(expected("gas_shock", "probes.behind.pressure.final") == Approx(piston.pressure - 1).epsilon(1e-8));
   CHECK(expected("gas_shock", "probes.behind.volume_ratio.final") == Approx(1 / piston.density).epsilon(1e-7));
@@ -587,6 +622,7 @@ namespace {
 
 /// Sentences whose numbers closed forms give.
 std::vector<std::pair<std::string, std::vector<double>>> exact_sentences() {
+  const SolidShock solid(1e8, 0.3, 1000, 80);
   const double a = drop_semi_axis(1.5);
   const Shock shock(500);
   const gas::PistonShock piston(2);
@@ -613,6 +649,10 @@ std::vector<std::pair<std::string, std::vector<double>>> exact_sentences() {
       {"(exactly # U): APIC", {poiseuille(0.5, 1)}},
       {"shocks of U_s = # m/s", {shock.speed}},
       {"pressure is ρ U_s u_p = # GPa and the volume ratio #.", {1e-9 * shock.pressure, shock.ratio}},
+      {"runs back has # m/s through the material", {solid.speed}},
+      {"behind it the pressure is # MPa and the volume ratio #. Of", {1e-6 * solid.pressure, solid.stretch}},
+      {"that came # % are stored", {100 * (1 - solid.dissipated / 3.2e6)}},
+      {"Exact are # MPa, # and # m/s.", {1e-6 * solid.pressure, solid.stretch, -80 * (1 - 1.5e-3 * solid.speed)}},
       {"its tip sinks by #, # and # L", {sag(1)[0], sag(2)[0], sag(5)[0]}},
       {"its last twentieth on the mean by #, # and # L.", {sag(1)[1], sag(2)[1], sag(5)[1]}},
       {"at 120, 150 and 180 MPa up to #, # and # mm",
@@ -653,6 +693,11 @@ TEST_CASE("every number on the page of papers is read by a test or given by the 
        "Phys. 27:1)", "1 kg/m³ with 1 Pa and 0.125 kg/m³ with 0.1 Pa, meet at 0.5 m", "both gases have 0.1 Pa at rest",
        "compresses it to 1 kg/m³", "after 0.2 s", "| | 50 cells | 100 | 200 | 400 |", "the wall at x = 0",
        "`\"linear_viscosity\": 1`", "on 100 and on 200 cells",
+       // the solid
+       "| Davison 2008 |", "(L. Davison 2008, ", "Solids, ch. 3)", "E = 100 MPa, ν = 0.3, 1000 kg/m³",
+       "thrown at a wall with 80 m/s", "FLIP on 100 cells with C₁ = 0.5 and C₂ = 2,", "at 1.5 ms. Exact",
+       "at the Courant number 0.3;", "both on 100 cells:", "excess, 50 cells | 100 | 200 | speed",
+       "The default C₁ = 0.2 leaves", "which C₁ = 0.5 takes", " numbers 0.1, 0.3 and 0.5,",
        // the cantilever and the tube
        "Drucker 1945, Large deflection", "Appl. Math. 3:272", "Mattiasson 1981, ", "Engng 17:145)",
        "At P L²/EI = 1, 2 and 5", "a beam of rubber with H / L = 1/20 in plane", "sinks, on 2 and on 4 cells across",
@@ -748,7 +793,7 @@ TEST_CASE("bounds on the page of papers hold in the tables of its studies", "[pa
 TEST_CASE("every scene of papers comes to its exact numbers, and to those that the page prints", "[papers]") {
   for (const std::string name :
        {"self_weight_column", "hydrostatic_column", "elliptical_drop", "channel", "plate_impact", "thick_cylinder",
-        "gas_shock", "shock_tube", "granular_collapse", "dam_break_front"}) {
+        "gas_shock", "shock_tube", "granular_collapse", "dam_break_front", "solid_shock"}) {
     INFO(name);
     const Folder folder;
     const Result result = call(folder, {"run", (root / "experiments/papers" / (name + ".json")).string(), "--out",
@@ -791,9 +836,9 @@ TEST_CASE("a drop of rows of particles begins too large, as the page of papers s
 }
 
 TEST_CASE("studies of papers print the tables of the page", "[papers][slow]") {
-  for (const std::string study :
-       {"self_weight_column_shapes", "hydrostatic_column_laws", "elliptical_drop_grids", "channel_times",
-        "channel_grids", "plate_impact_speeds", "cantilever_loads", "thick_cylinder_pressures"}) {
+  for (const std::string study : {"self_weight_column_shapes", "hydrostatic_column_laws", "elliptical_drop_grids",
+                                  "channel_times", "channel_grids", "plate_impact_speeds", "cantilever_loads",
+                                  "thick_cylinder_pressures", "solid_shock_viscosity"}) {
     INFO(study);
     const Folder folder;
     const Result result =

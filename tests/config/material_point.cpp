@@ -92,6 +92,8 @@ TEST_CASE("a material point refuses what belongs to scenes, by name", "[config]"
        R"(unknown key "end_time")");
   says(refusal(R"("density": 1000)", R"("density": 1000, "thermal": {"conductivity": 1, "heat_capacity": 1})"),
        "/materials/rubber/thermal: a material point does not conduct");
+  says(refusal(R"("density": 1000)", R"("density": 1000, "artificial_viscosity": {})"),
+       "/materials/rubber/artificial_viscosity: a material point has no cells over which to spread a shock");
 }
 
 TEST_CASE("a material point refuses stages that impose too much, too little or what there is not", "[config]") {

@@ -71,7 +71,8 @@ inline std::vector<Mix> every_kernel(int dimension) {
   Mix loaded;
   loaded.dimension = dimension, loaded.contact = R"({"type": "coulomb", "friction": 0.2})", loaded.close = true;
   loaded.filter = R"({"type": "fmpm", "order": 3, "position_update": "mean_velocity"})";
-  loaded.stress_update = "averaged", loaded.overrides = {set("/solver/dilation", "averaged")};
+  loaded.stress_update = "averaged";
+  loaded.overrides = {set("/solver/dilation", "averaged"), set("/materials/m/artificial_viscosity", "{}")};
   loaded.boundaries =
       flat ? R"({"all": "slip", "x_max": "stick", "y_min": {"type": "prescribed", "velocity": ["0.1+t", 0]}})"
            : R"({"all": "slip", "x_max": "stick", "y_max": "separate"})";

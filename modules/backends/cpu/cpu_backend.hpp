@@ -190,7 +190,13 @@ std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<Se
     body.material = &experiment.materials[experiment.bodies[i].material].component;
     const mpm_material& material = body.material->plugin->material();
     body.update_material = material.update[lane_precision<T>][D - 2];
-    body.dissipates = (material.traits & MPM_DISSIPATES) != 0;
+    const auto& viscosity = experiment.materials[experiment.bodies[i].material].artificial_viscosity;
+    body.dissipates = (material.traits & MPM_DISSIPATES) != 0 || viscosity;
+    if (viscosity) {
+      const double h = scene_.domain.cell_size;
+      body.viscosity = {static_cast<T>(body.material->parameter("density")), static_cast<T>(viscosity->linear * h),
+                        static_cast<T>(viscosity->quadratic * h * h)};
+    }
     const auto& thermal = experiment.materials[experiment.bodies[i].material].thermal;
     body.thermal = thermal ? &*thermal : nullptr;
     body.warms_itself = body.dissipates && thermal && thermal->dissipation_to_heat > 0;
@@ -350,6 +356,7 @@ void CpuBackend<D, T, Components>::account_for_move() {
 template <int D, class T, class Components>
 void CpuBackend<D, T, Components>::book_material(const typename Step::Gathered& strained) {
   ledger_.material += strained.dissipated;
+  ledger_.artificial_viscosity += strained.artificial;
   ledger_.stress_power += strained.stress_power;
   ledger_.stored += strained.stored;
   ledger_.material_book += strained.stress_power - strained.stored - strained.dissipated;

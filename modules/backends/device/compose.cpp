@@ -132,6 +132,11 @@ bool melts(const Choice& choice) {
   return number_of(choice.particle_fields, "melted_fraction") >= 0;
 }
 
+/// Whether the ledger asks what artificial viscosity dissipates.
+bool books_viscosity(const Choice& choice) {
+  return number_of(choice.particle_fields, "artificial_work") >= 0;
+}
+
 bool averages_dilation(const Choice& choice) {
   return number_of(choice.node_fields, "dilation") >= 0;
 }
@@ -267,6 +272,7 @@ std::string scene_text(const Choice& choice) {
   if (has_filter_loop(choice)) out << "MPM_DEVICE_FILTER_LOOP_ENTRIES\n";
   if (has_temperature(choice)) out << "MPM_DEVICE_HEAT_ENTRIES\n";
   if (has_temperature(choice) && keeps_ledger(choice)) out << "MPM_DEVICE_HEAT_LEDGER_ENTRIES\n";
+  if (books_viscosity(choice)) out << "MPM_DEVICE_VISCOSITY_LEDGER_ENTRIES\n";
   if (averages_dilation(choice)) out << "MPM_DEVICE_DILATION_ENTRIES\n";
   for (std::size_t k = 0; k < choice.materials.size(); ++k) {
     out << "MPM_DEVICE_MATERIAL_ENTRIES(" << k << ")\n";
@@ -299,6 +305,7 @@ std::vector<std::string> entry_names(const Choice& choice) {
     if (macro == "MPM_DEVICE_FILTER_LOOP_ENTRIES" && !has_filter_loop(choice)) continue;
     if (macro == "MPM_DEVICE_HEAT_ENTRIES" && !has_temperature(choice)) continue;
     if (macro == "MPM_DEVICE_HEAT_LEDGER_ENTRIES" && !(has_temperature(choice) && keeps_ledger(choice))) continue;
+    if (macro == "MPM_DEVICE_VISCOSITY_LEDGER_ENTRIES" && !books_viscosity(choice)) continue;
     if (macro == "MPM_DEVICE_DILATION_ENTRIES" && !averages_dilation(choice)) continue;
     if (macro == "MPM_DEVICE_MELTING_ENTRIES" && !melts(choice)) continue;
     const std::size_t number = name.find("##");

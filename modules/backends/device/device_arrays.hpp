@@ -21,6 +21,7 @@ struct Body {
   const Component* material;
   const Thermal* thermal = nullptr;  ///< null in scenes without temperature
   HeatOfBody<T> heat{};
+  ArtificialViscosity<T> viscosity{};  ///< zeros where the material has none
   int field = 0, material_number = 0, count = 0, dimension = 2;
   bool frozen = false;
   T mass = 0, volume = 0, half_size = 0;
@@ -44,6 +45,11 @@ struct Body {
     if (const auto& given = experiment.materials[body.material].thermal) {
       thermal = &*given;
       heat = heat_of(*thermal, material->parameter("density"));
+    }
+    if (const auto& given = experiment.materials[body.material].artificial_viscosity) {
+      const double h = experiment.grid.cell_size;
+      viscosity = {static_cast<T>(material->parameter("density")), static_cast<T>(given->linear * h),
+                   static_cast<T>(given->quadratic * h * h)};
     }
     field = body.field, material_number = body.material, count = static_cast<int>(seeded.count());
     mass = static_cast<T>(seeded.mass), volume = static_cast<T>(seeded.volume);
@@ -123,7 +129,7 @@ struct Body {
   }
 
   ParticleArrays<T> table() const {
-    ParticleArrays<T> table{count, count, mass, volume, half_size, frozen ? 1 : 0, {}, heat};
+    ParticleArrays<T> table{count, count, mass, volume, half_size, frozen ? 1 : 0, {}, heat, viscosity};
     arrays.point(table.field);
     return table;
   }

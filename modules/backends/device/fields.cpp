@@ -47,8 +47,8 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
     const bool springs_read = field.lifetime == Lifetime::seeded && plan.node_field("mass_displacement");
     if (!field.of_particles_of(body) || (field.lifetime == Lifetime::seeded && !springs_read)) continue;
     if (field.origin == Origin::host && field.id == "identity") continue;  // particles keep the order of seeding
-    if (field.origin == Origin::host &&
-        (field.id == "melted_fraction" || field.id == "deformation" || field.id == "size"))
+    if (field.origin == Origin::host && (field.id == "melted_fraction" || field.id == "deformation" ||
+                                         field.id == "size" || field.id == "artificial_pressure"))
       continue;  // they come below
     (field.origin == Origin::material ? material : fields).push_back(field);
   }
@@ -86,6 +86,13 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   else if (std::any_of(plan.fields.begin(), plan.fields.end(),
                        [](const Field& f) { return f.id == "melted_fraction"; }))
     work("melted_fraction", "", 1);
+  if (experiment.has_artificial_viscosity()) {
+    if (const Field* const pressure = plan.particle_field(body, "artificial_pressure"))
+      fields.push_back(*pressure);
+    else
+      work("artificial_pressure", "Pa", 1);  // without coefficients it stays zero
+    if (plan.has_ledger()) work("artificial_work", "J/m^3", 1);
+  }
   fields.insert(fields.end(), material.begin(), material.end());
   return fields;
 }

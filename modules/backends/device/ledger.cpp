@@ -90,6 +90,9 @@ void DeviceBackend<T>::book_material(Body<T>& body) {
     ledger_.material += dissipated, ledger_.stress_power += power, ledger_.stored += stored;
     ledger_.material_book += power - stored - dissipated;
   });
+  if (!(body.viscosity.density > 0)) return;
+  const Tally<1> artificial = sum<1>("artificial_work", arguments_of(body), body.count);
+  later([this, artificial] { ledger_.artificial_viscosity += (*artificial)[0]; });
 }
 
 template <class T>

@@ -154,6 +154,7 @@ void ReferenceBackend::book_gather(const Pass& pass, double dt) {
 
 void ReferenceBackend::book_strain(const StrainEnergies& energies) {
   ledger_.material += energies.dissipated;
+  ledger_.artificial_viscosity += energies.artificial;
   ledger_.stress_power += energies.power;
   ledger_.stored += energies.stored;
   ledger_.material_book += energies.power - energies.stored - energies.dissipated;

@@ -14,6 +14,7 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
       transfer_(experiment.transfer),
       material_(experiment.materials[experiment.bodies[body].material].component),
       thermal_(experiment.materials[experiment.bodies[body].material].thermal),
+      viscosity_(experiment.materials[experiment.bodies[body].material].artificial_viscosity),
       body_(body),
       field_(experiment.bodies[body].field),
       dimension_(experiment.dimension),
@@ -262,6 +263,24 @@ void Particles::evaluate_stress() {
   batch.kirchhoff_stress = stress.data();
   batch.volume_ratio = volume_ratio.data();
   refuse_inverted(update_material(batch));
+  if (viscosity_)
+    for (int k = 0; k < 3; ++k) stress.row(k) -= values("artificial_pressure").row(0);
+}
+
+/// Artificial viscosity: q = rho h r (C1 c + C2 h r), where the logarithm of the volume falls at the rate r. Its work is
+/// taken by the trapezoidal rule, since the forces before the strain had the old pressure and those after it have the new.
+Array Particles::strain_artificially(double dt, const Array& wave) {
+  const double h = experiment_.grid.cell_size, density = material_.parameter("density");
+  Array work = make(1);
+  Array& pressure = values("artificial_pressure");
+  for (std::size_t p = 0; p < count_; ++p) {
+    const double shrinking = -std::log1p(dt * dilation(p, dt)), rate = std::max(shrinking / dt, 0.0);
+    const double before = pressure(0, p);
+    pressure(0, p) = density * h * rate * (viscosity_->linear * wave(0, p) + viscosity_->quadratic * h * rate);
+    work(0, p) = 0.5 * (before + pressure(0, p)) * shrinking;
+  }
+  pad(pressure);
+  return work;
 }
 
 double Particles::work_of_stress(double dt, bool after) {
@@ -287,7 +306,15 @@ StrainEnergies Particles::strain(double dt, bool booked) {
   batch.dt = dt;
   batch.velocity_gradient = velocity_gradient.data();
   batch.dissipated_energy = dissipated.data();
+  Array wave = make(1);
+  if (viscosity_) batch.wave_speed = wave.data();
   refuse_inverted(update_material(batch));
+  if (viscosity_) {
+    Array artificial = strain_artificially(dt, wave);
+    dissipated += artificial;
+    if (size_) artificial.array() *= size_->array();
+    energies.artificial = volume_ * artificial.leftCols(count_).sum();
+  }
   if (booked) energies.power += 0.5 * work_of_stress(dt, true), energies.stored += stored_energy();
   if (plan_.particle_field(0, "domain") && !frozen_) {
     Array& domain = values("domain");  // the domain becomes (I + dt L) domain, like F
@@ -362,6 +389,12 @@ TimeStepLimit Particles::time_step_limit() {
   TimeStepLimit limit;
   limit.body = body_;
   for (std::size_t p = 0; p < count_; ++p) {
+    if (viscosity_) {  // a damped oscillator's longest step, its damping that of waves of one cell
+      const double h = experiment_.grid.cell_size, c = wave(0, p);
+      const double q = values("artificial_pressure")(0, p) / material_.parameter("density");
+      const double nu = h * std::sqrt(std::pow(viscosity_->linear * c, 2) + 4 * viscosity_->quadratic * q);
+      wave(0, p) = std::sqrt(3.0) * nu / h + std::hypot(c, std::sqrt(3.0) * nu / h);
+    }
     const double speed = wave(0, p) + column(velocity, p).norm();
     if (speed > limit.speed) limit = {speed, wave(0, p), body_, p};
   }

@@ -17,6 +17,7 @@ struct Moments {
 /// Energies of one strain of all particles of a body, J.
 struct StrainEnergies {
   double dissipated = 0;
+  double artificial = 0;         ///< share of that which artificial viscosity dissipated
   double power = 0, stored = 0;  ///< work of the stresses on the strain, and change of the stored energy
 };
 
@@ -89,7 +90,8 @@ class Particles {
   /// Computes those of the velocity that the transfer makes of the gathered moments alone, as if particles had been at
   /// rest: S+ S of a filter. Changes no particle.
   void project_coefficients(double dt);
-  /// Evaluates Kirchhoff stress and volume ratio at the current state. Throws RunFailure when a particle is inverted.
+  /// Evaluates Kirchhoff stress, less J q of artificial viscosity, and volume ratio at the current state. Throws RunFailure
+  /// when a particle is inverted.
   void evaluate_stress();
   /// Advances material and domain by dt with `velocity_gradient`, and warms the particle by its share of what that
   /// dissipates. What the ledger's book of the materials asks is found where `booked`. Throws RunFailure.
@@ -143,6 +145,9 @@ class Particles {
   /// Replaces the dilation of the velocity gradient by the mean one.
   void take_mean_dilation(double dt);
   double stored_energy();  ///< sum over all particles, J
+  /// Finds J q of a strain that has just been made, from the speeds of the fastest wave; returns the work of q on it,
+  /// J/m^3.
+  Array strain_artificially(double dt, const Array& wave);
   double size(std::size_t p) const { return size_ ? (*size_)(0, p) : 1.0; }
   void refuse_inverted(std::int32_t particle);
   /// The work of the current stress on dt L, or where `after` on what that is of the strained body, dt L (I + dt L)^-1
@@ -154,6 +159,7 @@ class Particles {
   const Component& transfer_;
   const Component& material_;
   const std::optional<Thermal>& thermal_;
+  const std::optional<ArtificialViscositySpecification>& viscosity_;
   int body_, field_, dimension_;
   std::size_t count_, padded_;
   double mass_, volume_;  ///< of a particle of size 1

@@ -5,9 +5,8 @@
 // The state is ln J and the heating a: p J^g = p0 (1 + a). A step at constant entropy leaves a as it is, whatever its
 // size, and only the work of the artificial viscosity changes it.
 
-#include "kernel/equation_of_state.hpp"
+#include "kernel/artificial_viscosity.hpp"
 #include "kernel/functor.hpp"
-#include "kernel/viscosity.hpp"
 #if MPM_HOST
 #include "plugin/tables.hpp"
 #endif
@@ -21,22 +20,19 @@ struct IdealGas {
   };
   template <class T>
   struct Constants {
-    T pressure;   ///< p0, Pa
-    T excess;     ///< g - 1
-    T ratio;      ///< g
-    T sound;      ///< squared speed of sound at rest, m^2/s^2
-    T density;    ///< at rest, kg/m^3
-    T linear;     ///< linear coefficient times the cell size, m
-    T quadratic;  ///< quadratic coefficient times the square of the cell size, m^2
+    T pressure;  ///< p0, Pa
+    T excess;    ///< g - 1
+    T ratio;     ///< g
+    T sound;     ///< squared speed of sound at rest, m^2/s^2
+    ArtificialViscosity<T> viscosity;
     T inverse_cell_size;
     MPM_HD explicit Constants(const Parameters& p)
         : pressure(T(p.pressure)),
           excess(T(p.heat_capacity_ratio - 1)),
           ratio(T(p.heat_capacity_ratio)),
           sound(T(p.heat_capacity_ratio * p.pressure / p.density)),
-          density(T(p.density)),
-          linear(T(p.linear_viscosity * p.cell_size)),
-          quadratic(T(p.quadratic_viscosity * p.cell_size * p.cell_size)),
+          viscosity{T(p.density), T(p.linear_viscosity * p.cell_size),
+                    T(p.quadratic_viscosity * p.cell_size * p.cell_size)},
           inverse_cell_size(T(1 / p.cell_size)) {}
   };
   template <int D, class S>
@@ -54,9 +50,9 @@ struct IdealGas {
   template <class G, int D, class S>
   MPM_HD static S advance(const Constants<scalar_of<S>>& c, const G& L, scalar_of<S> dt, State<D, S>& state) {
     const S before = state.log_volume_ratio, change = log_of_change(volume_change(L, dt));
-    const S after = before + change, rate = max(-change / S(dt), S(real<S>(0)));
+    const S after = before + change;
     const S speed = sqrt(squared_sound(c, before, state.heating));
-    const S viscous = c.density * rate * (c.quadratic * rate + c.linear * speed);
+    const S viscous = c.viscosity.pressure(compression_rate(change, dt), speed);
     const S work = real<S>(0.5) * max(-change, S(real<S>(0))) * (state.shock_pressure + viscous);
     const S weight = real<S>(0.5) * (exp(c.excess * before) + exp(c.excess * after));
     state.heating = state.heating + c.excess * weight * work / c.pressure;
@@ -84,10 +80,7 @@ struct IdealGas {
   template <int D, class S>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
     const S squared = squared_sound(c, state.log_volume_ratio, state.heating);
-    // The viscosity per density is the slope of its pressure over the rate, which that pressure gives.
-    const S viscosity =
-        sqrt(c.linear * c.linear * squared + real<S>(4) * c.quadratic * state.shock_pressure / c.density);
-    return damped_wave_speed(squared, viscosity, c.inverse_cell_size);
+    return c.viscosity.damped_speed(squared, state.shock_pressure, c.inverse_cell_size);
   }
 
   template <int D, class S>

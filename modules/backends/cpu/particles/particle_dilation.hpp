@@ -74,6 +74,7 @@ void ParticleStep<D, T, Components>::scatter_mean_stress(const Chunk& chunk, Wor
   mpm_material_batch request{};
   request.kirchhoff_stress = work.stress, request.volume_ratio = work.volume_ratio;
   update_material(chunk, request);
+  if (chunk.particles.artificial_pressure >= 0) add_artificial_pressure(chunk, work);
   const T* const size = sizes(chunk);
   for (int p = 0; p < chunk.end; p += Lanes<T>::width) {
     Lanes<T> volume = Lanes<T>(static_cast<T>(chunk.body.volume));

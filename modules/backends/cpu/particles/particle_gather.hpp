@@ -57,6 +57,7 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
     for (const Block<D>& block : particles.blocks) {
       sum.kinetic_energy += block.kinetic_energy;
       sum.dissipated += block.dissipated;
+      sum.artificial += block.artificial;
       sum.stress_power += block.stress_power;
       sum.stored += block.stored;
       sum.heat += block.heat;
@@ -74,7 +75,7 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       block.kinetic_energy = block.dissipated = block.heat_of_dissipation = 0;
-      block.stress_power = block.stored = 0;
+      block.stress_power = block.stored = block.artificial = 0;
       if (pass.has(Act::gather_heat)) gather_heat(body, block, work, step);
       if (pass.has(Act::strain)) load_mean(body, block, work, dilation);
       load_velocities(body, block, work);
@@ -105,7 +106,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
       load_velocities(body, block, work);
       begin_reach(block, work);
       block.kinetic_energy = block.dissipated = block.scattered_energy = block.scattered_mass = 0;
-      block.stress_power = block.stored = 0, block.scattered_momentum = {};
+      block.stress_power = block.stored = block.artificial = 0, block.scattered_momentum = {};
       for_each_chunk_of(
           body, block,
           [&](const Chunk& chunk) {
@@ -200,7 +201,7 @@ auto ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& st
       kernels_.load(work.velocity_tile.data(), grid_.channel(motion, bodies_[body].field), block.neighbours.data(),
                     block.reach);
       load_mean(body, block, work, dilation);
-      block.dissipated = block.heat_of_dissipation = block.stress_power = block.stored = 0;
+      block.dissipated = block.heat_of_dissipation = block.stress_power = block.stored = block.artificial = 0;
       block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         gather_chunk(chunk, work, wanted);
@@ -401,15 +402,20 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   if (dilation >= 0) take_mean_dilations(chunk, work, velocity_gradient, work.b, static_cast<T>(request.dt));
   if (dissipation) request.dissipated_energy = work.scalar;
   if (evaluates_for_scatter(pass)) want_of_material(pass, work, request);
+  const bool spreads_shocks = chunk.particles.artificial_pressure >= 0;
+  alignas(64) T wave_speed[chunk_size<T>];
+  if (spreads_shocks) request.wave_speed = wave_speed;
   alignas(64) T stored_energy[chunk_size<T>];
   if (accounted_) {
     mpm_material_batch now{};
     now.kirchhoff_stress = work.stress, now.stored_energy = stored_energy;
     update_material(chunk, now);
+    if (spreads_shocks) add_artificial_pressure(chunk, work);
     book_stress(chunk, now, request, false);
     request.kirchhoff_stress = work.stress, request.stored_energy = stored_energy;
   }
   update_material(chunk, request);
+  if (spreads_shocks) strain_artificially(chunk, work, request);
   if (accounted_) book_stress(chunk, request, request, true);
   if (chunk.particles.domain >= 0 && !chunk.body.frozen)
     advance_domain(chunk, velocity_gradient, request.dt, pass.second_half());
@@ -594,6 +600,7 @@ TimeStepLimit ParticleStep<D, T, Components>::time_step_limit() {
         mpm_material_batch request{};
         request.wave_speed = work.scalar;
         update_material(chunk, request);
+        if (chunk.particles.artificial_pressure >= 0) damp_wave_speeds(chunk, work);
         const T* const v = chunk.at(Particles<D, T>::velocity);
         for (int p = 0; p < chunk.count; ++p) {
           double squared = 0;

@@ -132,6 +132,7 @@ template <int D, class T, class Components>
     mpm_material_batch request{};
     want_of_material(pass, work, request);
     update_material(chunk, request);
+    if (request.kirchhoff_stress && chunk.particles.artificial_pressure >= 0) add_artificial_pressure(chunk, work);
     work.clock.lap(Phase::material);
   }
   if (pass.has(Act::scatter_force) && mean_stress >= 0) {

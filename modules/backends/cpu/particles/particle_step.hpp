@@ -15,7 +15,7 @@
 #include "backends/cpu/phase_clock.hpp"
 #include "backends/cpu/tiles/box_kernels.hpp"
 #include "backends/cpu/tiles/higher_kernels.hpp"
-#include "kernel/tensor.hpp"
+#include "kernel/artificial_viscosity.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/grips.hpp"
 #include "simulation/loads.hpp"
@@ -133,7 +133,8 @@ struct Body {
   const Component* material = nullptr;
   std::int32_t (*update_material)(const void*, const mpm_material_batch*) = nullptr;
   const BodyLoads* loads = nullptr;  ///< null where nothing acts from outside
-  bool dissipates = false;
+  bool dissipates = false;           ///< the law does, or its artificial viscosity
+  ArtificialViscosity<T> viscosity{};
   const Thermal* thermal = nullptr;  ///< null where particles have no temperature
   bool warms_itself = false;         ///< a share of what it dissipates becomes heat
   bool reads_temperature = false;    ///< particles have a temperature and the material asks for it
@@ -174,6 +175,7 @@ class ParticleStep : NamedChannels {
   struct Gathered {
     double kinetic_energy = 0, dissipated = 0;  ///< J, with the ledger on
     double stress_power = 0, stored = 0;        ///< J, with the ledger on
+    double artificial = 0;                      ///< J, with the ledger on: share of what is dissipated
     double heat = 0, heat_of_dissipation = 0;   ///< J, with temperature
   };
   /// What a grip gave its particles in the last gather.
@@ -369,6 +371,11 @@ class ParticleStep : NamedChannels {
   void gather_mean(const Chunk& chunk, Work& work, Channel channel);
   void take_mean_stress(const Chunk& chunk, Work& work) const;
   void take_mean_dilations(const Chunk& chunk, const Work& work, T* gradient, T* hoop, T dt) const;
+
+  // These are called for bodies with artificial viscosity alone, and kept out of the loops of all others.
+  [[gnu::noinline]] void add_artificial_pressure(const Chunk& chunk, Work& work) const;
+  [[gnu::noinline]] void strain_artificially(const Chunk& chunk, Work& work, const mpm_material_batch& strain) const;
+  [[gnu::noinline]] void damp_wave_speeds(const Chunk& chunk, Work& work) const;
 
   void load_velocities(int body, const Block<D>& block, Work& work);
   void flush(int body, const Block<D>& block, Work& work, Channel channel);

@@ -39,6 +39,7 @@ struct Block {
   std::uint32_t far = 0;                       ///< number of particles whose lists leave the tile
   double kinetic_energy = 0, dissipated = 0;   ///< partial sums of the ledger, J
   double stress_power = 0, stored = 0;         ///< the same: work of the stresses, change of the stored energy, J
+  double artificial = 0;                       ///< share of what is dissipated that is artificial viscosity's, J
   double scattered_energy = 0;                 ///< kinetic energy of the particles when they scatter, J
   double scattered_mass = 0;                   ///< their mass, kg
   std::array<double, D> scattered_momentum{};  ///< their momentum, kg m/s
@@ -73,7 +74,8 @@ struct Particles {
   int moved_corners = -1;  ///< where they go in this step, kept for the move pass of MUSL
   int deformation = -1;    ///< deformation gradient, for loads, row-major
   int temperature = -1, melted_fraction = -1;
-  int grip = -1;  ///< number of the grip that moves a particle, from 1; 0: none
+  int artificial_pressure = -1;  ///< J q of the last strain, Pa
+  int grip = -1;                 ///< number of the grip that moves a particle, from 1; 0: none
   int components = 0;
   int motion_components = 0;        ///< components of velocity and the transfer's state, from `velocity` on
   AlignedArray<T> half_size;        ///< [D][chunk_size] cells, for shapes that read it
@@ -133,6 +135,7 @@ void Particles<D, T>::lay_out(const Plan& plan, int body) {
   deformation = place("deformation");
   temperature = place("temperature");
   melted_fraction = place("melted_fraction");
+  artificial_pressure = place("artificial_pressure");
   grip = place("grip");
   for (const StoredField& state : transfer_state)
     for (const StoredField& stored : fields)

@@ -2,6 +2,7 @@
 // A phase is given plain pointers and numbers, in the same struct for the host that launches and the text that runs.
 // Arrays are laid out [component][particle] and [component][node]. No system headers are included.
 
+#include "kernel/artificial_viscosity.hpp"
 #include "operators/contact_geometry.hpp"
 
 namespace mpm::device {
@@ -37,6 +38,7 @@ struct ParticleArrays {
   int frozen;             ///< 1 where particles and domains stay as they are
   T* field[most_fields];  ///< numbered as Scene::Particle; the fields of one plugin's state lie one behind another
   HeatOfBody<T> heat;     ///< filled in scenes with temperature
+  ArtificialViscosity<T> viscosity;  ///< filled where the material has any
 };
 
 /// The nodes under a condition: all between two corners.

@@ -40,9 +40,11 @@ struct NoParticleFields {
   static constexpr int stress = -1, volume_ratio = -1, wave_speed = -1, velocity_gradient = -1, hoop_rate = -1;
   static constexpr int dissipated = -1;  ///< energy dissipated by the last strain
   static constexpr int stress_power = -1,
-                       stored = -1;         ///< work of the stress, and change of the energy, of that strain
-  static constexpr int mean_dilation = -1;  ///< as the nodes average it
-  static constexpr int deformation = -1;    ///< deformation gradient, for loads
+                       stored = -1;               ///< work of the stress, and change of the energy, of that strain
+  static constexpr int artificial_pressure = -1;  ///< J q of artificial viscosity in the last strain
+  static constexpr int artificial_work = -1;      ///< what that dissipated in it
+  static constexpr int mean_dilation = -1;        ///< as the nodes average it
+  static constexpr int deformation = -1;          ///< deformation gradient, for loads
   static constexpr int load_force = -1, load_moment = -1;  ///< b and S of a load, as the host evaluated them
   static constexpr int second_moment = -1;                 ///< what `second_moments` makes
   static constexpr int temperature = -1, melted_fraction = -1;

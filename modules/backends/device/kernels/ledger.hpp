@@ -217,4 +217,14 @@ MPM_HD void energy_dissipated(const Team& team, const Arguments<typename Scene::
   });
 }
 
+/// Sums the share of it that artificial viscosity dissipated.
+template <class Scene>
+MPM_HD void artificial_work(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  sum_over<1>(team, a, a.particles.count, [&](int p, double* sum) {
+    if constexpr (Scene::Particle::artificial_work >= 0)
+      sum[0] += double(of_size<Scene>(a.particles, a.particles.volume, p)) *
+                a.particles.field[Scene::Particle::artificial_work][p];
+  });
+}
+
 }  // namespace mpm::device

@@ -94,14 +94,37 @@ MPM_HD void for_each_state(const Team& team, const Arguments<typename Scene::Sca
   }
 }
 
+/// The Kirchhoff stress of a particle, with that of artificial viscosity.
+template <class Scene, class Constants, class State, class T = typename Scene::Scalar>
+MPM_HD Sym<Scene::dimension, T> kirchhoff_stress_of(const ParticleArrays<T>& particles, int p,
+                                                    const Constants& constants, const State& state) {
+  Sym<Scene::dimension, T> tau = Scene::Material::kirchhoff_stress(constants, state);
+  if constexpr (Scene::Particle::artificial_pressure >= 0)
+    for (int k = 0; k < 3; ++k) tau.s[k] -= particles.field[Scene::Particle::artificial_pressure][p];
+  return tau;
+}
+
+/// Finds J q of a strain by L that the material has just made; returns the work of q on it, J/m^3, by the trapezoidal rule:
+/// the forces before the strain had the old pressure, and those after it have the new one.
+template <class Scene, class Constants, class State, class Gradient, class T = typename Scene::Scalar>
+MPM_HD T strain_artificially(const Arguments<T>& a, int p, const Constants& constants, const State& state,
+                             const Gradient& L) {
+  T& pressure = a.particles.field[Scene::Particle::artificial_pressure][p];
+  const T change = log_of_change(volume_change(L, a.dt)), before = pressure;
+  pressure =
+      a.particles.viscosity.pressure(compression_rate(change, a.dt), T(Scene::Material::wave_speed(constants, state)));
+  const T work = T(-0.5) * change * (before + pressure);
+  if constexpr (Scene::Particle::artificial_work >= 0) a.particles.field[Scene::Particle::artificial_work][p] = work;
+  return work;
+}
+
 /// Evaluates Kirchhoff stress and volume ratio at the current state.
 template <class Scene>
 MPM_HD void stress(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
-  using Material = typename Scene::Material;
   constexpr int D = Scene::dimension;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, const auto& state) {
-    const Sym<D, T> tau = Material::kirchhoff_stress(constants, state);
+    const Sym<D, T> tau = kirchhoff_stress_of<Scene>(a.particles, p, constants, state);
     for (int k = 0; k < Sym<D, T>::size; ++k)
       a.particles.field[Scene::Particle::stress][k * a.particles.stride + p] = tau.s[k];
   });
@@ -115,7 +138,7 @@ MPM_HD void note_stress(const Arguments<T>& a, int p, const Constants& constants
   using Material = typename Scene::Material;
   using P = typename Scene::Particle;
   constexpr int D = Scene::dimension;
-  const Sym<D, T> tau = Material::kirchhoff_stress(constants, state);
+  const Sym<D, T> tau = kirchhoff_stress_of<Scene>(a.particles, p, constants, state);
   const Mat<D, T> plane = in_plane(L);
   const T share = after ? a.dt : T(0);
   T power = T(0);
@@ -146,7 +169,8 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
     if constexpr (P::mean_dilation >= 0) take_mean_dilation(L, a.particles.field[P::mean_dilation][p], a.dt);
     if constexpr (P::stress_power >= 0)
       if (a.records) note_stress<Scene>(a, p, constants, state, L, false);
-    [[maybe_unused]] const auto dissipated = Material::advance(constants, L, a.dt, state);
+    [[maybe_unused]] auto dissipated = Material::advance(constants, L, a.dt, state);
+    if constexpr (P::artificial_pressure >= 0) dissipated += strain_artificially<Scene>(a, p, constants, state, L);
     if constexpr (P::dissipated >= 0) a.particles.field[P::dissipated][p] = dissipated;
     if constexpr (P::stress_power >= 0)
       if (a.records) note_stress<Scene>(a, p, constants, state, L, true);
@@ -169,12 +193,18 @@ MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a)
   });
 }
 
-/// Finds the speed of the fastest wave at the current state.
+/// Finds the speed of the fastest wave at the current state, or what artificial viscosity makes of it for the step.
 template <class Scene>
 MPM_HD void wave_speed(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using Material = typename Scene::Material;
+  using P = typename Scene::Particle;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, const auto& state) {
-    a.particles.field[Scene::Particle::wave_speed][p] = Material::wave_speed(constants, state);
+    auto& speed = a.particles.field[P::wave_speed][p];
+    speed = Material::wave_speed(constants, state);
+    if constexpr (P::artificial_pressure >= 0)
+      if (a.particles.viscosity.density > 0)
+        speed = a.particles.viscosity.damped_speed(speed * speed, a.particles.field[P::artificial_pressure][p],
+                                                   a.inverse_cell_size);
   });
 }
 
