@@ -160,6 +160,7 @@ struct Arguments {
   int grip;                                           ///< scatter_grip: which
   bool grips_at_end;                                  ///< nodes are held as particles are told for the end of the step
   bool after_forces;                                  ///< v+ is made, not v-
+  bool first_step, notes_reached;                     ///< contact: see first_step and reached of mpm_contact_batch
   bool records;                                       ///< impulses are noted for the ledger
   bool walls_at_rest;                                 ///< what is folded or filled is a difference of velocities
   bool update_particles;  ///< gather: velocity and state change too, not only the velocity gradient
