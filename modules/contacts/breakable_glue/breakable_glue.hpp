@@ -48,8 +48,8 @@ struct BreakableGlue {
     }
   };
 
-  /// Glue holds where both bodies were glued at the start, not more than half of that has broken around the node, and the
-  /// loading is below 1. Elsewhere the pair meets as with friction. What the step before has broken is given up now, as the
+  /// Glue holds where both bodies were glued at the start and less than half of that has broken around the node, which rows
+  /// of nodes that open unlike decide together; a node alone lets go at twice its strength. Elsewhere the pair meets as with friction. What the step before has broken is given up now, as the
   /// energy at which glue breaks in this direction.
   template <int D, class S>
   MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
