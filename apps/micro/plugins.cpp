@@ -218,7 +218,7 @@ struct FilterCase {
 struct ContactCase {
   Variant v;
   Buffer mass_a, mass_b, momentum_a, momentum_b, normal, separation, area, impulse, dissipated, status, displacement,
-      traction, stored;
+      traction, stored, state, reached;
 
   explicit ContactCase(const Variant& variant) : v(variant) {
     Random random(1);
@@ -228,6 +228,7 @@ struct ContactCase {
     separation = v.random(random, 1, -0.1, 0.1), area = v.random(random, 1, 0.5, 1);
     normal = v.buffer(D), impulse = v.buffer(D), dissipated = v.buffer(1), status = v.indices(1);
     displacement = v.random(random, D, -step, step), stored = v.buffer(1), traction = v.random(random, D, -1, 1);
+    state = v.random(random, MPM_CONTACT_STATES, 0, 1), reached = v.buffer(MPM_CONTACT_STATES);
     for (int lane = 0; lane < batch; ++lane) {
       const conformance::Vector3 n = random.direction(D);
       for (int a = 0; a < D; ++a) normal.set(a, lane, n[a]);
@@ -241,6 +242,8 @@ struct ContactCase {
     q.dissipated = dissipated.data(), q.status = static_cast<std::int32_t*>(status.data());
     if (v.plugin->contact().traits & MPM_COMPLIANT) q.displacement = displacement.data(), q.stored = stored.data();
     if (v.plugin->contact().traits & MPM_READS_TRACTION) q.traction = traction.data();
+    if (!v.plugin->state().empty())
+      q.state_a = q.state_b = q.gained_a = q.gained_b = state.data(), q.reached = reached.data();
     q.cell_size = 0.2;
     v.plugin->contact().apply[v.precision()][v.dimension - 2](v.parameters->data(), &q);
   }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "conformance/support.hpp"
+#include "plugin/extension_of.hpp"
 
 namespace mpm::conformance {
 namespace {
@@ -19,6 +20,8 @@ struct Pair {
   double mass_a, mass_b, separation, area;
   Vector3 velocity_a, velocity_b, normal, displacement{}, traction{};
   double dt;
+  /// What each body's particles keep, and what they have gained, for laws with a state.
+  std::array<double, MPM_CONTACT_STATES> state_a{}, state_b{}, gained_a{}, gained_b{};
 
   double reduced_mass() const { return mass_a * mass_b / (mass_a + mass_b); }
 };
@@ -48,6 +51,9 @@ Pairs random_pairs(Random& random, int dimension) {
       p.velocity_a[i] = p.velocity_b[i] + approach * p.normal[i] + slide * (tangent[i] - along * p.normal[i]);
     }
   }
+  for (Pair& p : pairs)
+    for (std::size_t k = 0; k < MPM_CONTACT_STATES; ++k)
+      for (auto* values : {&p.state_a, &p.state_b, &p.gained_a, &p.gained_b}) (*values)[k] = random.uniform(0, 1);
   return pairs;
 }
 
@@ -56,8 +62,10 @@ struct ContactBatch {
   int count;
   double dt;
   std::uint32_t stage = MPM_AFTER_FORCES;
+  std::uint32_t first_step = 0;
   Array mass_a, mass_b, momentum_a, momentum_b, normal, separation, area, displacement, traction;
-  Array impulse, dissipated, stored, status;
+  Array state_a, state_b, gained_a, gained_b;
+  Array impulse, dissipated, stored, status, reached;
 
   ContactBatch(const Variant& v, const Pairs& pairs, int entries) : variant(v), count(entries), dt(pairs[0].dt) {
     const Element element = element_of(v);
@@ -65,6 +73,8 @@ struct ContactBatch {
     for (Array* scalar : {&mass_a, &mass_b, &separation, &area, &dissipated, &stored}) *scalar = Array(element, 1, n);
     for (Array* vector : {&momentum_a, &momentum_b, &normal, &displacement, &traction, &impulse})
       *vector = Array(element, v.dimension, n);
+    for (Array* state : {&state_a, &state_b, &gained_a, &gained_b, &reached})
+      *state = Array(element, MPM_CONTACT_STATES, n);
     status = Array(Element::index, 1, n);
     for (int lane = 0; lane < entries; ++lane) {
       const Pair& p = pairs[lane];
@@ -72,6 +82,11 @@ struct ContactBatch {
       mass_b.set(0, lane, p.mass_b);
       separation.set(0, lane, p.separation);
       area.set(0, lane, p.area);
+      for (std::size_t k = 0; k < MPM_CONTACT_STATES; ++k) {
+        const int row = static_cast<int>(k);
+        state_a.set(row, lane, p.state_a[k]), gained_a.set(row, lane, p.gained_a[k]);
+        state_b.set(row, lane, p.state_b[k]), gained_b.set(row, lane, p.gained_b[k]);
+      }
       for (int i = 0; i < v.dimension; ++i) {
         momentum_a.set(i, lane, p.mass_a * p.velocity_a[i]);
         momentum_b.set(i, lane, p.mass_b * p.velocity_b[i]);
@@ -84,7 +99,9 @@ struct ContactBatch {
 
   static bool reads_traction(const Plugin& plugin) { return plugin.contact().traits & MPM_READS_TRACTION; }
   static bool compliant(const Plugin& plugin) { return plugin.contact().traits & MPM_COMPLIANT; }
+  static int states(const Plugin& plugin) { return static_cast<int>(plugin.state().size()); }
   void apply(const Plugin& plugin, const ParameterSample& parameters) {
+    const bool keeps = states(plugin) > 0;
     const mpm_contact_batch batch{static_cast<std::uint32_t>(count),
                                   mass_a.stride(),
                                   static_cast<std::uint32_t>(variant.dimension),
@@ -103,7 +120,14 @@ struct ContactBatch {
                                   compliant(plugin) ? displacement.data() : nullptr,
                                   compliant(plugin) ? stored.data() : nullptr,
                                   reads_traction(plugin) ? traction.data() : nullptr,
-                                  cell_size};
+                                  cell_size,
+                                  keeps ? state_a.data() : nullptr,
+                                  keeps ? state_b.data() : nullptr,
+                                  keeps ? gained_a.data() : nullptr,
+                                  keeps ? gained_b.data() : nullptr,
+                                  keeps ? reached.data() : nullptr,
+                                  first_step,
+                                  0};
     plugin.contact().apply[variant.precision][variant.dimension - 2](parameters.data(), &batch);
   }
 
@@ -209,7 +233,8 @@ void check_friction(const Plugin& plugin, const ContactBatch& b, const Parameter
   if (mu < 0) return;
   Worst excess, work;
   for (int lane = 0; lane < full; ++lane) {
-    // What holds by a strength is not held by friction.
+    // What holds by a strength or by springs is not held by friction.
+    if (b.compliant(plugin) && b.stored(0, lane) != 0) continue;
     if (b.reads_traction(plugin) && static_cast<int>(b.status(0, lane)) == MPM_STICKS) continue;
     const Vector3 n = b.vector(b.normal, lane), J = b.vector(b.impulse, lane);
     const double normal = -dot(J, n);
@@ -252,10 +277,11 @@ void check_springs(const Plugin& plugin, const Variant& v, const ParameterSample
                    const std::string& where, Findings& findings) {
   if (!ContactBatch::compliant(plugin)) return;
   Pairs shorter = pairs;
-  for (Pair& pair : shorter) pair.dt = 0x1p-40;
+  for (Pair& pair : shorter) pair.dt = 0x1p-40, pair.gained_a = pair.gained_b = {};
   const ContactBatch b = applied(plugin, v, parameters, shorter);
   Worst difference;
   for (int lane = 0; lane < full; ++lane) {
+    if (b.states(plugin) > 0 && lane % 4 == 0) continue;  // springs that have gone leave bodies that press
     const Vector3 J = b.vector(b.impulse, lane), before = b.jump(lane, 0), after = b.jump(lane, 1);
     const double work = (dot(J, before) + dot(J, after)) / 2, size = magnitude(J) * magnitude(before);
     if (size > 0) difference.add(std::abs(b.stored(0, lane) - work) / size, lane);
@@ -272,6 +298,8 @@ void check_symmetry(const Plugin& plugin, const ContactBatch& b, const Parameter
   for (int lane = 0; lane < full; ++lane) {
     std::swap(swapped[lane].mass_a, swapped[lane].mass_b);
     std::swap(swapped[lane].velocity_a, swapped[lane].velocity_b);
+    std::swap(swapped[lane].state_a, swapped[lane].state_b);
+    std::swap(swapped[lane].gained_a, swapped[lane].gained_b);
     swapped[lane].normal = product(scaled(Matrix3::identity(), -1), pairs[lane].normal);
     swapped[lane].displacement = product(scaled(Matrix3::identity(), -1), pairs[lane].displacement);
     swapped[lane].traction = product(scaled(Matrix3::identity(), -1), pairs[lane].traction);
@@ -286,16 +314,20 @@ void check_symmetry(const Plugin& plugin, const ContactBatch& b, const Parameter
   const ContactBatch s = applied(plugin, b.variant, parameters, swapped),
                      t = applied(plugin, b.variant, parameters, turned);
   const ContactBatch g = applied(plugin, b.variant, parameters, moving);
-  Worst swap, turn, move, heat;
+  Worst swap, turn, move, heat, state;
   for (int lane = 0; lane < full; ++lane) {
     const double m = pairs[lane].reduced_mass();
     swap.add(impulse_difference(s, b, lane, -1) / m, lane);
     move.add(impulse_difference(g, b, lane, 1) / m, lane);
     const Vector3 back = product(transposed(rotation), t.vector(t.impulse, lane)), J = b.vector(b.impulse, lane);
     for (int i = 0; i < 3; ++i) turn.add(std::abs(back[i] - J[i]) / m, lane);
+    // What a state gives up may be far more than the energy of the pair.
+    const double scale = b.states(plugin) > 0 ? m + b.dissipated(0, lane) : m;
     for (const ContactBatch* other : {&s, &t, &g}) {
-      heat.add(std::abs(other->dissipated(0, lane) - b.dissipated(0, lane)) / m, lane);
-      if (b.compliant(plugin)) heat.add(std::abs(other->stored(0, lane) - b.stored(0, lane)) / m, lane);
+      heat.add(std::abs(other->dissipated(0, lane) - b.dissipated(0, lane)) / scale, lane);
+      if (b.compliant(plugin)) heat.add(std::abs(other->stored(0, lane) - b.stored(0, lane)) / scale, lane);
+      for (int k = 0; k < b.states(plugin); ++k)
+        state.add(std::abs(other->reached(k, lane) - b.reached(k, lane)), lane);
     }
   }
   const double bound = 512 * b.variant.epsilon();
@@ -303,6 +335,42 @@ void check_symmetry(const Plugin& plugin, const ContactBatch& b, const Parameter
   findings.at_most("rotation_of_frame", b.variant, turn, bound, "|Q^T J' - J| over reduced mass" + where);
   findings.at_most("moving_frame", b.variant, move, bound, "|J' - J| over reduced mass" + where);
   findings.at_most("heat_invariance", b.variant, heat, bound, "heat in swapped, turned and moving frames" + where);
+  if (b.states(plugin) > 0)
+    findings.at_most("state_invariance", b.variant, state, bound,
+                     "state reached in swapped, turned and moving frames" + where);
+}
+
+/// Checks that where nothing moves a law says nothing of its state, whatever particles keep already: what it only hands on
+/// would spread by a cell in every step.
+void check_state(const Plugin& plugin, const Variant& v, const ParameterSample& parameters, const Pairs& pairs,
+                 const std::string& where, Findings& findings) {
+  if (ContactBatch::states(plugin) == 0) return;
+  Pairs still = pairs;
+  for (Pair& pair : still)
+    pair.velocity_a = pair.velocity_b = pair.displacement = pair.traction = {}, pair.gained_a = pair.gained_b = {};
+  Pairs far = pairs;
+  for (Pair& pair : far) pair.displacement = product(scaled(Matrix3::identity(), 0x1p20), pair.displacement);
+  const ContactBatch resting = applied(plugin, v, parameters, still), moving = applied(plugin, v, parameters, far);
+  Worst given, negative;
+  for (int lane = 0; lane < full; ++lane)
+    for (int k = 0; k < ContactBatch::states(plugin); ++k) {
+      given.add(std::abs(resting.reached(k, lane)), lane);
+      negative.add(-moving.reached(k, lane), lane);
+    }
+  findings.at_most("state_not_handed_on", v, given, 0, "state reached where nothing moves" + where);
+  findings.at_most("state_not_negative", v, negative, 0,
+                   "negative state reached by pairs that have moved a kilometre" + where);
+}
+
+/// Checks that the longest step of a law is a time, and that smaller cells do not stand longer ones.
+void check_step_limit(const Plugin& plugin, const ParameterSample& parameters, const std::string& where,
+                      Findings& findings) {
+  const auto* table = extension_of<mpm_contact_step_limit>(plugin);
+  if (!table) return;
+  const double whole = table->limit(parameters.data(), 1000, cell_size),
+               half = table->limit(parameters.data(), 1000, cell_size / 2);
+  findings.require("step_limit_positive", whole > 0 && half > 0, "longest step, s" + where);
+  findings.require("step_limit_shortens", half <= whole, "longest step on cells of half the size" + where);
 }
 
 /// Checks that a partner of infinite mass, at rest, counts as one so heavy that its mass is lost in rounding.
@@ -332,15 +400,17 @@ void check_infinite_mass(const Plugin& plugin, const Variant& v, const Parameter
   findings.require("status_beside_infinite_mass [" + v.name() + "]", status, "status of every pair" + where);
 }
 
-void check_agreement(const ContactBatch& b, const ContactBatch& oracle, bool compliant, const Pairs& pairs,
+void check_agreement(const ContactBatch& b, const ContactBatch& oracle, bool compliant, int states, const Pairs& pairs,
                      const std::string& where, Findings& findings) {
   Worst impulse, heat;
   bool status = true;
   for (int lane = 0; lane < full; ++lane) {
     const double m = pairs[lane].reduced_mass();
     impulse.add(impulse_difference(b, oracle, lane, 1) / m, lane);
-    heat.add(std::abs(b.dissipated(0, lane) - oracle.dissipated(0, lane)) / m, lane);
-    if (compliant) heat.add(std::abs(b.stored(0, lane) - oracle.stored(0, lane)) / m, lane);
+    const double scale = states > 0 ? m + oracle.dissipated(0, lane) : m;
+    heat.add(std::abs(b.dissipated(0, lane) - oracle.dissipated(0, lane)) / scale, lane);
+    if (compliant) heat.add(std::abs(b.stored(0, lane) - oracle.stored(0, lane)) / scale, lane);
+    for (int k = 0; k < states; ++k) heat.add(std::abs(b.reached(k, lane) - oracle.reached(k, lane)), lane);
     status &= b.status(0, lane) == oracle.status(0, lane);
   }
   const double bound = 256 * b.variant.epsilon();
@@ -377,10 +447,14 @@ void check_batches(const Plugin& plugin, const ContactBatch& reference, const Pa
       guards &= out->guards_intact(), written &= out->all_written();
     guards &= b.stored.guards_intact();
     if (b.compliant(plugin)) written &= b.stored.all_written();
+    guards &= b.reached.guards_intact();
+    if (b.states(plugin) == static_cast<int>(MPM_CONTACT_STATES)) written &= b.reached.all_written();
     inputs &= b.mass_a == untouched.mass_a && b.mass_b == untouched.mass_b && b.momentum_a == untouched.momentum_a &&
               b.momentum_b == untouched.momentum_b && b.normal == untouched.normal &&
               b.separation == untouched.separation && b.area == untouched.area &&
-              b.displacement == untouched.displacement && b.traction == untouched.traction;
+              b.displacement == untouched.displacement && b.traction == untouched.traction &&
+              b.state_a == untouched.state_a && b.state_b == untouched.state_b && b.gained_a == untouched.gained_a &&
+              b.gained_b == untouched.gained_b;
     for (int lane = 0; lane < count; ++lane)
       for (int i = 0; i < b.variant.dimension; ++i) same &= b.impulse(i, lane) == reference.impulse(i, lane);
   }
@@ -388,7 +462,7 @@ void check_batches(const Plugin& plugin, const ContactBatch& reference, const Pa
   findings.require("writes_inside_arrays" + variant, guards, "guards around the outputs" + where);
   findings.require("writes_every_output" + variant, written, "no output element is left out" + where);
   findings.require("inputs_untouched" + variant, inputs,
-                   "masses, momenta, normal, separation, area, displacement, traction" + where);
+                   "masses, momenta, normal, separation, area, displacement, traction, state" + where);
   findings.require("independent_of_batch" + variant, same, "counts of 16 to 64" + where);
 }
 
@@ -396,9 +470,10 @@ void check_batches(const Plugin& plugin, const ContactBatch& reference, const Pa
 
 void check_contact(const Plugin& plugin, Findings& findings) {
   Random random(20240602);
-  for (const ParameterSample& parameters : sample_parameters(plugin, random))
+  for (const ParameterSample& parameters : sample_parameters(plugin, random)) {
+    const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
+    check_step_limit(plugin, parameters, where, findings);
     for (const Variant& v : variants_of(*plugin.descriptor)) {
-      const std::string where = parameters.text.empty() ? "" : "; " + parameters.text;
       const Pairs pairs = random_pairs(random, v.dimension);
       findings.running("pairs and friction", v, where);
       const ContactBatch b = applied(plugin, v, parameters, pairs);
@@ -406,6 +481,7 @@ void check_contact(const Plugin& plugin, Findings& findings) {
       check_friction(plugin, b, parameters, pairs, where, findings);
       check_stages(plugin, v, parameters, pairs, where, findings);
       check_springs(plugin, v, parameters, pairs, where, findings);
+      check_state(plugin, v, parameters, pairs, where, findings);
       findings.running("symmetry and frames", v, where);
       check_symmetry(plugin, b, parameters, pairs, random.rotation(v.dimension), where, findings);
       findings.running("infinite mass", v, where);
@@ -417,8 +493,9 @@ void check_contact(const Plugin& plugin, Findings& findings) {
       if (v.precision == MPM_SCALAR_DOUBLE || !(plugin.descriptor->precisions >> MPM_SCALAR_DOUBLE & 1)) continue;
       findings.running("agreement with scalar", v, where);
       check_agreement(b, applied(plugin, {MPM_SCALAR_DOUBLE, v.dimension}, parameters, pairs), b.compliant(plugin),
-                      pairs, where, findings);
+                      b.states(plugin), pairs, where, findings);
     }
+  }
 }
 
 }  // namespace mpm::conformance

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+
+#include "plugin/extension_of.hpp"
 
 namespace mpm {
 
@@ -85,6 +88,19 @@ bool Experiment::measures_traction() const {
 
 bool Experiment::has_compliant_contact() const {
   return contact && (contact->plugin->contact().traits & MPM_COMPLIANT);
+}
+
+std::span<const mpm_state> Experiment::contact_state() const {
+  return contact ? contact->plugin->state() : std::span<const mpm_state>();
+}
+
+double Experiment::contact_step_limit() const {
+  const auto* table = contact ? extension_of<mpm_contact_step_limit>(*contact->plugin) : nullptr;
+  double density = std::numeric_limits<double>::infinity();
+  for (const BodySpecification& body : bodies)
+    density = std::min(density, materials[body.material].component.parameter("density"));
+  return table ? table->limit(contact->parameters.data(), density, grid.cell_size)
+               : std::numeric_limits<double>::infinity();
 }
 
 Vector3 RigidBodySpecification::spin_at(double time, int dimension) const {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -410,6 +411,11 @@ struct Experiment {
   std::string why_it_meets() const;
   /// Whether a law joins bodies by springs, which pull by how far they have moved beside one another (MPM_COMPLIANT).
   bool has_compliant_contact() const;
+  /// The state that the law of contact keeps on particles; empty where it keeps none.
+  std::span<const mpm_state> contact_state() const;
+  /// The longest step in which the law of contact acts as its parameters say, s (mpm.contact.step_limit); infinite where
+  /// it names none.
+  double contact_step_limit() const;
   /// Whether the law asks for the traction that would hold bodies together (MPM_READS_TRACTION).
   bool measures_traction() const;
   /// Whether what supports give is noted: where reactions are asked for, and in scenes with rigid bodies.

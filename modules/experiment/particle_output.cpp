@@ -215,6 +215,7 @@ std::vector<ParticleField> particle_fields(const Experiment& experiment) {
       fields.push_back({"melted_fraction", "", Shape::scalar});
   for (const MaterialSpecification& material : experiment.materials) add_state(material.component, fields);
   add_state(experiment.transfer, fields);
+  if (experiment.contact) add_state(*experiment.contact, fields);
   for (const std::string& name : polynomial_names(experiment)) fields.push_back({name, "m/s", Shape::vector});
   return fields;
 }

@@ -38,6 +38,9 @@ struct ContactPair {  // NOLINT(clang-analyzer-optin.performance.Padding): in th
   Vec<D, S> displacement{};          ///< m, how far b has moved beside a; only laws with MPM_COMPLIANT have it
   Vec<D, S> traction{};              ///< Pa, what would hold a to b; only laws with MPM_READS_TRACTION have it
   scalar_of<S> cell_size;            ///< m
+  bool first_step = false;           ///< nothing has moved yet
+  // These are for laws with a state: what the particles of each body keep, and what the step before has added to it.
+  Vec<2, S> state_a{}, state_b{}, gained_a{}, gained_b{};
 };
 
 template <int D, class S>
@@ -46,6 +49,7 @@ struct ContactResult {
   S dissipated;       ///< J
   S status;           ///< 0 apart, 1 sticks, 2 slips
   S stored;           ///< J, taken up by springs; only laws with MPM_COMPLIANT fill it
+  Vec<2, S> reached;  ///< what particles keep if they have less; only laws with a state fill it
 };
 
 /// What two bodies that meet at a node have there, as far as the normal says that it reads it; the rest is zero. Both

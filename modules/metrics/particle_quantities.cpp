@@ -162,7 +162,7 @@ std::vector<std::string> quantity_names(const Registry& registry) {
   std::vector<std::string> names;
   for (const QuantityDescription& description : common) names.push_back(description.name);
   for (const mpm_state* field : computed_fields) add_names(*field, names);
-  for (const mpm_kind kind : {MPM_MATERIAL, MPM_TRANSFER})
+  for (const mpm_kind kind : {MPM_MATERIAL, MPM_TRANSFER, MPM_CONTACT})
     for (const Plugin* plugin : registry.of_kind(kind))
       for (const mpm_state& field : plugin->state()) add_names(field, names);
   return names;
@@ -184,6 +184,7 @@ std::vector<std::string> quantity_names(const Experiment& experiment, int body) 
   for (const mpm_state* field : computed_fields) add(*field);
   for (const mpm_state& field : material_of(experiment, body).plugin->state()) add(field);
   for (const mpm_state& field : experiment.transfer.plugin->state()) add(field);
+  for (const mpm_state& field : experiment.contact_state()) add(field);
   return names;
 }
 
@@ -200,6 +201,8 @@ QuantityDescription describe_quantity(const Experiment& experiment, const std::s
     for (const mpm_state& field : material.component.plugin->state())
       if (component_of(name, field, 3) >= 0) return described(field);
   for (const mpm_state& field : experiment.transfer.plugin->state())
+    if (component_of(name, field, 3) >= 0) return described(field);
+  for (const mpm_state& field : experiment.contact_state())
     if (component_of(name, field, 3) >= 0) return described(field);
   return {name, name, ""};
 }
@@ -254,6 +257,10 @@ std::vector<double> quantity(const Experiment& experiment, int body, const BodyS
     };
     take(*material_of(experiment, body).plugin, state.material_state);
     take(*experiment.transfer.plugin, state.transfer_state);
+    const std::span<const mpm_state> contact = experiment.contact_state();
+    for (std::size_t k = 0; k < contact.size(); ++k)
+      for (std::size_t p = 0; name == contact[k].name && p < n; ++p)
+        values[p] = state.host_state.at("contact_state")[p * contact.size() + k];
   }
   return values;
 }

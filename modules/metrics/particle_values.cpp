@@ -67,6 +67,12 @@ class Body {
       return;
     }
     const Component& own = experiment_.materials[experiment_.bodies[body_].material].component;
+    for (const mpm_state& declared : experiment_.contact_state())
+      if (name == declared.name) {
+        const std::vector<double> values = quantity(experiment_, body_, state_, name);
+        std::copy(values.begin(), values.end(), to);
+        return;
+      }
     if (!plugin_state(*own.plugin, state_.material_state, name, to) &&
         !plugin_state(*experiment_.transfer.plugin, state_.transfer_state, name, to))
       coefficients(name, to);

@@ -204,6 +204,14 @@ void contact_fields(FieldList& fields) {
   fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass, place);
   if (experiment.has_compliant_contact())
     fields.summed("mass_displacement", "kg m", D, AtWall::slip, Folded::with_mass, meets + ": its springs");
+  if (experiment.contact_state().empty()) return;
+  // Nodes keep vectors of the plane, whether a law has one value or two.
+  constexpr int states = MPM_CONTACT_STATES;
+  const std::string keeps = FieldList::named(*experiment.contact) + ": its state";
+  fields.summed("mass_state", "kg", states, AtWall::even, Folded::with_mass, keeps);
+  fields.summed("mass_gain", "kg", states, AtWall::even, Folded::with_mass, keeps);
+  fields.of_nodes("reached", "", states, keeps).cleared = true;
+  fields.of_nodes("met", "", 1, keeps, "reached").cleared = true;
 }
 
 /// What nodes get from the particles of each grip: the momentum that these have as they are told at the end of the step,

@@ -54,7 +54,11 @@ class Uses {
 // Where a particle is and which nodes it reaches.
 #define MPM_STENCIL "particles/position", "particles/domain", "particles/corners"
 // What contact and one-sided walls look at.
-#define MPM_PAIRS "nodes/volume_gradient", "nodes/mass_gradient", "nodes/mass_position", "nodes/mass_displacement"
+#define MPM_PAIRS                                                                                   \
+  "nodes/volume_gradient", "nodes/mass_gradient", "nodes/mass_position", "nodes/mass_displacement", \
+      "nodes/mass_state", "nodes/mass_gain"
+// What a law of contact with a state says of it.
+#define MPM_REACHED "nodes/reached", "nodes/met"
 // What walls that heat comes through look at.
 #define MPM_HEATED_WALL "nodes/heated_volume", "nodes/volume_conductivity", "nodes/capacity_position"
 
@@ -98,7 +102,11 @@ const Declaration declarations[] = {
       "nodes/mean_stress"},
      {},
      {MPM_EXTERNAL_FORCES}},
-    {Act::scatter_contact, Where::particles, {MPM_STENCIL, "particles/material", "particles/size"}, {}, {MPM_PAIRS}},
+    {Act::scatter_contact,
+     Where::particles,
+     {MPM_STENCIL, "particles/material", "particles/size", "particles/contact_state", "particles/contact_gain"},
+     {},
+     {MPM_PAIRS}},
     {Act::scatter_heat,
      Where::particles,
      {MPM_STENCIL, "particles/temperature", "particles/melted_fraction", "particles/size",
@@ -114,7 +122,7 @@ const Declaration declarations[] = {
      Where::nodes,
      {MPM_CONSTRAINED, "nodes/mass", "nodes/force", MPM_EXTERNAL_FORCES, "nodes/weight", "nodes/velocity_before",
       MPM_PAIRS, MPM_IMPULSES},
-     {MPM_CONSTRAINED, "nodes/velocity_before", MPM_IMPULSES},
+     {MPM_CONSTRAINED, "nodes/velocity_before", MPM_IMPULSES, MPM_REACHED},
      {}},
     {Act::divide_heat,
      Where::nodes,
@@ -151,6 +159,11 @@ const Declaration declarations[] = {
      Where::nodes,
      {MPM_CONSTRAINED, MPM_KEPT, MPM_PAIRS, MPM_IMPULSES},
      {MPM_CONSTRAINED, MPM_IMPULSES},
+     {}},
+    {Act::keep_contact_state,
+     Where::particles,
+     {MPM_STENCIL, MPM_REACHED, "particles/contact_state"},
+     {"particles/contact_state", "particles/contact_gain"},
      {}},
     {Act::gather,
      Where::particles,
@@ -287,6 +300,7 @@ void describe(Operator& operation, const Pass& pass, const Plan& plan, const Exp
 #undef MPM_STENCIL
 #undef MPM_EXTERNAL_FORCES
 #undef MPM_PAIRS
+#undef MPM_REACHED
 #undef MPM_HEATED_WALL
 
 /// Walks a step as it is executed with the filter on or off.

@@ -134,6 +134,19 @@ void deformation_fields(FieldList& fields, int body) {
       .name = "deformation gradient";
 }
 
+/// What the law of contact keeps, and what a step has added to it, of which the next one tells the law.
+void contact_fields(FieldList& fields, int body) {
+  const std::span<const mpm_state> state = fields.experiment.contact_state();
+  if (state.empty()) return;
+  const Component& law = *fields.experiment.contact;
+  std::string because = FieldList::named(law) + ": ";
+  for (std::size_t k = 0; k < state.size(); ++k) because += (k > 0 ? ", " : "") + std::string(state[k].name);
+  const int components = static_cast<int>(state.size());
+  fields.of_particles(body, "contact_state", state[0].unit, components, First::zero, because);
+  fields.of_particles(body, "contact_gain", state[0].unit, components, First::zero,
+                      because + ", as the last step has added");
+}
+
 void output_fields(FieldList& fields, int body) {
   const Experiment& experiment = fields.experiment;
   const std::string force_asks = who_reads_initial_position(experiment, body);
@@ -212,7 +225,7 @@ void declare_particle_fields(FieldList& fields) {
   for (int body = 0; body < static_cast<int>(fields.experiment.bodies.size()); ++body)
     for (const auto declare :
          {body_fields, transfer_fields, material_fields, temperature_fields, viscosity_fields, backend_fields,
-          size_fields, grip_fields, deformation_fields, output_fields, move_fields, shape_fields})
+          size_fields, grip_fields, deformation_fields, contact_fields, output_fields, move_fields, shape_fields})
       declare(fields, body);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 
 #include "experiment/thermal.hpp"
@@ -71,7 +72,17 @@ void refuse_normal(const Experiment& experiment) {
   if (!found[0]) refuse(experiment, normal.pointer, name + " gives no direction: its components are all zero");
 }
 
-/// What a law that acts over time, or by springs, cannot be combined with.
+/// Refuses a fixed step in which a law would not act as its parameters say.
+void refuse_long_step(const Experiment& experiment) {
+  const double most = experiment.contact_step_limit();
+  if (!experiment.solver.time_step || *experiment.solver.time_step <= most) return;
+  std::ostringstream message;
+  message << "contact \"" << experiment.contact->plugin->id() << "\" stands steps of at most " << most
+          << " s between these bodies on these cells; take that or a shorter step, \"auto\", or a softer law";
+  refuse(experiment, "/solver/time_step", message.str());
+}
+
+/// What a law that acts over time, by springs or by a state, cannot be combined with.
 void refuse_laws(const Experiment& experiment) {
   const auto name_of = [](const Component& law) { return "contact \"" + std::string(law.plugin->id()) + "\""; };
   const auto refuse_in_filter = [&](const Component& law) {
@@ -95,9 +106,20 @@ void refuse_laws(const Experiment& experiment) {
           name_of(body.contact) +
               " asks for the traction around a node, which is measured between bodies of particles alone; let a body "
               "that grips hold be the partner, or take another law");
+    if (!body.contact.plugin->state().empty())
+      refuse(experiment, body.contact.pointer,
+             name_of(body.contact) +
+                 " keeps a state on the particles of both bodies, and a rigid body has none; let a body that grips "
+                 "hold be the partner, or take another law");
   }
   if (!experiment.contact) return;
   refuse_in_filter(*experiment.contact);
+  refuse_long_step(experiment);
+  if (!experiment.contact_state().empty() && experiment.any_face(ConditionType::periodic))
+    refuse(experiment, experiment.contact->pointer,
+           name_of(*experiment.contact) +
+               " keeps a state on particles, which take it from nodes whose images beyond a periodic face know nothing "
+               "of it; close the periodic axis, or take another law");
   if (experiment.has_compliant_contact() && experiment.any_face(ConditionType::periodic))
     refuse(experiment, experiment.contact->pointer,
            name_of(*experiment.contact) +
@@ -157,6 +179,8 @@ void refuse_work_for_nobody(const Step& step, const Experiment& experiment) {
         return experiment.filter ? nullptr : "filter";
       case Act::scatter_contact:
         return experiment.meets() ? nullptr : "contact";
+      case Act::keep_contact_state:
+        return experiment.contact_state().empty() ? "contact law with a state" : nullptr;
       case Act::scatter_heat:
       case Act::divide_heat:
       case Act::conduct:

@@ -46,6 +46,8 @@ std::string Pass::name() const {
       return "heat";
     case Act::change_phase:
       return "change phase";
+    case Act::keep_contact_state:
+      return "keep contact state";
     case Act::scatter_mean_stress:
       return "scatter mean stress";
     case Act::average_mean_stress:

@@ -31,6 +31,7 @@ enum class Act {
   restore_velocity,     ///< grid velocity <- what was kept aside
   keep_correction,      ///< and what the filter had added is kept aside instead
   add_correction,       ///< grid velocity += the correction kept aside; conditions and contact
+  keep_contact_state,   ///< on particles: what the contact law says that pairs have reached -> its state
   gather,               ///< grid -> particle velocity and the transfer's state
   gather_heat,          ///< grid -> particle temperature and the transfer's state for it
   scatter_mean_stress,  ///< on particles: stress -> mean normal stress; its sum by volume -> nodes

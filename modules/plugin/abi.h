@@ -26,7 +26,7 @@ extern "C" {
 
 /* The boundary is unstable until 1.0 of the sandbox: any change of a struct or number below makes a new version, and a
  * host takes plugins of its own version alone. */
-#define MPM_ABI_VERSION 4u
+#define MPM_ABI_VERSION 5u
 #define MPM_BATCH 64u /* particles or nodes in a full batch */
 #define MPM_LANES 16u /* counts are padded to a multiple of this */
 
@@ -74,7 +74,7 @@ enum mpm_state_shape {
 };
 enum mpm_state_initial { MPM_INITIAL_ZERO = 0, MPM_INITIAL_ONE = 1, MPM_INITIAL_IDENTITY = 2 };
 
-/* One field a particle carries because this plugin is chosen. */
+/* One field a particle carries because this plugin is chosen: a transfer, a material or a contact law. */
 typedef struct mpm_state {
   const char* name;
   const char* unit;
@@ -211,7 +211,14 @@ typedef struct mpm_filter {
 
 /* ---- contact law ----------------------------------------------------------------------------------------------
  * One batch entry is the pair (a, b) of velocity fields at one node. Where b is a rigid body that moves as it is told, its
- * mass is infinite, its momentum zero, and the velocity of a is relative to it: the impulse on a stays finite. */
+ * mass is infinite, its momentum zero, and the velocity of a is relative to it: the impulse on a stays finite.
+ *
+ * A law may declare a state, so that it knows what was there before: up to MPM_CONTACT_STATES scalars that begin at 0 and
+ * never fall. Particles of both bodies keep them; nodes know of each body the mean by mass. After the forces the law says
+ * what the pair has reached, and a particle then takes the mean by weights of this over the nodes that it sees and where its
+ * body met another, if that is more than it has. A law that returns more than what the step itself tells, a mean that it
+ * was given say, spreads its state by a cell in every step. */
+#define MPM_CONTACT_STATES 2u
 enum mpm_contact_trait {
   MPM_BYPASSES_DETECTION = 1, /* a weld: no prescreen, detection or cap */
   MPM_PULLS = 2,              /* may resist separation (adhesion) */
@@ -250,6 +257,14 @@ typedef struct mpm_contact_batch {
    * MPM_READS_TRACTION. */
   const void* traction;
   double cell_size; /* m */
+  /* [state][stride]: what the particles of each body keep, as means by mass, and how much of that the step before has
+   * added. Null unless the law has a state. */
+  const void* state_a;
+  const void* state_b;
+  const void* gained_a;
+  const void* gained_b;
+  void* reached;                 /* [state][stride] out, read after the forces; null likewise */
+  uint32_t first_step, reserved; /* 1 in the first step of a scene: nothing has moved yet */
 } mpm_contact_batch;
 typedef struct mpm_contact {
   uint32_t traits, reserved;

@@ -121,6 +121,16 @@ typedef struct mpm_filter_step_limit {
   double (*limit)(const void* parameters, double unfiltered);
 } mpm_filter_step_limit;
 
+/* ---- mpm.contact.step_limit --------------------------------------------------------------------------------------
+ * The longest step, s, in which the law acts as its parameters say, between bodies whose lighter one has `density`, kg/m^3,
+ * on cells of `cell_size`, m. A law without this table leaves the step as it is. */
+#define MPM_CONTACT_STEP_LIMIT_ID "mpm.contact.step_limit"
+#define MPM_CONTACT_STEP_LIMIT_VERSION 1u
+typedef struct mpm_contact_step_limit {
+  uint32_t version, reserved;
+  double (*limit)(const void* parameters, double density, double cell_size);
+} mpm_contact_step_limit;
+
 /* ---- mpm.material.trial ------------------------------------------------------------------------------------------
  * Stress and stored energy of the state that an update would reach, while the state itself stays as it is: to the last
  * bit those of `update` on a copy. Returns as `update` does. */

@@ -125,6 +125,21 @@ void check_descriptor(const mpm_descriptor& d, const std::filesystem::path& file
            wrong_tables);
 }
 
+/// Nodes average what a law keeps, and particles never lose any of it.
+void check_contact_state(const mpm_descriptor& d, const std::filesystem::path& file) {
+  const std::string name = std::string("descriptor `") + d.id + "` ";
+  if (d.state_count > MPM_CONTACT_STATES)
+    refuse(file,
+           name + "is a contact law with " + std::to_string(d.state_count) + " state fields; there is room for " +
+               std::to_string(MPM_CONTACT_STATES),
+           wrong_tables);
+  for (std::size_t k = 0; k < d.state_count; ++k)
+    if (d.state[k].shape != MPM_STATE_SCALAR || d.state[k].initial != MPM_INITIAL_ZERO)
+      refuse(file,
+             name + "is a contact law whose state field `" + d.state[k].name + "` is not a scalar that begins at zero",
+             wrong_tables);
+}
+
 void check_rows(const mpm_descriptor& d, const std::filesystem::path& file) {
   const std::string name = std::string("descriptor `") + d.id + "` ";
   const auto incomplete = [&](const char* what, std::size_t row) {
@@ -144,6 +159,7 @@ void check_rows(const mpm_descriptor& d, const std::filesystem::path& file) {
         s.initial > MPM_INITIAL_IDENTITY)
       incomplete("state field", k);
   }
+  if (d.kind == MPM_CONTACT) check_contact_state(d, file);
   if (d.kind == MPM_MATERIAL && !density)
     refuse(file, name + "is a material without a parameter `density`", wrong_tables);
 }
@@ -233,6 +249,7 @@ std::span<const KnownExtension> known_extensions() {
       extension_info<mpm_shape_courant_limit>,
       extension_info<mpm_transfer_polynomials>,
       extension_info<mpm_filter_step_limit>,
+      extension_info<mpm_contact_step_limit>,
       extension_info<mpm_material_trial>,
       extension_info<mpm_material_tangent>,
       extension_info<mpm_material_projection>,

@@ -59,7 +59,7 @@ constexpr mpm_descriptor transfer(const Manual& m, const char* source) {
 }
 template <class F>
 constexpr mpm_descriptor contact(const Manual& m, const char* source) {
-  return descriptor<F>(MPM_CONTACT, contact_table<F>, &refusal_extension<F>, m, source);
+  return descriptor<F>(MPM_CONTACT, contact_table<F>, &contact_extension<F>, m, source);
 }
 template <class F>
 constexpr mpm_descriptor normal(const Manual& m, const char* source) {

@@ -283,6 +283,7 @@ void Recorder::write_vtk(std::size_t index) {
     for (const mpm_state& field : material.component.plugin->state())
       if (field.shape == MPM_STATE_SCALAR && std::find(names.begin(), names.end(), field.name) == names.end())
         names.emplace_back(field.name);
+  for (const mpm_state& field : experiment.contact_state()) names.emplace_back(field.name);
   for (const std::string& name : names) {
     const std::string unit = describe_quantity(experiment, name).unit;
     scalars.push_back({unit.empty() ? name : name + " (" + unit + ")", 1, {}});

@@ -1,5 +1,7 @@
 // Contact laws with springs and liquids: what a scene keeps for them, and what they are refused with by name.
 
+#include <cmath>
+
 #include "plan/plan.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
@@ -83,6 +85,50 @@ TEST_CASE("a law that reads the traction is refused where that is not measured",
     INFO(said);
     CHECK(said.find(why) != std::string::npos);
   }
+}
+
+TEST_CASE("a law with a state keeps it on particles and at nodes, and no other law does", "[glue]") {
+  const auto glue = [](const std::string& more = "") {
+    return R"({"type": "breakable_glue", "tension_stiffness": 1e4, "compression_stiffness": 5e4, "shear_stiffness": 2e4,
+               "normal_strength": 10, "shear_strength": 10)" +
+           more + "}";
+  };
+  const Plan with = make_plan(test::experiment_from(scene(glue())));
+  REQUIRE(with.particle_field(1, "contact_state"));
+  CHECK(with.particle_field(1, "contact_state")->components == 2);
+  CHECK(with.particle_field(1, "contact_state")->because.ends_with("/contact \"breakable_glue\": glued, broken"));
+  for (const char* id : {"mass_state", "mass_gain", "reached", "met"}) CHECK(with.node_field(id));
+  CHECK(with.does(Act::keep_contact_state));
+  const Plan without = make_plan(test::experiment_from(scene(springs)));
+  for (const char* id : {"contact_state", "contact_gain"}) CHECK_FALSE(without.particle_field(1, id));
+  for (const char* id : {"mass_state", "mass_gain", "reached", "met"}) CHECK_FALSE(without.node_field(id));
+  CHECK_FALSE(without.does(Act::keep_contact_state));
+
+  CHECK(refusal(scene(glue(), filtered("every_increment"))) == "accepted");
+  for (const auto& [said, why] :
+       {std::pair{refusal(scene(glue(), filtered("at_end"))), "take \"constraints\": \"every_increment\""},
+        std::pair{refusal(beside_rigid_body(glue())),
+                  "/rigid_bodies/0/contact: contact \"breakable_glue\" joins particles by springs"},
+        std::pair{refusal(scene(glue(), "", "\"periodic\"")), "close the periodic axis"}}) {
+    INFO(said);
+    CHECK(said.find(why) != std::string::npos);
+  }
+}
+
+// sqrt(rho h / (12 k)), with 1000 kg/m^3, 0.1 m and the stiffest of the springs.
+TEST_CASE("a fixed step that glue does not stand is refused with the longest one, and automatic ones are shorter",
+          "[glue]") {
+  const std::string stiff = scene(
+      R"({"type": "breakable_glue", "tension_stiffness": 1e7, "compression_stiffness": 5e7, "shear_stiffness": 2e7,
+          "normal_strength": 10, "shear_strength": 10})");
+  const std::string said = refusal(stiff);
+  INFO(said);
+  CHECK(said.find("/solver/time_step: contact \"breakable_glue\" stands steps of at most 0.000408248 s") !=
+        std::string::npos);
+  test::Scene scene(stiff, {"/solver/time_step=auto"});
+  scene.simulation.step();
+  CHECK(scene.simulation.largest_time_step() == Approx(std::sqrt(1000 * 0.1 / (12 * 5e7))).epsilon(1e-12));
+  CHECK(scene.simulation.limited_by() == "contact");
 }
 
 TEST_CASE("springs are refused beside rigid bodies and across periodic axes", "[interface]") {

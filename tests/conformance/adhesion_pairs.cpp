@@ -25,7 +25,7 @@ ContactPair<3, double> pair_of(double along, const Vec<3, double>& traction, dou
 
 ContactResult<3, double> result(const ContactPair<3, double>& pair) {
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();  // what the law leaves out is no number
-  ContactResult<3, double> found{{{nothing, nothing, nothing}}, nothing, nothing, 0};
+  ContactResult<3, double> found{{{nothing, nothing, nothing}}, nothing, nothing, 0, {}};
   Adhesion::apply(glue, pair, found);
   return found;
 }

@@ -36,7 +36,7 @@ constexpr double step = 0x1p-6;
 
 /// The text before a functor. Arrays are [component][64] of S; `state` and all that a functor fills are in `out`.
 constexpr const char* prologue = R"(#include "functor.hpp"
-struct Task { const void* parameters; const void* in[9]; void* out[8]; int count; double dt; };
+struct Task { const void* parameters; const void* in[13]; void* out[8]; int count; double dt; };
 namespace mpm {
 template <int N, class S> MPM_HD void load(const void* array, int lane, S* to) {
   for (int k = 0; k < N; ++k) to[k] = static_cast<const S*>(array)[k * 64 + lane];
@@ -188,13 +188,18 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
   load<1>(t.in[6], lane, &pair.area);
   load<D>(t.in[7], lane, pair.displacement.v);
   load<D>(t.in[8], lane, pair.traction.v);
+  load<2>(t.in[9], lane, pair.state_a.v);
+  load<2>(t.in[10], lane, pair.state_b.v);
+  load<2>(t.in[11], lane, pair.gained_a.v);
+  load<2>(t.in[12], lane, pair.gained_b.v);
   pair.dt = real<S>(t.dt), pair.cell_size = real<S>(1);
-  result.stored = S(0);
+  result.stored = S(0), result.reached = {};
   Functor::apply(p, pair, result);
   store<D>(t.out[0], lane, result.impulse.v);
   store<1>(t.out[1], lane, &result.dissipated);
   store<1>(t.out[2], lane, &result.status);
   store<1>(t.out[3], lane, &result.stored);
+  store<2>(t.out[4], lane, result.reached.v);
 }
 )";
 
@@ -403,7 +408,8 @@ Call inputs(const Plugin& plugin, int D, Random& random) {
         for (int i = 0; i < D; ++i)
           call.in[4][static_cast<std::size_t>(i) * particles + lane] = static_cast<float>(n[i]);
       }
-      call.out = {zeros(D), zeros(1), zeros(1), zeros(1)};
+      for (int k = 0; k < 4; ++k) call.in.push_back(random_column(random, 2, 0, 1));
+      call.out = {zeros(D), zeros(1), zeros(1), zeros(1), zeros(2)};
       break;
     }
     case MPM_NORMAL:
@@ -520,7 +526,7 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
     }
     case MPM_CONTACT: {
       indices.resize(particles);
-      const bool compliant = plugin.contact().traits & MPM_COMPLIANT;
+      const bool compliant = plugin.contact().traits & MPM_COMPLIANT, keeps = !plugin.state().empty();
       const mpm_contact_batch batch{n,
                                     n,
                                     dimension,
@@ -539,7 +545,14 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
                                     compliant ? in[7].data() : nullptr,
                                     compliant ? out[3].data() : nullptr,
                                     plugin.contact().traits & MPM_READS_TRACTION ? in[8].data() : nullptr,
-                                    1.0};
+                                    1.0,
+                                    keeps ? in[9].data() : nullptr,
+                                    keeps ? in[10].data() : nullptr,
+                                    keeps ? in[11].data() : nullptr,
+                                    keeps ? in[12].data() : nullptr,
+                                    keeps ? out[4].data() : nullptr,
+                                    0,
+                                    0};
       plugin.contact().apply[MPM_SCALAR_DOUBLE][axis](parameters.data(), &batch);
       out[2] = as_column(indices);
       break;
@@ -603,7 +616,7 @@ std::vector<Column> response_to_start(const Plugin& plugin, int D, const Paramet
 
 struct Task {
   const void* parameters;
-  const void* in[9];
+  const void* in[13];
   void* out[8];
   int count;
   double dt;

@@ -48,7 +48,7 @@ double stiffness_of(double angle, double dt) {
 template <class Law>
 ContactResult<3, double> result(const typename Law::Parameters& p, const ContactPair<3, double>& pair) {
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();  // what a law leaves out is no number
-  ContactResult<3, double> found{{{nothing, nothing, nothing}}, nothing, 0, nothing};
+  ContactResult<3, double> found{{{nothing, nothing, nothing}}, nothing, 0, nothing, {}};
   Law::apply(p, pair, found);
   return found;
 }

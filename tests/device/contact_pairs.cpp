@@ -95,3 +95,38 @@ TEST_CASE("adhesion that holds and gives way on the host-run device", "[device]"
   walls.filter = R"({"type": "fmpm", "order": 2})";
   check_on_device(walls, {"double"});
 }
+
+TEST_CASE("glue that breaks on the host-run device", "[device]") {
+  const std::string weak =
+      R"({"type": "breakable_glue", "tension_stiffness": 1e4, "compression_stiffness": 5e4, "shear_stiffness": 2e4,
+          "normal_strength": 60, "shear_strength": 90, "friction": 0.2})";
+  for (const int dimension : {2, 3}) {
+    Mix mix;
+    mix.dimension = dimension, mix.contact = weak;
+    check_on_device(mix, {"double"});
+  }
+  Mix walls;
+  walls.contact = weak, walls.close = true, walls.boundaries = R"({"all": "separate"})";
+  walls.filter = R"({"type": "fmpm", "order": 2})";
+  check_on_device(walls, {"double"});
+}
+
+TEST_CASE("glue that was saved on the host-run device goes on there bit for bit", "[device]") {
+  Mix mix;
+  mix.contact =
+      R"({"type": "breakable_glue", "tension_stiffness": 1e4, "compression_stiffness": 5e4, "shear_stiffness": 2e4,
+          "normal_strength": 60, "shear_strength": 90, "friction": 0.2})";
+  DeviceScene whole(mix.text(), "double"), resumed(mix.text(), "double");
+  for (int k = 0; k < 7; ++k) whole.simulation.step();
+  ArchiveWriter writer;
+  whole.simulation.save(writer);
+  for (int k = 0; k < 7; ++k) whole.simulation.step();
+  ArchiveReader reader(writer.bytes());
+  resumed.simulation.restore(reader);
+  for (int k = 0; k < 7; ++k) resumed.simulation.step();
+  for (const int body : {0, 1}) {
+    const BodyState a = whole.simulation.backend().body_state(body), b = resumed.simulation.backend().body_state(body);
+    CHECK(a.position == b.position);
+    CHECK(a.host_state == b.host_state);
+  }
+}

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "contacts/breakable_glue/breakable_glue.hpp"
 #include "contacts/coulomb/coulomb.hpp"
 #include "contacts/linear_interface/linear_interface.hpp"
 #include "contacts/liquid_contact/liquid_contact.hpp"
@@ -496,6 +497,35 @@ struct HalfSprings : LinearInterface {  // says that its springs store half of w
   }
 };
 
+struct SpreadsItsState : BreakableGlue {  // says again what it was told
+  template <int D, class S>
+  MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
+    BreakableGlue::apply(p, pair, result);
+    result.reached[broken] = max(result.reached[broken], max(pair.state_a[broken], pair.state_b[broken]));
+  }
+};
+
+struct OneSidedState : BreakableGlue {  // asks the first body alone what it keeps
+  template <int D, class S>
+  MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
+    ContactPair<D, S> alone = pair;
+    alone.state_b = pair.state_a;
+    BreakableGlue::apply(p, alone, result);
+  }
+};
+
+struct HealsItself : BreakableGlue {  // takes back what has broken
+  template <int D, class S>
+  MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
+    BreakableGlue::apply(p, pair, result);
+    result.reached[glued] = real<S>(-0.1) * result.reached[broken];
+  }
+};
+
+struct EndlessStep : BreakableGlue {  // stands longer steps on smaller cells
+  static double step_limit(const Parameters&, double, double cell_size) { return 1 / cell_size; }
+};
+
 struct StressOffEnergy : NeoHookean {
   template <int D, class S>
   MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
@@ -768,6 +798,11 @@ TEST_CASE("wrong contact laws are caught") {
   check_caught(wrong_contact<SpringsUnsaid>, "acts_in_no_time");
   check_caught(wrong_contact<LiquidPulls>, "no_pull");
   check_caught(wrong_contact<HalfSprings>, "springs_store_their_work");
+  CHECK(failures(wrong_contact<BreakableGlue>).empty());
+  check_caught(wrong_contact<SpreadsItsState>, "state_not_handed_on");
+  check_caught(wrong_contact<OneSidedState>, "pair_symmetry");
+  check_caught(wrong_contact<HealsItself>, "state_not_negative");
+  check_caught(wrong_contact<EndlessStep>, "step_limit_shortens");
 }
 
 TEST_CASE("wrong materials are caught") {

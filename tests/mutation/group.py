@@ -148,7 +148,9 @@ class Group:
         return (self.build.folder / self.build.source_of[name]).read_text()
 
     def includes_one(self, name, files):
-        text = self.text_of(name)
+        """Whether a source or its own header, the one of its name, includes one of the files."""
+        header = (self.build.folder / self.build.source_of[name]).with_suffix(".hpp")
+        text = self.text_of(name) + (header.read_text() if header.is_file() else "")
         return any(f'#include "{file.removeprefix("modules/")}"' in text for file in files)
 
     def make(self):

@@ -128,6 +128,25 @@ TEST_CASE("missing tables and incomplete rows are refused before anything reads 
           "descriptor `fixture` has an incomplete state field in row 1");
 }
 
+TEST_CASE("a contact law's state that nodes could not average is refused by name") {
+  const fixture::TemporaryFolder folder;
+  const std::string law = "-DFIXTURE_KIND=MPM_CONTACT '-DFIXTURE_TABLE_SIZE=sizeof(mpm_contact)' -DFIXTURE_HAS_STATE ";
+  const auto refused = [&](const std::string& name, const std::string& define, const std::string& message) {
+    const fs::path file = folder / name;
+    fixture::build_plugin(file, law + define);
+    CHECK(message_for(file) == start(file) + message + wrong_tables);
+  };
+  refused("three.so", "-DFIXTURE_STATE_COUNT=3",
+          "descriptor `fixture` is a contact law with 3 state fields; there is room for 2");
+  const std::string scalar =
+      "descriptor `fixture` is a contact law whose state field `first` is not a scalar that begins at zero";
+  refused("vector.so", "-DFIXTURE_STATE_SHAPE=MPM_STATE_VECTOR", scalar);
+  refused("one.so", "-DFIXTURE_STATE_INITIAL=MPM_INITIAL_ONE", scalar);
+  const fs::path two = folder / "two.so";
+  fixture::build_plugin(two, law + "-DFIXTURE_STATE_COUNT=2");
+  CHECK(message_for(two).empty());
+}
+
 TEST_CASE("one file that offers an id twice is refused whole") {
   const fixture::TemporaryFolder folder;
   const fs::path file = folder / "twice.so";

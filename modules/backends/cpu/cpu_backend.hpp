@@ -420,6 +420,8 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
       return particle_step_->scatter_dilation(pass, step);
     case Act::average_dilation:
       return grid_step_->average(dilation);
+    case Act::keep_contact_state:
+      return particle_step_->keep_contact_state();
     case Act::change_phase:
       return account_for_phases(particle_step_->change_phases(step));
     case Act::move:

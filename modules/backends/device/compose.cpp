@@ -112,6 +112,10 @@ bool reads_traction(const Choice& choice) {
   return choice.contact && (choice.contact->contact().traits & MPM_READS_TRACTION);
 }
 
+std::size_t contact_states(const Choice& choice) {
+  return choice.contact ? choice.contact->state().size() : 0;
+}
+
 /// Whether the scatter itself sums particles into a field. The weight follows from the masses, and loads and heat have
 /// kernels of their own, as shared memory has no room for everything at once.
 bool is_scattered(const Field& field) {
@@ -230,7 +234,8 @@ std::string scene_text(const Choice& choice) {
       << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
       << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
       << "  static constexpr int width = " << (list ? 1 : shape.width)
-      << ", list_capacity = " << (list ? shape.capacity[choice.dimension - 2] : 1) << ";\n"
+      << ", list_capacity = " << (list ? shape.capacity[choice.dimension - 2] : 1)
+      << ", contact_states = " << contact_states(choice) << ";\n"
       << "  static constexpr bool moment_is_gradient = " << yes(shape.second_moment_kind == MPM_MOMENT_IS_GRADIENT)
       << ", moment_per_particle = " << yes(shape.second_moment_kind == MPM_MOMENT_PER_PARTICLE) << ";\n"
       << "  static constexpr double inverse_second_moment = "
@@ -265,6 +270,7 @@ std::string scene_text(const Choice& choice) {
   if (has_loads(choice)) out << "MPM_DEVICE_LOAD_ENTRIES\n";
   if (keeps_ledger(choice)) out << "MPM_DEVICE_LEDGER_ENTRIES\n";
   if (choice.contact) out << "MPM_DEVICE_CONTACT_ENTRIES\n";
+  if (contact_states(choice) > 0) out << "MPM_DEVICE_CONTACT_STATE_ENTRIES\n";
   if (reads_traction(choice)) out << "MPM_DEVICE_TRACTION_ENTRIES\n";
   if (choice.reactions) out << "MPM_DEVICE_REACTION_ENTRIES\n";
   if (has_grips(choice)) out << "MPM_DEVICE_GRIP_ENTRIES\n";
@@ -298,6 +304,7 @@ std::vector<std::string> entry_names(const Choice& choice) {
     if (macro == "MPM_DEVICE_LOAD_ENTRIES" && !has_loads(choice)) continue;
     if (macro == "MPM_DEVICE_LEDGER_ENTRIES" && !keeps_ledger(choice)) continue;
     if (macro == "MPM_DEVICE_CONTACT_ENTRIES" && !choice.contact) continue;
+    if (macro == "MPM_DEVICE_CONTACT_STATE_ENTRIES" && contact_states(choice) == 0) continue;
     if (macro == "MPM_DEVICE_TRACTION_ENTRIES" && !reads_traction(choice)) continue;
     if (macro == "MPM_DEVICE_REACTION_ENTRIES" && !choice.reactions) continue;
     if (macro == "MPM_DEVICE_GRIP_ENTRIES" && !has_grips(choice)) continue;

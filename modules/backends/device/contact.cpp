@@ -26,6 +26,11 @@ Arguments<T> DeviceBackend<T>::pair_arguments(std::size_t a, std::size_t b, Stag
 }
 
 template <class T>
+void DeviceBackend<T>::keep_contact_state() {
+  for (Body<T>& body : bodies_) run("keep_contact_state", arguments_of(body), body, Checks::stencil);
+}
+
+template <class T>
 void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time) {
   if (contact_pairs_ && recorded == Recorded::before_forces) {
     look();  // a particle that has failed is nowhere
@@ -45,7 +50,8 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, 
   };
   if (experiment_.measures_traction())
     visit_pairs([&](const Arguments<T>& arguments) { launch("measure_welds", arguments, nodes()); });
-  visit_pairs([&](const Arguments<T>& arguments) {
+  visit_pairs([&](Arguments<T> arguments) {
+    arguments.first_step = step.step == 0, arguments.notes_reached = after_forces;
     const std::size_t at = place(contact_sums);
     join("contact", arguments, nodes(), contact_sums, at, 1);
     results_.later([this, at, given, unbalanced, after_forces](const double* sums) {

@@ -208,6 +208,7 @@ class DeviceBackend final : public Backend {
   void average(const std::string& what);
 
   // ---- contact.cpp
+  void keep_contact_state();
   /// Applies the law to every pair of fields, and then those of rigid bodies, whose velocities are those of a time, s.
   void resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time);
   Arguments<T> pair_arguments(std::size_t a, std::size_t b, Stage stage, bool notes) const;

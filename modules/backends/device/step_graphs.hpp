@@ -19,6 +19,7 @@ struct StepKind {
   std::vector<const Pass*> passes;
   double dt = 0;
   bool filtered = false, accounted = false, notes_contact = false;
+  bool first_of_state = false;  ///< the first step, of which a law of contact with a state is told
   Vector3 gravity{};
 
   bool operator==(const StepKind&) const = default;

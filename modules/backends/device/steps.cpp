@@ -44,6 +44,7 @@ StepKind DeviceBackend<T>::kind_of(const std::vector<WaitingPass>& passes) const
   const StepInfo& step = passes.back().step;
   kind.dt = step.dt, kind.filtered = step.filtered, kind.accounted = plan_.accounts_at(step.step);
   kind.notes_contact = records_nodes(experiment_, step);
+  kind.first_of_state = step.step == 0 && !experiment_.contact_state().empty();
   kind.gravity = experiment_.gravity_at(step.time);
   return kind;
 }
@@ -88,6 +89,8 @@ void DeviceBackend<T>::perform(const Pass& pass, const StepInfo& step) {
       return momentum_to_velocity(pass, step);
     case Act::accelerate:
       return apply_forces(step);
+    case Act::keep_contact_state:
+      return keep_contact_state();
     case Act::gather:
       return gather(pass, step);
     case Act::strain:

@@ -111,7 +111,8 @@ Vector ReferenceBackend::traction_at(std::size_t a, std::size_t b, double dt) co
 
 std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::size_t a, std::size_t b,
                                                                            const Vector& momentum_a,
-                                                                           const Vector& momentum_b, double dt) const {
+                                                                           const Vector& momentum_b,
+                                                                           const StepInfo& step) const {
   const Component& law = *experiment_.contact;
   const auto met = meet_pair(a, b);
   if (!met) return {};
@@ -120,11 +121,12 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
   Vector displacement = Vector::Zero();
   for (int c = 0; c < experiment_.dimension && sums_displacements_; ++c)
     displacement[c] = displacement_of_pair(met->a, met->b, c);
-  const Vector traction = experiment_.measures_traction() ? traction_at(a, b, dt) : Vector(Vector::Zero());
+  const Vector traction = experiment_.measures_traction() ? traction_at(a, b, step.dt) : Vector(Vector::Zero());
   const bool held = held_in_pair(a, b) != std::array<bool, 3>{} || held_in_pair(b, a) != std::array<bool, 3>{};
   const Vector mobility = held ? mobility_of_pair(a, b) : Vector(Vector::Zero());
   const auto apply = [&](const double* normal) -> std::optional<PairResult> {
-    const LawInput pair{mass_[a], mass_[b], momentum_a, momentum_b, geometry, normal, dt, displacement, traction};
+    const LawInput pair{mass_[a], mass_[b],     momentum_a, momentum_b, geometry,   normal,
+                        step.dt,  displacement, traction,   kept_at(a), kept_at(b), step.step == 0};
     return held ? resolve_held_pair(pair, mobility) : apply_law(law, pair);
   };
   if (!own) return apply(geometry.normal);
@@ -136,7 +138,42 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
   result.dissipated = 0.5 * (result.dissipated + of_b.dissipated);
   result.stored = 0.5 * (result.stored + of_b.stored);
   result.status = std::max(result.status, of_b.status);
+  result.reached = result.reached.cwiseMax(of_b.reached);
   return result;
+}
+
+ReferenceBackend::KeptAtNode ReferenceBackend::kept_at(std::size_t i) const {
+  KeptAtNode kept;
+  if (contact_states_ > 0) kept.state = mass_state_[i] / mass_[i], kept.gained = mass_gain_[i] / mass_[i];
+  return kept;
+}
+
+void ReferenceBackend::note_reached(std::size_t i, const Vector& reached) {
+  if (contact_states_ == 0) return;
+  reached_[i] = reached_[i].cwiseMax(reached);
+  met_[i] = 1;
+}
+
+/// Gives particles what the nodes around them say, as the mean over those where their body met another, if it is more than
+/// they have.
+void ReferenceBackend::keep_contact_state() {
+  for (Particles& body : bodies_) {
+    Array &state = body.values("contact_state"), &gain = body.values("contact_gain");
+    gain.setZero();
+    for (std::size_t p = 0; p < body.count(); ++p) {
+      Vector sum = Vector::Zero();
+      double weight = 0;
+      for (const StencilNode& s : body.stencil(p)) {
+        const std::size_t i = grid_.at(body.field(), s.index);
+        sum += s.weight * met_[i] * reached_[i];
+        weight += s.weight * met_[i];
+      }
+      for (int k = 0; weight > 0 && k < contact_states_; ++k) {
+        gain(k, p) = std::max(sum[k] / weight - state(k, p), 0.0);
+        state(k, p) += gain(k, p);
+      }
+    }
+  }
 }
 
 /// The pair is repeated over a full lane so that the plugin may compute whole lanes.
@@ -145,6 +182,7 @@ ReferenceBackend::PairResult ReferenceBackend::apply_law(const Component& law, c
   constexpr int n = MPM_LANES;
   std::array<double, n> mass_a, mass_b, separation, area, dissipated{}, stored{};
   std::array<double, 3 * n> p_a, p_b, normal, displacement, traction, impulse{};
+  std::array<double, MPM_CONTACT_STATES * n> state_a, state_b, gained_a, gained_b, reached{};
   std::array<std::int32_t, n> status{};
   mass_a.fill(input.mass_a), mass_b.fill(input.mass_b);
   separation.fill(input.geometry.separation), area.fill(input.geometry.area);
@@ -155,6 +193,12 @@ ReferenceBackend::PairResult ReferenceBackend::apply_law(const Component& law, c
       normal[c * n + lane] = input.normal[c];
       displacement[c * n + lane] = input.displacement[c];
       traction[c * n + lane] = input.traction[c];
+    }
+  const int states = static_cast<int>(law.plugin->state().size());
+  for (int k = 0; k < states; ++k)
+    for (int lane = 0; lane < n; ++lane) {
+      state_a[k * n + lane] = input.kept_a.state[k], gained_a[k * n + lane] = input.kept_a.gained[k];
+      state_b[k * n + lane] = input.kept_b.state[k], gained_b[k * n + lane] = input.kept_b.gained[k];
     }
   const bool compliant = law.plugin->contact().traits & MPM_COMPLIANT;
   const mpm_contact_batch batch{n,
@@ -175,10 +219,19 @@ ReferenceBackend::PairResult ReferenceBackend::apply_law(const Component& law, c
                                 compliant ? displacement.data() : nullptr,
                                 compliant ? stored.data() : nullptr,
                                 law.plugin->contact().traits & MPM_READS_TRACTION ? traction.data() : nullptr,
-                                experiment_.grid.cell_size};
+                                experiment_.grid.cell_size,
+                                states > 0 ? state_a.data() : nullptr,
+                                states > 0 ? state_b.data() : nullptr,
+                                states > 0 ? gained_a.data() : nullptr,
+                                states > 0 ? gained_b.data() : nullptr,
+                                states > 0 ? reached.data() : nullptr,
+                                input.first_step,
+                                0};
   law.plugin->contact().apply[MPM_SCALAR_DOUBLE][D - 2](law.parameters.data(), &batch);
-  PairResult result{Vector::Zero(), Vector::Zero(), dissipated[0], stored[0], status[0], input.geometry};
+  PairResult result{Vector::Zero(), Vector::Zero(), dissipated[0], stored[0],
+                    status[0],      input.geometry, Vector::Zero()};
   for (int c = 0; c < D; ++c) result.impulse[c] = result.returned[c] = impulse[c * n];
+  for (int k = 0; k < states; ++k) result.reached[k] = reached[k * n];
   return result;
 }
 
@@ -272,8 +325,9 @@ Vector ReferenceBackend::resolve_pairs(const StepInfo& step, bool after_forces, 
   const bool notes_nodes = records_nodes(experiment_, step);
   measure_welds([&](std::size_t i) { return Vector(momentum_[i]); });
   for_each_pair([&](std::size_t a, std::size_t b) {
-    const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step.dt);
+    const auto pair = resolve_pair(a, b, momentum_[a], momentum_[b], step);
     if (!pair) return;
+    if (after_forces) note_reached(a, pair->reached), note_reached(b, pair->reached);
     const Vector &J = pair->impulse, &returned = pair->returned;
     record(contact_impulse_, standing_contact_impulse_, a, J);
     record(contact_impulse_, standing_contact_impulse_, b, -returned);
@@ -297,7 +351,7 @@ ContactGiven ReferenceBackend::resolve_contact_of_velocity(double time, const St
   const bool notes_nodes = records_nodes(experiment_, step);
   measure_welds([&](std::size_t i) { return Vector(mass_[i] * velocity_[i]); });
   for_each_pair([&](std::size_t a, std::size_t b) {
-    const auto pair = resolve_pair(a, b, mass_[a] * velocity_[a], mass_[b] * velocity_[b], step.dt);
+    const auto pair = resolve_pair(a, b, mass_[a] * velocity_[a], mass_[b] * velocity_[b], step);
     if (!pair) return;
     velocity_[a] += pair->impulse / mass_[a];
     velocity_[b] -= pair->returned / mass_[b];

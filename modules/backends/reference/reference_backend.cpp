@@ -51,6 +51,8 @@ void ReferenceBackend::execute(const Pass& pass, const StepInfo& step) {
       return heat(step);
     case Act::change_phase:
       return change_phase();
+    case Act::keep_contact_state:
+      return keep_contact_state();
     case Act::gather:
       return gather(pass, step);
     case Act::scatter_mean_stress:

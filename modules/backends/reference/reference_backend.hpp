@@ -87,13 +87,22 @@ class ReferenceBackend final : public Backend {
     double dissipated = 0, stored = 0;  ///< J
     std::int32_t status = MPM_APART;
     ContactGeometry geometry{};
+    Vector reached = Vector::Zero();  ///< by state of the law, where it has some
   };
+  /// What the particles of a field keep for the law, and what the last step has added, as means by mass at a node.
+  struct KeptAtNode {
+    Vector state = Vector::Zero(), gained = Vector::Zero();
+  };
+  KeptAtNode kept_at(std::size_t i) const;
+  /// Notes at a node of one field what its pair has reached.
+  void note_reached(std::size_t i, const Vector& reached);
+  void keep_contact_state();
   ContactGiven nothing_given() const;
   /// Adds what the law did at a node to all pairs, to its own where pairs are recorded apart, and to the recorded nodes.
   void count(const PairResult& result, std::size_t a, std::size_t b, bool notes_node, ContactGiven& given) const;
   /// Returns nothing when a pair is skipped: a field is absent or too light, or has no normal (and the law is no weld).
   std::optional<PairResult> resolve_pair(std::size_t a, std::size_t b, const Vector& momentum_a,
-                                         const Vector& momentum_b, double dt) const;
+                                         const Vector& momentum_b, const StepInfo& step) const;
   ContactFieldNode contact_view(std::size_t i) const;
   /// Two fields that meet at a node, with how they lie there; nothing when a pair is skipped.
   std::optional<MetPair> meet_pair(std::size_t a, std::size_t b) const;
@@ -109,6 +118,8 @@ class ReferenceBackend final : public Backend {
     double dt;
     Vector displacement = Vector::Zero();  ///< of b beside a, m, where the law reads it
     Vector traction = Vector::Zero();      ///< on a, Pa, where the law reads it
+    KeptAtNode kept_a{}, kept_b{};         ///< where the law has a state
+    bool first_step = false;
   };
   PairResult apply_law(const Component& law, const LawInput& input) const;
   std::array<bool, 3> held_in_pair(std::size_t i, std::size_t other) const;
@@ -233,6 +244,10 @@ class ReferenceBackend final : public Backend {
   const bool sums_mass_gradients_ = plan_.node_field("mass_gradient") != nullptr;
   VectorField& mass_displacement_ = grid_.vector("mass_displacement");  ///< sum w m (x_p - X_p)
   const bool sums_displacements_ = plan_.node_field("mass_displacement") != nullptr;
+  VectorField &mass_state_ = grid_.vector("mass_state"), &mass_gain_ = grid_.vector("mass_gain");
+  VectorField& reached_ = grid_.vector("reached");  ///< what the law says of its state
+  ScalarField& met_ = grid_.scalar("met");          ///< 1 where the field has met another
+  const int contact_states_ = static_cast<int>(experiment_.contact_state().size());
   std::uint32_t law_stage_ = MPM_BEFORE_FORCES;                 ///< what laws are asked about now (mpm_contact_stage)
   VectorField& mass_position_ = grid_.vector("mass_position");  ///< sum w m (x_p - x_node)
   VectorField& increment_ = grid_.vector("increment");          ///< v* of the filter

@@ -542,8 +542,18 @@ void contact_batch(const void* parameters, const mpm_contact_batch* request) {
     if constexpr (compliant) load_components<D, S>(q.displacement, q.stride, lane, pair.displacement.v);
     if constexpr ((F::traits & MPM_READS_TRACTION) != 0)
       load_components<D, S>(q.traction, q.stride, lane, pair.traction.v);
-    pair.cell_size = real<S>(q.cell_size);
+    pair.cell_size = real<S>(q.cell_size), pair.first_step = q.first_step != 0;
+    if constexpr (HasState<F>) {
+      constexpr int states = static_cast<int>(sizeof(F::state) / sizeof(mpm_state));
+      static_assert(states <= static_cast<int>(MPM_CONTACT_STATES), "a contact law has room for two values");
+      load_components<states, S>(q.state_a, q.stride, lane, pair.state_a.v);
+      load_components<states, S>(q.state_b, q.stride, lane, pair.state_b.v);
+      load_components<states, S>(q.gained_a, q.stride, lane, pair.gained_a.v);
+      load_components<states, S>(q.gained_b, q.stride, lane, pair.gained_b.v);
+    }
     F::apply(p, pair, result);
+    if constexpr (HasState<F>)
+      store_components<sizeof(F::state) / sizeof(mpm_state), S>(q.reached, q.stride, lane, result.reached.v);
     if constexpr (compliant) store_components<1, S>(q.stored, q.stride, lane, &result.stored);
     store_components<D, S>(q.impulse, q.stride, lane, result.impulse.v);
     store_components<1, S>(q.dissipated, q.stride, lane, &result.dissipated);

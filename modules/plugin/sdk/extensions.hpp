@@ -54,6 +54,12 @@ concept StepLimitFunctor = requires(const typename F::Parameters& p) {
   { F::step_limit(p, 1.0) } -> std::convertible_to<double>;
 };
 
+/// The longest step of a contact law, s, from the density of the lighter body and the cell size.
+template <class F>
+concept ContactStepLimitFunctor = requires(const typename F::Parameters& p) {
+  { F::step_limit(p, 1.0, 1.0) } -> std::convertible_to<double>;
+};
+
 /// A functor whose `advance` without strain takes any state to the nearest admissible one says so: `static constexpr
 /// bool projects = true`.
 template <class F>
@@ -408,6 +414,12 @@ inline constexpr mpm_filter_step_limit step_limit_table{
       return static_cast<double>(F::step_limit(parameters_of<F>(parameters), unfiltered));
     }};
 
+template <ContactStepLimitFunctor F>
+inline constexpr mpm_contact_step_limit contact_step_limit_table{
+    MPM_CONTACT_STEP_LIMIT_VERSION, 0, [](const void* parameters, double density, double cell_size) {
+      return static_cast<double>(F::step_limit(parameters_of<F>(parameters), density, cell_size));
+    }};
+
 template <MakesEnergy F>
 inline constexpr mpm_material_makes_energy makes_energy_table{MPM_MATERIAL_MAKES_ENERGY_VERSION, 0, F::makes_energy};
 
@@ -451,6 +463,12 @@ const void* filter_extension(const char* id) {
   if constexpr (StepLimitFunctor<F>)
     if (same_text(id, MPM_FILTER_STEP_LIMIT_ID)) return &step_limit_table<F>;
   return costs_or_refusal<F>(id);
+}
+template <class F>
+const void* contact_extension(const char* id) {
+  if constexpr (ContactStepLimitFunctor<F>)
+    if (same_text(id, MPM_CONTACT_STEP_LIMIT_ID)) return &contact_step_limit_table<F>;
+  return refusal_extension<F>(id);
 }
 /// The extensions of a material that run its functor over scalars of their own.
 #if defined(MPM_PLUGIN_PART) && MPM_PLUGIN_PART == 1

@@ -198,6 +198,7 @@ void explicit_step(StepBuilder& step) {
   if (filter.for_particles_only() && stress_last)
     step.perform(Act::strain, order + ": by the unfiltered velocity", Stage::after_forces).share = share;
   filter.before_gather();
+  if (!scene.contact_state().empty()) step.perform(Act::keep_contact_state, contact, Stage::after_forces);
   step.perform(Act::gather, transfer, Stage::after_forces);
   if (heats) step.perform(Act::gather_heat, thermal, Stage::after_forces);
   if (!filter.for_particles_only() && stress_last)
@@ -224,7 +225,8 @@ StepLimit explicit_limit(const Experiment& experiment, const TimeStepSpeeds& spe
       if (const double seconds = filtered->limit(experiment.filter->parameters.data(), limit.seconds);
           seconds < limit.seconds)
         limit = {seconds, "filter order", true};
-  for (const StepLimit& other : {thermal_limit(experiment), spring_limit(experiment)})
+  const StepLimit contact{experiment.contact_step_limit(), "contact"};
+  for (const StepLimit& other : {thermal_limit(experiment), spring_limit(experiment), contact})
     if (other.seconds < limit.seconds) limit = other;
   return limit;
 }

@@ -66,6 +66,9 @@ struct NamedChannels {
                 mass_gradient = channel_of(plan_, "mass_gradient");
   const Channel mass_position = channel_of(plan_, "mass_position");
   const Channel mass_displacement = channel_of(plan_, "mass_displacement");  ///< where a law has springs
+  const Channel mass_state = channel_of(plan_, "mass_state"), mass_gain = channel_of(plan_, "mass_gain");
+  /// Holds what a law of contact says of its state, beside 1 where the field has met another.
+  const Channel reached = channel_of(plan_, "reached");
   /// Holds heat and its capacity; temperature and capacity once the heat has been divided.
   const Channel heat = channel_of(plan_, "heat"), heat_rate = channel_of(plan_, "heat_rate");
   const Channel temperature_before = channel_of(plan_, "temperature_before");  ///< later the increment

@@ -56,6 +56,10 @@ struct GridStep<D, T>::ContactBatch {
     for (const Held& h : held)
       if (!(traits & MPM_COMPLIANT) || status[h.at] == MPM_STICKS) h.pair.correct(impulses + h.at, block_nodes, weld);
   }
+  // These are for laws with a state.
+  static constexpr int state_values = MPM_CONTACT_STATES * block_nodes;
+  alignas(64) T state_a[state_values], state_b[state_values], gained_a[state_values], gained_b[state_values];
+  alignas(64) T reached[state_values], reached_of_b[state_values];
 
   void add(std::uint32_t at, const Quad<T>& a, const Quad<T>& b, const ContactGeometry& geometry, bool own) {
     const double* const of_a = own ? geometry.own_a : geometry.normal;
@@ -75,6 +79,14 @@ struct GridStep<D, T>::ContactBatch {
   void displace(const ContactFieldNode& a, const ContactFieldNode& b) {
     for (int c = 0; c < D; ++c)
       displacement[c * block_nodes + count - 1] = static_cast<T>(displacement_of_pair(a, b, c));
+  }
+  /// Says of the last pair what particles keep, and what they have gained, as means by mass.
+  void keep(const ContactField& a, const ContactField& b, std::uint32_t at, int states) {
+    for (int k = 0; k < states; ++k) {
+      const int i = k * block_nodes + count - 1;
+      state_a[i] = a.state[at][k] / a.motion[at][3], gained_a[i] = a.gain[at][k] / a.motion[at][3];
+      state_b[i] = b.state[at][k] / b.motion[at][3], gained_b[i] = b.gain[at][k] / b.motion[at][3];
+    }
   }
   /// What a weld would give a pair.
   WeldOfPair weld(int i) const {
@@ -104,7 +116,7 @@ struct GridStep<D, T>::ContactBatch {
     }
   }
   /// Copies the last pair so that whole lanes may be computed.
-  int pad(bool own, bool compliant, bool reads_traction) {
+  int pad(bool own, bool compliant, bool reads_traction, int states) {
     const int last = count - 1, end = padded(count);
     for (int i = count; i < end; ++i) {
       mass_a[i] = mass_a[last], mass_b[i] = mass_b[last], separation[i] = separation[last], area[i] = area[last];
@@ -113,6 +125,9 @@ struct GridStep<D, T>::ContactBatch {
           if ((array != normal_of_b || own) && (array != displacement || compliant) &&
               (array != traction || reads_traction))
             array[c * block_nodes + i] = array[c * block_nodes + last];
+      for (int k = 0; k < states; ++k)
+        for (T* array : {state_a, state_b, gained_a, gained_b})
+          array[k * block_nodes + i] = array[k * block_nodes + last];
     }
     return end;
   }
@@ -121,7 +136,8 @@ struct GridStep<D, T>::ContactBatch {
 /// What contact looks at of one velocity field, from a slot's first node on.
 template <int D, class T>
 struct GridStep<D, T>::ContactField {
-  const Q *motion, *gradient, *position, *mass_gradient, *displacement;  ///< the last two are null where not summed
+  const Q *motion, *gradient, *position;
+  const Q *mass_gradient, *displacement, *state, *gain;  ///< null where not summed
 
   ContactFieldNode at(std::uint32_t node) const;
 };
@@ -142,7 +158,7 @@ inline ContactFieldNode GridStep<D, T>::ContactField::at(std::uint32_t node) con
 template <int D, class T>
 void GridStep<D, T>::call_law(const Component& law, ContactBatch& batch, std::uint32_t end, double dt,
                               bool of_b) const {
-  const bool compliant = law.plugin->contact().traits & MPM_COMPLIANT;
+  const bool compliant = law.plugin->contact().traits & MPM_COMPLIANT, keeps = !law.plugin->state().empty();
   const mpm_contact_batch request{end,
                                   block_nodes,
                                   D,
@@ -161,7 +177,14 @@ void GridStep<D, T>::call_law(const Component& law, ContactBatch& batch, std::ui
                                   compliant ? batch.displacement : nullptr,
                                   compliant ? (of_b ? batch.stored_of_b : batch.stored) : nullptr,
                                   reads_traction(law) ? batch.traction : nullptr,
-                                  scene_.experiment.grid.cell_size};
+                                  scene_.experiment.grid.cell_size,
+                                  keeps ? batch.state_a : nullptr,
+                                  keeps ? batch.state_b : nullptr,
+                                  keeps ? batch.gained_a : nullptr,
+                                  keeps ? batch.gained_b : nullptr,
+                                  keeps ? (of_b ? batch.reached_of_b : batch.reached) : nullptr,
+                                  first_step_,
+                                  0};
   law.plugin->contact().apply[lane_precision<T>][D - 2](law.parameters.data(), &request);
 }
 
@@ -170,7 +193,8 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
   const Component& law = *scene_.experiment.contact;
   const bool own = own_normals_;
   const bool compliant = mass_displacement >= 0;
-  const std::uint32_t end = static_cast<std::uint32_t>(batch.pad(own, compliant, reads_traction(law)));
+  const int states = static_cast<int>(law.plugin->state().size());
+  const std::uint32_t end = static_cast<std::uint32_t>(batch.pad(own, compliant, reads_traction(law), states));
   call_law(law, batch, end, step.dt, false);
   if (own) {
     call_law(law, batch, end, step.dt, true);
@@ -178,12 +202,17 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
       batch.dissipated[i] = T(0.5) * (batch.dissipated[i] + batch.dissipated_of_b[i]);
       batch.status[i] = std::max(batch.status[i], batch.status_of_b[i]);
       if (compliant) batch.stored[i] = T(0.5) * (batch.stored[i] + batch.stored_of_b[i]);
+      for (int k = 0; k < states; ++k) {
+        T& reached = batch.reached[k * block_nodes + i];
+        reached = std::max(reached, batch.reached_of_b[k * block_nodes + i]);
+      }
     }
   }
   if (!batch.held.empty()) {
     batch.correct_held(batch.impulse, law.plugin->contact().traits);
     if (own) batch.correct_held(batch.impulse_of_b, law.plugin->contact().traits);
   }
+  if (states > 0 && notes_reached_) note_reached(batch, a, b, states);
   const T* const returned = own ? batch.impulse_of_b : batch.impulse;
   const bool records = records_;  // the compiler need not ask again after each store
   for (int i = 0; i < batch.count; ++i) {
@@ -206,6 +235,17 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
     if (batch.status[i] != MPM_APART && batch.valid[i])
       sums.largest_penetration = std::max(sums.largest_penetration, -static_cast<double>(batch.separation[i]));
   }
+}
+
+/// Writes down what the pairs of a batch have reached; a node of three fields keeps the most of both pairs.
+template <int D, class T>
+void GridStep<D, T>::note_reached(const ContactBatch& batch, int a, int b, int states) {
+  for (int i = 0; i < batch.count; ++i)
+    for (const int field : {a, b}) {
+      Q& of_node = grid_.quad(reached, field, batch.node[i]);
+      for (int k = 0; k < states; ++k) of_node[k] = std::max<T>(of_node[k], batch.reached[k * block_nodes + i]);
+      of_node[3] = 1;
+    }
 }
 
 /// Notes where a batch meets, and what the law gave its nodes.
@@ -242,12 +282,16 @@ template <int D, class T>
 template <class Visit>
 void GridStep<D, T>::visit_pairs(std::uint32_t slot, Visit&& visit) {
   const bool weld = (scene_.experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION) != 0;
+  const int states = static_cast<int>(scene_.experiment.contact_state().size());
   const std::uint32_t first = slot * block_nodes;
   const auto contact_field = [&](int field) {
-    return ContactField{&motion_at(field, first), &grid_.quad(volume_gradient, field, first),
+    return ContactField{&motion_at(field, first),
+                        &grid_.quad(volume_gradient, field, first),
                         &grid_.quad(mass_position, field, first),
                         mass_gradient < 0 ? nullptr : &grid_.quad(mass_gradient, field, first),
-                        mass_displacement < 0 ? nullptr : &grid_.quad(mass_displacement, field, first)};
+                        mass_displacement < 0 ? nullptr : &grid_.quad(mass_displacement, field, first),
+                        mass_state < 0 ? nullptr : &grid_.quad(mass_state, field, first),
+                        mass_gain < 0 ? nullptr : &grid_.quad(mass_gain, field, first)};
   };
   static_assert(block_nodes <= MPM_BATCH);
   static thread_local std::array<MetPair, block_nodes> met;  // its memory is kept from slot to slot
@@ -280,6 +324,7 @@ void GridStep<D, T>::visit_pairs(std::uint32_t slot, Visit&& visit) {
           batch.add(first + node, motion_a, motion_b, geometry, own_normals_);
         }
         if (mass_displacement >= 0) batch.displace(met[i].a, met[i].b);
+        if (mass_state >= 0) batch.keep(of_a, of_b, node, states);
       }
       if (batch.count > 0) visit(a, b, batch);
     }
@@ -368,6 +413,7 @@ ContactRecord GridStep<D, T>::record_of(const std::vector<ContactSums>& sums) {
 template <int D, class T>
 void GridStep<D, T>::resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time) {
   law_stage_ = stage == Stage::after_forces ? MPM_AFTER_FORCES : MPM_BEFORE_FORCES;
+  first_step_ = step.step == 0, notes_reached_ = recorded == Recorded::after_forces;
   if (contact_points_.needed() && recorded == Recorded::before_forces) find_contact_points();
   std::vector<ContactSums> sums;
   ContactGiven given;

@@ -25,8 +25,13 @@ void GridStep<D, T>::see_rigid_body(const RigidChunk& chunk, int field, ContactB
     const auto node = static_cast<std::uint32_t>(found);
     const Q& v = motion_at(field, node);
     if (!(v[3] > 0)) continue;
-    const ContactField material{&motion_at(field, 0), &grid_.quad(volume_gradient, field, 0),
-                                &grid_.quad(mass_position, field, 0), nullptr, nullptr};
+    const ContactField material{&motion_at(field, 0),
+                                &grid_.quad(volume_gradient, field, 0),
+                                &grid_.quad(mass_position, field, 0),
+                                nullptr,
+                                nullptr,
+                                nullptr,
+                                nullptr};
     const ContactGeometry geometry = rigid_contact_geometry(
         material.at(node), edge, nodes[k].surface, rigid_.around(nodes[k]), scene_.experiment.grid.cell_size, D);
     const Vector3 of_body = chunk.motion.velocity_at(nodes[k].arm);
@@ -47,7 +52,8 @@ void GridStep<D, T>::meet_rigid_body(const RigidChunk& chunk, const StepInfo& st
     std::size_t listed[block_nodes];
     see_rigid_body(chunk, field, batch, listed);
     if (batch.count == 0) continue;
-    call_law(rigid_.law(chunk.body), batch, static_cast<std::uint32_t>(batch.pad(false, false, false)), step.dt, false);
+    call_law(rigid_.law(chunk.body), batch, static_cast<std::uint32_t>(batch.pad(false, false, false, 0)), step.dt,
+             false);
     for (int i = 0; i < batch.count; ++i) {
       const RigidNode& node = rigid_.nodes(chunk.body)[listed[i]];
       Q& v = motion_at(field, batch.node[i]);

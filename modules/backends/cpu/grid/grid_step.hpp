@@ -201,6 +201,7 @@ class GridStep : NamedChannels {
   /// Calls the law along the pairs' normals, or along those of the second body's own.
   void call_law(const Component& law, ContactBatch& batch, std::uint32_t end, double dt, bool of_b) const;
   void apply_law(ContactBatch& batch, int a, int b, const StepInfo& step, ContactSums& sums);
+  void note_reached(const ContactBatch& batch, int a, int b, int states);
   void note_nodes(const ContactBatch& batch, int a, int b, std::vector<NodeGiven>& nodes) const;
   void see_rigid_body(const RigidChunk& chunk, int field, ContactBatch& batch, std::size_t* listed);
   void meet_rigid_body(const RigidChunk& chunk, const StepInfo& step, RigidGiven& given);
@@ -216,9 +217,10 @@ class GridStep : NamedChannels {
   FilterRecord& filter_;
   ReactionImpulse& reactions_;
   const PairGeometry pair_geometry_;
-  const bool own_normals_;                       ///< each body of a pair has its own
-  std::uint32_t law_stage_ = MPM_BEFORE_FORCES;  ///< what laws are asked about now (mpm_contact_stage)
-  const std::vector<EdgeModel> edges_;           ///< of each velocity field, beside rigid bodies
+  const bool own_normals_;                           ///< each body of a pair has its own
+  std::uint32_t law_stage_ = MPM_BEFORE_FORCES;      ///< what laws are asked about now (mpm_contact_stage)
+  bool first_step_ = false, notes_reached_ = false;  ///< whether what a law says of its state counts
+  const std::vector<EdgeModel> edges_;               ///< of each velocity field, beside rigid bodies
   RigidBodies rigid_;
   ContactPoints contact_points_;
   ContactWelds welds_;  ///< where the law reads the traction around a node

@@ -38,7 +38,7 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
         for (const Channel c : channels) work.tile[c].require(kernels_.scalars);
     work.velocity_tile.require(kernels_.scalars);
     if (scene.has(MPM_GATHERS_INCREMENT)) work.increment_tile.require(kernels_.scalars);
-    if (dilation >= 0 || mean_stress >= 0) work.mean_tile.require(kernels_.scalars);
+    if (dilation >= 0 || mean_stress >= 0 || reached >= 0) work.mean_tile.require(kernels_.scalars);
     if (scene.list) {
       work.lists.require(scene.capacity);
       if (scene.evaluate_box) work.boxes.require();

@@ -524,6 +524,37 @@ T ParticleStep<D, T, Components>::least_place(const Block<D>& block, int axis) c
   return to_axis == T(0) ? std::numeric_limits<T>::min() : std::nextafter(-to_axis, std::numeric_limits<T>::max());
 }
 
+/// Gives the particles of a chunk the mean of what the nodes around them say, over those where their field met another,
+/// if it is more than they have.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::keep_contact_state(const Chunk& chunk, Work& work) {
+  const int states = static_cast<int>(scene_.experiment.contact_state().size());
+  evaluate_shape(chunk, work, false);
+  place_to_gather(chunk, work);
+  gather_moments(chunk, work, work.mean_tile.data(), reached, false, false);
+  for (int p = 0; p < chunk.end; p += Lanes<T>::width) {
+    Lanes<T> of_nodes[4];
+    load_quads<T>(work.quads + 4 * p, of_nodes);
+    const Lanes<T> met = of_nodes[3], zero(T(0)), any = max(met, Lanes<T>(std::numeric_limits<T>::min()));
+    for (int k = 0; k < states; ++k) {
+      T* const state = chunk.at(chunk.particles.contact_state + k) + p;
+      const Lanes<T> before = Lanes<T>::load(state), gain = max(of_nodes[k] / any - before, zero);
+      gain.store(chunk.at(chunk.particles.contact_gain + k) + p);
+      (before + gain).store(state);
+    }
+  }
+}
+
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::keep_contact_state() {
+  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
+    for_each_block(body, false, [&](Block<D>& block, Work& work) {
+      load_mean(body, block, work, reached);
+      for_each_chunk_of(body, block, [&](const Chunk& chunk) { keep_contact_state(chunk, work); });
+    });
+  failure_.raise();
+}
+
 /// Moves by x += scale times the advection velocity, in cells.
 template <int D, class T, class Components>
 auto ParticleStep<D, T, Components>::advance_position(const Chunk& chunk, const T* advection, T scale) -> Moved {

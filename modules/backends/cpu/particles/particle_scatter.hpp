@@ -454,6 +454,17 @@ void ParticleStep<D, T, Components>::scatter_displacements(const Chunk& chunk, W
   add_to_tile(chunk, work, mass_displacement, nullptr, true, true, false);
 }
 
+/// Scatters w m times values of a law of contact.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::scatter_contact_state(const Chunk& chunk, Work& work, int values,
+                                                           Channel channel) {
+  const int states = static_cast<int>(scene_.experiment.contact_state().size());
+  std::fill(work.b, work.b + D * chunk_size<T>, T(0));
+  for (int k = 0; k < states; ++k)
+    for (int p = 0; p < chunk.end; ++p) work.b[k * chunk_size<T> + p] = work.mass[p] * chunk.at(values + k)[p];
+  add_to_tile(chunk, work, channel, nullptr, true, false, false);
+}
+
 /// Scatters V grad w, V = J V0, m grad w where the normal reads it, and w m (x_p - x_node). A ring has the gradients of its
 /// section, as its volume and mass grow away from the axis.
 template <int D, class T, class Components>
@@ -477,6 +488,10 @@ void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, 
   add_to_tile(chunk, work, volume_gradient, nullptr, false, false, true);
   add_to_tile(chunk, work, mass_position, nullptr, false, true, false);
   if (mass_displacement >= 0) scatter_displacements(chunk, work);
+  if (mass_state >= 0) {
+    scatter_contact_state(chunk, work, chunk.particles.contact_state, mass_state);
+    scatter_contact_state(chunk, work, chunk.particles.contact_gain, mass_gain);
+  }
   if (mass_gradient < 0) return;
   for (int p = 0; p < chunk.end; p += Lanes<T>::width) {
     const Lanes<T> cut = section(chunk, Lanes<T>::load(work.mass + p), p);

@@ -187,6 +187,8 @@ class ParticleStep : NamedChannels {
   void scatter_mean_stress();
   /// Scatters how the grid's velocity changes the particles' volumes.
   void scatter_dilation(const Pass& pass, const StepInfo& step);
+  /// Gives particles what a law of contact has reached at the nodes around them.
+  void keep_contact_state();
   /// Returns the energy that the ledger calls dissipated, J.
   double change_phases(const StepInfo& step);
   Gathered gather(const Pass& pass, const StepInfo& step);
@@ -336,6 +338,8 @@ class ParticleStep : NamedChannels {
   void scatter_loads(const Chunk& chunk, Work& work, double time);
   void scatter_contact_fields(const Chunk& chunk, Work& work);
   void scatter_displacements(const Chunk& chunk, Work& work);
+  void scatter_contact_state(const Chunk& chunk, Work& work, int values, Channel channel);
+  void keep_contact_state(const Chunk& chunk, Work& work);
 
   std::size_t grip_of(const Chunk& chunk, int p) const;
   Vector3 place_of(const Chunk& chunk, int p) const;

@@ -74,8 +74,9 @@ struct Particles {
   int moved_corners = -1;  ///< where they go in this step, kept for the move pass of MUSL
   int deformation = -1;    ///< deformation gradient, for loads, row-major
   int temperature = -1, melted_fraction = -1;
-  int artificial_pressure = -1;  ///< J q of the last strain, Pa
-  int grip = -1;                 ///< number of the grip that moves a particle, from 1; 0: none
+  int artificial_pressure = -1;               ///< J q of the last strain, Pa
+  int contact_state = -1, contact_gain = -1;  ///< what a law of contact keeps, and what the last step has added
+  int grip = -1;                              ///< number of the grip that moves a particle, from 1; 0: none
   int components = 0;
   int motion_components = 0;        ///< components of velocity and the transfer's state, from `velocity` on
   AlignedArray<T> half_size;        ///< [D][chunk_size] cells, for shapes that read it
@@ -136,6 +137,8 @@ void Particles<D, T>::lay_out(const Plan& plan, int body) {
   temperature = place("temperature");
   melted_fraction = place("melted_fraction");
   artificial_pressure = place("artificial_pressure");
+  contact_state = place("contact_state");
+  contact_gain = place("contact_gain");
   grip = place("grip");
   for (const StoredField& state : transfer_state)
     for (const StoredField& stored : fields)

@@ -116,7 +116,7 @@ struct Arguments {
   int walls[3][2];               ///< Wall
   const T* wall_velocity[3][2];  ///< [D][line of the axis], m/s, as evaluated last; null for rest
   const Box<T>* boxes;
-  const GripArrays<T>* grips;  ///< of the velocity field `grid`
+  const GripArrays<T>* grips;        ///< of the velocity field `grid`
   const GripArrays<T>* other_grips;  ///< of the velocity field `other`
   int box_count, grip_count;
   const double *shape_parameters, *transfer_parameters, *filter_parameters, *contact_parameters, *normal_parameters,
@@ -163,6 +163,7 @@ struct Arguments {
   int grip;                                           ///< scatter_grip: which
   bool grips_at_end;                                  ///< nodes are held as particles are told for the end of the step
   bool after_forces;                                  ///< v+ is made, not v-
+  bool first_step, notes_reached;                     ///< contact: see first_step and reached of mpm_contact_batch
   bool records;                                       ///< impulses are noted for the ledger
   bool walls_at_rest;                                 ///< what is folded or filled is a difference of velocities
   bool update_particles;  ///< gather: velocity and state change too, not only the velocity gradient

@@ -2,6 +2,7 @@
 // Two velocity fields meet at a node through the contact functor.
 
 #include "backends/device/kernels/conditions.hpp"
+#include "backends/device/kernels/gather.hpp"
 #include "backends/device/kernels/sums.hpp"
 #include "operators/contact.hpp"
 #include "operators/contact_geometry.hpp"
@@ -94,6 +95,7 @@ MPM_HD Vec<Scene::dimension, T> ask_law(const Arguments<T>& a, const ContactGeom
     apply(geometry.own_b, of_b);
     result.dissipated = T(0.5) * (result.dissipated + of_b.dissipated);
     result.status = max(result.status, of_b.status);
+    for (int k = 0; k < Scene::contact_states; ++k) result.reached[k] = max(result.reached[k], of_b.reached[k]);
     if constexpr (Scene::Node::mass_displacement >= 0) result.stored = T(0.5) * (result.stored + of_b.stored);
     return of_b.impulse;
   } else {
@@ -203,6 +205,38 @@ MPM_HD void note_node(const Arguments<T>& a, int node, const ContactGeometry& ge
   }
 }
 
+/// Tells the law what the particles of both bodies keep, and what they have gained, as means by mass.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD void tell_state(const Arguments<T>& a, int node, ContactPair<Scene::dimension, T>& pair) {
+  using N = typename Scene::Node;
+  pair.first_step = a.first_step;
+  if constexpr (Scene::contact_states > 0)
+    for (int k = 0; k < Scene::contact_states; ++k) {
+      const int at = k * a.node_count + node;
+      pair.state_a[k] = a.grid.field[N::mass_state][at] / pair.mass_a;
+      pair.state_b[k] = a.other.field[N::mass_state][at] / pair.mass_b;
+      pair.gained_a[k] = a.grid.field[N::mass_gain][at] / pair.mass_a;
+      pair.gained_b[k] = a.other.field[N::mass_gain][at] / pair.mass_b;
+    }
+}
+
+/// Writes down at a node of both fields what the pair has reached; a node of three fields keeps the most of both pairs.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD void note_reached(const Arguments<T>& a, int node, const ContactResult<Scene::dimension, T>& result) {
+  using N = typename Scene::Node;
+  if constexpr (Scene::contact_states > 0) {
+    if (!a.notes_reached) return;
+    const auto note = [&](const NodeArrays<T>& of_field) {
+      for (int k = 0; k < Scene::contact_states; ++k) {
+        T& reached = of_field.field[N::reached][k * a.node_count + node];
+        reached = max(reached, result.reached[k]);
+      }
+      of_field.field[N::met][node] = T(1);
+    };
+    note(a.grid), note(a.other);
+  }
+}
+
 /// Gives the velocities of `grid` and `other` the law's impulse at every node where they meet, and sums what it does.
 template <class Scene>
 MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a) {
@@ -242,12 +276,14 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
                              of_b = contact_field<Scene>(a, a.other, node);
       for (int c = 0; c < D; ++c) pair.displacement[c] = static_cast<T>(displacement_of_pair(of_a, of_b, c));
     }
+    tell_state<Scene>(a, node, pair);
     ContactResult<D, T> result;
     Vec<D, T> returned = ask_law<Scene>(a, geometry, pair, result);
     if (held && (N::mass_displacement < 0 || static_cast<int>(result.status) == contact_sticks)) {
       const HeldPair<D> seen = held_pair<Scene>(a, geometry, node);
       seen.correct(&result.impulse[0], 1, weld), seen.correct(&returned[0], 1, weld);
     }
+    note_reached<Scene>(a, node, result);
     for (int c = 0; c < D; ++c) {
       const int at = c * nodes + node;
       sums[contact_unbalanced + c] += strike_pair<double>(
@@ -270,6 +306,33 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
     if (!geometry.valid) return;
     sums[contact_touching] += pair.area;
     sums[contact_penetration] = max(0.0, -double(pair.separation));
+  });
+}
+
+/// Gives particles the mean of what the nodes around them say, over those where their field met another, if it is more than
+/// they have.
+template <class Scene>
+MPM_HD void keep_contact_state(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  using N = typename Scene::Node;
+  using P = typename Scene::Particle;
+  constexpr int D = Scene::dimension, states = Scene::contact_states;
+  for_each_index(team, a.particles.count, [&](int p) {
+    const Stencil<Scene> stencil(a, p);
+    if (!stencil.inside()) return report(a, p);
+    T sum[states] = {}, met = T(0);
+    stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
+      const int node = node_index<D>(a, s.node);
+      met += s.weight * a.grid.field[N::met][node];
+      for (int k = 0; k < states; ++k) sum[k] += s.weight * a.grid.field[N::reached][k * a.node_count + node];
+    });
+    for (int k = 0; k < states; ++k) {
+      const int at = k * a.particles.stride + p;
+      T& state = a.particles.field[P::contact_state][at];
+      const T gain = met > T(0) ? max(sum[k] / met - state, T(0)) : T(0);
+      a.particles.field[P::contact_gain][at] = gain;
+      state += gain;
+    }
   });
 }
 

@@ -16,6 +16,7 @@ struct NoNodeFields {
   static constexpr int force = -1, weight = -1;
   static constexpr int body_force = -1, surface_load = -1, point_load = -1, spring = -1, dashpot = -1;
   static constexpr int volume_gradient = -1, mass_gradient = -1, mass_position = -1, mass_displacement = -1;
+  static constexpr int mass_state = -1, mass_gain = -1, reached = -1, met = -1;  ///< where the law has a state
   static constexpr int increment = -1, projection = -1, trial_velocity = -1, folded_mass = -1;
   static constexpr int unfiltered_velocity = -1;
   static constexpr int velocity_of_constraints = -1, unfiltered_velocity_of_constraints = -1;
@@ -49,6 +50,8 @@ struct NoParticleFields {
   static constexpr int second_moment = -1;                 ///< what `second_moments` makes
   static constexpr int temperature = -1, melted_fraction = -1;
   static constexpr int initial_position = -1;   ///< kept where the law of contact has springs
+  static constexpr int contact_state = -1;      ///< what the law of contact keeps
+  static constexpr int contact_gain = -1;       ///< what the last step has added to it
   static constexpr int grip = -1;               ///< number of the grip that moves the particle, from 1; 0: none
   static constexpr int told_velocity = -1;      ///< velocity that its grip gives it, as the host evaluated it
   static constexpr int gathered_velocity = -1;  ///< velocity that it would have without it

@@ -1,9 +1,10 @@
 #pragma once
 // This file includes all kernels and makes their entries. The composer defines Scene, and Scene0, Scene1 ... with a
 // material each, in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_LOAD_ENTRIES, MPM_DEVICE_LEDGER_ENTRIES,
-// MPM_DEVICE_CONTACT_ENTRIES, MPM_DEVICE_TRACTION_ENTRIES, MPM_DEVICE_REACTION_ENTRIES, MPM_DEVICE_GRIP_ENTRIES,
-// MPM_DEVICE_FILTER_ENTRIES, MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES, MPM_DEVICE_HEAT_LEDGER_ENTRIES,
-// MPM_DEVICE_VISCOSITY_LEDGER_ENTRIES and MPM_DEVICE_DILATION_ENTRIES where the scene has these, for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and, where any melts, MPM_DEVICE_MELTING_ENTRIES(n), and for each law of
+// MPM_DEVICE_CONTACT_ENTRIES, MPM_DEVICE_CONTACT_STATE_ENTRIES, MPM_DEVICE_TRACTION_ENTRIES, MPM_DEVICE_REACTION_ENTRIES,
+// MPM_DEVICE_GRIP_ENTRIES, MPM_DEVICE_FILTER_ENTRIES, MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES,
+// MPM_DEVICE_HEAT_LEDGER_ENTRIES, MPM_DEVICE_VISCOSITY_LEDGER_ENTRIES and MPM_DEVICE_DILATION_ENTRIES where the scene has
+// these, for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and, where any melts, MPM_DEVICE_MELTING_ENTRIES(n), and for each law of
 // rigid bodies MPM_DEVICE_RIGID_ENTRIES(n), with RigidScene0, RigidScene1 ...
 
 #include "backends/device/kernels/conditions.hpp"
@@ -85,6 +86,8 @@
 
 #define MPM_DEVICE_CONTACT_ENTRIES \
   MPM_DEVICE_PHASE(mpm_contact, contact<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::contact_sums>))
+
+#define MPM_DEVICE_CONTACT_STATE_ENTRIES MPM_DEVICE_PHASE(mpm_keep_contact_state, keep_contact_state<Scene>, 1)
 
 #define MPM_DEVICE_TRACTION_ENTRIES MPM_DEVICE_PHASE(mpm_measure_welds, measure_welds<Scene>, 1)
 

@@ -156,6 +156,11 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
       T values[Scene::scattered] = {};  // values that no formula here knows stay zero
       const T mass = s.weight * mass_of_particle;
       values[Place::mass] = mass;
+      if constexpr (Place::mass_state >= 0)
+        for (int k = 0; k < Scene::contact_states; ++k) {
+          values[Place::mass_state + k] = mass * particles.field[P::contact_state][k * stride + p];
+          values[Place::mass_gain + k] = mass * particles.field[P::contact_gain][k * stride + p];
+        }
       for (int i = 0; i < D; ++i) {
         T momentum = b[i];
         if constexpr (Scene::scatters_affine)
