@@ -328,6 +328,24 @@ inline std::vector<double> motion_values(const Totals& t, const Totals& start, d
   return values;
 }
 
+/// The change of materials' states, in epsilon, that the reference backend makes of one of two epsilon in the velocity
+/// with which the first body begins.
+inline double enlarged_rounding(const Mix& mix, const Scene& reference) {
+  std::vector<std::string> overrides{"/backend=reference"};
+  overrides.insert(overrides.end(), mix.overrides.begin(), mix.overrides.end());
+  overrides.push_back(std::string("/bodies/0/velocity/0=(1.4-0.9*(y-0.") + (mix.dimension == 2 ? "4" : "2") +
+                      "3))*(1+4.44e-16)");
+  Scene changed(mix.text(), overrides);
+  changed.run();
+  double largest = 0;
+  for (int body = 0; body < static_cast<int>(reference.experiment.bodies.size()); ++body) {
+    const BodyState expected = reference.body(body), found = changed.body(body);
+    for (const auto& [name, values] : expected.material_state)
+      largest = std::max(largest, difference(values, found.material_state.at(name), size_of(values)));
+  }
+  return largest / std::numeric_limits<double>::epsilon();
+}
+
 /// Runs a mix on the reference and on cpu in double and float, and compares all there is.
 inline void check_parity(const Mix& mix) {
 #ifdef __SANITIZE_ADDRESS__
@@ -359,6 +377,10 @@ inline void check_parity(const Mix& mix) {
     CHECK_THROWS_WITH(Scene(text, on("cpu", "double")).run(), stop.what());
     return;
   }
+  // The cubic polynomials of PolyPIC on four nodes make so much of rounding that the scene itself says how much: the
+  // backends may differ by four times what a change of what it begins with, in its last digit, leads to.
+  if (mix.shape.find("bspline_cubic") != mix.shape.npos && mix.transfer.find("full") != mix.transfer.npos)
+    allowed.material = std::max(allowed.material, 4 * enlarged_rounding(mix, reference));
   for (const std::string precision : {"double", "float"}) {
     INFO(precision);
     const double epsilon =

@@ -82,3 +82,12 @@ TEST_CASE("the tents of a corner's cell") {
   check_tents<2>();
   check_tents<3>();
 }
+
+TEST_CASE("the derivative of a determinant in the plane is that of its formula") {
+  const Mat<2, double> J{{2, 3, 5, 11}}, slope = cofactors(J);
+  for (int k = 0; k < 4; ++k) {
+    Mat<2, double> more = J;
+    more.m[k] += 1;  // a determinant is linear in each entry
+    CHECK(slope.m[k] == determinant(more) - determinant(J));
+  }
+}

@@ -182,6 +182,32 @@ TEST_CASE("functions of equal singular values have their derivative") {
   CHECK(plane(1, 1).derivative == Approx(0.7).margin(1e-7));
 }
 
+TEST_CASE("functions of equal singular values have their derivative in float as well") {
+  for (const float a : {1.f, 0.4f, 1e-3f, 1e3f}) {
+    Mat<3, float> F{}, change{};
+    for (int i = 0; i < 3; ++i) F(i, i) = a;
+    for (int k = 0; k < 9; ++k) change.m[k] = static_cast<float>(some.m[k]);
+    const auto strain = left_hencky_strain(with_derivatives(F, change));
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        CHECK(a * strain(i, j).derivative == Approx(0.5 * (some(i, j) + some(j, i))).margin(2e-3));
+  }
+}
+
+TEST_CASE("a stretch that turns the matrix inside out is its size, and changes so") {
+  Mat<3, double> F{}, change{};
+  F(0, 0) = 2, F(1, 1) = 1.5, F(2, 2) = -1;
+  change(0, 0) = 0.1, change(1, 1) = -0.2, change(2, 2) = 0.3;
+  const auto found = left_stretches(along(F, change));
+  double size = 0, growth = 0;
+  for (int i = 0; i < 3; ++i) {
+    CHECK(found.stretch[i].value > 0);
+    size += found.stretch[i].value, growth += found.stretch[i].derivative;
+  }
+  CHECK(size == Approx(4.5));
+  CHECK(growth == Approx(0.1 - 0.2 - 0.3));
+}
+
 TEST_CASE("singular values, put together again, change as the matrix does") {
   Mat<3, double> F = some;
   for (int i = 0; i < 3; ++i) F(i, i) += 1.5;

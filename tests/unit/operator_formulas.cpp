@@ -1,0 +1,127 @@
+// Formulas that backends and plugins share, one at a time, against their definitions.
+
+#include <cmath>
+
+#include "kernel/direction.hpp"
+#include "kernel/linear_system.hpp"
+#include "operators/contact.hpp"
+#include "operators/edges.hpp"
+#include "operators/rigid_contact.hpp"
+#include "support/catch.hpp"
+
+using namespace mpm;
+
+namespace {
+
+/// A table whose ends are four means; behind them lies what it must never read.
+constexpr double edges[] = {0, 2, 3, 10, 1e30, 1e30}, means[] = {0, 1, 3, 4, -1e30, -1e30};
+constexpr EdgeTable table{edges, means, 4};
+
+ContactFieldNode with_gradient(double x, double y, double z) {
+  ContactFieldNode node{};
+  node.mass = 2;
+  node.volume_gradient[0] = x, node.volume_gradient[1] = y, node.volume_gradient[2] = z;
+  return node;
+}
+
+}  // namespace
+
+TEST_CASE("a table of edges is linear between its means and ends where it ends") {
+  CHECK(table.edge(-1) == 0);
+  CHECK(table.edge(0.25) == Approx(0.5));
+  CHECK(table.edge(2) == Approx(2.5));
+  CHECK(table.edge(3.5) == Approx(6.5));
+  CHECK(table.edge(5) == 10);
+}
+
+TEST_CASE("the normal of averaged gradients is the direction of their difference") {
+  double normal[3] = {};
+  REQUIRE(average_gradient(with_gradient(1, 4, 9), with_gradient(-2, 0, 9), 3, normal));
+  CHECK(normal[0] == Approx(0.6));
+  CHECK(normal[1] == Approx(0.8));
+  CHECK(normal[2] == 0);
+  CHECK_FALSE(average_gradient(with_gradient(1, 2, 5), with_gradient(1, 2, 6), 2, normal));
+}
+
+TEST_CASE("what is measured of a pair counts as its geometry") {
+  ContactGeometry pair;
+  pair.normal[0] = 1;
+  measure_pair(pair, with_gradient(3, 0, 0), with_gradient(-2, 0, 0), table, table, 0.5, 2, 7);
+  CHECK(pair.valid);
+  CHECK(pair.area == Approx(14));
+  CHECK(pair.separation == 0);
+}
+
+TEST_CASE("the area beside a rigid body is that of the material's own surface along the normal") {
+  const RigidSurface surface{0.25, {0.6, 0.8, 0}};
+  const ContactGeometry flat = rigid_contact_geometry(with_gradient(3, 2, 5), table, surface, 2, 0.5, 2);
+  CHECK(flat.area == Approx(2 * (3 * 0.6 + 2 * 0.8)));
+  CHECK(flat.separation == Approx(0.25));
+  CHECK(flat.valid);
+  const RigidSurface solid{0.25, {0, 0.6, 0.8}};
+  CHECK(rigid_contact_geometry(with_gradient(3, 2, 5), table, solid, 1, 0.5, 3).area == Approx(5.2));
+  CHECK(rigid_contact_geometry(with_gradient(-3, -2, 0), table, surface, 1, 0.5, 2).area == 0);
+}
+
+TEST_CASE("a vector along any axis has a direction, and none has none") {
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec<3, double> v{};
+    v[axis] = -2;
+    CHECK(make_unit(v) == 1);
+    CHECK(v[axis] == -1);
+  }
+  Vec<3, double> oblique{{3, 0, -4}}, none{};
+  CHECK(make_unit(oblique) == 1);
+  CHECK(oblique[2] == Approx(-0.8));
+  CHECK(make_unit(none) == 0);
+}
+
+TEST_CASE("a system that is singular to rounding has no solution, and numbers may be however small") {
+  double singular[2][2] = {{1, 1}, {1, 1 + 4e-16}}, nothing[2] = {1, 2};
+  CHECK_FALSE(solve_symmetric(singular, nothing));
+  double small[2][2] = {{4e-20, 2e-20}, {2e-20, 3e-20}}, x[2] = {8e-20, 8e-20};
+  REQUIRE(solve_symmetric(small, x));
+  CHECK(x[0] == Approx(1));
+  CHECK(x[1] == Approx(2));
+}
+
+TEST_CASE("walls mirror what is across them with the other sign, and all of what they hold") {
+  for (int axis = 0; axis < 3; ++axis)
+    for (int c = 0; c < 3; ++c) {
+      CHECK(mirror_sign(wall_periodic, axis, c) == 1);
+      CHECK(mirror_sign(wall_stick, axis, c) == -1);
+      CHECK(mirror_sign(wall_prescribed, axis, c) == -1);
+      CHECK(mirror_sign(wall_slip, axis, c) == (c == axis ? -1 : 1));
+      for (const bool held : {false, true}) {
+        CHECK(mirror_sign(rule_even, wall_slip, held, axis, c) == 1);
+        CHECK(mirror_sign(rule_heat, wall_slip, held, axis, c) == (held ? -1 : 1));
+        CHECK(mirror_sign(rule_heat_rate, wall_stick, held, axis, c) == (held ? -1 : 1));
+        CHECK(mirror_sign(rule_momentum, wall_stick, held, axis, c) == -1);
+        CHECK(mirror_sign(rule_slip, wall_stick, held, axis, c) == (c == axis ? -1 : 1));
+      }
+    }
+  CHECK((is_relative_to_wall(rule_momentum) && is_relative_to_wall(rule_heat)));
+  CHECK_FALSE(
+      (is_relative_to_wall(rule_vector) || is_relative_to_wall(rule_heat_rate) || is_relative_to_wall(rule_slip)));
+}
+
+TEST_CASE("a held pair takes a weld by each component's own mass and slides no more than it did") {
+  const double a[3] = {1, 2, 0}, b[3] = {3, -1, 0}, normal[3] = {0, 1, 0};
+  // Bodies of 2 and 6 kg; a grip holds y of the first.
+  const HeldPair<2> weld(2, 0, 2.0, 6.0, a, b, normal, true), law(2, 0, 2.0, 6.0, a, b, normal, false);
+  CHECK(weld.welding_impulse(0) == Approx(1.5 * 2));
+  CHECK(weld.welding_impulse(1) == Approx(6 * -3));
+  CHECK(law.mass() == Approx(6));
+  CHECK(law.momentum(1) == Approx(18));
+  double sticks[4] = {12, 0, -18, 0};  // as a law has it that knows 6 kg alone
+  law.correct(sticks, 2, false);
+  CHECK(sticks[0] == Approx(3));
+  CHECK(sticks[2] == Approx(-18));
+  double slips[2] = {2, -18};
+  law.correct(slips, 1, false);
+  CHECK(slips[0] == Approx(2));
+  CHECK_FALSE(HeldPair<2>(2, 2, 2.0, 6.0, a, b, normal, false).moves());
+  CHECK(HeldPair<2>(2, 2, 2.0, 6.0, a, b, normal, true).moves());
+  CHECK(held_mass(2.0, 6.0, false) == 2);
+  CHECK(held_mass(2.0, 6.0, true) == 8);
+}
