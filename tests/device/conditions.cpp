@@ -178,6 +178,7 @@ TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]"
     {"type": "force", "body": "a", "at": [0.4, 0.37], "force": [5, "20*t"]},
     {"type": "spring", "body": "b", "where": {"type": "half_space", "point": [0.52, 0], "normal": [1, 0]},
      "stiffness": [0, 1e3], "damping": [50, 100]}])J";
+  mix.material.insert(mix.material.rfind('}'), R"(, "artificial_viscosity": {})");
   check_entries();
   mix = close_mix(2);
   mix.contact = R"({"type": "linear_interface", "normal_stiffness": 3e4, "shear_stiffness": 2e4})";
