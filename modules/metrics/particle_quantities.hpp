@@ -29,8 +29,8 @@ struct QuantityDescription {
   std::string name, label, unit;
 };
 /// Quantities that every scene offers. Components of position, displacement, velocity and Cauchy stress (stress_xy), and the
-/// state of its materials and transfer, add to them: scalars by name (equivalent_plastic_strain), others by component
-/// (deformation_gradient_xy).
+/// state of its materials, transfer and law of contact, add to them: scalars by name (equivalent_plastic_strain), others by
+/// component (deformation_gradient_xy).
 std::span<const QuantityDescription> common_quantities();
 /// Names valid as output/colour_by for any of the plugins of `registry`.
 std::vector<std::string> quantity_names(const Registry& registry);

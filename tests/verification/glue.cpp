@@ -1,10 +1,13 @@
 // Breakable glue against closed forms: a block that is pulled off breaks at its strength N, at an opening of N / k, and
 // gives up N^2 / (2 k) an area; and what is broken stays so.
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <tuple>
 
+#include "metrics/particle_quantities.hpp"
+#include "metrics/particle_values.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 
@@ -291,4 +294,26 @@ TEST_CASE("a run that is saved while glue breaks goes on bit for bit", "[glue][r
     const Ledger whole = scene.simulation.ledger(), rest = resumed.simulation.ledger();
     CHECK(std::memcmp(&whole, &rest, sizeof(Ledger)) == 0);
   }
+}
+
+TEST_CASE("what glue keeps is drawn and written by its name", "[glue]") {
+  Scene scene(thrown_planks(0), {set("/grid/cell_size", "0.1"), "/grid/domain=[[-0.4, -0.7], [1.4, 0.7]]"});
+  while (mean_kept(scene, 1, 1) < 0.05) scene.simulation.step();
+  const BodyState state = scene.body(1);
+  const std::vector<double>& kept = state.host_state.at("contact_state");
+  const std::vector<std::string> names = quantity_names(scene.experiment, 1);
+  const std::vector<ParticleField> fields = particle_fields(scene.experiment);
+  for (const auto& [name, which] : {std::pair{"glued", std::size_t{0}}, std::pair{"broken", std::size_t{1}}}) {
+    INFO(name);
+    CHECK(std::count(names.begin(), names.end(), name) == 1);
+    CHECK(std::count_if(fields.begin(), fields.end(), [&](const ParticleField& field) { return field.name == name; }) ==
+          1);
+    const std::vector<double> values = quantity(scene.experiment, 1, state, name);
+    REQUIRE(2 * values.size() == kept.size());
+    for (std::size_t p = 0; p < values.size(); ++p) CHECK(values[p] == kept[2 * p + which]);
+    const std::vector<double> written = particle_values(scene.experiment, {scene.body(0), state}, {name})[0].values;
+    REQUIRE(written.size() == 2 * values.size());
+    CHECK(std::equal(values.begin(), values.end(), written.end() - static_cast<long>(values.size())));
+  }
+  CHECK(describe_quantity(scene.experiment, "broken").label.find("broken") != std::string::npos);
 }

@@ -49,8 +49,8 @@ struct BreakableGlue {
   };
 
   /// Glue holds where both bodies were glued at the start and less than half of that has broken around the node, which rows
-  /// of nodes that open unlike decide together; a node alone lets go at twice its strength. Elsewhere the pair meets as with friction. What the step before has broken is given up now, as the
-  /// energy at which glue breaks in this direction.
+  /// of nodes that open unlike decide together; a node alone lets go at twice its strength. Elsewhere the pair meets as with
+  /// friction. What the step before has broken is given up now, as the energy at which glue breaks in this direction.
   template <int D, class S>
   MPM_HD static void apply(const Parameters& p, const ContactPair<D, S>& pair, ContactResult<D, S>& result) {
     const scalar_of<S> zero = 0, one = 1, half = real<S>(0.5), tiny = real<S>(1e-12);
