@@ -5,8 +5,9 @@
 namespace mpm {
 
 bool Experiment::has_artificial_viscosity() const {
-  return std::any_of(materials.begin(), materials.end(),
-                     [](auto& material) { return material.artificial_viscosity.has_value(); });
+  return std::any_of(bodies.begin(), bodies.end(), [&](const BodySpecification& body) {
+    return materials[static_cast<std::size_t>(body.material)].artificial_viscosity.has_value();
+  });
 }
 
 ParameterSpec artificial_viscosity_parameter() {
@@ -23,7 +24,7 @@ ParameterSpec artificial_viscosity_parameter() {
                     parameter("quadratic", ParameterType::number, "",
                               "Share of the square of cell size times rate; spreads strong shocks.")
                         .from(0)
-                        .to(100)
+                        .to(10)
                         .standard(2.0),
                 }});
 }

@@ -2,7 +2,6 @@
 // What happens at a node to two velocity fields that meet there, around the law's own formula (abi.h, mpm_contact). S is
 // the scalar of the fields. Loops over pairs and nodes, and where the values lie, are the caller's.
 
-#include "kernel/math.hpp"
 #include "operators/motion.hpp"
 
 namespace mpm {
@@ -55,59 +54,17 @@ MPM_HD S held_mass(S own, S other, bool weld) {
   return weld ? own + other : own;
 }
 
-/// A pair at a node of which grips hold components: bit c of `held_a` and `held_b`. What a law gives such a component goes
-/// to the grip, so that the law is told of a body b of infinite mass, and of a at its velocity beside it with the mass that
-/// the pair has along the normal. Where that is not the mass across it, a's impulse is corrected.
-template <int D>
-struct HeldPair {
-  double mobility
-      [D];  ///< by how much an impulse on a, taken from b, changes each component of their relative velocity, 1/kg
-  double jump[D];    ///< velocity of b beside a, m/s
-  double normal[D];  ///< unit, from a to b; zero in a weld, which asks for none
-  double along = 0;  ///< mobility along the normal, 1/kg; of a weld the largest one
-
-  template <class S, class Velocity>
-  MPM_HD HeldPair(unsigned held_a, unsigned held_b, S mass_a, S mass_b, const Velocity& velocity_a,
-                  const Velocity& velocity_b, const double* of_pair, bool weld) {
-    for (int c = 0; c < D; ++c) {
-      mobility[c] = (held_a >> c & 1 ? 0 : 1 / double(mass_a)) + (held_b >> c & 1 ? 0 : 1 / double(mass_b));
-      jump[c] = double(velocity_b[c]) - double(velocity_a[c]);
-      normal[c] = weld ? 0 : of_pair[c];
-      along = weld ? max(along, mobility[c]) : along + normal[c] * normal[c] * mobility[c];
-    }
-  }
-
-  /// Whether an impulse changes anything.
-  MPM_HD bool moves() const { return along > 0; }
-  /// What the law is told of a; b is at rest.
-  MPM_HD double mass() const { return 1 / along; }
-  MPM_HD double momentum(int c) const { return -jump[c] / along; }
-  /// One component of the impulse on a after which the pair moves as one, as far as it can.
-  MPM_HD double welding_impulse(int c) const { return mobility[c] > 0 ? jump[c] / mobility[c] : 0; }
-
-  /// Corrects a law's impulse on a: that of a weld, and else the part across the normal where it would turn the sliding
-  /// round.
-  template <class S>
-  MPM_HD void correct(S* impulse, int stride, bool weld) const {
-    if (weld) {
-      for (int c = 0; c < D; ++c) impulse[c * stride] = static_cast<S>(welding_impulse(c));
-      return;
-    }
-    double pressing = 0, approach = 0, squared = 0, change = 0, slide = 0;
-    for (int c = 0; c < D; ++c) pressing += impulse[c * stride] * normal[c], approach += jump[c] * normal[c];
-    for (int c = 0; c < D; ++c) {
-      const double across = impulse[c * stride] - pressing * normal[c], speed = jump[c] - approach * normal[c];
-      squared += across * across, change += across * across * mobility[c], slide += speed * speed;
-    }
-    // The change of speed is change / |across|; it is compared without a division.
-    if (!(change * change > slide * squared)) return;
-    const double share = sqrt(slide * squared) / change;
-    for (int c = 0; c < D; ++c) {
-      const double of_normal = pressing * normal[c];
-      impulse[c * stride] = static_cast<S>(of_normal + share * (impulse[c * stride] - of_normal));
-    }
-  }
-};
+/// The mass, kg, with which a law sees a pair of which a grip holds one body as a whole. What it gives that body goes to the
+/// grip, so that the body has an infinite mass: the law is told of the other mass for a, of a's velocity beside b
+/// (momentum_beside), and of an infinite b at rest.
+template <class S>
+MPM_HD S mass_beside_held(bool holds_a, S mass_a, S mass_b) {
+  return holds_a ? mass_b : mass_a;
+}
+template <class S>
+MPM_HD S momentum_beside(S velocity_a, S velocity_b, S mass) {
+  return mass * (velocity_a - velocity_b);
+}
 
 /// One component of the impulse on a with which both fields of a pair would move as one.
 template <class S>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <sstream>
@@ -76,8 +77,11 @@ void refuse_normal(const Experiment& experiment) {
 void refuse_long_step(const Experiment& experiment) {
   const double most = experiment.contact_step_limit();
   if (!experiment.solver.time_step || *experiment.solver.time_step <= most) return;
+  const double unit =
+      std::pow(10, std::floor(std::log10(most)) - 5);  // a number that is rounded up would be refused again
   std::ostringstream message;
-  message << "contact \"" << experiment.contact->plugin->id() << "\" stands steps of at most " << most
+  message << "contact \"" << experiment.contact->plugin->id() << "\" stands steps of at most "
+          << std::floor(most / unit) * unit
           << " s between these bodies on these cells; take that or a shorter step, \"auto\", or a softer law";
   refuse(experiment, "/solver/time_step", message.str());
 }
@@ -115,6 +119,12 @@ void refuse_laws(const Experiment& experiment) {
   if (!experiment.contact) return;
   refuse_in_filter(*experiment.contact);
   refuse_long_step(experiment);
+  if (!experiment.contact_state().empty() && experiment.field_count > 2)
+    refuse(experiment, experiment.contact->pointer,
+           name_of(*experiment.contact) +
+               " keeps a state on particles, which does not say towards which body, and here there are " +
+               std::to_string(experiment.field_count) +
+               " velocity fields; give bodies one \"field\", so that two are left, or take another law");
   if (!experiment.contact_state().empty() && experiment.any_face(ConditionType::periodic))
     refuse(experiment, experiment.contact->pointer,
            name_of(*experiment.contact) +

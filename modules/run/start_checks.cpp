@@ -69,6 +69,17 @@ std::vector<std::string> look_for_overlaps(const Experiment& experiment) {
   return warnings;
 }
 
+/// Warns of grips that leave a component free on bodies that meet others: contact laws see such a body as if none held it,
+/// so that its partner sinks in under a steady load (docs/method.md#grips).
+void look_for_loose_grips(const Experiment& experiment, std::vector<std::string>& warnings) {
+  if (!experiment.contact) return;
+  for (const Grip& grip : experiment.grips)
+    if (!std::all_of(grip.held.begin(), grip.held.begin() + experiment.dimension, [](bool held) { return held; }))
+      warnings.push_back(grip.pointer + " leaves a component of \"" + experiment.bodies[grip.body].name +
+                         "\" free, and contact takes the body for one that gives way: what presses on its gripped part "
+                         "sinks in; hold all components there (docs/method.md#grips)");
+}
+
 /// Refuses what formulas impose in the first step and nothing can have.
 void refuse_impossible_values(const Experiment& experiment) {
   if (const auto imposed = impossible_value(experiment, {}, false))
@@ -100,6 +111,7 @@ void refuse_velocities_that_are_no_numbers(const Simulation& simulation) {
 std::vector<std::string> check_start(const Simulation& simulation) {
   const Experiment& experiment = simulation.experiment();
   std::vector<std::string> warnings = look_for_overlaps(experiment);
+  look_for_loose_grips(experiment, warnings);
   refuse_velocities_that_are_no_numbers(simulation);
   refuse_impossible_temperatures(simulation);
   refuse_impossible_values(experiment);

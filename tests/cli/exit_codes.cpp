@@ -188,6 +188,22 @@ TEST_CASE("2: what a body begins in names the operation that gives no number, it
       "/bodies/0/initial_stress/yy: is not a finite number at (0.425, 0.325) m: \"1/(X - X)\" at character 1 is 1 / 0");
 }
 
+TEST_CASE("a grip that leaves a component free beside contact is warned of, and no other") {
+  const Folder folder;
+  Json scene = two_balls();
+  scene["grips"] = {{{"body", "ball"}, {"velocity", {0, 0}}, {"where", scene["bodies"][0]["geometry"]}}};
+  spill(folder / "held.json", scene.dump());
+  CHECK_FALSE(has(call(folder, {"check", "held.json"}).err, "/grips/0"));
+  scene["grips"][0]["velocity"] = {0, nullptr};
+  spill(folder / "loose.json", scene.dump());
+  const Result checked = call(folder, {"check", "loose.json"});
+  CHECK(checked.code == 0);
+  CHECK(has(checked.err, "warning: /grips/0 leaves a component of \"ball\" free, and contact takes the body for one"));
+  scene.erase("contact");
+  spill(folder / "alone.json", scene.dump());
+  CHECK_FALSE(has(call(folder, {"check", "alone.json"}).err, "/grips/0"));
+}
+
 TEST_CASE("2: two bodies of the same particles, and a warning of those that have most of them in one place") {
   Json scene = two_balls();
   scene.erase("contact");

@@ -113,6 +113,13 @@ TEST_CASE("a law with a state keeps it on particles and at nodes, and no other l
     INFO(said);
     CHECK(said.find(why) != std::string::npos);
   }
+  // What a particle keeps does not say towards which of two others.
+  std::string three = scene(glue());
+  three.insert(three.find("],\n    \"solver\""), R"(, {"name": "c", "material": "m",
+      "geometry": {"type": "box", "lower": [0.2, 0.6], "upper": [0.8, 0.9]}})");
+  CHECK(
+      refusal(three).find("/contact: contact \"breakable_glue\" keeps a state on particles, which does not say towards "
+                          "which body, and here there are 3 velocity fields") != std::string::npos);
 }
 
 // sqrt(rho h / (12 k)), with 1000 kg/m^3, 0.1 m and the stiffest of the springs.
@@ -129,6 +136,16 @@ TEST_CASE("a fixed step that glue does not stand is refused with the longest one
   scene.simulation.step();
   CHECK(scene.simulation.largest_time_step() == Approx(std::sqrt(1000 * 0.1 / (12 * 5e7))).epsilon(1e-12));
   CHECK(scene.simulation.limited_by() == "contact");
+}
+
+TEST_CASE("the longest step that glue stands is printed so that it is not refused again", "[glue]") {
+  // The limit is 0.00144337567 s, which would be rounded up.
+  const std::string stiff = scene(
+      R"({"type": "breakable_glue", "tension_stiffness": 4e6, "compression_stiffness": 4e6, "shear_stiffness": 4e6,
+          "normal_strength": 10, "shear_strength": 10})");
+  CHECK_THROWS_WITH(test::Scene(stiff, {"/solver/time_step=0.002"}),
+                    ContainsSubstring("steps of at most 0.00144337 s"));
+  CHECK_NOTHROW(test::Scene(stiff, {"/solver/time_step=0.00144337"}));
 }
 
 TEST_CASE("springs are refused beside rigid bodies and across periodic axes", "[interface]") {

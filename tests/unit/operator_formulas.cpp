@@ -105,23 +105,11 @@ TEST_CASE("walls mirror what is across them with the other sign, and all of what
       (is_relative_to_wall(rule_vector) || is_relative_to_wall(rule_heat_rate) || is_relative_to_wall(rule_slip)));
 }
 
-TEST_CASE("a held pair takes a weld by each component's own mass and slides no more than it did") {
-  const double a[3] = {1, 2, 0}, b[3] = {3, -1, 0}, normal[3] = {0, 1, 0};
-  // Bodies of 2 and 6 kg; a grip holds y of the first.
-  const HeldPair<2> weld(2, 0, 2.0, 6.0, a, b, normal, true), law(2, 0, 2.0, 6.0, a, b, normal, false);
-  CHECK(weld.welding_impulse(0) == Approx(1.5 * 2));
-  CHECK(weld.welding_impulse(1) == Approx(6 * -3));
-  CHECK(law.mass() == Approx(6));
-  CHECK(law.momentum(1) == Approx(18));
-  double sticks[4] = {12, 0, -18, 0};  // as a law has it that knows 6 kg alone
-  law.correct(sticks, 2, false);
-  CHECK(sticks[0] == Approx(3));
-  CHECK(sticks[2] == Approx(-18));
-  double slips[2] = {2, -18};
-  law.correct(slips, 1, false);
-  CHECK(slips[0] == Approx(2));
-  CHECK_FALSE(HeldPair<2>(2, 2, 2.0, 6.0, a, b, normal, false).moves());
-  CHECK(HeldPair<2>(2, 2, 2.0, 6.0, a, b, normal, true).moves());
+TEST_CASE(
+    "a law sees the free body of a pair, whichever the grip holds, by its own mass and its speed beside the other") {
+  CHECK(mass_beside_held(true, 2.0, 6.0) == 6);
+  CHECK(mass_beside_held(false, 2.0, 6.0) == 2);
+  CHECK(momentum_beside(1.0, 4.0, 6.0) == -18);
   CHECK(held_mass(2.0, 6.0, false) == 2);
   CHECK(held_mass(2.0, 6.0, true) == 8);
 }

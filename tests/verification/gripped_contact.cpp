@@ -26,9 +26,9 @@ std::string pressed_column(double cell_size, const std::string& held) {
     "solver": {"end_time": 0.4}, "output": {"reactions": true}})J";
 }
 
-/// A plate of 400 kg a metre, whose height a grip holds and whose way it leaves free, and a slab of 400 kg that weight
-/// presses onto it and that slides on it at 1 m/s. The weight grows over 0.05 s.
-std::string sliding_on_a_free_plate(double friction) {
+/// A plate that a grip holds, and a slab of 400 kg a metre that weight presses onto it and that slides on it at 1 m/s. The
+/// weight grows over 0.05 s.
+std::string sliding_on_a_plate(double friction) {
   return R"J({"dimension": 2, "grid": {"cell_size": 0.05, "domain": [[0, 0], [2, 1]],
                                       "boundaries": {"all": "free", "x_min": "periodic", "x_max": "periodic"}},
     "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"}, "gravity": [0, "-10*min(t/0.05, 1)"],
@@ -38,8 +38,8 @@ std::string sliding_on_a_free_plate(double friction) {
     "bodies": [{"name": "plate", "material": "m", "geometry": {"type": "box", "lower": [0, 0.2], "upper": [2, 0.4]}},
                {"name": "slab", "material": "m", "velocity": [1, 0],
                 "geometry": {"type": "box", "lower": [0, 0.4], "upper": [2, 0.6]}}],
-    "grips": [{"name": "height", "body": "plate", "where": {"type": "box", "lower": [0, 0], "upper": [2, 0.4]},
-               "velocity": [null, 0]}],
+    "grips": [{"name": "all", "body": "plate", "where": {"type": "box", "lower": [0, 0], "upper": [2, 0.4]},
+               "velocity": [0, 0]}],
     "solver": {"end_time": 0.15}, "output": {"bodies": true}})J";
 }
 
@@ -52,41 +52,35 @@ double speed(const Scene& scene, int body) {
 
 }  // namespace
 
-TEST_CASE("a column rests on a gripped plate by its weight, whatever the step and whichever components the grip holds",
-          "[grips][contact]") {
+TEST_CASE("a column rests on a gripped plate by its weight, whatever the step", "[grips][contact]") {
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string transfer : {"pic", "flip", "apic", "mls"})
-      for (const std::string held : {"[0, 0]", "[null, 0]"})
-        for (const double courant : {0.4, 0.1}) {
-          const bool is_first = backend == "cpu" && transfer == "apic";
-          if (!is_first && (courant < 0.4 || held != "[0, 0]" || (backend == "reference" && transfer != "flip")))
-            continue;
-          INFO(backend << " " << transfer << " " << held << " courant " << courant);
-          Scene scene(pressed_column(0.05, held), {set("/backend", backend), set("/transfer/type", transfer),
-                                                   set("/solver/courant", digits(courant))});
-          scene.run();
-          const ContactRecord& contact = scene.simulation.backend().contact_record();
-          CHECK(contact.largest_penetration < 0.02 * 0.05);
-          CHECK(-contact.force[1] == Approx(24000).epsilon(2e-3));
-          CHECK(scene.simulation.backend().reactions().back().force[1] == Approx(24000).epsilon(2e-3));
-        }
+      for (const double courant : {0.4, 0.1}) {
+        if (courant < 0.4 && (backend == "reference" || transfer != "apic")) continue;
+        if (backend == "reference" && transfer != "flip") continue;
+        INFO(backend << " " << transfer << " courant " << courant);
+        Scene scene(pressed_column(0.05, "[0, 0]"), {set("/backend", backend), set("/transfer/type", transfer),
+                                                     set("/solver/courant", digits(courant))});
+        scene.run();
+        const ContactRecord& contact = scene.simulation.backend().contact_record();
+        CHECK(contact.largest_penetration < 0.02 * 0.05);
+        CHECK(-contact.force[1] == Approx(24000).epsilon(2e-3));
+        CHECK(scene.simulation.backend().reactions().back().force[1] == Approx(24000).epsilon(2e-3));
+      }
 }
 
-TEST_CASE("friction hands momentum to a plate of which a grip holds the height alone", "[grips][contact]") {
+TEST_CASE("friction brakes a slab on a gripped plate with mu g, and holds it where it is high enough",
+          "[grips][contact]") {
   for (const std::string backend : {"reference", "cpu"})
     for (const std::string transfer : {"pic", "flip", "apic"}) {
       if (backend == "reference" && transfer != "apic") continue;
       INFO(backend << " " << transfer);
       const std::vector<std::string> overrides{set("/backend", backend), set("/transfer/type", transfer)};
-      Scene slides(sliding_on_a_free_plate(0.2), overrides), sticks(sliding_on_a_free_plate(20), overrides);
-      const Totals end = slides.run();
-      CHECK(end.momentum[0] == Approx(400).epsilon(1e-10));
+      Scene slides(sliding_on_a_plate(0.2), overrides), sticks(sliding_on_a_plate(20), overrides);
+      slides.run(), sticks.run();
       // mu g acts through 0.05/2 + 0.1 s.
       CHECK(speed(slides, 1) == Approx(1 - 0.2 * 10 * 0.125).epsilon(0.01));
-      CHECK(speed(slides, 0) == Approx(0.2 * 10 * 0.125).epsilon(0.03));
-      CHECK(sticks.run().momentum[0] == Approx(400).epsilon(1e-10));
-      CHECK(speed(sticks, 1) == Approx(0.5).epsilon(0.02));
-      CHECK(speed(sticks, 0) == Approx(0.5).epsilon(0.02));
+      CHECK(std::abs(speed(sticks, 1)) < 0.02);
     }
 }
 

@@ -30,57 +30,19 @@ std::optional<MetPair> ReferenceBackend::meet_pair(std::size_t a, std::size_t b)
 }
 
 /// In a weld a grip holds a node where its particles are half of what both bodies have there, as it would with one field.
-std::array<bool, 3> ReferenceBackend::held_in_pair(std::size_t i, std::size_t other) const {
+bool ReferenceBackend::held_in_pair(std::size_t i, std::size_t other) const {
   const bool weld = experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION;
-  return grid_.gripped(i, weld ? mass_[i] + mass_[other] : mass_[i]);
+  const std::array<bool, 3> held = grid_.gripped(i, weld ? mass_[i] + mass_[other] : mass_[i]);
+  return std::all_of(held.begin(), held.begin() + experiment_.dimension, [](bool component) { return component; });
 }
 
-Vector ReferenceBackend::mobility_of_pair(std::size_t a, std::size_t b) const {
-  Vector mobility = Vector::Zero();
-  for (const std::size_t i : {a, b}) {
-    const std::array<bool, 3> held = held_in_pair(i, i == a ? b : a);
-    for (int c = 0; c < experiment_.dimension; ++c)
-      if (!held[static_cast<std::size_t>(c)]) mobility[c] += 1 / mass_[i];
-  }
-  return mobility;
-}
-
-namespace {
-
-/// The impulse on a after which b, which moved at `jump` beside it, moves with it as far as it can.
-Vector impulse_of_weld(const Vector& jump, const Vector& mobility) {
-  return (mobility.array() > 0).select(jump.array() / mobility.array(), 0.0);
-}
-
-/// Takes from the part of an impulse across the normal what would turn the sliding round, as the law asked knows one
-/// mass, that along the normal.
-void limit_sliding(Vector& impulse, const Vector& normal, const Vector& jump, const Vector& mobility) {
-  const Vector across = impulse - impulse.dot(normal) * normal;
-  const double size = across.norm(), change = across.cwiseProduct(mobility).dot(across) / size;
-  const double speed = (jump - jump.dot(normal) * normal).norm();
-  if (size > 0 && change > speed) impulse += (speed / change - 1) * across;
-}
-
-}  // namespace
-
-std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_held_pair(const LawInput& pair,
-                                                                                const Vector& mobility) const {
-  const Component& law = *experiment_.contact;
-  const std::uint32_t traits = law.plugin->contact().traits;
-  const bool weld = traits & MPM_BYPASSES_DETECTION;
-  const Vector normal = Eigen::Map<const Vector>(pair.geometry.normal);
-  const Vector jump = pair.momentum_b / pair.mass_b - pair.momentum_a / pair.mass_a;
-  const double along = weld ? mobility.maxCoeff() : normal.cwiseProduct(mobility).dot(normal);
-  if (!(along > 0)) return {};
-  LawInput told = pair;
-  told.mass_a = 1 / along, told.momentum_a = -jump / along;
-  told.mass_b = std::numeric_limits<double>::infinity(), told.momentum_b.setZero();
-  PairResult result = apply_law(law, told);
-  if (weld)
-    result.impulse = result.returned = impulse_of_weld(jump, mobility);
-  else if (!(traits & MPM_COMPLIANT) || result.status == MPM_STICKS)
-    limit_sliding(result.impulse, normal, jump, mobility), limit_sliding(result.returned, normal, jump, mobility);
-  return result;
+ReferenceBackend::SeenPair ReferenceBackend::seen_pair(std::size_t a, std::size_t b, const Vector& momentum_a,
+                                                       const Vector& momentum_b) const {
+  const bool holds_a = held_in_pair(a, b), holds_b = held_in_pair(b, a);
+  if (holds_a == holds_b) return {mass_[a], mass_[b], momentum_a, momentum_b};
+  const double free = holds_a ? mass_[b] : mass_[a];
+  const Vector jump = momentum_b / mass_[b] - momentum_a / mass_[a];
+  return {free, std::numeric_limits<double>::infinity(), -free * jump, Vector::Zero()};
 }
 
 /// Sums up, for each pair of fields, what a weld would give at every node where they meet.
@@ -92,7 +54,9 @@ void ReferenceBackend::measure_welds(MomentumOf momentum) {
     const auto met = meet_pair(a, b);
     if (!met) return;
     Weld& weld = welds_[{grid_.velocity_field_of(a), grid_.velocity_field_of(b)}][met->node];
-    weld.impulse = impulse_of_weld(momentum(b) / mass_[b] - momentum(a) / mass_[a], mobility_of_pair(a, b));
+    const SeenPair seen = seen_pair(a, b, momentum(a), momentum(b));
+    const Vector of_b = seen.momentum_b / seen.mass_b, of_a = seen.momentum_a / seen.mass_a;
+    weld.impulse = seen.mass_a / (1 + seen.mass_a / seen.mass_b) * (of_b - of_a);
     weld.area = met->geometry.area;
   });
 }
@@ -122,18 +86,14 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
   for (int c = 0; c < experiment_.dimension && sums_displacements_; ++c)
     displacement[c] = displacement_of_pair(met->a, met->b, c);
   const Vector traction = experiment_.measures_traction() ? traction_at(a, b, step.dt) : Vector(Vector::Zero());
-  const bool held = held_in_pair(a, b) != std::array<bool, 3>{} || held_in_pair(b, a) != std::array<bool, 3>{};
-  const Vector mobility = held ? mobility_of_pair(a, b) : Vector(Vector::Zero());
-  const auto apply = [&](const double* normal) -> std::optional<PairResult> {
-    const LawInput pair{mass_[a], mass_[b],     momentum_a, momentum_b, geometry,   normal,
-                        step.dt,  displacement, traction,   kept_at(a), kept_at(b), step.step == 0};
-    return held ? resolve_held_pair(pair, mobility) : apply_law(law, pair);
+  const SeenPair seen = seen_pair(a, b, momentum_a, momentum_b);
+  const auto apply = [&](const double* normal) {
+    return apply_law(law, {seen.mass_a, seen.mass_b, seen.momentum_a, seen.momentum_b, geometry, normal, step.dt,
+                           displacement, traction, kept_at(a), kept_at(b), step.step == 0});
   };
   if (!own) return apply(geometry.normal);
-  const std::optional<PairResult> of_a = apply(geometry.own_a), of_b_alone = apply(geometry.own_b);
-  if (!of_a || !of_b_alone) return {};
-  PairResult result = *of_a;
-  const PairResult& of_b = *of_b_alone;
+  PairResult result = apply(geometry.own_a);
+  const PairResult of_b = apply(geometry.own_b);
   result.returned = of_b.impulse;
   result.dissipated = 0.5 * (result.dissipated + of_b.dissipated);
   result.stored = 0.5 * (result.stored + of_b.stored);

@@ -122,13 +122,16 @@ class ReferenceBackend final : public Backend {
     bool first_step = false;
   };
   PairResult apply_law(const Component& law, const LawInput& input) const;
-  std::array<bool, 3> held_in_pair(std::size_t i, std::size_t other) const;
-  /// How much an impulse on a, taken from b, changes each component of their relative velocity, 1/kg: what a grip holds
-  /// does not move.
-  Vector mobility_of_pair(std::size_t a, std::size_t b) const;
-  /// Asks the law about a pair of which a grip holds a component, as of a body of infinite mass: what the law would give
-  /// that component goes to the grip.
-  std::optional<PairResult> resolve_held_pair(const LawInput& pair, const Vector& mobility) const;
+  /// Whether grips hold a body of a pair as a whole.
+  bool held_in_pair(std::size_t i, std::size_t other) const;
+  /// A pair as laws see it.
+  struct SeenPair {
+    double mass_a, mass_b;
+    Vector momentum_a, momentum_b;
+  };
+  /// Where grips hold one body alone, as a whole, what a law would give it goes to the grip: the law sees it as a body b of
+  /// infinite mass at rest, and the other one moves beside it.
+  SeenPair seen_pair(std::size_t a, std::size_t b, const Vector& momentum_a, const Vector& momentum_b) const;
   /// Lets the material of all fields meet rigid bodies, whose velocities are those of a time, s. velocity(i) is that of a
   /// node and give(i, impulse) changes it.
   template <class VelocityOf, class Give>

@@ -13,6 +13,6 @@ their glue that has broken, and a node holds while less than half of it is, and 
 and bodies that began apart, meet with `friction`. An area gives up `normal_strength`^2 / (2 `tension_stiffness`) when it
 is pulled off, and `shear_strength`^2 / (2 `shear_stiffness`) when it is sheared off, which leaves the ledger's row
 "interface springs" for "friction". Automatic steps are short enough for the stiffest of the three; a longer fixed one is
-refused. Take layers that are soft beside a cell, k h < E / 10: in stiffer ones the rows of nodes that a face is spread
+refused, and so are more than two velocity fields. Take layers that are soft beside a cell, k h < E / 10: in stiffer ones the rows of nodes that a face is spread
 over open unlike.)",
      "BreakableGlue"})

@@ -36,31 +36,21 @@ struct GridStep<D, T>::ContactBatch {
   // These are for laws with springs.
   alignas(64) T displacement[D * block_nodes], stored[block_nodes], stored_of_b[block_nodes];
   alignas(64) std::int32_t status[block_nodes];
-  // These are of pairs of which grips hold components.
-  struct Held {
-    int at;
-    HeldPair<D> pair;
-  };
-  std::vector<Held> held;
-
-  /// Lets the law see the last pair as it is held.
-  void hold(const HeldPair<D>& pair) {
-    const int last = count - 1;
-    held.push_back({last, pair});
-    mass_a[last] = static_cast<T>(pair.mass()), mass_b[last] = std::numeric_limits<T>::infinity();
-    for (int c = 0; c < D; ++c)
-      momentum_a[c * block_nodes + last] = static_cast<T>(pair.momentum(c)), momentum_b[c * block_nodes + last] = 0;
-  }
-  void correct_held(T* impulses, std::uint32_t traits) {
-    const bool weld = traits & MPM_BYPASSES_DETECTION;
-    for (const Held& h : held)
-      if (!(traits & MPM_COMPLIANT) || status[h.at] == MPM_STICKS) h.pair.correct(impulses + h.at, block_nodes, weld);
-  }
   // These are for laws with a state.
   static constexpr int state_values = MPM_CONTACT_STATES * block_nodes;
   alignas(64) T state_a[state_values], state_b[state_values], gained_a[state_values], gained_b[state_values];
   alignas(64) T reached[state_values], reached_of_b[state_values];
 
+  /// Lets the law see the last pair as one of which a grip holds a body as a whole.
+  void hold(bool holds_a, const Quad<T>& a, const Quad<T>& b) {
+    const int last = count - 1;
+    const T mass = mass_beside_held(holds_a, T(a[3]), T(b[3]));
+    mass_a[last] = mass, mass_b[last] = std::numeric_limits<T>::infinity();
+    for (int c = 0; c < D; ++c) {
+      momentum_a[c * block_nodes + last] = momentum_beside(T(a[c]), T(b[c]), mass);
+      momentum_b[c * block_nodes + last] = 0;
+    }
+  }
   void add(std::uint32_t at, const Quad<T>& a, const Quad<T>& b, const ContactGeometry& geometry, bool own) {
     const double* const of_a = own ? geometry.own_a : geometry.normal;
     node[count] = at;
@@ -92,11 +82,6 @@ struct GridStep<D, T>::ContactBatch {
   WeldOfPair weld(int i) const {
     WeldOfPair weld;
     weld.area = area[i];
-    for (const Held& h : held)
-      if (h.at == i) {
-        for (int c = 0; c < D; ++c) weld.impulse[c] = h.pair.welding_impulse(c);
-        return weld;
-      }
     for (int c = 0; c < D; ++c) {
       const T p_a = momentum_a[c * block_nodes + i], p_b = momentum_b[c * block_nodes + i];
       weld.impulse[c] = welding_impulse(p_a / mass_a[i], p_b / mass_b[i], mass_a[i], mass_b[i]);
@@ -208,10 +193,6 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
       }
     }
   }
-  if (!batch.held.empty()) {
-    batch.correct_held(batch.impulse, law.plugin->contact().traits);
-    if (own) batch.correct_held(batch.impulse_of_b, law.plugin->contact().traits);
-  }
   if (states > 0 && notes_reached_) note_reached(batch, a, b, states);
   const T* const returned = own ? batch.impulse_of_b : batch.impulse;
   const bool records = records_;  // the compiler need not ask again after each store
@@ -264,17 +245,18 @@ void GridStep<D, T>::note_nodes(const ContactBatch& batch, int a, int b, std::ve
   }
 }
 
-/// Bit c is set where grips hold component c of a node: their particles are half of this mass, kg.
+/// Whether grips hold all components of a node: their particles are half of this mass, kg.
 template <int D, class T>
-inline unsigned GridStep<D, T>::held_by_grips(int field, std::uint32_t node, T mass) {
+inline bool GridStep<D, T>::held_by_grips(int field, std::uint32_t node, T mass) {
   unsigned held = 0;
-  for (std::size_t k = 0; k < scene_.experiment.grips.size(); ++k) {
+  for (std::size_t k = 0; k < grip_channels_.size(); ++k) {
     const Grip& grip = scene_.experiment.grips[k];
-    if (scene_.experiment.bodies[grip.body].field != field) continue;
-    if (!grip_holds(T(grid_.quad(channel_of(scene_.plan, grip_field(k)), field, node)[3]), mass)) continue;
+    if (scene_.experiment.bodies[grip.body].field != field ||
+        !grip_holds(T(grid_.quad(grip_channels_[k], field, node)[3]), mass))
+      continue;
     for (int c = 0; c < D; ++c) held |= unsigned(grip.held[c]) << c;
   }
-  return held;
+  return held == (1u << D) - 1;
 }
 
 /// Calls visit(a, b, batch) for each pair of fields that meets in a slot, with the nodes where it does.
@@ -312,16 +294,12 @@ void GridStep<D, T>::visit_pairs(std::uint32_t slot, Visit&& visit) {
         const ContactGeometry& geometry = met[i].geometry;
         if (!geometry.valid && !weld) continue;
         const Q &motion_a = of_a.motion[node], &motion_b = of_b.motion[node];
-        const T mass_a = motion_a[3], mass_b = motion_b[3];
-        const unsigned held_a = held_by_grips(a, first + node, held_mass(mass_a, mass_b, weld)),
-                       held_b = held_by_grips(b, first + node, held_mass(mass_b, mass_a, weld));
-        if (held_a | held_b) {
-          const HeldPair<D> held(held_a, held_b, mass_a, mass_b, motion_a, motion_b, geometry.normal, weld);
-          if (!held.moves()) continue;
-          batch.add(first + node, motion_a, motion_b, geometry, own_normals_);
-          batch.hold(held);
-        } else {
-          batch.add(first + node, motion_a, motion_b, geometry, own_normals_);
+        batch.add(first + node, motion_a, motion_b, geometry, own_normals_);
+        if (!grip_channels_.empty()) {
+          const T mass_a = motion_a[3], mass_b = motion_b[3];
+          const bool holds_a = held_by_grips(a, first + node, held_mass(mass_a, mass_b, weld));
+          if (holds_a != held_by_grips(b, first + node, held_mass(mass_b, mass_a, weld)))
+            batch.hold(holds_a, motion_a, motion_b);
         }
         if (mass_displacement >= 0) batch.displace(met[i].a, met[i].b);
         if (mass_state >= 0) batch.keep(of_a, of_b, node, states);

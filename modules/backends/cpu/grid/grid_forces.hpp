@@ -28,6 +28,8 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
       wall_weights_(scene.plan.node_field("heated_volume") ? wall_weights(scene.experiment) : WallWeights()) {
   for (int c = 0; c < D; ++c) has_gravity_ = has_gravity_ || scene.experiment.has_gravity(c);
   take_gravity(0);
+  for (std::size_t k = 0; k < scene.experiment.grips.size(); ++k)
+    grip_channels_.push_back(channel_of(scene.plan, grip_field(k)));
   for (Channel c = 0; c < grid.channels(); ++c) {
     folded_[static_cast<int>(grid.field(c).folded)].push_back(c);
     if (grid.field(c).at_wall == AtWall::slip) slipping_.push_back(c);

@@ -194,7 +194,7 @@ class GridStep : NamedChannels {
   void record_force(const StepInfo& step);
   template <class Visit>
   void visit_pairs(std::uint32_t slot, Visit&& visit);
-  unsigned held_by_grips(int field, std::uint32_t node, T mass);
+  bool held_by_grips(int field, std::uint32_t node, T mass);
   void resolve_slot(std::uint32_t slot, const StepInfo& step, ContactSums& sums);
   void measure_welds();
   static bool reads_traction(const Component& law) { return (law.plugin->contact().traits & MPM_READS_TRACTION) != 0; }
@@ -237,6 +237,7 @@ class GridStep : NamedChannels {
     Vector3 x;  ///< m
   };
   std::vector<GrippedNode> gripped_;
+  std::vector<Channel> grip_channels_;  ///< of the masses of their particles
   bool grips_at_end_ = false;      ///< nodes are held as particles are told for the end of the step, not as they were
   std::vector<Signs> signs_;       ///< signs of folded_[with_mass] at the face that is folded now
   std::vector<Channel> slipping_;  ///< channels that vanish across a wall on its nodes

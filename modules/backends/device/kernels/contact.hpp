@@ -104,39 +104,25 @@ MPM_HD Vec<Scene::dimension, T> ask_law(const Arguments<T>& a, const ContactGeom
   }
 }
 
-/// Bit c is set where grips hold component c of a node of `grid`, whose own they are, beside `other`.
+/// Whether grips hold all components of a node of `grid`, whose own they are, beside `other`.
 template <class Scene, class T = typename Scene::Scalar>
-MPM_HD unsigned held_by_grips(const Arguments<T>& a, const GripArrays<T>* grips, const NodeArrays<T>& grid,
-                              const NodeArrays<T>& other, int node) {
-  unsigned held = 0;
+MPM_HD bool held_by_grips(const Arguments<T>& a, const GripArrays<T>* grips, const NodeArrays<T>& grid,
+                          const NodeArrays<T>& other, int node) {
+  int held = 0;
   const T mass =
       held_mass(grid.field[Scene::Node::mass][node], other.field[Scene::Node::mass][node], Scene::bypasses_detection);
   for (int k = 0; k < a.grip_count; ++k)
-    if (grip_holds(grips[k].mass[node], mass)) held |= unsigned(grips[k].given);
-  return held;
+    if (grip_holds(grips[k].mass[node], mass)) held |= grips[k].given;
+  return held == (1 << Scene::dimension) - 1;
 }
 
-/// A pair at a node, with what grips hold of it.
+/// Which body of a pair grips hold as a whole at a node: 0 the first, 1 the second, -1 none, or both.
 template <class Scene, class T = typename Scene::Scalar>
-MPM_HD HeldPair<Scene::dimension> held_pair(const Arguments<T>& a, const ContactGeometry& geometry, int node) {
-  using N = typename Scene::Node;
-  constexpr int D = Scene::dimension;
-  return {held_by_grips<Scene>(a, a.grips, a.grid, a.other, node),
-          held_by_grips<Scene>(a, a.other_grips, a.other, a.grid, node),
-          a.grid.field[N::mass][node],
-          a.other.field[N::mass][node],
-          load<D>(a.grid.field[N::velocity], a.node_count, node),
-          load<D>(a.other.field[N::velocity], a.node_count, node),
-          geometry.normal,
-          Scene::bypasses_detection};
-}
-
-/// Whether grips hold any component of a pair at a node.
-template <class Scene, class T = typename Scene::Scalar>
-MPM_HD bool is_held(const Arguments<T>& a, int node) {
-  if constexpr (!Scene::grips) return false;
-  return (held_by_grips<Scene>(a, a.grips, a.grid, a.other, node) |
-          held_by_grips<Scene>(a, a.other_grips, a.other, a.grid, node)) != 0;
+MPM_HD int held_body(const Arguments<T>& a, int node) {
+  if constexpr (!Scene::grips) return -1;
+  const bool holds_a = held_by_grips<Scene>(a, a.grips, a.grid, a.other, node),
+             holds_b = held_by_grips<Scene>(a, a.other_grips, a.other, a.grid, node);
+  return holds_a == holds_b ? -1 : holds_a ? 0 : 1;
 }
 
 /// Writes what a weld would give the pair of `grid` and `other` at each node, zero where they do not meet.
@@ -151,15 +137,14 @@ MPM_HD void measure_welds(const Team& team, const Arguments<typename Scene::Scal
     if (!meet(mass_a, mass_b, Scene::bypasses_detection)) return;
     const ContactGeometry geometry = geometry_of_pair<Scene>(a, node);
     if (!geometry.valid) return;
-    if (is_held<Scene>(a, node)) {
-      const HeldPair<D> held = held_pair<Scene>(a, geometry, node);
-      for (int c = 0; c < D; ++c) a.welds[c * nodes + node] = held.welding_impulse(c);
-      a.welds[D * nodes + node] = held.moves() ? geometry.area : 0;
-      return;
+    const int held = held_body<Scene>(a, node);
+    for (int c = 0; c < D; ++c) {
+      const auto velocity_a = a.grid.field[N::velocity][c * nodes + node],
+                 velocity_b = a.other.field[N::velocity][c * nodes + node];
+      a.welds[c * nodes + node] =
+          held < 0 ? welding_impulse(velocity_a, velocity_b, mass_a, mass_b)
+                   : double(momentum_beside(velocity_b, velocity_a, mass_beside_held(held == 0, mass_a, mass_b)));
     }
-    for (int c = 0; c < D; ++c)
-      a.welds[c * nodes + node] = welding_impulse(a.grid.field[N::velocity][c * nodes + node],
-                                                  a.other.field[N::velocity][c * nodes + node], mass_a, mass_b);
     a.welds[D * nodes + node] = geometry.area;
   });
 }
@@ -254,16 +239,15 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
     const ContactGeometry geometry = geometry_of_pair<Scene>(a, node);
     if (!geometry.valid && !weld) return;
     const T mass_a = pair.mass_a, mass_b = pair.mass_b;
-    const bool held = is_held<Scene>(a, node);
-    if (held) {
-      const HeldPair<D> seen = held_pair<Scene>(a, geometry, node);
-      if (!seen.moves()) return;
-      pair.mass_a = static_cast<T>(seen.mass()), pair.mass_b = static_cast<T>(a.rigid.mass);
-      for (int c = 0; c < D; ++c) pair.momentum_a[c] = static_cast<T>(seen.momentum(c)), pair.momentum_b[c] = T(0);
-    }
-    for (int c = 0; c < D && !held; ++c) {
-      pair.momentum_a[c] = momentum_of(a.grid.field[N::velocity][c * nodes + node], pair.mass_a);
-      pair.momentum_b[c] = momentum_of(a.other.field[N::velocity][c * nodes + node], pair.mass_b);
+    const int held = held_body<Scene>(a, node);
+    if (held >= 0)
+      pair.mass_a = mass_beside_held(held == 0, mass_a, mass_b), pair.mass_b = static_cast<T>(a.rigid.mass);
+    for (int c = 0; c < D; ++c) {
+      const T velocity_a = a.grid.field[N::velocity][c * nodes + node],
+              velocity_b = a.other.field[N::velocity][c * nodes + node];
+      pair.momentum_a[c] =
+          held < 0 ? momentum_of(velocity_a, mass_a) : momentum_beside(velocity_a, velocity_b, pair.mass_a);
+      pair.momentum_b[c] = held < 0 ? momentum_of(velocity_b, mass_b) : T(0);
     }
     pair.separation = static_cast<T>(geometry.separation), pair.area = static_cast<T>(geometry.area);
     pair.dt = a.dt, pair.after_forces = a.after_forces, pair.cell_size = a.cell_size;
@@ -278,11 +262,7 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
     }
     tell_state<Scene>(a, node, pair);
     ContactResult<D, T> result;
-    Vec<D, T> returned = ask_law<Scene>(a, geometry, pair, result);
-    if (held && (N::mass_displacement < 0 || static_cast<int>(result.status) == contact_sticks)) {
-      const HeldPair<D> seen = held_pair<Scene>(a, geometry, node);
-      seen.correct(&result.impulse[0], 1, weld), seen.correct(&returned[0], 1, weld);
-    }
+    const Vec<D, T> returned = ask_law<Scene>(a, geometry, pair, result);
     note_reached<Scene>(a, node, result);
     for (int c = 0; c < D; ++c) {
       const int at = c * nodes + node;
