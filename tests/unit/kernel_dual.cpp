@@ -37,10 +37,10 @@ double largest(const Mat<D, double>& a) {
 }
 
 /// The logarithm ln V = U diag(ln s) U^T of the left stretch, whose derivative at F = I is the symmetric part of dF.
-template <int D>
-Mat<D, X> left_hencky_strain(const Mat<D, X>& F) {
-  const LeftStretches<D, X> parts = left_stretches(F);
-  Mat<D, X> r{};
+template <int D, class S>
+Mat<D, S> left_hencky_strain(const Mat<D, S>& F) {
+  const LeftStretches<D, S> parts = left_stretches(F);
+  Mat<D, S> r{};
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j)
       for (int k = 0; k < D; ++k) r(i, j) = r(i, j) + parts.U(i, k) * log(parts.stretch[k]) * parts.U(j, k);
