@@ -139,15 +139,15 @@ struct Arguments {
   RigidArrays rigid;      ///< rigid_contact
   BlockArrays blocks;
   int teams;                             ///< that share the blocks with particles
+  int launch;                            ///< number of this launch in the step
   double* partial_sums;                  ///< [team][sum]
   int sum_teams, sum_count, sum_maxima;  ///< add_teams: how many there are, and how many of them are largest values
-  double* sums;                          ///< where it leaves them
+  int exact_phase;                       ///< of a scatter with exact sums
+  double* sums;                          ///< where add_teams leaves them
   const double* masses_of_box;           ///< masses of its nodes in each velocity field, kg
   int* exponents;                        ///< [channel] of a scatter, and its sums [channel][node][2]
   unsigned long long* exact_sums;        ///< (kernels/exact_sums.hpp)
-  int exact_phase;                       ///< of that scatter
   int* stop;                             ///< [stop_numbers] see kernels/stopping.hpp
-  int launch;                            ///< number of this launch in the step
   // These say how it works.
   T dt;
   T local_damping, left_of_velocity, left_of_change;  ///< damp: see `damped`

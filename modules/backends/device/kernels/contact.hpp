@@ -198,10 +198,11 @@ MPM_HD void tell_state(const Arguments<T>& a, int node, ContactPair<Scene::dimen
   if constexpr (Scene::contact_states > 0)
     for (int k = 0; k < Scene::contact_states; ++k) {
       const int at = k * a.node_count + node;
-      pair.state_a[k] = a.grid.field[N::mass_state][at] / pair.mass_a;
-      pair.state_b[k] = a.other.field[N::mass_state][at] / pair.mass_b;
-      pair.gained_a[k] = a.grid.field[N::mass_gain][at] / pair.mass_a;
-      pair.gained_b[k] = a.other.field[N::mass_gain][at] / pair.mass_b;
+      const T mass_a = a.grid.field[N::mass][node], mass_b = a.other.field[N::mass][node];  // a law may see others
+      pair.state_a[k] = a.grid.field[N::mass_state][at] / mass_a;
+      pair.state_b[k] = a.other.field[N::mass_state][at] / mass_b;
+      pair.gained_a[k] = a.grid.field[N::mass_gain][at] / mass_a;
+      pair.gained_b[k] = a.other.field[N::mass_gain][at] / mass_b;
     }
 }
 
