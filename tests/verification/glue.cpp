@@ -306,8 +306,8 @@ TEST_CASE("what glue keeps is drawn and written by its name", "[glue]") {
   for (const auto& [name, which] : {std::pair{"glued", std::size_t{0}}, std::pair{"broken", std::size_t{1}}}) {
     INFO(name);
     CHECK(std::count(names.begin(), names.end(), name) == 1);
-    CHECK(std::count_if(fields.begin(), fields.end(), [&](const ParticleField& field) { return field.name == name; }) ==
-          1);
+    CHECK(std::count_if(fields.begin(), fields.end(),
+                        [id = name](const ParticleField& field) { return field.name == id; }) == 1);
     const std::vector<double> values = quantity(scene.experiment, 1, state, name);
     REQUIRE(2 * values.size() == kept.size());
     for (std::size_t p = 0; p < values.size(); ++p) CHECK(values[p] == kept[2 * p + which]);
