@@ -72,7 +72,7 @@ bench::SectionResult bench_materials(BenchContext& context) {
             result.targets.push_back(
                 {law, "cube_3d cost of " + law + " over neo_hookean", measured.cost, bound, false});
           };
-          if (law == "newtonian_fluid" || law == "linear_elastic") at_most(0.9);
+          if (law == "inviscid_fluid" || law == "linear_elastic") at_most(0.9);
           if (law == "von_mises") at_most(1.35);
         });
   return result;

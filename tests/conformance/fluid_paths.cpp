@@ -6,6 +6,7 @@
 
 #include "kernel/equation_of_state.hpp"
 #include "materials/herschel_bulkley/herschel_bulkley.hpp"
+#include "materials/inviscid_fluid/inviscid_fluid.hpp"
 #include "materials/newtonian_fluid/newtonian_fluid.hpp"
 #include "support/catch.hpp"
 
@@ -391,6 +392,87 @@ TEST_CASE("newtonian_fluid: in plane strain z is held, around an axis it flows")
   CHECK(ring.viscous_stress.s[2] == Approx(12 * 2.0 / 3));
   CHECK(ring.viscous_stress.s[0] == Approx(-12 / 3.0));
   CHECK(ring.log_volume_ratio == Approx(1e-9));
+}
+
+TEST_CASE("inviscid_fluid: pressure, energy and speed of sound are those of the formulae from J = 1e-6 to 1e6") {
+  const InviscidFluid::Constants<double> c({1, 4, 0});
+  const InviscidFluid::Constants<float> single({1, 4, 0});
+  for (const Row& row : rows) {
+    if (row.form != linear) continue;
+    CAPTURE(row.J);
+    const InviscidFluid::State<3, double> state{row.J - 1};
+    const Sym<3, double> tau = InviscidFluid::kirchhoff_stress(c, state);
+    for (int i = 0; i < 3; ++i) CHECK(tau(i, i) == Approx(-row.J * row.pressure).epsilon(1e-9));
+    CHECK(std::abs(tau(0, 1)) + std::abs(tau(0, 2)) + std::abs(tau(1, 2)) == 0);
+    CHECK(InviscidFluid::stored_energy(c, state) == Approx(row.energy).epsilon(1e-9));
+    CHECK(InviscidFluid::wave_speed(c, state) == 0.5);
+    CHECK(InviscidFluid::volume_ratio(state) == Approx(row.J).epsilon(1e-9));
+    // In single precision J - 1 has an error of 3e-8, which is 3 % of J = 1e-6 and of its logarithm 1/500.
+    const InviscidFluid::State<2, float> rounded{static_cast<float>(row.J - 1)};
+    CHECK(InviscidFluid::kirchhoff_stress(single, rounded).s[0] == Approx(-row.J * row.pressure).epsilon(1e-6));
+    CHECK(InviscidFluid::stored_energy(single, rounded) == Approx(row.energy).epsilon(row.J < 0.1 ? 5e-3 : 1e-5));
+    CHECK(InviscidFluid::volume_ratio(rounded) == Approx(row.J).epsilon(row.J < 0.1 ? 0.04 : 1e-5));
+  }
+}
+
+TEST_CASE("inviscid_fluid: the volume that is kept is the product of the steps', and shear meets no resistance") {
+  const InviscidFluid::Constants<double> c({2.2e9, 1000, 0});
+  InviscidFluid::State<3, double> fluid{};
+  double heat = 0;
+  for (int k = 0; k < 500000; ++k) {
+    heat += InviscidFluid::advance(c, Mat3{{1e-9, 0, 0, 0, 0, 0, 0, 0, 0}}, 1.0, fluid);
+    heat += InviscidFluid::advance(c, Mat3{{0, 0, 0, 0, 1e-9, 0, 0, 0, 0}}, 1.0, fluid);
+  }
+  CHECK(fluid.volume_change == Approx(std::expm1(1e6 * std::log1p(1e-9))).epsilon(1.1e-10));
+  CHECK(heat == 0);
+  InviscidFluid::State<3, double> sheared{};
+  InviscidFluid::advance(c, Mat3{{0, 40, 0, 0, 0, 0, 0, 7, 0}}, 0.5, sheared);
+  CHECK(sheared.volume_change == 0);
+  // Increments that J in single precision would not feel at all.
+  const InviscidFluid::Constants<float> single({2.2e9, 1000, 0});
+  InviscidFluid::State<2, float> drop{};
+  for (int k = 0; k < 10000; ++k) InviscidFluid::advance(single, Mat<2, float>{{-1e-8f, 0, 0, 0}}, 1.0f, drop);
+  CHECK(InviscidFluid::kirchhoff_stress(single, drop).s[0] == Approx(-2.2e9 * 1e-4).epsilon(1e-3));
+}
+
+TEST_CASE("inviscid_fluid: compressed by a closed loop it gives back what it took") {
+  const InviscidFluid::Constants<double> c({1, 1, 0});
+  InviscidFluid::State<3, double> fluid{};
+  const int steps = 2000;
+  double work = 0;
+  for (double from : {1.0, 0.3}) {
+    const double to = 1.3 - from;
+    for (int k = 0; k < steps; ++k) {
+      const double a = from + (to - from) * k / steps, b = from + (to - from) * (k + 1) / steps;
+      const double before = InviscidFluid::kirchhoff_stress(c, fluid)(0, 0) / a;
+      InviscidFluid::advance(c, Mat3{{b / a - 1, 0, 0, 0, 0, 0, 0, 0, 0}}, 1.0, fluid);
+      work += 0.5 * (before + InviscidFluid::kirchhoff_stress(c, fluid)(0, 0) / b) * (b - a);
+    }
+    if (to < 1) CHECK(work == Approx(0.3 - 1 - std::log(0.3)).epsilon(1e-4));  // minus the integral of p
+  }
+  CHECK(std::abs(work) < 1e-12);
+  CHECK(std::abs(InviscidFluid::stored_energy(c, fluid)) < 1e-12);
+}
+
+TEST_CASE("inviscid_fluid: without tension there is neither pressure nor energy where J > 1") {
+  const InviscidFluid::Constants<double> whole({3, 1, 0}), parted({3, 1, 1});
+  for (double J : {1.0, 1.001, 5.0, 1e6}) {
+    const InviscidFluid::State<2, double> state{J - 1};
+    CHECK(InviscidFluid::kirchhoff_stress(parted, state).s[0] == 0);
+    CHECK(InviscidFluid::stored_energy(parted, state) == 0);
+    CHECK(InviscidFluid::kirchhoff_stress(whole, state).s[0] == Approx(3 * (J - 1)));
+  }
+  const InviscidFluid::State<2, double> pressed{-0.25};
+  for (int i = 0; i < 3; ++i) CHECK(InviscidFluid::kirchhoff_stress(parted, pressed).s[i] == -0.75);
+}
+
+TEST_CASE("inviscid_fluid: in plane strain z is held, around an axis it flows") {
+  const InviscidFluid::Constants<double> c({1, 1, 0});
+  InviscidFluid::State<2, double> flat{}, ring{};
+  InviscidFluid::advance(c, Mat<2, double>{{0.25, 0, 0, 0}}, 1.0, flat);
+  InviscidFluid::advance(c, Deformation<2, double>{{{0.25, 0, 0, 0}}, 1}, 0.5, ring);
+  CHECK(flat.volume_change == 0.25);
+  CHECK(ring.volume_change == Approx(1.125 * 1.5 - 1));
 }
 
 TEST_CASE("herschel_bulkley: the stress of steady shear is tau_y + k rate^n, and all its work is heat") {
