@@ -379,7 +379,8 @@ int run_command_line(int argc, char** argv) {
       ->type_name("STEM");
   normals_verb->callback([&] { code = guarded([&] { return contact_normals(shape, stem); }); });
 
-  auto* schema_verb = app.add_subcommand("schema", "print the JSON Schema of experiment files, for editors");
+  auto* schema_verb = app.add_subcommand(
+      "schema", "print the JSON Schema of experiment files, those of a material point too, for editors");
   schema_verb->callback([&] { code = guarded([&] { return schema(); }); });
 
   auto* figure_verb =

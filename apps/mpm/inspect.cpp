@@ -13,6 +13,7 @@
 #include "backends/device/program.hpp"
 #include "backends/make_backend.hpp"
 #include "drive/read_drive.hpp"
+#include "drive/sections.hpp"
 #include "experiment/diagnostics.hpp"
 #include "experiment/located_json.hpp"
 #include "experiment/schema.hpp"
@@ -389,7 +390,8 @@ int describe(const std::string& id, bool json) {
 
 int schema() {
   const Registry registry = load_registry();
-  std::cout << json_schema(registry, read_options(registry, {})).dump(2) << "\n";
+  const std::vector<FileKind> others{{drive::drive_section(), drive::solver_section()}};
+  std::cout << json_schema(ComponentLookup(registry), read_options(registry, {}), others).dump(2) << "\n";
   return done;
 }
 

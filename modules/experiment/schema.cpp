@@ -227,4 +227,19 @@ nlohmann::ordered_json json_schema(const Registry& registry, const ReadOptions& 
   return json_schema(ComponentLookup(registry), options);
 }
 
+nlohmann::ordered_json json_schema(const ComponentLookup& components, const ReadOptions& options,
+                                   const std::vector<FileKind>& others) {
+  const Json experiment = json_schema(components, options);
+  Json keys = section_schema(experiment_section(options));
+  for (const auto& [file, solver] : others) {
+    const Json type = {{"properties", {{"type", {{"const", solver.name}}}}}, {"required", {"type"}}};
+    const Json condition = {{"properties", {{"solver", type}}}, {"required", {"solver"}}};
+    keys = {{"if", condition}, {"then", section_schema(file)}, {"else", keys}};
+  }
+  Json schema = {{"$schema", experiment["$schema"]}, {"title", experiment["title"]}};
+  schema.update(keys);
+  schema["$defs"] = experiment["$defs"];
+  return schema;
+}
+
 }  // namespace mpm

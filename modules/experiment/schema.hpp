@@ -1,6 +1,9 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
+#include <vector>
+
+#include "experiment/parameter.hpp"
 #include "experiment/read.hpp"
 
 namespace mpm {
@@ -9,6 +12,13 @@ namespace mpm {
 /// the parameters that the plugins declare, so that editors complete and check what this build accepts. It cannot say
 /// what the reader checks across keys (whole cells, bodies inside the domain, …).
 nlohmann::ordered_json json_schema(const Registry& registry, const ReadOptions& options);
+/// The same for files of other kinds too. The type of a file's solver, which is the name of the second section, says that
+/// its keys are those of the first.
+struct FileKind {
+  Section file, solver;
+};
+nlohmann::ordered_json json_schema(const ComponentLookup& components, const ReadOptions& options,
+                                   const std::vector<FileKind>& others);
 nlohmann::ordered_json json_schema(const ComponentLookup& components, const ReadOptions& options);
 
 }  // namespace mpm

@@ -123,6 +123,17 @@ std::string why_not_fused(const Step& step, const Experiment& experiment) {
   return "";
 }
 
+// What looks at particles between their gather, strain and move keeps these apart: nodes that average, heat, grips, and
+// corners that the grid's velocity moves. Stress is that of the next step's scatter, which nothing may change before it.
+Advance advance_of(const Plan& plan, const Experiment& experiment) {
+  const bool keeps_apart = !backend_needs(experiment.backend).launches ||
+                           experiment.solver.passes == PassChoice::separate ||
+                           experiment.solver.stress_update != StressUpdate::last || plan.does(Act::scatter_dilation) ||
+                           experiment.has_temperature() || !experiment.grips.empty() || plan.sample_points > 0 ||
+                           !why_of_another_shape(plan.step, experiment).empty();
+  return keeps_apart ? Advance::apart : plan.has_ledger() ? Advance::unless_accounted : Advance::at_once;
+}
+
 /// What stands before the first pass over nodes that are filled becomes conditional; the last pass takes its operators
 /// on, for the next step. What is executed in some steps only stays first: it may change the next step's dt.
 void fuse(Step& step) {

@@ -272,6 +272,7 @@ BackendNeeds backend_needs(std::string_view backend) {
   needs.sorts = needs.fuses = backend == "cpu";
   needs.forgets_stencils = backend != "reference";
   needs.keeps_all_apart = needs.keeps_weight_apart = backend != "cpu";
+  needs.launches = backend == "cuda";
   return needs;
 }
 
@@ -290,6 +291,7 @@ Plan assemble_plan(const Experiment& experiment, const std::function<void(StepBu
   surround_step(plan, experiment);
   plan.acts = acts_of(plan.step);
   take_numbers(plan, experiment);
+  plan.advance = advance_of(plan, experiment);
   FieldList fields(plan, experiment);
   declare_particle_fields(fields);
   declare_node_fields(fields);

@@ -35,6 +35,13 @@ struct StencilNeeds {
   bool second_moment = false;  ///< of the shape, a particle
 };
 
+/// How particles go from one scatter to the next on a device, whose passes are launches.
+enum class Advance {
+  apart,             ///< gather, strain, move and stress are launches, between which values wait in memory
+  unless_accounted,  ///< one launch does all of it, but in steps that the ledger takes
+  at_once            ///< one launch does all of it, and nothing waits
+};
+
 struct Plan {
   std::vector<Field> fields;
   Step step;                ///< all that one step of time does
@@ -46,6 +53,7 @@ struct Plan {
   int basis_functions = 0;  ///< how many a particle carries (kernel/polynomial_basis.hpp)
   StencilNeeds stencil;
   std::string why_not_fused;  ///< why no gather scatters for the next step; empty where one does
+  Advance advance = Advance::apart;
 
   std::uint64_t particles = 0, nodes = 0;  ///< estimates before seeding
   std::uint64_t particle_bytes = 0, grid_bytes = 0;
@@ -93,6 +101,7 @@ struct BackendNeeds {
   bool forgets_stencils = false;    ///< weights are evaluated anew in every pass
   bool keeps_all_apart = false;     ///< nothing is merged or shares memory
   bool keeps_weight_apart = false;  ///< gravity's force has a field of its own, "weight"
+  bool launches = false;            ///< passes are launches of a device, see Advance
 };
 BackendNeeds backend_needs(std::string_view backend);
 

@@ -211,6 +211,7 @@ nlohmann::ordered_json Plan::to_json() const {
   if (ledger_every > 1) json["ledger_every"] = ledger_every;
   json["fused"] = fused();
   if (!fused()) json["why_not_fused"] = why_not_fused;
+  if (advance != Advance::apart) json["advance"] = advance == Advance::at_once ? "at_once" : "unless_accounted";
   json["estimate"] = {
       {"particles", particles}, {"nodes", nodes}, {"particle_bytes", particle_bytes}, {"grid_bytes", grid_bytes}};
   return json;
@@ -244,6 +245,9 @@ std::string Plan::to_text() const {
   print(out, step.children, 0);
   out << "Gather and scatter: " << (fused() ? "fused, one visit of a particle a step" : "two passes, " + why_not_fused)
       << "\n";
+  if (advance != Advance::apart)
+    out << "From one scatter to the next: particles advance in one launch"
+        << (advance == Advance::at_once ? "" : ", but in steps that the ledger takes") << "\n";
   out << "Stencil: weights" << (stencil.gradients ? " and gradients" : " only, no gradients") << "; force "
       << (node_field("force") ? "in a field of its own" : "merged into momentum") << "\n";
   out << "Estimate: " << particles << " particles, " << nodes << " nodes, " << (particle_bytes + 524288) / 1048576

@@ -83,6 +83,8 @@ void check_step(const Plan& plan);
 void join_visits(Step& step);
 /// Why the gather of a step may not scatter for the next one as well, naming who asked; empty where it may.
 std::string why_not_fused(const Step& step, const Experiment& experiment);
+/// Whether one launch of a device may take particles from one scatter to the next.
+Advance advance_of(const Plan& plan, const Experiment& experiment);
 /// Lets the gather of a step scatter for the next one; the step then begins with a scatter only where that was not done.
 void fuse(Step& step);
 

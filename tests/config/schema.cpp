@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "config/config_support.hpp"
+#include "drive/sections.hpp"
 #include "support/catch.hpp"
 
 using namespace mpm;
@@ -69,6 +70,23 @@ TEST_CASE("the schema has every key of the experiment", "[schema]") {
   }
   CHECK(schema()["required"] == Json({"dimension", "grid", "shape", "transfer", "materials", "bodies", "solver"}));
   check_keys(read_text(two_discs).resolved, schema());
+}
+
+TEST_CASE("the solver of a file says whether its keys are those of an experiment or of a material point", "[schema]") {
+  const Json both = json_schema(components(), options(), {{drive::drive_section(), drive::solver_section()}});
+  CHECK(both["$defs"] == schema()["$defs"]);
+  const Json &solver = both["if"]["properties"]["solver"], &point = both["then"];
+  CHECK(both["if"]["required"] == Json({"solver"}));
+  CHECK(solver["properties"]["type"]["const"] == "material_point");
+  CHECK(solver["required"] == Json({"type"}));
+  for (const char* key : {"properties", "required", "additionalProperties"}) CHECK(both["else"][key] == schema()[key]);
+  CHECK(point["required"] == Json({"materials", "solver"}));
+  CHECK(point["additionalProperties"] == false);
+  CHECK(!point["properties"].contains("bodies"));
+  check_keys(Json::parse(
+                 R"({"title": "t", "dimension": 2, "materials": {}, "solver": {"type": "material_point", "cell_size": 1,
+    "stages": [{"name": "a", "duration": 1, "steps": 3, "deformation_gradient": {"xx": "1+t"}, "stress": {"yy": 0}}]}})"),
+             point);
 }
 
 TEST_CASE("parameters of plugins appear with unit, range, default and choices", "[schema]") {

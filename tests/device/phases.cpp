@@ -51,8 +51,8 @@ struct SmallGrid {
     device::DeviceArray<int> folds(device, "folds");
     folds.upload(folded);
     a.grid.folded = folds.data();
-    device::DeviceArray<int> stop(device, "the failed particle");
-    stop.upload(std::vector<int>(device::stop_numbers, INT_MAX));
+    device::DeviceArray<device::Stopped> stop(device, "the failed particle");
+    stop.upload(std::vector<device::Stopped>{device::nothing_stopped});
     a.stop = stop.data();
     device.launch(phase, a, teams, team.lanes);
     for (std::size_t k = 0; k < copies.size(); ++k) {

@@ -121,6 +121,9 @@ std::vector<Mix> mixes() {
   Mix rings;
   rings.overrides = {set("/grid/symmetry", "axisymmetric"), set("/gravity", "[0, -1.3]")};
   all.push_back(rings);
+  Mix without_ledger;  // particles advance in one launch of the device
+  without_ledger.more = R"(, "output": {"ledger": false})";
+  all.push_back(without_ledger);
   Mix polynomials;
   polynomials.transfer = R"({"type": "polypic", "basis": "full"})";
   all.push_back(polynomials);

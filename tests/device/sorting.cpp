@@ -64,7 +64,7 @@ class Sorted {
     a_.particles.field[device::number_of(choice.particle_fields, "position")] = position_.data();
     a_.blocks = blocks_->table();
     a_.teams = teams;
-    stop_.upload(std::vector<int>(device::stop_numbers, INT_MAX));
+    stop_.upload(std::vector<device::Stopped>{device::nothing_stopped});
     a_.stop = stop_.data();
   }
 
@@ -116,7 +116,7 @@ class Sorted {
   device::DeviceSetup setup_;
   device::Device device_;
   device::DeviceArray<double> position_;
-  device::DeviceArray<int> stop_;
+  device::DeviceArray<device::Stopped> stop_;
   device::Arguments<double> a_{};
   std::optional<device::Blocks> blocks_;
 };

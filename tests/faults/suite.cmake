@@ -97,8 +97,8 @@ mpm_fault(${kernels}/filter.hpp
           "    for (int c = 0; c < D && mpm_fault_now() == 4; ++c) velocity[c] *= T(1 + 1e-3);
     store(a.grid.field[N::velocity], nodes, node, velocity);\n    if constexpr (N::trial")
 mpm_fault(${kernels}/gather.hpp
-          "    const auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::velocity], before);"
-          "    auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::velocity], before);
+          "  const auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::velocity], before);"
+          "  auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::velocity], before);
     for (int c = 0; c < D && mpm_fault_now() == 5; ++c) moments.velocity[c] *= T(1 - 1e-3);
     for (int k = 0; k < D * D && mpm_fault_now() == 6; ++k) moments.velocity_gradient(k / D, k % D) *= T(0.99);")
 

@@ -1,12 +1,48 @@
+#include <cstring>
+
 #include "backends/device/device_backend.hpp"
 #include "simulation/saved_state.hpp"
 
 namespace mpm::device {
 
+/// What a step has found of particles for the next one's scatter. Found anew it may be another rounding.
+constexpr const char* prepared_fields[] = {"stress", "volume_ratio"};
+
+template <class T>
+std::vector<char> DeviceBackend<T>::prepared_values() const {
+  std::vector<char> bytes;
+  if (!prepared_) return bytes;
+  for (const Body<T>& body : bodies_)
+    for (const char* id : prepared_fields) {
+      const std::vector<T> values = body.arrays.read(id);
+      const char* const first = reinterpret_cast<const char*>(values.data());
+      bytes.insert(bytes.end(), first, first + values.size() * sizeof(T));
+    }
+  return bytes;
+}
+
+template <class T>
+void DeviceBackend<T>::take_prepared_values(const std::vector<char>& bytes) {
+  prepared_ = !bytes.empty();
+  if (!prepared_) return;
+  std::size_t at = 0;
+  for (Body<T>& body : bodies_) {
+    for (const char* id : prepared_fields) {
+      const int number = body.number(id);
+      std::vector<T> values(body.arrays.size(number));
+      if (bytes.size() < at + values.size() * sizeof(T)) throw ArchiveError("the device's stresses are cut short");
+      std::memcpy(values.data(), bytes.data() + at, values.size() * sizeof(T));
+      at += values.size() * sizeof(T);
+      body.arrays.write(number, values);
+    }
+    find_blocks(body);
+  }
+}
+
 template <class T>
 void DeviceBackend<T>::save(ArchiveWriter& archive) const {
   save_records(archive, *this);
-  save_arrangement(archive);
+  save_arrangement(archive, "cuda", prepared_values());
   for (std::size_t index = 0; index < bodies_.size(); ++index) {
     const FieldArrays<T>& arrays = bodies_[index].arrays;
     save_particles(archive, plan_, static_cast<int>(index), arrays.index_major(arrays.number("position")),
@@ -20,7 +56,7 @@ void DeviceBackend<T>::save(ArchiveWriter& archive) const {
 template <class T>
 void DeviceBackend<T>::restore(ArchiveReader& archive) {
   SavedRecords records = restore_records(archive, *this);
-  restore_arrangement(archive);  // blocks are made anew in every step
+  const std::vector<char> prepared = restore_arrangement(archive, "cuda");
   ledger_ = records.ledger, heat_ledger_ = records.heat_ledger;
   contact_ = records.contact, contact_impulse_.pairs() = std::move(records.contact_pairs);
   filter_ = records.filter, limit_ = records.limit;
@@ -37,6 +73,7 @@ void DeviceBackend<T>::restore(ArchiveReader& archive) {
     if (const int strained = arrays.number("strained_domain"); strained >= 0)
       arrays.copy(strained, arrays.number("domain"));
   }
+  take_prepared_values(prepared);
 }
 
 template <class T>

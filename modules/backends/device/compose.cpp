@@ -207,6 +207,43 @@ bool has_filter_loop(const Choice& choice) {
   return number_of(choice.node_fields, "projection") >= 0;
 }
 
+/// Entries of kernels.hpp that stand or fall together.
+struct EntryGroup {
+  const char* macro;
+  std::size_t times;      ///< 0 where the scene does without them
+  bool numbered = false;  ///< there is one for each material, or for each law of rigid bodies
+};
+
+std::vector<EntryGroup> entry_groups(const Choice& choice) {
+  const std::size_t materials = choice.materials.size();
+  const bool advances = choice.advance != Advance::apart, apart = choice.advance != Advance::at_once;
+  const bool heat = has_temperature(choice), ledger = keeps_ledger(choice);
+  std::vector<EntryGroup> groups{{"MPM_DEVICE_ENTRIES", 1},
+                                 {"MPM_DEVICE_SUM_ENTRIES", 1},
+                                 {"MPM_DEVICE_SORT_ENTRIES", 1},
+                                 {"MPM_DEVICE_APART_ENTRIES", apart},
+                                 {"MPM_DEVICE_LOAD_ENTRIES", has_loads(choice)},
+                                 {"MPM_DEVICE_LEDGER_ENTRIES", ledger},
+                                 {"MPM_DEVICE_CONTACT_ENTRIES", choice.contact != nullptr},
+                                 {"MPM_DEVICE_CONTACT_STATE_ENTRIES", contact_states(choice) > 0},
+                                 {"MPM_DEVICE_TRACTION_ENTRIES", reads_traction(choice)},
+                                 {"MPM_DEVICE_REACTION_ENTRIES", choice.reactions},
+                                 {"MPM_DEVICE_GRIP_ENTRIES", has_grips(choice)},
+                                 {"MPM_DEVICE_FILTER_ENTRIES", choice.filter != nullptr},
+                                 {"MPM_DEVICE_FILTER_LOOP_ENTRIES", has_filter_loop(choice)},
+                                 {"MPM_DEVICE_HEAT_ENTRIES", heat},
+                                 {"MPM_DEVICE_HEAT_LEDGER_ENTRIES", heat && ledger},
+                                 {"MPM_DEVICE_VISCOSITY_LEDGER_ENTRIES", books_viscosity(choice)},
+                                 {"MPM_DEVICE_DILATION_ENTRIES", averages_dilation(choice)},
+                                 {"MPM_DEVICE_MATERIAL_ENTRIES", materials, true},
+                                 {"MPM_DEVICE_STRAIN_ENTRIES", apart ? materials : 0, true},
+                                 {"MPM_DEVICE_ADVANCE_ENTRIES", advances ? materials : 0, true},
+                                 {"MPM_DEVICE_MELTING_ENTRIES", melts(choice) ? materials : 0, true},
+                                 {"MPM_DEVICE_RIGID_ENTRIES", choice.rigid_laws.size(), true}};
+  std::erase_if(groups, [](const EntryGroup& group) { return group.times == 0; });
+  return groups;
+}
+
 /// Writes the chosen types and what the tables say of them: functors keep their tables where only the host looks.
 std::string scene_text(const Choice& choice) {
   const mpm_shape& shape = choice.shape->shape();
@@ -266,31 +303,17 @@ std::string scene_text(const Choice& choice) {
   }
   for (std::size_t k = 0; k < choice.rigid_laws.size(); ++k)
     out << "struct RigidScene" << k << " : Scene {\n  using Contact = " << type(choice.rigid_laws[k]) << ";\n};\n";
-  out << "MPM_DEVICE_ENTRIES\n";
-  if (has_loads(choice)) out << "MPM_DEVICE_LOAD_ENTRIES\n";
-  if (keeps_ledger(choice)) out << "MPM_DEVICE_LEDGER_ENTRIES\n";
-  if (choice.contact) out << "MPM_DEVICE_CONTACT_ENTRIES\n";
-  if (contact_states(choice) > 0) out << "MPM_DEVICE_CONTACT_STATE_ENTRIES\n";
-  if (reads_traction(choice)) out << "MPM_DEVICE_TRACTION_ENTRIES\n";
-  if (choice.reactions) out << "MPM_DEVICE_REACTION_ENTRIES\n";
-  if (has_grips(choice)) out << "MPM_DEVICE_GRIP_ENTRIES\n";
-  if (choice.filter) out << "MPM_DEVICE_FILTER_ENTRIES\n";
-  if (has_filter_loop(choice)) out << "MPM_DEVICE_FILTER_LOOP_ENTRIES\n";
-  if (has_temperature(choice)) out << "MPM_DEVICE_HEAT_ENTRIES\n";
-  if (has_temperature(choice) && keeps_ledger(choice)) out << "MPM_DEVICE_HEAT_LEDGER_ENTRIES\n";
-  if (books_viscosity(choice)) out << "MPM_DEVICE_VISCOSITY_LEDGER_ENTRIES\n";
-  if (averages_dilation(choice)) out << "MPM_DEVICE_DILATION_ENTRIES\n";
-  for (std::size_t k = 0; k < choice.materials.size(); ++k) {
-    out << "MPM_DEVICE_MATERIAL_ENTRIES(" << k << ")\n";
-    if (melts(choice)) out << "MPM_DEVICE_MELTING_ENTRIES(" << k << ")\n";
+  for (const EntryGroup& group : entry_groups(choice)) {
+    if (!group.numbered) out << group.macro << "\n";
+    for (std::size_t k = 0; group.numbered && k < group.times; ++k) out << group.macro << "(" << k << ")\n";
   }
-  for (std::size_t k = 0; k < choice.rigid_laws.size(); ++k) out << "MPM_DEVICE_RIGID_ENTRIES(" << k << ")\n";
   out << "}  // namespace mpm::device\n";
   return out.str();
 }
 
 /// Reads the entries that the macros of kernels.hpp make from that file, so that there is one list.
 std::vector<std::string> entry_names(const Choice& choice) {
+  const std::vector<EntryGroup> groups = entry_groups(choice);
   std::vector<std::string> names;
   std::istringstream lines(embedded_header("backends/device/kernels/kernels.hpp"));
   std::string line, macro;
@@ -301,26 +324,13 @@ std::vector<std::string> entry_names(const Choice& choice) {
     if (at == line.npos || line.rfind("//", 0) == 0) continue;
     at += start.size();
     const std::string name = line.substr(at, line.find(',', at) - at);
-    if (macro == "MPM_DEVICE_LOAD_ENTRIES" && !has_loads(choice)) continue;
-    if (macro == "MPM_DEVICE_LEDGER_ENTRIES" && !keeps_ledger(choice)) continue;
-    if (macro == "MPM_DEVICE_CONTACT_ENTRIES" && !choice.contact) continue;
-    if (macro == "MPM_DEVICE_CONTACT_STATE_ENTRIES" && contact_states(choice) == 0) continue;
-    if (macro == "MPM_DEVICE_TRACTION_ENTRIES" && !reads_traction(choice)) continue;
-    if (macro == "MPM_DEVICE_REACTION_ENTRIES" && !choice.reactions) continue;
-    if (macro == "MPM_DEVICE_GRIP_ENTRIES" && !has_grips(choice)) continue;
-    if (macro == "MPM_DEVICE_FILTER_ENTRIES" && !choice.filter) continue;
-    if (macro == "MPM_DEVICE_FILTER_LOOP_ENTRIES" && !has_filter_loop(choice)) continue;
-    if (macro == "MPM_DEVICE_HEAT_ENTRIES" && !has_temperature(choice)) continue;
-    if (macro == "MPM_DEVICE_HEAT_LEDGER_ENTRIES" && !(has_temperature(choice) && keeps_ledger(choice))) continue;
-    if (macro == "MPM_DEVICE_VISCOSITY_LEDGER_ENTRIES" && !books_viscosity(choice)) continue;
-    if (macro == "MPM_DEVICE_DILATION_ENTRIES" && !averages_dilation(choice)) continue;
-    if (macro == "MPM_DEVICE_MELTING_ENTRIES" && !melts(choice)) continue;
+    const auto group =
+        std::find_if(groups.begin(), groups.end(), [&](const EntryGroup& g) { return macro == g.macro; });
+    if (group == groups.end()) continue;
     const std::size_t number = name.find("##");
     if (number == name.npos) names.push_back(name);
-    const std::size_t times = number == name.npos                   ? 0
-                              : macro == "MPM_DEVICE_RIGID_ENTRIES" ? choice.rigid_laws.size()
-                                                                    : choice.materials.size();
-    for (std::size_t k = 0; k < times; ++k) names.push_back(name.substr(0, number) + std::to_string(k));
+    for (std::size_t k = 0; number != name.npos && k < group->times; ++k)
+      names.push_back(name.substr(0, number) + std::to_string(k));
   }
   return names;
 }
@@ -363,6 +373,7 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
   choice.transfer = experiment.transfer.plugin;
   choice.basis_order = plan.basis_order;
   choice.reactions = experiment.notes_reactions();
+  choice.advance = plan.advance;
   choice.deterministic = sums_deterministically(experiment);
   choice.contact_by_particles = ContactPoints(experiment).needed();
   choice.notes_contact = records_nodes(experiment);

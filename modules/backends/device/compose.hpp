@@ -28,6 +28,7 @@ struct Choice {
   bool contact_by_particles = false;                ///< the host finds how fields meet (contact_pairs.hpp)
   bool notes_contact = false;                       ///< what contact does at single nodes is written down
   bool reactions = false;                           ///< what supports give is summed
+  Advance advance = Advance::apart;                 ///< how particles go from one scatter to the next
   int basis_order = 0;                              ///< as in Plan
   std::vector<Field> node_fields, particle_fields;  ///< numbered (backends/device/fields.hpp); those of any one body
 

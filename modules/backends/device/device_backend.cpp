@@ -1,7 +1,6 @@
 #include "backends/device/device_backend.hpp"
 
 #include <algorithm>
-#include <climits>
 #include <stdexcept>
 
 #include "backends/device/kernels/sums.hpp"  // largest_team
@@ -103,7 +102,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
   if (experiment.filter) scene_.filter_parameters = give(filter_parameters_, *experiment.filter);
   if (experiment.contact) scene_.contact_parameters = give(contact_parameters_, *experiment.contact);
   if (experiment.contact_normal) scene_.normal_parameters = give(normal_parameters_, *experiment.contact_normal);
-  ignored_stop_.upload(std::vector<int>(stop_numbers, INT_MAX));
+  ignored_stop_.upload(std::vector<Stopped>{nothing_stopped});
   scene_.stop = results_.stop();
   if (deterministic_) {
     const auto channels = static_cast<std::size_t>(most_channels(choice));

@@ -109,8 +109,8 @@ class DeviceBackend final : public Backend {
   void sum_over_particles(const std::string& phase, const Body<T>& body, const Tally<1>& to);
   /// Runs a phase over a body's particles, or over its blocks, which may report a particle.
   void run(const std::string& phase, const Arguments<T>& a, const Body<T>& body, Checks checks);
-  /// Keeps in mind that the last launch may report a particle.
-  void watch(const Body<T>& body, Checks checks);
+  /// Keeps in mind that the last launch, or a part of it, may report a particle.
+  void watch(const Body<T>& body, Checks checks, int part = 0);
   void run_blocks(const std::string& phase, const Arguments<T>& a, const Body<T>& body);
   void launch_blocks(const std::string& phase, Arguments<T> a, const Body<T>& body);
   /// Waits for the device. Stops the run where a phase has reported a particle; else does what waited for results.
@@ -136,8 +136,11 @@ class DeviceBackend final : public Backend {
   void estimate_time_step();
   /// Puts a body's particles into their blocks, where any has left its own.
   void sort(const Body<T>& body);
+  void find_blocks(const Body<T>& body) { launch("find_blocks", arguments_of(body), body.count); }
   void scatter(const Pass& pass, const StepInfo& step);
   void gather(const Pass& pass, const StepInfo& step);
+  /// Takes all particles to the next scatter, in one launch a body.
+  void advance(const StepInfo& step);
   void strain(const Pass& pass);
   void move();
 
@@ -236,6 +239,9 @@ class DeviceBackend final : public Backend {
   void add_correction(const Pass& pass, const StepInfo& step);
 
   // ---- checkpoint.cpp
+  /// What `prepared_` is about, body by body; empty where it is false.
+  std::vector<char> prepared_values() const;
+  void take_prepared_values(const std::vector<char>& bytes);
   /// The second moments of a body's particles, which are made where they are asked for, m^2. A particle without a
   /// stencil has none: the next pass that needs it says so.
   std::vector<double> second_moments(const Body<T>& body) const;
@@ -287,7 +293,7 @@ class DeviceBackend final : public Backend {
   int lanes_, teams_;               ///< of a team, and at work on blocks at once
   DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_,
       normal_parameters_;
-  DeviceArray<int> ignored_stop_;
+  DeviceArray<Stopped> ignored_stop_;
   DeviceArray<double> partial_sums_;
   bool deterministic_;          ///< particles are summed to the same bits in any order of lanes
   DeviceArray<int> exponents_;  ///< see kernels/exact_sums.hpp
@@ -315,6 +321,7 @@ class DeviceBackend final : public Backend {
   RigidNodes<T> rigid_;
   bool notes_reactions_ = false;  ///< the pass under way notes what supports give
   FilterRecord filter_;
+  bool prepared_ = false;  ///< stress, volume ratio and block of each particle are those of its place and state
   bool uses_graphs_;
   StepGraphs graphs_;
   std::vector<WaitingPass> waiting_;

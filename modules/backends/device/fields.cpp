@@ -58,8 +58,10 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   };
   work("stress", "Pa", D == 2 ? 4 : 6);  // symmetric Kirchhoff stress
   work("volume_ratio", "", 1);
-  work("velocity_gradient", "1/s", D * D);
-  if (experiment.axisymmetric()) work("hoop_rate", "1/s", 1);  // hoop_rate is v_r / r
+  if (plan.advance != Advance::at_once) {
+    work("velocity_gradient", "1/s", D * D);
+    if (experiment.axisymmetric()) work("hoop_rate", "1/s", 1);  // hoop_rate is v_r / r
+  }
   work("wave_speed", "m/s", 1);
   if (plan.has_ledger())
     for (const char* id : {"dissipated", "stress_power", "stored"}) work(id, "J/m^3", 1);

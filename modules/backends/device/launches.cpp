@@ -121,8 +121,8 @@ void DeviceBackend<T>::run_blocks(const std::string& phase, const Arguments<T>& 
 }
 
 template <class T>
-void DeviceBackend<T>::watch(const Body<T>& body, Checks checks) {
-  watched_.push_back({launches_, static_cast<int>(&body - bodies_.data()), static_cast<int>(checks)});
+void DeviceBackend<T>::watch(const Body<T>& body, Checks checks, int part) {
+  watched_.push_back({launches_ + part, static_cast<int>(&body - bodies_.data()), static_cast<int>(checks)});
 }
 
 template <class T>
@@ -136,17 +136,18 @@ void DeviceBackend<T>::look() {
   std::vector<Watched> watched;
   watched.swap(watched_);
   launches_ = 0;
-  const Results::Stop stop = results_.look();
-  if (!stop.any()) return;
-  const auto found =
-      std::find_if(watched.begin(), watched.end(), [&](const Watched& launch) { return launch.launch == stop.launch; });
+  const Stopped stopped = results_.look();
+  if (stopped == nothing_stopped) return;
+  const int particle = particle_of(stopped);
+  const auto found = std::find_if(watched.begin(), watched.end(),
+                                  [&](const Watched& launch) { return launch.launch == launch_of(stopped); });
   if (found == watched.end()) throw std::logic_error("a phase that nobody watches has reported a particle");
   const Body<T>& body = bodies_[static_cast<std::size_t>(found->body)];
   const auto checks = static_cast<Checks>(found->checks);
-  throw RunFailure(checks == Checks::temperature   ? failed_temperature(body, stop.particle)
-                   : checks == Checks::deformation ? failed_deformation(body, stop.particle)
-                   : checks == Checks::position    ? failed_position(body, stop.particle)
-                                                   : failed_stencil(body, stop.particle));
+  throw RunFailure(checks == Checks::temperature   ? failed_temperature(body, particle)
+                   : checks == Checks::deformation ? failed_deformation(body, particle)
+                   : checks == Checks::position    ? failed_position(body, particle)
+                                                   : failed_stencil(body, particle));
 }
 
 template <class T>

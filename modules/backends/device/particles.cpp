@@ -24,7 +24,7 @@ template <class T>
 void DeviceBackend<T>::sort(const Body<T>& body) {
   const Arguments<T> a = arguments_of(body);
   const BlockArrays& blocks = body.blocks.table();
-  launch("find_blocks", a, body.count);
+  if (!prepared_) find_blocks(body);
   launch("clear_counts", a, blocks.table);
   launch("count_particles", a, body.count);
   launch_teams("sum_chunks", a, body.blocks.chunks());
@@ -45,7 +45,8 @@ void DeviceBackend<T>::scatter(const Pass& pass, const StepInfo& step) {
   const Tally<4> unbalanced = tally<4>();  // momentum and mass
   for (Body<T>& body : bodies_) {
     if (enters) sort(body);
-    if (force || heat || pass.has(Act::scatter_contact)) run_material("stress", body);  // with the volume ratio
+    const bool asks = force || heat || pass.has(Act::scatter_contact);
+    if (asks && !prepared_) run_material("stress", body);  // with the volume ratio
     Arguments<T> a = arguments_of(body);
     if (force && plan_.does(Act::average_mean_stress)) run("take_mean_stress", a, body, Checks::stencil);
     a.momentum = pass.has(Act::scatter_momentum), a.force = force;
@@ -80,14 +81,36 @@ void DeviceBackend<T>::scatter(const Pass& pass, const StepInfo& step) {
   });
 }
 
+/// Its parts have the numbers that they would have as launches: of each body gather and strain, and then all moves.
+template <class T>
+void DeviceBackend<T>::advance(const StepInfo& step) {
+  const int before = launches_, count = static_cast<int>(bodies_.size());
+  for (int b = 0; b < count; ++b) {
+    const Body<T>& body = bodies_[static_cast<std::size_t>(b)];
+    Arguments<T> a = arguments_of(body);
+    a.update_particles = true, a.filtered = step.filtered;
+    a.moves_by_mean = experiment_.filter_schedule.moves_by_mean;
+    a.part_of_move = 2 * count - b;
+    launches_ = before + 2 * b;
+    launch("advance_" + std::to_string(body.material_number), a, body.count);
+    watch(body, Checks::stencil);
+    watch(body, Checks::deformation, part_of_strain);
+    watch(body, Checks::position, a.part_of_move);
+  }
+  launches_ = before + 3 * count;
+  prepared_ = true;
+}
+
 template <class T>
 void DeviceBackend<T>::gather(const Pass& pass, const StepInfo& step) {
+  scene_.records = accounted_;
+  if (plan_.advance != Advance::apart && !accounted_) return advance(step);
+  prepared_ = false;
   if (accounted_ && step.filtered) {
     if (pass.has(Act::strain)) book_strain(&Ledger::filtered_strain, pass.share);
     const Tally<2> power = power_of_forces();
     later([this, power] { ledger_.filtered_gravity -= (*power)[1] - lumped_power_[1]; });
   }
-  scene_.records = accounted_;
   const Tally<1> energy = tally<1>(), heat = tally<1>(), gripped = tally<1>();
   for (Body<T>& body : bodies_) {
     Arguments<T> a = arguments_of(body);
@@ -118,6 +141,7 @@ void DeviceBackend<T>::strain(const Pass& pass) {
   if (accounted_ && pass.remap()) book_strain(&Ledger::remapped_strain, pass.share);
   if (pass.stage == Stage::before_forces) early_share_ = pass.share;
   scene_.records = accounted_;
+  prepared_ = false;
   for (Body<T>& body : bodies_) {
     run("gather", arguments_of(body), body, Checks::stencil);
     run_strain(pass, body);

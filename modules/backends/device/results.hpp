@@ -2,7 +2,6 @@
 // What the phases of a step leave for the host on the device: sums, and the particle that stopped them. The host reads all
 // of it at once after the step, and only then does what was to be done with each.
 
-#include <climits>
 #include <cstring>
 #include <functional>
 #include <vector>
@@ -17,9 +16,9 @@ class Results {
   /// What to do with the sums of a step, which are given from the first one on.
   using Use = std::function<void(const double* sums)>;
 
-  /// Numbers of double precision on the device: the first holds two ints, sums take the others.
+  /// Numbers of double precision on the device: the first one's bits say who has stopped, sums take the others.
   static constexpr std::size_t stops = 1, room = 8192, numbers = stops + room;
-  static_assert(stop_numbers * sizeof(int) <= stops * sizeof(double));
+  static_assert(sizeof(Stopped) == stops * sizeof(double));
 
   explicit Results(Device& device) : values_(device, "sums", numbers) { forget(); }
 
@@ -33,7 +32,7 @@ class Results {
   /// The device's address of a place.
   double* at(std::size_t place) const { return values_.data() + stops + place; }
   /// Where phases report particles (kernels/stopping.hpp).
-  int* stop() const { return reinterpret_cast<int*>(values_.data()); }
+  Stopped* stop() const { return reinterpret_cast<Stopped*>(values_.data()); }
 
   /// Keeps what to do with sums once they are known; uses come in the order in which they were kept.
   void later(Use use) { uses_.push_back(std::move(use)); }
@@ -44,33 +43,25 @@ class Results {
   std::size_t used() const { return used_; }
   void take_up(const std::vector<Use>& uses, std::size_t used) { uses_ = uses, used_ = used; }
 
-  /// What phases have reported.
-  struct Stop {
-    int launch = INT_MAX, particle = INT_MAX;
-    bool any() const { return launch != INT_MAX; }
-  };
   /// Waits for the device; returns what phases have reported, or else makes all uses. Either way all is forgotten.
-  Stop look() {
+  Stopped look() {
     const std::vector<double> found = values_.download(0, stops + used_);
-    Stop stop;
-    int reported[stop_numbers];
-    std::memcpy(reported, found.data(), sizeof reported);
-    stop.launch = reported[stop_launch], stop.particle = reported[stop_particle];
+    Stopped stopped = nothing_stopped;
+    std::memcpy(&stopped, found.data(), sizeof stopped);
     std::vector<Use> uses;
     uses.swap(uses_);
     used_ = 0;
-    if (stop.any())
+    if (stopped != nothing_stopped)
       forget();
     else
       for (const Use& use : uses) use(found.data() + stops);
-    return stop;
+    return stopped;
   }
 
  private:
   void forget() {
-    const int nothing[stop_numbers] = {INT_MAX, INT_MAX};
     double none = 0;
-    std::memcpy(&none, nothing, sizeof nothing);
+    std::memcpy(&none, &nothing_stopped, sizeof none);
     values_.upload(&none, 0, stops);
   }
 

@@ -20,6 +20,7 @@ struct StepKind {
   double dt = 0;
   bool filtered = false, accounted = false, notes_contact = false;
   bool first_of_state = false;  ///< the first step, of which a law of contact with a state is told
+  bool prepared = false;        ///< the step before has found what the scatter asks of particles
   Vector3 gravity{};
 
   bool operator==(const StepKind&) const = default;
@@ -40,6 +41,7 @@ struct KnownStep {
   std::vector<Results::Use> uses;   ///< what the host does after it
   std::size_t used = 0;             ///< room of its results
   std::vector<Watched> watched;
+  bool prepares = false;  ///< it finds that for the next one
 };
 
 /// The kinds of steps that came last.

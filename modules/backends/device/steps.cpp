@@ -29,6 +29,7 @@ void DeviceBackend<T>::end_step() {
     if (!known.graph) capture(known, passes);
     device_->launch(known.graph);
     results_.take_up(known.uses, known.used), watched_ = known.watched;
+    prepared_ = known.prepares;
   } else {
     const long copies = device_->host_copies();
     perform(passes);
@@ -46,6 +47,7 @@ StepKind DeviceBackend<T>::kind_of(const std::vector<WaitingPass>& passes) const
   kind.notes_contact = records_nodes(experiment_, step);
   kind.first_of_state = step.step == 0 && !experiment_.contact_state().empty();
   kind.gravity = experiment_.gravity_at(step.time);
+  kind.prepared = prepared_;
   return kind;
 }
 
@@ -61,6 +63,7 @@ void DeviceBackend<T>::capture(KnownStep& known, const std::vector<WaitingPass>&
   }
   known.uses = results_.uses(), known.used = results_.used();
   known.watched.swap(watched_);
+  known.prepares = prepared_;
   launches_ = 0;
 }
 

@@ -173,7 +173,10 @@ class Particles {
   const Array* const size_ = plan_.particle_field(body_, "size") ? &values("size") : nullptr;
 
  public:
-  Array &position = values("position"), &velocity = values("velocity"), &advection = values("advection_velocity");
+  Array &position = values("position"), &velocity = values("velocity");
+  /// A plan for a device, whose start this backend evaluates, may have no such field.
+  Array& advection =
+      plan_.particle_field(body_, "advection_velocity") ? values("advection_velocity") : work(dimension_);
   Array &b = work(dimension_), &A = work(dimension_ * dimension_);
   Array &stress = work(dimension_ == 2 ? 4 : 6), &volume_ratio = work(1);
   Array &gathered_velocity = work(dimension_), &gathered_increment = work(dimension_);

@@ -147,7 +147,7 @@ struct Arguments {
   const double* masses_of_box;           ///< masses of its nodes in each velocity field, kg
   int* exponents;                        ///< [channel] of a scatter, and its sums [channel][node][2]
   unsigned long long* exact_sums;        ///< (kernels/exact_sums.hpp)
-  int* stop;                             ///< [stop_numbers] see kernels/stopping.hpp
+  unsigned long long* stop;              ///< see kernels/stopping.hpp
   // These say how it works.
   T dt;
   T local_damping, left_of_velocity, left_of_change;  ///< damp: see `damped`
@@ -169,6 +169,7 @@ struct Arguments {
   bool update_particles;  ///< gather: velocity and state change too, not only the velocity gradient
   bool filtered;          ///< gather: the filtered velocity replaces the particle's
   bool moves_by_mean;     ///< gather: the mean of both moves the particle then
+  int part_of_move;       ///< advance: by how much the number of its move is above that of its launch
 };
 
 /// A particle beyond a wall by more than this share of the domain has left it; a separating wall lets half a cell

@@ -61,49 +61,70 @@ MPM_HD void gather_corners(const Arguments<T>& a, int p, const Vec<Scene::dimens
   store_corners<D>(a.particles.field[P::moved_corners], stride, p, corners);
 }
 
-/// Gathers; without `update_particles` only the velocity gradient that strains the particle (for USF and MUSL).
+/// What a particle takes from the grid for what it does next.
 template <class Scene>
-MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+struct Gathered {
+  using T = typename Scene::Scalar;
+  Mat<Scene::dimension, T> gradient;   ///< of the velocity that strains it, 1/s
+  T hoop_rate;                         ///< v_r / r, 1/s, in axisymmetric scenes
+  Vec<Scene::dimension, T> advection;  ///< the velocity that moves it, m/s
+};
+
+/// Gathers; without `update_particles` only what strains the particle (for USF and MUSL). False where the particle's
+/// stencil does not lie inside the grid.
+template <class Scene>
+MPM_HD bool gather_particle(const Arguments<typename Scene::Scalar>& a, int p, Gathered<Scene>& gathered) {
   using T = typename Scene::Scalar;
   using Transfer = typename Scene::Transfer;
   using N = typename Scene::Node;
   using P = typename Scene::Particle;
   constexpr int D = Scene::dimension;
+  const ParticleArrays<T>& particles = a.particles;
+  const int stride = particles.stride;
+  const Stencil<Scene> stencil(a, p);
+  if (!stencil.inside()) return false;
+  const T* before = nullptr;
+  if constexpr (Scene::gathers_increment) before = a.grid.field[N::velocity_before];
+  const auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::velocity], before);
+  gathered.gradient = Scene::strain_by_affine ? moments.affine : moments.velocity_gradient;
+  if constexpr (Scene::axisymmetric) gathered.hoop_rate = moments.velocity[0] / particles.field[P::position][p];
+  if (!a.update_particles) return true;
+  Vec<D, T> v = load<D>(particles.field[P::velocity], stride, p);
+  Vec<D, T>& advection = gathered.advection;
+  const Vec<D, T> v_before = v;
+  auto state = transfer_state<Scene>(particles, p);
+  Transfer::gather(parameters_of<Transfer>(a.transfer_parameters), moments, a.dt, v, state, advection);
+  if (a.filtered) v = advection = moments.velocity;
+  if (a.filtered && a.moves_by_mean)
+    for (int c = 0; c < D; ++c) advection[c] = mean_velocity(v_before[c], v[c]);
+  if constexpr (P::grip >= 0) {
+    store(particles.field[P::gathered_velocity], stride, p, v);
+    if (const int grip = int(particles.field[P::grip][p]); grip > 0)
+      for (int c = 0; c < D; ++c)
+        if (a.grips[grip - 1].given >> c & 1) v[c] = advection[c] = particles.field[P::told_velocity][c * stride + p];
+  }
+  store(particles.field[P::velocity], stride, p, v);
+  if constexpr (Scene::sampled) gather_corners<Scene>(a, p, advection, moments.velocity);
+  store_transfer_state<Scene>(particles, p, state);
+  if constexpr (Scene::basis_functions > 0) {
+    Higher<Scene> higher(stencil);
+    higher.gather(a, a.grid.field[N::velocity]);
+    higher.store(particles, p);
+  }
+  return true;
+}
+
+/// Gathers and keeps what strains and moves each particle for the phases that do so.
+template <class Scene>
+MPM_HD void gather(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using P = typename Scene::Particle;
   for_each_index(team, a.particles.count, [&](int p) {
-    const ParticleArrays<T>& particles = a.particles;
-    const int stride = particles.stride;
-    const Stencil<Scene> stencil(a, p);
-    if (!stencil.inside()) return report(a, p);
-    const T* before = nullptr;
-    if constexpr (Scene::gathers_increment) before = a.grid.field[N::velocity_before];
-    const auto moments = gathered_moments<Scene>(a, stencil, a.grid.field[N::velocity], before);
-    store_matrix(particles.field[P::velocity_gradient], stride, p,
-                 Scene::strain_by_affine ? moments.affine : moments.velocity_gradient);
-    if constexpr (Scene::axisymmetric)
-      particles.field[P::hoop_rate][p] = moments.velocity[0] / particles.field[P::position][p];
-    if (!a.update_particles) return;
-    Vec<D, T> v = load<D>(particles.field[P::velocity], stride, p), advection;
-    const Vec<D, T> v_before = v;
-    auto state = transfer_state<Scene>(particles, p);
-    Transfer::gather(parameters_of<Transfer>(a.transfer_parameters), moments, a.dt, v, state, advection);
-    if (a.filtered) v = advection = moments.velocity;
-    if (a.filtered && a.moves_by_mean)
-      for (int c = 0; c < D; ++c) advection[c] = mean_velocity(v_before[c], v[c]);
-    if constexpr (P::grip >= 0) {
-      store(particles.field[P::gathered_velocity], stride, p, v);
-      if (const int grip = int(particles.field[P::grip][p]); grip > 0)
-        for (int c = 0; c < D; ++c)
-          if (a.grips[grip - 1].given >> c & 1) v[c] = advection[c] = particles.field[P::told_velocity][c * stride + p];
-    }
-    store(particles.field[P::velocity], stride, p, v);
-    store(particles.field[P::advection_velocity], stride, p, advection);
-    if constexpr (Scene::sampled) gather_corners<Scene>(a, p, advection, moments.velocity);
-    store_transfer_state<Scene>(particles, p, state);
-    if constexpr (Scene::basis_functions > 0) {
-      Higher<Scene> higher(stencil);
-      higher.gather(a, a.grid.field[N::velocity]);
-      higher.store(particles, p);
-    }
+    Gathered<Scene> gathered{};
+    if (!gather_particle<Scene>(a, p, gathered)) return report(a, p);
+    const auto& particles = a.particles;
+    store_matrix(particles.field[P::velocity_gradient], particles.stride, p, gathered.gradient);
+    if constexpr (Scene::axisymmetric) particles.field[P::hoop_rate][p] = gathered.hoop_rate;
+    if (a.update_particles) store(particles.field[P::advection_velocity], particles.stride, p, gathered.advection);
   });
 }
 
@@ -120,51 +141,59 @@ MPM_HD void second_moments(const Team& team, const Arguments<typename Scene::Sca
   });
 }
 
-/// Moves by x += dt advection and wraps periodic axes. Frozen particles stay.
+/// Moves by x += dt advection and wraps periodic axes. Frozen particles stay. False where the particle has left the domain.
 template <class Scene>
-MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+MPM_HD bool move_particle(const Arguments<typename Scene::Scalar>& a, int p,
+                          const Vec<Scene::dimension, typename Scene::Scalar>& advection) {
   using T = typename Scene::Scalar;
   using P = typename Scene::Particle;
   constexpr int D = Scene::dimension;
-  for_each_index(team, a.particles.count, [&](int p) {
-    if (a.particles.frozen) return;
-    const int stride = a.particles.stride;
-    Vec<D, T> x = load<D>(a.particles.field[P::position], stride, p);
-    const Vec<D, T> v = load<D>(a.particles.field[P::advection_velocity], stride, p);
-    bool inside = true;
-    Vec<D, T> way;
-    for (int c = 0; c < D; ++c) way[c] = a.dt * v[c];
-    if constexpr (Scene::sampled) {  // the particle goes to the centroid of its moved corners
-      Vec<D, T> corners[1 << D];
-      load_corners<D>(a.particles.field[P::moved_corners], stride, p, corners);
-      const CornerDomain<D, T> domain = corner_domain<D, T>(corners);
-      const Vec<D, T> centre = centroid(domain, corners);
-      for (int c = 0; c < D; ++c) {
-        way[c] = a.cell_size * centre[c];
-        for (Vec<D, T>& corner : corners) corner[c] = corner[c] - centre[c];
-      }
-      store_corners<D>(a.particles.field[P::corners], stride, p, corners);
-      inside = domain.upright;
-    }
+  if (a.particles.frozen) return true;
+  const int stride = a.particles.stride;
+  Vec<D, T> x = load<D>(a.particles.field[P::position], stride, p);
+  bool inside = true;
+  Vec<D, T> way;
+  for (int c = 0; c < D; ++c) way[c] = a.dt * advection[c];
+  if constexpr (Scene::sampled) {  // the particle goes to the centroid of its moved corners
+    Vec<D, T> corners[1 << D];
+    load_corners<D>(a.particles.field[P::moved_corners], stride, p, corners);
+    const CornerDomain<D, T> domain = corner_domain<D, T>(corners);
+    const Vec<D, T> centre = centroid(domain, corners);
     for (int c = 0; c < D; ++c) {
-      const T size = T(a.cells[c]) * a.cell_size;
-      x[c] += way[c];
-      T at = x[c] - a.lower[c];
-      if (a.walls[c][0] == wall_periodic) {
-        x[c] -= size * floor(at / size);
-        at = x[c] - a.lower[c];
-      }
-      const auto margin = [&](int side) {
-        return a.walls[c][side] == wall_separate ? T(0.5) * a.cell_size : position_tolerance<T> * size;
-      };
-      inside = inside && at >= -margin(0) && at <= size + margin(1);  // this is false for NaN
+      way[c] = a.cell_size * centre[c];
+      for (Vec<D, T>& corner : corners) corner[c] = corner[c] - centre[c];
     }
-    if constexpr (Scene::axisymmetric) inside = inside && x[0] > T(0);
-    store(a.particles.field[P::position], stride, p, x);
-    if (!inside) report(a, p);
-    if constexpr (P::strained_domain >= 0)  // no weights of this step are needed any more
-      store_matrix(a.particles.field[P::domain], stride, p,
-                   load_matrix<D>(a.particles.field[P::strained_domain], stride, p));
+    store_corners<D>(a.particles.field[P::corners], stride, p, corners);
+    inside = domain.upright;
+  }
+  for (int c = 0; c < D; ++c) {
+    const T size = T(a.cells[c]) * a.cell_size;
+    x[c] += way[c];
+    T at = x[c] - a.lower[c];
+    if (a.walls[c][0] == wall_periodic) {
+      x[c] -= size * floor(at / size);
+      at = x[c] - a.lower[c];
+    }
+    const auto margin = [&](int side) {
+      return a.walls[c][side] == wall_separate ? T(0.5) * a.cell_size : position_tolerance<T> * size;
+    };
+    inside = inside && at >= -margin(0) && at <= size + margin(1);  // this is false for NaN
+  }
+  if constexpr (Scene::axisymmetric) inside = inside && x[0] > T(0);
+  store(a.particles.field[P::position], stride, p, x);
+  if constexpr (P::strained_domain >= 0)  // no weights of this step are needed any more
+    store_matrix(a.particles.field[P::domain], stride, p,
+                 load_matrix<D>(a.particles.field[P::strained_domain], stride, p));
+  return inside;
+}
+
+/// Moves all particles by the velocity that their gather has kept.
+template <class Scene>
+MPM_HD void move(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using P = typename Scene::Particle;
+  for_each_index(team, a.particles.count, [&](int p) {
+    const auto v = load<Scene::dimension>(a.particles.field[P::advection_velocity], a.particles.stride, p);
+    if (!move_particle<Scene>(a, p, v)) report(a, p);
   });
 }
 

@@ -1,12 +1,10 @@
 #pragma once
 // This file includes all kernels and makes their entries. The composer defines Scene, and Scene0, Scene1 ... with a
-// material each, in this namespace, and then says MPM_DEVICE_ENTRIES, MPM_DEVICE_LOAD_ENTRIES, MPM_DEVICE_LEDGER_ENTRIES,
-// MPM_DEVICE_CONTACT_ENTRIES, MPM_DEVICE_CONTACT_STATE_ENTRIES, MPM_DEVICE_TRACTION_ENTRIES, MPM_DEVICE_REACTION_ENTRIES,
-// MPM_DEVICE_GRIP_ENTRIES, MPM_DEVICE_FILTER_ENTRIES, MPM_DEVICE_FILTER_LOOP_ENTRIES, MPM_DEVICE_HEAT_ENTRIES,
-// MPM_DEVICE_HEAT_LEDGER_ENTRIES, MPM_DEVICE_VISCOSITY_LEDGER_ENTRIES and MPM_DEVICE_DILATION_ENTRIES where the scene has
-// these, for each material MPM_DEVICE_MATERIAL_ENTRIES(n) and, where any melts, MPM_DEVICE_MELTING_ENTRIES(n), and for each law of
-// rigid bodies MPM_DEVICE_RIGID_ENTRIES(n), with RigidScene0, RigidScene1 ...
+// material each, in this namespace, and RigidScene0, RigidScene1 ... with the law of a rigid body. Then it says
+// MPM_DEVICE_ENTRIES and those of the other groups below that the scene needs (backends/device/compose.cpp), those with
+// an argument for each material or law.
 
+#include "backends/device/kernels/advance.hpp"
 #include "backends/device/kernels/conditions.hpp"
 #include "backends/device/kernels/contact.hpp"
 #include "backends/device/kernels/dilation.hpp"
@@ -22,8 +20,6 @@
 #include "backends/device/kernels/sorting.hpp"
 
 #define MPM_DEVICE_ENTRIES                                                                \
-  MPM_DEVICE_SUM_ENTRIES                                                                  \
-  MPM_DEVICE_SORT_ENTRIES                                                                 \
   MPM_DEVICE_PHASE(mpm_clear, clear<Scene>, 1)                                            \
   MPM_DEVICE_PHASE(mpm_scatter, scatter<Scene>, mpm::device::scatter_scalars<Scene>)      \
   MPM_DEVICE_PHASE(mpm_weigh, weigh<Scene>, 1)                                            \
@@ -35,9 +31,15 @@
   MPM_DEVICE_PHASE(mpm_keep_velocity, keep_velocity<Scene>, 1)                            \
   MPM_DEVICE_PHASE(mpm_accelerate, accelerate<Scene>, 1)                                  \
   MPM_DEVICE_PHASE(mpm_damp, damp<Scene>, 1)                                              \
-  MPM_DEVICE_PHASE(mpm_gather, gather<Scene>, 1)                                          \
-  MPM_DEVICE_PHASE(mpm_move, move<Scene>, 1)                                              \
   MPM_DEVICE_PHASE(mpm_second_moments, second_moments<Scene>, 1)
+
+#define MPM_DEVICE_APART_ENTRIES                 \
+  MPM_DEVICE_PHASE(mpm_gather, gather<Scene>, 1) \
+  MPM_DEVICE_PHASE(mpm_move, move<Scene>, 1)
+
+#define MPM_DEVICE_STRAIN_ENTRIES(n) MPM_DEVICE_PHASE(mpm_strain_##n, strain<Scene##n>, 1)
+
+#define MPM_DEVICE_ADVANCE_ENTRIES(n) MPM_DEVICE_PHASE(mpm_advance_##n, advance<Scene##n>, 1)
 
 #define MPM_DEVICE_SUM_ENTRIES                                                                                 \
   MPM_DEVICE_PHASE(mpm_add_teams, add_teams<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::most_sums>)) \
@@ -152,5 +154,4 @@
 
 #define MPM_DEVICE_MATERIAL_ENTRIES(n)                  \
   MPM_DEVICE_PHASE(mpm_stress_##n, stress<Scene##n>, 1) \
-  MPM_DEVICE_PHASE(mpm_strain_##n, strain<Scene##n>, 1) \
   MPM_DEVICE_PHASE(mpm_wave_speed_##n, wave_speed<Scene##n>, 1)

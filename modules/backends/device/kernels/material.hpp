@@ -44,16 +44,23 @@ MPM_HD void store_material_state(const ParticleArrays<T>& particles, int p, cons
                                                     p, state);
 }
 
-/// The velocity gradient L of a particle, with its zz in axisymmetric scenes.
+/// The velocity gradient L, with its zz in axisymmetric scenes.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD auto with_hoop_rate(const Mat<Scene::dimension, T>& L, [[maybe_unused]] const T& hoop_rate) {
+  if constexpr (Scene::axisymmetric)
+    return Deformation<2, T>{L, hoop_rate};
+  else
+    return L;
+}
+
+/// That of a particle, as its gather has kept it.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD auto velocity_gradient_of(const ParticleArrays<T>& particles, int p) {
   using P = typename Scene::Particle;
-  const Mat<Scene::dimension, T> L =
-      load_matrix<Scene::dimension>(particles.field[P::velocity_gradient], particles.stride, p);
-  if constexpr (Scene::axisymmetric)
-    return Deformation<2, T>{L, particles.field[P::hoop_rate][p]};
-  else
-    return L;
+  T hoop_rate = T(0);
+  if constexpr (Scene::axisymmetric) hoop_rate = particles.field[P::hoop_rate][p];
+  return with_hoop_rate<Scene>(
+      load_matrix<Scene::dimension>(particles.field[P::velocity_gradient], particles.stride, p), hoop_rate);
 }
 
 /// Whether a particle has the parameters of its material's melted phase.
@@ -71,6 +78,14 @@ MPM_HD T heat_capacity_of(const ParticleArrays<T>& particles, int p) {
   return particles.heat.heat_capacity[has_melted<Scene>(particles, p) ? 1 : 0];
 }
 
+/// Keeps the volume ratio J of a particle; false where it is not a positive number.
+template <class Scene, class State, class T = typename Scene::Scalar>
+MPM_HD bool keep_volume_ratio(const Arguments<T>& a, int p, const State& state) {
+  const T J = Scene::Material::volume_ratio(state);
+  a.particles.field[Scene::Particle::volume_ratio][p] = J;
+  return J > T(0);
+}
+
 /// Calls body(constants, p, state) for every particle, then checks J.
 template <class Scene, class Body>
 MPM_HD void for_each_state(const Team& team, const Arguments<typename Scene::Scalar>& a, Body body) {
@@ -80,9 +95,7 @@ MPM_HD void for_each_state(const Team& team, const Arguments<typename Scene::Sca
   const auto visit = [&](const Constants& constants, int p) {
     auto state = load_material_state<Scene>(a.particles, p);
     body(constants, p, state);
-    const T J = Material::volume_ratio(state);
-    a.particles.field[Scene::Particle::volume_ratio][p] = J;
-    if (!(J > T(0))) report(a, p);
+    if (!keep_volume_ratio<Scene>(a, p, state)) report(a, p);
   };
   const Constants constants(parameters_of<Material>(a.material_parameters));
   if constexpr (Scene::Particle::melted_fraction >= 0) {
@@ -118,16 +131,19 @@ MPM_HD T strain_artificially(const Arguments<T>& a, int p, const Constants& cons
   return work;
 }
 
+/// Keeps the Kirchhoff stress of a particle.
+template <class Scene, class Constants, class State, class T = typename Scene::Scalar>
+MPM_HD void keep_stress(const Arguments<T>& a, int p, const Constants& constants, const State& state) {
+  const Sym<Scene::dimension, T> tau = kirchhoff_stress_of<Scene>(a.particles, p, constants, state);
+  for (int k = 0; k < Sym<Scene::dimension, T>::size; ++k)
+    a.particles.field[Scene::Particle::stress][k * a.particles.stride + p] = tau.s[k];
+}
+
 /// Evaluates Kirchhoff stress and volume ratio at the current state.
 template <class Scene>
 MPM_HD void stress(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  using T = typename Scene::Scalar;
-  constexpr int D = Scene::dimension;
-  for_each_state<Scene>(team, a, [&](const auto& constants, int p, const auto& state) {
-    const Sym<D, T> tau = kirchhoff_stress_of<Scene>(a.particles, p, constants, state);
-    for (int k = 0; k < Sym<D, T>::size; ++k)
-      a.particles.field[Scene::Particle::stress][k * a.particles.stride + p] = tau.s[k];
-  });
+  for_each_state<Scene>(
+      team, a, [&](const auto& constants, int p, const auto& state) { keep_stress<Scene>(a, p, constants, state); });
 }
 
 /// Notes half of the work of the stress as it is on a strain, and the stored energy: before the strain with the other
@@ -158,38 +174,43 @@ MPM_HD void note_stress(const Arguments<T>& a, int p, const Constants& constants
   stored = after ? stored + energy : -energy;
 }
 
-/// Advances state and domain by dt with the gathered velocity gradient; what is dissipated warms the particle.
-template <class Scene>
-MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+/// Advances state and domain of a particle by dt with the velocity gradient L; what is dissipated warms the particle.
+template <class Scene, class Constants, class State, class Gradient, class T = typename Scene::Scalar>
+MPM_HD void strain_particle(const Arguments<T>& a, int p, const Constants& constants, State& state, const Gradient& L) {
   using Material = typename Scene::Material;
   using P = typename Scene::Particle;
   constexpr int D = Scene::dimension;
+  const int stride = a.particles.stride;
+  if constexpr (P::stress_power >= 0)
+    if (a.records) note_stress<Scene>(a, p, constants, state, L, false);
+  [[maybe_unused]] auto dissipated = Material::advance(constants, L, a.dt, state);
+  if constexpr (P::artificial_pressure >= 0) dissipated += strain_artificially<Scene>(a, p, constants, state, L);
+  if constexpr (P::dissipated >= 0) a.particles.field[P::dissipated][p] = dissipated;
+  if constexpr (P::stress_power >= 0)
+    if (a.records) note_stress<Scene>(a, p, constants, state, L, true);
+  if constexpr (P::temperature >= 0)
+    a.particles.field[P::temperature][p] +=
+        a.particles.heat.warming * dissipated / heat_capacity_of<Scene>(a.particles, p);
+  store_material_state<Scene>(a.particles, p, state);
+  if (a.particles.frozen) return;
+  if constexpr (P::deformation >= 0) {
+    auto* const deformation = a.particles.field[P::deformation];
+    store_matrix(deformation, stride, p, advanced(load_matrix<D>(deformation, stride, p), in_plane(L), a.dt));
+  }
+  if constexpr (P::domain >= 0) {
+    auto* const domain = a.particles.field[P::strained_domain >= 0 ? P::strained_domain : P::domain];
+    store_matrix(domain, stride, p, advanced(load_matrix<D>(domain, stride, p), in_plane(L), a.dt));
+  }
+}
+
+/// Strains all particles by the velocity gradient that their gather has kept.
+template <class Scene>
+MPM_HD void strain(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using P = typename Scene::Particle;
   for_each_state<Scene>(team, a, [&](const auto& constants, int p, auto& state) {
     auto L = velocity_gradient_of<Scene>(a.particles, p);
     if constexpr (P::mean_dilation >= 0) take_mean_dilation(L, a.particles.field[P::mean_dilation][p], a.dt);
-    if constexpr (P::stress_power >= 0)
-      if (a.records) note_stress<Scene>(a, p, constants, state, L, false);
-    [[maybe_unused]] auto dissipated = Material::advance(constants, L, a.dt, state);
-    if constexpr (P::artificial_pressure >= 0) dissipated += strain_artificially<Scene>(a, p, constants, state, L);
-    if constexpr (P::dissipated >= 0) a.particles.field[P::dissipated][p] = dissipated;
-    if constexpr (P::stress_power >= 0)
-      if (a.records) note_stress<Scene>(a, p, constants, state, L, true);
-    if constexpr (P::temperature >= 0)
-      a.particles.field[P::temperature][p] +=
-          a.particles.heat.warming * dissipated / heat_capacity_of<Scene>(a.particles, p);
-    store_material_state<Scene>(a.particles, p, state);
-    if constexpr (P::deformation >= 0) {
-      auto* const deformation = a.particles.field[P::deformation];
-      const int stride = a.particles.stride;
-      if (!a.particles.frozen)
-        store_matrix(deformation, stride, p, advanced(load_matrix<D>(deformation, stride, p), in_plane(L), a.dt));
-    }
-    if constexpr (P::domain >= 0) {
-      auto* const domain = a.particles.field[P::strained_domain >= 0 ? P::strained_domain : P::domain];
-      const int stride = a.particles.stride;
-      if (!a.particles.frozen)
-        store_matrix(domain, stride, p, advanced(load_matrix<D>(domain, stride, p), in_plane(L), a.dt));
-    }
+    strain_particle<Scene>(a, p, constants, state, L);
   });
 }
 

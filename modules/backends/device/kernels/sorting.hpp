@@ -29,15 +29,17 @@ MPM_HD int block_of(const BlockArrays& blocks, const Vec<D, T>& cells) {
   return number;
 }
 
-/// Finds the block of each particle, and whether any has left the one that it was in.
+/// Finds the block of a particle, and whether it has left the one that it was in.
+template <class Scene>
+MPM_HD void find_block(const Arguments<typename Scene::Scalar>& a, int p) {
+  const int now = block_of(a.blocks, position_in_cells<Scene>(a, p));
+  if (now == a.blocks.block[p]) return;
+  a.blocks.block[p] = now;
+  Team::lower(a.blocks.in_order, 0);
+}
 template <class Scene>
 MPM_HD void find_blocks(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  for_each_index(team, a.particles.count, [&](int p) {
-    const int now = block_of(a.blocks, position_in_cells<Scene>(a, p));
-    if (now == a.blocks.block[p]) return;
-    a.blocks.block[p] = now;
-    Team::lower(a.blocks.in_order, 0);
-  });
+  for_each_index(team, a.particles.count, [&](int p) { find_block<Scene>(a, p); });
 }
 
 /// Whether all phases of the sort may be left out.

@@ -7,21 +7,35 @@
 
 namespace mpm::device {
 
-/// What stands in Arguments::stop: the number of the launch that has reported a particle, and that particle's index; both
-/// are the largest int where there is none.
-enum : int { stop_launch = 0, stop_particle, stop_numbers };
+/// What stands in Arguments::stop: the number of the launch that has reported a particle above that particle's index; the
+/// largest number where there is none. The lowest is that of the first launch, and of its particles the first.
+using Stopped = unsigned long long;
+inline constexpr Stopped nothing_stopped = ~Stopped(0);
 
-/// Reports a particle that cannot go on.
+MPM_HD Stopped stopped_at(int launch, int particle) {
+  return Stopped(launch) << 32 | Stopped(particle);
+}
+MPM_HD int launch_of(Stopped stopped) {
+  return static_cast<int>(stopped >> 32);
+}
+MPM_HD int particle_of(Stopped stopped) {
+  return static_cast<int>(stopped & 0xffffffffu);
+}
+
+/// What the part of a launch that strains adds to the number of the launch (kernels/advance.hpp).
+inline constexpr int part_of_strain = 1;
+
+/// Reports a particle that cannot go on. A launch that does what several launches would do has a number for each `part`.
 template <class T>
-MPM_HD void report(const Arguments<T>& a, int particle) {
-  Team::lower(a.stop + stop_launch, a.launch);
-  Team::lower(a.stop + stop_particle, particle);
+MPM_HD void report(const Arguments<T>& a, int particle, int part = 0) {
+  Team::lower(a.stop, stopped_at(a.launch + part, particle));
 }
 
 /// Runs a kernel, unless an earlier launch has reported a particle.
 template <auto kernel, class T>
 MPM_HD void run_unless_stopped(const Team& team, const Arguments<T>& a) {
-  if (Team::look(a.stop + stop_launch) < a.launch) return;
+  const Stopped stopped = Team::look(a.stop);
+  if (stopped != nothing_stopped && launch_of(stopped) < a.launch) return;
   kernel(team, a);
 }
 

@@ -30,10 +30,14 @@ class Team {
     atomicAdd(to, value);
   }
   MPM_HD static void lower(int* to, int value) { atomicMin(to, value); }
+  MPM_HD static void lower(unsigned long long* to, unsigned long long value) { atomicMin(to, value); }
   /// Raises a counter by one and returns its value before; which lane gets which depends on their order.
   MPM_HD static int take_number(int* counter) { return atomicAdd(counter, 1); }
   /// Reads what others may lower or raise at the same time.
-  MPM_HD static int look(const int* at) { return *static_cast<const volatile int*>(at); }
+  template <class T>
+  MPM_HD static T look(const T* at) {
+    return *static_cast<const volatile T*>(at);
+  }
 
  private:
   void* shared_;
@@ -94,7 +98,8 @@ class Team {
     const SharedAccess noted;
     *to += value;
   }
-  static void lower(int* to, int value) {
+  template <class T>
+  static void lower(T* to, T value) {
     const SharedAccess noted;
     if (value < *to) *to = value;
   }
@@ -102,7 +107,8 @@ class Team {
     const SharedAccess noted;
     return (*counter)++;
   }
-  static int look(const int* at) {
+  template <class T>
+  static T look(const T* at) {
     const SharedAccess noted;
     return *at;
   }
