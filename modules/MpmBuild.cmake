@@ -54,10 +54,18 @@ add_library(mpm_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
 target_link_libraries(mpm_precompiled PRIVATE mpm_flags)
 target_precompile_headers(mpm_precompiled PRIVATE ${mpm_common_headers})
 
-# mpm_add_module(NAME DEPENDS target...): a static library of every .cpp in the current folder.
+# mpm_add_module(NAME DEPENDS target... [ONLY stem...] [EXCEPT stem...]): a static library of every .cpp in the current
+# folder, or of some of them alone.
 function(mpm_add_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;ONLY;EXCEPT" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  foreach(stem ${ARG_EXCEPT})
+    list(REMOVE_ITEM sources ${CMAKE_CURRENT_SOURCE_DIR}/${stem}.cpp)
+  endforeach()
+  if(ARG_ONLY)
+    list(TRANSFORM ARG_ONLY PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE sources)
+    list(TRANSFORM sources APPEND .cpp)
+  endif()
   add_library(mpm_${name} STATIC ${sources})
   target_link_libraries(mpm_${name} PUBLIC mpm_flags ${ARG_DEPENDS})
   target_precompile_headers(mpm_${name} REUSE_FROM mpm_precompiled)

@@ -16,6 +16,7 @@
 #include "experiment/geometry.hpp"
 #include "experiment/input_file.hpp"
 #include "experiment/loads.hpp"
+#include "experiment/particle_changes.hpp"
 #include "experiment/vector3.hpp"
 #include "plugin/registry.hpp"
 
@@ -196,14 +197,17 @@ struct BodySpecification {
   std::optional<std::array<ScalarExpression, 9>>
       deformation_gradient;                               ///< initial, row-major 3 x 3, function of X, Y, Z
   std::optional<std::array<ScalarExpression, 6>> stress;  ///< initial, Cauchy, Pa: xx yy zz yz xz xy
+  bool starts_empty = false;        ///< it has no geometry: emitters or other bodies give it all its particles
+  bool takes_particles_in = false;  ///< they come from emitters or other bodies, and have sizes of their own
+  std::optional<Becoming> becomes;  ///< when its particles go over to another body
   std::string pointer;
 
   bool deformed() const { return displacement || deformation_gradient || stress; }
   /// Whether particles differ in volume, axisymmetric rings aside.
   bool varies_in_size() const {
     const SeedingKind kind = seeding.kind;
-    return kind == SeedingKind::partial || kind == SeedingKind::random || kind == SeedingKind::blue_noise ||
-           (kind == SeedingKind::points && seeding.points_have_volumes);
+    return takes_particles_in || kind == SeedingKind::partial || kind == SeedingKind::random ||
+           kind == SeedingKind::blue_noise || (kind == SeedingKind::points && seeding.points_have_volumes);
   }
   /// Whether a particle's domain begins as something else than the box of the cells' lattice.
   bool seeds_domains() const { return seeding.kind != SeedingKind::lattice || deformed(); }
@@ -360,6 +364,8 @@ struct Experiment {
   std::vector<BodySpecification> bodies;
   std::vector<Grip> grips;
   std::vector<RigidBodySpecification> rigid_bodies;
+  std::vector<Emitter> emitters;
+  std::vector<Sink> sinks;
 
   Vector3 gravity{};  ///< m/s^2, as far as it is constant; zero along axes where it changes
   /// All of gravity, a function of t, where it changes in time along any axis, and along which.
@@ -422,6 +428,13 @@ struct Experiment {
   bool notes_reactions() const { return !output.reactions.empty() || !rigid_bodies.empty(); }
   /// Whether a formula of body forces or grips reads where particles began.
   bool reads_initial_position() const;
+
+  /// Whether the number of a body's particles grows, or falls, on the way.
+  bool gains_particles(int body) const;
+  bool loses_particles(int body) const;
+  /// The JSON pointer of the first emitter, sink or change of material that changes the number of a body's particles, or
+  /// (-1) of any; empty where it stays.
+  std::string changer_of_particles(int body = -1) const;
 
   /// The place of a JSON pointer's value, "file:line:column", for messages that arise after reading.
   std::string where(std::string_view pointer) const;

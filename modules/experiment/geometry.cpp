@@ -230,6 +230,23 @@ class Polygon final : public Geometry {
   std::vector<Vector3> points_;
 };
 
+/// A body that has no particles of its own at the start fills none.
+class Nothing final : public Geometry {
+ public:
+  explicit Nothing(const Vector3& point) : point_(point) {}
+  bool contains(const Vector3&) const override { return false; }
+  std::pair<Vector3, Vector3> bounds() const override { return {point_, point_}; }
+  double distance(const Vector3&) const override { return infinity; }
+  std::pair<double, double> extent(const Vector3& direction) const override {
+    const double at = dot(direction, point_);
+    return {at, at};
+  }
+  Surface surface(double, const std::pair<Vector3, Vector3>&) const override { return {}; }
+
+ private:
+  Vector3 point_;
+};
+
 class HalfSpace final : public Geometry {
  public:
   HalfSpace(int dimension, const Vector3& point, const Vector3& normal)
@@ -368,6 +385,9 @@ GeometryPointer make_ring(int dimension, const Vector3& centre, double inner, do
 }
 GeometryPointer make_polygon(std::vector<Vector3> points) {
   return std::make_shared<Polygon>(std::move(points));
+}
+GeometryPointer make_nothing(const Vector3& point) {
+  return std::make_shared<Nothing>(point);
 }
 GeometryPointer make_half_space(int dimension, const Vector3& point, const Vector3& normal) {
   return std::make_shared<HalfSpace>(dimension, point, normal);

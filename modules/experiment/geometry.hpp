@@ -63,6 +63,9 @@ GeometryPointer make_intersection(std::vector<GeometryPointer> parts);
 /// The first part without the others.
 GeometryPointer make_difference(std::vector<GeometryPointer> parts);
 
+/// A region that holds nothing, at a point.
+GeometryPointer make_nothing(const Vector3& point);
+
 /// A region turned about a point by a rotation, of orthonormal rows, and then moved.
 GeometryPointer make_placed(GeometryPointer part, const std::array<Vector3, 3>& rotation, const Vector3& about,
                             const Vector3& by);

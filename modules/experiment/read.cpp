@@ -130,6 +130,9 @@ Experiment ExperimentReader::read() {
   read_bodies(fields.node("bodies"));
   read_grips(fields.node("grips"));
   read_rigid_bodies(fields.node("rigid_bodies"));
+  find_becoming_bodies();
+  read_emitters(fields.node("emitters"));
+  read_sinks(fields.node("sinks"));
   read_loads(fields.node("loads"));
   read_damping(fields.node("damping"));
   read_solver(fields.node("solver"));
@@ -139,6 +142,7 @@ Experiment ExperimentReader::read() {
   check_axisymmetric();
   check_frozen();
   check_free_fall();
+  check_particle_changes();
   check_temperature(root_, experiment_, context_);
 
   if (!context_.problems.empty()) throw InputError(std::move(context_.problems));

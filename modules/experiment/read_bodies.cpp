@@ -58,7 +58,11 @@ OrderedJson ExperimentReader::read_body(const Node& node) {
     problem(*fields.node("jitter"), "jitter moves particles off a lattice, and these lie on none; remove it");
   const bool from_points = body.seeding.kind == SeedingKind::points;
   const Node* const geometry = fields.node("geometry");
-  if (!geometry && !from_points)
+  const bool given_later = !geometry && !from_points && may_start_empty(body.name);
+  if (given_later) {
+    body.starts_empty = true;
+    body.geometry = make_nothing(experiment_.grid.lower);
+  } else if (!geometry && !from_points)
     context_.problem(node.at, child_pointer(node.pointer, "geometry"), "missing key; expected a geometry");
   if (geometry && from_points)
     problem(*geometry, "the points of the file are the body; remove \"geometry\"");
@@ -70,6 +74,7 @@ OrderedJson ExperimentReader::read_body(const Node& node) {
     problem(fields.place("field"), "without \"contact\" all bodies share one velocity field; remove \"field\"");
   }
   if (fields.given("field") && fields.valid("field")) check_word(fields, "field");
+  read_becoming(fields, body, resolved);
   field_choices_.push_back(fields.given("field") ? fields.text("field") : "");
   experiment_.bodies.push_back(std::move(body));
   return resolved;

@@ -88,6 +88,20 @@ class ExperimentReader {
   OrderedJson read_rigid_body(const Node& node);
   void check_rigid_about_axis(const Fields& fields);
 
+  // read_particle_changes.cpp
+  void read_emitters(const Node* node);
+  OrderedJson read_emitter(const Node& node);
+  void place_emitter(const Fields& fields, Emitter& emitter);
+  void read_sinks(const Node* node);
+  OrderedJson read_sink(const Node& node);
+  int changed_body(const Fields& fields);
+  void read_becoming(const Fields& fields, BodySpecification& body, OrderedJson& resolved);
+  void find_becoming_bodies();
+  void check_becoming(std::size_t body);
+  void check_particle_changes();
+  void refuse_with_changes(int body, const std::string& name);
+  bool may_start_empty(const std::string& body) const;
+
   // read_symmetry.cpp
   void check_axisymmetric();
   void check_axis();
@@ -126,6 +140,7 @@ class ExperimentReader {
   Experiment experiment_;
   OrderedJson resolved_;
   bool grid_good_ = false, capability_known_ = false;
+  std::vector<std::string> becoming_;       ///< the body that each body's particles go over to, "" for none
   std::vector<std::string> field_choices_;  ///< what each body said, "" for nothing
 };
 

@@ -197,6 +197,8 @@ Json definitions(const ComponentLookup& components, const ReadOptions& options) 
   turning = {
       {"anyOf", Json::array({section_schema(rigid_body_section(2))["properties"]["angular_velocity"], turning})}};
   all["rigid_bodies"] = list_of(std::move(rigid_body));
+  all["emitters"] = list_of(section_schema(emitter_section()));
+  all["sinks"] = list_of(section_schema(sink_section()));
   all["device"] = section_schema(device_section());
   all["damping"] = section_schema(damping_section());
   all["compare"] = section_schema(compare_section());

@@ -89,6 +89,8 @@ Section experiment_section(const ReadOptions& options) {
               nested("bodies", "a list of bodies", "bodies").needed(),
               nested("grips", "a list of grips", "grips"),
               nested("rigid_bodies", "a list of rigid bodies", "rigid_bodies"),
+              nested("emitters", "a list of emitters", "emitters"),
+              nested("sinks", "a list of sinks", "sinks"),
               parameter("gravity", Type::expression_vector, "m/s^2", "Acceleration of every particle, of time t.")
                   .over("t")
                   .standard(0),
@@ -144,6 +146,68 @@ Section rigid_body_section(int dimension) {
               nested("contact", "a contact law", "rigid_contact").needed(),
           }};
 }
+
+Section emitter_section() {
+  return {"emitter",
+          "an emitter",
+          {
+              parameter("name", Type::string, "", "Name in messages; default emitter_ and its place."),
+              parameter("body", Type::string, "", "Name of the body that it gives particles.").needed(),
+              nested("geometry", "a geometry", "geometry").needed(),
+              parameter("velocity", Type::vector, "m/s",
+                        "Velocity of the particles; the region is filled again as the flow has moved on by its length.")
+                  .needed(),
+              parameter("from", Type::number, "s", "Time when it is first filled.").from(0).standard(0),
+              parameter("until", Type::number, "s", "Time when it ends; default: with the run.").above(0),
+              parameter("max_particles", Type::integer, "",
+                        "The run stops rather than let the body have more particles than this.")
+                  .from(1)
+                  .to(2e9)
+                  .standard(10000000),
+          }};
+}
+
+Section sink_section() {
+  return {"sink",
+          "a sink",
+          {
+              parameter("name", Type::string, "", "Name in messages; default sink_ and its place."),
+              parameter("body", Type::string, "", "Name of the body whose particles it takes; default: any body's."),
+              nested("geometry", "a geometry: particles whose centre lies in it are taken out", "geometry").needed(),
+              parameter("from", Type::number, "s", "Time when it begins.").from(0).standard(0),
+              parameter("until", Type::number, "s", "Time when it ends; default: with the run.").above(0),
+              parameter("every_steps", Type::integer, "", "Steps from one look at the particles to the next.")
+                  .from(1)
+                  .to(1e9)
+                  .standard(10),
+          }};
+}
+
+namespace {
+/// When the particles of a body go over to another one.
+Section becomes_section() {
+  return {"becomes",
+          "particles that go over to another body",
+          {
+              parameter("body", Type::string, "", "Name of the body that they go over to.").needed(),
+              parameter("when", Type::nested, "", "What particles go over.")
+                  .made_of({"when",
+                            "a condition on a particle",
+                            {
+                                parameter("quantity", Type::string, "",
+                                          "Quantity of particles, of those that colour frames.")
+                                    .needed(),
+                                parameter("above", Type::number, "any", "It goes over above this value."),
+                                parameter("below", Type::number, "any", "It goes over below this value."),
+                            }})
+                  .needed(),
+              parameter("every_steps", Type::integer, "", "Steps from one look at the particles to the next.")
+                  .from(1)
+                  .to(1e9)
+                  .standard(10),
+          }};
+}
+}  // namespace
 
 Section damping_section() {
   return {"damping",
@@ -312,7 +376,10 @@ Section body_section() {
           {
               parameter("name", Type::string, "", "Unique name.").needed(),
               parameter("material", Type::string, "", "Name out of materials.").needed(),
-              nested("geometry", "a geometry; not with points of a file", "geometry"),
+              nested("geometry",
+                     "a geometry; not with points of a file, and not where emitters or other bodies give it all its "
+                     "particles",
+                     "geometry"),
               nested("seeding", "how particles are placed", "seeding").standard("fitted"),
               parameter("particles_per_cell_axis", Type::integer, "", "Particles along each edge of a cell.")
                   .from(1)
@@ -341,6 +408,7 @@ Section body_section() {
               parameter("field", Type::string, "",
                         "Velocity field, with contact: bodies that name the same one do not slip on each other. "
                         "Default: the body's name."),
+              nested("becomes", "when particles go over to another body", "becomes").made_of(becomes_section()),
           }};
 }
 

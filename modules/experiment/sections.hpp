@@ -33,6 +33,8 @@ Section damping_section();
 Section grip_section();
 /// A rigid body; in 2-D its angular velocity is a number, in 3-D a vector.
 Section rigid_body_section(int dimension);
+Section emitter_section();
+Section sink_section();
 Section compare_section();
 Section limits_section();
 Section expectation_section();

@@ -65,12 +65,12 @@ double second_moment(const Experiment& experiment, const BodyState& state, std::
   return f * (1 - f) * h * h;
 }
 
-BodyView::BodyView(const Simulation& simulation, int index)
-    : experiment(simulation.experiment()),
+BodyView::BodyView(const Experiment& scene, const Plan& plan, int index, BodyState of_body)
+    : experiment(scene),
       body(index),
-      state(simulation.backend().body_state(index)),
+      state(std::move(of_body)),
       material(material_quantities(experiment, index, state)),
-      polynomials(polynomial_energy(experiment, simulation.plan(), index, state)),
+      polynomials(polynomial_energy(experiment, plan, index, state)),
       count(state.position.size() / static_cast<std::size_t>(experiment.dimension)) {
   const Plugin& transfer = *experiment.transfer.plugin;
   if (transfer.transfer().traits & MPM_AFFINE_CARRIES_ENERGY)
@@ -157,6 +157,12 @@ void PartSums::finish() {
   const auto& c = totals.centre_of_mass;
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) mass_moment[a][b] -= totals.mass * c[a] * c[b];
+}
+
+void PartSums::forget_extremes() {
+  for (double* extreme : {&totals.smallest_volume_ratio, &totals.largest_volume_ratio, &totals.lowest_temperature,
+                          &totals.highest_temperature, &smallest_pressure, &largest_pressure, &largest_von_mises})
+    *extreme = std::numeric_limits<double>::quiet_NaN();
 }
 
 std::array<std::array<double, 3>, 3> PartSums::inertia() const {

@@ -31,7 +31,9 @@ double largest_of(double a, double b);
 
 /// A body's state at one time with what sums over its particles need.
 struct BodyView {
-  BodyView(const Simulation& simulation, int body);
+  BodyView(const Experiment& experiment, const Plan& plan, int body, BodyState state);
+  BodyView(const Simulation& simulation, int body)
+      : BodyView(simulation.experiment(), simulation.plan(), body, simulation.backend().body_state(body)) {}
   BodyView(const BodyView&) = delete;  // it points into itself
 
   const Experiment& experiment;
@@ -68,6 +70,8 @@ struct PartSums {
   void add(const BodyView& view, std::size_t p);
   /// What is left to do when all particles are added.
   void finish();
+  /// Replaces extremes over no particle by what is not a number.
+  void forget_extremes();
   /// The angular velocity in 1/s that a rigid body of this mass and spin has; not a number where the body is a point or
   /// (in 3-D) a line. Its z alone in 2-D.
   std::array<double, 3> angular_velocity(int dimension) const;

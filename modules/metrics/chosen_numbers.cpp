@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "metrics/probes.hpp"
 #include "simulation/contact_impulse.hpp"
@@ -52,10 +51,7 @@ void ChosenNumbers::choose_parts() {
   const std::size_t bodies = experiment.bodies.size();
   for (const int body : experiment.output.bodies) {
     const std::string& name = experiment.bodies[body].name;
-    Part& part = parts_.emplace_back(Part{"body " + name + " ", {"bodies", name}, {}});
-    part.particles.resize(bodies);
-    part.particles[body].resize(particles_of(simulation_.backend().body_state(body), experiment.dimension));
-    std::iota(part.particles[body].begin(), part.particles[body].end(), std::size_t{0});
+    parts_.emplace_back(Part{"body " + name + " ", {"bodies", name}, {}, body});
   }
   for (const GroupSpecification& group : experiment.output.groups) {
     Part& part = parts_.emplace_back(Part{"group " + group.name + " ", {"groups", group.name}, {}});
@@ -105,9 +101,12 @@ void ChosenNumbers::add_part(const Part& part, Views& views, std::vector<ChosenR
   const auto [first, first_spin] = recorded_axes(experiment);
   const int D = experiment.dimension;
   PartSums sums(experiment);
+  if (part.whole_body >= 0)
+    for (std::size_t p = 0; p < views.of(part.whole_body).count; ++p) sums.add(views.of(part.whole_body), p);
   for (int body = 0; body < static_cast<int>(part.particles.size()); ++body)
     for (const std::size_t p : part.particles[body]) sums.add(views.of(body), p);
   sums.finish();
+  if (sums.totals.mass == 0) sums.forget_extremes();
   const Totals& t = sums.totals;
   Vector3 velocity = t.momentum;
   for (double& v : velocity) v /= t.mass;

@@ -40,6 +40,7 @@ class ChosenNumbers {
     std::string prefix;
     std::vector<std::string> path;
     std::vector<std::vector<std::size_t>> particles;  ///< of each body
+    int whole_body = -1;  ///< index of a body all of whose particles are summed, whichever there are
   };
   struct Followed {
     const ProbeSpecification* probe;

@@ -6,6 +6,7 @@
 
 #include "metrics/body_sums.hpp"
 #include "simulation/contact_impulse.hpp"
+#include "simulation/particle_changes.hpp"
 
 namespace mpm {
 namespace {
@@ -13,6 +14,13 @@ namespace {
 constexpr std::string_view book_suffix = " book";
 bool is_book(const ValueRow& row) {
   return row.name.ends_with(book_suffix);
+}
+
+/// Whether a row of a ledger is that of particles that come, go or change, and none do.
+bool nobody_exchanges(const Experiment& experiment, const std::string& name) {
+  const auto becomes = [](const BodySpecification& body) { return body.becomes.has_value(); };
+  return (name == "emitted" && experiment.emitters.empty()) || (name == "removed" && experiment.sinks.empty()) ||
+         (name == "changed material" && std::none_of(experiment.bodies.begin(), experiment.bodies.end(), becomes));
 }
 
 /// Whether the kinetic energy of a particle depends on its place in a cell.
@@ -82,7 +90,7 @@ double Metrics::ledger_residual(const Totals& now) const {
 double Metrics::heat_residual(const Totals& now) const {
   if (!simulation_.plan().has_heat_ledger()) return 0;
   const double gained = now.heat_content - initial_.heat_content + (now.latent_heat - initial_.latent_heat);
-  return gained - simulation_.backend().heat_ledger().sum();
+  return gained - simulation_.heat_ledger().sum();
 }
 
 std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
@@ -102,7 +110,7 @@ std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
     return false;
   };
   std::erase_if(rows, [&](const ValueRow& row) {
-    return is_book(row) || nothing_gives(row.name) ||
+    return is_book(row) || nothing_gives(row.name) || nobody_exchanges(simulation_.experiment(), row.name) ||
            (!plan.filters() && (row.name == "filter" || row.name == "filtered strain")) ||
            (!(plan.filters() && falls) && row.name == "filtered gravity") ||
            (!simulation_.experiment().damping.acts() && row.name == "damping") ||
@@ -130,7 +138,8 @@ std::vector<ValueRow> Metrics::book_rows() const {
 
 std::vector<ValueRow> Metrics::heat_ledger_rows(const Totals& now) const {
   if (!simulation_.plan().has_heat_ledger()) return {};
-  std::vector<ValueRow> rows = rows_of(simulation_.backend().heat_ledger());
+  std::vector<ValueRow> rows = rows_of(simulation_.heat_ledger());
+  std::erase_if(rows, [&](const ValueRow& row) { return nobody_exchanges(simulation_.experiment(), row.name); });
   rows.push_back({"residual", "J", heat_residual(now), true});
   return rows;
 }
@@ -172,6 +181,17 @@ std::vector<ValueRow> Metrics::rows(const Totals& t) const {
   add_components("momentum", momentum, t.momentum, first, experiment.dimension);
   add_components("angular momentum", spin, t.angular_momentum, first_spin, 3);
   add_components("centre of mass", "m", t.centre_of_mass, first, experiment.dimension);
+  if (const ParticleChanges* const changes = simulation_.particle_changes()) {
+    add("particles", "", static_cast<double>(simulation_.particle_count()));
+    add("mass", units.mass, t.mass);
+    for (const auto& [name, exchange] :
+         {std::pair{"emitted", &changes->emitted()}, std::pair{"removed", &changes->removed()}}) {
+      if (nobody_exchanges(experiment, name)) continue;
+      add(std::string(name) + " mass", units.mass, exchange->mass);
+      add_components(std::string(name) + " momentum", momentum, exchange->momentum, first, experiment.dimension);
+    }
+    if (!nobody_exchanges(experiment, "changed material")) add("changed particles", "", changes->changed().particles);
+  }
   add("smallest volume ratio", "", t.smallest_volume_ratio);
   add("largest volume ratio", "", t.largest_volume_ratio);
   add("largest speed", "m/s", t.largest_speed);

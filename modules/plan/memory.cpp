@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "experiment/diagnostics.hpp"
 #include "plan/compatibility.hpp"
 
 namespace mpm {
@@ -25,18 +26,38 @@ double filled_share(const Geometry& geometry, const Vector3& lower, const Vector
   return std::max(inside, 1) / static_cast<double>(samples);
 }
 
-double estimated_particles(const BodySpecification& body, const Experiment& experiment) {
-  auto [lower, upper] = body.geometry->bounds();
+/// The particles that fill a region as those of a body do.
+double particles_in(const Geometry& region, const BodySpecification& body, const Experiment& experiment) {
+  auto [lower, upper] = region.bounds();
   double count = 1;
   for (int c = 0; c < experiment.dimension; ++c) {
     lower[c] = std::max(lower[c], experiment.grid.lower[c]);
     upper[c] = std::min(upper[c], experiment.grid.upper[c]);
     count *= std::max(0.0, (upper[c] - lower[c]) / experiment.grid.cell_size * body.particles_per_cell_axis);
   }
-  return count * filled_share(*body.geometry, lower, upper);
+  return count > 0 ? count * filled_share(region, lower, upper) : 0;
 }
 
-/// Free memory of the machine, or what its control group leaves.
+/// The most particles that a body has on the way, as far as it is known before: where others leave it, one batch of each
+/// emitter is counted.
+double estimated_particles(int number, const Experiment& experiment) {
+  const BodySpecification& body = experiment.bodies[static_cast<std::size_t>(number)];
+  double count = particles_in(*body.geometry, body, experiment);
+  for (const Emitter& emitter : experiment.emitters) {
+    if (emitter.body != number) continue;
+    const long batches = experiment.loses_particles(number) ? 1 : emitter.batches_until(experiment.solver.end_time);
+    count += static_cast<double>(batches) * particles_in(*emitter.geometry, body, experiment);
+    if (count > 1.05 * static_cast<double>(emitter.max_particles))  // of an estimate
+      refuse(experiment, emitter.pointer + "/max_particles",
+             "body " + in_quotes(body.name) + " would have about " + number_text(std::round(count)) +
+                 " particles, and may have " + number_text(static_cast<double>(emitter.max_particles)) +
+                 "; raise max_particles, end the emitter with \"until\", or take larger cells");
+  }
+  return count;
+}
+
+}  // namespace
+
 double available_bytes() {
   double available = 8e9;
   std::ifstream file("/proc/meminfo");
@@ -48,6 +69,8 @@ double available_bytes() {
     available = std::min(available, limit - used);
   return available;
 }
+
+namespace {
 
 void refuse_too_large(const Experiment& experiment, double particles, double particle_bytes, double grid_bytes) {
   const double needed = particle_bytes + grid_bytes, available = available_bytes();
@@ -68,7 +91,7 @@ void estimate_memory(Plan& plan, const Experiment& experiment) {
   const double padding = shape.form == MPM_NODE_LIST ? 8 : 3;  // nodes beyond a wall: grid_padding_of(shape)
   double particles = 0, particle_bytes = 0, occupied_cells = 0, domain_nodes = 1;
   for (std::size_t b = 0; b < experiment.bodies.size(); ++b) {
-    const double count = estimated_particles(experiment.bodies[b], experiment);
+    const double count = estimated_particles(static_cast<int>(b), experiment);
     particles += count;
     particle_bytes += count * static_cast<double>(plan.bytes_per_particle(static_cast<int>(b)));
     occupied_cells += count / std::pow(experiment.bodies[b].particles_per_cell_axis, D);

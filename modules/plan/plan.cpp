@@ -118,6 +118,11 @@ void refuse_laws(const Experiment& experiment) {
   }
   if (!experiment.contact) return;
   refuse_in_filter(*experiment.contact);
+  if (const std::string changer = experiment.changer_of_particles();
+      !changer.empty() && (!experiment.contact_state().empty() || experiment.has_compliant_contact()))
+    refuse(experiment, experiment.contact->pointer,
+           name_of(*experiment.contact) + " holds particles by what became of them since the start, and " + changer +
+               " changes which there are; take another law, or remove it");
   refuse_long_step(experiment);
   if (!experiment.contact_state().empty() && experiment.field_count > 2)
     refuse(experiment, experiment.contact->pointer,

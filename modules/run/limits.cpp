@@ -81,6 +81,8 @@ std::string work_from_outside(const Experiment& experiment) {
     if (box.velocity) return box.pointer + " works on the scene: its nodes are moved";
   if (!experiment.grips.empty())
     return experiment.grips.front().pointer + " works on the scene: its particles are moved";
+  if (const std::string changer = experiment.changer_of_particles(); !changer.empty())
+    return changer + " works on the scene: it changes which particles there are";
   for (const RigidBodySpecification& body : experiment.rigid_bodies)
     if (body.moves()) return body.pointer + " works on the scene: it moves as it is told";
   return "";

@@ -48,6 +48,27 @@ std::vector<float> outlines_of(const Simulation& simulation) {
   return outlines;
 }
 
+/// Half the side of every particle's box as it is drawn, m.
+std::vector<float> half_sizes_of(const Simulation& simulation) {
+  const Experiment& experiment = simulation.experiment();
+  std::vector<float> sizes;
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const BodySpecification& specification = experiment.bodies[body];
+    const BodyState state = simulation.backend().body_state(body);
+    const std::size_t count = state.position.size() / experiment.dimension;
+    const double half = 0.5 * experiment.grid.cell_size / specification.particles_per_cell_axis;
+    sizes.insert(sizes.end(), count, static_cast<float>(half));
+    if (specification.seeding.kind == SeedingKind::lattice && !specification.takes_particles_in) continue;
+    const int D = experiment.dimension;
+    for (std::size_t p = 0; p < count; ++p) {
+      const double around = experiment.axisymmetric() ? 2 * std::numbers::pi * state.position[p * D] : 1;
+      sizes[sizes.size() - count + p] =
+          static_cast<float>(std::pow(state.volume * state.size_of(p) / around, 1.0 / D) / 2);
+    }
+  }
+  return sizes;
+}
+
 }  // namespace
 
 Recorder::Recorder(const Simulation& simulation, const Metrics& metrics, const output::RunFolder& folder)
@@ -85,6 +106,7 @@ void Recorder::save(ArchiveWriter& archive) {
     record.put("domain_axes", snapshot.domain_axes);
     record.put("contact_nodes", snapshot.contact_nodes);
     record.put("outlines", snapshot.outlines);
+    record.put("half_sizes", snapshot.half_sizes);
     kept_snapshots_.append({record.bytes().data(), record.bytes().size()});
   }
   archive.put("rows", csv_->bytes());
@@ -122,6 +144,7 @@ void Recorder::restore(ArchiveReader& archive) {
     record.get("domain_axes", snapshot.domain_axes);
     record.get("contact_nodes", snapshot.contact_nodes);
     record.get("outlines", snapshot.outlines);
+    record.get("half_sizes", snapshot.half_sizes);
   }
   archive.get("last_row", last_row_);
   archive.get("frames_taken", frames_taken_);
@@ -187,6 +210,7 @@ void Recorder::record_frame() {
         snapshot.domain_axes.push_back(static_cast<float>(state.domain[k + component]));
   }
   snapshot.contact_nodes = simulation_.backend().contact_nodes();
+  if (simulation_.particle_changes()) snapshot.half_sizes = half_sizes_of(simulation_);
   if (experiment.output.vtk) write_vtk(frames_taken_);
   const std::size_t bytes =
       (snapshot.positions.size() + snapshot.values.size() + snapshot.domain_axes.size()) * sizeof(float);
@@ -218,24 +242,13 @@ render::ParticleFrame Recorder::frame_template() const {
   } else if (description.name == "pressure") {
     frame.map = render::ColourMap::diverging;
   }
-  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
-    const BodyState state = simulation_.backend().body_state(body);
-    const std::size_t count = state.position.size() / experiment.dimension;
-    const double half = 0.5 * experiment.grid.cell_size / experiment.bodies[body].particles_per_cell_axis;
-    frame.half_size.insert(frame.half_size.end(), count, static_cast<float>(half));
-    if (experiment.bodies[body].seeding.kind == SeedingKind::lattice) continue;
-    const int D = experiment.dimension;
-    for (std::size_t p = 0; p < count; ++p) {
-      const double around = experiment.axisymmetric() ? 2 * std::numbers::pi * state.position[p * D] : 1;
-      frame.half_size[frame.half_size.size() - count + p] =
-          static_cast<float>(std::pow(state.volume * state.size_of(p) / around, 1.0 / D) / 2);
-    }
-  }
+  frame.half_size = half_sizes_of(simulation_);
   return frame;
 }
 
 void Recorder::draw(render::ParticleFrame frame, const Snapshot& snapshot, std::size_t index,
                     std::pair<double, double> range) const {
+  if (!snapshot.half_sizes.empty()) frame.half_size = snapshot.half_sizes;
   frame.positions = snapshot.positions;
   frame.values = snapshot.values;
   frame.domain_axes = snapshot.domain_axes;

@@ -61,6 +61,8 @@ class Recorder {
     std::vector<float> outlines;     ///< edges of rigid bodies in 2-D: from and to, four numbers a piece
     std::vector<float> domain_axes;  ///< domains of 2-D particles that carry one: four numbers a particle
     std::vector<ContactNode> contact_nodes = {};
+    std::vector<float> half_sizes =
+        {};  ///< of particles, m, where their number changes; else those of the end are right
   };
   void start_rows();
   bool frame_due(double time) const;

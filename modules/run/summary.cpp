@@ -12,6 +12,7 @@
 #include "run/limits.hpp"
 #include "run/record_names.hpp"
 #include "run/warnings.hpp"
+#include "simulation/particle_changes.hpp"
 
 namespace mpm::app {
 namespace {
@@ -130,6 +131,28 @@ Json rigid_bodies(const Simulation& simulation) {
   return json;
 }
 
+/// What emitters brought, sinks took and changes of material made, and whether the mass is what that leaves.
+Json particle_changes(const Simulation& simulation, const Totals& start, const Totals& end) {
+  const Experiment& experiment = simulation.experiment();
+  const ParticleChanges& changes = *simulation.particle_changes();
+  const int first = recorded_axes(experiment).linear;
+  const double expected = start.mass + changes.emitted().mass - changes.removed().mass;
+  Json json{{"mass", change(start.mass, end.mass)}};
+  json["mass"]["residual"] = end.mass - expected;
+  const auto put = [&](const char* name, const Exchange& exchange) {
+    Json& entry = json[name] = {{"particles", exchange.particles}, {"energy", exchange.energy}};
+    if (experiment.has_temperature()) entry["heat"] = exchange.heat;
+    if (std::string_view(name) == "changed") return;
+    entry["mass"] = exchange.mass;
+    entry["momentum"] = by_axis(exchange.momentum, first, experiment.dimension);
+  };
+  if (!experiment.emitters.empty()) put("emitted", changes.emitted());
+  if (!experiment.sinks.empty()) put("removed", changes.removed());
+  for (const BodySpecification& body : experiment.bodies)
+    if (body.becomes) put("changed", changes.changed());
+  return json;
+}
+
 /// Puts the chosen numbers under their paths.
 void add_chosen(const Metrics& metrics, const RunRecord& rows, Json& json) {
   if (rows.chosen().empty()) return;
@@ -146,13 +169,10 @@ void add_chosen(const Metrics& metrics, const RunRecord& rows, Json& json) {
 }  // namespace
 
 Json record_of(const Failure& failure, const FailurePlace& place, const Experiment& experiment) {
-  Json record{{"cause", name_of(failure.cause)},
-              {"where",
-               {{"step", place.step},
-                {"time", place.time},
-                {"body", experiment.bodies[failure.body].name},
-                {"particle", failure.particle},
-                {"position", place.position}}}};
+  Json record{{"cause", name_of(failure.cause)}, {"where", {{"step", place.step}, {"time", place.time}}}};
+  if (is_of_a_particle(failure.cause))
+    record["where"].update(
+        {{"body", experiment.bodies[failure.body].name}, {"particle", failure.particle}, {"position", place.position}});
   record["values"] = Json::array();
   for (const ValueRow& row : values_of(failure, experiment))
     record["values"].push_back({{"name", row.name}, {"unit", row.unit}, {"value", row.value}});
@@ -175,6 +195,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const RunRe
   const Totals &start = metrics.initial(), &end = recorder.latest();
   const auto [first, first_spin] = recorded_axes(experiment);
   const double particles = static_cast<double>(simulation.particle_count());
+  const double particle_steps = simulation.particle_steps();
   std::map<std::string, double> seconds_by_pass = earlier.seconds_by_pass;
   for (const auto& [name, seconds] : simulation.seconds_by_pass()) seconds_by_pass[name] += seconds;
   double stepping = 0;
@@ -205,6 +226,7 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const RunRe
           end.angular_momentum[c] / start.angular_momentum[c];
   json["scales"] = {{"momentum", recorder.momentum_scale()}, {"angular_momentum", recorder.angular_momentum_scale()}};
   json["mass"] = start.mass;
+  if (simulation.particle_changes()) json["particle_changes"] = particle_changes(simulation, start, end);
   json["centre_of_mass"] = {{"initial", by_axis(start.centre_of_mass, first, experiment.dimension)},
                             {"final", by_axis(end.centre_of_mass, first, experiment.dimension)}};
   if (simulation.plan().resolves_contact()) {
@@ -233,16 +255,14 @@ Json summarise(const Simulation& simulation, const Metrics& metrics, const RunRe
   }
   json["performance"] = {{"wall_seconds", earlier.wall_seconds + wall_seconds},
                          {"stepping_seconds", stepping},
-                         {"particle_steps", particles * static_cast<double>(simulation.steps())},
-                         {"particle_steps_per_second",
-                          stepping > 0 ? particles * static_cast<double>(simulation.steps()) / stepping : 0.0},
+                         {"particle_steps", particle_steps},
+                         {"particle_steps_per_second", stepping > 0 ? particle_steps / stepping : 0.0},
                          {"bytes_per_particle", static_cast<double>(simulation.backend().particle_bytes()) / particles},
                          {"grid_bytes", simulation.backend().grid_bytes()},
                          {"peak_memory", peak_memory()}};
   // Operations are those of the algorithm, counted: null where the counter does not know a part of them.
   const auto flops = bench::flops_per_particle(experiment, simulation.plan(), bench::facts_of(simulation));
-  json["performance"]["flops"] =
-      flops ? Json(flops->total() * particles * static_cast<double>(simulation.steps())) : Json();
+  json["performance"]["flops"] = flops ? Json(flops->total() * particle_steps) : Json();
   for (const auto& [name, seconds] : seconds_by_pass) json["performance"]["seconds_by_pass"][name] = seconds;
   if (!earlier.resumed_from_steps.empty()) json["performance"]["resumed_from_step"] = earlier.resumed_from_steps;
   add_chosen(metrics, recorder, json);

@@ -16,6 +16,7 @@
 #include "run/start_checks.hpp"
 #include "run/tent_steps.hpp"
 #include "simulation/boundary.hpp"
+#include "simulation/particle_changes.hpp"
 #include "simulation/seeding.hpp"
 
 namespace mpm::app {
@@ -52,11 +53,12 @@ std::string books(const Evidence& run) {
   if (!run.simulation.plan().has_ledger() || run.rows.broken_off()) return "";
   const bool single = run.experiment().precision == Precision::single;
   const Totals& start = run.metrics.initial();
+  const ParticleChanges* const changes = run.simulation.particle_changes();
   return warning_of_books(run.simulation.ledger(),
                           {single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon(),
                            static_cast<double>(run.simulation.steps()),
                            std::max(std::abs(start.total_energy()), std::abs(run.rows.largest_total_energy())),
-                           start.mass, run.rows.momentum_scale()});
+                           start.mass + (changes ? changes->emitted().mass : 0), run.rows.momentum_scale()});
 }
 
 /// What mirror images made of the heat at walls with convection, where the particles keep it; empty where that is
@@ -167,6 +169,7 @@ double share_in_other_cells(const Simulation& simulation) {
 std::string crossings(const Evidence& run) {
   constexpr double many = 0.1;
   if (run.experiment().shape.plugin->id() != "linear" || run.rows.state_lost()) return "";
+  if (run.simulation.particle_changes()) return "";  // nobody knows where particles that came later began
   const double share = share_in_other_cells(run.simulation);
   if (!(share > many)) return "";
   return digits(100 * share) +
@@ -213,6 +216,8 @@ std::vector<std::string> warnings_of(const Simulation& simulation, const Metrics
   for (const auto warning : {rim_steps, coarse_contact, early_contact, sliding_block, tent_steps, crossings, loneliness,
                              numerical_loss, unexplained_loss, books, images, filter_growth, few_entries})
     if (const std::string text = warning(run); !text.empty()) all.push_back(text);
+  if (const ParticleChanges* const changes = simulation.particle_changes())
+    for (std::string& text : changes->warnings()) all.push_back(std::move(text));
   return all;
 }
 

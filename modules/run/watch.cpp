@@ -19,7 +19,7 @@ const BodySpecification* finite_block(const Experiment& experiment) {
   if (!experiment.contact || experiment.contact_normal->plugin->id() != "average_volume_gradient") return nullptr;
   if (!experiment.shape.plugin->id().starts_with("bspline")) return nullptr;
   for (const BodySpecification& body : experiment.bodies) {
-    if (std::isfinite(body.geometry->smallest_radius())) continue;
+    if (body.takes_particles_in || std::isfinite(body.geometry->smallest_radius())) continue;
     const auto [lower, upper] = body.geometry->bounds();
     int free_axes = 0;
     for (int axis = 0; axis < experiment.dimension; ++axis) {

@@ -158,6 +158,8 @@ struct Ledger {
   double second_moment = 0;  ///< change of the affine part's kinetic energy, as D changes with the place of a particle
   double stress_power = 0;   ///< work of the stresses on the strain of the particles
   double stored = 0;         ///< stored by the materials while they strain
+  double emitted = 0, removed = 0;  ///< energy of particles that emitters bring, less that of those that sinks take
+  double changed_material = 0;      ///< what particles gain as they go over to another body
   // These books are zero to rounding, or as the step goes to zero, in a program without a fault.
   double grid_book = 0;      ///< change of the grid's kinetic energy before and by the forces, less the works above
   double filter_book = 0;    ///< the same over the filter's loops
@@ -207,6 +209,9 @@ inline constexpr LedgerEntry<Ledger> ledger_entries[] = {
     {"filtered gravity", &Ledger::filtered_gravity, 1, 5},
     {"remapped strain", &Ledger::remapped_strain, 1, 5},
     {"second moment", &Ledger::second_moment, 1, 5},
+    {"emitted", &Ledger::emitted, 1, 6},
+    {"removed", &Ledger::removed, 1, 6},
+    {"changed material", &Ledger::changed_material, 1, 6},
     {"stress power", &Ledger::stress_power, 0},
     {"stored", &Ledger::stored, 0},
     {"grid book", &Ledger::grid_book, 0},
@@ -310,18 +315,32 @@ struct HeatLedger {
   double convection = 0;   ///< heat through walls with convection
   double boxes = 0;        ///< heat into boxes of nodes, and what holds their temperature
   double dissipation = 0;  ///< share of the energy dissipated by the materials that warms them
+  double emitted = 0, removed = 0, changed_material = 0;  ///< as in the ledger of the energy
   double sum() const;
+  HeatLedger plus(const HeatLedger& other) const;
 };
-inline constexpr LedgerEntry<HeatLedger> heat_ledger_entries[] = {
-    {"scatter", &HeatLedger::scatter}, {"images", &HeatLedger::images},
-    {"gather", &HeatLedger::gather},   {"walls", &HeatLedger::walls},
-    {"flux", &HeatLedger::flux},       {"convection", &HeatLedger::convection},
-    {"boxes", &HeatLedger::boxes},     {"dissipation", &HeatLedger::dissipation}};
+inline constexpr LedgerEntry<HeatLedger> heat_ledger_entries[] = {{"scatter", &HeatLedger::scatter},
+                                                                  {"images", &HeatLedger::images},
+                                                                  {"gather", &HeatLedger::gather},
+                                                                  {"walls", &HeatLedger::walls},
+                                                                  {"flux", &HeatLedger::flux},
+                                                                  {"convection", &HeatLedger::convection},
+                                                                  {"boxes", &HeatLedger::boxes},
+                                                                  {"dissipation", &HeatLedger::dissipation},
+                                                                  {"emitted", &HeatLedger::emitted},
+                                                                  {"removed", &HeatLedger::removed},
+                                                                  {"changed material", &HeatLedger::changed_material}};
 static_assert(sizeof(HeatLedger) == std::size(heat_ledger_entries) * sizeof(double));
 
 inline double HeatLedger::sum() const {
   double sum = 0;
   for (const auto& [name, value, sign, turn, unit] : heat_ledger_entries) sum += this->*value;
+  return sum;
+}
+
+inline HeatLedger HeatLedger::plus(const HeatLedger& other) const {
+  HeatLedger sum;
+  for (const auto& [name, value, sign, turn, unit] : heat_ledger_entries) sum.*value = this->*value + other.*value;
   return sum;
 }
 
@@ -407,6 +426,9 @@ class Backend {
   virtual std::uint64_t particle_bytes() const = 0;
   virtual std::uint64_t grid_bytes() const = 0;
 };
+
+/// Builds the backend that an experiment names (backends/make_backend.hpp).
+using BackendFactory = std::function<std::unique_ptr<Backend>(const Experiment&, const Plan&, std::vector<SeededBody>)>;
 
 /// Makers of backends, which keep references to the experiment and the plan. The cpu backend uses `threads` threads, or
 /// with `find_number` as many of them as it finds to be fastest.

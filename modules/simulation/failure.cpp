@@ -13,7 +13,7 @@ namespace mpm {
 namespace {
 
 /// The checks of a pass, in their order.
-enum class Looks { at_domain, at_force, at_temperature, at_deformation, at_position, at_speed };
+enum class Looks { at_domain, at_force, at_temperature, at_deformation, at_position, at_speed, at_number };
 
 constexpr const char* smaller_step =
     "a smaller /solver/courant or /solver/time_step, a transfer with more damping, or a material that is stiffer when "
@@ -55,7 +55,12 @@ constexpr std::array entries{
     Entry{Cause::left_domain, Looks::at_position, "left the domain",
           "a larger /grid/domain, or a wall that holds the material (/grid/boundaries); where a particle flew off that "
           "should not have, a smaller /solver/courant or /solver/time_step"},
-    Entry{Cause::speed_not_a_number, Looks::at_speed, "not a number", finite_expressions}};
+    Entry{Cause::speed_not_a_number, Looks::at_speed, "not a number", finite_expressions},
+    Entry{Cause::too_many_particles, Looks::at_number, "too many particles",
+          "a larger max_particles of the emitter, where the memory holds them; an earlier \"until\", a sink where the "
+          "material leaves the scene, larger cells or fewer particles a cell"},
+    Entry{Cause::no_particle_left, Looks::at_number, "no particle is left",
+          "a /solver/end_time before the sinks have taken everything, or an emitter that goes on"}};
 
 constexpr auto causes = [] {
   std::array<Cause, entries.size()> all{};
@@ -65,7 +70,7 @@ constexpr auto causes = [] {
 static_assert([] {
   for (std::size_t k = 0; k < causes.size(); ++k)
     if (static_cast<std::size_t>(causes[k]) != k) return false;
-  return causes.back() == Cause::speed_not_a_number;
+  return causes.back() == Cause::no_particle_left;
 }());
 
 const Entry& entry_of(Cause cause) {
@@ -152,6 +157,16 @@ std::string cause_text(const Failure& failure, const Experiment& experiment) {
     case Cause::speed_not_a_number:
       text << ": its wave or particle speed gives no time step";
       break;
+    case Cause::too_many_particles:
+      text << ": ";
+      if (failure.formula.empty())
+        text << "body " << in_quotes(experiment.bodies[failure.body].name) << " may have " << failure.value
+             << ", as its emitter says";
+      text << failure.formula;
+      break;
+    case Cause::no_particle_left:
+      text << ": sinks have taken all of the scene";
+      break;
   }
   return text.str();
 }
@@ -167,6 +182,8 @@ std::string point_text(std::span<const double> position) {
 }
 
 std::string place_text(const Failure& failure, const FailurePlace& place, const Experiment& experiment) {
+  if (!is_of_a_particle(failure.cause))
+    return "after step " + std::to_string(place.step) + ", t = " + number_text(place.time) + " s";
   return "step " + std::to_string(place.step) + ", t = " + number_text(place.time) + " s: particle " +
          std::to_string(failure.particle) + " of body " + in_quotes(experiment.bodies[failure.body].name) + " at " +
          point_text(place.position);
@@ -205,6 +222,10 @@ std::vector<ValueRow> values_of(const Failure& failure, const Experiment& experi
               {"upper end", "m", experiment.grid.upper[failure.axis]}};
     case Cause::speed_not_a_number:
       return {{"speed", "m/s", failure.value}};
+    case Cause::too_many_particles:
+      return {{"max_particles", "", failure.value}};
+    case Cause::no_particle_left:
+      return {};
   }
   return {};
 }

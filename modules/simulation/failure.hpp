@@ -26,7 +26,9 @@ enum class Cause {
   position_not_a_number,
   reached_axis,  ///< r <= 0 in an axisymmetric scene
   left_domain,
-  speed_not_a_number  ///< largest speed of waves and particles, from which the time step follows
+  speed_not_a_number,  ///< largest speed of waves and particles, from which the time step follows
+  too_many_particles,  ///< an emitter would give its body more than it may
+  no_particle_left     ///< sinks have taken all of the scene
 };
 std::span<const Cause> all_causes();
 
@@ -34,14 +36,22 @@ std::span<const Cause> all_causes();
 /// remedy helps against may share a name.
 const char* name_of(Cause cause);
 
+/// Whether one particle fails; else the scene does, between steps.
+constexpr bool is_of_a_particle(Cause cause) {
+  return cause != Cause::too_many_particles && cause != Cause::no_particle_left;
+}
+
 struct Failure {
   Cause cause;
   int body = 0;
   std::size_t particle = 0;  ///< index in the order of seeding
   int axis = -1;             ///< axis of a position or stencil; -1 for causes without one
-  /// The position along the axis, m, or J, or the speed, m/s, or the temperature, K. It is NaN where that is the failure or none applies.
+  /// The position along the axis, m, or J, or the speed, m/s, or the temperature, K, or a number of particles. It is NaN
+  /// where that is the failure or none applies.
   double value = std::numeric_limits<double>::quiet_NaN();
-  std::string formula{};       ///< of a force: its expression, with its place in the file, and what is wrong with it
+  /// Of a force: its expression, with its place in the file, and what is wrong with it. Of too many particles: what the
+  /// memory lacks.
+  std::string formula{};
   std::string name{}, unit{};  ///< of a force: those of `value`
 };
 

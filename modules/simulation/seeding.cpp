@@ -359,7 +359,7 @@ SeededBody seed_body(const Experiment& experiment, int index) {
       Seeder(experiment, index, affine).make(*places, visit);
     };
   }
-  if (seeded.particles == 0)
+  if (seeded.particles == 0 && !body.starts_empty)
     refuse_body(experiment, body, "/geometry",
                 "holds no particle: it is thinner than the particle spacing or outside the domain; use smaller "
                 "cells or more particles a cell");

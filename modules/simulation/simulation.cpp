@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "simulation/imposed_value.hpp"
+#include "simulation/particle_changes.hpp"
 #include "simulation/seeding.hpp"
 #include "solvers/solver.hpp"
 
@@ -15,6 +16,7 @@ Simulation::Simulation(const Experiment& experiment, const BackendFactory& make_
     : experiment_(experiment),
       plan_(make_plan(experiment)),
       solver_(solver_of(experiment)),
+      make_backend_(make_backend),
       imposes_by_time_(imposes_by_time(experiment)) {
   for_each_pass(plan_.step, [&](const Pass& pass) {
     if (pass.has(Act::estimate_time_step)) estimate_every_ = pass.every_steps;
@@ -22,8 +24,22 @@ Simulation::Simulation(const Experiment& experiment, const BackendFactory& make_
   std::vector<SeededBody> bodies;
   for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body)
     bodies.push_back(seed_body(experiment, body));
+  if (!experiment.changer_of_particles().empty())
+    changes_ = std::make_unique<ParticleChanges>(experiment_, plan_, bodies);
   for (const SeededBody& body : bodies) body_particles_.push_back(body.count()), particles_ += body.count();
   backend_ = make_backend(experiment_, plan_, std::move(bodies));
+}
+
+Simulation::~Simulation() = default;
+
+Ledger Simulation::ledger() const {
+  const Ledger steps =
+      backend_->ledger().times(plan_.ledger_every).plus(first_entries_.times(1.0 - plan_.ledger_every));
+  return changes_ ? steps.plus(changes_->ledger()) : steps;
+}
+
+HeatLedger Simulation::heat_ledger() const {
+  return changes_ ? backend_->heat_ledger().plus(changes_->heat_ledger()) : backend_->heat_ledger();
 }
 
 bool Simulation::finished() const {
@@ -62,6 +78,7 @@ void Simulation::take_limit() {
 }
 
 FailurePlace Simulation::place_of(const Failure& failure) const {
+  if (!is_of_a_particle(failure.cause)) return {steps_, time_, {}};
   const std::vector<double> positions = backend_->body_state(failure.body).position;
   const auto D = static_cast<std::ptrdiff_t>(experiment_.dimension);
   const auto first = positions.begin() + static_cast<std::ptrdiff_t>(failure.particle) * D;
@@ -81,15 +98,22 @@ bool Simulation::filter_due() {
   return true;
 }
 
-/// The next step's scatter needs its dt: it may neither precede an estimate nor be done when there is no next step.
+bool Simulation::changes_at(double time, long steps) const {
+  return changes_ && changes_->due(time, steps);
+}
+
+/// The next step's scatter needs its dt and its particles: it may neither precede an estimate or a change of the particles
+/// nor be done when there is no next step.
 bool Simulation::may_scatter_ahead() const {
-  return !ends_at(end_of_step()) && steps_ + 1 < experiment_.solver.max_steps && (steps_ + 1) % estimate_every_ != 0;
+  return !ends_at(end_of_step()) && !changes_at(end_of_step(), steps_ + 1) &&
+         steps_ + 1 < experiment_.solver.max_steps && (steps_ + 1) % estimate_every_ != 0;
 }
 
 void Simulation::execute(const Step& step, StepInfo& info) {
   switch (step.kind) {
     case Step::Kind::pass:
-      if (steps_ % step.pass.every_steps == 0) execute(step.pass, info);
+      if (steps_ % step.pass.every_steps == 0 || (must_estimate_ && step.pass.has(Act::estimate_time_step)))
+        execute(step.pass, info);
       return;
     case Step::Kind::sequence:
       for (const Step& child : step.children) execute(child, info);
@@ -134,6 +158,7 @@ void Simulation::execute(const Pass& pass, StepInfo& info) {
   if (!estimates) begin(info);
   const auto start = std::chrono::steady_clock::now();
   backend_->execute(pass, info);
+  if (estimates) must_estimate_ = false;
   seconds_[pass.name()] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (estimates) take_limit();
 }
@@ -150,6 +175,27 @@ void Simulation::step() {
     smallest_ = dt_;
   }
   largest_ = std::max(largest_, dt_);
+  particle_steps_ += static_cast<double>(particles_);
+  if (changes_at(time_, steps_)) change_particles();
+}
+
+void Simulation::count_particles() {
+  particles_ = 0;
+  for (std::size_t body = 0; body < body_particles_.size(); ++body) {
+    const std::size_t scalars = backend_->body_state(static_cast<int>(body)).position.size();
+    body_particles_[body] = scalars / static_cast<std::size_t>(experiment_.dimension);
+    particles_ += body_particles_[body];
+  }
+}
+
+/// Goes on with other particles where any have changed. The grid is scattered anew, and the step chosen for them.
+void Simulation::change_particles() {
+  std::unique_ptr<Backend> next = changes_->make(*backend_, make_backend_, time_, steps_);
+  if (!next) return;
+  backend_ = std::move(next);
+  count_particles();
+  scattered_ = false;
+  must_estimate_ = true;
 }
 
 void Simulation::save(ArchiveWriter& archive) const {
@@ -165,6 +211,11 @@ void Simulation::save(ArchiveWriter& archive) const {
   archive.put("limited_by", limited_by_);
   archive.put("limited_by_speed", limited_by_speed_);
   archive.put("smallest_limited_by", smallest_limited_by_);
+  archive.put("particle_steps", particle_steps_);
+  if (changes_) {
+    archive.put("must_estimate", must_estimate_);
+    changes_->save(archive, *backend_);
+  }
   backend_->save(archive);
 }
 
@@ -178,12 +229,18 @@ void Simulation::restore(ArchiveReader& archive) {
   archive.get("filter_passes", filter_passes_);
   std::size_t particles = 0;
   archive.get("particles", particles);
-  if (particles != particles_) throw ArchiveError("it holds another number of particles");
+  if (particles != particles_ && !changes_) throw ArchiveError("it holds another number of particles");
   archive.get("first_entries", first_entries_);
   archive.get("limited_by", limited_by_);
   archive.get("limited_by_speed", limited_by_speed_);
   archive.get("smallest_limited_by", smallest_limited_by_);
+  archive.get("particle_steps", particle_steps_);
+  if (changes_) {
+    archive.get("must_estimate", must_estimate_);
+    backend_ = changes_->restore(archive, *backend_, make_backend_);
+  }
   backend_->restore(archive);
+  if (changes_) count_particles();
   scattered_ = false;
   observed_ = true;
 }

@@ -13,15 +13,14 @@
 namespace mpm {
 
 struct Solver;
-
-/// Builds the backend that an experiment names (backends/make_backend.hpp).
-using BackendFactory = std::function<std::unique_ptr<Backend>(const Experiment&, const Plan&, std::vector<SeededBody>)>;
+class ParticleChanges;
 
 class Simulation {
  public:
   /// Plans, seeds and builds the backend. `experiment` must outlive the simulation. Throws InputError.
   Simulation(const Experiment& experiment, const BackendFactory& make_backend);
   Simulation(const Simulation&) = delete;  // the backend refers to the plan
+  ~Simulation();
 
   bool finished() const;
   /// Takes one time step: chooses dt and executes every pass of the plan. Throws RunFailure, which leaves the state as
@@ -40,14 +39,17 @@ class Simulation {
   long steps() const { return steps_; }
   std::size_t particle_count() const { return particles_; }
   std::size_t particle_count(int body) const { return body_particles_[static_cast<std::size_t>(body)]; }
+  /// The sum over all steps of the number of particles.
+  double particle_steps() const { return particle_steps_; }
+  /// What emitters, sinks and changes of material did; null where the scene has none.
+  const ParticleChanges* particle_changes() const { return changes_.get(); }
   /// The number of passes of the filter's loop so far, over all steps.
   long filter_passes() const { return filter_passes_; }
 
   /// The sums over all steps so far: the entries of the first step once, and those of each other step that the ledger
-  /// took ledger_every times, as it stands for the steps around it.
-  Ledger ledger() const {
-    return backend_->ledger().times(plan_.ledger_every).plus(first_entries_.times(1.0 - plan_.ledger_every));
-  }
+  /// took ledger_every times, as it stands for the steps around it. What particles bring and take is counted each time.
+  Ledger ledger() const;
+  HeatLedger heat_ledger() const;
 
   /// The place of the particle that stopped the last step.
   FailurePlace place_of(const Failure& failure) const;
@@ -83,11 +85,16 @@ class Simulation {
   void take_limit();
   bool may_scatter_ahead() const;
   bool filter_due();
+  bool changes_at(double time, long steps) const;
+  void count_particles();
+  void change_particles();
 
   const Experiment& experiment_;
   Plan plan_;
   const Solver& solver_;
+  const BackendFactory make_backend_;
   const bool imposes_by_time_;  ///< whether a formula of walls, boxes or gravity has to be looked at in each step
+  std::unique_ptr<ParticleChanges> changes_;
   std::unique_ptr<Backend> backend_;
   double time_ = 0, dt_ = 0, estimate_ = 0, smallest_ = 0, largest_ = 0;
   std::string limited_by_, smallest_limited_by_;
@@ -104,6 +111,8 @@ class Simulation {
   long filter_passes_ = 0;
   std::size_t particles_ = 0;
   std::vector<std::size_t> body_particles_;
+  double particle_steps_ = 0;
+  bool must_estimate_ = false;  ///< the particles are others than those of the last estimate
   std::map<std::string, double> seconds_;
 };
 

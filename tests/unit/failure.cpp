@@ -33,6 +33,18 @@ struct Said {
   std::vector<std::string> values;
 };
 const std::vector<Said> all_said{
+    {{Cause::too_many_particles, 0, 0, -1, 200},
+     "linear",
+     "too many particles",
+     "too many particles: body \"disc\" may have 200, as its emitter says",
+     "a larger max_particles of the emitter",
+     {"max_particles = 200"}},
+    {{Cause::no_particle_left},
+     "linear",
+     "no particle is left",
+     "no particle is left: sinks have taken all of the scene",
+     "a /solver/end_time before the sinks have taken everything",
+     {}},
     {{Cause::domain_outgrew_stencil, 0, 4},
      "gimp_contiguous",
      "its domain has grown too long",

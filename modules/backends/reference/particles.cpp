@@ -118,7 +118,7 @@ void Particles::set(Array& array, std::size_t p, const Matrix& m) {
 }
 
 void Particles::pad(Array& array) const {
-  for (std::size_t p = count_; p < padded_; ++p) array.col(p) = array.col(count_ - 1);
+  for (std::size_t p = count_; count_ > 0 && p < padded_; ++p) array.col(p) = array.col(count_ - 1);
 }
 
 ShapeArguments Particles::shape_arguments() const {

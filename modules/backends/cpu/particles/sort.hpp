@@ -63,6 +63,7 @@ class Sorter {
         row_bytes_(row_.bytes()) {}
 
   bool run() {
+    if (particles_.blocks.empty()) return false;  // emitters may have given the body nothing yet, sinks taken all
     space_.key.resize(std::max(space_.key.size(), std::size_t(particles_.chunks) * chunk_size<T>));
     space_.leaving.resize(std::max(space_.leaving.size(), std::size_t(particles_.chunks)));
     sources_.resize(particles_.blocks.size());
