@@ -146,7 +146,7 @@ TEST_CASE("a jet presses on a plate with density times area times the square of 
       impulse = reaction.impulse[1] - at_begin[1];
     }
     const double area = rings ? pi * 0.01 : 0.2;
-    CHECK(impulse / 0.8 == Approx(1000 * area * 1).epsilon(0.05));
+    CHECK(impulse / 0.8 == Approx(1000 * area * 1).epsilon(0.02));
     CHECK(scene.simulation.particle_changes()->removed().mass > 0);
   }
 }
@@ -237,8 +237,8 @@ TEST_CASE("particles that change their material keep mass, momentum, place and v
       CHECK(after.largest_volume_ratio == Approx(before.largest_volume_ratio).epsilon(1e-12));
       CHECK(after.strain < before.strain);  // the energy of the shear is not that of the fluid
       CHECK(changes.simulation.ledger().changed_material == Approx(after.strain - before.strain).epsilon(1e-9));
-      CHECK(changes.metrics.ledger_residual(after) ==
-            Approx(stays.metrics.ledger_residual(before)).margin(1e-12 * before.kinetic));
+      CHECK(std::abs(changes.metrics.ledger_residual(after) - stays.metrics.ledger_residual(before)) <
+            1e-12 * before.kinetic);
       // A fluid at rest has the pressure of its volume ratio alone: K (1/J - 1) where linear in the density.
       const BodyState pool = changes.body(1);
       const MaterialQuantities fluid = material_quantities(changes.experiment, 1, pool);
