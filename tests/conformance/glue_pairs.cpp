@@ -69,6 +69,13 @@ TEST_CASE("glue says that it breaks beyond its ellipse, and lets go by itself at
   CHECK(result<BreakableGlue>(glue, pressed).reached[BreakableGlue::broken] == 1);
 }
 
+TEST_CASE("glue takes the stiffness of the side on which the pair is halfway through the step") {
+  for (const double opening : {0.001, 0.003}) {  // the pair closes by 0.002 until then
+    INFO(opening);
+    CHECK(holds(loaded(opening * glue.tension_stiffness / glue.normal_strength, 0)));
+  }
+}
+
 TEST_CASE("glue needs both bodies glued from the start, and holds until half of it has broken") {
   for (const double glued : {0.4, 0.6})
     for (const double broken : {0.4, 0.6}) {

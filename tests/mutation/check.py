@@ -9,6 +9,7 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
+import page
 from build import Build
 from group import KINDS
 from mutants import mutants_of, tokens_of
@@ -71,14 +72,55 @@ class FindsStaleReasons(unittest.TestCase):
     def test_one_of_two_lines_with_the_same_text_may_be_killed(self):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "equivalent.txt"
-            path.write_text("file: file.hpp\nline: x = a + b;\nchange: + to -\nreason: b is zero.\n")
+            path.write_text("file: modules/kernel/file.hpp\nline: x = a + b;\nchange: + to -\nreason: b is zero.\n")
             equivalents, results = Equivalents(path), Results(Path(folder) / "results.json")
-            first, second = (m for m in mutants_of("file.hpp", "x = a + b;\nx = a + b;\n") if m.what == "+ to -")
+            first, second = (m for m in mutants_of("modules/kernel/file.hpp", "x = a + b;\nx = a + b;\n") if m.what == "+ to -")
             results.put(first, Result(Result.SURVIVED))
             results.put(second, Result(Result.KILLED, "conformance.any"))
             self.assertEqual(list(equivalents.stale([first, second], results)), [])
             results.put(first, Result(Result.KILLED, "conformance.any"))
             self.assertEqual(len(list(equivalents.stale([first, second], results))), 2)
+
+
+class WritesThePage(unittest.TestCase):
+    OLD = """
+| `modules/filters` | 24 | 24 | 0 | 0 | 0 | 0 | 2026-11-27 |
+| `modules/shapes` | 807 | 806 | 0 | 0 | 1 | 0 | 2026-11-27 |
+
+- `modules/filters/a/a.hpp:1:+ to -`: `x = a + b;` (all quick tests)
+- `modules/shapes/b/b.hpp:2:+ to -`: `y = a + b;` (all quick tests)
+"""
+
+    def test_rows_of_what_was_tried_here_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "equivalent.txt"
+            path.write_text("file: modules/filters/a/a.hpp\nline: x = a + b;\nchange: drop + b\nreason: b is zero.\n")
+            results = Results(Path(folder) / "results.json")
+            mutants = mutants_of("modules/filters/a/a.hpp", "x = a + b;\nz = 2 * a;\n")
+            became = {"drop x =": Result.KILLED, "drop + b": Result.SURVIVED, "drop * a": Result.SURVIVED,
+                      "drop z =": Result.TIMED_OUT, "2 to 1": Result.UNCOMPILED}  # fmt: skip
+            for mutant in mutants:
+                if mutant.what in became:
+                    results.put(mutant, Result(became[mutant.what]))
+            date = results.dates["modules/filters"]
+            text = page.written(self.OLD, mutants, results, Equivalents(path))
+        self.assertEqual(text.split("\n")[2:],
+                         [f"| `modules/filters` | 6 | 2 | 1 | 1 | 1 | 1 | {date} |",
+                          "| `modules/shapes` | 807 | 806 | 0 | 0 | 1 | 0 | 2026-11-27 |", "", "Passed without a reason:", "",
+                          "- `modules/filters/a/a.hpp:2:drop * a`: `z = 2 * a;` (all quick tests)",
+                          "- `modules/shapes/b/b.hpp:2:+ to -`: `y = a + b;` (all quick tests)"])  # fmt: skip
+
+    def test_kernels_of_the_device_are_counted_apart(self):
+        names = ("modules/backends/device/kernels/sums.hpp", "modules/backends/device/loads.cpp")
+        rows = [page.row_of(mutants_of(name, "x = a;\n")[0]) for name in names]
+        self.assertEqual(rows, ["modules/backends/device/kernels", "modules/backends/device"])
+
+    def test_the_page_adds_up(self):
+        text = (ROOT / "docs/design/mutation.md").read_text()
+        rows = [line[2:-2].split(" | ") for line in text.split("\n") if line.startswith("| `modules/")]
+        self.assertTrue(rows)
+        for folder, mutants, *parts, _ in rows:
+            self.assertEqual(int(mutants), sum(map(int, parts)), folder)
 
 
 class WritesThemTogether(unittest.TestCase):

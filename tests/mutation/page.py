@@ -1,12 +1,14 @@
 """The table of results, and the page of docs/design that holds it."""
 
+import re
 from collections import Counter
-from pathlib import Path
 
 from mutants import folder_of
 from results import Result
 
-BEGIN, END = "<!-- written by tests/mutation/run --page: {part} -->", "<!-- end of {part} -->"
+BEGIN, END = "<!-- written by tests/mutation/run --page -->", "<!-- end of what is written -->"
+KERNELS = "modules/backends/device/kernels"
+COLUMNS = ["folder", "mutants", "killed", "no program of their own", "with a reason", "passed", "not tried", "last tried"]
 
 
 def what_became(mutant, results, equivalents):
@@ -20,72 +22,75 @@ def what_became(mutant, results, equivalents):
     return result.status
 
 
-def file_of(mutant):
-    return mutant.file.removeprefix(folder_of(mutant) + "/")
-
-
-def table(mutants, results, equivalents, row_of=folder_of):
-    """One row a folder, or what else `row_of` says."""
+def table(mutants, results, equivalents):
+    """One row a folder, with the suites that killed."""
     killers = ["test-plugin", "conformance", "config", "unit", "parity", "verification", "device"]
     columns = [*killers, "same code", "uncompiled", "equivalent", "survived", "not tried"]
     rows = {}
     for mutant in mutants:
-        rows.setdefault(row_of(mutant), Counter())[what_became(mutant, results, equivalents)] += 1
+        rows.setdefault(folder_of(mutant), Counter())[what_became(mutant, results, equivalents)] += 1
     columns = [c for c in columns if c in ("survived", "equivalent") or any(row[c] for row in rows.values())]
-    title = ["folder" if row_of is folder_of else "file", "mutants", *(f"killed by {c}" if c in killers else c for c in columns)]
+    title = ["folder", "mutants", *(f"killed by {c}" if c in killers else c for c in columns)]
     lines = ["| " + " | ".join(title) + " |", "|" + "---|" + "--:|" * (len(title) - 1)]
     for folder, row in rows.items():
         lines.append("| " + " | ".join([f"`{folder}`", str(sum(row.values())), *(str(row[c]) for c in columns)]) + " |")
     return "\n".join(lines)
 
 
-def with_reasons(mutants, results, equivalents):
-    """The survivors, those without a reason first, then all that have one, tried or not; equal reasons of one file stand
-    together."""
-    unexplained = [m for m in mutants if what_became(m, results, equivalents) == Result.SURVIVED]
-    lines = ["No mutant survived without a reason."] if not unexplained else ["Survived without a reason:", ""]
-    lines += [f"- `{m.name}`: `{m.code}` ({results.of(m).check or 'all quick tests'})" for m in unexplained]
-    groups = {}
-    for m in mutants:
-        if equivalents.reason(m) and what_became(m, results, equivalents) in ("equivalent", "not tried"):
-            groups.setdefault((m.file, equivalents.reason(m)), []).append(m)
-    if groups:
-        lines += ["", "| file | line | changes | why no test can see them |", "|---|---|---|---|"]
-    for (file, reason), group in groups.items():
-        code = "<br>".join(dict.fromkeys(f"`{escaped(m.code)}`" for m in group))
-        changes = "<br>".join(f"`{escaped(m.what)}`" for m in group)
-        lines.append(f"| `{Path(file).name}` | {code} | {changes} | {reason} |")
-    return "\n".join(lines)
+def row_of(mutant):
+    """The folder that a mutant is counted with on the page."""
+    return KERNELS if mutant.file.startswith(KERNELS + "/") else folder_of(mutant)
 
 
-def escaped(code):
-    return code.replace("|", "\\|")
+def column_of(mutant, results, equivalents):
+    became = what_became(mutant, results, equivalents)
+    if became == "equivalent" or became == "not tried" and equivalents.reason(mutant):
+        return "with a reason"
+    if became in (Result.SAME_CODE, Result.UNCOMPILED):
+        return "no program of their own"
+    return {Result.SURVIVED: "passed", "not tried": "not tried"}.get(became, "killed")
 
 
-def samples(mutants, results):
-    """How many of each folder's mutants were tried, and when."""
-    sentences = []
-    for folder in dict.fromkeys(folder_of(mutant) for mutant in mutants):
-        of_folder = [mutant for mutant in mutants if folder_of(mutant) == folder]
-        tried = sum(results.of(mutant) is not None for mutant in of_folder)
-        words = "all" if tried == len(of_folder) else f"{tried} of" if tried else "none of the"
-        date = f", {results.dates[folder]}" if folder in results.dates else ""
-        sentences.append(f"- `{folder}`: {words} {len(of_folder)} mutants{date}")
-    return "Tried were\n\n" + "\n".join(sentences)
+def row(folder, mutants, results, equivalents):
+    counts = Counter(column_of(mutant, results, equivalents) for mutant in mutants)
+    date = results.dates.get(folder_of(mutants[0]), "")
+    return [f"`{folder}`", str(len(mutants)), *(str(counts[column]) for column in COLUMNS[2:-1]), date]
 
 
-def write(path, part, mutants, results, equivalents):
-    """Writes a part of the page between its two marks: all mutants' number, and what became of those that were tried."""
-    begin, end = BEGIN.format(part=part), END.format(part=part)
-    text = path.read_text()
-    head, found, rest = text.partition(begin)
-    _, ended, tail = rest.partition(end)
+def passed(mutants, results, equivalents):
+    """A line for each survivor without a reason."""
+    survivors = [m for m in mutants if what_became(m, results, equivalents) == Result.SURVIVED]
+    return [f"- `{m.name}`: `{m.code}` ({results.of(m).check or 'all quick tests'})" for m in survivors]
+
+
+def written(old, mutants, results, equivalents):
+    """The table and the list of what passed, anew for folders with results, and as they were for the others."""
+    rows = {line.split("`")[1]: line for line in old.split("\n") if line.startswith("| `")}
+    lists = {}
+    for line in old.split("\n"):
+        if found := re.match(r"- `([^:`]+)/[^/:`]+:", line):
+            lists.setdefault(max((f for f in rows if begins(found[1], f)), key=len, default=found[1]), []).append(line)
+    by_folder = {}
+    for mutant in mutants:
+        by_folder.setdefault(row_of(mutant), []).append(mutant)
+    for folder, of_folder in by_folder.items():
+        if any(results.of(mutant) for mutant in of_folder):
+            rows[folder] = "| " + " | ".join(row(folder, of_folder, results, equivalents)) + " |"
+            lists[folder] = passed(of_folder, results, equivalents)
+    lines = ["| " + " | ".join(COLUMNS) + " |", "|---|" + "--:|" * (len(COLUMNS) - 2) + "---|", *rows.values(), ""]
+    left = [line for folder in rows for line in lists.get(folder, [])]
+    return "\n".join([*lines, "Passed without a reason:" if left else "Of what was tried nothing passed without a reason.",
+                      *(["", *left] if left else [])])  # fmt: skip
+
+
+def begins(folder, start):
+    return folder == start or folder.startswith(start + "/")
+
+
+def write(path, mutants, results, equivalents):
+    """Writes what stands between the page's two marks."""
+    head, found, rest = path.read_text().partition(BEGIN)
+    old, ended, tail = rest.partition(END)
     if not found or not ended:
-        raise SystemExit(f"{path}: the marks {begin} and {end} are missing")
-    tried = [mutant for mutant in mutants if results.of(mutant)]
-    by_hand = [
-        samples(mutants, results),
-        table(tried, results, equivalents, file_of if part == "device" else folder_of),
-        with_reasons(mutants, results, equivalents),
-    ]
-    path.write_text(head + begin + "\n\n" + "\n\n".join(by_hand) + "\n\n" + end + tail)
+        raise SystemExit(f"{path}: the marks {BEGIN} and {END} are missing")
+    path.write_text(f"{head}{BEGIN}\n\n{written(old, mutants, results, equivalents)}\n\n{END}{tail}")

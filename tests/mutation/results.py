@@ -1,8 +1,11 @@
 """What became of each mutant, kept in a file, and the list of mutants that compute the same as the program."""
 
+import datetime
 import hashlib
 import json
 from dataclasses import asdict, dataclass
+
+from mutants import folder_of
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,7 @@ class Results:
     def __init__(self, path):
         self.path = path
         kept = json.loads(path.read_text()) if path.is_file() else {}
-        self.dates = kept.get("dates", {})  # of the last call for a folder
+        self.dates = kept.get("dates", {})  # when a mutant of a folder was last tried
         self.known = {key: Result(**value) for key, value in kept.get("results", {}).items()}
 
     def clear(self, mutants):
@@ -47,6 +50,7 @@ class Results:
 
     def put(self, mutant, result):
         self.known[fingerprint(mutant)] = result
+        self.dates[folder_of(mutant)] = datetime.date.today().isoformat()
         self.save()
 
     def save(self):
