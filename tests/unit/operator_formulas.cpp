@@ -58,6 +58,11 @@ TEST_CASE("the area beside a rigid body is that of the material's own surface al
   CHECK(flat.area == Approx(2 * (3 * 0.6 + 2 * 0.8)));
   CHECK(flat.separation == Approx(0.25));
   CHECK(flat.valid);
+  for (int c = 0; c < 3; ++c) CHECK(flat.normal[c] == surface.normal[c]);
+  ContactFieldNode off_its_middle =
+      with_gradient(3, 2, 5);  // its material lies half a cell towards the body, its edge a cell
+  off_its_middle.mass_position[0] = 0.3, off_its_middle.mass_position[1] = 0.4;
+  CHECK(rigid_contact_geometry(off_its_middle, table, surface, 2, 0.5, 2).separation == Approx(0.25 - 0.5));
   const RigidSurface solid{0.25, {0, 0.6, 0.8}};
   CHECK(rigid_contact_geometry(with_gradient(3, 2, 5), table, solid, 1, 0.5, 3).area == Approx(5.2));
   CHECK(rigid_contact_geometry(with_gradient(-3, -2, 0), table, surface, 1, 0.5, 2).area == 0);
@@ -66,6 +71,12 @@ TEST_CASE("the area beside a rigid body is that of the material's own surface al
 TEST_CASE("a vector along any axis has a direction, and none has none") {
   for (int axis = 0; axis < 3; ++axis) {
     Vec<3, double> v{};
+    v[axis] = -2;
+    CHECK(make_unit(v) == 1);
+    CHECK(v[axis] == -1);
+  }
+  for (int axis = 0; axis < 2; ++axis) {
+    Vec<2, double> v{};
     v[axis] = -2;
     CHECK(make_unit(v) == 1);
     CHECK(v[axis] == -1);
@@ -83,6 +94,9 @@ TEST_CASE("a system that is singular to rounding has no solution, and numbers ma
   REQUIRE(solve_symmetric(small, x));
   CHECK(x[0] == Approx(1));
   CHECK(x[1] == Approx(2));
+  double large[3][3] = {{4, 2, 1}, {2, 5, 3}, {1, 3, 6}}, y[3] = {4 + 4 + 3, 2 + 10 + 9, 1 + 6 + 18};
+  REQUIRE(solve_symmetric(large, y));
+  for (int i = 0; i < 3; ++i) CHECK(y[i] == Approx(i + 1));
 }
 
 TEST_CASE("walls mirror what is across them with the other sign, and all of what they hold") {
@@ -93,6 +107,9 @@ TEST_CASE("walls mirror what is across them with the other sign, and all of what
       CHECK(mirror_sign(wall_prescribed, axis, c) == -1);
       CHECK(mirror_sign(wall_slip, axis, c) == (c == axis ? -1 : 1));
       for (const bool held : {false, true}) {
+        for (const int rule : {rule_none, rule_even, rule_heat, rule_heat_rate, rule_momentum, rule_slip})
+          CHECK(mirror_sign(rule, wall_periodic, held, axis, c) == 1);
+        CHECK(mirror_sign(rule_none, wall_stick, held, axis, c) == 1);
         CHECK(mirror_sign(rule_even, wall_slip, held, axis, c) == 1);
         CHECK(mirror_sign(rule_heat, wall_slip, held, axis, c) == (held ? -1 : 1));
         CHECK(mirror_sign(rule_heat_rate, wall_stick, held, axis, c) == (held ? -1 : 1));
