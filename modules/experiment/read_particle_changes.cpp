@@ -178,6 +178,9 @@ void ExperimentReader::read_becoming(const Fields& fields, BodySpecification& bo
   if (const Node* condition = becomes.node("when");
       condition && condition->type == Node::Type::object && !becoming.above && !becoming.below)
     problem(*condition, "the condition has no bound: give \"above\" or \"below\"");
+  if (becoming.above && becoming.below && *becoming.below > *becoming.above)
+    problem(*becomes.node("when"), "every value is above " + number_text(*becoming.above) + " or below " +
+                                       number_text(*becoming.below) + ": all particles would go over at once");
   const std::vector<std::string>& known = options_.colour_quantities;
   if (when.valid("quantity") && !known.empty() &&
       std::find(known.begin(), known.end(), becoming.quantity) == known.end())
@@ -247,7 +250,9 @@ void ExperimentReader::check_particle_changes() {
     if (!experiment_.changer_of_particles(body).empty()) refuse_with_changes(body, specification.name);
   }
   for (const Emitter& emitter : experiment_.emitters) any_at_start = any_at_start || emitter.batches_until(0) > 0;
-  if (!any_at_start)
+  const Node* const emitters = root_.find("emitters");
+  const bool all_read = !emitters || emitters->items.size() == experiment_.emitters.size();
+  if (!any_at_start && all_read)
     problem(nearest_node(root_, "/bodies"),
             "the scene begins without a particle; let an emitter begin \"from\" 0, or give a body a geometry");
   if (experiment_.exact)

@@ -197,8 +197,8 @@ Section becomes_section() {
                                 parameter("quantity", Type::string, "",
                                           "Quantity of particles, of those that colour frames.")
                                     .needed(),
-                                parameter("above", Type::number, "any", "It goes over above this value."),
-                                parameter("below", Type::number, "any", "It goes over below this value."),
+                                parameter("above", Type::number, "", "It goes over above this value, in SI units."),
+                                parameter("below", Type::number, "", "It goes over below this value, in SI units."),
                             }})
                   .needed(),
               parameter("every_steps", Type::integer, "", "Steps from one look at the particles to the next.")

@@ -105,13 +105,25 @@ void size_fields(FieldList& fields, int body) {
 }
 
 /// What of the forces on a body depends on where its particles began; empty where nothing does.
-std::string who_reads_initial_position(const Experiment& experiment, int body) {
+std::string forces_by_initial_position(const Experiment& experiment, int body) {
   if (experiment.body_force && experiment.body_force->uses_initial_position())
     return experiment.body_force_pointer + ": the force depends on X";
   for (const Load& load : experiment.loads) {
     if (load.body != body) continue;
     if (load.gives(ExternalForce::spring)) return load.pointer + ": springs pull towards X";
     if (load.value.uses_initial_position()) return load.pointer + ": the load depends on X";
+  }
+  return "";
+}
+
+/// Who asks where the particles of a body began: its forces, what they are to become, or a body that they may go over to.
+std::string who_reads_initial_position(const Experiment& experiment, int body) {
+  for (std::size_t hops = 0; hops < experiment.bodies.size(); ++hops) {
+    if (const std::string asks = forces_by_initial_position(experiment, body); !asks.empty()) return asks;
+    const auto& becomes = experiment.bodies[static_cast<std::size_t>(body)].becomes;
+    if (!becomes) break;
+    if (becomes->quantity.starts_with("displacement")) return becomes->pointer + ": what goes over depends on X";
+    body = becomes->body;
   }
   return "";
 }

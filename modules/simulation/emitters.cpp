@@ -14,6 +14,23 @@ namespace {
 /// From this share of a batch on, particles in its way are worth a warning.
 constexpr double much = 0.1;
 
+double speed_of(const Emitter& emitter) {
+  const Vector3& v = emitter.velocity;
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/// Batches stand up to a step's way in front of their region, which has a cell of room there.
+void refuse_long_step(const Experiment& experiment, const Emitter& emitter) {
+  if (!experiment.solver.time_step) return;
+  const double way = speed_of(emitter) * *experiment.solver.time_step;
+  if (way > experiment.grid.cell_size)
+    throw InputError({problem_at(experiment, emitter.pointer + "/velocity",
+                                 "moves by " + number_text(way / experiment.grid.cell_size) + " cells in a step of " +
+                                     number_text(*experiment.solver.time_step) +
+                                     " s, and a batch may be on its way for a step before it is there; take a shorter "
+                                     "/solver/time_step, or \"auto\"")});
+}
+
 /// The particles that fill the emitter's region, of the body's seeding and of a volume as the body's particles have it.
 Newcomers fill(const Experiment& experiment, const Emitter& emitter, const SeededBody& of_body) {
   Experiment filled = experiment;
@@ -52,6 +69,7 @@ Newcomers fill(const Experiment& experiment, const Emitter& emitter, const Seede
 Emitters::Emitters(const Experiment& experiment, const std::vector<SeededBody>& seeds)
     : experiment_(experiment), dimension_(static_cast<std::size_t>(experiment.dimension)) {
   for (const Emitter& emitter : experiment.emitters) {
+    refuse_long_step(experiment, emitter);
     Source& source = sources_.emplace_back();
     source.emitter = &emitter;
     source.batch = fill(experiment, emitter, seeds[static_cast<std::size_t>(emitter.body)]);
@@ -73,6 +91,11 @@ Newcomers Emitters::moved(const Source& source, double way) const {
 void Emitters::begin(std::vector<SeededBody>& seeds) {
   for (Source& source : sources_)
     for (const long due = source.emitter->batches_until(0); source.emitted < due; ++source.emitted) {
+      std::size_t inside = 0;
+      for (const SeededBody& present : seeds)
+        present.for_each_batch(
+            [&](const SeedBatch& batch) { inside += count_inside(source, 0, batch.position, batch.count); });
+      note(source, inside, 0);
       SeededBody& body = seeds[static_cast<std::size_t>(source.emitter->body)];
       const auto batch = std::make_shared<const Newcomers>(source.batch);
       const auto zeros = std::make_shared<const std::vector<double>>(
@@ -90,16 +113,27 @@ void Emitters::begin(std::vector<SeededBody>& seeds) {
     }
 }
 
-/// Notes the particles that are where a batch comes to.
-void Emitters::look_at(Source& source, double way, double time, const ParticleState& present) const {
+double Emitters::speed_after(double time) const {
+  double speed = 0;
+  for (const Source& source : sources_)
+    if (source.emitter->until > time) speed = std::max(speed, speed_of(*source.emitter));
+  return speed;
+}
+
+/// How many of these places are where a batch comes to that has moved on for `way` seconds.
+std::size_t Emitters::count_inside(const Source& source, double way, const double* position, std::size_t count) const {
   std::size_t inside = 0;
-  for (const ParticleState::OfBody& body : present.bodies())
-    for (std::size_t p = 0; p < body.count; ++p) {
-      Vector3 x{};
-      for (std::size_t c = 0; c < dimension_; ++c)
-        x[c] = body.position[p * dimension_ + c] - way * source.emitter->velocity[c];
-      inside += source.emitter->geometry->contains(x);
-    }
+  for (std::size_t p = 0; p < count; ++p) {
+    Vector3 x{};
+    for (std::size_t c = 0; c < dimension_; ++c)
+      x[c] = position[p * dimension_ + c] - way * source.emitter->velocity[c];
+    inside += source.emitter->geometry->contains(x);
+  }
+  return inside;
+}
+
+/// Notes how many particles are in the way of a batch.
+void Emitters::note(Source& source, std::size_t inside, double time) const {
   const double share = static_cast<double>(inside) / static_cast<double>(source.batch.count);
   source.occupied = std::max(source.occupied, share);
   if (share > much && source.first_occupied < 0) source.first_occupied = time;
@@ -111,7 +145,12 @@ void Emitters::emit(double time, const ParticleState& present, std::vector<Newco
     Newcomers& of_body = newcomers[static_cast<std::size_t>(emitter.body)];
     for (const long due = emitter.batches_until(time); source.emitted < due; ++source.emitted) {
       const double way = time - emitter.due(source.emitted);
-      look_at(source, way, time, present);
+      std::size_t inside = 0;
+      for (const ParticleState::OfBody& body : present.bodies())
+        inside += count_inside(source, way, body.position.data(), body.count);
+      for (const Newcomers& others : newcomers)
+        inside += count_inside(source, way, others.position.data(), others.count);
+      note(source, inside, time);
       of_body.append(moved(source, way));
       const std::size_t count = present.bodies()[static_cast<std::size_t>(emitter.body)].count + of_body.count;
       if (count > static_cast<std::size_t>(emitter.max_particles))

@@ -15,6 +15,8 @@ class Emitters {
 
   /// Adds the batches that are due at the start to the seeds.
   void begin(std::vector<SeededBody>& seeds);
+  /// The largest speed of those that do not end before `time`, m/s.
+  double speed_after(double time) const;
   /// Whether a batch is due that was not emitted yet.
   bool due(double time) const;
   /// Adds the batches that are due, each moved on by the way since then, and notes what stands in their way. Throws
@@ -35,7 +37,8 @@ class Emitters {
     double first_occupied = -1;  ///< s, when much was for the first time; -1: never
   };
   Newcomers moved(const Source& source, double way) const;
-  void look_at(Source& source, double way, double time, const ParticleState& present) const;
+  std::size_t count_inside(const Source& source, double way, const double* position, std::size_t count) const;
+  void note(Source& source, std::size_t inside, double time) const;
 
   const Experiment& experiment_;
   const std::size_t dimension_;

@@ -1,6 +1,7 @@
 #include "simulation/particle_changes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -90,11 +91,21 @@ std::unique_ptr<Backend> ParticleChanges::make(const Backend& backend, const Bac
   work.changed = changing_particles(experiment_, backend, steps, work.gone);
   const bool caught = std::any_of(work.gone.begin(), work.gone.end(), any);
   if (!caught && work.changed.empty() && !emitters_.due(time)) return nullptr;
-  work.state.read(backend);
-  take_out(work);
-  change_materials(work);
-  emitters_.emit(time, work.state, work.newcomers);
-  build(work, make_backend);
+  const std::array<Exchange, 3> counted{emitted_, removed_, changed_};
+  ArchiveWriter emitters;
+  emitters_.save(emitters);
+  try {
+    work.state.read(backend);
+    take_out(work);
+    change_materials(work);
+    emitters_.emit(time, work.state, work.newcomers);
+    build(work, make_backend);
+  } catch (...) {
+    emitted_ = counted[0], removed_ = counted[1], changed_ = counted[2];
+    ArchiveReader saved(emitters.bytes());
+    emitters_.restore(saved);
+    throw;
+  }
   return std::move(work.next);
 }
 

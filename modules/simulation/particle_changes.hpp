@@ -31,15 +31,16 @@ class ParticleChanges {
 
   /// Whether anything may change after the step that ends at `time` (s), the run's `steps`-th.
   bool due(double time, long steps) const;
+  /// The largest speed, m/s, at which anything is or will be emitted after `time`: a batch may be on its way for a step.
+  double emitted_speed(double time) const { return emitters_.speed_after(time); }
   /// Makes the changes that are due. Returns the backend that goes on, or null where no particle has changed. Throws
-  /// RunFailure.
+  /// RunFailure, and then nothing has been counted.
   std::unique_ptr<Backend> make(const Backend& backend, const BackendFactory& make_backend, double time, long steps);
 
   const Exchange& emitted() const { return emitted_; }
   const Exchange& removed() const { return removed_; }
-  const Exchange& changed() const {
-    return changed_;
-  }  ///< momentum and mass stay; energy and heat are what they gained
+  /// Momentum and mass stay; energy and heat are what they gained.
+  const Exchange& changed() const { return changed_; }
   Ledger ledger() const;
   HeatLedger heat_ledger() const;
   std::vector<std::string> warnings() const { return emitters_.warnings(); }

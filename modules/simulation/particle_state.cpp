@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
 
 #include "simulation/saved_state.hpp"
 
@@ -149,6 +150,7 @@ SeededBody ParticleState::seeds(std::size_t body, const SeededBody& of_start, co
     std::vector<double>& values = arrays->others["initial_position"];
     values = present.initial_position;
     append(values, newcomers.initial_position);
+    if (values.size() != count * dimension_) throw std::logic_error("particles come without a place where they began");
   }
   SeededBody seeded;
   seeded.volume = of_start.volume, seeded.mass = of_start.mass;

@@ -66,9 +66,10 @@ double Simulation::end_of_step() const {
 }
 
 void Simulation::take_limit() {
-  const TimeStepLimit limit = backend_->time_step_limit();
+  TimeStepLimit limit = backend_->time_step_limit();
   if (!(limit.speed > 0) || !std::isfinite(limit.speed))
     throw RunFailure({Cause::speed_not_a_number, limit.body, limit.particle, -1, limit.speed});
+  if (changes_) limit.speed = std::max(limit.speed, changes_->emitted_speed(time_));
   estimated_speed_ = limit.speed;
   const StepLimit allowed = solver_.limit(experiment_, {limit.speed});
   estimate_ = allowed.seconds;
@@ -164,6 +165,8 @@ void Simulation::execute(const Pass& pass, StepInfo& info) {
 }
 
 void Simulation::step() {
+  // What is due at the start is in the seeds. What a step has left, the nodes of contact too, is looked at before it changes.
+  if (steps_ > 0 && changes_at(time_, steps_)) change_particles();
   StepInfo info{0, time_, steps_};
   chosen_ = false;
   execute(plan_.step, info);
@@ -176,7 +179,6 @@ void Simulation::step() {
   }
   largest_ = std::max(largest_, dt_);
   particle_steps_ += static_cast<double>(particles_);
-  if (changes_at(time_, steps_)) change_particles();
 }
 
 void Simulation::count_particles() {
@@ -190,7 +192,9 @@ void Simulation::count_particles() {
 
 /// Goes on with other particles where any have changed. The grid is scattered anew, and the step chosen for them.
 void Simulation::change_particles() {
+  const auto start = std::chrono::steady_clock::now();
   std::unique_ptr<Backend> next = changes_->make(*backend_, make_backend_, time_, steps_);
+  seconds_["change particles"] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!next) return;
   backend_ = std::move(next);
   count_particles();

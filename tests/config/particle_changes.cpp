@@ -12,7 +12,7 @@ namespace {
 const std::string without_exact = "/compare=null", emits = R"(/emitters=[{"body": "left", "velocity": [2, 0],
     "geometry": {"type": "box", "lower": [0.1, 0.5], "upper": [0.3, 0.6]}}])";
 const std::string drains = R"(/sinks=[{"geometry": {"type": "box", "lower": [0, 0], "upper": [1, 0.1]}}])";
-const std::string becomes = R"(/bodies/0/becomes={"body": "right", "when": {"quantity": "speed", "above": "2 m/s"}})";
+const std::string becomes = R"(/bodies/0/becomes={"body": "right", "when": {"quantity": "speed", "above": 2}})";
 const std::string alike = "/bodies/1/particles_per_cell_axis=3";
 
 std::string refused(std::vector<std::string> overrides) {
