@@ -61,10 +61,6 @@ OrderedJson ExperimentReader::read_body(const Node& node) {
   const bool given_later = !geometry && !from_points && may_start_empty(body.name);
   if (given_later) {
     body.starts_empty = true;
-    for (const char* key : {"velocity", "angular_velocity"})
-      if (fields.given(key))
-        problem(fields.place(key),
-                "the body begins without particles, and each has the velocity with which it comes; remove this");
     body.geometry = make_nothing(experiment_.grid.lower);
   } else if (!geometry && !from_points)
     context_.problem(node.at, child_pointer(node.pointer, "geometry"), "missing key; expected a geometry");

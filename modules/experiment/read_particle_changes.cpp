@@ -255,6 +255,13 @@ void ExperimentReader::check_particle_changes() {
   if (!any_at_start && all_read)
     problem(nearest_node(root_, "/bodies"),
             "the scene begins without a particle; let an emitter begin \"from\" 0, or give a body a geometry");
+  const std::string gone = " are those of a step, and " + experiment_.changer_of_particles() +
+                           " may change the particles after it, when nobody has looked yet; ";
+  if (experiment_.output.contact_nodes)
+    problem(nearest_node(root_, "/output/contact_nodes"), "the nodes of contact" + gone + "remove one of them");
+  if (experiment_.particle_output && experiment_.particle_output->asks("contact_traction"))
+    problem(nearest_node(root_, "/output/particles"),
+            "tractions of contact" + gone + "name \"fields\" without contact_traction");
   if (experiment_.exact)
     problem(nearest_node(root_, "/compare/exact"), "exact solutions follow each particle from the start, and " +
                                                        experiment_.changer_of_particles() +

@@ -113,10 +113,11 @@ void Emitters::begin(std::vector<SeededBody>& seeds) {
     }
 }
 
-double Emitters::speed_after(double time) const {
+double Emitters::speed_between(double from, double until) const {
   double speed = 0;
   for (const Source& source : sources_)
-    if (source.emitter->until > time) speed = std::max(speed, speed_of(*source.emitter));
+    if (source.emitter->until > from && source.emitter->from < until)
+      speed = std::max(speed, speed_of(*source.emitter));
   return speed;
 }
 

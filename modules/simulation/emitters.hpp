@@ -15,8 +15,8 @@ class Emitters {
 
   /// Adds the batches that are due at the start to the seeds.
   void begin(std::vector<SeededBody>& seeds);
-  /// The largest speed of those that do not end before `time`, m/s.
-  double speed_after(double time) const;
+  /// The largest speed of those at work between two times (s), m/s.
+  double speed_between(double from, double until) const;
   /// Whether a batch is due that was not emitted yet.
   bool due(double time) const;
   /// Adds the batches that are due, each moved on by the way since then, and notes what stands in their way. Throws

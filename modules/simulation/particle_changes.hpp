@@ -31,8 +31,8 @@ class ParticleChanges {
 
   /// Whether anything may change after the step that ends at `time` (s), the run's `steps`-th.
   bool due(double time, long steps) const;
-  /// The largest speed, m/s, at which anything is or will be emitted after `time`: a batch may be on its way for a step.
-  double emitted_speed(double time) const { return emitters_.speed_after(time); }
+  /// The largest speed, m/s, at which anything is emitted between two times, s.
+  double emitted_speed(double from, double until) const { return emitters_.speed_between(from, until); }
   /// Makes the changes that are due. Returns the backend that goes on, or null where no particle has changed. Throws
   /// RunFailure, and then nothing has been counted.
   std::unique_ptr<Backend> make(const Backend& backend, const BackendFactory& make_backend, double time, long steps);

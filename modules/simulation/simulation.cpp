@@ -66,12 +66,16 @@ double Simulation::end_of_step() const {
 }
 
 void Simulation::take_limit() {
-  TimeStepLimit limit = backend_->time_step_limit();
+  const TimeStepLimit limit = backend_->time_step_limit();
   if (!(limit.speed > 0) || !std::isfinite(limit.speed))
     throw RunFailure({Cause::speed_not_a_number, limit.body, limit.particle, -1, limit.speed});
-  if (changes_) limit.speed = std::max(limit.speed, changes_->emitted_speed(time_));
   estimated_speed_ = limit.speed;
-  const StepLimit allowed = solver_.limit(experiment_, {limit.speed});
+  StepLimit allowed = solver_.limit(experiment_, {limit.speed});
+  if (changes_) {  // a batch stands up to a step's way in front of its emitter
+    const double until = time_ + static_cast<double>(estimate_every_) * allowed.seconds;
+    const double speed = changes_->emitted_speed(time_, until);
+    if (speed > limit.speed) allowed = solver_.limit(experiment_, {speed});
+  }
   estimate_ = allowed.seconds;
   if (experiment_.solver.time_step) return;
   limited_by_ = allowed.reason;
@@ -165,8 +169,6 @@ void Simulation::execute(const Pass& pass, StepInfo& info) {
 }
 
 void Simulation::step() {
-  // What is due at the start is in the seeds. What a step has left, the nodes of contact too, is looked at before it changes.
-  if (steps_ > 0 && changes_at(time_, steps_)) change_particles();
   StepInfo info{0, time_, steps_};
   chosen_ = false;
   execute(plan_.step, info);
@@ -179,6 +181,7 @@ void Simulation::step() {
   }
   largest_ = std::max(largest_, dt_);
   particle_steps_ += static_cast<double>(particles_);
+  if (changes_at(time_, steps_)) change_particles();
 }
 
 void Simulation::count_particles() {

@@ -136,6 +136,14 @@ TEST_CASE("what counts on particles that stay is refused beside those that do no
   check_refused({emits, R"(/output/probes=[{"name": "one", "nearest": [0.2, 0.2], "quantities": ["speed"]}])"},
                 why + "a probe of this kind follows one particle");
   check_refused({emits, "/bodies/0/initial_displacement=[\"0.01*X\", 0]"}, why + "what is emitted begins undeformed");
+  const std::string law = R"(/contact={"type": "coulomb", "friction": 0.2})";
+  check_refused({emits, law, "/output/contact_nodes=true"}, "the nodes of contact are those of a step");
+  check_refused({emits, law, R"(/output/particles={"count": 2, "fields": ["contact_traction"]})"},
+                "tractions of contact are those of a step");
+  CHECK(refused({emits, law, R"(/output/particles={"count": 2, "fields": ["velocity"]})"}) == "accepted");
+  check_refused({R"(/bodies/0/becomes={"body": "right", "when": {"quantity": "speed", "above": 1, "below": 2}})"},
+                "every value is above 1 or below 2");
+  check_refused({R"(/bodies/0/becomes={"body": "right", "when": {"quantity": "speed", "above": "60 kPa"}})"}, "above");
   CHECK(
       errors(two_discs, {emits}).find("exact solutions follow each particle from the start, and /emitters/0 changes") !=
       std::string::npos);

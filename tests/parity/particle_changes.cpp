@@ -99,6 +99,25 @@ TEST_CASE("a run that was saved between two changes of its particles goes on bit
     }
 }
 
+TEST_CASE("particles take along where they began to a body that asks for it alone", "[parity]") {
+  Mix mix;
+  mix = with_particle_changes(mix);
+  mix.more += R"(, "loads": [{"type": "body_force", "body": "b", "acceleration": ["3*X", "Y"]}])";
+  check_that_all_changed(mix);
+  check_parity(mix);
+  Mix moved;  // whoever has moved far goes over, whatever the output asks for
+  moved.overrides = {
+      R"(/bodies/0/becomes={"body": "b", "when": {"quantity": "displacement", "above": 0.04}, "every_steps": 4})"};
+  Scene silent(moved.text(), on_reference(moved));
+  silent.run();
+  moved.overrides.push_back(R"(/output={"colour_by": "displacement"})");
+  Scene coloured(moved.text(), on_reference(moved));
+  coloured.run();
+  CHECK(silent.simulation.particle_changes()->changed().particles > 0);
+  CHECK(silent.simulation.particle_changes()->changed().particles ==
+        coloured.simulation.particle_changes()->changed().particles);
+}
+
 TEST_CASE("particles change alike in a run that nobody looks at", "[parity]") {
   Mix mix;
   mix.transfer = R"({"type": "mls"})";  // which may leave velocities out of steps that nobody looks at
