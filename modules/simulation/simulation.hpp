@@ -94,25 +94,24 @@ class Simulation {
   const Solver& solver_;
   const BackendFactory make_backend_;
   const bool imposes_by_time_;  ///< whether a formula of walls, boxes or gravity has to be looked at in each step
+  bool limited_by_speed_ = false, observed_ = true;
+  bool chosen_ = false;         ///< dt of this step is known
+  bool scattered_ = false;      ///< the grid holds this step's scatter already
+  bool must_estimate_ = false;  ///< the particles are others than those of the last estimate
   std::unique_ptr<ParticleChanges> changes_;
   std::unique_ptr<Backend> backend_;
   double time_ = 0, dt_ = 0, estimate_ = 0, smallest_ = 0, largest_ = 0;
   std::string limited_by_, smallest_limited_by_;
-  bool limited_by_speed_ = false;
   double estimated_speed_ = 0;                              ///< speed of the last estimate, m/s
   long estimate_every_ = std::numeric_limits<long>::max();  ///< steps from one estimate to the next
   double filter_clock_ = 0;                                 ///< time or cells since the filter last acted
-  bool chosen_ = false;                                     ///< dt of this step is known
   std::function<bool(double, long)> wanted_;
-  bool observed_ = true;
-  bool scattered_ = false;  ///< the grid holds this step's scatter already
-  Ledger first_entries_;    ///< entries of the first step
+  Ledger first_entries_;  ///< entries of the first step
   long steps_ = 0;
   long filter_passes_ = 0;
   std::size_t particles_ = 0;
   std::vector<std::size_t> body_particles_;
   double particle_steps_ = 0;
-  bool must_estimate_ = false;  ///< the particles are others than those of the last estimate
   std::map<std::string, double> seconds_;
 };
 

@@ -376,3 +376,28 @@ TEST_CASE("grips of bodies whose particles do not stay are refused", "[particle_
                       {R"(/bodies/0/becomes={"body": "pool", "when": {"quantity": "speed", "above": 9}})", grips}),
       Catch::Contains("a grip holds particles of the start"));
 }
+
+TEST_CASE("a change that fails counts nothing and leaves all particles", "[particle_changes]") {
+  Scene scene(
+      stream("plane"),
+      {"/emitters/0/until=0.05",
+       R"(/sinks=[{"every_steps": 3, "geometry": {"type": "half_space", "point": [-9, 0], "normal": [-1, 0]}}])"});
+  const Totals start = scene.run_steps(2);
+  CHECK_THROWS_AS(scene.simulation.step(), RunFailure);
+  CHECK(scene.simulation.particle_changes()->removed().particles == 0);
+  CHECK(scene.simulation.particle_changes()->removed().mass == 0);
+  CHECK(scene.simulation.backend().body_state(0).position.size() / 2 == scene.simulation.particle_count());
+  CHECK(scene.metrics.measure().mass == Approx(start.mass).epsilon(1e-14));
+}
+
+TEST_CASE("an emitter that fills what is full at the start is warned of, and one that moves too far in a step refused",
+          "[particle_changes]") {
+  CHECK(Scene(stream("plane"), {}).simulation.particle_changes()->warnings().empty());
+  const Scene full(stream("plane"),
+                   {R"(/bodies/0/geometry={"type": "box", "lower": [0.1, 0.3], "upper": [0.3, 0.6]})"});
+  const std::vector<std::string> warnings = full.simulation.particle_changes()->warnings();
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0].find("from t = 0 s on, up to 100 %") != std::string::npos);
+  // 2 m/s in cells of 0.1 m
+  CHECK_THROWS_WITH(Scene(stream("plane"), {"/solver/time_step=0.13"}), Catch::Contains("moves by 2.6 cells"));
+}
