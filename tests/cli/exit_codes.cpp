@@ -235,6 +235,28 @@ TEST_CASE("2: two bodies of the same particles, and a warning of those that have
   CHECK(call(folder, {"check", "beside.json"}).err.empty());
 }
 
+// With s = 1.489 the formula has its pole at J = 1 - 1/s = 0.328 and goes on along its tangent from 1 - 0.9/s = 0.3956 on.
+TEST_CASE("a warning of a fluid that is compressed beyond the formula of Mie-Gruneisen") {
+  Json scene = ball();
+  scene["materials"]["m"] = {{"type", "newtonian_fluid"},
+                             {"equation_of_state", "mie_gruneisen"},
+                             {"bulk_modulus", 1000},
+                             {"density", 1000},
+                             {"viscosity", 0}};
+  scene["bodies"][0].erase("velocity");
+  scene["solver"] = {{"time_step", 1e-5}, {"end_time", 2e-5}};
+  scene["limits"] = {{"volume_ratio", nullptr}};
+  const Folder folder;
+  for (const double J : {0.39, 0.41}) {
+    INFO(J);
+    scene["bodies"][0]["initial_deformation_gradient"] = {{"xx", J}};
+    CHECK(run_scene(folder, scene).code == 0);
+    const std::string warnings = json_in(folder / "run/summary.json")["warnings"].dump();
+    INFO(warnings);
+    CHECK(has(warnings, "below J = 0.396 the pressure of material") == (J < 0.3956));
+  }
+}
+
 TEST_CASE("a warning of particles that begin inside a rigid body, and none of those on its face") {
   Json scene = two_balls();
   scene["bodies"] = Json::array({scene["bodies"][0]});

@@ -35,8 +35,7 @@ viscous stress : D, never negative, and the energy is minus the integral of p dJ
 and pressure returns when J is below 1 again.
 
 Limits: 1 - s x vanishes at a finite compression. From s x = 0.9 on (J = 0.40 for s = 1.489) the pressure goes on along its tangent.
-No warning says so during a run: compare `stability.smallest_volume_ratio` of its summary with 1 - 0.9/s, or set
-/limits/volume_ratio. In single precision J^-n is infinite where n ln J < -87 (J = 4e-6 for n = 7), and the run stops.
+A run warns of that at its end; /limits/volume_ratio stops it. In single precision J^-n is infinite where n ln J < -87 (J = 4e-6 for n = 7), and the run stops.
 J <= 0 is refused: the run stops and names the particle.
 
 Wave speed: z + sqrt(z^2 + c^2) with c^2 = dp/d(density), z = sqrt(3) nu/h, nu = (4 mu/3 + zeta) J/density and the cell size h. With
