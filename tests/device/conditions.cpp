@@ -187,6 +187,8 @@ TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]"
   take_entries();
   for (const auto& [name, entry] : largest) {
     INFO(name);
+    // These are of the host, between steps: tests/device/particle_changes.cpp.
+    if (name == "emitted" || name == "removed" || name == "changed material") continue;
     const bool is_rounding =
         name == "grid book" || name == "filter book" || name == "mass book" || name == "momentum book";
     CHECK((is_rounding ? entry < 1e-12 : entry > 1e-6));
