@@ -390,7 +390,8 @@ int describe(const std::string& id, bool json) {
 
 int schema() {
   const Registry registry = load_registry();
-  const std::vector<FileKind> others{{drive::drive_section(), drive::solver_section()}};
+  const std::vector<FileKind> others{
+      {drive::drive_section(), drive::solver_section(), {{"stages", drive::stage_section(3)}}}};
   std::cout << json_schema(ComponentLookup(registry), read_options(registry, {}), others).dump(2) << "\n";
   return done;
 }

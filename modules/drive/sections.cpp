@@ -54,7 +54,7 @@ Section solver_section() {
   return {solver_name,
           "One particle by itself, along stages of imposed deformation and stress.",
           {
-              parameter("stages", Type::nested, "", "a list of stages").made_of(stage_section(3)).needed(),
+              parameter("stages", Type::nested, "", "a list of stages").defined_as("stages").needed(),
               parameter("cell_size", Type::number, "m", "Cell size of a grid, for materials that read it.").above(0),
           },
           true};

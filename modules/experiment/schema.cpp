@@ -233,7 +233,7 @@ nlohmann::ordered_json json_schema(const ComponentLookup& components, const Read
                                    const std::vector<FileKind>& others) {
   const Json experiment = json_schema(components, options);
   Json keys = section_schema(experiment_section(options));
-  for (const auto& [file, solver] : others) {
+  for (const auto& [file, solver, lists] : others) {
     const Json type = {{"properties", {{"type", {{"const", solver.name}}}}}, {"required", {"type"}}};
     const Json condition = {{"properties", {{"solver", type}}}, {"required", {"solver"}}};
     keys = {{"if", condition}, {"then", section_schema(file)}, {"else", keys}};
@@ -241,6 +241,8 @@ nlohmann::ordered_json json_schema(const ComponentLookup& components, const Read
   Json schema = {{"$schema", experiment["$schema"]}, {"title", experiment["title"]}};
   schema.update(keys);
   schema["$defs"] = experiment["$defs"];
+  for (const FileKind& kind : others)
+    for (const auto& [name, section] : kind.lists) schema["$defs"][name] = list_of(section_schema(section));
   return schema;
 }
 

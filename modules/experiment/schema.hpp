@@ -1,6 +1,8 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "experiment/parameter.hpp"
@@ -16,6 +18,7 @@ nlohmann::ordered_json json_schema(const Registry& registry, const ReadOptions& 
 /// its keys are those of the first.
 struct FileKind {
   Section file, solver;
+  std::vector<std::pair<std::string, Section>> lists;  ///< of objects, by the definition that keys refer to
 };
 nlohmann::ordered_json json_schema(const ComponentLookup& components, const ReadOptions& options,
                                    const std::vector<FileKind>& others);

@@ -73,8 +73,9 @@ TEST_CASE("the schema has every key of the experiment", "[schema]") {
 }
 
 TEST_CASE("the solver of a file says whether its keys are those of an experiment or of a material point", "[schema]") {
-  const Json both = json_schema(components(), options(), {{drive::drive_section(), drive::solver_section()}});
-  CHECK(both["$defs"] == schema()["$defs"]);
+  const Json both =
+      json_schema(components(), options(),
+                  {{drive::drive_section(), drive::solver_section(), {{"stages", drive::stage_section(3)}}}});
   const Json &solver = both["if"]["properties"]["solver"], &point = both["then"];
   CHECK(both["if"]["required"] == Json({"solver"}));
   CHECK(solver["properties"]["type"]["const"] == "material_point");
@@ -83,10 +84,14 @@ TEST_CASE("the solver of a file says whether its keys are those of an experiment
   CHECK(point["required"] == Json({"materials", "solver"}));
   CHECK(point["additionalProperties"] == false);
   CHECK(!point["properties"].contains("bodies"));
-  check_keys(Json::parse(
-                 R"({"title": "t", "dimension": 2, "materials": {}, "solver": {"type": "material_point", "cell_size": 1,
-    "stages": [{"name": "a", "duration": 1, "steps": 3, "deformation_gradient": {"xx": "1+t"}, "stress": {"yy": 0}}]}})"),
-             point);
+  const Json& keys = point["properties"]["solver"]["properties"];
+  CHECK(keys["type"]["const"] == "material_point");
+  CHECK(keys["stages"]["$ref"] == "#/$defs/stages");
+  const Json& stages = both["$defs"]["stages"];
+  CHECK(stages["type"] == "array");
+  for (const char* key : {"name", "duration", "steps", "deformation_gradient", "velocity_gradient", "stress"})
+    CHECK(stages["items"]["properties"].contains(key));
+  CHECK(stages["items"]["additionalProperties"] == false);
 }
 
 TEST_CASE("parameters of plugins appear with unit, range, default and choices", "[schema]") {

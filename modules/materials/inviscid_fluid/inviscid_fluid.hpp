@@ -35,8 +35,9 @@ struct InviscidFluid {
   /// J of the step's end is J of its start times det(I + dt L). Nothing is dissipated.
   template <class G, int D, class S>
   MPM_HD static S advance(const Constants<scalar_of<S>>&, const G& L, scalar_of<S> dt, State<D, S>& state) {
-    const S e = state.volume_change;
-    state.volume_change = e + (real<S>(1) + e) * mpm::volume_change(L, dt);
+    const S e = state.volume_change, change = mpm::volume_change(L, dt);
+    // A step that leaves no volume must not be rounded to one that leaves a little.
+    state.volume_change = select(change > real<S>(-1), e + (real<S>(1) + e) * change, change);
     return S(real<S>(0));
   }
 
@@ -65,7 +66,7 @@ struct InviscidFluid {
   }
 
 #if MPM_HOST
-  static constexpr unsigned traits = MPM_HYPERELASTIC | MPM_OBJECTIVE;
+  static constexpr unsigned traits = MPM_OBJECTIVE;
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(bulk_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "bulk modulus K at rest; density (10 v)^2 keeps the density of flows at speed v within 1 %"),
