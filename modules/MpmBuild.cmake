@@ -43,10 +43,11 @@ endif()
 target_include_directories(mpm_flags INTERFACE ${CMAKE_CURRENT_SOURCE_DIR}/modules)
 
 # Reading these headers is half of the time that most files take to compile. A compiler's cache shares no precompiled headers.
+# Not every configuration has been tried with them, so that they are asked for.
 set(mpm_common_headers
     <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <iostream> <limits> <map> <memory>
     <optional> <set> <span> <sstream> <stdexcept> <string> <string_view> <utility> <vector> <nlohmann/json.hpp>)
-if(CMAKE_CXX_COMPILER_LAUNCHER)
+if(NOT MPM_PRECOMPILE OR CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
 endif()
 file(GENERATE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "// Headers alone are compiled with it.\n")
