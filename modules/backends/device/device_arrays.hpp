@@ -140,13 +140,16 @@ template <class T>
 struct VelocityField {
   FieldArrays<T> arrays;
   DeviceArray<int> folded;
+  DeviceArray<unsigned char> active;
   DeviceArray<GripArrays<T>> grips;  ///< what the particles of grips give these nodes
 
   VelocityField(Device& device, const Experiment& experiment, const Plan& plan, std::size_t nodes)
       : arrays(device, "the nodes", node_fields(experiment, plan), nodes),
         folded(device, "the nodes", nodes),
+        active(device, "the nodes", runs_of(nodes)),
         grips(device, "the grips") {
     folded.clear();
+    active.clear();
     std::vector<GripArrays<T>> all;
     for (std::size_t k = 0; k < experiment.grips.size(); ++k) all.push_back(grip(experiment, k));
     grips.upload(all);
@@ -161,11 +164,13 @@ struct VelocityField {
   }
 
   NodeArrays<T> table() const {
-    NodeArrays<T> table{{}, folded.data()};
+    NodeArrays<T> table{{}, folded.data(), active.data()};
     arrays.point(table.field);
     return table;
   }
-  std::uint64_t bytes() const { return arrays.bytes() + folded.bytes(); }
+  std::uint64_t bytes() const { return arrays.bytes() + folded.bytes() + active.bytes(); }
+  /// How many runs of nodes are noted apart.
+  static std::size_t runs_of(std::size_t nodes) { return (nodes + nodes_of_run - 1) / nodes_of_run; }
 };
 
 }  // namespace mpm::device

@@ -32,6 +32,7 @@ std::vector<TakenMemory> taken_by_each(const Experiment& experiment, const Plan&
   const double all_nodes = static_cast<double>(nodes) * experiment.field_count;
   add(node_fields(experiment, plan), TakenMemory::of_nodes, all_nodes);
   all.push_back({"folded", TakenMemory::of_nodes, 1, all_nodes * sizeof(int), true});
+  all.push_back({"active", TakenMemory::of_nodes, 1, all_nodes / nodes_of_run, true});
   if (ContactPoints(experiment).needed()) {
     const double pairs = 0.5 * experiment.field_count * (experiment.field_count - 1);
     all.push_back({"contact", TakenMemory::of_nodes, 2 + experiment.dimension,

@@ -21,6 +21,7 @@ struct StepKind {
   bool filtered = false, accounted = false, notes_contact = false;
   bool first_of_state = false;  ///< the first step, of which a law of contact with a state is told
   bool prepared = false;        ///< the step before has found what the scatter asks of particles
+  bool forgets = false;         ///< it begins with a grid that no particle has reached
   Vector3 gravity{};
 
   bool operator==(const StepKind&) const = default;

@@ -47,7 +47,7 @@ StepKind DeviceBackend<T>::kind_of(const std::vector<WaitingPass>& passes) const
   kind.notes_contact = records_nodes(experiment_, step);
   kind.first_of_state = step.step == 0 && !experiment_.contact_state().empty();
   kind.gravity = experiment_.gravity_at(step.time);
-  kind.prepared = prepared_;
+  kind.prepared = prepared_, kind.forgets = forgets_grid(step.step);
   return kind;
 }
 
@@ -84,7 +84,7 @@ void DeviceBackend<T>::perform(const Pass& pass, const StepInfo& step) {
     case Act::sort_ahead:
       return;  // the scatter sorts
     case Act::clear:
-      return for_each_field("clear", nodes());
+      return clear(step);
     case Act::scatter_momentum:
     case Act::scatter_force:
       return scatter(pass, step);
@@ -131,6 +131,13 @@ void DeviceBackend<T>::perform(const Pass& pass, const StepInfo& step) {
     default:  // the other acts share a visit with one of these
       throw std::logic_error("the device does not execute pass \"" + pass.name() + "\"");
   }
+}
+
+template <class T>
+void DeviceBackend<T>::clear(const StepInfo& step) {
+  if (!forgets_grid(step.step)) return for_each_field("clear", nodes());
+  for_each_field("forget", nodes());
+  for (VelocityField<T>& field : fields_) field.active.clear();
 }
 
 template class DeviceBackend<float>;

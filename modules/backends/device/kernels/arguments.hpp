@@ -13,11 +13,15 @@ inline constexpr int block_cells = 4;
 /// The number of arrays that a table has room for; the host checks it.
 inline constexpr int most_fields = 40;
 
+/// The nodes, one index after another, that are active together (kernels/active_nodes.hpp).
+inline constexpr int nodes_of_run = 16;
+
 /// The arrays of one velocity field.
 template <class T>
 struct NodeArrays {
   T* field[most_fields];  ///< numbered as Scene::Node
   int* folded;            ///< bit a: this ghost was folded along axis a in this step
+  unsigned char* active;  ///< [run of nodes] 1 where anything has reached them
 };
 
 /// How a body's particles conduct and store heat: [0] as solids, [1] when melted, the same where nothing melts.

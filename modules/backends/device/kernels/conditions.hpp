@@ -73,7 +73,7 @@ MPM_HD void impose_conditions(const Team& team, const Arguments<typename Scene::
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   constexpr int D = Scene::dimension;
-  for_each_index(team, a.node_count, [&](int node) {
+  for_each_node(team, a, [&](int node) {
     if (!(a.grid.field[N::mass][node] > T(0))) return;
     const Vec<D, T> now = load<D>(a.grid.field[N::velocity], a.node_count, node);
     Vec<D, T> velocity = now;
@@ -93,7 +93,7 @@ MPM_HD void held(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   constexpr int D = Scene::dimension;
-  sum_over<support_sums>(team, a, a.node_count, [&](int node, double* sums) {
+  sum_over_nodes<support_sums>(team, a, [&](int node, double* sums) {
     const double mass = a.grid.field[N::mass][node];
     if (!(mass > 0)) return;
     double velocity[3] = {}, place[3];

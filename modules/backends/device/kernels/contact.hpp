@@ -234,6 +234,7 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
     const bool weld = Scene::bypasses_detection;
     if constexpr (Scene::notes_contact)
       if (a.noted.met) a.noted.met[node] = -1;
+    if (!is_active(a.grid, node)) return;
     ContactPair<D, T> pair;
     pair.mass_a = a.grid.field[N::mass][node], pair.mass_b = a.other.field[N::mass][node];
     if (!meet(pair.mass_a, pair.mass_b, weld)) return;

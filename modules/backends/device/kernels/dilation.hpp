@@ -18,7 +18,7 @@ inline constexpr int mean_scalars = 2 * Tile<Scene::dimension>::nodes;
 
 template <int sum, int volume, class T>
 MPM_HD void clear_sums(const Team& team, const Arguments<T>& a) {
-  for_each_index(team, a.node_count, [&](int node) { a.grid.field[sum][node] = a.grid.field[volume][node] = T(0); });
+  for_each_node(team, a, [&](int node) { a.grid.field[sum][node] = a.grid.field[volume][node] = T(0); });
 }
 
 /// Gives w V and w V times a value to the nodes, V the current volume of a particle.
@@ -45,7 +45,7 @@ MPM_HD void fold_sums(const Team& team, const Arguments<T>& a) {
 /// Computes the average at a node, which is 0 where there are no particles.
 template <int sum, int volume, int mean, class T>
 MPM_HD void divide_sums(const Team& team, const Arguments<T>& a) {
-  for_each_index(team, a.node_count, [&](int node) {
+  for_each_node(team, a, [&](int node) {
     const T of_node = a.grid.field[volume][node];
     a.grid.field[mean][node] = of_node > T(0) ? a.grid.field[sum][node] / of_node : T(0);
   });

@@ -4,6 +4,7 @@
 // multiples of two steps, 2^-40 and 2^-80 of the power of two above that value; the third one adds the sums to the grid.
 // A value below 2^-27 of the largest one in double precision, or 2^-56 in float, loses digits; 2^23 values may meet.
 
+#include "backends/device/kernels/active_nodes.hpp"
 #include "backends/device/kernels/arrays.hpp"
 #include "kernel/math.hpp"
 
@@ -62,6 +63,7 @@ MPM_HD void add_block_exactly(const Team& team, const Arguments<T>& a, int block
     for (int i = a.blocks.begin[block] + lane; i < end; i += team.lanes())
       contribute(a.blocks.order[i], [&](const int* at, const T* values) {
         const int node = node_index<D>(a, at);
+        note_active(a.grid, node);
         for (int k = 0; k < Channels; ++k) {
           const double value = values[k];
           if (!channel[k] || value == 0) continue;
@@ -84,7 +86,7 @@ MPM_HD void add_block_exactly(const Team& team, const Arguments<T>& a, int block
 /// Adds the sums to the grid, and clears them for the next scatter.
 template <int Channels, class T>
 MPM_HD void take_exact_sums(const Team& team, const Arguments<T>& a, T* const* channel) {
-  for_each_index(team, a.node_count, [&](int node) {
+  for_each_node(team, a, [&](int node) {
     for (int k = 0; k < Channels; ++k) {
       if (!channel[k] || a.exponents[k] > no_exponent) continue;
       unsigned long long* const sums = a.exact_sums + 2 * (static_cast<long long>(k) * a.node_count + node);

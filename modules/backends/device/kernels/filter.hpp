@@ -14,15 +14,14 @@ namespace mpm::device {
 template <class Scene>
 MPM_HD void begin_filter(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  for_each_index(team, Scene::dimension * a.node_count,
-                 [&](int at) { a.grid.field[N::increment][at] = a.grid.field[N::velocity][at]; });
+  for_each_component<Scene::dimension>(team, a,
+                                       [&](int at) { a.grid.field[N::increment][at] = a.grid.field[N::velocity][at]; });
 }
 
 template <class Scene>
 MPM_HD void clear_projection(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
-  for_each_index(team, Scene::dimension * a.node_count,
-                 [&](int at) { a.grid.field[Scene::Node::projection][at] = T(0); });
+  for_each_component<Scene::dimension>(team, a, [&](int at) { a.grid.field[Scene::Node::projection][at] = T(0); });
 }
 
 template <class Scene>
@@ -93,7 +92,7 @@ MPM_HD void update_filter(const Team& team, const Arguments<typename Scene::Scal
   using Filter = typename Scene::Filter;
   using N = typename Scene::Node;
   constexpr int D = Scene::dimension;
-  for_each_index(team, a.node_count, [&](int node) {
+  for_each_node(team, a, [&](int node) {
     const int nodes = a.node_count;
     const T mass = a.grid.field[N::mass][node];
     if (!(mass > T(0))) return;
@@ -118,7 +117,7 @@ MPM_HD void correct_increment(const Team& team, const Arguments<typename Scene::
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   if constexpr (N::trial_velocity >= 0)
-    for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    for_each_component<Scene::dimension>(team, a, [&](int at) {
       T& increment = a.grid.field[N::increment][at];
       if (a.grid.field[N::mass][at % a.node_count] > T(0))
         increment = corrected_increment(increment, a.grid.field[N::velocity][at], a.grid.field[N::trial_velocity][at]);
@@ -131,7 +130,7 @@ MPM_HD void keep_free_velocity(const Team& team, const Arguments<typename Scene:
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   if constexpr (N::velocity_of_constraints >= 0)
-    for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    for_each_component<Scene::dimension>(team, a, [&](int at) {
       T& added = a.grid.field[N::velocity_of_constraints][at];
       const T velocity = a.grid.field[N::velocity][at];
       added = a.after_forces ? without(velocity, added) : velocity;
@@ -167,7 +166,7 @@ MPM_HD void take_free_velocity(const Team& team, const Arguments<typename Scene:
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   if constexpr (N::velocity_of_constraints >= 0)
-    for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    for_each_component<Scene::dimension>(team, a, [&](int at) {
       T &added = a.grid.field[N::velocity_of_constraints][at], &velocity = a.grid.field[N::velocity][at];
       if (!(a.grid.field[N::mass][at % a.node_count] > T(0))) return;
       note_taken_back<Scene>(a, at);
@@ -181,7 +180,7 @@ MPM_HD void measure_constraints(const Team& team, const Arguments<typename Scene
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   if constexpr (N::velocity_of_constraints >= 0)
-    for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    for_each_component<Scene::dimension>(team, a, [&](int at) {
       T& added = a.grid.field[N::velocity_of_constraints][at];
       if (a.grid.field[N::mass][at % a.node_count] > T(0)) added = without(a.grid.field[N::velocity][at], added);
     });
@@ -206,7 +205,7 @@ template <class Scene, class Visit>
 MPM_HD void for_each_kept(const Team& team, const Arguments<typename Scene::Scalar>& a, Visit visit) {
   using N = typename Scene::Node;
   if constexpr (N::unfiltered_velocity >= 0)
-    for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    for_each_component<Scene::dimension>(team, a, [&](int at) {
       visit(a.grid.field[N::velocity][at], a.grid.field[N::unfiltered_velocity][at]);
       if constexpr (N::unfiltered_velocity_of_constraints >= 0)
         visit(a.grid.field[N::velocity_of_constraints][at], a.grid.field[N::unfiltered_velocity_of_constraints][at]);
@@ -244,7 +243,8 @@ MPM_HD void add_correction(const Team& team, const Arguments<typename Scene::Sca
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   if constexpr (N::filter_impulse >= 0 && N::unfiltered_velocity >= 0)
-    for_each_index(team, a.records ? Scene::dimension * a.node_count : 0, [&](int at) {
+    for_each_component<Scene::dimension>(team, a, [&](int at) {
+      if (!a.records) return;
       a.grid.field[N::filter_impulse][at] +=
           a.grid.field[N::mass][at % a.node_count] * a.grid.field[N::unfiltered_velocity][at];
     });
@@ -255,7 +255,7 @@ MPM_HD void add_correction(const Team& team, const Arguments<typename Scene::Sca
 template <class Scene>
 MPM_HD void increment_norm(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<1>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<1>(team, a, [&](int node, double* sum) {
     for (int c = 0; c < Scene::dimension; ++c)
       sum[0] += mass_norm_term(double(a.grid.field[N::mass][node]),
                                double(a.grid.field[N::increment][c * a.node_count + node]));

@@ -2,6 +2,7 @@
 // Ghosts fold onto their mirrors along the lines of one axis, a lane a line, so that nothing is written by two lanes.
 // Walls give velocity, temperature and heat there.
 
+#include "backends/device/kernels/active_nodes.hpp"
 #include "backends/device/kernels/arrays.hpp"
 #include "operators/edges.hpp"
 #include "operators/heat.hpp"
@@ -33,7 +34,7 @@ MPM_HD Fold foot_of_line(const Arguments<T>& a, int line, int side) {
   return {foot, foot, a.axis, side, a.walls[a.axis][side], line, foot, side == 0 ? stride : -stride, 0};
 }
 
-/// Calls body(fold) for every node of a line along a.axis that lies beyond an end and has a mirror or image: the
+/// Calls body(fold) for every active node of a line along a.axis that lies beyond an end and has a mirror or image: the
 /// outermost first when folding, since in a domain of few cells its mirror is a ghost too; last when filling. With
 /// `on_walls` it is also called for nodes on a wall, which are their own mirrors.
 template <class T, class Body>
@@ -48,7 +49,7 @@ MPM_HD void for_each_fold_of_line(const Arguments<T>& a, int line, bool outermos
     Fold fold = foot_of_line(a, line, side);
     const int upward = side == 0 ? fold.inward : -fold.inward, origin = fold.foot - (side == 0 ? 0 : cells) * upward;
     fold.ghost = origin + i * upward, fold.mirror = origin + mirror * upward, fold.beyond = beyond;
-    body(fold);
+    if (is_active(a.grid, fold.ghost)) body(fold);
   }
 }
 

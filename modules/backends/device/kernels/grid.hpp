@@ -7,12 +7,25 @@
 
 namespace mpm::device {
 
+/// Sets all fields of active nodes to zero, before no node is active any more.
+template <class Scene>
+MPM_HD void forget(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  for_each_node(team, a, [&](int node) {
+    a.grid.folded[node] = 0;
+    Scene::for_each_node_field([&](auto field) {
+      using F = decltype(field);
+      for (int c = 0; c < F::components; ++c)
+        a.grid.field[F::number][c * a.node_count + node] = typename Scene::Scalar(0);
+    });
+  });
+}
+
 /// Sets to zero what scatters add to; for the remap of MUSL masses and momenta only.
 template <class Scene>
 MPM_HD void clear(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
-  for_each_index(team, a.node_count, [&](int node) {
+  for_each_node(team, a, [&](int node) {
     a.grid.folded[node] = 0;
     Scene::for_each_node_field([&](auto field) {
       using F = decltype(field);
@@ -28,7 +41,7 @@ MPM_HD void clear(const Team& team, const Arguments<typename Scene::Scalar>& a) 
 template <class Scene>
 MPM_HD void weigh(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  for_each_index(team, a.node_count, [&](int node) {
+  for_each_node(team, a, [&](int node) {
     for (int c = 0; c < Scene::dimension; ++c)
       a.grid.field[N::weight][c * a.node_count + node] += a.grid.field[N::mass][node] * a.gravity[c];
   });
@@ -114,8 +127,9 @@ MPM_HD void fold_masses(const Team& team, const Arguments<typename Scene::Scalar
       };
       if (!approaches(fold.side, speed(fold.ghost) + speed(fold.mirror))) return;
     }
-    if (fold.ghost != fold.mirror) a.grid.folded[fold.ghost] |= 1 << fold.axis;
     if (fold.ghost != fold.mirror) {
+      a.grid.folded[fold.ghost] |= 1 << fold.axis;
+      note_active(a.grid, fold.mirror);
       note_work_of_fold<Scene>(a, fold);
       note_image<Scene>(
           a, fold, mass, [&](int c) { return a.grid.field[N::momentum][c * a.node_count + fold.ghost]; }, sums);
@@ -212,7 +226,7 @@ template <class Scene>
 MPM_HD void divide(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
-  for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+  for_each_component<Scene::dimension>(team, a, [&](int at) {
     const T mass = a.grid.field[N::mass][at % a.node_count];
     a.grid.field[N::velocity][at] = mass > T(0) ? velocity_of(a.grid.field[N::momentum][at], mass) : T(0);
   });
@@ -223,8 +237,8 @@ template <class Scene>
 MPM_HD void keep_velocity(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
   if constexpr (N::velocity_before >= 0)
-    for_each_index(team, Scene::dimension * a.node_count,
-                   [&](int at) { a.grid.field[N::velocity_before][at] = a.grid.field[N::velocity][at]; });
+    for_each_component<Scene::dimension>(
+        team, a, [&](int at) { a.grid.field[N::velocity_before][at] = a.grid.field[N::velocity][at]; });
 }
 
 /// Applies v += dt f / m.
@@ -232,7 +246,7 @@ template <class Scene>
 MPM_HD void accelerate(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
-  for_each_index(team, a.node_count, [&](int node) {
+  for_each_node(team, a, [&](int node) {
     const T mass = a.grid.field[N::mass][node];
     for (int at = node; at < Scene::dimension * a.node_count; at += a.node_count) {
       T& velocity = a.grid.field[N::velocity][at];
@@ -247,7 +261,7 @@ MPM_HD void damp(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   if constexpr (N::velocity_before >= 0)
-    for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+    for_each_component<Scene::dimension>(team, a, [&](int at) {
       const T mass = a.grid.field[N::mass][at % a.node_count];
       if (!(mass > T(0))) return;
       T& velocity = a.grid.field[N::velocity][at];

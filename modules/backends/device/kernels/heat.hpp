@@ -135,7 +135,7 @@ template <class Scene>
 MPM_HD void divide_heat(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
-  for_each_index(team, a.node_count, [&](int node) {
+  for_each_node(team, a, [&](int node) {
     const T capacity = a.grid.field[N::heat_capacity][node];
     a.grid.field[N::temperature][node] = capacity > T(0) ? temperature_of(a.grid.field[N::heat][node], capacity) : T(0);
   });
@@ -148,7 +148,7 @@ MPM_HD void impose_temperature(const Team& team, const Arguments<typename Scene:
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   constexpr int D = Scene::dimension;
-  sum_over<2>(team, a, a.node_count, [&](int node, double* sums) {
+  sum_over_nodes<2>(team, a, [&](int node, double* sums) {
     const T capacity = a.grid.field[N::heat_capacity][node];
     if (!(capacity > T(0))) return;
     T& temperature = a.grid.field[N::temperature][node];
@@ -196,8 +196,8 @@ template <class Scene>
 MPM_HD void keep_temperature(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
   if constexpr (N::temperature_before >= 0)
-    for_each_index(team, a.node_count,
-                   [&](int node) { a.grid.field[N::temperature_before][node] = a.grid.field[N::temperature][node]; });
+    for_each_node(team, a,
+                  [&](int node) { a.grid.field[N::temperature_before][node] = a.grid.field[N::temperature][node]; });
 }
 
 /// Takes heat through the walls that a node stands on, an axis at a time, a lane a line: the node shares what comes
@@ -239,7 +239,7 @@ MPM_HD void exchange_at_walls(const Team& team, const Arguments<typename Scene::
 template <class Scene>
 MPM_HD void mass_of_box(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   constexpr int D = Scene::dimension;
-  sum_over<1>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<1>(team, a, [&](int node, double* sum) {
     int at[D];
     coordinates_of_node<D>(a, node, at);
     if (is_inside<D>(a.heat_boxes[a.heat_box], at)) sum[0] += a.grid.field[Scene::Node::mass][node];
@@ -252,7 +252,7 @@ MPM_HD void warm_box(const Team& team, const Arguments<typename Scene::Scalar>& 
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   constexpr int D = Scene::dimension;
-  sum_over<1>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<1>(team, a, [&](int node, double* sum) {
     const HeatBox<T>& box = a.heat_boxes[a.heat_box];
     int at[D];
     coordinates_of_node<D>(a, node, at);
@@ -271,7 +271,7 @@ template <class Scene>
 MPM_HD void warm(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
-  for_each_index(team, a.node_count, [&](int node) {
+  for_each_node(team, a, [&](int node) {
     const T capacity = a.grid.field[N::heat_capacity][node];
     T& temperature = a.grid.field[N::temperature][node];
     temperature = capacity > T(0) ? warmed(temperature, a.grid.field[N::heat_rate][node], capacity, a.dt) : T(0);
@@ -344,19 +344,18 @@ MPM_HD void change_phase(const Team& team, const Arguments<typename Scene::Scala
 /// Sums H.
 template <class Scene>
 MPM_HD void heat_of_nodes(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  sum_over<1>(team, a, a.node_count, [&](int node, double* sum) { sum[0] += a.grid.field[Scene::Node::heat][node]; });
+  sum_over_nodes<1>(team, a, [&](int node, double* sum) { sum[0] += a.grid.field[Scene::Node::heat][node]; });
 }
 /// Sums R.
 template <class Scene>
 MPM_HD void heat_rate_of_nodes(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  sum_over<1>(team, a, a.node_count,
-              [&](int node, double* sum) { sum[0] += a.grid.field[Scene::Node::heat_rate][node]; });
+  sum_over_nodes<1>(team, a, [&](int node, double* sum) { sum[0] += a.grid.field[Scene::Node::heat_rate][node]; });
 }
 /// Sums C T.
 template <class Scene>
 MPM_HD void heat_of_temperatures(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<1>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<1>(team, a, [&](int node, double* sum) {
     sum[0] += double(a.grid.field[N::heat_capacity][node]) * a.grid.field[N::temperature][node];
   });
 }

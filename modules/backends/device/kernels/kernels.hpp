@@ -20,6 +20,7 @@
 #include "backends/device/kernels/sorting.hpp"
 
 #define MPM_DEVICE_ENTRIES                                                                \
+  MPM_DEVICE_PHASE(mpm_forget, forget<Scene>, 1)                                          \
   MPM_DEVICE_PHASE(mpm_clear, clear<Scene>, 1)                                            \
   MPM_DEVICE_PHASE(mpm_scatter, scatter<Scene>, mpm::device::scatter_scalars<Scene>)      \
   MPM_DEVICE_PHASE(mpm_weigh, weigh<Scene>, 1)                                            \

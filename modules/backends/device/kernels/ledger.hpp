@@ -12,7 +12,7 @@ namespace mpm::device {
 template <class Scene>
 MPM_HD void energy_of_momenta(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<1>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<1>(team, a, [&](int node, double* sum) {
     const double mass = a.grid.field[N::mass][node];
     if (!(mass > 0)) return;
     for (int c = 0; c < Scene::dimension; ++c) {
@@ -26,7 +26,7 @@ MPM_HD void energy_of_momenta(const Team& team, const Arguments<typename Scene::
 template <class Scene>
 MPM_HD void energy_of_velocities(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<1>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<1>(team, a, [&](int node, double* sum) {
     const double mass = a.grid.field[N::mass][node];
     if (!(mass > 0)) return;
     for (int c = 0; c < Scene::dimension; ++c)
@@ -40,7 +40,7 @@ MPM_HD void clear_work_of_folds(const Team& team, const Arguments<typename Scene
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   if constexpr (N::work_of_folds >= 0)
-    for_each_index(team, a.node_count, [&](int node) {
+    for_each_node(team, a, [&](int node) {
       a.grid.field[N::work_of_folds][node] = a.grid.field[N::work_beyond_walls][node] = T(0);
     });
 }
@@ -50,7 +50,7 @@ template <class Scene>
 MPM_HD void clear_impulses(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
-  for_each_index(team, Scene::dimension * a.node_count, [&](int at) {
+  for_each_component<Scene::dimension>(team, a, [&](int at) {
     if constexpr (N::boundary_impulse >= 0) a.grid.field[N::boundary_impulse][at] = T(0);
     if constexpr (N::contact_impulse >= 0) a.grid.field[N::contact_impulse][at] = T(0);
     if constexpr (N::filter_impulse >= 0) a.grid.field[N::filter_impulse][at] = T(0);
@@ -70,7 +70,7 @@ MPM_HD double impulse_at(const Arguments<T>& a, int at) {
 template <class Scene>
 MPM_HD void work_of_impulses(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<3>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<3>(team, a, [&](int node, double* sum) {
     const double mass = a.grid.field[N::mass][node];
     if (!(mass > 0)) return;
     for (int at = node; at < Scene::dimension * a.node_count; at += a.node_count) {
@@ -88,7 +88,7 @@ MPM_HD void work_of_impulses(const Team& team, const Arguments<typename Scene::S
 template <class Scene>
 MPM_HD void power_of_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<2>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<2>(team, a, [&](int node, double* sum) {
     if constexpr (Scene::ledger)
       for (int c = 0; c < Scene::dimension && a.grid.field[N::mass][node] > 0; ++c) {
         const int at = c * a.node_count + node;
@@ -103,7 +103,7 @@ MPM_HD void power_of_forces(const Team& team, const Arguments<typename Scene::Sc
 template <class Scene>
 MPM_HD void power_of_filter(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<1>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<1>(team, a, [&](int node, double* sum) {
     if constexpr (Scene::ledger && N::unfiltered_velocity >= 0)
       for (int at = node; at < Scene::dimension * a.node_count; at += a.node_count)
         sum[0] += double(a.dt) * a.grid.field[N::force][at] *
@@ -115,7 +115,7 @@ MPM_HD void power_of_filter(const Team& team, const Arguments<typename Scene::Sc
 template <class Scene>
 MPM_HD void work_of_folds(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<2>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<2>(team, a, [&](int node, double* sum) {
     if constexpr (N::work_of_folds >= 0) {
       sum[0] += a.grid.field[N::work_of_folds][node];
       sum[1] += a.grid.field[N::work_beyond_walls][node];
@@ -127,7 +127,7 @@ MPM_HD void work_of_folds(const Team& team, const Arguments<typename Scene::Scal
 template <class Scene>
 MPM_HD void momentum_of_nodes(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<4>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<4>(team, a, [&](int node, double* sum) {
     for (int c = 0; c < Scene::dimension; ++c) sum[c] += a.grid.field[N::momentum][c * a.node_count + node];
     sum[3] += a.grid.field[N::mass][node];
   });
@@ -149,7 +149,7 @@ MPM_HD void momentum_of_particles(const Team& team, const Arguments<typename Sce
 template <class Scene>
 MPM_HD void work_of_forces(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using N = typename Scene::Node;
-  sum_over<11>(team, a, a.node_count, [&](int node, double* sum) {
+  sum_over_nodes<11>(team, a, [&](int node, double* sum) {
     if constexpr (Scene::ledger) {
       const double mass = a.grid.field[N::mass][node], dt = a.dt;
       if (!(mass > 0)) return;

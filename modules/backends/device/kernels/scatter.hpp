@@ -36,6 +36,20 @@ inline constexpr int channels_together = Channels* Tile<D>::nodes* static_cast<i
                                              ? Channels
                                              : shared_bytes / (Tile<D>::nodes * static_cast<int>(sizeof(T)));
 
+/// Notes that the nodes of the row-th row of a block's tile are active. A tile may reach beyond the grid.
+template <int D, class T>
+MPM_HD void note_row(const Arguments<T>& a, const int* first_cell, int row) {
+  int node[D];
+  Tile<D>::coordinates(first_cell, row * Tile<D>::side, node);
+  for (int c = 0; c < D; ++c)
+    if (node[c] >= a.extent[c] - a.padding[c] || (c > 0 && node[c] < -a.padding[c])) return;
+  const int last_of_grid = a.extent[0] - a.padding[0] - 1, last_of_tile = node[0] + Tile<D>::side - 1;
+  if (node[0] < -a.padding[0]) node[0] = -a.padding[0];
+  const int count = (last_of_tile < last_of_grid ? last_of_tile : last_of_grid) - node[0] + 1;
+  const int begin = node_index<D>(a, node), end = begin + count;
+  for (int at = begin; at < end; at = (at / nodes_of_run + 1) * nodes_of_run) note_active(a.grid, at);
+}
+
 /// Sums over the particles of each block, which are visited once more for channels that find no room. `contribute(p, add)`
 /// calls add(node, values[Channels]); `channel[k]` is the grid's array of channel k, or null where nothing is given to it.
 template <int D, int Channels, class T, class Contribute>
@@ -48,12 +62,15 @@ MPM_HD void scatter_block(const Team& team, const Arguments<T>& a, int block, T*
     const int count = Channels - first < together ? Channels - first : together;
     team.for_each_lane([&](int lane) {
       for (int k = lane; k < count * Tile<D>::nodes; k += team.lanes()) tile[k] = T(0);
+      if (first > 0) return;
+      for (int row = lane; row < Tile<D>::nodes / Tile<D>::side; row += team.lanes()) note_row<D>(a, first_cell, row);
     });
     team.for_each_lane([&](int lane) {
       const int end = a.blocks.begin[block + 1];
       for (int i = a.blocks.begin[block] + lane; i < end; i += team.lanes())
         contribute(a.blocks.order[i], [&](const int* node, const T* values) {
           const int at = Tile<D>::index(first_cell, node);
+          if (at < 0) note_active(a.grid, node_index<D>(a, node));
           for (int k = 0; k < count; ++k) {
             T* const to = channel[first + k];
             if (to)

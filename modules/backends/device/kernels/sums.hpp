@@ -2,6 +2,7 @@
 // Sums and largest values over nodes and particles, in double precision. A team joins its lanes in shared memory, and one
 // team the teams; the order in which they are joined depends on the number of lanes alone.
 
+#include "backends/device/kernels/active_nodes.hpp"
 #include "backends/device/kernels/arrays.hpp"
 
 namespace mpm::device {
@@ -54,6 +55,14 @@ MPM_HD void sum_over(const Team& team, const Arguments<T>& a, int count, Body bo
     for (int k = 0; k < Count; ++k) of_lane[lane * Count + k] = values[k];
   });
   join_lanes<Join>(team, of_lane, Count, Maxima, a.partial_sums + team.block() * Count);
+}
+
+/// Does the same over the active nodes of a.grid; the others give nothing.
+template <int Count, class T, class Body>
+MPM_HD void sum_over_nodes(const Team& team, const Arguments<T>& a, Body body) {
+  sum_over<Count>(team, a, a.node_count, [&](int node, double* values) {
+    if (is_active(a.grid, node)) body(node, values);
+  });
 }
 
 /// Joins what all teams of the launch before have left in partial_sums, in one team, and hands it to a.sums.

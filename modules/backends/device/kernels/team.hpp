@@ -33,7 +33,12 @@ class Team {
   MPM_HD static void lower(unsigned long long* to, unsigned long long value) { atomicMin(to, value); }
   /// Raises a counter by one and returns its value before; which lane gets which depends on their order.
   MPM_HD static int take_number(int* counter) { return atomicAdd(counter, 1); }
-  /// Reads what others may lower or raise at the same time.
+  /// Writes what all lanes that write there write.
+  template <class T>
+  MPM_HD static void put(T* to, T value) {
+    *static_cast<volatile T*>(to) = value;
+  }
+  /// Reads what others may lower, raise or put at the same time.
   template <class T>
   MPM_HD static T look(const T* at) {
     return *static_cast<const volatile T*>(at);
@@ -106,6 +111,11 @@ class Team {
   static int take_number(int* counter) {
     const SharedAccess noted;
     return (*counter)++;
+  }
+  template <class T>
+  static void put(T* to, T value) {
+    const SharedAccess noted;
+    *to = value;
   }
   template <class T>
   static T look(const T* at) {
