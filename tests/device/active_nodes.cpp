@@ -65,6 +65,9 @@ TEST_CASE("nothing that a body leaves behind on the grid counts any more", "[dev
   Mix lists = around;
   lists.shape = R"({"type": "cpdi"})", lists.transfer = R"({"type": "flip"})";
   check_on_device(long_way(lists), {"double"});
+  lists.overrides = {set("/bodies/1/initial_deformation_gradient", R"({"yy": 6})"),  // three cells to each side
+                     set("/materials/m/youngs_modulus", "1e-3")};
+  check_on_device(long_way(lists), {"double"});
   Mix averaged = around;
   averaged.filter = R"({"type": "fmpm", "order": 3})";
   averaged.overrides = {set("/solver/dilation", "averaged")};

@@ -32,7 +32,6 @@ std::vector<TakenMemory> taken_by_each(const Experiment& experiment, const Plan&
   const double all_nodes = static_cast<double>(nodes) * experiment.field_count;
   add(node_fields(experiment, plan), TakenMemory::of_nodes, all_nodes);
   all.push_back({"folded", TakenMemory::of_nodes, 1, all_nodes * sizeof(int), true});
-  all.push_back({"active", TakenMemory::of_nodes, 1, all_nodes / nodes_of_run, true});
   if (ContactPoints(experiment).needed()) {
     const double pairs = 0.5 * experiment.field_count * (experiment.field_count - 1);
     all.push_back({"contact", TakenMemory::of_nodes, 2 + experiment.dimension,
@@ -71,6 +70,8 @@ std::vector<TakenMemory> taken_memory(const Experiment& experiment, const Plan& 
     const std::size_t ints = room.of_table + room.of_chunks + room.of_list + room.state;
     all.push_back({"tables of blocks", static_cast<int>(body), 1, static_cast<double>(ints) * sizeof(int), true});
   }
+  const std::size_t runs = (size.nodes + nodes_of_run - 1) / nodes_of_run;
+  all.push_back({"active", TakenMemory::of_nodes, 1, static_cast<double>(runs) * experiment.field_count, true});
   const std::size_t sums = room_for_sums(size) + Results::numbers;
   all.push_back({"sums", TakenMemory::of_run, 1, static_cast<double>(sums) * sizeof(double), true});
   return all;
