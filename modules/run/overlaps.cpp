@@ -119,6 +119,27 @@ class Places {
   std::map<int, Bins> bins_;
 };
 
+/// The experiment with the body of an emitter in the emitter's region alone.
+Experiment filled_by(const Experiment& experiment, const Emitter& emitter) {
+  Experiment filled = experiment;
+  BodySpecification& body = filled.bodies[static_cast<std::size_t>(emitter.body)];
+  body.geometry = emitter.geometry, body.starts_empty = false;
+  filled.grips.clear();
+  return filled;
+}
+
+/// Counts the particles of overlap.body inside overlap.rigid_body, and adds it where there are any.
+void note_overlap(const Experiment& experiment, RigidOverlap overlap, std::vector<RigidOverlap>& found) {
+  const Geometry& geometry = *experiment.rigid_bodies[static_cast<std::size_t>(overlap.rigid_body)].geometry;
+  for_each_place(experiment, overlap.body, [&](const Vector3& x) {
+    const double depth = -geometry.distance(x);
+    if (!(depth > 1e-6 * experiment.grid.cell_size)) return;  // else it touches
+    ++overlap.particles;
+    overlap.deepest = std::max(overlap.deepest, depth);
+  });
+  if (overlap.particles > 0) found.push_back(overlap);
+}
+
 constexpr double half = 0.5 * (1 - 1e-6);  ///< particles of bodies that touch are half a spacing from the face each
 constexpr double same_place = 1e-6;
 
@@ -160,32 +181,33 @@ std::string Overlap::text(const Experiment& experiment) const {
 
 std::vector<RigidOverlap> rigid_overlaps_of(const Experiment& experiment) {
   std::vector<RigidOverlap> found;
-  const double touching = 1e-6 * experiment.grid.cell_size;
   for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body)
     for (int rigid = 0; rigid < static_cast<int>(experiment.rigid_bodies.size()); ++rigid) {
       const Geometry& geometry = *experiment.rigid_bodies[static_cast<std::size_t>(rigid)].geometry;
       const auto [lower, upper] = geometry.bounds();
       const Box of_body = bounds_of(experiment, experiment.bodies[static_cast<std::size_t>(body)]);
       if (!has_volume(experiment, common(of_body, {lower, upper}))) continue;
-      RigidOverlap overlap{body, rigid};
-      for_each_place(experiment, body, [&](const Vector3& x) {
-        const double depth = -geometry.distance(x);
-        if (!(depth > touching)) return;
-        ++overlap.particles;
-        overlap.deepest = std::max(overlap.deepest, depth);
-      });
-      if (overlap.particles > 0) found.push_back(overlap);
+      note_overlap(experiment, {body, rigid}, found);
     }
+  for (std::size_t emitter = 0; emitter < experiment.emitters.size(); ++emitter) {
+    const Experiment filled = filled_by(experiment, experiment.emitters[emitter]);
+    for (int rigid = 0; rigid < static_cast<int>(experiment.rigid_bodies.size()); ++rigid)
+      note_overlap(filled, {experiment.emitters[emitter].body, rigid, static_cast<int>(emitter)}, found);
+  }
   return found;
 }
 
 std::string RigidOverlap::text(const Experiment& experiment) const {
   std::ostringstream words;
-  words << particles << " particles of body " << in_quotes(experiment.bodies[static_cast<std::size_t>(body)].name)
-        << " begin inside rigid body " << in_quotes(experiment.rigid_bodies[static_cast<std::size_t>(rigid_body)].name)
+  words << particles << " particles of ";
+  if (emitter < 0)
+    words << "body " << in_quotes(experiment.bodies[static_cast<std::size_t>(body)].name);
+  else
+    words << "each batch of emitter " << in_quotes(experiment.emitters[static_cast<std::size_t>(emitter)].name);
+  words << " begin inside rigid body " << in_quotes(experiment.rigid_bodies[static_cast<std::size_t>(rigid_body)].name)
         << ", the deepest " << std::setprecision(3) << deepest
         << " m below its surface: a law of contact stops what approaches and pushes nothing out; move one of them, or "
-        << "cut the body out with the geometry \"difference\" (docs/experiment_file.md#rigid-bodies)";
+        << "cut out what is in both with the geometry \"difference\" (docs/experiment_file.md#rigid-bodies)";
   return words.str();
 }
 

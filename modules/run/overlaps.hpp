@@ -24,9 +24,10 @@ struct Overlap {
 /// The pairs of bodies of which one has most of its particles in the other.
 std::vector<Overlap> overlaps_of(const Experiment& experiment);
 
-/// A body of which particles begin inside a rigid body.
+/// A body of which particles begin inside a rigid body, or an emitter whose region lies in one at the start.
 struct RigidOverlap {
   int body = 0, rigid_body = 0;
+  int emitter = -1;  ///< that fills the body; -1 for the particles that it begins with
   std::size_t particles = 0;
   double deepest = 0;  ///< m, below the rigid body's surface
 

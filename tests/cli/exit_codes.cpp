@@ -257,7 +257,7 @@ TEST_CASE("a warning of a fluid that is compressed beyond the formula of Mie-Gru
   }
 }
 
-TEST_CASE("a warning of particles that begin inside a rigid body, and none of those on its face") {
+TEST_CASE("a warning of particles that begin or are emitted inside a rigid body, and none of those on its face") {
   Json scene = two_balls();
   scene["bodies"] = Json::array({scene["bodies"][0]});
   scene.erase("contact");
@@ -277,6 +277,17 @@ TEST_CASE("a warning of particles that begin inside a rigid body, and none of th
             "warning: 64 particles of body \"ball\" begin inside rigid body \"floor\", the deepest 0.0875 m"));
   const Result ran = call(folder, {"run", "in_it.json", "--out", "run"});
   CHECK(has(json_in(folder / "run/summary.json")["warnings"].dump(), "begin inside rigid body"));
+  // An emitter counts by its region: of the four rows that fill it two are below the floor's face.
+  Json emitting = scene;
+  emitting["emitters"] = Json::parse(R"([{"name": "nozzle", "body": "ball", "velocity": [0, -1],
+    "geometry": {"type": "box", "lower": [0.2, 0.15], "upper": [0.3, 0.25]}}])");
+  emitting["bodies"][0].erase("geometry");
+  spill(folder / "emitter.json", emitting.dump());
+  const Result emitter = call(folder, {"check", "emitter.json"});
+  INFO(emitter.err);
+  CHECK(has(emitter.err,
+            "warning: 8 particles of each batch of emitter \"nozzle\" begin inside rigid body \"floor\", the deepest "
+            "0.0375 m"));
   // A slope through the block's middle: the particles below it, but for those on its face.
   scene["rigid_bodies"][0]["geometry"] = {{"type", "half_space"}, {"point", {0.4, 0.3}}, {"normal", {1, 1}}};
   spill(folder / "slope.json", scene.dump());
