@@ -51,6 +51,10 @@ struct SmallGrid {
     device::DeviceArray<int> folds(device, "folds");
     folds.upload(folded);
     a.grid.folded = folds.data();
+    device::DeviceArray<unsigned char> active(device, "active",
+                                              (nodes + device::nodes_of_run - 1) / device::nodes_of_run);
+    active.fill(1);
+    a.grid.active = active.data();
     device::DeviceArray<device::Stopped> stop(device, "the failed particle");
     stop.upload(std::vector<device::Stopped>{device::nothing_stopped});
     a.stop = stop.data();
