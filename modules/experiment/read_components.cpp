@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "experiment/artificial_viscosity.hpp"
+#include "experiment/contact_settings.hpp"
 #include "experiment/reader.hpp"
 #include "experiment/thermal.hpp"
 #include "plugin/extension_of.hpp"
@@ -180,7 +181,7 @@ void ExperimentReader::read_normal(const Fields& contact) {
                                ": {\"type\": " + in_quotes(node.text) + ", " + in_quotes(declared.name) + ": …}");
 }
 
-/// Refuses a choice of normal or detection that nobody would look at.
+/// Refuses a choice of normal or detection that nobody would look at, and a cap that the law or its normal cannot take.
 void ExperimentReader::check_contact(const Fields& fields) {
   for (const std::string key : {"normal", "detection"}) {
     if (!fields.given(key) || !fields.valid(key)) continue;
@@ -193,6 +194,9 @@ void ExperimentReader::check_contact(const Fields& fields) {
                                      " joins bodies at every node that they share and looks at no " + key +
                                      "; remove it");
   }
+  if (!fields.given("strain_cap") || !experiment_.contact_normal) return;
+  const std::string why = refuses_strain_cap(*experiment_.contact, *experiment_.contact_normal);
+  if (!why.empty()) problem(fields.place("strain_cap"), why + "; remove it");
 }
 
 void ExperimentReader::read_materials(const Node* node) {

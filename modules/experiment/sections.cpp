@@ -611,6 +611,11 @@ std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind
       section.parameters.push_back(parameter("detection", Type::choice, "", "When two fields count as touching.")
                                        .of({"approach_and_position", "particle_surfaces"})
                                        .standard("approach_and_position"));
+      section.parameters.push_back(
+          parameter(
+              "strain_cap", Type::number, "",
+              "Largest strain of a cell by one correction of a pair: time step times change of velocity over cell.")
+              .above(0));
     }
     if (wanted == MPM_MATERIAL) {
       section.parameters.push_back(thermal_parameter(*plugin));

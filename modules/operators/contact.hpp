@@ -2,6 +2,7 @@
 // What happens at a node to two velocity fields that meet there, around the law's own formula (abi.h, mpm_contact). S is
 // the scalar of the fields. Loops over pairs and nodes, and where the values lie, are the caller's.
 
+#include "kernel/math.hpp"
 #include "operators/motion.hpp"
 
 namespace mpm {
@@ -70,6 +71,23 @@ MPM_HD S momentum_beside(S velocity_a, S velocity_b, S mass) {
 template <class S>
 MPM_HD double welding_impulse(S velocity_a, S velocity_b, S mass_a, S mass_b) {
   return double(mass_a) / (1 + double(mass_a) / double(mass_b)) * (double(velocity_b) - double(velocity_a));
+}
+
+/// The share of a law's impulse that changes the velocity of neither body of a pair by more than `most`, m/s, given the
+/// impulse's square: one factor for both, so that what one gives the other takes (Bardenhagen et al. 2001, CMES 2:509).
+template <class S>
+MPM_HD S share_under_cap(S square, S mass_a, S mass_b, S most) {
+  const S change = sqrt(square) / min(mass_a, mass_b);
+  return change > most ? most / change : S(1);
+}
+
+/// What a share of an impulse dissipates where the whole would dissipate `whole`, J: what it takes less of sliding at
+/// their mean velocity. `work` is the impulse's part along the face times the velocity of a beside b before it, J, and
+/// `square` the square of that part.
+template <class S>
+MPM_HD S dissipated_by_share(S whole, S share, S work, S square, S mass_a, S mass_b) {
+  const S left = S(0.5) * square * (1 / mass_a + 1 / mass_b);
+  return max(S(0), whole + (1 - share) * work + (1 - share * share) * left);
 }
 
 /// Adds to `along` the part of field a's impulse along the pair's unit normal, kg m/s, and to `pressing` how hard that

@@ -192,7 +192,8 @@ std::vector<RigidOverlap> rigid_overlaps_of(const Experiment& experiment) {
   for (std::size_t emitter = 0; emitter < experiment.emitters.size(); ++emitter) {
     const Experiment filled = filled_by(experiment, experiment.emitters[emitter]);
     for (int rigid = 0; rigid < static_cast<int>(experiment.rigid_bodies.size()); ++rigid)
-      note_overlap(filled, {experiment.emitters[emitter].body, rigid, static_cast<int>(emitter)}, found);
+      if (!experiment.rigid_bodies[static_cast<std::size_t>(rigid)].moves())  // else it may be elsewhere by then
+        note_overlap(filled, {experiment.emitters[emitter].body, rigid, static_cast<int>(emitter)}, found);
   }
   return found;
 }

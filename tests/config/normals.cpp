@@ -1,5 +1,6 @@
 // The contact normal as the file chooses it: by a word or with parameters, and what is refused by name.
 
+#include "experiment/contact_settings.hpp"
 #include "plan/plan.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
@@ -88,6 +89,22 @@ TEST_CASE("what is no normal, or cannot be one, is refused by name", "[normals]"
   says(scene(R"({"type": "stick", "normal": "mass_gradient"})"),
        "/contact/normal: \"stick\" joins bodies at every node that they share and looks at no normal");
   CHECK(refusal(scene(with("\"own_gradient\""))) == "accepted");
+}
+
+TEST_CASE("a strain cap is refused by laws and normals that a part of an impulse does not fit", "[contact]") {
+  const auto says = [](const std::string& contact, const std::string& part) {
+    INFO(contact);
+    CHECK_THAT(refusal(scene(contact)), ContainsSubstring(part));
+  };
+  says(R"({"type": "stick", "strain_cap": 0.2})", "/contact/strain_cap: \"stick\" joins bodies as if they were one");
+  says(R"({"type": "linear_interface", "normal_stiffness": 3e4, "strain_cap": 0.2})",
+       "/contact/strain_cap: \"linear_interface\" stores energy by the whole of its impulse");
+  says(R"({"type": "coulomb", "normal": "own_gradient", "strain_cap": 0.2})",
+       "/contact/strain_cap: normal \"own_gradient\" gives each body an impulse of its own");
+  says(R"({"type": "coulomb", "strain_cap": 0})", "/contact/strain_cap");
+  CHECK(refusal(scene(R"({"type": "coulomb", "strain_cap": 0.2, "normal": "widest_gap"})")) == "accepted");
+  CHECK(strain_cap_of(test::experiment_from(scene(R"({"type": "coulomb", "strain_cap": 0.2})"))) == 0.2);
+  CHECK(strain_cap_of(test::experiment_from(scene(R"({"type": "coulomb"})"))) == 0);
 }
 
 // Gradients of volumes make the area of contact too, whatever the normal reads.

@@ -65,9 +65,17 @@ TEST_CASE("nothing that a body leaves behind on the grid counts any more", "[dev
   Mix lists = around;
   lists.shape = R"({"type": "cpdi"})", lists.transfer = R"({"type": "flip"})";
   check_on_device(long_way(lists), {"double"});
-  lists.overrides = {set("/bodies/1/initial_deformation_gradient", R"({"yy": 6})"),  // three cells to each side
+  // Far from one another in wide rows, a column drawn out to three and a half cells on each side of its particles.
+  lists.boundaries = R"({"all": "slip"})";
+  lists.overrides = {set("/grid/domain", "[[0, -2], [6, 3]]"), set("/bodies/1/geometry/lower", "[4.52, 0.2]"),
+                     set("/bodies/1/geometry/upper", "[4.81, 0.6]"),
+                     set("/bodies/1/initial_deformation_gradient", R"({"yy": 14})"),
                      set("/materials/m/youngs_modulus", "1e-3")};
   check_on_device(long_way(lists), {"double"});
+  // Ghosts are folded while particles approach a wall, and no longer.
+  Mix parting;
+  parting.close = true, parting.boundaries = R"({"all": "separate"})", parting.stress_update = "first";
+  check_on_device(long_way(parting), {"double"});
   Mix averaged = around;
   averaged.filter = R"({"type": "fmpm", "order": 3})";
   averaged.overrides = {set("/solver/dilation", "averaged")};

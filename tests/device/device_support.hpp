@@ -148,9 +148,11 @@ inline void use_usual_devices() {
 inline device::DeviceSetup device_setup(const TeamShape& team = {}) {
   static std::once_flag once;
   std::call_once(once, use_usual_devices);
-  return {
+  device::DeviceSetup setup{
       &device::host_driver(), static_cast<int>(team.order), team.lanes,
       [](const device::Composition& composition, const std::string&) { return Programs::shared().of(composition); }};
+  setup.steps_to_forget = 4;  // so that the 14 steps of most scenes come to it
+  return setup;
 }
 
 inline BackendFactory device_factory(const device::DeviceSetup& setup = device_setup()) {

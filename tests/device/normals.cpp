@@ -24,6 +24,11 @@ TEST_CASE("normals and surfaces of particles on the host-run device", "[device][
   Mix sizes;
   sizes.contact = surfaces, sizes.overrides = {"/bodies/0/seeding=partial", "/bodies/1/seeding=partial"};
   check_on_device(sizes);
+  for (const int dimension : {2, 3}) {
+    Mix capped;
+    capped.dimension = dimension, capped.contact = R"({"type": "coulomb", "friction": 0.2, "strain_cap": 0.004})";
+    check_on_device(capped);
+  }
   Mix walls;
   walls.contact = both, walls.close = true;
   walls.boundaries = R"({"all": "separate", "x_min": "periodic", "x_max": "periodic"})";

@@ -102,3 +102,17 @@ TEST_CASE("parity of normals and surfaces of particles beside walls, around an a
     check_parity(sizes);
   }
 }
+
+TEST_CASE("parity of contact under a strain cap", "[parity][normals]") {
+  for (const int dimension : {2, 3})
+    for (const std::string law :
+         {R"({"type": "frictionless", "strain_cap": 0.004})",
+          R"({"type": "coulomb", "friction": 0.2, "strain_cap": 0.004})",
+          R"({"type": "coulomb", "friction": 2, "strain_cap": 0.004, "normal": "widest_gap"})"}) {
+      Mix mix;
+      mix.dimension = dimension, mix.contact = law;
+      check_parity(mix);
+      mix.filter = R"({"type": "fmpm", "order": 2, "constraints": "every_increment"})";
+      if (!is_refused(mix)) check_parity(mix);
+    }
+}

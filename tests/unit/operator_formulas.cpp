@@ -122,6 +122,18 @@ TEST_CASE("walls mirror what is across them with the other sign, and all of what
       (is_relative_to_wall(rule_vector) || is_relative_to_wall(rule_heat_rate) || is_relative_to_wall(rule_slip)));
 }
 
+TEST_CASE("an impulse under a cap changes the lighter body's velocity by the cap, and sliding takes less") {
+  // An impulse of 5 kg m/s on 2 kg and on 8 kg: 2.5 m/s for the lighter one.
+  CHECK(share_under_cap(25.0, 2.0, 8.0, 1.0) == 0.4);
+  CHECK(share_under_cap(25.0, 8.0, 2.0, 1.0) == 0.4);
+  CHECK(share_under_cap(25.0, 2.0, 8.0, 2.6) == 1);
+  // They slide at 3 m/s with a reduced mass of 1.6 kg; an impulse of 4.8 stops them: (1/2) 1.6 3^2 = 7.2 J. A half of it leaves
+  // 1.5 m/s and takes three quarters.
+  CHECK(dissipated_by_share(7.2, 0.5, -3 * 4.8, 4.8 * 4.8, 2.0, 8.0) == Approx(5.4));
+  CHECK(dissipated_by_share(7.2, 1.0, -3 * 4.8, 4.8 * 4.8, 2.0, 8.0) == Approx(7.2));
+  CHECK(dissipated_by_share(0.0, 0.5, 0.0, 0.0, 2.0, 8.0) == 0);
+}
+
 TEST_CASE(
     "a law sees the free body of a pair, whichever the grip holds, by its own mass and its speed beside the other") {
   CHECK(mass_beside_held(true, 2.0, 6.0) == 6);

@@ -5,6 +5,7 @@
 
 #include "backends/device/kernels/sums.hpp"  // largest_team
 #include "backends/device/memory.hpp"
+#include "experiment/contact_settings.hpp"
 #include "experiment/device_settings.hpp"
 #include "simulation/boundary.hpp"
 
@@ -16,7 +17,7 @@ template <class T>
 Arguments<T> described(const Experiment& experiment) {
   const GridSpecification& grid = experiment.grid;
   Arguments<T> scene{};
-  scene.cell_size = static_cast<T>(grid.cell_size);
+  scene.cell_size = static_cast<T>(grid.cell_size), scene.strain_cap = static_cast<T>(strain_cap_of(experiment));
   scene.inverse_cell_size = static_cast<T>(1 / grid.cell_size);
   scene.node_count = 1;
   for (int c = 0; c < 3; ++c) {
@@ -88,6 +89,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
       reactions_(experiment),
       rigid_(*device_, experiment, scene_),
       uses_graphs_(setup.graphs),
+      steps_to_forget_(setup.steps_to_forget),
       graphs_(*device_) {
   const Choice choice = choice_of(experiment, plan);
   const Composition composition = compose(choice);

@@ -81,12 +81,8 @@ class DeviceBackend final : public Backend {
   };
   void perform(const Pass& pass, const StepInfo& step);
   void perform(const std::vector<WaitingPass>& passes);
-  /// Whether a step begins with a grid that no particle has reached. In between the nodes behind a body that moves stay
-  /// active, at a Courant number of 1 as many cells as there are steps.
-  static bool forgets_grid(long step) {
-    constexpr long steps_between = 16;
-    return step % steps_between == 0;
-  }
+  /// Whether a step begins with a grid that no particle has reached.
+  bool forgets_grid(long step) const { return step % steps_to_forget_ == 0; }
   /// Makes the grid ready for the step's scatter.
   void clear(const StepInfo& step);
   /// Does what waits, by a graph where there is one, and looks at what the step has left.
@@ -331,6 +327,7 @@ class DeviceBackend final : public Backend {
   FilterRecord filter_;
   bool prepared_ = false;  ///< stress, volume ratio and block of each particle are those of its place and state
   bool uses_graphs_;
+  long steps_to_forget_;
   StepGraphs graphs_;
   std::vector<WaitingPass> waiting_;
   std::string last_pass_;                 ///< name of the pass that ends every step

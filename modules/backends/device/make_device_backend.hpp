@@ -21,6 +21,9 @@ struct DeviceSetup {
   std::function<std::string(const Composition&, const std::string& architecture)> compile;
   bool graphs = true;  ///< steps that need nothing of the host are launched as graphs
   int teams = 0;       ///< that share the blocks of particles; 0: as many as the device may work on at once
+  /// Steps after which the grid is forgotten (kernels/active_nodes.hpp). Behind a body the nodes that it has left stay active
+  /// as long.
+  long steps_to_forget = 16;
 };
 
 /// Makes the backend; `plan` is that of an experiment with the backend "cuda". All memory is taken here. Throws

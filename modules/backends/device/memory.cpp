@@ -60,7 +60,10 @@ std::vector<TakenMemory> taken_by_each(const Experiment& experiment, const Plan&
 }  // namespace
 
 std::vector<TakenMemory> taken_by_one(const Experiment& experiment, const Plan& plan) {
-  return taken_by_each(experiment, plan, std::vector<std::size_t>(experiment.bodies.size(), 1), 1);
+  std::vector<TakenMemory> all =
+      taken_by_each(experiment, plan, std::vector<std::size_t>(experiment.bodies.size(), 1), 1);
+  all.push_back({"active", TakenMemory::of_nodes, 1, static_cast<double>(experiment.field_count) / nodes_of_run, true});
+  return all;
 }
 
 std::vector<TakenMemory> taken_memory(const Experiment& experiment, const Plan& plan, const SceneSize& size) {

@@ -64,7 +64,7 @@ class StepGraphs {
   }
 
  private:
-  static constexpr std::size_t most = 8;
+  static constexpr std::size_t most = 16;
 
   void forget(const KnownStep& step) {
     if (step.graph) device_.free(step.graph);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "backends/reference/reference_backend.hpp"
+#include "experiment/contact_settings.hpp"
 
 namespace mpm::reference {
 
@@ -91,7 +92,7 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
     return apply_law(law, {seen.mass_a, seen.mass_b, seen.momentum_a, seen.momentum_b, geometry, normal, step.dt,
                            displacement, traction, kept_at(a), kept_at(b), step.step == 0});
   };
-  if (!own) return apply(geometry.normal);
+  if (!own) return capped(apply(geometry.normal), seen, step.dt);
   PairResult result = apply(geometry.own_a);
   const PairResult of_b = apply(geometry.own_b);
   result.returned = of_b.impulse;
@@ -99,6 +100,24 @@ std::optional<ReferenceBackend::PairResult> ReferenceBackend::resolve_pair(std::
   result.stored = 0.5 * (result.stored + of_b.stored);
   result.status = std::max(result.status, of_b.status);
   result.reached = result.reached.cwiseMax(of_b.reached);
+  return result;
+}
+
+/// Weakens what a law does to a pair until neither body's velocity changes by more than a cell's strain cap allows.
+ReferenceBackend::PairResult ReferenceBackend::capped(PairResult result, const SeenPair& seen, double dt) const {
+  const double cap = strain_cap_of(experiment_);
+  if (cap == 0) return result;
+  const double change = result.impulse.norm() / std::min(seen.mass_a, seen.mass_b);
+  const double share = cap * experiment_.grid.cell_size / dt / change;
+  if (!(share < 1)) return result;
+  Vector normal = Vector::Zero();
+  for (int c = 0; c < experiment_.dimension; ++c) normal[c] = result.geometry.normal[c];
+  const Vector along = result.impulse - result.impulse.dot(normal) * normal;
+  const Vector velocity = seen.momentum_a / seen.mass_a - seen.momentum_b / seen.mass_b;
+  // The energy of sliding that an impulse J takes is -J.(u + J / 2m), with the reduced mass m.
+  const auto taken = [&](const Vector& J) { return -J.dot(velocity + 0.5 * J * (1 / seen.mass_a + 1 / seen.mass_b)); };
+  result.dissipated = std::max(0.0, result.dissipated + taken(share * along) - taken(along));
+  result.impulse *= share, result.returned *= share;
   return result;
 }
 

@@ -132,6 +132,7 @@ class ReferenceBackend final : public Backend {
   /// Where grips hold one body alone, as a whole, what a law would give it goes to the grip: the law sees it as a body b of
   /// infinite mass at rest, and the other one moves beside it.
   SeenPair seen_pair(std::size_t a, std::size_t b, const Vector& momentum_a, const Vector& momentum_b) const;
+  PairResult capped(PairResult result, const SeenPair& seen, double dt) const;
   /// Lets the material of all fields meet rigid bodies, whose velocities are those of a time, s. velocity(i) is that of a
   /// node and give(i, impulse) changes it.
   template <class VelocityOf, class Give>

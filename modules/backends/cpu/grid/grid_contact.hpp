@@ -92,6 +92,22 @@ struct GridStep<D, T>::ContactBatch {
   void set_traction(int i, const WeldOfPair& welds, double dt) {
     for (int c = 0; c < D; ++c) traction[c * block_nodes + i] = static_cast<T>(welds.traction(c, dt));
   }
+  /// Takes the share of each impulse that changes no velocity by more than `most`, m/s.
+  void cap(T most) {
+    for (int i = 0; i < count; ++i) {
+      T square = 0, across = 0, sliding = 0, approach = 0;
+      for (int at = i; at < D * block_nodes; at += block_nodes) {
+        const T velocity = momentum_a[at] / mass_a[i] - momentum_b[at] / mass_b[i];
+        square += impulse[at] * impulse[at], across += impulse[at] * normal[at];
+        sliding += impulse[at] * velocity, approach += normal[at] * velocity;
+      }
+      const T share = share_under_cap(square, mass_a[i], mass_b[i], most);
+      if (!(share < 1)) continue;
+      for (int at = i; at < D * block_nodes; at += block_nodes) impulse[at] *= share;
+      dissipated[i] = dissipated_by_share(dissipated[i], share, sliding - across * approach, square - across * across,
+                                          mass_a[i], mass_b[i]);
+    }
+  }
   /// Adds what the law did to its pair.
   void add_to(PairGiven& pair) const {
     for (int i = 0; i < count; ++i) {
@@ -194,6 +210,7 @@ void GridStep<D, T>::apply_law(ContactBatch& batch, int a, int b, const StepInfo
     }
   }
   if (states > 0 && notes_reached_) note_reached(batch, a, b, states);
+  if (strain_cap_ > 0) batch.cap(static_cast<T>(strain_cap_ * scene_.experiment.grid.cell_size / step.dt));
   const T* const returned = own ? batch.impulse_of_b : batch.impulse;
   const bool records = records_;  // the compiler need not ask again after each store
   for (int i = 0; i < batch.count; ++i) {

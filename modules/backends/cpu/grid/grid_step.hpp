@@ -8,6 +8,7 @@
 
 #include "backends/cpu/grid/contact_welds.hpp"
 #include "backends/cpu/grid/grid.hpp"
+#include "experiment/contact_settings.hpp"
 #include "operators/edges.hpp"
 #include "operators/filter.hpp"
 #include "operators/motion.hpp"
@@ -217,10 +218,11 @@ class GridStep : NamedChannels {
   FilterRecord& filter_;
   ReactionImpulse& reactions_;
   const PairGeometry pair_geometry_;
-  const bool own_normals_;                           ///< each body of a pair has its own
-  std::uint32_t law_stage_ = MPM_BEFORE_FORCES;      ///< what laws are asked about now (mpm_contact_stage)
-  bool first_step_ = false, notes_reached_ = false;  ///< whether what a law says of its state counts
-  const std::vector<EdgeModel> edges_;               ///< of each velocity field, beside rigid bodies
+  const bool own_normals_;                                      ///< each body of a pair has its own
+  const double strain_cap_ = strain_cap_of(scene_.experiment);  ///< of contact, 0 for none
+  std::uint32_t law_stage_ = MPM_BEFORE_FORCES;                 ///< what laws are asked about now (mpm_contact_stage)
+  bool first_step_ = false, notes_reached_ = false;             ///< whether what a law says of its state counts
+  const std::vector<EdgeModel> edges_;                          ///< of each velocity field, beside rigid bodies
   RigidBodies rigid_;
   ContactPoints contact_points_;
   ContactWelds welds_;  ///< where the law reads the traction around a node

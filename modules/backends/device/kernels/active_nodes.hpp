@@ -8,16 +8,21 @@
 
 namespace mpm::device {
 
-/// Whether any particle, or image, has reached the nodes around this one.
+/// Whether any particle, or image, has reached the nodes around this one, in phases that note none.
 template <class T>
 MPM_HD bool is_active(const NodeArrays<T>& grid, int node) {
+  return grid.active[node / nodes_of_run] != 0;
+}
+/// The same while other lanes note some.
+template <class T>
+MPM_HD bool is_active_by_now(const NodeArrays<T>& grid, int node) {
   return Team::look(grid.active + node / nodes_of_run) != 0;
 }
 
 /// Notes that something is given to a node.
 template <class T>
 MPM_HD void note_active(const NodeArrays<T>& grid, int node) {
-  if (!is_active(grid, node)) Team::put(grid.active + node / nodes_of_run, static_cast<unsigned char>(1));
+  if (!is_active_by_now(grid, node)) Team::put(grid.active + node / nodes_of_run, static_cast<unsigned char>(1));
 }
 
 /// Calls body(node) for all active nodes of a.grid, a lane a node.

@@ -131,6 +131,7 @@ struct Arguments {
   const T* wall_shares;             ///< shares of heat through a wall: that of its node, of the next one inward ...
   const HeatBox<T>* heat_boxes;
   int wall_share_count, heat_box_count;
+  T strain_cap;   ///< of contact (experiment/contact_settings.hpp), 0 for none
   T wall_beyond;  ///< m, how far the nodes beyond the wall make the temperature there differ (WallWeights)
   bool gravity_has_potential[3];
   // These are what this phase works on.

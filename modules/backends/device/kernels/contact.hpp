@@ -77,6 +77,23 @@ MPM_HD ContactGeometry geometry_of_pair(const Arguments<T>& a, int node) {
   return found;
 }
 
+/// Takes the share of a law's impulse that strains no cell by more than the cap.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD void cap(const Arguments<T>& a, const ContactPair<Scene::dimension, T>& pair,
+                ContactResult<Scene::dimension, T>& result) {
+  T square = T(0), across = T(0), sliding = T(0), approach = T(0);
+  for (int c = 0; c < Scene::dimension; ++c) {
+    const T velocity = pair.momentum_a[c] / pair.mass_a - pair.momentum_b[c] / pair.mass_b;
+    square += result.impulse[c] * result.impulse[c], across += result.impulse[c] * pair.normal[c];
+    sliding += result.impulse[c] * velocity, approach += pair.normal[c] * velocity;
+  }
+  const T share = share_under_cap(square, pair.mass_a, pair.mass_b, a.strain_cap * a.cell_size / a.dt);
+  if (!(share < T(1))) return;
+  for (int c = 0; c < Scene::dimension; ++c) result.impulse[c] *= share;
+  result.dissipated = dissipated_by_share(result.dissipated, share, sliding - across * approach,
+                                          square - across * across, pair.mass_a, pair.mass_b);
+}
+
 /// Asks the law, twice where each body has a normal of its own: what b takes is then that of its normal, and heat is the
 /// mean of both. Returns the impulse that b takes with the other sign.
 template <class Scene, class T = typename Scene::Scalar>
@@ -100,6 +117,7 @@ MPM_HD Vec<Scene::dimension, T> ask_law(const Arguments<T>& a, const ContactGeom
     return of_b.impulse;
   } else {
     apply(geometry.normal, result);
+    if (a.strain_cap > T(0)) cap<Scene>(a, pair, result);
     return result.impulse;
   }
 }
@@ -234,7 +252,7 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
     const bool weld = Scene::bypasses_detection;
     if constexpr (Scene::notes_contact)
       if (a.noted.met) a.noted.met[node] = -1;
-    if (!is_active(a.grid, node)) return;
+    if (!is_active(a.grid, node)) return;  // it has no mass of the first field, so that nothing meets there
     ContactPair<D, T> pair;
     pair.mass_a = a.grid.field[N::mass][node], pair.mass_b = a.other.field[N::mass][node];
     if (!meet(pair.mass_a, pair.mass_b, weld)) return;

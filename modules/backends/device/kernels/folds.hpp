@@ -49,7 +49,7 @@ MPM_HD void for_each_fold_of_line(const Arguments<T>& a, int line, bool outermos
     Fold fold = foot_of_line(a, line, side);
     const int upward = side == 0 ? fold.inward : -fold.inward, origin = fold.foot - (side == 0 ? 0 : cells) * upward;
     fold.ghost = origin + i * upward, fold.mirror = origin + mirror * upward, fold.beyond = beyond;
-    if (is_active(a.grid, fold.ghost)) body(fold);
+    if (is_active_by_now(a.grid, fold.ghost)) body(fold);
   }
 }
 

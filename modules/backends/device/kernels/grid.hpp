@@ -7,7 +7,7 @@
 
 namespace mpm::device {
 
-/// Sets all fields of active nodes to zero, before no node is active any more.
+/// Sets all fields of active nodes to zero. The marks are dropped after it.
 template <class Scene>
 MPM_HD void forget(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   for_each_node(team, a, [&](int node) {
