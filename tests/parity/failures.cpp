@@ -69,3 +69,41 @@ TEST_CASE("a deformation that is no number is told from one that is inside out",
         Cause::deformation_not_a_number);
   CHECK(stop_of(thrown(free, "[1, 1]", "[3, 3]", R"(["-5*x", 0])", solver)).failure.cause == Cause::inverted);
 }
+
+// Grips take particles along at 1 m/s, whatever the walls do. Of the two columns the nearer one begins at 1.25 m from the
+// face and moves 0.1 m a step: half a cell through the wall lies between its steps 17 and 18.
+TEST_CASE("a separating wall lets particles half a cell through, and no further", "[parity][failure]") {
+  const std::string solver = R"({"time_step": 0.1, "end_time": 10})";
+  for (const bool down : {true, false}) {
+    const std::string grip = std::string(R"(, "grips": [{"body": "b", "velocity": )") + (down ? "[-1, 0]" : "[1, 0]") +
+                             R"(, "where": {"type": "half_space", "point": [30, 10], "normal": [0, 1]}}]})";
+    std::string text =
+        thrown(R"({"all": "separate"})", down ? "[1, 1]" : "[57, 1]", down ? "[3, 3]" : "[59, 3]", "[0, 0]", solver);
+    text.replace(text.rfind('}'), 1, grip);
+    const Stop stop = stop_of(text);
+    CHECK(stop.failure.cause == Cause::left_domain);
+    CHECK(stop.failure.axis == 0);
+    CHECK(stop.failure.value == Approx(down ? -0.55 : 60.55).epsilon(1e-9));
+    CHECK(stop.step == 17);  // complete ones
+  }
+}
+
+// The other faces let through what rounding may make of a place: 1e-9 of the domain's 60 m, which is 6e-8 m.
+TEST_CASE("a closed face lets particles through by rounding alone", "[parity][failure]") {
+  for (const bool down : {true, false})
+    for (const bool beyond : {false, true})
+      for (const std::string backend : {"reference", "cpu"}) {
+        INFO(backend << (down ? " down" : " up") << (beyond ? " beyond" : " within"));
+        const std::string speed = beyond ? "12.50000075" : "12.50000045";  // 1.25 m and 7.5e-8 or 4.5e-8 m in a step
+        const std::string grip = R"(, "grips": [{"body": "b", "velocity": [)" + (down ? "-" + speed : speed) +
+                                 R"(, 0], "where": {"type": "half_space", "point": [30, 10], "normal": [0, 1]}}]})";
+        std::string text = thrown(R"({"all": "free"})", down ? "[1, 1]" : "[57, 1]", down ? "[3, 3]" : "[59, 3]",
+                                  "[0, 0]", R"({"time_step": 0.1, "end_time": 0.1})");
+        text.replace(text.rfind('}'), 1, grip);
+        Scene scene(text, {set("/backend", backend), "/precision=double"});
+        if (beyond)
+          CHECK_THROWS_AS(scene.simulation.step(), RunFailure);
+        else
+          CHECK_NOTHROW(scene.simulation.step());
+      }
+}
