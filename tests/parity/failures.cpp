@@ -107,3 +107,33 @@ TEST_CASE("a closed face lets particles through by rounding alone", "[parity][fa
           CHECK_NOTHROW(scene.simulation.step());
       }
 }
+
+// Four nodes hold a box of two cells. Nodes that part at 0.99 (x - 30) m/s lengthen one of half a cell by 9.9 % in each
+// step of 0.1 s, so that it is longer than two cells after 15 steps: 0.5 * 1.099^15 = 2.06.
+TEST_CASE("a box that outgrows its stencil along either axis ends the run", "[parity][failure]") {
+  for (const bool along_x : {true, false}) {
+    const std::string domain = along_x ? "[[0, 0], [60, 4]]" : "[[0, 0], [4, 60]]";
+    const std::string geometry =
+        along_x ? R"("lower": [29, 1], "upper": [31, 3])" : R"("lower": [1, 29], "upper": [3, 31])";
+    const std::string velocity = along_x ? R"J(["0.99*(x-30)", 0])J" : R"J([0, "0.99*(y-30)"])J";
+    const std::string text = R"({"title": "apart", "dimension": 2, "grid": {"cell_size": 1, "domain": )" + domain +
+                             R"(, "boundaries": {"all": "free"}}, "shape": {"type": "gimp_contiguous"},
+      "transfer": {"type": "apic"}, "materials":
+      {"m": {"type": "neo_hookean", "youngs_modulus": 1e-9, "poisson_ratio": 0, "density": 1}},
+      "bodies": [{"name": "b", "material": "m", "geometry": {"type": "box", )" +
+                             geometry + R"(}}], "node_conditions": [{"lower": [0, 0], "upper": )" +
+                             (along_x ? "[60, 4]" : "[4, 60]") + R"(, "type": "prescribed", "velocity": )" + velocity +
+                             R"(}], "solver": {"time_step": 0.1, "end_time": 10}, "output": {"ledger": false}})";
+    for (const std::string backend : {"reference", "cpu"}) {
+      INFO(backend << (along_x ? " along x" : " along y"));
+      Scene scene(text, {set("/backend", backend), "/precision=double"});
+      try {
+        scene.run();
+        FAIL("no particle has outgrown its stencil");
+      } catch (const RunFailure& stopped) {
+        CHECK(stopped.failure.cause == Cause::domain_outgrew_stencil);
+        CHECK(scene.simulation.steps() == 15);  // complete ones
+      }
+    }
+  }
+}
