@@ -79,6 +79,19 @@ TEMPLATE_TEST_CASE("the mean beside a large deviator is found where two roots al
   }
 }
 
+// Of stretches a, 0.1 and 10/a the root below the largest one lies at half of it. Where rounding leaves no digits between them,
+// the mean stays the nearer to the largest, and is not thrown far away by a slope that has vanished.
+TEST_CASE("the mean beside a deviator beyond all digits stays at the largest root") {
+  for (int k = 0; k < 200; ++k) {
+    const double a = std::pow(10, 2 + 0.03 * k);
+    const Isochoric<double> b{{a, 0.1, 10 / a}};
+    for (const double start : {1.0, 1.5}) {
+      INFO(a << " from " << start);
+      CHECK(std::abs(unimodular_mean(b.deviator(), start * b.mean()) / b.mean() - 1) < 0.25);
+    }
+  }
+}
+
 TEST_CASE("each lane of a pack has its own mean") {
   using S = Lanes<double>;
   Sym<3, S> d{};
