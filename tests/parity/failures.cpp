@@ -70,8 +70,8 @@ TEST_CASE("a deformation that is no number is told from one that is inside out",
   CHECK(stop_of(thrown(free, "[1, 1]", "[3, 3]", R"(["-5*x", 0])", solver)).failure.cause == Cause::inverted);
 }
 
-// Grips take particles along at 1 m/s, whatever the walls do. Of the two columns the nearer one begins at 1.25 m from the
-// face and moves 0.1 m a step: half a cell through the wall lies between its steps 17 and 18.
+// Grips take particles along at 1 m/s, whatever the walls do. With cells of 0.5 m the nearest column begins at 1.125 m from
+// the face and moves 0.1 m a step: half a cell through the wall lies between its steps 13 and 14.
 TEST_CASE("a separating wall lets particles half a cell through, and no further", "[parity][failure]") {
   const std::string solver = R"({"time_step": 0.1, "end_time": 10})";
   for (const bool down : {true, false}) {
@@ -80,11 +80,12 @@ TEST_CASE("a separating wall lets particles half a cell through, and no further"
     std::string text =
         thrown(R"({"all": "separate"})", down ? "[1, 1]" : "[57, 1]", down ? "[3, 3]" : "[59, 3]", "[0, 0]", solver);
     text.replace(text.rfind('}'), 1, grip);
+    text.replace(text.find(R"("cell_size": 1)"), 14, R"("cell_size": 0.5)");
     const Stop stop = stop_of(text);
     CHECK(stop.failure.cause == Cause::left_domain);
     CHECK(stop.failure.axis == 0);
-    CHECK(stop.failure.value == Approx(down ? -0.55 : 60.55).epsilon(1e-9));
-    CHECK(stop.step == 17);  // complete ones
+    CHECK(stop.failure.value == Approx(down ? -0.275 : 60.275).epsilon(1e-9));
+    CHECK(stop.step == 13);  // complete ones
   }
 }
 
@@ -136,4 +137,40 @@ TEST_CASE("a box that outgrows its stencil along either axis ends the run", "[pa
       }
     }
   }
+}
+
+// The body's left half is thrown inside out, its right half as it is, or both; melted is what is above 20 K.
+TEST_CASE("the first particle that is inside out ends the run, whichever phase it is in", "[parity][failure]") {
+  for (const std::string melted : {"left", "right"})
+    for (const std::string inside_out : {"left", "right", "both"}) {
+      INFO(melted << " has melted, inside out is " << inside_out);
+      std::string text = thrown(R"({"all": "free"})", "[1, 1]", "[9, 3]",
+                                inside_out == "both"   ? R"J(["-5*x", 0])J"
+                                : inside_out == "left" ? R"J(["-5*min(x-5,0)", 0])J"
+                                                       : R"J(["-5*max(x-5,0)", 0])J",
+                                R"({"time_step": 0.5, "end_time": 10, "stress_update": "first"})");
+      const std::string law = R"("density": 1)";
+      text.replace(text.find(law), law.size(), law + R"(, "thermal": {"conductivity": 1e-9, "heat_capacity": 1,
+        "phase_change": {"temperature": 20, "latent_heat": 1, "melted": {"youngs_modulus": 2e-9}}})");
+      const std::string body = R"("material": "m")";
+      text.replace(text.find(body), body.size(),
+                   body + (melted == "left" ? R"J(, "temperature": "30-20*max(min(1e9*(x-5),1),0)")J"
+                                            : R"J(, "temperature": "10+20*max(min(1e9*(x-5),1),0)")J"));
+      const Stop stop = stop_of(text);
+      CHECK(stop.failure.cause == Cause::inverted);
+      Scene start(text, {"/backend=reference"});
+      const double x = start.body().position[2 * stop.failure.particle];
+      CHECK((inside_out == "right" ? x > 4 : x < 5));
+      if (inside_out == "both") CHECK(stop.failure.particle == 0);
+    }
+}
+
+TEST_CASE("a temperature beyond all numbers ends the run at its particle", "[parity][failure]") {
+  std::string text = thrown(R"({"all": "free"})", "[1, 1]", "[3, 3]", "[0, 0]", R"({"time_step": 0.1, "end_time": 1})");
+  const std::string law = R"("density": 1)", body = R"("material": "m")";
+  text.replace(text.find(law), law.size(), law + R"(, "thermal": {"conductivity": 1, "heat_capacity": 1e9})");
+  text.replace(text.find(body), body.size(), body + R"(, "temperature": 1e305)");
+  const Stop stop = stop_of(text);
+  CHECK(stop.failure.cause == Cause::temperature_not_a_number);
+  CHECK(stop.failure.axis == -1);
 }
