@@ -156,6 +156,11 @@ constexpr auto source = [](int i) { return i + 1; };
         left = [together.mutants[number - 1].what for number in together.numbers()]
         self.assertEqual(left, ["- to +", "drop - 1", "1 to 2", "drop x =", "drop * d"])
 
+    def test_the_inner_one_of_two_assignments_is_not_among_them(self):
+        text = "x = y = a;\n"
+        together = Together(text, mutants_of("file.hpp", text))
+        self.assertEqual([together.mutants[number - 1].what for number in together.numbers()], ["drop x ="])
+
     def test_an_expression_is_noted_by_one_number(self):
         text = "x = f(a + b) * c;\n"
         together = Together(text, mutants_of("file.hpp", text))

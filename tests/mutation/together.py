@@ -124,9 +124,14 @@ class Together:
         self.spans = {}
         for number, mutant in enumerate(mutants, first):
             try:
-                self.spans.setdefault(expression_around(tokens, mutant), []).append(number)
+                span = expression_around(tokens, mutant)
             except (IndexError, ValueError):
                 self.refused.add(number)
+                continue
+            if span == (mutant.begin, mutant.end) and not mutant.replacement and text[: span[0]].rstrip().endswith("="):
+                self.refused.add(number)  # the inner one of a = b = c, which has a value
+            else:
+                self.spans.setdefault(span, []).append(number)
         for begin, end in list(self.spans):
             if any(b < begin < e < end for b, e in self.spans):  # neither holds the other
                 self.refused.update(self.spans.pop((begin, end)))

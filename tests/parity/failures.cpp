@@ -69,3 +69,108 @@ TEST_CASE("a deformation that is no number is told from one that is inside out",
         Cause::deformation_not_a_number);
   CHECK(stop_of(thrown(free, "[1, 1]", "[3, 3]", R"(["-5*x", 0])", solver)).failure.cause == Cause::inverted);
 }
+
+// Grips take particles along at 1 m/s, whatever the walls do. With cells of 0.5 m the nearest column begins at 1.125 m from
+// the face and moves 0.1 m a step: half a cell through the wall lies between its steps 13 and 14.
+TEST_CASE("a separating wall lets particles half a cell through, and no further", "[parity][failure]") {
+  const std::string solver = R"({"time_step": 0.1, "end_time": 10})";
+  for (const bool down : {true, false}) {
+    const std::string grip = std::string(R"(, "grips": [{"body": "b", "velocity": )") + (down ? "[-1, 0]" : "[1, 0]") +
+                             R"(, "where": {"type": "half_space", "point": [30, 10], "normal": [0, 1]}}]})";
+    std::string text =
+        thrown(R"({"all": "separate"})", down ? "[1, 1]" : "[57, 1]", down ? "[3, 3]" : "[59, 3]", "[0, 0]", solver);
+    text.replace(text.rfind('}'), 1, grip);
+    text.replace(text.find(R"("cell_size": 1)"), 14, R"("cell_size": 0.5)");
+    const Stop stop = stop_of(text);
+    CHECK(stop.failure.cause == Cause::left_domain);
+    CHECK(stop.failure.axis == 0);
+    CHECK(stop.failure.value == Approx(down ? -0.275 : 60.275).epsilon(1e-9));
+    CHECK(stop.step == 13);  // complete ones
+  }
+}
+
+// The other faces let through what rounding may make of a place: 1e-9 of the domain's 60 m, which is 6e-8 m.
+TEST_CASE("a closed face lets particles through by rounding alone", "[parity][failure]") {
+  for (const bool down : {true, false})
+    for (const bool beyond : {false, true})
+      for (const std::string backend : {"reference", "cpu"}) {
+        INFO(backend << (down ? " down" : " up") << (beyond ? " beyond" : " within"));
+        const std::string speed = beyond ? "12.50000075" : "12.50000045";  // 1.25 m and 7.5e-8 or 4.5e-8 m in a step
+        const std::string grip = R"(, "grips": [{"body": "b", "velocity": [)" + (down ? "-" + speed : speed) +
+                                 R"(, 0], "where": {"type": "half_space", "point": [30, 10], "normal": [0, 1]}}]})";
+        std::string text = thrown(R"({"all": "free"})", down ? "[1, 1]" : "[57, 1]", down ? "[3, 3]" : "[59, 3]",
+                                  "[0, 0]", R"({"time_step": 0.1, "end_time": 0.1})");
+        text.replace(text.rfind('}'), 1, grip);
+        Scene scene(text, {set("/backend", backend), "/precision=double"});
+        if (beyond)
+          CHECK_THROWS_AS(scene.simulation.step(), RunFailure);
+        else
+          CHECK_NOTHROW(scene.simulation.step());
+      }
+}
+
+// Four nodes hold a box of two cells. Nodes that part at 0.99 (x - 30) m/s lengthen one of half a cell by 9.9 % in each
+// step of 0.1 s, so that it is longer than two cells after 15 steps: 0.5 * 1.099^15 = 2.06.
+TEST_CASE("a box that outgrows its stencil along either axis ends the run", "[parity][failure]") {
+  for (const bool along_x : {true, false}) {
+    const std::string domain = along_x ? "[[0, 0], [60, 4]]" : "[[0, 0], [4, 60]]";
+    const std::string geometry =
+        along_x ? R"("lower": [29, 1], "upper": [31, 3])" : R"("lower": [1, 29], "upper": [3, 31])";
+    const std::string velocity = along_x ? R"J(["0.99*(x-30)", 0])J" : R"J([0, "0.99*(y-30)"])J";
+    const std::string text = R"({"title": "apart", "dimension": 2, "grid": {"cell_size": 1, "domain": )" + domain +
+                             R"(, "boundaries": {"all": "free"}}, "shape": {"type": "gimp_contiguous"},
+      "transfer": {"type": "apic"}, "materials":
+      {"m": {"type": "neo_hookean", "youngs_modulus": 1e-9, "poisson_ratio": 0, "density": 1}},
+      "bodies": [{"name": "b", "material": "m", "geometry": {"type": "box", )" +
+                             geometry + R"(}}], "node_conditions": [{"lower": [0, 0], "upper": )" +
+                             (along_x ? "[60, 4]" : "[4, 60]") + R"(, "type": "prescribed", "velocity": )" + velocity +
+                             R"(}], "solver": {"time_step": 0.1, "end_time": 10}, "output": {"ledger": false}})";
+    for (const std::string backend : {"reference", "cpu"}) {
+      INFO(backend << (along_x ? " along x" : " along y"));
+      Scene scene(text, {set("/backend", backend), "/precision=double"});
+      try {
+        scene.run();
+        FAIL("no particle has outgrown its stencil");
+      } catch (const RunFailure& stopped) {
+        CHECK(stopped.failure.cause == Cause::domain_outgrew_stencil);
+        CHECK(scene.simulation.steps() == 15);  // complete ones
+      }
+    }
+  }
+}
+
+// The body's left half is thrown inside out, its right half as it is, or both; melted is what is above 20 K.
+TEST_CASE("the first particle that is inside out ends the run, whichever phase it is in", "[parity][failure]") {
+  for (const std::string melted : {"left", "right"})
+    for (const std::string inside_out : {"left", "right", "both"}) {
+      INFO(melted << " has melted, inside out is " << inside_out);
+      std::string text = thrown(R"({"all": "free"})", "[1, 1]", "[9, 3]",
+                                inside_out == "both"   ? R"J(["-5*x", 0])J"
+                                : inside_out == "left" ? R"J(["-5*min(x-5,0)", 0])J"
+                                                       : R"J(["-5*max(x-5,0)", 0])J",
+                                R"({"time_step": 0.5, "end_time": 10, "stress_update": "first"})");
+      const std::string law = R"("density": 1)";
+      text.replace(text.find(law), law.size(), law + R"(, "thermal": {"conductivity": 1e-9, "heat_capacity": 1,
+        "phase_change": {"temperature": 20, "latent_heat": 1, "melted": {"youngs_modulus": 2e-9}}})");
+      const std::string body = R"("material": "m")";
+      text.replace(text.find(body), body.size(),
+                   body + (melted == "left" ? R"J(, "temperature": "30-20*max(min(1e9*(x-5),1),0)")J"
+                                            : R"J(, "temperature": "10+20*max(min(1e9*(x-5),1),0)")J"));
+      const Stop stop = stop_of(text);
+      CHECK(stop.failure.cause == Cause::inverted);
+      Scene start(text, {"/backend=reference"});
+      const double x = start.body().position[2 * stop.failure.particle];
+      CHECK((inside_out == "right" ? x > 4 : x < 5));
+      if (inside_out == "both") CHECK(stop.failure.particle == 0);
+    }
+}
+
+TEST_CASE("a temperature beyond all numbers ends the run at its particle", "[parity][failure]") {
+  std::string text = thrown(R"({"all": "free"})", "[1, 1]", "[3, 3]", "[0, 0]", R"({"time_step": 0.1, "end_time": 1})");
+  const std::string law = R"("density": 1)", body = R"("material": "m")";
+  text.replace(text.find(law), law.size(), law + R"(, "thermal": {"conductivity": 1, "heat_capacity": 1e9})");
+  text.replace(text.find(body), body.size(), body + R"(, "temperature": 1e305)");
+  const Stop stop = stop_of(text);
+  CHECK(stop.failure.cause == Cause::temperature_not_a_number);
+  CHECK(stop.failure.axis == -1);
+}

@@ -94,6 +94,8 @@ TEST_CASE("the counter counts operations", "[bench]") {
   CHECK(sum.value == 6);
   CHECK((-c).value == -3);
   CHECK((a <= b && a <= a && !(b <= a) && b >= a && b >= b && !(a >= b) && a == a && a != b));
+  CHECK((min(a, b).value == 1 && min(b, a).value == 1 && max(a, b).value == 2 && max(b, a).value == 2));
+  CHECK((abs(-c).value == 3 && floor(S(-0.5)).value == -1 && (b - c).value == -1 && (b / c).value == 2.0f / 3));
   // A count within another leaves that one as it was.
   CHECK(count_operations([&] { (void)(a + b), count_operations([&] { (void)(a * b + c * a); }), (void)(a - b); }) == 2);
   CHECK(count_operations([&] { (void)max(abs(-a), floor(b)); }) == 0);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "kernel/artificial_viscosity.hpp"
 #include "kernel/direction.hpp"
 #include "kernel/linear_system.hpp"
 #include "operators/contact.hpp"
@@ -141,4 +142,57 @@ TEST_CASE(
   CHECK(momentum_beside(1.0, 4.0, 6.0) == -18);
   CHECK(held_mass(2.0, 6.0, false) == 2);
   CHECK(held_mass(2.0, 6.0, true) == 8);
+}
+
+TEST_CASE("bodies meet where both have mass, and the lighter one a share that counts or a weld") {
+  CHECK(meet(1.0, 1.0, false));
+  CHECK_FALSE(meet(0.0, 1.0, true));
+  CHECK_FALSE(meet(1.0, 0.0, true));
+  for (const bool weld : {false, true}) {
+    CHECK(meet(3.6e-5, 4.0, weld) == weld);
+    CHECK(meet(4.0, 3.6e-5, weld) == weld);
+    CHECK(meet(4.4e-5, 4.0, weld));
+  }
+}
+
+TEST_CASE("the gradient of a displacement by the present place is I less the inverse of F") {
+  const Mat<2, double> flat = displacement_gradient(Mat<2, double>{{3, 2, 0.5, 1.5}});  // of the determinant 3.5
+  const double in_plane[] = {1 - 1.5 / 3.5, 2 / 3.5, 0.5 / 3.5, 1 - 3 / 3.5};
+  for (int k = 0; k < 4; ++k) CHECK(flat.m[k] == Approx(in_plane[k]));
+  const Mat<3, double> solid = displacement_gradient(Mat<3, double>{{1, 2, 0, 0, 1, 3, 2, 0, 1}});
+  const double inverse[] = {1, -2, 6, 6, 1, -3, -2, 4, 1};  // over 13
+  for (int k = 0; k < 9; ++k) CHECK(solid.m[k] == Approx((k % 4 == 0 ? 1 : 0) - inverse[k] / 13));
+}
+
+TEST_CASE("a pair is measured by the edges, areas and displacements of both bodies along its normal") {
+  ContactFieldNode a = with_gradient(3, 2, 5), b = with_gradient(-2, -1, 6);
+  a.mass = 3, b.mass = 4;
+  a.mass_position[0] = 0.45, a.mass_position[1] = 0.6, a.mass_position[2] = 9;    // its mean is half a cell along it
+  b.mass_position[0] = -1.2, b.mass_position[1] = -1.6, b.mass_position[2] = -9;  // a cell against it
+  const double normal[] = {0.6, 0.8, 0.5};
+  CHECK(separation_of_edges(a, b, table, table, normal, 0.5, 2) == Approx((-2 - 1) * 0.5));
+  ContactGeometry pair;
+  for (int c = 0; c < 3; ++c) pair.normal[c] = normal[c];
+  measure_pair(pair, a, b, table, table, 0.5, 2, 7);
+  CHECK(pair.separation == Approx(-1.5));
+  CHECK(contact_area(a, b, normal, 2, 7) == Approx(7 * (2 * 0.6 + 0.8)));
+  CHECK(contact_area(a, with_gradient(-5, -4, 0), normal, 2, 7) == Approx(7 * (3 * 0.6 + 2 * 0.8)));
+  CHECK(contact_area(a, b, normal, 3, 7) == 0);  // along the third axis b lies on the same side
+  a.mass_displacement[1] = 1.5, b.mass_displacement[1] = 6;
+  CHECK(displacement_of_pair(a, b, 1) == 1);
+  CHECK(around_axis(2) == Approx(12.566370614359172));
+  CHECK(around_axis(-1) == 0);
+}
+
+// q = density h r (C1 c + C2 h r). A small change of r sees the slope of q over it, and a step the damped wave.
+TEST_CASE("artificial viscosity is a pressure, and its slope a viscosity") {
+  const ArtificialViscosity<double> law{2, 3, 5};
+  const double pressure = law.pressure(7.0, 11.0);
+  CHECK(pressure == Approx(2 * 7 * (5 * 7 + 3 * 11)));
+  CHECK(law.kinematic(11.0 * 11, pressure) == Approx(2 * 5 * 7 + 3 * 11));
+  CHECK(law.kinematic(4.0, 10.0) == Approx(std::sqrt(9 * 4 + 4 * 5 * 10 / 2.0)));
+  const double damping = std::sqrt(3.0) * law.kinematic(4.0, 10.0) / 0.5;
+  CHECK(law.damped_speed(4.0, 10.0, 2.0) == Approx(damping + std::sqrt(4 + damping * damping)));
+  CHECK(compression_rate(-6.0, 0.5) == 12);
+  CHECK(compression_rate(6.0, 0.5) == 0);
 }
