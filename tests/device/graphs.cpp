@@ -21,7 +21,7 @@ struct Run {
 Run run(const std::string& text, bool graphs, const std::vector<std::string>& overrides = {}) {
   const Experiment experiment = device_experiment(text, "double", overrides);
   device::DeviceSetup setup = device_setup();
-  setup.graphs = graphs;
+  setup.graphs = graphs, setup.steps_to_forget = 16;  // steps that forget the grid are graphs of their own
   Simulation simulation(experiment, device_factory(setup));
   Run found;
   const auto count = [&](int sign) {
@@ -180,7 +180,7 @@ TEST_CASE("a particle that cannot go on stops a run with graphs at the same step
   std::vector<std::pair<long, Failure>> stops;
   for (const bool graphs : {false, true}) {
     device::DeviceSetup setup = device_setup();
-    setup.graphs = graphs;
+    setup.graphs = graphs, setup.steps_to_forget = 16;  // steps that forget the grid are graphs of their own
     Simulation simulation(experiment, device_factory(setup));
     try {
       while (!simulation.finished()) simulation.step();
