@@ -47,11 +47,15 @@ MPM_HD S unimodular_mean(const Sym<D, S>& d, S start) {
   const S half_norm = real<S>(0.5) * squared_norm(d), offset = determinant(d) - real<S>(1), norm = sqrt(half_norm);
   // Where the cubic turns: the largest root lies above, but rounding may not.
   const S least = real<S>(0.5773502691896257) * norm;
-  S t = min(start, real<S>(1.1547005383792517) * norm + real<S>(1)), active = S(real<S>(1));
+  // After the first step, which may go up from a start below the root, one that goes up is rounding over a slope that has all
+  // but vanished, and would be thrown far away.
+  S most = real<S>(1.1547005383792517) * norm + real<S>(1);
+  S t = max(min(start, most), least), active = S(real<S>(1));
   for (int iteration = 0; iteration < 100 && any(active > real<S>(0.5)); ++iteration) {
     const S slope = max(real<S>(3) * t * t - half_norm, rounding * half_norm);
-    const S next = max(t - (t * (t * t - half_norm) + offset) / slope, least), down = t - next;
+    const S next = min(max(t - (t * (t * t - half_norm) + offset) / slope, least), most), down = t - next;
     t = select(active > real<S>(0.5), next, t);
+    most = t;
     // What is left of a step of Newton is its square times half of the curvature over the slope.
     active = select(real<S>(3) * down * down > rounding * slope, active, S(real<S>(0)));
   }
