@@ -181,8 +181,8 @@ TEST_CASE("the numbers of another processor and of the laws are those of its tab
     if (row[0] == "cube_3d") CHECK(std::stod(row[5]) > 0.9);
   CHECK(law("von_mises", "cost / standard") <= 1.35);
   CHECK(law("hencky", "cost / standard") >= 2.3);
-  page.add_given({"27 November 2026", "machine with AVX-512", "gave 0.95 in the cube and 0.96 in the", "at most 0.9 of Neo-Hookean", "at most 1.35 and does",
-                  "at least 2.3 times Neo-Hookean"});
+  page.add_given({"27 November 2026", "machine with AVX-512", "gave 0.95 in the cube and 0.96 in the",
+                  "at most 0.9 of Neo-Hookean", "at most 1.35 and does", "at least 2.3 times Neo-Hookean"});
   CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
 }
 
