@@ -24,7 +24,7 @@ struct Overlap {
 /// The pairs of bodies of which one has most of its particles in the other.
 std::vector<Overlap> overlaps_of(const Experiment& experiment);
 
-/// A body of which particles begin inside a rigid body, or an emitter whose region lies in one at the start.
+/// A body of which particles begin inside a rigid body, or an emitter whose region lies in one that is at rest.
 struct RigidOverlap {
   int body = 0, rigid_body = 0;
   int emitter = -1;  ///< that fills the body; -1 for the particles that it begins with

@@ -8,12 +8,12 @@
 
 namespace mpm::device {
 
-/// Whether any particle, or image, has reached the nodes around this one, in phases that note none.
+/// Whether any particle, or image, has reached the nodes around this one; for phases that note no nodes themselves.
 template <class T>
 MPM_HD bool is_active(const NodeArrays<T>& grid, int node) {
   return grid.active[node / nodes_of_run] != 0;
 }
-/// The same while other lanes note some.
+/// The same for phases whose other lanes may note nodes meanwhile.
 template <class T>
 MPM_HD bool is_active_by_now(const NodeArrays<T>& grid, int node) {
   return Team::look(grid.active + node / nodes_of_run) != 0;
