@@ -6,6 +6,7 @@
 
 #include "mpm/cli.hpp"
 #include "mpm/default_component.hpp"
+#include "mpm/evenly.hpp"
 #include "render/plot.hpp"
 #include "simulation/normal_errors.hpp"
 
@@ -40,12 +41,6 @@ std::vector<Row> rows_of(const Registry& registry) {
                     by_mass ? density_ratio : 1});
   }
   return rows;
-}
-
-std::vector<double> evenly(double first, double last, int count) {
-  std::vector<double> places;
-  for (int k = 0; k < count; ++k) places.push_back(first + (last - first) * k / (count - 1));
-  return places;
 }
 
 std::string number(double value) {

@@ -10,6 +10,7 @@
 
 #include "mpm/cli.hpp"
 #include "mpm/default_component.hpp"
+#include "mpm/evenly.hpp"
 #include "render/plot.hpp"
 #include "simulation/contact_offset.hpp"
 
@@ -50,12 +51,6 @@ std::string padded(const std::string& text, std::size_t width) {
   const auto characters = static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
   return std::string(characters < width ? width - characters : 0, ' ') + text;
-}
-
-std::vector<double> evenly(double first, double last, int count) {
-  std::vector<double> places;
-  for (int k = 0; k < count; ++k) places.push_back(first + (last - first) * k / (count - 1));
-  return places;
 }
 
 /// The largest gap that detection finds between touching faces, of either sign, in cells.

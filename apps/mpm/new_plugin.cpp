@@ -32,7 +32,7 @@ constexpr std::string_view kernel_classes[] = {
   throw InputError({Problem{"mpm new", 0, 0, "", message}});
 }
 
-mpm_kind kind_of(const std::string& name) {
+mpm_kind plugin_kind(const std::string& name) {
   std::vector<std::string> names;
   for (const mpm_kind kind : all_kinds()) {
     names.emplace_back(kind_name(kind));
@@ -151,7 +151,7 @@ void write(const std::vector<File>& files, const fs::path& folder) {
 }  // namespace
 
 int new_plugin(const std::string& kind, const std::string& id, const fs::path& folder) {
-  check_id(kind_of(kind), id);
+  check_id(plugin_kind(kind), id);
   check_folder(folder);
   const fs::path program = running_program(), package = package_folder(program);
   const std::vector<File> files = project(kind, id, program, package);

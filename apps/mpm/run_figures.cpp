@@ -275,7 +275,7 @@ constexpr FigureKind kinds[] = {
     {"error", "position error rms", "name an exact solution in /compare/exact", draw_error},
 };
 
-const FigureKind& kind_of(const std::string& name) {
+const FigureKind& figure_kind(const std::string& name) {
   for (const FigureKind& kind : kinds)
     if (name == kind.name) return kind;
   throw std::runtime_error("no figure is called \"" + name + "\"");
@@ -439,7 +439,7 @@ std::vector<std::string> figure_names() {
 }
 
 std::string missing_for(const std::string& name, const Table& metrics) {
-  const FigureKind& kind = kind_of(name);
+  const FigureKind& kind = figure_kind(name);
   const std::string_view needs = kind.needs;
   const bool recorded = needs.ends_with(' ') ? std::any_of(metrics.header.begin(), metrics.header.end(),
                                                            [&](const std::string& h) { return h.starts_with(needs); })
@@ -454,7 +454,7 @@ void draw_figures(const std::vector<std::string>& names, const Table& metrics, c
   for (const std::string& name : names) {
     const std::string missing = missing_for(name, metrics);
     if (!missing.empty()) throw std::runtime_error(missing);
-    kind_of(name).draw(metrics, label, folder / name);
+    figure_kind(name).draw(metrics, label, folder / name);
   }
 }
 

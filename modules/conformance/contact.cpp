@@ -11,7 +11,6 @@
 namespace mpm::conformance {
 namespace {
 
-constexpr int full = MPM_BATCH;
 /// m: pairs that touch overlap by up to half of it, those that are apart are so by more than two of it.
 constexpr double cell_size = 0.2;
 
@@ -161,10 +160,6 @@ ContactBatch applied(const Plugin& plugin, const Variant& v, const ParameterSamp
   batch.stage = stage;
   batch.apply(plugin, parameters);
   return batch;
-}
-
-double magnitude(const Vector3& v) {
-  return std::sqrt(dot(v, v));
 }
 
 /// The difference of two impulses. Errors are counted in impulses of unit size: every jump of the random pairs is of

@@ -9,8 +9,6 @@
 namespace mpm::conformance {
 namespace {
 
-constexpr int full = MPM_BATCH;
-
 /// One call of the plugin with all its arrays.
 struct FilterBatch {
   Variant variant;

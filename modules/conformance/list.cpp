@@ -12,8 +12,6 @@
 namespace mpm::conformance {
 namespace {
 
-constexpr int full = MPM_BATCH;
-
 enum Outputs { none = 0, gradients = 1, moments = 2, all = 3 };
 
 int capacity_of(const Plugin& plugin, int dimension) {

@@ -8,7 +8,6 @@
 
 namespace mpm::conformance {
 
-inline constexpr int full = MPM_BATCH;
 inline constexpr double step = 0x1p-6;  ///< s; a power of two, so that increments / step are exact
 
 /// The increment of I + dt L of every lane.

@@ -8,8 +8,6 @@
 namespace mpm::conformance {
 namespace {
 
-constexpr int full = MPM_BATCH;
-
 /// The sums of two bodies at one node.
 struct Sums {
   Vector3 mass_gradient_a{}, mass_gradient_b{}, volume_gradient_a{}, volume_gradient_b{};
@@ -94,9 +92,6 @@ NormalBatch found_normals(const Plugin& plugin, const Variant& v, const Paramete
   return batch;
 }
 
-double magnitude(const Vector3& v) {
-  return std::sqrt(dot(v, v));
-}
 double distance(const Vector3& u, const Vector3& v, double sign) {
   Vector3 difference;
   for (int i = 0; i < 3; ++i) difference[i] = u[i] - sign * v[i];

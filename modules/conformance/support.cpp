@@ -58,6 +58,10 @@ double dot(const Vector3& a, const Vector3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+double magnitude(const Vector3& a) {
+  return std::sqrt(dot(a, a));
+}
+
 double largest_difference(const Matrix3& a, const Matrix3& b) {
   Worst worst;
   for (int k = 0; k < 9; ++k) worst.add(std::abs(a.m[k] - b.m[k]));

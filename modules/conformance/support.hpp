@@ -15,6 +15,8 @@
 
 namespace mpm::conformance {
 
+inline constexpr int full = MPM_BATCH;  ///< entries of a full batch
+
 using Vector3 = Vec<3, double>;
 using Matrix3 = Mat<3, double>;
 
@@ -26,6 +28,7 @@ Matrix3 inverse(const Matrix3& a);
 double contraction(const Matrix3& a, const Matrix3& b);
 Vector3 product(const Matrix3& a, const Vector3& b);
 double dot(const Vector3& a, const Vector3& b);
+double magnitude(const Vector3& a);
 double largest_difference(const Matrix3& a, const Matrix3& b);
 
 /// One instantiation of a plugin: the entry that is called and the dimension it is called in.

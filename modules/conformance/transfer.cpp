@@ -13,7 +13,6 @@
 namespace mpm::conformance {
 namespace {
 
-constexpr int full = MPM_BATCH;
 constexpr int side = 8;            ///< nodes an axis
 constexpr double spacing = 0.125;  ///< m
 constexpr double second_moment = spacing * spacing / 4;

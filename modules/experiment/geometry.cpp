@@ -1,5 +1,7 @@
 #include "experiment/geometry.hpp"
 
+#include "support/numbers.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -8,7 +10,7 @@
 namespace mpm {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using support::infinity;
 
 double squared_distance(int dimension, const Vector3& a, const Vector3& b) {
   double sum = 0;

@@ -5,11 +5,12 @@
 #include <tuple>
 
 #include "experiment/geometry.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using support::infinity;
 
 enum class Combination { join, intersect, subtract };
 

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/axis_names.hpp"
 #include "experiment/places.hpp"
 #include "experiment/reader.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr const char* axis_names[] = {"x", "y", "z"};
 constexpr double most_places = 1e4;   ///< the same of particles placed, for seedings beside the lattice
 constexpr double most_samples = 4e6;  ///< bound on points tried, so that looking for a body's first one stays quick
 

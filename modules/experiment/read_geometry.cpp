@@ -1,13 +1,12 @@
 // Geometry as the file writes it.
 #include <cmath>
 
+#include "experiment/axis_names.hpp"
 #include "experiment/read_files.hpp"
 #include "experiment/reader.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr const char* axis_names[] = {"x", "y", "z"};
 
 GeometryPointer read_box(const Fields& fields, ReadContext& context) {
   const Vector3 &lower = fields.vector("lower"), &upper = fields.vector("upper");

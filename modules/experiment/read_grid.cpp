@@ -1,13 +1,12 @@
 // The grid, its faces, and conditions on boxes of nodes.
 #include <cmath>
 
+#include "experiment/axis_names.hpp"
 #include "experiment/reader.hpp"
 #include "experiment/thermal.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr const char* axis_names[] = {"x", "y", "z"};
 
 ConditionType condition_type(const std::string& name) {
   if (name == "free" || name == "thermal") return ConditionType::free;

@@ -2,12 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment/axis_names.hpp"
 #include "experiment/reader.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr const char* axis_names[] = {"x", "y", "z"};
 
 LoadType load_type(const std::string& name) {
   const std::vector<Section> kinds = load_kinds();

@@ -1,5 +1,7 @@
 #include "experiment/surface_mesh.hpp"
 
+#include "support/numbers.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -7,7 +9,7 @@
 namespace mpm {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using support::infinity;
 
 Vector3 minus(const Vector3& a, const Vector3& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};

@@ -7,7 +7,7 @@ namespace {
 
 using Type = ParameterType;
 
-ParameterSpec temperature(std::string doc, std::string variables) {
+ParameterSpec temperature_field(std::string doc, std::string variables) {
   return parameter("temperature", Type::expression, "K", std::move(doc)).over(std::move(variables)).from(0);
 }
 
@@ -55,7 +55,7 @@ Section convection_section() {
               parameter("coefficient", Type::number, "W/(m^2 K)", "Heat flux by a unit difference of temperature.")
                   .above(0)
                   .needed(),
-              temperature("Temperature beyond the wall, of x y z and t.", "xyzt").needed(),
+              temperature_field("Temperature beyond the wall, of x y z and t.", "xyzt").needed(),
           }};
 }
 
@@ -119,11 +119,11 @@ ParameterSpec thermal_parameter(const Plugin& plugin) {
 }
 
 ParameterSpec body_temperature() {
-  return temperature("Initial temperature, of x y z; with materials that have \"thermal\".", "xyz");
+  return temperature_field("Initial temperature, of x y z; with materials that have \"thermal\".", "xyz");
 }
 
 std::vector<ParameterSpec> wall_heat_parameters() {
-  return {temperature("Temperature that the wall is held at, of x y z and t.", "xyzt"),
+  return {temperature_field("Temperature that the wall is held at, of x y z and t.", "xyzt"),
           parameter("heat_flux", Type::expression, "W/m^2", "Heat flux through the wall into the body, of x y z and t.")
               .over("xyzt"),
           parameter("convection", Type::nested, "", "Heat exchanged with what lies beyond the wall.")
@@ -131,7 +131,7 @@ std::vector<ParameterSpec> wall_heat_parameters() {
 }
 
 std::vector<ParameterSpec> box_heat_parameters() {
-  return {temperature("Temperature that the nodes are held at, of x y z and t.", "xyzt"),
+  return {temperature_field("Temperature that the nodes are held at, of x y z and t.", "xyzt"),
           parameter("heating", Type::expression, "W",
                     "Power that warms the nodes, shared by their mass (in plane strain a metre of depth), of x y z t.")
               .over("xyzt")};

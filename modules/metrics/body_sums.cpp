@@ -5,11 +5,12 @@
 #include <limits>
 
 #include "metrics/polynomial_energy.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using support::infinity;
 
 std::array<double, 3> cross(const double* a, const double* b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};

@@ -19,9 +19,9 @@ struct Share {
   }
 };
 
-using Nodes = std::map<std::array<int, 3>, Share>;
+using SharesOfNodes = std::map<std::array<int, 3>, Share>;
 
-/// Nodes of periodic axes are counted from the lower face up to the one below the upper face, which is its image.
+/// SharesOfNodes of periodic axes are counted from the lower face up to the one below the upper face, which is its image.
 int counted(const Experiment& experiment, std::size_t axis, int node) {
   if (experiment.faces[axis][0].type != ConditionType::periodic) return node;
   const int cells = experiment.grid.cells[axis];
@@ -35,8 +35,8 @@ bool touches(const Experiment& experiment, const ContactNode& node) {
 }
 
 /// The touching nodes of one field.
-Nodes nodes_of(const Experiment& experiment, int field, const std::vector<ContactNode>& all) {
-  Nodes nodes;
+SharesOfNodes nodes_of(const Experiment& experiment, int field, const std::vector<ContactNode>& all) {
+  SharesOfNodes nodes;
   for (const ContactNode& node : all) {
     if (!touches(experiment, node) || (node.a != field && node.b != field)) continue;
     Share given{node.force, node.area};
@@ -51,7 +51,7 @@ Nodes nodes_of(const Experiment& experiment, int field, const std::vector<Contac
 }
 
 /// The sum over the nodes from `first` on, `count` along each axis.
-Share sum_of(const Experiment& experiment, const Nodes& nodes, const std::array<int, 3>& first, int count) {
+Share sum_of(const Experiment& experiment, const SharesOfNodes& nodes, const std::array<int, 3>& first, int count) {
   Share sum;
   const int depth = experiment.dimension == 3 ? count : 1;
   for (int k = 0; k < depth; ++k)
@@ -71,7 +71,7 @@ std::vector<double> contact_traction(const Experiment& experiment, int body, con
   const auto D = static_cast<std::size_t>(experiment.dimension);
   const std::size_t count = state.position.size() / D;
   std::vector<double> traction(3 * count);
-  const Nodes touching = nodes_of(experiment, experiment.bodies[static_cast<std::size_t>(body)].field, nodes);
+  const SharesOfNodes touching = nodes_of(experiment, experiment.bodies[static_cast<std::size_t>(body)].field, nodes);
   for (std::size_t p = 0; p < count && !touching.empty(); ++p) {
     std::array<int, 3> cell{}, around{};
     for (std::size_t c = 0; c < D; ++c) {

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array<char, 16> magic{'M', 'P', 'M', ' ', 'c', 'h', 'e',  'c',
                                      'k', 'p', 'o', 'i', 'n', 't', '\n', '\x1a'};
-constexpr std::uint32_t format_version = 1, byte_order = 0x01020304;
+constexpr std::uint32_t format_version = 1, order_of_bytes = 0x01020304;
 constexpr std::size_t digest_digits = 64;
 
 struct Header {
@@ -34,7 +34,7 @@ std::string_view bytes_of(const Header& header) {
 
 void write_checkpoint(const fs::path& path, const nlohmann::ordered_json& identity, std::string_view state) {
   const std::string text = identity.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-  const Header header{magic, format_version, byte_order, text.size(), state.size()};
+  const Header header{magic, format_version, order_of_bytes, text.size(), state.size()};
   const std::string digest = support::sha256({bytes_of(header), text, state});
   support::write_atomically(path, {bytes_of(header), digest, text, state});
 }
@@ -49,7 +49,7 @@ CheckpointFile read_checkpoint(const fs::path& path) {
   if (bytes.size() < head) refuse("is cut short: " + std::to_string(bytes.size()) + " bytes");
   Header header;
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.order != byte_order) refuse("was written on a machine with another order of bytes, or is damaged");
+  if (header.order != order_of_bytes) refuse("was written on a machine with another order of bytes, or is damaged");
   if (header.format != format_version)
     refuse("has format " + std::to_string(header.format) + "; this program reads format " +
            std::to_string(format_version));

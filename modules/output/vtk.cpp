@@ -1,12 +1,12 @@
 #include "output/vtk.hpp"
 
-#include <bit>
 #include <cstdint>
 #include <numeric>
 #include <set>
 #include <stdexcept>
 
 #include "output/html.hpp"
+#include "output/vtk_data.hpp"
 #include "support/base64.hpp"
 #include "support/files.hpp"
 #include "support/numbers.hpp"
@@ -14,7 +14,6 @@
 namespace mpm::output {
 namespace {
 
-constexpr const char* byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 constexpr std::uint8_t vertex_cell = 1;  ///< VTK_VERTEX
 
 template <typename T>

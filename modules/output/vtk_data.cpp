@@ -3,7 +3,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <numeric>
 #include <set>
@@ -17,7 +16,6 @@
 namespace mpm::output {
 namespace {
 
-constexpr const char* byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 /// Bytes that are compressed at a time: blocks of one array are independent, so that several threads may work on them.
 constexpr std::size_t block_bytes = 1 << 18;
 /// zlib's fastest level: mantissas of a simulation hardly get smaller by more work.

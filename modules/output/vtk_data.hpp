@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -9,6 +10,9 @@
 #include <vector>
 
 namespace mpm::output {
+
+/// As VTK's files call the order of this machine's bytes.
+inline constexpr const char* byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 
 /// The numbers of a data array; their type is that of the file.
 using VtkNumbers =

@@ -12,12 +12,12 @@ constexpr double kDarkest = 0.38;
 constexpr double kReach[kLayers] = {0.03, 0.08, 0.16, 0.28, 0.5, 1e9};  ///< heights as fractions of the ground's length
 constexpr int kBlur[kLayers] = {2, 3, 5, 7, 10, 14};  ///< cells; a shadow softens with the height of what casts it
 
-using Grid = std::vector<float>;
+using Coverage = std::vector<float>;
 
 /// Takes the running mean over the rows of each column; three of them come close to a Gaussian. Columns go side by
 /// side, in lanes.
-void blur_columns(Grid& grid, int radius) {
-  const Grid before = grid;
+void blur_columns(Coverage& grid, int radius) {
+  const Coverage before = grid;
   std::vector<float> sum(kSize, 0.0f);
   const auto add = [&](int row, float sign) {
     if (row < 0 || row >= kSize) return;
@@ -33,13 +33,13 @@ void blur_columns(Grid& grid, int radius) {
   }
 }
 
-void transpose(Grid& grid) {
+void transpose(Coverage& grid) {
   for (std::size_t y = 0; y < kSize; ++y)
     for (std::size_t x = 0; x < y; ++x) std::swap(grid[y * kSize + x], grid[x * kSize + y]);
 }
 
 /// Softens a layer of shadow in both directions.
-void blur(Grid& grid, int radius) {
+void blur(Coverage& grid, int radius) {
   for (int direction = 0; direction < 2; ++direction) {
     for (int pass = 0; pass < 3; ++pass) blur_columns(grid, radius);
     transpose(grid);
@@ -47,7 +47,7 @@ void blur(Grid& grid, int radius) {
 }
 
 /// Fills the cells whose centres lie in an ellipse, row by row.
-void splat(Grid& grid, double cx, double cy, double rx, double ry) {
+void splat(Coverage& grid, double cx, double cy, double rx, double ry) {
   const int y0 = std::max(0, static_cast<int>(cy - ry)), y1 = std::min(kSize - 1, static_cast<int>(cy + ry));
   for (int y = y0; y <= y1; ++y) {
     const double dy = (y + 0.5 - cy) / ry;
@@ -64,9 +64,9 @@ void splat(Grid& grid, double cx, double cy, double rx, double ry) {
 
 GroundShadow cast_shadow(const std::vector<Ball>& balls, const Vec3& to_light, double ground, double x0, double y0,
                          double x1, double y1) {
-  GroundShadow shadow{x0, y0, x1, y1, kSize, Grid(static_cast<std::size_t>(kSize) * kSize, 1.0f)};
+  GroundShadow shadow{x0, y0, x1, y1, kSize, Coverage(static_cast<std::size_t>(kSize) * kSize, 1.0f)};
   const double length = std::max(x1 - x0, y1 - y0), sx = kSize / (x1 - x0), sy = kSize / (y1 - y0);
-  std::vector<Grid> layers(kLayers);  // those that nothing falls into stay empty
+  std::vector<Coverage> layers(kLayers);  // those that nothing falls into stay empty
   for (const Ball& ball : balls) {
     const double height = ball.centre[2] - ground;
     if (height < -ball.radius) continue;
@@ -77,12 +77,12 @@ GroundShadow cast_shadow(const std::vector<Ball>& balls, const Vec3& to_light, d
     const double least = 1.0;  // radius in cells: a ball smaller than a cell still casts something
     const double cx = (x - x0) * sx, cy = (y - y0) * sy;
     if (!(cx > -kSize && cx < 2 * kSize && cy > -kSize && cy < 2 * kSize)) continue;
-    Grid& grid = layers[static_cast<std::size_t>(layer)];
+    Coverage& grid = layers[static_cast<std::size_t>(layer)];
     grid.resize(shadow.light.size());
     splat(grid, cx, cy, std::max(ball.radius * sx, least), std::max(ball.radius * sy, least));
   }
   for (int k = 0; k < kLayers; ++k) {
-    Grid& grid = layers[static_cast<std::size_t>(k)];
+    Coverage& grid = layers[static_cast<std::size_t>(k)];
     if (grid.empty()) continue;
     blur(grid, kBlur[k]);
     for (std::size_t i = 0; i < grid.size(); ++i) {

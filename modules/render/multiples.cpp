@@ -94,7 +94,7 @@ bool has_slopes(const Multiples& m) {
 }
 
 /// Sizes of the grid; all panels are equal.
-struct Layout {
+struct PanelLayout {
   Grid grid;
   bool orders_as_text = false;   ///< orders stand above the axes: triangles have no room in small panels
   double left = 0, top = 0;      ///< corner of the first panel's axes
@@ -107,9 +107,9 @@ bool is_lowest(std::size_t panel, std::size_t panels, const Grid& grid) {
   return panel + grid.columns >= panels;
 }
 
-Layout lay_out(const Canvas& canvas, const Theme& theme, const Multiples& m, const Sheet& sheet, const Box& space,
-               Scales& s) {
-  Layout at;
+PanelLayout lay_out(const Canvas& canvas, const Theme& theme, const Multiples& m, const Sheet& sheet, const Box& space,
+                    Scales& s) {
+  PanelLayout at;
   at.grid = grid_of(m.panels.size(), m.columns, space);
   const auto columns = static_cast<double>(at.grid.columns), rows = static_cast<double>(at.grid.rows);
   const double numbers = 16 * theme.unit + 1.2 * theme.text;
@@ -170,7 +170,7 @@ void draw_orders(Canvas& canvas, const Theme& theme, const Content& content, Poi
 
 void draw_panels(Canvas& canvas, const Theme& theme, const Multiples& m, Sheet& sheet, const Box& space) {
   Scales s;
-  const Layout at = lay_out(canvas, theme, m, sheet, space, s);
+  const PanelLayout at = lay_out(canvas, theme, m, sheet, space, s);
   canvas.text({space.x0, space.y0 - 0.9 * theme.text}, with_factor(m.y_label, s.y.ticks.exponent), theme.style());
   const int digits = digits_of_orders(canvas, theme, sheet.contents, at.width);
   for (std::size_t k = 0; k < m.panels.size(); ++k) {

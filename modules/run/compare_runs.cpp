@@ -13,6 +13,7 @@
 #include "output/summary_value.hpp"
 #include "support/csv.hpp"
 #include "support/files.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::app {
 namespace {
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using support::Table;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using support::infinity;
 
 /// Files that tell times, commands and folders, or that are compared number by number.
 const std::set<std::string> compared_otherwise{"experiment.json", "manifest.json", "summary.json", "report.html",
@@ -289,12 +290,6 @@ void compare_files(const fs::path& first, const fs::path& second, RunComparison&
 
 constexpr std::size_t most_lines = 12;  ///< of one kind
 
-std::string three_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 std::string exactly(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.12g", value);
@@ -329,9 +324,10 @@ std::vector<std::string> lines_of(const std::vector<NumberDifference>& numbers) 
   for (const NumberDifference& one : numbers)
     lines.push_back(
         one.name + ": " + exactly(one.first) + " | " + exactly(one.second) + ", differ by " +
-        three_digits(one.absolute) + ", relative " + three_digits(one.relative) +
-        (one.held_against.empty() ? "" : " of " + three_digits(one.scale) + " (" + one.held_against + ")") +
-        (one.step < 0 ? "" : ", most at step " + exactly(one.step) + ", t = " + three_digits(one.time) + " s"));
+        support::three_digits(one.absolute) + ", relative " + support::three_digits(one.relative) +
+        (one.held_against.empty() ? "" : " of " + support::three_digits(one.scale) + " (" + one.held_against + ")") +
+        (one.step < 0 ? ""
+                      : ", most at step " + exactly(one.step) + ", t = " + support::three_digits(one.time) + " s"));
   return lines;
 }
 
@@ -408,9 +404,9 @@ std::string text_of(const RunComparison& c, double tolerance) {
   const double largest = c.largest();
   text += largest == 0          ? "all numbers that both have are the same\n"
           : std::isinf(largest) ? "a number of one run is none in the other\n"
-                                : "the numbers that both have agree within " + three_digits(largest) + "\n";
+                                : "the numbers that both have agree within " + support::three_digits(largest) + "\n";
   text += c.equal_within(tolerance) ? "equal" : "not equal";
-  return text + (tolerance > 0 ? " within the tolerance of " + three_digits(tolerance) : "") + "\n";
+  return text + (tolerance > 0 ? " within the tolerance of " + support::three_digits(tolerance) : "") + "\n";
 }
 
 Json json_of(const RunComparison& c, double tolerance) {

@@ -1,21 +1,15 @@
 #include "run/limits.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "experiment/diagnostics.hpp"
 #include "output/summary_value.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string three_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 /// A bound on a number of the summary: "at_least" or "at_most".
 struct Limit {
@@ -103,17 +97,17 @@ std::vector<std::string> judge_limits(const Experiment& experiment, Json& summar
   const auto number = [&](const Limit& limit) { return output::number_at(summary, limit.metric); };
   Json entries = Json::array();
   if (!judge(gain, summary, entries.emplace_back()))
-    flags.push_back("energy gain of " + three_digits(100 * number(gain)) + " % (limit " +
+    flags.push_back("energy gain of " + support::three_digits(100 * number(gain)) + " % (limit " +
                     number_text(100 * *gain.bound) + " %)");
   if (!judge(smallest, summary, entries.emplace_back()))
-    flags.push_back("smallest volume ratio J " + three_digits(number(smallest)) + " (limit " +
+    flags.push_back("smallest volume ratio J " + support::three_digits(number(smallest)) + " (limit " +
                     number_text(*smallest.bound) + ")");
   if (!judge(largest, summary, entries.emplace_back()))
-    flags.push_back("largest volume ratio J " + three_digits(number(largest)) + " (limit " +
+    flags.push_back("largest volume ratio J " + support::three_digits(number(largest)) + " (limit " +
                     number_text(*largest.bound) + ")");
   for (const auto& [limit, name] : {std::pair{&losses[0], "numerical"}, std::pair{&losses[1], "unexplained"}})
     if (!judge(*limit, summary, entries.emplace_back()))
-      flags.push_back(std::string(name) + " loss of " + three_digits(100 * number(*limit)) +
+      flags.push_back(std::string(name) + " loss of " + support::three_digits(100 * number(*limit)) +
                       " % of the energy (limit " + per_cent(*limit->bound) + ")");
   summary["limits"] = std::move(entries);
   summary["flags"] = flags;

@@ -1,19 +1,11 @@
 #include "run/rim_steps.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "support/numbers.hpp"
+
 namespace mpm::app {
-namespace {
-
-std::string three_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
-}  // namespace
 
 std::string warning_of_rim_steps(const Experiment& experiment) {
   if (!experiment.contact || experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION) return "";
@@ -27,13 +19,13 @@ std::string warning_of_rim_steps(const Experiment& experiment) {
   }
   if (coarsest == nullptr || fewest >= enough_rows_a_radius) return "";
   const double radius = coarsest->geometry->smallest_radius(), step = radius / fewest;
-  return "the curved surface of body \"" + coarsest->name + "\" (radius " + three_digits(radius) +
-         " m) is built of steps of " + three_digits(step) +
+  return "the curved surface of body \"" + coarsest->name + "\" (radius " + support::three_digits(radius) +
+         " m) is built of steps of " + support::three_digits(step) +
          " m, one particle's spacing: where it touches, a contact less than " +
-         three_digits(2 * std::sqrt(2 * radius * step)) +
+         support::three_digits(2 * std::sqrt(2 * radius * step)) +
          " m wide feels single steps, which change its peak force by up to a third and the rolling of a wheel by some "
          "per cent; take particles " +
-         three_digits(enough_rows_a_radius / fewest) +
+         support::three_digits(enough_rows_a_radius / fewest) +
          " times as close, by /grid/cell_size or particles_per_cell_axis (docs/contact.md)";
 }
 

@@ -6,8 +6,8 @@
 
 namespace mpm {
 namespace {
-constexpr int samples_per_cell = 256;
-constexpr double reach = 4;  // cells, which is beyond the support of every shape
+constexpr int offsets_per_cell = 256;
+constexpr double reach_of_weights = 4;  // cells, which is beyond the support of every shape
 
 /// Weights of a list, which has no axes: rows of 2-D particles, summed over the line of nodes at zero.
 std::vector<double> list_weights(const Component& component, const Row& row, const std::vector<double>& rows) {
@@ -78,8 +78,9 @@ EdgeModel::EdgeModel(const Component& shape, int particles_per_cell_axis)
   // The mean grows with the edge up to the node's full support; deeper edges cannot be told apart and count as the
   // deepest.
   double last = -std::numeric_limits<double>::infinity();
-  for (int k = -static_cast<int>(reach) * samples_per_cell; k <= static_cast<int>(reach) * samples_per_cell; ++k) {
-    const double edge = static_cast<double>(k) / samples_per_cell, mean = mean_position(edge);
+  for (int k = -static_cast<int>(reach_of_weights) * offsets_per_cell;
+       k <= static_cast<int>(reach_of_weights) * offsets_per_cell; ++k) {
+    const double edge = static_cast<double>(k) / offsets_per_cell, mean = mean_position(edge);
     if (!std::isfinite(mean)) continue;
     if (mean <= last) {
       if (edge > 0.5) break;

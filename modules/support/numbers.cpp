@@ -43,6 +43,12 @@ std::string fixed_point(double value, int decimals) {
                              .ptr};
 }
 
+std::string three_digits(double value) {
+  std::array<char, 32> digits;
+  return {digits.data(),
+          std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 3).ptr};
+}
+
 std::string without_trailing_zeros(std::string digits) {
   if (digits.find('.') == std::string::npos) return digits;
   digits.erase(digits.find_last_not_of('0') + 1);

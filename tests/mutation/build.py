@@ -52,7 +52,8 @@ class Build:
     def make(self):
         self.say("mutation: building the unchanged program in", self.folder)
         if not (self.folder / "build.ninja").is_file():
-            self.must("cmake", "-S", self.tree, "-B", self.folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release")
+            self.must("cmake", "-S", self.tree, "-B", self.folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                      "-DMPM_FILES_TOGETHER=1")  # a mutant is an object of its own
         jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL")
         targets = ["mpm_sandbox", "plugins", *(f"test_{suite}" for suite in self.wanted)]
         self.must("ninja", "-C", self.folder, *(["-j", jobs] if jobs else []), *targets)

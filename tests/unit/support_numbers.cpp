@@ -1,4 +1,5 @@
 // Numbers as texts that a program reads back.
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -29,6 +30,14 @@ TEST_CASE("seventeen digits, as %.17g of C writes them", "[support]") {
   CHECK(full_precision(1e-5) == "1.0000000000000001e-05");
   for (const double value : {1.0 / 3.0, -6.02214076e23, 4.9406564584124654e-322})
     CHECK(std::strtod(full_precision(value).c_str(), nullptr) == value);
+}
+
+TEST_CASE("three significant digits, as %.3g of C writes them", "[support]") {
+  for (const double value : {0.0, -1.0, 1234.0, 999.5, 0.00012345, 1e-5, 6.02214076e23, 2.0 / 3.0, 100.0, 1e300}) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    CHECK(three_digits(value) == text);
+  }
 }
 
 TEST_CASE("fixed notation, and its zeros", "[support]") {
