@@ -60,6 +60,9 @@ class Build:
 
     def read(self):
         """Learns what there is."""
+        cache = (self.folder / "CMakeCache.txt").read_text()
+        if "MPM_FILES_TOGETHER:STRING=1\n" not in cache:
+            raise BuildFailed(f"{self.folder} compiles several files as one: configure it with -DMPM_FILES_TOGETHER=1")
         self.compile_of = {}
         for entry in json.loads((self.folder / "compile_commands.json").read_text()):
             words = shlex.split(entry["command"])
