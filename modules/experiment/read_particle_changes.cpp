@@ -54,13 +54,7 @@ int ExperimentReader::changed_body(const Fields& fields) {
       return problem(fields.place("body"),
                      in_quotes(rigid.name) + " is a rigid body, which has no particles; name a body out of bodies"),
              -1;
-  std::vector<std::string> names;
-  for (const BodySpecification& body : experiment_.bodies) names.push_back(body.name);
-  const auto found = std::find(names.begin(), names.end(), fields.text("body"));
-  if (found != names.end()) return static_cast<int>(found - names.begin());
-  problem(fields.place("body"), "there is no body " + in_quotes(fields.text("body")) +
-                                    suggestion(fields.text("body"), names, "bodies: " + quoted_list(names)));
-  return -1;
+  return body_index(fields);
 }
 
 OrderedJson ExperimentReader::read_emitter(const Node& node) {

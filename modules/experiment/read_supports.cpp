@@ -44,7 +44,7 @@ OrderedJson ExperimentReader::read_grip(const Node& node) {
   grip.name = fields.given("name") && fields.valid("name") ? fields.text("name")
                                                            : "grip_" + std::to_string(experiment_.grips.size());
   check_support_name(grip.name, fields.place("name"));
-  grip.body = body_index(fields);
+  grip.body = std::max(0, body_index(fields));  // after a problem any body, so that the rest is read too
   grip.held = fields.held("velocity");
   grip.velocity = fields.expression("velocity");
   refuse_nothing_held(fields, grip.held, "remove the grip");
@@ -66,14 +66,7 @@ void ExperimentReader::refuse_nothing_held(const Fields& fields, const std::arra
 }
 
 int ExperimentReader::body_index(const Fields& fields) {
-  if (!fields.valid("body")) return 0;
-  std::vector<std::string> names;
-  for (const BodySpecification& body : experiment_.bodies) names.push_back(body.name);
-  const auto found = std::find(names.begin(), names.end(), fields.text("body"));
-  if (found != names.end()) return static_cast<int>(found - names.begin());
-  problem(fields.place("body"), "there is no body " + in_quotes(fields.text("body")) +
-                                    suggestion(fields.text("body"), names, "bodies: " + quoted_list(names)));
-  return 0;
+  return fields.valid("body") ? body_index(fields.place("body"), fields.text("body")) : -1;
 }
 
 void ExperimentReader::read_damping(const Node* node) {

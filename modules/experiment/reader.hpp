@@ -51,6 +51,7 @@ class ExperimentReader {
   void check_record_name(const Fields& fields, bool is_taken, const char* what);
   /// The index of a body, or -1 with a problem recorded.
   int body_index(const Node& place, const std::string& name);
+  int body_index(const Fields& fields);  ///< that of the key "body"
 
   // read_components.cpp
   Chosen read_component(const Node& node, mpm_kind kind);
@@ -80,7 +81,6 @@ class ExperimentReader {
   void check_free_fall();
   void read_grips(const Node* node);
   OrderedJson read_grip(const Node& node);
-  int body_index(const Fields& fields);
   void refuse_nothing_held(const Fields& fields, const std::array<bool, 3>& held, const std::string& remedy);
 
   // read_rigid_bodies.cpp

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "experiment/diagnostics.hpp"
+#include "simulation/emitters.hpp"
 #include "simulation/point_bins.hpp"
 #include "simulation/seeding.hpp"
 
@@ -118,15 +119,6 @@ class Places {
   std::map<int, Points> points_;
   std::map<int, Bins> bins_;
 };
-
-/// The experiment with the body of an emitter in the emitter's region alone.
-Experiment filled_by(const Experiment& experiment, const Emitter& emitter) {
-  Experiment filled = experiment;
-  BodySpecification& body = filled.bodies[static_cast<std::size_t>(emitter.body)];
-  body.geometry = emitter.geometry, body.starts_empty = false;
-  filled.grips.clear();
-  return filled;
-}
 
 /// Counts the particles of overlap.body inside overlap.rigid_body, and adds it where there are any.
 void note_overlap(const Experiment& experiment, RigidOverlap overlap, std::vector<RigidOverlap>& found) {

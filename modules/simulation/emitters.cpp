@@ -33,10 +33,7 @@ void refuse_long_step(const Experiment& experiment, const Emitter& emitter) {
 
 /// The particles that fill the emitter's region, of the body's seeding and of a volume as the body's particles have it.
 Newcomers fill(const Experiment& experiment, const Emitter& emitter, const SeededBody& of_body) {
-  Experiment filled = experiment;
-  BodySpecification& body = filled.bodies[static_cast<std::size_t>(emitter.body)];
-  body.geometry = emitter.geometry, body.starts_empty = false;
-  filled.grips.clear();
+  const Experiment filled = filled_by(experiment, emitter);
   const SeededBody seeded = seed_body(filled, emitter.body);
   const auto D = static_cast<std::size_t>(experiment.dimension);
   Newcomers batch;
@@ -65,6 +62,14 @@ Newcomers fill(const Experiment& experiment, const Emitter& emitter, const Seede
 }
 
 }  // namespace
+
+Experiment filled_by(const Experiment& experiment, const Emitter& emitter) {
+  Experiment filled = experiment;
+  BodySpecification& body = filled.bodies[static_cast<std::size_t>(emitter.body)];
+  body.geometry = emitter.geometry, body.starts_empty = false;
+  filled.grips.clear();
+  return filled;
+}
 
 Emitters::Emitters(const Experiment& experiment, const std::vector<SeededBody>& seeds)
     : experiment_(experiment), dimension_(static_cast<std::size_t>(experiment.dimension)) {

@@ -8,6 +8,9 @@
 
 namespace mpm {
 
+/// The experiment with the body of an emitter in the emitter's region alone, whose seeds are then a batch.
+Experiment filled_by(const Experiment& experiment, const Emitter& emitter);
+
 class Emitters {
  public:
   /// Fills each region once, to know its batch. `seeds` are those of the bodies without what is emitted.
