@@ -200,8 +200,8 @@ void ExperimentReader::read_contact_nodes(const Fields& fields) {
 void ExperimentReader::read_records(const Fields& fields) {
   OrderedJson& resolved = resolved_["output"];
   experiment_.output.contact_pairs = fields.boolean("contact_pairs");
-  if (experiment_.output.contact_pairs && !experiment_.contact)
-    problem(fields.place("contact_pairs"), "there are no pairs without \"contact\"");
+  if (experiment_.output.contact_pairs && !experiment_.contact && experiment_.rigid_bodies.empty())
+    problem(fields.place("contact_pairs"), "there are no pairs without \"contact\" or \"rigid_bodies\"");
   read_contact_nodes(fields);
   if (fields.given("bodies")) resolved["bodies"] = read_recorded_bodies(*fields.node("bodies"));
   for (const char* key : {"groups", "probes"}) {

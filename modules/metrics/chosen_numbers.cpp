@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "metrics/probes.hpp"
+#include "metrics/rigid_gap.hpp"
 #include "simulation/contact_impulse.hpp"
 
 namespace mpm {
@@ -92,6 +93,7 @@ std::vector<ChosenRow> ChosenNumbers::rows() const {
   for (const Part& part : parts_) add_part(part, views, rows);
   for (const ProbeSpecification& probe : simulation_.experiment().output.probes) add_probe(probe, views, rows);
   add_pairs(rows);
+  if (simulation_.experiment().output.contact_pairs) add_rigid_gaps(views, rows);
   return rows;
 }
 
@@ -181,6 +183,21 @@ void ChosenNumbers::add_pairs(std::vector<ChosenRow>& rows) const {
       add("slipping nodes", "", static_cast<double>(pair.slipping));
       add("largest penetration", "m", pair.largest_penetration);
     }
+}
+
+/// A force while every gap is open is early: the surfaces of the particles do not reach the body yet.
+void ChosenNumbers::add_rigid_gaps(Views& views, std::vector<ChosenRow>& rows) const {
+  const Experiment& experiment = simulation_.experiment();
+  const Backend& backend = simulation_.backend();
+  for (std::size_t k = 0; k < experiment.rigid_bodies.size(); ++k) {
+    const std::string& name = experiment.rigid_bodies[k].name;
+    const Reaction& reaction = backend.reactions()[static_cast<std::size_t>(experiment.support_of_rigid_body(k))];
+    const Vector3 force = reaction.force;
+    const double gap = rigid_gap(views, k, backend.rigid_bodies()[k]);
+    const Adder add{"rigid " + name + " ", {"rigid", name}, rows};
+    add("gap", "m", gap);
+    add("early force", units_of(experiment).force, gap > 0 ? std::hypot(force[0], force[1], force[2]) : 0);
+  }
 }
 
 Profile ChosenNumbers::profile(const ProbeSpecification& line) const {

@@ -53,6 +53,7 @@ class ChosenNumbers {
   void add_probe(const ProbeSpecification& probe, Views& views, std::vector<ChosenRow>& rows) const;
   void add_section(const ProbeSpecification& probe, Views& views, std::vector<ChosenRow>& rows) const;
   void add_pairs(std::vector<ChosenRow>& rows) const;
+  void add_rigid_gaps(Views& views, std::vector<ChosenRow>& rows) const;
 
   const Simulation& simulation_;
   std::vector<Part> parts_;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "experiment/polynomials.hpp"
+#include "metrics/particle_domain.hpp"
 #include "metrics/particle_quantities.hpp"
 
 namespace mpm {
@@ -78,18 +79,12 @@ class Body {
       coefficients(name, to);
   }
 
-  /// F where the material keeps it: row-major in the plane or in space; null else.
-  const double* deformation_gradient(std::size_t p) const {
-    const auto kept = state_.material_state.find("deformation_gradient");
-    if (kept == state_.material_state.end()) return nullptr;
-    return &kept->second[p * (kept->second.size() / count())];
-  }
-
   /// The two or three semi-sides of the particle's parallelogram, m, and the corners where the shape carries them.
   void append_domain(std::size_t p, std::vector<double>& out) const {
     // The corners in VTK's order: around the lower face, then around the upper one.
     constexpr int around[8] = {0, 1, 3, 2, 4, 5, 7, 6};
     const std::size_t corners = D_ == 2 ? 4 : 8;
+    const std::array<double, 9> sides = semi_sides(experiment_, body_, state_, p);
     for (std::size_t k = 0; k < corners; ++k) {
       const auto c = static_cast<std::size_t>(around[k]);  // at the upper end along axis a where bit a is set
       for (std::size_t i = 0; i < 3; ++i) {
@@ -97,7 +92,7 @@ class Body {
         if (i < D_ && !state_.corners.empty()) {
           x += state_.corners[(p * corners + c) * D_ + i];
         } else if (i < D_) {
-          for (std::size_t a = 0; a < D_; ++a) x += (c >> a & 1 ? 1 : -1) * semi_side(p, i, a);
+          for (std::size_t a = 0; a < D_; ++a) x += (c >> a & 1 ? 1 : -1) * sides[3 * i + a];
         }
         out.push_back(x);
       }
@@ -105,14 +100,6 @@ class Body {
   }
 
  private:
-  /// Component i of the a-th semi-side, m.
-  double semi_side(std::size_t p, std::size_t i, std::size_t a) const {
-    if (!state_.domain.empty()) return state_.domain[(p * D_ + i) * D_ + a];
-    const double half = 0.5 * experiment_.grid.cell_size / experiment_.bodies[body_].particles_per_cell_axis;
-    const double* F = deformation_gradient(p);
-    return half * (F ? F[i * D_ + a] : i == a ? 1.0 : 0.0);
-  }
-
   const MaterialQuantities& material() {
     if (!material_) material_ = material_quantities(experiment_, body_, state_);
     return *material_;

@@ -6,6 +6,7 @@
 
 #include "operators/supports.hpp"
 #include "simulation/boundary.hpp"
+#include "simulation/rigid_place.hpp"
 
 namespace mpm {
 namespace {
@@ -101,11 +102,14 @@ Vector3 RigidBodies::place_of(const std::array<int, 3>& node) const {
   return x;
 }
 
-Vector3 RigidBodies::at_start(std::size_t body, const Vector3& x) const {
-  const RigidState& state = states_[body];
+Vector3 place_at_start(const RigidBodySpecification& body, const RigidState& state, const Vector3& x) {
   Vector3 X = turned_back(state.rotation, minus(x, state.place));
-  for (std::size_t c = 0; c < 3; ++c) X[c] += experiment_.rigid_bodies[body].about[c];
+  for (std::size_t c = 0; c < 3; ++c) X[c] += body.about[c];
   return X;
+}
+
+Vector3 RigidBodies::at_start(std::size_t body, const Vector3& x) const {
+  return place_at_start(experiment_.rigid_bodies[body], states_[body], x);
 }
 
 double RigidBodies::distance(std::size_t body, const Vector3& x) const {

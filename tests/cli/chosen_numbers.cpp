@@ -175,7 +175,7 @@ TEST_CASE("names that no record has are mistakes of the file, with place and nea
   CHECK(has(refusal(scene), "/output/probes/1: says more than one place"));
   scene = asking();
   scene.erase("contact");
-  CHECK(has(refusal(scene), "/output/contact_pairs: there are no pairs without \"contact\""));
+  CHECK(has(refusal(scene), "/output/contact_pairs: there are no pairs without \"contact\" or \"rigid_bodies\""));
   scene["output"]["contact_pairs"] = false, scene["output"]["contact_nodes"] = true;
   CHECK(has(refusal(scene), "/output/contact_nodes: there are no such nodes without \"contact\""));
   scene = asking();
