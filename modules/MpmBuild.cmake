@@ -66,7 +66,7 @@ function(mpm_compile_together target)
   endif()
 endfunction()
 
-# mpm_compile_fast(TARGET): what runs a few times a run, none of it over particles or nodes, gains nothing from more.
+# mpm_compile_fast(TARGET): code without a loop over particles or nodes in each step gains nothing from more optimisation.
 function(mpm_compile_fast target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()

@@ -21,7 +21,7 @@ struct Share {
 
 using SharesOfNodes = std::map<std::array<int, 3>, Share>;
 
-/// SharesOfNodes of periodic axes are counted from the lower face up to the one below the upper face, which is its image.
+/// Nodes of periodic axes are counted from the lower face up to the one below the upper face, which is its image.
 int counted(const Experiment& experiment, std::size_t axis, int node) {
   if (experiment.faces[axis][0].type != ConditionType::periodic) return node;
   const int cells = experiment.grid.cells[axis];
