@@ -33,7 +33,7 @@ test $status = 0 || cat "$0.$$" > "$0.messages"
 rm "$0.$$"
 exit $status
 """
-PLUGIN_IN_A_TEST = re.compile(r'#include "(?:contacts|filters|materials|normals|shapes|transfers)/')
+PLUGIN_IN_A_TEST = re.compile(r'#include "(?:contacts|detections|filters|materials|normals|shapes|transfers)/')
 INSTANTIATION = re.compile(r"_([23]_(?:float|double))\.cpp\.o$")
 
 
@@ -337,10 +337,22 @@ class Group:
 
         return self.tried(mutant, 0, program_of, None)
 
+    def near(self, mutant):
+        """The noted expressions nearest to a mutant that is compiled alone and noted nowhere: a case that comes to one of
+        them most likely comes to it."""
+        held = set(self.texts[mutant.file].numbers())
+        noted = [(abs(other.line - mutant.line), self.noted_as[n]) for other, n in self.number_of.items()
+                 if n in held and n in self.noted_as]  # fmt: skip
+        least = min((distance for distance, _ in noted), default=0)
+        return {number for distance, number in noted if distance == least}
+
     def tried(self, mutant, number, program_of, noted):
+        near = self.near(mutant) if noted is None else set()
+        for case in [case for case in self.cases if near and case.usable is None]:
+            self.look_at(case)
         begin, left, came, programs = self.spent(), list(self.cases), 0, self.programs_of_mutant()
         while left:
-            case = max(left, key=lambda case: case.promise(mutant.file))
+            case = max(left, key=lambda case: (bool(near & case.comes_to), case.promise(mutant.file)))
             left.remove(case)
             if case.usable is None:
                 before = self.spent()
