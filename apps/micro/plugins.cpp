@@ -274,6 +274,29 @@ struct NormalCase {
   std::string problem() { return sound({&normal}); }
 };
 
+/// Bodies whose faces lie within a cell of each other.
+struct DetectionCase {
+  Variant v;
+  std::vector<Buffer> of_a, of_b;  ///< means, edges, surfaces
+  Buffer gap;
+
+  explicit DetectionCase(const Variant& variant) : v(variant) {
+    Random random(1);
+    for (int k = 0; k < 3; ++k) of_a.push_back(v.random(random, 1, -1, 0)), of_b.push_back(v.random(random, 1, 0, 1));
+    gap = v.buffer(1);
+  }
+  void run() {
+    const mpm_detection& detection = v.plugin->detection();
+    mpm_detection_batch q{};
+    q.count = q.stride = batch, q.gap = gap.data();
+    if (detection.traits & MPM_READS_MEAN_POSITION) q.mean_a = of_a[0].data(), q.mean_b = of_b[0].data();
+    if (detection.traits & MPM_READS_EDGES) q.edge_a = of_a[1].data(), q.edge_b = of_b[1].data();
+    if (detection.traits & MPM_READS_PARTICLE_SURFACES) q.surface_a = of_a[2].data(), q.surface_b = of_b[2].data();
+    detection.find[v.precision()](v.parameters->data(), &q);
+  }
+  std::string problem() { return sound({&gap}); }
+};
+
 // ---- materials -----------------------------------------------------------------------------------------------------
 
 enum MaterialOutputs { advances = 1, stress = 2, energy = 4, speed = 8 };
@@ -341,6 +364,9 @@ void add_variant(const Variant& v, const std::string& name) {
     case MPM_NORMAL:  // those that look at particles have no batches
       if (!(v.plugin->normal().traits & MPM_LOOKS_AT_POINTS))
         add(name + "/find", "pair", [=] { return NormalCase(v); });
+      return;
+    case MPM_DETECTION:
+      add(name + "/find", "pair", [=] { return DetectionCase(v); });
       return;
     case MPM_MATERIAL: {
       const std::pair<const char*, int> entries[] = {{"/advance_stress", advances | stress},

@@ -430,7 +430,7 @@ int run_command_line(int argc, char** argv) {
   });
 
   auto* new_verb = app.add_subcommand("new", "write a project for a plugin of your own, with an experiment and a test");
-  new_verb->add_option("KIND", kind, "shape, transfer, filter, contact, normal or material")->required();
+  new_verb->add_option("KIND", kind, "shape, transfer, filter, contact, normal, detection or material")->required();
   new_verb->add_option("ID", id, "the word that experiments will use, e.g. my_rubber")->required();
   new_verb->add_option("DIR", plugin_folder, "folder to write, new or empty")->required();
   new_verb->callback(

@@ -313,16 +313,18 @@ void print_filters(const Registry& registry) {
   }
 }
 
-/// Prints which contact normals do not mix with everything.
+/// Prints which contact normals and detections do not mix with everything.
 void print_normals(const Registry& registry) {
-  std::cout
-      << "\nContact normals run with every law but a weld, which looks at none, and with every shape, transfer and "
-         "stress update.\n";
+  std::cout << "\nContact normals and detections run with one another, with every law but a weld, which looks at none, "
+               "and with every shape, transfer and stress update.\n";
+  std::string by_surfaces;
+  for (const Plugin* detection : registry.of_kind(MPM_DETECTION))
+    if (detection->detection().traits & MPM_READS_PARTICLE_SURFACES)
+      by_surfaces += (by_surfaces.empty() ? ", and with detection by `" : ", `") + std::string(detection->id()) + "`";
   for (const Plugin* normal : registry.of_kind(MPM_NORMAL))
     if (normal->normal().traits & MPM_OWN_NORMALS)
-      std::cout << "`" << normal->id()
-                << "` gives each body an impulse of its own: it is refused with a filter, and with detection by "
-                   "`particle_surfaces`.\n";
+      std::cout << "`" << normal->id() << "` gives each body an impulse of its own: it is refused with a filter"
+                << by_surfaces << ".\n";
 }
 
 }  // namespace

@@ -77,7 +77,10 @@ Json scene_of(const Plugin& plugin, int dimension, double speed, double time_ste
       scene["filter"]["every_steps"] = 2;
       break;
     case MPM_NORMAL:
-      scene["contact"] = {{"type", "coulomb"}, {"friction", 0.3}, {"normal", choice}};
+    case MPM_DETECTION:
+      scene["contact"] = {{"type", "coulomb"},
+                          {"friction", 0.3},
+                          {std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))), choice}};
       break;
     default:
       scene[std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind)))] = choice;
@@ -96,7 +99,8 @@ Json scene_of(const Plugin& plugin, int dimension, double speed, double time_ste
        {"jitter", 0.2},
        {"geometry", {{"type", "ball"}, {"centre", of("[0.4, 0.4]", "[0.4, 0.4, 0.4]")}, {"radius", 0.22}}},
        {"velocity", velocity("1-0.9*(y-0.4)", "0.1+0.9*(x-0.4)", "0.2+x-y")}});
-  if (plugin.descriptor->kind == MPM_CONTACT || plugin.descriptor->kind == MPM_NORMAL)
+  const std::uint32_t kind = plugin.descriptor->kind;
+  if (kind == MPM_CONTACT || kind == MPM_NORMAL || kind == MPM_DETECTION)
     scene["bodies"].push_back({{"name", "b"},
                                {"material", "m"},
                                {"seeding", "lattice"},

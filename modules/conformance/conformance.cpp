@@ -60,6 +60,8 @@ bool has_entries(const Plugin& plugin, const conformance::Variant& v) {
     case MPM_NORMAL:
       return plugin.normal().traits & MPM_LOOKS_AT_POINTS ? plugin.normal().from_points[axis] != nullptr
                                                           : plugin.normal().from_sums[v.precision][axis] != nullptr;
+    case MPM_DETECTION:
+      return plugin.detection().find[v.precision];
     case MPM_MATERIAL:
       return plugin.material().update[v.precision][axis];
     default:
@@ -95,6 +97,9 @@ std::vector<ConformanceFinding> check_plugin(const Plugin& plugin, const Conform
       break;
     case MPM_NORMAL:
       conformance::check_normal(plugin, findings);
+      break;
+    case MPM_DETECTION:
+      conformance::check_detection(plugin, findings);
       break;
     case MPM_MATERIAL:
       conformance::check_material(plugin, findings);

@@ -160,6 +160,7 @@ void check_transfer(const Plugin& plugin, Findings& findings);
 void check_filter(const Plugin& plugin, Findings& findings);
 void check_contact(const Plugin& plugin, Findings& findings);
 void check_normal(const Plugin& plugin, Findings& findings);
+void check_detection(const Plugin& plugin, Findings& findings);
 void check_material(const Plugin& plugin, Findings& findings);
 /// Checks the operation counts that a plugin of any kind says of itself.
 void check_costs(const Plugin& plugin, Findings& findings);

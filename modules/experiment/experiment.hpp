@@ -355,8 +355,7 @@ struct Experiment {
   Component shape, transfer;
   std::optional<Component> filter, contact;
   FilterSchedule filter_schedule;
-  std::optional<Component> contact_normal;  ///< with contact only
-  std::string contact_detection;            ///< the name of the host's choice, empty without contact
+  std::optional<Component> contact_normal, contact_detection;  ///< with contact only
   int field_count = 1;
   std::vector<std::string> field_names;  ///< one a field; with contact only
 

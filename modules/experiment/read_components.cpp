@@ -101,10 +101,9 @@ ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_
 ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_kind kind,
                                                           const std::vector<Section>& kinds) {
   Chosen chosen;
-  const bool by_word = kind == MPM_NORMAL;
-  const std::string what = kind == MPM_CONTACT  ? "contact law"
-                           : kind == MPM_NORMAL ? "contact normal"
-                                                : std::string(kind_name(kind));
+  const bool by_word = kind == MPM_NORMAL || kind == MPM_DETECTION;
+  const std::string what =
+      kind == MPM_CONTACT ? "contact law" : (by_word ? "contact " : "") + std::string(kind_name(kind));
   const Section* section = choose_kind(node, kinds, what, by_word, context_);
   if (!section) return chosen;
   const Plugin* plugin = components_.find(kind, section->name);
@@ -155,45 +154,42 @@ void ExperimentReader::read_components(const Fields& fields) {
   const Chosen contact = choose("contact", MPM_CONTACT);
   experiment_.contact = contact.component;
   if (!contact.fields) return;
-  read_normal(*contact.fields);
-  experiment_.contact_detection = contact.fields->text("detection");
+  experiment_.contact_normal = read_part_of_contact(*contact.fields, MPM_NORMAL, standard_normal);
+  experiment_.contact_detection = read_part_of_contact(*contact.fields, MPM_DETECTION, standard_detection);
   check_contact(*contact.fields);
 }
 
-/// Reads the normal, which a word chooses unless it needs parameters; a word stays one in the resolved experiment.
-void ExperimentReader::read_normal(const Fields& contact) {
+/// Reads the normal or the detection, which a word chooses unless it needs parameters; a word stays one in the resolved
+/// experiment.
+std::optional<Component> ExperimentReader::read_part_of_contact(const Fields& contact, mpm_kind kind,
+                                                                const char* word) {
+  const std::string key(kind_name(kind));
   Node standard;
-  standard.type = Node::Type::string, standard.text = standard_normal;
-  standard.at = contact.place("normal").at, standard.pointer = experiment_.contact->pointer + "/normal";
-  const Node& node = contact.given("normal") ? *contact.node("normal") : standard;
-  const Chosen chosen = read_component(node, MPM_NORMAL);
-  if (!chosen.component.plugin) return;
-  experiment_.contact_normal = chosen.component;
-  const auto parameters = chosen.component.plugin->parameters();
-  if (node.type != Node::Type::string) {
-    resolved_["contact"]["normal"] = chosen.resolved;
-    return;
-  }
-  resolved_["contact"]["normal"] = node.text;
-  for (const mpm_parameter& declared : parameters)
-    if (declared.flags & MPM_REQUIRED)
-      return problem(node, "contact normal " + in_quotes(node.text) + " needs " + in_quotes(declared.name) +
-                               ": {\"type\": " + in_quotes(node.text) + ", " + in_quotes(declared.name) + ": …}");
+  standard.type = Node::Type::string, standard.text = word;
+  standard.at = contact.place(key).at, standard.pointer = experiment_.contact->pointer + "/" + key;
+  const Node& node = contact.given(key) ? *contact.node(key) : standard;
+  const Chosen chosen = read_component(node, kind);
+  if (!chosen.component.plugin) return {};
+  const bool is_word = node.type == Node::Type::string;
+  resolved_["contact"][key] = is_word ? OrderedJson(node.text) : chosen.resolved;
+  for (const mpm_parameter& declared : chosen.component.plugin->parameters())
+    if (is_word && (declared.flags & MPM_REQUIRED))
+      problem(node, "contact " + key + " " + in_quotes(node.text) + " needs " + in_quotes(declared.name) +
+                        ": {\"type\": " + in_quotes(node.text) + ", " + in_quotes(declared.name) + ": …}");
+  return chosen.component;
 }
 
 /// Refuses a choice of normal or detection that nobody would look at, and a cap that the law or its normal cannot take.
 void ExperimentReader::check_contact(const Fields& fields) {
-  for (const std::string key : {"normal", "detection"}) {
-    if (!fields.given(key) || !fields.valid(key)) continue;
-    if (key == "normal" && !experiment_.contact_normal) continue;  // what is wrong with it has been said
-    const bool standard =
-        key == "normal" ? experiment_.contact_normal->plugin->id() == standard_normal : fields.choice(key) == 0;
-    if (standard) continue;
+  const auto refuse_unread = [&](const std::optional<Component>& chosen, const char* key, const char* standard) {
+    if (!chosen || !fields.given(key) || chosen->plugin->id() == standard) return;  // what is wrong has been said
     if (experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION)
       problem(fields.place(key), in_quotes(experiment_.contact->plugin->id()) +
                                      " joins bodies at every node that they share and looks at no " + key +
                                      "; remove it");
-  }
+  };
+  refuse_unread(experiment_.contact_normal, "normal", standard_normal);
+  refuse_unread(experiment_.contact_detection, "detection", standard_detection);
   if (!fields.given("strain_cap") || !experiment_.contact_normal) return;
   const std::string why = refuses_strain_cap(*experiment_.contact, *experiment_.contact_normal);
   if (!why.empty()) problem(fields.place("strain_cap"), why + "; remove it");

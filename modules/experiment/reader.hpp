@@ -59,7 +59,7 @@ class ExperimentReader {
   void check_capability(const Plugin& plugin, mpm_kind kind, const Node& place);
   void read_filter_schedule(const Fields& fields);
   void read_components(const Fields& fields);
-  void read_normal(const Fields& contact);
+  std::optional<Component> read_part_of_contact(const Fields& contact, mpm_kind kind, const char* word);
   void check_contact(const Fields& fields);
   void read_materials(const Node* node);
 

@@ -178,7 +178,8 @@ Json definitions(const ComponentLookup& components, const ReadOptions& options) 
   for (const mpm_kind kind : {MPM_SHAPE, MPM_TRANSFER, MPM_FILTER, MPM_CONTACT, MPM_MATERIAL}) {
     all[std::string(kind_name(kind))] = choice_schema(component_kinds(components, kind));
   }
-  all["normal"] = words_or(component_kinds(components, MPM_NORMAL));
+  for (const mpm_kind kind : {MPM_NORMAL, MPM_DETECTION})
+    all[std::string(kind_name(kind))] = words_or(component_kinds(components, kind));
   all["materials"] = {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", reference("material")}};
   all["geometry"] = choice_schema(geometry_kinds());
   all["geometries"] = list_of(reference("geometry"));

@@ -608,9 +608,8 @@ std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind
     if (wanted == MPM_CONTACT) {
       section.parameters.push_back(
           nested("normal", "how the contact normal is found", "normal").standard(standard_normal));
-      section.parameters.push_back(parameter("detection", Type::choice, "", "When two fields count as touching.")
-                                       .of({"approach_and_position", "particle_surfaces"})
-                                       .standard("approach_and_position"));
+      section.parameters.push_back(
+          nested("detection", "when two velocity fields count as touching", "detection").standard(standard_detection));
       section.parameters.push_back(
           parameter(
               "strain_cap", Type::number, "",

@@ -67,6 +67,15 @@ struct NormalResult {
   S found;                 ///< 1 where there is a normal, else 0
 };
 
+/// Where two bodies that meet at a node are along their normal, in cells from the node, as far as the detection says that
+/// it reads it; the rest is zero. Body a is on the near side.
+template <class S>
+struct DetectionPair {
+  S mean_a, mean_b;        ///< the mean places of the mass that the node sees
+  S edge_a, edge_b;        ///< the faces whose rows of particles have these means
+  S surface_a, surface_b;  ///< how far the outermost particles extend
+};
+
 /// State of solids that keep F alone, declared as MPM_STATE_PLANE_DEFORMATION: `Gradient` is a Mat, or in axisymmetric
 /// scenes a Deformation.
 template <class Gradient>

@@ -1,6 +1,7 @@
 #pragma once
 // The geometry of two velocity fields that meet at a node: shared normal, separation, area. All backends use it.
 
+#include "kernel/functor.hpp"
 #include "kernel/tensor.hpp"
 
 namespace mpm {
@@ -30,7 +31,7 @@ struct ContactFieldNode {
   double mass = 0;
   double volume_gradient[3] = {};    ///< sum V grad w, derivative by the particle's position: points out of the body
   double mass_gradient[3] = {};      ///< sum m grad w, where the normal reads it
-  double mass_position[3] = {};      ///< sum w m (x_p - x_node), kg m
+  double mass_position[3] = {};      ///< sum w m (x_p - x_node), kg m, where the detection reads it
   double mass_displacement[3] = {};  ///< sum w m (u_p + (grad u) d), kg m, where the law reads it
 };
 
@@ -94,17 +95,23 @@ MPM_HD bool average_gradient(const ContactFieldNode& a, const ContactFieldNode& 
   return true;
 }
 
-/// The separation by edge tables that are inverted at the mean positions of mass.
-MPM_HD double separation_of_edges(const ContactFieldNode& a, const ContactFieldNode& b, const EdgeTable& edge_a,
-                                  const EdgeTable& edge_b, const double* normal, double cell_size, int dimension) {
-  double position_a = 0, position_b = 0;
-  for (int i = 0; i < dimension; ++i) {
-    position_a += a.mass_position[i] * normal[i];
-    position_b += b.mass_position[i] * normal[i];
-  }
-  const double surface_a = edge_a.edge(position_a / (a.mass * cell_size));
-  const double surface_b = -edge_b.edge(-position_b / (b.mass * cell_size));
-  return (surface_b - surface_a) * cell_size;
+/// The mean position of what a node sees of a body, along a normal, in cells from the node.
+MPM_HD double mean_position(const ContactFieldNode& body, const double* normal, double cell_size, int dimension) {
+  double position = 0;
+  for (int i = 0; i < dimension; ++i) position += body.mass_position[i] * normal[i];
+  return position / (body.mass * cell_size);
+}
+
+/// Fills what a detection reads of mean positions.
+MPM_HD void see_means(DetectionPair<double>& seen, const ContactFieldNode& a, const ContactFieldNode& b,
+                      const double* normal, double cell_size, int dimension) {
+  seen.mean_a = mean_position(a, normal, cell_size, dimension);
+  seen.mean_b = mean_position(b, normal, cell_size, dimension);
+}
+
+/// Fills what a detection reads of edges, from tables that are inverted at the means.
+MPM_HD void see_edges(DetectionPair<double>& seen, const EdgeTable& edge_a, const EdgeTable& edge_b) {
+  seen.edge_a = edge_a.edge(seen.mean_a), seen.edge_b = -edge_b.edge(-seen.mean_b);
 }
 
 /// The node's share of the area in which two fields touch, m^2 (m in 2-D): by the divergence theorem a body's sum V grad w
@@ -122,15 +129,6 @@ MPM_HD double contact_area(const ContactFieldNode& a, const ContactFieldNode& b,
 /// The length of the ring of a node at this radius, m, in axisymmetric scenes.
 MPM_HD double around_axis(double radius) {
   return 6.283185307179586 * max(radius, 0.0);
-}
-
-/// Finds separation and area along the normal that a pair has.
-MPM_HD void measure_pair(ContactGeometry& pair, const ContactFieldNode& a, const ContactFieldNode& b,
-                         const EdgeTable& edge_a, const EdgeTable& edge_b, double cell_size, int dimension,
-                         double around) {
-  pair.separation = separation_of_edges(a, b, edge_a, edge_b, pair.normal, cell_size, dimension);
-  pair.area = contact_area(a, b, pair.normal, dimension, around);
-  pair.valid = true;
 }
 
 }  // namespace mpm

@@ -17,19 +17,18 @@ struct RigidSurface {
 };
 
 /// How the material of a velocity field meets a rigid body at a node. Its own edge is found as beside another body
-/// (separation_of_edges), and the area is that of its own surface along the normal (contact_area); `around` is the length
+/// (see_edges), and the area is that of its own surface along the normal (contact_area); `around` is the length
 /// of the node's ring in axisymmetric scenes, m, else 1.
 MPM_HD ContactGeometry rigid_contact_geometry(const ContactFieldNode& a, const EdgeTable& edge,
                                               const RigidSurface& surface, double around, double cell_size,
                                               int dimension) {
   ContactGeometry result;
-  double position = 0, area = 0;
+  double area = 0;
   for (int i = 0; i < dimension; ++i) {
     result.normal[i] = surface.normal[i];
-    position += a.mass_position[i] * surface.normal[i];
     area += a.volume_gradient[i] * surface.normal[i];
   }
-  result.separation = surface.distance - edge.edge(position / (a.mass * cell_size)) * cell_size;
+  result.separation = surface.distance - edge.edge(mean_position(a, surface.normal, cell_size, dimension)) * cell_size;
   result.area = max(area, 0.0) * around;
   result.valid = true;
   return result;

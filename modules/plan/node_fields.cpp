@@ -189,19 +189,23 @@ void contact_fields(FieldList& fields) {
   const Experiment& experiment = fields.experiment;
   const std::string meets = experiment.contact ? experiment.contact->pointer : experiment.rigid_bodies.front().pointer;
   std::string area = meets + ": the area that a node stands for";
-  std::string place = meets + ": where the edge of the material lies";
+  std::string place = experiment.rigid_bodies.empty()
+                          ? ""
+                          : experiment.rigid_bodies.front().pointer + ": where the edge of the material lies";
   unsigned traits = 0;
   if (experiment.contact) {
     const Component& chosen = *experiment.contact_normal;
     const std::string normal = meets + "/normal \"" + std::string(chosen.plugin->id()) + "\"";
     traits = chosen.plugin->normal().traits;
     if (traits & (MPM_READS_VOLUME_GRADIENT | MPM_LOOKS_AT_POINTS)) area = normal;
-    place = meets + "/detection \"" + experiment.contact_detection + "\"";
+    const Plugin& detection = *experiment.contact_detection->plugin;
+    if (detection.detection().traits & (MPM_READS_MEAN_POSITION | MPM_READS_EDGES))
+      place = meets + "/detection \"" + std::string(detection.id()) + "\"";
     if (traits & MPM_READS_MASS_GRADIENT)
       fields.summed("mass_gradient", "kg/m", D, AtWall::slip, Folded::with_mass, normal);
   }
   fields.summed("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, area);
-  fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass, place);
+  if (!place.empty()) fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass, place);
   if (experiment.has_compliant_contact())
     fields.summed("mass_displacement", "kg m", D, AtWall::slip, Folded::with_mass, meets + ": its springs");
   if (experiment.contact_state().empty()) return;

@@ -132,17 +132,18 @@ std::string who_reads_initial_position(const Experiment& experiment, int body) {
 void deformation_fields(FieldList& fields, int body) {
   const Experiment& experiment = fields.experiment;
   const std::string loaded = experiment.loaded_at_points(body);
-  const bool meets = experiment.contact && experiment.contact_detection == "particle_surfaces" &&
+  const bool meets = experiment.contact &&
+                     (experiment.contact_detection->plugin->detection().traits & MPM_READS_PARTICLE_SURFACES) &&
                      !(experiment.shape.plugin->descriptor->needs & MPM_NEEDS_DOMAIN);
   const bool springs = experiment.has_compliant_contact();
   if (loaded.empty() && !meets && !springs) return;
   const int D = experiment.dimension;
   fields
-      .of_particles(
-          body, "deformation", "", D * D, experiment.bodies[body].deformed() ? First::seeded : First::identity,
-          !loaded.empty() ? loaded + ": loaded points and normals move with the particle"
-          : springs       ? experiment.contact->pointer + ": its springs do not feel a common turn"
-                    : experiment.contact->pointer + "/detection \"particle_surfaces\": how far a particle extends")
+      .of_particles(body, "deformation", "", D * D,
+                    experiment.bodies[body].deformed() ? First::seeded : First::identity,
+                    !loaded.empty() ? loaded + ": loaded points and normals move with the particle"
+                    : springs       ? experiment.contact->pointer + ": its springs do not feel a common turn"
+                                    : FieldList::named(*experiment.contact_detection) + ": how far a particle extends")
       .name = "deformation gradient";
 }
 

@@ -56,11 +56,12 @@ void refuse_normal(const Experiment& experiment) {
     const std::string why = name + " gives each body an impulse of its own, and ";
     if (experiment.filter)
       refuse(experiment, normal.pointer, why + "a filter hands on one for both; take another normal, or no filter");
-    if (experiment.contact_detection == "particle_surfaces")
+    const Plugin& detection = *experiment.contact_detection->plugin;
+    if (detection.detection().traits & MPM_READS_PARTICLE_SURFACES)
       refuse(experiment, normal.pointer,
-             why +
-                 "\"particle_surfaces\" measures the gap along a normal that both share; take another normal, or "
-                 "detection \"approach_and_position\"");
+             why + "\"" + std::string(detection.id()) +
+                 "\" measures the gap along a normal that both share; take another normal, or detection "
+                 "\"approach_and_position\"");
   }
   if (functions.traits != 0) return;
   // What reads nothing of the scene is known before it runs.

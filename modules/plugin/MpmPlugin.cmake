@@ -4,8 +4,8 @@
 # a material is compiled as two objects side by side (sdk.hpp): SOURCES hold nothing but MPM_EXPORT_PLUGIN then.
 function(mpm_add_plugin kind id)
   cmake_parse_arguments(ARG "IN_TWO_PARTS" "HEADER" "SOURCES" ${ARGN})
-  if(NOT kind MATCHES "^(shape|transfer|filter|contact|normal|material)$")
-    message(FATAL_ERROR "mpm_add_plugin: \"${kind}\" is no kind; kinds are shape, transfer, filter, contact, normal, material")
+  if(NOT kind MATCHES "^(shape|transfer|filter|contact|normal|detection|material)$")
+    message(FATAL_ERROR "mpm_add_plugin: \"${kind}\" is no kind; kinds are shape, transfer, filter, contact, normal, detection, material")
   endif()
   if(NOT ARG_SOURCES OR NOT ARG_HEADER)
     message(FATAL_ERROR "mpm_add_plugin(${kind} ${id}): SOURCES and HEADER are needed")

@@ -26,11 +26,19 @@ extern "C" {
 
 /* The boundary is unstable until 1.0 of the sandbox: any change of a struct or number below makes a new version, and a
  * host takes plugins of its own version alone. */
-#define MPM_ABI_VERSION 5u
+#define MPM_ABI_VERSION 6u
 #define MPM_BATCH 64u /* particles or nodes in a full batch */
 #define MPM_LANES 16u /* counts are padded to a multiple of this */
 
-enum mpm_kind { MPM_SHAPE = 1, MPM_TRANSFER = 2, MPM_FILTER = 3, MPM_CONTACT = 4, MPM_MATERIAL = 5, MPM_NORMAL = 6 };
+enum mpm_kind {
+  MPM_SHAPE = 1,
+  MPM_TRANSFER = 2,
+  MPM_FILTER = 3,
+  MPM_CONTACT = 4,
+  MPM_MATERIAL = 5,
+  MPM_NORMAL = 6,
+  MPM_DETECTION = 7
+};
 
 /* Index into the entry tables. The reference backend takes the plain instantiation, MPM_SCALAR_DOUBLE, as its oracle.
  */
@@ -315,6 +323,34 @@ typedef struct mpm_normal {
   int32_t (*from_points[2])(const void* parameters, const mpm_normal_points* points);
 } mpm_normal;
 
+/* ---- contact detection ----------------------------------------------------------------------------------------
+ * How far apart the surfaces of two bodies are at a node, along the pair's normal: laws touch where that is not positive.
+ * All values are places along the normal, in cells from the node, with a on the near side. Hosts ask in double whatever the
+ * run's precision. */
+enum mpm_detection_trait {
+  MPM_READS_MEAN_POSITION = 1, /* mean_a and mean_b: a scene sums positions for a detection that reads them or edges */
+  /* edge_a and edge_b: the faces whose rows of particles would have these means, by the scene's shape function and
+   * particles a cell */
+  MPM_READS_EDGES = 2,
+  /* surface_a and surface_b: how far the outermost particles that the node sees extend, as the ellipses (ellipsoids)
+   * inscribed in their deformed domains. Hosts keep the particles near nodes for it, and refuse MPM_OWN_NORMALS. */
+  MPM_READS_PARTICLE_SURFACES = 4
+};
+typedef struct mpm_detection_batch {
+  uint32_t count, stride;
+  const void* mean_a; /* [stride], where the mass that the node sees of each body lies; null unless read */
+  const void* mean_b;
+  const void* edge_a; /* [stride]; null unless read */
+  const void* edge_b;
+  const void* surface_a; /* [stride]; null unless read */
+  const void* surface_b;
+  void* gap; /* [stride] out: between the surfaces, cells, negative where they overlap */
+} mpm_detection_batch;
+typedef struct mpm_detection {
+  uint32_t traits, reserved;
+  void (*find[MPM_PRECISIONS])(const void* parameters, const mpm_detection_batch* batch);
+} mpm_detection;
+
 /* ---- material -------------------------------------------------------------------------------------------------
  * `update` first advances the state over dt with the velocity gradient (skipped when that is null), then fills every
  * output that is not null. It returns -1, or the index of the first particle whose state is not admissible (J <= 0 or
@@ -371,7 +407,7 @@ typedef struct mpm_descriptor {
   const mpm_state* state;
   uint32_t state_count;
   uint32_t kind_table_size;
-  const void* kind_table;   /* mpm_shape, mpm_transfer, mpm_filter, mpm_contact, mpm_material or mpm_normal */
+  const void* kind_table;   /* of the kind: mpm_shape, mpm_transfer, ... */
   const char* functor_name; /* C++ name inside `source` */
   const char* source;       /* text of the functor's header, for run-time compilation */
   /* The table of an extension by its id (plugin/extensions.h), or null where there is none of that id: always the same

@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::array kinds{MPM_SHAPE, MPM_TRANSFER, MPM_FILTER, MPM_CONTACT, MPM_NORMAL, MPM_MATERIAL};
+constexpr std::array kinds{MPM_SHAPE, MPM_TRANSFER, MPM_FILTER, MPM_CONTACT, MPM_NORMAL, MPM_DETECTION, MPM_MATERIAL};
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what, const std::string& remedy) {
   throw PluginError("plugin " + file.string() + ": " + what + "; " + remedy);
@@ -98,6 +98,8 @@ std::size_t table_size(std::uint32_t kind) {
       return sizeof(mpm_material);
     case MPM_NORMAL:
       return sizeof(mpm_normal);
+    case MPM_DETECTION:
+      return sizeof(mpm_detection);
     default:
       return 0;
   }
@@ -215,6 +217,8 @@ std::string_view kind_name(mpm_kind kind) {
       return "material";
     case MPM_NORMAL:
       return "normal";
+    case MPM_DETECTION:
+      return "detection";
   }
   return "unknown";
 }
@@ -233,6 +237,8 @@ std::string_view kind_plural(mpm_kind kind) {
       return "materials";
     case MPM_NORMAL:
       return "contact normals";
+    case MPM_DETECTION:
+      return "contact detections";
   }
   return "unknown";
 }

@@ -31,12 +31,13 @@ struct Plugin {
   const mpm_filter& filter() const { return *static_cast<const mpm_filter*>(descriptor->kind_table); }
   const mpm_contact& contact() const { return *static_cast<const mpm_contact*>(descriptor->kind_table); }
   const mpm_normal& normal() const { return *static_cast<const mpm_normal*>(descriptor->kind_table); }
+  const mpm_detection& detection() const { return *static_cast<const mpm_detection*>(descriptor->kind_table); }
   const mpm_material& material() const { return *static_cast<const mpm_material*>(descriptor->kind_table); }
   /// The table of an extension, null where the plugin has none; extension_of() in plugin/extension_of.hpp knows types.
   const void* extension(const char* id) const { return descriptor->extension ? descriptor->extension(id) : nullptr; }
 };
 
-/// The kind as a word: "shape", "transfer", "filter", "contact", "normal", "material".
+/// The kind as a word: "shape", "transfer", "filter", "contact", "normal", "detection", "material".
 std::string_view kind_name(mpm_kind kind);
 std::string_view kind_plural(mpm_kind kind);
 /// All kinds, in the order they are listed.

@@ -66,6 +66,10 @@ constexpr mpm_descriptor normal(const Manual& m, const char* source) {
   return descriptor<F>(MPM_NORMAL, NormalTable<F>::value, &refusal_extension<F>, m, source);
 }
 template <class F>
+constexpr mpm_descriptor detection(const Manual& m, const char* source) {
+  return descriptor<F>(MPM_DETECTION, detection_table<F>, &refusal_extension<F>, m, source);
+}
+template <class F>
 constexpr mpm_descriptor material(const Manual& m, const char* source) {
   return descriptor<F>(MPM_MATERIAL, material_table<F>, &material_extension<F>, m, source);
 }

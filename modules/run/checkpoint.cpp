@@ -135,6 +135,7 @@ std::vector<const Plugin*> plugins_of(const Experiment& experiment) {
   if (experiment.filter) add(*experiment.filter);
   if (experiment.contact) add(*experiment.contact);
   if (experiment.contact_normal) add(*experiment.contact_normal);
+  if (experiment.contact_detection) add(*experiment.contact_detection);
   for (const RigidBodySpecification& body : experiment.rigid_bodies) add(body.contact);
   for (const MaterialSpecification& material : experiment.materials) add(material.component);
   return used;

@@ -105,7 +105,10 @@ double EdgeModel::contact_offset(double edge) const {
 
 std::vector<EdgeModel> edge_models(const Experiment& experiment) {
   std::vector<EdgeModel> models;
-  for (int field = 0; experiment.meets() && field < experiment.field_count; ++field) {
+  const bool reads_edges =
+      experiment.contact && (experiment.contact_detection->plugin->detection().traits & MPM_READS_EDGES);
+  if (!reads_edges && experiment.rigid_bodies.empty()) return models;
+  for (int field = 0; field < experiment.field_count; ++field) {
     int rows = 8;
     for (const BodySpecification& body : experiment.bodies)
       if (body.field == field) rows = std::min(rows, body.particles_per_cell_axis);

@@ -52,7 +52,7 @@ class EdgeModel {
   int rows_per_cell_;
 };
 
-/// Makes one model for each velocity field, and none where nothing meets. The rows of a field are those of its coarsest
+/// Makes one model for each velocity field, and none where nobody reads them: detection by edges, or a rigid body. The rows of a field are those of its coarsest
 /// body, whose surface lags the most.
 std::vector<EdgeModel> edge_models(const Experiment& experiment);
 

@@ -43,6 +43,35 @@ struct NormalArrays {
   }
 };
 
+/// The arrays of a call for gaps.
+struct GapArrays {
+  using Values = std::array<double, MPM_BATCH>;
+  alignas(64) Values mean_a, mean_b, edge_a, edge_b, surface_a, surface_b, gap;
+
+  void set(std::size_t lane, const DetectionPair<double>& seen) {
+    mean_a[lane] = seen.mean_a, mean_b[lane] = seen.mean_b;
+    edge_a[lane] = seen.edge_a, edge_b[lane] = seen.edge_b;
+    surface_a[lane] = seen.surface_a, surface_b[lane] = seen.surface_b;
+  }
+
+  /// The last pair stands once more in all lanes that are left over.
+  mpm_detection_batch request(unsigned traits, std::size_t pairs) {
+    const std::size_t count = (pairs + MPM_LANES - 1) / MPM_LANES * MPM_LANES;
+    for (Values* values : {&mean_a, &mean_b, &edge_a, &edge_b, &surface_a, &surface_b})
+      std::fill(values->data() + pairs, values->data() + count, (*values)[pairs - 1]);
+    const auto given = [&](unsigned trait, Values& values) { return traits & trait ? values.data() : nullptr; };
+    return {static_cast<std::uint32_t>(count),
+            MPM_BATCH,
+            given(MPM_READS_MEAN_POSITION, mean_a),
+            given(MPM_READS_MEAN_POSITION, mean_b),
+            given(MPM_READS_EDGES, edge_a),
+            given(MPM_READS_EDGES, edge_b),
+            given(MPM_READS_PARTICLE_SURFACES, surface_a),
+            given(MPM_READS_PARTICLE_SURFACES, surface_b),
+            gap.data()};
+  }
+};
+
 }  // namespace
 
 /// Asks the plugin for the normals of pairs, from sums over their nodes.
@@ -64,37 +93,68 @@ void PairGeometry::find_normals(std::span<MetPair> pairs) const {
   }
 }
 
-/// Finds a pair's geometry by its particles, along the normal from sums that it has already where they give none.
-void PairGeometry::find_by_points(const ContactPoints& points, int field_a, int field_b, MetPair& pair) const {
-  const int D = experiment_.dimension;
+/// Finds a pair's normal by its particles where these are parted; else the one from sums stands.
+void PairGeometry::find_normal_by_points(const SeparatedPair& seen, MetPair& pair) const {
   ContactGeometry& geometry = pair.geometry;
-  const SeparatedPair seen = points.pair(pair.node, field_a, field_b);
-  const bool by_points = seen.parted;
-  if (points.gives_normal()) geometry.valid = by_points || average_gradient(pair.a, pair.b, D, geometry.normal);
-  geometry.valid = geometry.valid && seen.found;
-  if (!geometry.valid) return;
-  if (by_points) std::copy(seen.normal.begin(), seen.normal.end(), geometry.normal);
-  measure(field_a, field_b, pair);
-  if (!points.gives_separation()) return;
-  const Vector3 along{geometry.normal[0], geometry.normal[1], geometry.normal[2]};
-  geometry.separation = by_points ? seen.separation : points.separation(pair.node, field_a, field_b, along);
+  if (seen.parted) std::copy(seen.normal.begin(), seen.normal.end(), geometry.normal);
+  geometry.valid = seen.parted || average_gradient(pair.a, pair.b, experiment_.dimension, geometry.normal);
 }
 
-void PairGeometry::measure(int field_a, int field_b, MetPair& pair) const {
+DetectionPair<double> PairGeometry::seen_along_normal(const ContactPoints& points, int field_a, int field_b,
+                                                      const MetPair& pair) const {
+  const unsigned traits = experiment_.contact_detection->plugin->detection().traits;
+  const double* normal = pair.geometry.normal;
+  DetectionPair<double> seen{};
+  if (traits & (MPM_READS_MEAN_POSITION | MPM_READS_EDGES))
+    see_means(seen, pair.a, pair.b, normal, experiment_.grid.cell_size, experiment_.dimension);
+  if (traits & MPM_READS_EDGES)
+    see_edges(seen, edges_[static_cast<std::size_t>(field_a)].table(),
+              edges_[static_cast<std::size_t>(field_b)].table());
+  if (points.sees_surfaces()) {
+    const SeparatedPair found = points.pair(pair.node, field_a, field_b);
+    const ParticleSurfaces surfaces =
+        found.parted ? ParticleSurfaces{found.surface_a, found.surface_b}
+                     : points.surfaces(pair.node, field_a, field_b, {normal[0], normal[1], normal[2]});
+    seen.surface_a = surfaces.of_a, seen.surface_b = surfaces.of_b;
+  }
+  return seen;
+}
+
+double PairGeometry::area_of(const MetPair& pair) const {
   const double h = experiment_.grid.cell_size;
   const double around = experiment_.axisymmetric() ? around_axis(experiment_.grid.lower[0] + pair.node[0] * h) : 1.0;
-  measure_pair(pair.geometry, pair.a, pair.b, edges_[static_cast<std::size_t>(field_a)].table(),
-               edges_[static_cast<std::size_t>(field_b)].table(), h, experiment_.dimension, around);
+  return contact_area(pair.a, pair.b, pair.geometry.normal, experiment_.dimension, around);
+}
+
+/// Asks the plugin for the gaps of those pairs that have a normal, and finds their areas.
+void PairGeometry::find_gaps(const ContactPoints& points, int field_a, int field_b, std::span<MetPair> pairs) const {
+  const Component& detection = *experiment_.contact_detection;
+  GapArrays arrays;
+  std::size_t count = 0;
+  for (const MetPair& pair : pairs)
+    if (pair.geometry.valid) arrays.set(count++, seen_along_normal(points, field_a, field_b, pair));
+  if (count == 0) return;
+  const mpm_detection& functions = detection.plugin->detection();
+  const mpm_detection_batch request = arrays.request(functions.traits, count);
+  functions.find[entry_](detection.parameters.data(), &request);
+  count = 0;
+  for (MetPair& pair : pairs) {
+    if (!pair.geometry.valid) continue;
+    pair.geometry.separation = arrays.gap[count++] * experiment_.grid.cell_size;
+    pair.geometry.area = area_of(pair);
+  }
 }
 
 void PairGeometry::find(const ContactPoints& points, int field_a, int field_b, std::span<MetPair> pairs) const {
   if (pairs.empty()) return;
   if (!points.gives_normal()) find_normals(pairs);
-  for (MetPair& pair : pairs)
-    if (points.needed())
-      find_by_points(points, field_a, field_b, pair);
-    else if (pair.geometry.valid)
-      measure(field_a, field_b, pair);
+  if (points.needed())
+    for (MetPair& pair : pairs) {
+      const SeparatedPair seen = points.pair(pair.node, field_a, field_b);
+      if (points.gives_normal()) find_normal_by_points(seen, pair);
+      pair.geometry.valid = pair.geometry.valid && seen.found;
+    }
+  find_gaps(points, field_a, field_b, pairs);
 }
 
 }  // namespace mpm

@@ -21,7 +21,7 @@ struct MetPair {
 
 class PairGeometry {
  public:
-  /// `entry` says which of the normal's entries is called: that for lanes of double, or the plain one.
+  /// `entry` says which entries of normal and detection are called: those for lanes of double, or the plain ones.
   PairGeometry(const Experiment& experiment, mpm_precision entry)
       : experiment_(experiment), edges_(edge_models(experiment)), entry_(entry) {}
 
@@ -31,12 +31,14 @@ class PairGeometry {
 
  private:
   void find_normals(std::span<MetPair> pairs) const;
-  void find_by_points(const ContactPoints& points, int field_a, int field_b, MetPair& pair) const;
-  /// Finds separation and area along the normal that the pair has.
-  void measure(int field_a, int field_b, MetPair& pair) const;
+  void find_normal_by_points(const SeparatedPair& seen, MetPair& pair) const;
+  void find_gaps(const ContactPoints& points, int field_a, int field_b, std::span<MetPair> pairs) const;
+  DetectionPair<double> seen_along_normal(const ContactPoints& points, int field_a, int field_b,
+                                          const MetPair& pair) const;
+  double area_of(const MetPair& pair) const;
 
   const Experiment& experiment_;
-  const std::vector<EdgeModel> edges_;
+  const std::vector<EdgeModel> edges_;  ///< of each velocity field, where the detection reads them
   const mpm_precision entry_;
 };
 

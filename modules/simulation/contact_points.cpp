@@ -12,7 +12,6 @@ namespace {
 constexpr double least_reach = 1.5;  // cells: two rows of particles and more of each body, also with tents
 constexpr int cube_side = 4;         // cells
 constexpr std::uint32_t nobody = ~0u;
-constexpr double rounding = 1e-6;  // cells: bodies that are seeded face to face touch, in float too
 
 /// A number for three coordinates; those of a domain's nodes differ in the lowest 21 bits.
 std::uint64_t key_of(const std::array<int, 3>& at) {
@@ -53,7 +52,8 @@ ContactPoints::ContactPoints(const Experiment& experiment)
       dimension_(experiment.dimension),
       fields_(experiment.field_count),
       gives_normal_(looks(experiment) && (experiment.contact_normal->plugin->normal().traits & MPM_LOOKS_AT_POINTS)),
-      gives_separation_(looks(experiment) && experiment.contact_detection == "particle_surfaces") {
+      sees_surfaces_(looks(experiment) &&
+                     (experiment.contact_detection->plugin->detection().traits & MPM_READS_PARTICLE_SURFACES)) {
   const mpm_shape& shape = experiment.shape.plugin->shape();
   by_domain_ = shape.form == MPM_NODE_LIST;
   reach_ = by_domain_ ? shape.reach : std::max(least_reach, 0.5 * shape.width);
@@ -175,7 +175,7 @@ void ContactPoints::add_images(int field, const Vector3& x, const SemiSides& sem
 
 void ContactPoints::keep(const Vector3& x, const SemiSides& semi_sides) {
   places_.push_back(x);
-  if (gives_separation_) semi_sides_.push_back(semi_sides);
+  if (sees_surfaces_) semi_sides_.push_back(semi_sides);
 }
 
 double ContactPoints::reach_of(const SemiSides& semi_sides, int axis) const {
@@ -248,7 +248,9 @@ SeparatedPair ContactPoints::separate(const Node& node, int a, int b) const {
   const Component& normal = *experiment_.contact_normal;
   const auto find = normal.plugin->normal().from_points[dimension_ - 2];
   pair.parted = find(normal.parameters.data(), &points) != 0;
-  if (pair.parted && gives_separation_) pair.separation = separation(node, a, b, pair.normal);
+  if (!pair.parted || !sees_surfaces_) return pair;
+  const ParticleSurfaces surfaces = this->surfaces(node, a, b, pair.normal);
+  pair.surface_a = surfaces.of_a, pair.surface_b = surfaces.of_b;
   return pair;
 }
 
@@ -265,20 +267,22 @@ double ContactPoints::extent(std::uint32_t particle, const Vector3& normal) cons
   return std::sqrt(squared);
 }
 
-double ContactPoints::separation(const std::array<int, 3>& at, int a, int b, const Vector3& normal) const {
-  return separation(nodes_[found_.at(key_of(at))], a, b, normal);
+ParticleSurfaces ContactPoints::surfaces(const std::array<int, 3>& at, int a, int b, const Vector3& normal) const {
+  return surfaces(nodes_[found_.at(key_of(at))], a, b, normal);
 }
 
-double ContactPoints::separation(const Node& node, int a, int b, const Vector3& normal) const {
+ParticleSurfaces ContactPoints::surfaces(const Node& node, int a, int b, const Vector3& normal) const {
   const auto along = [&](std::uint32_t p) {
-    return places_[p][0] * normal[0] + places_[p][1] * normal[1] + places_[p][2] * normal[2];
+    double sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) sum += (places_[p][c] - node.at[c]) * normal[c];
+    return sum;
   };
   double surface_a = -std::numeric_limits<double>::infinity(), surface_b = std::numeric_limits<double>::infinity();
   for (const std::uint32_t p : node.particles[static_cast<std::size_t>(a)])
     surface_a = std::max(surface_a, along(p) + extent(p, normal));
   for (const std::uint32_t p : node.particles[static_cast<std::size_t>(b)])
     surface_b = std::min(surface_b, along(p) - extent(p, normal));
-  return (surface_b - surface_a - rounding) * experiment_.grid.cell_size;
+  return {surface_a, surface_b};
 }
 
 SeparatedPair ContactPoints::pair(const std::array<int, 3>& node, int a, int b) const {

@@ -14,10 +14,16 @@ namespace mpm {
 
 /// What the particles near a node say of a pair of bodies.
 struct SeparatedPair {
-  bool found = false;     ///< both bodies have particles near the node
-  bool parted = false;    ///< the scene's normal follows from them; else it cannot tell, as where they are mixed
-  Vector3 normal{};       ///< unit, from a to b; where parted
-  double separation = 0;  ///< ContactPoints::separation along this normal; where parted, and particles' surfaces count
+  bool found = false;   ///< both bodies have particles near the node
+  bool parted = false;  ///< the scene's normal follows from them; else it cannot tell, as where they are mixed
+  Vector3 normal{};     ///< unit, from a to b; where parted
+  double surface_a = 0,
+         surface_b = 0;  ///< ContactPoints::surfaces along it; where parted, and the detection reads them
+};
+
+/// How far the outermost particles of two bodies extend along a normal, cells from the node.
+struct ParticleSurfaces {
+  double of_a, of_b;
 };
 
 /// One body's particles near a node as a normal looks at them (abi.h, mpm_normal_points).
@@ -37,9 +43,9 @@ class ContactPoints {
   explicit ContactPoints(const Experiment& experiment);
 
   /// Whether the scene's normal or its detection looks at particles.
-  bool needed() const { return gives_normal_ || gives_separation_; }
+  bool needed() const { return gives_normal_ || sees_surfaces_; }
   bool gives_normal() const { return gives_normal_; }
-  bool gives_separation() const { return gives_separation_; }
+  bool sees_surfaces() const { return sees_surfaces_; }
 
   /// Forgets the nodes and particles of the last step.
   void begin();
@@ -70,9 +76,8 @@ class ContactPoints {
 
   /// What was found for a pair of fields; nothing at nodes that were not opened.
   SeparatedPair pair(const std::array<int, 3>& node, int a, int b) const;
-  /// The gap between the surfaces of a pair's particles along a unit normal from a to b, m, less a millionth of a cell
-  /// for rounding; negative where they overlap. At a node where both have particles.
-  double separation(const std::array<int, 3>& node, int a, int b, const Vector3& normal) const;
+  /// The surfaces of a pair's particles along a unit normal from a to b, at a node where both have particles.
+  ParticleSurfaces surfaces(const std::array<int, 3>& node, int a, int b, const Vector3& normal) const;
 
  private:
   struct Node {
@@ -105,13 +110,13 @@ class ContactPoints {
   double reach_of(const SemiSides& semi_sides, int axis) const;
   double extent(std::uint32_t particle, const Vector3& normal) const;
   SeparatedPair separate(const Node& node, int a, int b) const;
-  double separation(const Node& node, int a, int b, const Vector3& normal) const;
+  ParticleSurfaces surfaces(const Node& node, int a, int b, const Vector3& normal) const;
   double farthest_seen() const;
   bool near_face(int axis, double low, double high, bool periodic) const;
 
   const Experiment& experiment_;
   const int dimension_, fields_;
-  bool gives_normal_, gives_separation_;
+  bool gives_normal_, sees_surfaces_;
   bool by_domain_;                                          ///< how far a particle is seen depends on its domain
   double reach_;                                            ///< cells, of its weights
   std::unordered_map<std::uint64_t, std::uint32_t> found_;  ///< numbers of the nodes that were opened

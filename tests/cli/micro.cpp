@@ -52,7 +52,7 @@ TEST_CASE("mpm_micro measures every plugin in every dimension and precision it d
   if (!built()) return;
   const Registry registry = Registry::from_folders(Registry::default_folders());
   REQUIRE(registry.plugins().size() >= 16);
-  const std::size_t entries[] = {2, 2, 1, 1, 1, 5};  // shape, transfer, filter, contact, normal, material
+  const std::size_t entries[] = {2, 2, 1, 1, 1, 1, 5};  // shape, transfer, filter, contact, normal, detection, material
   for (const Plugin& plugin : registry.plugins()) {
     const mpm_kind kind = static_cast<mpm_kind>(plugin.descriptor->kind);
     const auto order =

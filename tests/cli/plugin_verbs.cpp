@@ -48,7 +48,7 @@ TEST_CASE("new: what cannot be written is refused, and nothing is written") {
   };
   refused({"new", "matrial", "a", "out"}, "no kind of plugin is called \"matrial\"; did you mean \"material\"?");
   refused({"new", "solver", "a", "out"},
-          "kinds are \"shape\", \"transfer\", \"filter\", \"contact\", \"normal\", \"material\"");
+          "kinds are \"shape\", \"transfer\", \"filter\", \"contact\", \"normal\", \"detection\", \"material\"");
   for (const char* id : {"MyRubber", "my-rubber", "2nd", "_a", "", "a b", "a/b", "r\xc3\xa9sine"})
     refused({"new", "material", id, "out"}, " cannot be used: it starts with a lower-case letter");
   refused({"new", "material", std::string(65, 'a'), "out"}, "at most 64 characters");

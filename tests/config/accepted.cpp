@@ -82,7 +82,8 @@ void check_same_experiment(const Experiment& a, const Experiment& b) {
   if (a.contact) check_same(*a.contact, *b.contact);
   REQUIRE((a.contact_normal.has_value() == b.contact_normal.has_value()));
   if (a.contact_normal) CHECK(a.contact_normal->plugin == b.contact_normal->plugin);
-  CHECK(a.contact_detection == b.contact_detection);
+  REQUIRE((a.contact_detection.has_value() == b.contact_detection.has_value()));
+  if (a.contact_detection) CHECK(a.contact_detection->plugin == b.contact_detection->plugin);
   CHECK(a.field_count == b.field_count);
   CHECK(a.field_names == b.field_names);
   REQUIRE(a.materials.size() == b.materials.size());

@@ -51,6 +51,8 @@ inline const mpm_descriptor descriptors[] = {
     descriptor("average_volume_gradient", MPM_NORMAL, both, every_precision, nullptr, 0),
     descriptor("widest_gap", MPM_NORMAL, both, every_precision, nullptr, 0),
     descriptor("given", MPM_NORMAL, both, every_precision, direction, 1),
+    descriptor("approach_and_position", MPM_DETECTION, both, every_precision, nullptr, 0),
+    descriptor("particle_surfaces", MPM_DETECTION, both, every_precision, nullptr, 0),
     descriptor("neo_hookean", MPM_MATERIAL, both, every_precision, elastic_parameters, 4),
     descriptor("linear_elastic", MPM_MATERIAL, both, every_precision, elastic_parameters, 4),
 };

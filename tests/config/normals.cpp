@@ -1,4 +1,4 @@
-// The contact normal as the file chooses it: by a word or with parameters, and what is refused by name.
+// The contact normal and the detection as the file chooses them: by a word or with parameters, and what is refused by name.
 
 #include "experiment/contact_settings.hpp"
 #include "plan/plan.hpp"
@@ -124,4 +124,60 @@ TEST_CASE("a scene sums what its normal reads and what makes the area", "[normal
   const std::string given = R"({"type": "given", "x": 1, "y": 0})";
   CHECK_FALSE(sums(given, "mass_gradient"));
   CHECK(sums(given, "volume_gradient"));
+}
+
+TEST_CASE("every detection is chosen by a word, or with its parameters", "[normals]") {
+  const auto detected = [](const std::string& detection) {
+    return test::experiment_from(scene(R"({"type": "coulomb", "friction": 0.3, "detection": )" + detection + "}"));
+  };
+  for (const Plugin* plugin : test::plugins().of_kind(MPM_DETECTION)) {
+    const std::string id(plugin->id());
+    INFO(id);
+    CHECK(detected("\"" + id + "\"").contact_detection->plugin == plugin);
+    CHECK(detected("\"" + id + "\"").resolved["contact"]["detection"] == id);
+    CHECK(detected("{\"type\": \"" + id + "\"}").contact_detection->plugin == plugin);
+  }
+  const Experiment standard = test::experiment_from(scene(R"({"type": "coulomb"})"));
+  CHECK(standard.contact_detection->plugin->id() == "approach_and_position");
+  CHECK(standard.resolved["contact"]["detection"] == "approach_and_position");
+  const Experiment fixed = detected(R"({"type": "fixed_offset", "offset": 0.67})");
+  CHECK(fixed.contact_detection->parameter("offset") == 0.67);
+  CHECK(fixed.resolved["contact"]["detection"]["offset"] == 0.67);
+}
+
+TEST_CASE("what is no detection, or reads what a normal cannot give, is refused by name", "[normals]") {
+  const auto says = [](const std::string& contact, const std::string& part) {
+    INFO(contact);
+    CHECK_THAT(refusal(scene(contact)), ContainsSubstring(part));
+  };
+  says(R"({"type": "coulomb", "detection": "particle_surface"})",
+       "/contact/detection: unknown contact detection \"particle_surface\"; did you mean \"particle_surfaces\"?");
+  says(R"({"type": "coulomb", "detection": 0.8})",
+       "/contact/detection: expected a string or an object with \"type\" (contact detection), got the number 0.8");
+  says(R"({"type": "coulomb", "detection": {"type": "fixed_offset", "offset": 9}})", "/contact/detection/offset");
+  says(R"({"type": "coulomb", "detection": {"type": "approach", "offset": 1}})",
+       "/contact/detection/offset: unknown key \"offset\"");
+  says(R"({"type": "stick", "detection": "fixed_offset"})",
+       "/contact/detection: \"stick\" joins bodies at every node that they share and looks at no detection");
+  CHECK(refusal(scene(R"({"type": "coulomb", "normal": "own_gradient", "detection": "fixed_offset"})")) == "accepted");
+}
+
+TEST_CASE("a scene sums positions for a detection that reads them, and carries deformation for surfaces", "[normals]") {
+  const auto plan_of = [](const std::string& detection, const std::string& more = "") {
+    return make_plan(test::experiment_from(scene(R"({"type": "coulomb", "detection": ")" + detection + "\"}", more)));
+  };
+  for (const char* detection : {"approach_and_position", "fixed_offset"}) {
+    INFO(detection);
+    CHECK(plan_of(detection).node_field("mass_position") != nullptr);
+    CHECK(plan_of(detection).particle_field(0, "deformation") == nullptr);
+  }
+  for (const char* detection : {"approach", "particle_surfaces"}) {
+    INFO(detection);
+    CHECK(plan_of(detection).node_field("mass_position") == nullptr);
+  }
+  CHECK(plan_of("particle_surfaces").particle_field(0, "deformation") != nullptr);
+  // Beside a rigid body the edge of the material counts, whatever the detection between materials.
+  CHECK(plan_of("approach", R"(, "rigid_bodies": [{"name": "floor", "geometry": {"type": "half_space",
+      "point": [0, 0.2], "normal": [0, 1]}, "contact": {"type": "frictionless"}}])")
+            .node_field("mass_position") != nullptr);
 }

@@ -220,6 +220,20 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
 }
 )";
 
+constexpr const char* detection_body = R"(
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  DetectionPair<S> pair;
+  load<1>(t.in[0], lane, &pair.mean_a);
+  load<1>(t.in[1], lane, &pair.mean_b);
+  load<1>(t.in[2], lane, &pair.edge_a);
+  load<1>(t.in[3], lane, &pair.edge_b);
+  load<1>(t.in[4], lane, &pair.surface_a);
+  load<1>(t.in[5], lane, &pair.surface_b);
+  const S gap = Functor::gap(*static_cast<const Functor::Parameters*>(t.parameters), pair);
+  store<1>(t.out[0], lane, &gap);
+}
+)";
+
 /// Normals that look at particles run on the host alone: their text has to compile.
 constexpr const char* host_body = "template <int D, class S> MPM_HD void run(const Task&, int) {}\n";
 
@@ -297,6 +311,8 @@ std::string body_of(const Plugin& plugin) {
       return contact_body;
     case MPM_NORMAL:
       return by_points(plugin) ? host_body : normal_body;
+    case MPM_DETECTION:
+      return detection_body;
     default:
       return material_body;
   }
@@ -416,6 +432,10 @@ Call inputs(const Plugin& plugin, int D, Random& random) {
       if (by_points(plugin)) break;
       for (int k = 0; k < 4; ++k) call.in.push_back(random_column(random, D, k % 2 ? -2 : 0.5, k % 2 ? -0.5 : 2));
       call.out = {zeros(D), zeros(D), zeros(D), zeros(1)};
+      break;
+    case MPM_DETECTION:
+      for (int k = 0; k < 6; ++k) call.in.push_back(random_column(random, 1, k % 2 ? 0 : -1, k % 2 ? 1 : 0));
+      call.out = {zeros(1)};
       break;
     default:
       call.in = {random_column(random, D * D, -0.2 / step, 0.2 / step)};
@@ -574,6 +594,12 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
                                    indices.data()};
       plugin.normal().from_sums[MPM_SCALAR_DOUBLE][axis](parameters.data(), &batch);
       out[3] = as_column(indices);
+      break;
+    }
+    case MPM_DETECTION: {
+      const mpm_detection_batch batch{
+          n, n, in[0].data(), in[1].data(), in[2].data(), in[3].data(), in[4].data(), in[5].data(), out[0].data()};
+      plugin.detection().find[MPM_SCALAR_DOUBLE](parameters.data(), &batch);
       break;
     }
     default:

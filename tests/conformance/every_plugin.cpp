@@ -18,7 +18,7 @@ const mpm::Registry& registry() {
 TEST_CASE("plugins were found and none was rejected") {
   for (const std::string& message : registry().rejected()) INFO(message);
   CHECK(registry().rejected().empty());
-  for (const mpm_kind kind : {MPM_SHAPE, MPM_TRANSFER, MPM_FILTER, MPM_CONTACT, MPM_MATERIAL, MPM_NORMAL}) {
+  for (const mpm_kind kind : mpm::all_kinds()) {
     INFO("kind " << mpm::kind_name(kind));
     CHECK_FALSE(registry().of_kind(kind).empty());
   }

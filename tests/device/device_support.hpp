@@ -46,7 +46,9 @@ inline Mix mix_with(const Plugin& plugin, int dimension) {
       mix.contact = choice;
       break;
     case MPM_NORMAL:
-      mix.contact = R"({"type": "coulomb", "friction": 0.2, "normal": )" + choice + "}";
+    case MPM_DETECTION:
+      mix.contact = R"({"type": "coulomb", "friction": 0.2, ")" +
+                    std::string(kind_name(static_cast<mpm_kind>(plugin.descriptor->kind))) + "\": " + choice + "}";
       break;
     default:
       mix.material = choice;

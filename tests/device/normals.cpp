@@ -55,6 +55,16 @@ void check_every_normal(bool both_precisions) {
 
 }  // namespace
 
+TEST_CASE("every detection on the host-run device", "[device][normals]") {
+  std::size_t turn = 0;
+  for (const Plugin* detection : plugins().of_kind(MPM_DETECTION)) {
+    std::vector<Mix> mixes{mix_with(*detection, 2), mix_with(*detection, 3), mix_with(*detection, 2)};
+    mixes[1].shape = R"({"type": "cpdi"})";
+    mixes[2].overrides = {"/grid/symmetry=axisymmetric", "/gravity=[0, -1.3]"};
+    for (const Mix& mix : mixes) check_on_device(mix, precisions_in_turn(false, turn++));
+  }
+}
+
 TEST_CASE("every normal on the host-run device", "[device][normals]") {
   check_every_normal(false);
 }

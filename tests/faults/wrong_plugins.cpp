@@ -7,6 +7,9 @@
 #include "contacts/linear_interface/linear_interface.hpp"
 #include "contacts/liquid_contact/liquid_contact.hpp"
 #include "contacts/stick/stick.hpp"
+#include "detections/approach_and_position/approach_and_position.hpp"
+#include "detections/fixed_offset/fixed_offset.hpp"
+#include "detections/particle_surfaces/particle_surfaces.hpp"
 #include "faults/failed_checks.hpp"
 #include "filters/fmpm/fmpm.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
@@ -600,6 +603,8 @@ constexpr mpm_descriptor wrong_transfer = sdk::transfer<F>(manual, source);
 template <class F>
 constexpr mpm_descriptor wrong_normal = sdk::normal<F>(manual, source);
 template <class F>
+constexpr mpm_descriptor wrong_detection = sdk::detection<F>(manual, source);
+template <class F>
 constexpr mpm_descriptor wrong_contact = sdk::contact<F>(manual, source);
 template <class F>
 constexpr mpm_descriptor wrong_material = sdk::material<F>(manual, source);
@@ -781,6 +786,49 @@ TEST_CASE("wrong contact normals are caught") {
   check_caught(wrong_normal<TiltedGap>, "mirror_image");
   check_caught(wrong_normal<BackwardsGap>, "from_a_to_b");
   check_caught(wrong_normal<NoGap>, "finds_a_normal");
+}
+
+struct GapOfFirstBody : ApproachAndPosition {
+  template <class S>
+  MPM_HD static S gap(const Parameters&, const DetectionPair<S>& pair) {
+    return pair.edge_b - real<S>(1.01) * pair.edge_a;
+  }
+};
+
+struct BackwardsDetection : ApproachAndPosition {
+  template <class S>
+  MPM_HD static S gap(const Parameters&, const DetectionPair<S>& pair) {
+    return pair.edge_a - pair.edge_b;
+  }
+};
+
+struct AsksForMeans : ApproachAndPosition {  // which it does not read
+  static constexpr unsigned traits = MPM_READS_EDGES | MPM_READS_MEAN_POSITION;
+};
+
+struct OffsetWithoutMeans : FixedOffset {
+  template <class S>
+  MPM_HD static S gap(const Parameters& p, const DetectionPair<S>&) {
+    return S(real<S>(p.offset));
+  }
+};
+
+struct GapOverNothing : ApproachAndPosition {
+  template <class S>
+  MPM_HD static S gap(const Parameters&, const DetectionPair<S>& pair) {
+    return (pair.edge_b - pair.edge_a) / pair.mean_a;  // which it does not ask for
+  }
+};
+
+TEST_CASE("wrong contact detections are caught") {
+  CHECK(failures(wrong_detection<ApproachAndPosition>).empty());
+  CHECK(failures(wrong_detection<FixedOffset>).empty());
+  CHECK(failures(wrong_detection<ParticleSurfaces>).empty());
+  check_caught(wrong_detection<GapOfFirstBody>, "exchange_of_bodies");
+  check_caught(wrong_detection<BackwardsDetection>, "moving_apart");
+  check_caught(wrong_detection<AsksForMeans>, "reads_mean_position");
+  check_caught(wrong_detection<OffsetWithoutMeans>, "reads_mean_position");
+  check_caught(wrong_detection<GapOverNothing>, "finite_gap");
 }
 
 TEST_CASE("wrong contact laws are caught") {

@@ -43,6 +43,18 @@ double mean_of_rows(const std::string& id, int n, double edge) {
   return moment / sum;
 }
 
+/// Two blocks that touch face to face, one above the other.
+Experiment two_blocks(const std::string& contact) {
+  return test::experiment_from(R"({"title": "touch", "dimension": 2,
+    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]}, "shape": {"type": "bspline_quadratic"},
+    "transfer": {"type": "apic"}, "contact": )" +
+                               contact + R"(,
+    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1, "poisson_ratio": 0.3, "density": 1}},
+    "bodies": [{"name": "a", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0.2], "upper": [0.5, 0.5]}},
+               {"name": "b", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0.5], "upper": [0.5, 0.8]}}],
+    "solver": {"end_time": 1}})");
+}
+
 }  // namespace
 
 TEST_CASE("contact offset of the quadratic spline with the edge on a node", "[contact]") {
@@ -82,13 +94,7 @@ TEST_CASE("normal, separation and area of a flat interface", "[contact]") {
   // For two half spaces that touch at a node the means are at -27/64 and 27/64 cell, the gradients opposite, and each
   // has half a cell of volume.
   const double h = 0.1;
-  const Experiment experiment = test::experiment_from(R"({"title": "touch", "dimension": 2,
-    "grid": {"cell_size": 0.1, "domain": [[0, 0], [1, 1]]}, "shape": {"type": "bspline_quadratic"},
-    "transfer": {"type": "apic"}, "contact": {"type": "coulomb"},
-    "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1, "poisson_ratio": 0.3, "density": 1}},
-    "bodies": [{"name": "a", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0.2], "upper": [0.5, 0.5]}},
-               {"name": "b", "material": "m", "geometry": {"type": "box", "lower": [0.2, 0.5], "upper": [0.5, 0.8]}}],
-    "solver": {"end_time": 1}})");
+  const Experiment experiment = two_blocks(R"({"type": "coulomb"})");
   const ContactPoints points(experiment);
   REQUIRE_FALSE(points.needed());
   const auto contact_geometry = [&, geometry = PairGeometry(experiment, MPM_SCALAR_DOUBLE)](const ContactFieldNode& a,
@@ -117,4 +123,37 @@ TEST_CASE("normal, separation and area of a flat interface", "[contact]") {
   }
   a.volume_gradient[1] = b.volume_gradient[1] = h;
   CHECK_FALSE(contact_geometry(a, b).valid);
+}
+
+TEST_CASE("the gap of a pair is what the detection makes of its means, at every node of a call", "[contact]") {
+  const double h = 0.1;
+  const auto gaps = [&](const std::string& detection, mpm_precision entry) {
+    const Experiment experiment = two_blocks(R"({"type": "coulomb", "detection": )" + detection + "}");
+    const ContactPoints points(experiment);
+    std::vector<MetPair> pairs(20);  // more than a pack, and one without a normal among them
+    for (int k = 0; k < 20; ++k) {
+      ContactFieldNode a, b;
+      a.mass = 2, b.mass = 3;
+      a.volume_gradient[1] = h, b.volume_gradient[1] = k == 7 ? h : -h;
+      a.mass_position[1] = -0.3 * h * a.mass, b.mass_position[1] = (0.4 + 0.01 * k) * h * b.mass;
+      pairs[static_cast<std::size_t>(k)] = {{5, 5, 0}, a, b, {}};
+    }
+    PairGeometry(experiment, entry).find(points, 0, 1, pairs);
+    return pairs;
+  };
+  for (const mpm_precision entry : {MPM_LANES_DOUBLE, MPM_SCALAR_DOUBLE})
+    for (const double offset : {0.8, 0.5}) {
+      const auto fixed = gaps(R"({"type": "fixed_offset", "offset": )" + std::to_string(offset) + "}", entry);
+      const auto approach = gaps(R"("approach")", entry);
+      for (int k = 0; k < 20; ++k) {
+        const ContactGeometry &of_fixed = fixed[static_cast<std::size_t>(k)].geometry,
+                              &of_approach = approach[static_cast<std::size_t>(k)].geometry;
+        INFO(k << " " << offset);
+        CHECK((of_fixed.valid == (k != 7) && of_approach.valid == (k != 7)));
+        if (k == 7) continue;
+        CHECK(of_fixed.separation == Approx((0.7 + 0.01 * k - offset) * h).margin(1e-13));
+        CHECK(of_approach.separation == 0);
+        CHECK((of_fixed.area == Approx(h) && of_approach.area == Approx(h)));
+      }
+    }
 }

@@ -15,8 +15,6 @@ using namespace mpm::test;
 
 namespace {
 
-constexpr double h = 0.1;
-
 /// Two bodies on a grid of 10 by 10 cells; what is asked of contact stands in `contact`.
 Experiment scene(const std::string& contact, const std::string& boundaries = R"({"all": "free"})") {
   return experiment_from(R"({"title": "touch", "dimension": 2,
@@ -51,6 +49,11 @@ struct View {
     points.find(0, points.node_count());
     return points.pair(node, 0, 1);
   }
+  /// Between the surfaces along a normal, cells.
+  double gap(const Vector3& normal) const {
+    const ParticleSurfaces surfaces = points.surfaces(node, 0, 1, normal);
+    return surfaces.of_b - surfaces.of_a;
+  }
 };
 
 }  // namespace
@@ -67,7 +70,7 @@ TEST_CASE("a node sees the particles less than a cell and a half away", "[contac
   View unasked(experiment, {5, 5, 0});
   CHECK_FALSE(unasked.points.pair({6, 5, 0}, 0, 1).found);
   CHECK_FALSE(ContactPoints(scene(R"("type": "coulomb")")).needed());
-  CHECK_FALSE(ContactPoints(scene(R"("type": "coulomb", "normal": "widest_gap")")).gives_separation());
+  CHECK_FALSE(ContactPoints(scene(R"("type": "coulomb", "normal": "widest_gap")")).sees_surfaces());
 }
 
 TEST_CASE("half the side of a particle is that of its square or cube, in cells", "[contact_points]") {
@@ -80,7 +83,7 @@ TEST_CASE("a node at a periodic face sees the particles at the other", "[contact
   const SeparatedPair pair = view.pair();
   REQUIRE(pair.parted);
   CHECK(pair.normal[0] == Approx(1));
-  CHECK(view.points.separation(view.node, 0, 1, pair.normal) == Approx(-1e-6 * h).margin(1e-14));
+  CHECK(view.gap(pair.normal) == Approx(0).margin(1e-13));
   CHECK(view.points.look_around({9, 4, 0}, {10, 6, 0}));
 }
 
@@ -139,7 +142,7 @@ TEST_CASE("surfaces of particles touch where stretched rows do", "[contact_point
         REQUIRE(pair.parted);
         CHECK(pair.normal[0] == Approx(-s).margin(1e-12));
         CHECK(pair.normal[1] == Approx(c).margin(1e-12));
-        CHECK(view.points.separation(view.node, 0, 1, pair.normal) == Approx((gap - 1e-6) * h).margin(1e-12));
+        CHECK(view.gap(pair.normal) == Approx(gap).margin(1e-12));
       }
 }
 
@@ -151,11 +154,12 @@ TEST_CASE("a sheared particle extends as its ellipsoid does, and its mirror imag
               {0, 5, 0});
     view.add(0, 0.3, 4.8, sheared), view.add(1, 0.3, 5.3, sheared);
     REQUIRE(view.pair().parted);
-    CHECK(view.points.separation(view.node, 0, 1, up) == Approx((0.5 - 2 * 0.25 - 1e-6) * h).margin(1e-12));
+    CHECK(view.gap(up) == Approx(0.5 - 2 * 0.25).margin(1e-12));
+    CHECK(view.points.surfaces(view.node, 0, 1, up).of_a == Approx(-0.2 + 0.25));  // of the node, which is at 5
     const double leans = 0.25 * std::hypot(0.6, 0.5 * 0.6 + 0.8), leans_back = 0.25 * std::hypot(0.6, -0.5 * 0.6 + 0.8);
     const double surface_a = 0.6 * 0.3 + 0.8 * 4.8 + leans;
     const double surface_b = wall == "free" ? 0.6 * 0.3 + 0.8 * 5.3 - leans : -0.6 * 0.3 + 0.8 * 5.3 - leans_back;
-    CHECK(view.points.separation(view.node, 0, 1, across) == Approx((surface_b - surface_a - 1e-6) * h).margin(1e-12));
+    CHECK(view.gap(across) == Approx(surface_b - surface_a).margin(1e-12));
   }
 }
 

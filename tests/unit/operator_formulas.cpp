@@ -44,15 +44,6 @@ TEST_CASE("the normal of averaged gradients is the direction of their difference
   CHECK_FALSE(average_gradient(with_gradient(1, 2, 5), with_gradient(1, 2, 6), 2, normal));
 }
 
-TEST_CASE("what is measured of a pair counts as its geometry") {
-  ContactGeometry pair;
-  pair.normal[0] = 1;
-  measure_pair(pair, with_gradient(3, 0, 0), with_gradient(-2, 0, 0), table, table, 0.5, 2, 7);
-  CHECK(pair.valid);
-  CHECK(pair.area == Approx(14));
-  CHECK(pair.separation == 0);
-}
-
 TEST_CASE("the area beside a rigid body is that of the material's own surface along the normal") {
   const RigidSurface surface{0.25, {0.6, 0.8, 0}};
   const ContactGeometry flat = rigid_contact_geometry(with_gradient(3, 2, 5), table, surface, 2, 0.5, 2);
@@ -164,17 +155,20 @@ TEST_CASE("the gradient of a displacement by the present place is I less the inv
   for (int k = 0; k < 9; ++k) CHECK(solid.m[k] == Approx((k % 4 == 0 ? 1 : 0) - inverse[k] / 13));
 }
 
-TEST_CASE("a pair is measured by the edges, areas and displacements of both bodies along its normal") {
+TEST_CASE("a pair is measured by the means, edges and areas of both bodies along its normal") {
   ContactFieldNode a = with_gradient(3, 2, 5), b = with_gradient(-2, -1, 6);
   a.mass = 3, b.mass = 4;
   a.mass_position[0] = 0.45, a.mass_position[1] = 0.6, a.mass_position[2] = 9;    // its mean is half a cell along it
   b.mass_position[0] = -1.2, b.mass_position[1] = -1.6, b.mass_position[2] = -9;  // a cell against it
   const double normal[] = {0.6, 0.8, 0.5};
-  CHECK(separation_of_edges(a, b, table, table, normal, 0.5, 2) == Approx((-2 - 1) * 0.5));
-  ContactGeometry pair;
-  for (int c = 0; c < 3; ++c) pair.normal[c] = normal[c];
-  measure_pair(pair, a, b, table, table, 0.5, 2, 7);
-  CHECK(pair.separation == Approx(-1.5));
+  DetectionPair<double> seen{};
+  see_means(seen, a, b, normal, 0.5, 2);
+  CHECK(seen.mean_a == Approx(0.5));
+  CHECK(seen.mean_b == Approx(-1));
+  CHECK((seen.edge_a == 0 && seen.edge_b == 0 && seen.surface_a == 0 && seen.surface_b == 0));
+  see_edges(seen, table, table);
+  CHECK(seen.edge_a == Approx(1));
+  CHECK(seen.edge_b == Approx(-2));
   CHECK(contact_area(a, b, normal, 2, 7) == Approx(7 * (2 * 0.6 + 0.8)));
   CHECK(contact_area(a, with_gradient(-5, -4, 0), normal, 2, 7) == Approx(7 * (3 * 0.6 + 2 * 0.8)));
   CHECK(contact_area(a, b, normal, 3, 7) == 0);  // along the third axis b lies on the same side

@@ -261,13 +261,15 @@ std::string scene_text(const Choice& choice) {
   if (choice.filter) out << "  using Filter = " << type(choice.filter) << ";\n";
   if (choice.contact) out << "  using Contact = " << type(choice.contact) << ";\n";
   if (choice.normal) out << "  using Normal = " << type(choice.normal) << ";\n";
+  if (choice.detection) out << "  using Detection = " << type(choice.detection) << ";\n";
+  const bool edges = choice.detection && (choice.detection->detection().traits & MPM_READS_EDGES);
   const bool own = choice.normal && (choice.normal->normal().traits & MPM_OWN_NORMALS);
   const bool weld = choice.contact && (choice.contact->contact().traits & MPM_BYPASSES_DETECTION);
   out << "  static constexpr bool contact = " << yes(choice.contact) << ", bypasses_detection = " << yes(weld)
       << ", contact_by_particles = " << yes(choice.contact_by_particles) << ", own_normals = " << yes(own)
-      << ", notes_contact = " << yes(choice.notes_contact) << ", reads_traction = " << yes(reads_traction(choice))
-      << ", grips = " << yes(has_grips(choice)) << ", list = " << yes(list)
-      << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
+      << ", reads_edges = " << yes(edges) << ", notes_contact = " << yes(choice.notes_contact)
+      << ", reads_traction = " << yes(reads_traction(choice)) << ", grips = " << yes(has_grips(choice))
+      << ", list = " << yes(list) << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
       << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
       << ", deformed = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_DOMAIN)) << ";\n"
       << "  static constexpr int width = " << (list ? 1 : shape.width)
@@ -340,7 +342,7 @@ std::vector<std::string> entry_names(const Choice& choice) {
 std::string Choice::name() const {
   std::string text = std::to_string(dimension) + "-D " + (axisymmetric ? "axisymmetric " : "") +
                      (precision == Precision::single ? "float" : "double") + ":";
-  std::vector<const Plugin*> plugins{shape, transfer, filter, contact, normal};
+  std::vector<const Plugin*> plugins{shape, transfer, filter, contact, normal, detection};
   plugins.insert(plugins.end(), rigid_laws.begin(), rigid_laws.end());
   plugins.insert(plugins.end(), materials.begin(), materials.end());
   for (const Plugin* plugin : plugins)
@@ -381,7 +383,8 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
   choice.particle_fields = particle_fields(experiment, plan, 0);
   if (experiment.filter) choice.filter = experiment.filter->plugin;
   if (experiment.contact) choice.contact = experiment.contact->plugin;
-  if (experiment.contact_normal && !choice.contact_by_particles) choice.normal = experiment.contact_normal->plugin;
+  if (experiment.contact && !choice.contact_by_particles)
+    choice.normal = experiment.contact_normal->plugin, choice.detection = experiment.contact_detection->plugin;
   choice.rigid_laws = laws_of_rigid_bodies(experiment);
   for (const MaterialSpecification& material : experiment.materials)
     choice.materials.push_back(material.component.plugin);
@@ -403,14 +406,16 @@ const char* embedded_header(std::string_view path) {
 Composition compose(const Choice& choice) {
   Text text;
   text.add_header("backends/device/kernels/kernels.hpp", "the composer");
-  for (const Plugin* plugin : {choice.shape, choice.transfer, choice.filter, choice.contact, choice.normal})
+  for (const Plugin* plugin :
+       {choice.shape, choice.transfer, choice.filter, choice.contact, choice.normal, choice.detection})
     if (plugin) text.add_functor(*plugin);
   for (const Plugin* plugin : choice.rigid_laws) text.add_functor(*plugin);
   for (const Plugin* plugin : choice.materials) text.add_functor(*plugin);
   text.add(scene_text(choice));
   Composition composition{choice.name(), text.str(), "", entry_names(choice), {}};
   composition.hash = support::sha256(composition.text);
-  std::vector<const Plugin*> chosen{choice.shape, choice.transfer, choice.filter, choice.contact, choice.normal};
+  std::vector<const Plugin*> chosen{choice.shape,   choice.transfer, choice.filter,
+                                    choice.contact, choice.normal,   choice.detection};
   for (const Plugin* law : choice.rigid_laws)
     if (law != choice.contact) chosen.push_back(law);
   chosen.insert(chosen.end(), choice.materials.begin(), choice.materials.end());

@@ -21,7 +21,7 @@ struct Choice {
   const Plugin* transfer = nullptr;
   const Plugin* filter = nullptr;
   const Plugin* contact = nullptr;
-  const Plugin* normal = nullptr;  ///< with contact whose geometry follows from sums over nodes
+  const Plugin *normal = nullptr, *detection = nullptr;  ///< with contact whose geometry follows from sums over nodes
   std::vector<const Plugin*> materials;
   std::vector<const Plugin*> rigid_laws;            ///< of rigid bodies, each once (number_of_law)
   bool deterministic = false;                       ///< scatters sum to the same bits in any order of lanes

@@ -10,7 +10,7 @@ namespace mpm::device {
 
 class ContactEdges {
  public:
-  /// Without contact there are none.
+  /// There are none where nobody reads them.
   ContactEdges(Device& device, const Experiment& experiment) : values_(device, "the edges of bodies") {
     std::vector<double> all;
     for (const EdgeModel& model : edge_models(experiment)) {
@@ -23,6 +23,7 @@ class ContactEdges {
   }
   /// The table of a velocity field, at the device's addresses.
   EdgeTable of(std::size_t field) const {
+    if (places_.empty()) return {};
     const auto [first, count] = places_[field];
     return {values_.data() + first, values_.data() + first + count, count};
   }

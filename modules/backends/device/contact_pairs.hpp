@@ -15,12 +15,11 @@ namespace mpm::device {
 /// The values of one velocity field that detection reads, on the host.
 template <class T>
 struct ContactFields {
-  std::vector<T> mass, volume_gradient, mass_position, mass_gradient;  ///< the last where the normal reads it
+  std::vector<T> mass, volume_gradient, mass_position, mass_gradient;  ///< the last two where they are read
 
   ContactFields(const VelocityField<T>& field, const Plan& plan)
-      : mass(field.arrays.read("mass")),
-        volume_gradient(field.arrays.read("volume_gradient")),
-        mass_position(field.arrays.read("mass_position")) {
+      : mass(field.arrays.read("mass")), volume_gradient(field.arrays.read("volume_gradient")) {
+    if (plan.node_field("mass_position")) mass_position = field.arrays.read("mass_position");
     if (plan.node_field("mass_gradient")) mass_gradient = field.arrays.read("mass_gradient");
   }
   ContactFieldNode at(std::size_t node, int dimension) const {
@@ -28,7 +27,8 @@ struct ContactFields {
     view.mass = mass[node];
     for (int c = 0; c < dimension; ++c) {
       const std::size_t at = static_cast<std::size_t>(c) * mass.size() + node;
-      view.volume_gradient[c] = volume_gradient[at], view.mass_position[c] = mass_position[at];
+      view.volume_gradient[c] = volume_gradient[at];
+      if (!mass_position.empty()) view.mass_position[c] = mass_position[at];
       if (!mass_gradient.empty()) view.mass_gradient[c] = mass_gradient[at];
     }
     return view;
@@ -91,7 +91,7 @@ class ContactPairs {
   void show_particles(const std::vector<Body<T>>& bodies) {
     for (const Body<T>& body : bodies) {
       const bool by_domain = body.number("domain") >= 0;
-      const bool by_deformation = body.number("deformation") >= 0 && points_.gives_separation();
+      const bool by_deformation = body.number("deformation") >= 0 && points_.sees_surfaces();
       const std::vector<T> position = body.arrays.read("position"), size = body.arrays.read("size"),
                            sides = by_domain        ? body.arrays.read("domain")
                                    : by_deformation ? body.arrays.read("deformation")

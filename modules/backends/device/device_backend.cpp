@@ -77,6 +77,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
       filter_parameters_(*device_, "the filter's parameters"),
       contact_parameters_(*device_, "the parameters of contact"),
       normal_parameters_(*device_, "the parameters of the contact normal"),
+      detection_parameters_(*device_, "the parameters of contact detection"),
       ignored_stop_(*device_, "the failed particle"),
       partial_sums_(*device_, "sums"),
       deterministic_(sums_deterministically(experiment)),
@@ -104,6 +105,8 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
   if (experiment.filter) scene_.filter_parameters = give(filter_parameters_, *experiment.filter);
   if (experiment.contact) scene_.contact_parameters = give(contact_parameters_, *experiment.contact);
   if (experiment.contact_normal) scene_.normal_parameters = give(normal_parameters_, *experiment.contact_normal);
+  if (experiment.contact_detection)
+    scene_.detection_parameters = give(detection_parameters_, *experiment.contact_detection);
   ignored_stop_.upload(std::vector<Stopped>{nothing_stopped});
   scene_.stop = results_.stop();
   if (deterministic_) {

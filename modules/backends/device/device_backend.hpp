@@ -296,7 +296,7 @@ class DeviceBackend final : public Backend {
   std::unique_ptr<Device> device_;  ///< outlives the arrays on it
   int lanes_, teams_;               ///< of a team, and at work on blocks at once
   DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_,
-      normal_parameters_;
+      normal_parameters_, detection_parameters_;
   DeviceArray<Stopped> ignored_stop_;
   DeviceArray<double> partial_sums_;
   bool deterministic_;          ///< particles are summed to the same bits in any order of lanes

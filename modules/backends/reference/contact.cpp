@@ -13,7 +13,8 @@ ContactFieldNode ReferenceBackend::contact_view(std::size_t i) const {
   ContactFieldNode view;
   view.mass = mass_[i];
   for (int c = 0; c < 3; ++c) {
-    view.volume_gradient[c] = volume_gradient_[i][c], view.mass_position[c] = mass_position_[i][c];
+    view.volume_gradient[c] = volume_gradient_[i][c];
+    if (sums_mass_positions_) view.mass_position[c] = mass_position_[i][c];
     if (sums_mass_gradients_) view.mass_gradient[c] = mass_gradient_[i][c];
     if (sums_displacements_) view.mass_displacement[c] = mass_displacement_[i][c];
   }

@@ -254,8 +254,9 @@ class ReferenceBackend final : public Backend {
   const int contact_states_ = static_cast<int>(experiment_.contact_state().size());
   std::uint32_t law_stage_ = MPM_BEFORE_FORCES;                 ///< what laws are asked about now (mpm_contact_stage)
   VectorField& mass_position_ = grid_.vector("mass_position");  ///< sum w m (x_p - x_node)
-  VectorField& increment_ = grid_.vector("increment");          ///< v* of the filter
-  VectorField& projection_ = grid_.vector("projection");        ///< S+ S v*, a momentum until over_mass divides it
+  const bool sums_mass_positions_ = plan_.node_field("mass_position") != nullptr;
+  VectorField& increment_ = grid_.vector("increment");    ///< v* of the filter
+  VectorField& projection_ = grid_.vector("projection");  ///< S+ S v*, a momentum until over_mass divides it
   VectorField& trial_velocity_ = grid_.vector("trial_velocity");
   VectorField& unfiltered_ = grid_.vector("unfiltered_velocity");
   /// The velocities that conditions and contact have added in this step.

@@ -173,7 +173,7 @@ void ReferenceBackend::scatter_contact_fields(Particles& body) {
       // These are gradients of the section: a ring's volume grows away from the axis.
       volume_gradient_[i] += section * s.gradient;
       if (sums_mass_gradients_) mass_gradient_[i] += section / volume * body.mass(p) * s.gradient;
-      mass_position_[i] -= s.weight * body.mass(p) * s.distance;
+      if (sums_mass_positions_) mass_position_[i] -= s.weight * body.mass(p) * s.distance;
       if (sums_displacements_) mass_displacement_[i] += s.weight * body.mass(p) * (moved + gradient * s.distance);
       for (int k = 0; k < contact_states_; ++k) {
         mass_state_[i][k] += s.weight * body.mass(p) * body.values("contact_state")(k, p);

@@ -148,6 +148,13 @@ concept PointsNormalFunctorIn = requires(const typename F::Parameters& p, const 
 template <class F>
 concept PointsNormalFunctor = PointsNormalFunctorIn<F, 2> && PointsNormalFunctorIn<F, 3>;
 
+/// Returns the gap between the surfaces of a pair, in cells.
+template <class F>
+concept DetectionFunctor = requires(const typename F::Parameters& p, const DetectionPair<double>& pair) {
+  { F::traits } -> std::convertible_to<unsigned>;
+  { F::gap(p, pair) } -> std::same_as<double>;
+};
+
 template <class F, int D>
 concept MaterialFunctorIn = requires(const typename F::template Constants<double>& c, const Mat<D, double>& L,
                                      typename F::template State<D, double>& s) {
@@ -592,6 +599,29 @@ std::int32_t normal_of_points(const void* parameters, const mpm_normal_points* p
   return F::template find<D>(parameters_of<F>(parameters), *points, points->normal);
 }
 
+template <class F, class S>
+void detection_batch(const void* parameters, const mpm_detection_batch* request) {
+  const mpm_detection_batch q = *request;  // a copy of its own: nothing that is stored changes it
+  const auto& p = parameters_of<F>(parameters);
+  for (std::uint32_t lane = 0; lane < q.count; lane += Access<S>::width) {
+    DetectionPair<S> pair{};
+    if constexpr ((F::traits & MPM_READS_MEAN_POSITION) != 0) {
+      load_components<1, S>(q.mean_a, q.stride, lane, &pair.mean_a);
+      load_components<1, S>(q.mean_b, q.stride, lane, &pair.mean_b);
+    }
+    if constexpr ((F::traits & MPM_READS_EDGES) != 0) {
+      load_components<1, S>(q.edge_a, q.stride, lane, &pair.edge_a);
+      load_components<1, S>(q.edge_b, q.stride, lane, &pair.edge_b);
+    }
+    if constexpr ((F::traits & MPM_READS_PARTICLE_SURFACES) != 0) {
+      load_components<1, S>(q.surface_a, q.stride, lane, &pair.surface_a);
+      load_components<1, S>(q.surface_b, q.stride, lane, &pair.surface_b);
+    }
+    const S gap = F::gap(p, pair);
+    store_components<1, S>(q.gap, q.stride, lane, &gap);
+  }
+}
+
 /// Index of the first particle whose J is not a positive number, or -1.
 template <class S>
 std::int32_t first_inadmissible(S J, std::uint32_t lane) {
@@ -749,6 +779,9 @@ struct NormalTable<F> {
   static_assert((F::traits & MPM_LOOKS_AT_POINTS) != 0, "a normal that is found from points says so");
   static constexpr mpm_normal value{F::traits, 0, {}, {&normal_of_points<F, 2>, &normal_of_points<F, 3>}};
 };
+template <DetectionFunctor F>
+inline constexpr mpm_detection detection_table{
+    F::traits, 0, {&detection_batch<F, LanesFloat>, &detection_batch<F, LanesDouble>, &detection_batch<F, double>}};
 template <MaterialFunctor F>
 inline constexpr mpm_material material_table{
     F::traits | (AxisymmetricMaterialFunctor<F> ? unsigned{MPM_STRAINS_AROUND_AXIS} : 0u), 0,

@@ -137,8 +137,8 @@ struct GridStep<D, T>::ContactBatch {
 /// What contact looks at of one velocity field, from a slot's first node on.
 template <int D, class T>
 struct GridStep<D, T>::ContactField {
-  const Q *motion, *gradient, *position;
-  const Q *mass_gradient, *displacement, *state, *gain;  ///< null where not summed
+  const Q *motion, *gradient;
+  const Q *position, *mass_gradient, *displacement, *state, *gain;  ///< null where not summed
 
   ContactFieldNode at(std::uint32_t node) const;
 };
@@ -146,10 +146,11 @@ struct GridStep<D, T>::ContactField {
 template <int D, class T>
 inline ContactFieldNode GridStep<D, T>::ContactField::at(std::uint32_t node) const {
   ContactFieldNode result;
-  const Q gradient = this->gradient[node], position = this->position[node];
+  const Q gradient = this->gradient[node];
   result.mass = motion[node][3];
   for (int c = 0; c < 3; ++c) {
-    result.volume_gradient[c] = gradient[c], result.mass_position[c] = position[c];
+    result.volume_gradient[c] = gradient[c];
+    if (position) result.mass_position[c] = position[node][c];
     if (mass_gradient) result.mass_gradient[c] = mass_gradient[node][c];
     if (displacement) result.mass_displacement[c] = displacement[node][c];
   }
@@ -286,7 +287,7 @@ void GridStep<D, T>::visit_pairs(std::uint32_t slot, Visit&& visit) {
   const auto contact_field = [&](int field) {
     return ContactField{&motion_at(field, first),
                         &grid_.quad(volume_gradient, field, first),
-                        &grid_.quad(mass_position, field, first),
+                        mass_position < 0 ? nullptr : &grid_.quad(mass_position, field, first),
                         mass_gradient < 0 ? nullptr : &grid_.quad(mass_gradient, field, first),
                         mass_displacement < 0 ? nullptr : &grid_.quad(mass_displacement, field, first),
                         mass_state < 0 ? nullptr : &grid_.quad(mass_state, field, first),

@@ -486,7 +486,7 @@ void ParticleStep<D, T, Components>::scatter_contact_fields(const Chunk& chunk, 
       for (int c = 0; c < D; ++c) cut.store(work.S + (c * D + c) * chunk_size<T> + p);
     }
   add_to_tile(chunk, work, volume_gradient, nullptr, false, false, true);
-  add_to_tile(chunk, work, mass_position, nullptr, false, true, false);
+  if (mass_position >= 0) add_to_tile(chunk, work, mass_position, nullptr, false, true, false);
   if (mass_displacement >= 0) scatter_displacements(chunk, work);
   if (mass_state >= 0) {
     scatter_contact_state(chunk, work, chunk.particles.contact_state, mass_state);

@@ -124,7 +124,7 @@ struct Arguments {
   const GripArrays<T>* other_grips;  ///< of the velocity field `other`
   int box_count, grip_count;
   const double *shape_parameters, *transfer_parameters, *filter_parameters, *contact_parameters, *normal_parameters,
-      *material_parameters;
+      *detection_parameters, *material_parameters;
   const double* melted_parameters;  ///< parameters of the material's melted particles
   const T* wall_temperature[3][2];  ///< [line of the axis], K, as evaluated last; null where none is held
   WallHeat<T> wall_heat[3][2];      ///< as evaluated last

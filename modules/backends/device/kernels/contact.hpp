@@ -34,7 +34,7 @@ MPM_HD ContactFieldNode contact_field(const Arguments<T>& a, const NodeArrays<T>
     const int at = c * a.node_count + node;
     found.volume_gradient[c] = grid.field[N::volume_gradient][at];
     if constexpr (N::mass_gradient >= 0) found.mass_gradient[c] = grid.field[N::mass_gradient][at];
-    found.mass_position[c] = grid.field[N::mass_position][at];
+    if constexpr (N::mass_position >= 0) found.mass_position[c] = grid.field[N::mass_position][at];
     if constexpr (N::mass_displacement >= 0) found.mass_displacement[c] = grid.field[N::mass_displacement][at];
   }
   return found;
@@ -59,6 +59,7 @@ MPM_HD ContactGeometry geometry_of_pair(const Arguments<T>& a, int node) {
     for (int c = 0; c < D; ++c) found.normal[c] = a.found.values[(2 + c) * a.node_count + node];
   } else {
     using Normal = typename Scene::Normal;
+    using Detection = typename Scene::Detection;
     const ContactFieldNode of_a = contact_field<Scene>(a, a.grid, node), of_b = contact_field<Scene>(a, a.other, node);
     NormalPair<D, double> pair;
     NormalResult<D, double> result{};
@@ -72,7 +73,13 @@ MPM_HD ContactGeometry geometry_of_pair(const Arguments<T>& a, int node) {
       found.normal[c] = result.normal[c];
       if constexpr (Scene::own_normals) found.own_a[c] = result.own_a[c], found.own_b[c] = result.own_b[c];
     }
-    measure_pair(found, of_a, of_b, a.edges[0], a.edges[1], double(a.cell_size), D, around_node<Scene>(a, node));
+    DetectionPair<double> seen{};
+    const double h = a.cell_size;
+    if constexpr (Scene::Node::mass_position >= 0) see_means(seen, of_a, of_b, found.normal, h, D);
+    if constexpr (Scene::reads_edges) see_edges(seen, a.edges[0], a.edges[1]);
+    found.separation = h * Detection::gap(parameters_of<Detection>(a.detection_parameters), seen);
+    found.area = contact_area(of_a, of_b, found.normal, D, around_node<Scene>(a, node));
+    found.valid = true;
   }
   return found;
 }

@@ -207,7 +207,7 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
             for (int j = 0; j < D; ++j) moved += gradient(i, j) * s.distance[j];
             values[Place::mass_displacement + i] = mass * moved;
           }
-          values[Place::mass_position + i] = -mass * s.distance[i];
+          if constexpr (Place::mass_position >= 0) values[Place::mass_position + i] = -mass * s.distance[i];
         }
       }
       add(s.node, values);
