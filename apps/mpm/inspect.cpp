@@ -279,7 +279,7 @@ int list(bool json) {
     for (const Plugin* plugin : plugins) {
       all[std::string(kind_name(kind))].push_back(description(*plugin));
       if (!json)
-        std::cout << "  " << std::left << std::setw(18) << plugin->id() << " " << plugin->descriptor->summary << "\n";
+        std::cout << "  " << std::left << std::setw(27) << plugin->id() << " " << plugin->descriptor->summary << "\n";
     }
   }
   if (json) std::cout << all.dump(2) << "\n";

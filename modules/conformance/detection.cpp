@@ -8,7 +8,7 @@
 namespace mpm::conformance {
 namespace {
 
-/// What a node knows of two bodies along their normal, in cells: means lie inside the edges, and particles end near them.
+/// What a node knows of two bodies along their normal, in cells: means lie inside edges, and particles end near them.
 struct Seen {
   double mean_a, mean_b, edge_a, edge_b, surface_a, surface_b;
 };

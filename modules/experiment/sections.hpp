@@ -43,10 +43,10 @@ std::vector<Section> exact_kinds(const ReadOptions& options);
 /// The limits that the fields of `limits_section` set, checked against each other.
 Limits limits_of(const Fields& fields, ReadContext& context);
 
-/// The plugins of a kind as sections, with the keys the host itself reads beside them.
-/// The contact normal of scenes that choose none.
+/// The contact normal and the detection of scenes that choose none.
 inline constexpr const char* standard_normal = "average_volume_gradient";
 inline constexpr const char* standard_detection = "approach_and_position";
+/// The plugins of a kind as sections, with the keys the host itself reads beside them.
 std::vector<Section> component_kinds(const ComponentLookup& components, mpm_kind kind);
 /// The laws by which rigid bodies meet material: their normals and surfaces are known, nobody chooses how.
 std::vector<Section> rigid_contact_kinds(const ComponentLookup& components);

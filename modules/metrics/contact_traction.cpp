@@ -28,9 +28,11 @@ int counted(const Experiment& experiment, std::size_t axis, int node) {
   return (node % cells + cells) % cells;
 }
 
-/// Whether surfaces touch at a node, as closely as detection knows: of turned faces that touch it makes gaps of hundredths
-/// of a cell, and of stretched ones a tenth. A node that the law lets part takes no force in this step, and has its area.
+/// Whether surfaces touch at a node, as closely as detection knows: by position it makes gaps of hundredths of a cell of
+/// turned faces that touch, and a tenth of stretched ones. A node that the law lets part takes no force in this step, and
+/// has its area. A detection that reads nothing knows of no gap, so that the law's word is all there is.
 bool touches(const Experiment& experiment, const ContactNode& node) {
+  if (experiment.contact_detection->plugin->detection().traits == 0) return node.status != MPM_APART;
   return node.status != MPM_APART || node.separation <= 0.1 * experiment.grid.cell_size;
 }
 

@@ -199,7 +199,8 @@ void contact_fields(FieldList& fields) {
     traits = chosen.plugin->normal().traits;
     if (traits & (MPM_READS_VOLUME_GRADIENT | MPM_LOOKS_AT_POINTS)) area = normal;
     const Plugin& detection = *experiment.contact_detection->plugin;
-    if (detection.detection().traits & (MPM_READS_MEAN_POSITION | MPM_READS_EDGES))
+    const bool weld = experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION;
+    if (!weld && (detection.detection().traits & (MPM_READS_MEAN_POSITION | MPM_READS_EDGES)))
       place = meets + "/detection \"" + std::string(detection.id()) + "\"";
     if (traits & MPM_READS_MASS_GRADIENT)
       fields.summed("mass_gradient", "kg/m", D, AtWall::slip, Folded::with_mass, normal);

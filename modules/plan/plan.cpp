@@ -60,7 +60,7 @@ void refuse_normal(const Experiment& experiment) {
     if (detection.detection().traits & MPM_READS_PARTICLE_SURFACES)
       refuse(experiment, normal.pointer,
              why + "\"" + std::string(detection.id()) +
-                 "\" measures the gap along a normal that both share; take another normal, or detection "
+                 "\" measures the gap along a normal that both share; take another normal, or a detection by means, as "
                  "\"approach_and_position\"");
   }
   if (functions.traits != 0) return;
@@ -87,6 +87,17 @@ void refuse_long_step(const Experiment& experiment) {
   refuse(experiment, "/solver/time_step", message.str());
 }
 
+/// A law that holds bodies together as far as they are near needs to know how far apart they are.
+void refuse_detection(const Experiment& experiment) {
+  if (!experiment.contact) return;
+  const Plugin &law = *experiment.contact->plugin, &detection = *experiment.contact_detection->plugin;
+  const bool holds_at_a_distance = (law.contact().traits & MPM_READS_TRACTION) || !law.state().empty();
+  if (detection.detection().traits == 0 && holds_at_a_distance)
+    refuse(experiment, experiment.contact_detection->pointer,
+           "contact \"" + std::string(law.id()) + "\" holds bodies that are near one another, and detection \"" +
+               std::string(detection.id()) + "\" takes no gap for open; take \"approach_and_position\"");
+}
+
 /// What a law that acts over time, by springs or by a state, cannot be combined with.
 void refuse_laws(const Experiment& experiment) {
   const auto name_of = [](const Component& law) { return "contact \"" + std::string(law.plugin->id()) + "\""; };
@@ -98,6 +109,7 @@ void refuse_laws(const Experiment& experiment) {
                  " gives an impulse that grows with the step, and a filter that does not take back what contact "
                  "gave would add it again; take \"constraints\": \"every_increment\" in the filter");
   };
+  refuse_detection(experiment);
   for (const RigidBodySpecification& body : experiment.rigid_bodies) {
     refuse_in_filter(body.contact);
     if (body.contact.plugin->contact().traits & MPM_COMPLIANT)

@@ -214,11 +214,19 @@ std::string early_contact(const Evidence& run) {
   constexpr double most_of_it = 0.1;
   const Seen& seen = run.rows.seen();
   const double h = run.experiment().grid.cell_size;
-  if (seen.early_force > most_of_it * seen.largest_force)
-    return "contact acted while a gap of " + digits(seen.early_gap / h) + " cells was open between the bodies, with " +
-           digits(100 * seen.early_force / seen.largest_force) +
-           " % of the largest force: detection sees a surface where a body has no particles, as at corners, in thin "
-           "parts and with few particles a cell; take smaller cells or more particles a cell (docs/method.md#contact)";
+  if (seen.early_force > most_of_it * seen.largest_force) {
+    const Plugin& detection = *run.experiment().contact_detection->plugin;
+    const std::string open = "contact acted while a gap of " + digits(seen.early_gap / h) +
+                             " cells was open between the bodies, with " +
+                             digits(100 * seen.early_force / seen.largest_force) + " % of the largest force: ";
+    if (!(detection.detection().traits & (MPM_READS_EDGES | MPM_READS_PARTICLE_SURFACES)))
+      return open + "detection \"" + std::string(detection.id()) +
+             "\" does not know where the surfaces are; take \"approach_and_position\" (docs/method.md#contact)";
+    return open +
+           "detection sees a surface where a body has no particles, as at corners, in thin parts and with few "
+           "particles "
+           "a cell; take smaller cells or more particles a cell (docs/method.md#contact)";
+  }
   if (seen.apart_force > most_of_it * seen.largest_force)
     return "a contact force of " + digits(seen.apart_force) +
            " was recorded where detection said that nothing touches, " +

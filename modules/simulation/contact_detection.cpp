@@ -105,8 +105,9 @@ double EdgeModel::contact_offset(double edge) const {
 
 std::vector<EdgeModel> edge_models(const Experiment& experiment) {
   std::vector<EdgeModel> models;
-  const bool reads_edges =
-      experiment.contact && (experiment.contact_detection->plugin->detection().traits & MPM_READS_EDGES);
+  const bool reads_edges = experiment.contact &&
+                           !(experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION) &&
+                           (experiment.contact_detection->plugin->detection().traits & MPM_READS_EDGES);
   if (!reads_edges && experiment.rigid_bodies.empty()) return models;
   for (int field = 0; field < experiment.field_count; ++field) {
     int rows = 8;

@@ -52,8 +52,8 @@ class EdgeModel {
   int rows_per_cell_;
 };
 
-/// Makes one model for each velocity field, and none where nobody reads them: detection by edges, or a rigid body. The rows of a field are those of its coarsest
-/// body, whose surface lags the most.
+/// Makes one model for each velocity field, and none where nobody reads them: a detection by edges, or a rigid body. The
+/// rows of a field are those of its coarsest body, whose surface lags the most.
 std::vector<EdgeModel> edge_models(const Experiment& experiment);
 
 }  // namespace mpm

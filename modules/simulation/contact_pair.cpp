@@ -110,10 +110,11 @@ DetectionPair<double> PairGeometry::seen_along_normal(const ContactPoints& point
   if (traits & MPM_READS_EDGES)
     see_edges(seen, edges_[static_cast<std::size_t>(field_a)].table(),
               edges_[static_cast<std::size_t>(field_b)].table());
+  if (!(traits & MPM_READS_MEAN_POSITION)) seen.mean_a = seen.mean_b = 0;
   if (points.sees_surfaces()) {
     const SeparatedPair found = points.pair(pair.node, field_a, field_b);
-    const ParticleSurfaces surfaces =
-        found.parted ? ParticleSurfaces{found.surface_a, found.surface_b}
+    const SurfacePlaces surfaces =
+        found.parted ? SurfacePlaces{found.surface_a, found.surface_b}
                      : points.surfaces(pair.node, field_a, field_b, {normal[0], normal[1], normal[2]});
     seen.surface_a = surfaces.of_a, seen.surface_b = surfaces.of_b;
   }
@@ -126,8 +127,13 @@ double PairGeometry::area_of(const MetPair& pair) const {
   return contact_area(pair.a, pair.b, pair.geometry.normal, experiment_.dimension, around);
 }
 
-/// Asks the plugin for the gaps of those pairs that have a normal, and finds their areas.
+/// Asks the plugin for the gaps of those pairs that have a normal, which are closed in a weld, and finds their areas.
 void PairGeometry::find_gaps(const ContactPoints& points, int field_a, int field_b, std::span<MetPair> pairs) const {
+  if (experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION) {
+    for (MetPair& pair : pairs)
+      if (pair.geometry.valid) pair.geometry.area = area_of(pair);
+    return;
+  }
   const Component& detection = *experiment_.contact_detection;
   GapArrays arrays;
   std::size_t count = 0;

@@ -38,7 +38,7 @@ class PairGeometry {
   double area_of(const MetPair& pair) const;
 
   const Experiment& experiment_;
-  const std::vector<EdgeModel> edges_;  ///< of each velocity field, where the detection reads them
+  const std::vector<EdgeModel> edges_;  ///< of each velocity field, where somebody reads them
   const mpm_precision entry_;
 };
 

@@ -249,7 +249,7 @@ SeparatedPair ContactPoints::separate(const Node& node, int a, int b) const {
   const auto find = normal.plugin->normal().from_points[dimension_ - 2];
   pair.parted = find(normal.parameters.data(), &points) != 0;
   if (!pair.parted || !sees_surfaces_) return pair;
-  const ParticleSurfaces surfaces = this->surfaces(node, a, b, pair.normal);
+  const SurfacePlaces surfaces = this->surfaces(node, a, b, pair.normal);
   pair.surface_a = surfaces.of_a, pair.surface_b = surfaces.of_b;
   return pair;
 }
@@ -267,11 +267,11 @@ double ContactPoints::extent(std::uint32_t particle, const Vector3& normal) cons
   return std::sqrt(squared);
 }
 
-ParticleSurfaces ContactPoints::surfaces(const std::array<int, 3>& at, int a, int b, const Vector3& normal) const {
+SurfacePlaces ContactPoints::surfaces(const std::array<int, 3>& at, int a, int b, const Vector3& normal) const {
   return surfaces(nodes_[found_.at(key_of(at))], a, b, normal);
 }
 
-ParticleSurfaces ContactPoints::surfaces(const Node& node, int a, int b, const Vector3& normal) const {
+SurfacePlaces ContactPoints::surfaces(const Node& node, int a, int b, const Vector3& normal) const {
   const auto along = [&](std::uint32_t p) {
     double sum = 0;
     for (std::size_t c = 0; c < 3; ++c) sum += (places_[p][c] - node.at[c]) * normal[c];

@@ -22,7 +22,7 @@ struct SeparatedPair {
 };
 
 /// How far the outermost particles of two bodies extend along a normal, cells from the node.
-struct ParticleSurfaces {
+struct SurfacePlaces {
   double of_a, of_b;
 };
 
@@ -77,7 +77,7 @@ class ContactPoints {
   /// What was found for a pair of fields; nothing at nodes that were not opened.
   SeparatedPair pair(const std::array<int, 3>& node, int a, int b) const;
   /// The surfaces of a pair's particles along a unit normal from a to b, at a node where both have particles.
-  ParticleSurfaces surfaces(const std::array<int, 3>& node, int a, int b, const Vector3& normal) const;
+  SurfacePlaces surfaces(const std::array<int, 3>& node, int a, int b, const Vector3& normal) const;
 
  private:
   struct Node {
@@ -110,7 +110,7 @@ class ContactPoints {
   double reach_of(const SemiSides& semi_sides, int axis) const;
   double extent(std::uint32_t particle, const Vector3& normal) const;
   SeparatedPair separate(const Node& node, int a, int b) const;
-  ParticleSurfaces surfaces(const Node& node, int a, int b, const Vector3& normal) const;
+  SurfacePlaces surfaces(const Node& node, int a, int b, const Vector3& normal) const;
   double farthest_seen() const;
   bool near_face(int axis, double low, double high, bool periodic) const;
 

@@ -93,7 +93,8 @@ TEST_CASE("the run folder holds what the contract says") {
     CHECK(plugin["file_sha256"].get<std::string>().size() == 64);
   }
   std::sort(ids.begin(), ids.end());
-  CHECK(ids == Words{"apic", "average_volume_gradient", "bspline_quadratic", "coulomb", "neo_hookean"});
+  CHECK(ids == Words{"apic", "approach_and_position", "average_volume_gradient", "bspline_quadratic", "coulomb",
+                     "neo_hookean"});
 
   const auto table = mpm::support::read_csv(run / "metrics.csv");
   CHECK(table.header.front() == "time (s)");

@@ -160,6 +160,16 @@ TEST_CASE("what is no detection, or reads what a normal cannot give, is refused 
   says(R"({"type": "stick", "detection": "fixed_offset"})",
        "/contact/detection: \"stick\" joins bodies at every node that they share and looks at no detection");
   CHECK(refusal(scene(R"({"type": "coulomb", "normal": "own_gradient", "detection": "fixed_offset"})")) == "accepted");
+  // Laws that hold what is near have to know what is near.
+  const std::string adhesion = R"({"type": "adhesion", "normal_strength": 1, "shear_strength": 1, "detection": )";
+  says(adhesion + R"("approach"})",
+       "/contact/detection: contact \"adhesion\" holds bodies that are near one another, and detection \"approach\" "
+       "takes "
+       "no gap for open; take \"approach_and_position\"");
+  says(R"({"type": "breakable_glue", "tension_stiffness": 1, "compression_stiffness": 1, "shear_stiffness": 1,
+           "normal_strength": 1, "shear_strength": 1, "detection": "approach"})",
+       "holds bodies that are near one another");
+  CHECK(refusal(scene(adhesion + R"("fixed_offset"})")) == "accepted");
 }
 
 TEST_CASE("a scene sums positions for a detection that reads them, and carries deformation for surfaces", "[normals]") {
@@ -176,6 +186,7 @@ TEST_CASE("a scene sums positions for a detection that reads them, and carries d
     CHECK(plan_of(detection).node_field("mass_position") == nullptr);
   }
   CHECK(plan_of("particle_surfaces").particle_field(0, "deformation") != nullptr);
+  CHECK(make_plan(test::experiment_from(scene(R"({"type": "stick"})"))).node_field("mass_position") == nullptr);
   // Beside a rigid body the edge of the material counts, whatever the detection between materials.
   CHECK(plan_of("approach", R"(, "rigid_bodies": [{"name": "floor", "geometry": {"type": "half_space",
       "point": [0, 0.2], "normal": [0, 1]}, "contact": {"type": "frictionless"}}])")

@@ -10,11 +10,12 @@ namespace mpm::test {
 inline std::vector<Mix> every_plugin_once(int dimension) {
   const auto shapes = plugins().of_kind(MPM_SHAPE), transfers = plugins().of_kind(MPM_TRANSFER),
              filters = plugins().of_kind(MPM_FILTER), contacts = plugins().of_kind(MPM_CONTACT),
-             materials = plugins().of_kind(MPM_MATERIAL), normals = plugins().of_kind(MPM_NORMAL);
+             materials = plugins().of_kind(MPM_MATERIAL), normals = plugins().of_kind(MPM_NORMAL),
+             detections = plugins().of_kind(MPM_DETECTION);
   const std::size_t most =
       std::max({shapes.size(), transfers.size(), filters.size(), contacts.size(), materials.size()});
   std::vector<Mix> mixes;
-  std::size_t next_normal = 0;  // the first that no mix holds yet
+  std::size_t next_normal = 0, next_detection = 0;  // the first that no mix holds yet
   for (std::size_t k = 0; k < most; ++k) {
     const Plugin *const shape = shapes[k % shapes.size()], *const transfer = transfers[k % transfers.size()],
                         *const material = materials[k % materials.size()], *const law = contacts[k % contacts.size()];
@@ -24,6 +25,15 @@ inline std::vector<Mix> every_plugin_once(int dimension) {
     const bool asks = !(law->contact().traits & MPM_BYPASSES_DETECTION) && next_normal < normals.size();
     if (asks || k < contacts.size()) mix.contact = device_choice(*law);
     if (asks) mix.contact.insert(mix.contact.size() - 1, ", \"normal\": " + device_choice(*normals[next_normal]));
+    Mix detected = mix;
+    const bool detects = asks && next_detection < detections.size();
+    if (detects)
+      detected.contact.insert(mix.contact.size() - 1, ", \"detection\": " + device_choice(*detections[next_detection]));
+    if (detects && !is_refused(detected)) {
+      mixes.push_back(detected);
+      ++next_normal, ++next_detection;
+      continue;
+    }
     if (!is_refused(mix)) {
       mixes.push_back(mix);
       next_normal += asks;
@@ -34,6 +44,8 @@ inline std::vector<Mix> every_plugin_once(int dimension) {
     if (k < contacts.size()) mixes.push_back(mix_with(*contacts[k], dimension));
   }
   for (; next_normal < normals.size(); ++next_normal) mixes.push_back(mix_with(*normals[next_normal], dimension));
+  for (; next_detection < detections.size(); ++next_detection)
+    mixes.push_back(mix_with(*detections[next_detection], dimension));
   if (std::none_of(mixes.begin(), mixes.end(), [](const Mix& mix) { return mix.contact.empty(); })) {
     mixes.emplace_back();
     mixes.back().dimension = dimension;

@@ -46,6 +46,7 @@ bool holds(const Mix& mix, const Plugin& plugin) {
   if (experiment.filter) held.push_back(experiment.filter->plugin);
   if (experiment.contact) held.push_back(experiment.contact->plugin);
   if (experiment.contact_normal) held.push_back(experiment.contact_normal->plugin);
+  if (experiment.contact_detection) held.push_back(experiment.contact_detection->plugin);
   for (const MaterialSpecification& material : experiment.materials) held.push_back(material.component.plugin);
   return std::count(held.begin(), held.end(), &plugin) > 0;
 }

@@ -24,7 +24,6 @@ bool is(const std::string& choice, const std::string& id) {
 
 }  // namespace
 
-// With a law that springs, whose force does not ask for the gap, and one that measures how far bodies have come together.
 TEST_CASE("parity of every detection with laws, shapes, orders, walls and sizes", "[parity][normals]") {
   const auto with = [](const std::string& law, const std::string& detection) {
     return law.substr(0, law.size() - 1) + ", \"detection\": " + detection + "}";
@@ -35,7 +34,7 @@ TEST_CASE("parity of every detection with laws, shapes, orders, walls and sizes"
         if (is(law, "stick")) continue;  // a weld looks at no gap
         Mix mix;
         mix.dimension = dimension, mix.contact = with(law, detection);
-        check_parity(mix);
+        if (!is_refused(mix)) check_parity(mix);  // a law that holds what is near refuses a detection without a gap
       }
     for (const std::string& shape : variants(MPM_SHAPE))
       for (const std::string order : {"last", "first", "modified_last", "averaged"}) {

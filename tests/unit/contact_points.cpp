@@ -51,7 +51,7 @@ struct View {
   }
   /// Between the surfaces along a normal, cells.
   double gap(const Vector3& normal) const {
-    const ParticleSurfaces surfaces = points.surfaces(node, 0, 1, normal);
+    const SurfacePlaces surfaces = points.surfaces(node, 0, 1, normal);
     return surfaces.of_b - surfaces.of_a;
   }
 };

@@ -136,6 +136,8 @@ TEST_CASE("contact that acts across an open gap is warned of", "[warnings]") {
   };
   CHECK(only(warned(blocks("0.5")), "contact acted while a gap of 1 cells was open between the bodies"));
   CHECK(warned(blocks("2")).empty());
+  CHECK(only(warned(blocks("0.5"), Json::object(), {"/contact/detection=approach"}),
+             "detection \"approach\" does not know where the surfaces are; take \"approach_and_position\""));
 }
 
 TEST_CASE("the gap between fields is the distance of their particles' squares", "[warnings]") {

@@ -262,12 +262,13 @@ std::string scene_text(const Choice& choice) {
   if (choice.contact) out << "  using Contact = " << type(choice.contact) << ";\n";
   if (choice.normal) out << "  using Normal = " << type(choice.normal) << ";\n";
   if (choice.detection) out << "  using Detection = " << type(choice.detection) << ";\n";
-  const bool edges = choice.detection && (choice.detection->detection().traits & MPM_READS_EDGES);
+  const unsigned detects = choice.detection ? choice.detection->detection().traits : 0;
   const bool own = choice.normal && (choice.normal->normal().traits & MPM_OWN_NORMALS);
   const bool weld = choice.contact && (choice.contact->contact().traits & MPM_BYPASSES_DETECTION);
   out << "  static constexpr bool contact = " << yes(choice.contact) << ", bypasses_detection = " << yes(weld)
       << ", contact_by_particles = " << yes(choice.contact_by_particles) << ", own_normals = " << yes(own)
-      << ", reads_edges = " << yes(edges) << ", notes_contact = " << yes(choice.notes_contact)
+      << ", reads_means = " << yes(detects & MPM_READS_MEAN_POSITION)
+      << ", reads_edges = " << yes(detects & MPM_READS_EDGES) << ", notes_contact = " << yes(choice.notes_contact)
       << ", reads_traction = " << yes(reads_traction(choice)) << ", grips = " << yes(has_grips(choice))
       << ", list = " << yes(list) << ", sampled = " << yes(shape.sample_points[choice.dimension - 2] > 0)
       << ", sized = " << yes(!list && (choice.shape->descriptor->needs & MPM_NEEDS_HALF_SIZE))
@@ -383,8 +384,9 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
   choice.particle_fields = particle_fields(experiment, plan, 0);
   if (experiment.filter) choice.filter = experiment.filter->plugin;
   if (experiment.contact) choice.contact = experiment.contact->plugin;
-  if (experiment.contact && !choice.contact_by_particles)
-    choice.normal = experiment.contact_normal->plugin, choice.detection = experiment.contact_detection->plugin;
+  if (experiment.contact && !choice.contact_by_particles) choice.normal = experiment.contact_normal->plugin;
+  if (choice.normal && !(choice.contact->contact().traits & MPM_BYPASSES_DETECTION))
+    choice.detection = experiment.contact_detection->plugin;
   choice.rigid_laws = laws_of_rigid_bodies(experiment);
   for (const MaterialSpecification& material : experiment.materials)
     choice.materials.push_back(material.component.plugin);

@@ -1,6 +1,6 @@
 #pragma once
-// Bodies touch wherever they share a node and approach, however far apart their surfaces are. Bardenhagen, Brackbill & Sulsky,
-// CMAME 187 (2000) 529-541.
+// Bodies touch wherever they share a node and approach, however far apart their surfaces are. Bardenhagen, Brackbill &
+// Sulsky, CMAME 187 (2000) 529-541.
 
 #include "kernel/functor.hpp"
 #if MPM_HOST

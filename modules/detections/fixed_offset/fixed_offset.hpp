@@ -1,6 +1,6 @@
 #pragma once
-// Bodies touch where their mean positions are as far apart as a number says that is typed in, as in other programs. Nairn,
-// CMES 92 (2013) 271-299.
+// Bodies touch where their mean positions are as far apart as a number says that is typed in, as in other programs.
+// Nairn, CMES 92 (2013) 271-299.
 
 #include "kernel/functor.hpp"
 #if MPM_HOST

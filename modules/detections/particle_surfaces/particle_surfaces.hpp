@@ -1,6 +1,6 @@
 #pragma once
-// The gap between the outermost particles of both bodies, each as the ellipse that its deformed domain holds. Nairn, Hammerquist
-// & Smith, CMAME 362 (2020) 112859, take the particles' radii in this way.
+// The gap between the outermost particles of both bodies, each as the ellipse that its deformed domain holds. Nairn,
+// Hammerquist & Smith, CMAME 362 (2020) 112859, take the particles' radii in this way.
 
 #include "kernel/functor.hpp"
 #if MPM_HOST

@@ -1,6 +1,6 @@
 #pragma once
-// Bodies touch while a film of some thickness is still between their faces, as fibres or roughness keep faces apart. Where a
-// face is follows from the mean position of the mass that a node sees, as in detection `approach_and_position`.
+// Bodies touch while a film of some thickness is still between their faces, as fibres or roughness keep faces apart.
+// Where a face is follows from the mean position of the mass that a node sees, as in `approach_and_position`.
 
 #include "kernel/functor.hpp"
 #if MPM_HOST

@@ -59,7 +59,6 @@ MPM_HD ContactGeometry geometry_of_pair(const Arguments<T>& a, int node) {
     for (int c = 0; c < D; ++c) found.normal[c] = a.found.values[(2 + c) * a.node_count + node];
   } else {
     using Normal = typename Scene::Normal;
-    using Detection = typename Scene::Detection;
     const ContactFieldNode of_a = contact_field<Scene>(a, a.grid, node), of_b = contact_field<Scene>(a, a.other, node);
     NormalPair<D, double> pair;
     NormalResult<D, double> result{};
@@ -73,11 +72,15 @@ MPM_HD ContactGeometry geometry_of_pair(const Arguments<T>& a, int node) {
       found.normal[c] = result.normal[c];
       if constexpr (Scene::own_normals) found.own_a[c] = result.own_a[c], found.own_b[c] = result.own_b[c];
     }
-    DetectionPair<double> seen{};
-    const double h = a.cell_size;
-    if constexpr (Scene::Node::mass_position >= 0) see_means(seen, of_a, of_b, found.normal, h, D);
-    if constexpr (Scene::reads_edges) see_edges(seen, a.edges[0], a.edges[1]);
-    found.separation = h * Detection::gap(parameters_of<Detection>(a.detection_parameters), seen);
+    if constexpr (!Scene::bypasses_detection) {
+      using Detection = typename Scene::Detection;
+      DetectionPair<double> seen{};
+      const double h = a.cell_size;
+      if constexpr (Scene::reads_means || Scene::reads_edges) see_means(seen, of_a, of_b, found.normal, h, D);
+      if constexpr (Scene::reads_edges) see_edges(seen, a.edges[0], a.edges[1]);
+      if constexpr (!Scene::reads_means) seen.mean_a = seen.mean_b = 0;
+      found.separation = h * Detection::gap(parameters_of<Detection>(a.detection_parameters), seen);
+    }
     found.area = contact_area(of_a, of_b, found.normal, D, around_node<Scene>(a, node));
     found.valid = true;
   }
