@@ -88,3 +88,15 @@ function(mpm_add_module name)
   target_precompile_headers(mpm_${name} REUSE_FROM mpm_precompiled)
   mpm_compile_together(mpm_${name})
 endfunction()
+
+# mpm_add_backend_library(NAME SPACE MAKER LIBRARY...): the library backends/NAME.so of the build folder, as target
+# backend_NAME, of what mpm::SPACE::MAKER makes. What it shares with the program it takes from the program, where that has it.
+function(mpm_add_backend_library name space maker)
+  set(entry ${CMAKE_CURRENT_BINARY_DIR}/${name}_entry.cpp)
+  configure_file(${PROJECT_SOURCE_DIR}/modules/backends/libraries/entry.cpp.in ${entry} @ONLY)
+  add_library(backend_${name} MODULE ${entry})
+  target_link_libraries(backend_${name} PRIVATE mpm_flags ${ARGN} mpm_simulation mpm_plan mpm_plugin mpm_support)
+  set_target_properties(backend_${name} PROPERTIES PREFIX "" SUFFIX .so OUTPUT_NAME ${name}
+                        LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/backends)
+  set_property(GLOBAL APPEND PROPERTY MPM_BACKEND_LIBRARIES backend_${name})
+endfunction()

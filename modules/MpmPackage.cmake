@@ -1,5 +1,5 @@
 # The CMake package `mpm_sandbox`, for plugins outside of this tree: from the build folder (mpm_sandbox_DIR=<build>) and
-# from an installed tree (bin/mpm, lib/mpm/plugins, include/mpm, lib/cmake/mpm_sandbox).
+# from an installed tree (bin/mpm, lib/mpm/{plugins,backends}, include/mpm, lib/cmake/mpm_sandbox).
 include(CMakePackageConfigHelpers)
 set(package_folder lib/cmake/mpm_sandbox)
 
@@ -15,6 +15,8 @@ set_target_properties(mpm_sandbox PROPERTIES EXPORT_NAME program)
 install(TARGETS mpm_plugin_interface mpm_sandbox EXPORT mpm_sandboxTargets RUNTIME DESTINATION bin)
 get_property(plugin_targets GLOBAL PROPERTY MPM_PLUGIN_TARGETS)
 install(TARGETS ${plugin_targets} LIBRARY DESTINATION lib/mpm/plugins)
+get_property(backend_targets GLOBAL PROPERTY MPM_BACKEND_LIBRARIES)
+install(TARGETS ${backend_targets} LIBRARY DESTINATION lib/mpm/backends)
 install(DIRECTORY modules/kernel DESTINATION include/mpm FILES_MATCHING PATTERN *.hpp)
 install(FILES modules/plugin/abi.h modules/plugin/extensions.h modules/plugin/sdk.hpp modules/plugin/tables.hpp
         DESTINATION include/mpm/plugin)

@@ -7,17 +7,22 @@
 #include <functional>
 #include <iostream>
 #include <new>
+#include <set>
+#include <utility>
 
 #include "backends/device/device_plan.hpp"
 #include "backends/device/program.hpp"
 #include "drive/standard_paths.hpp"
 #include "experiment/diagnostics.hpp"
+#include "experiment/located_json.hpp"
+#include "experiment/sections.hpp"
 #include "experiment/units.hpp"
 #include "metrics/exact.hpp"
 #include "metrics/particle_quantities.hpp"
 #include "mpm/drive.hpp"
 #include "mpm/run_figures.hpp"
 #include "output/run_folder.hpp"
+#include "plugin/on_demand.hpp"
 #include "solvers/solver.hpp"
 #include "support/files.hpp"
 
@@ -257,6 +262,54 @@ Registry load_registry() {
   for (const std::string& message : registry.rejected()) std::cerr << "warning: " << message << "\n";
   if (registry.plugins().empty())
     throw PluginError("no plugin was found: build the target `plugins`, or name their folder in MPM_PLUGIN_PATH");
+  return registry;
+}
+
+namespace {
+
+void collect_words(const Node& node, std::set<std::string, std::less<>>& words) {
+  if (node.type == Node::Type::string) words.insert(node.text);
+  for (const Node& item : node.items) collect_words(item, words);
+  for (const Member& member : node.members) {
+    if (member.key == "contact") words.insert(member.key);
+    collect_words(member.value, words);
+  }
+}
+
+/// Those of a value as --set takes it: JSON or bare.
+void collect_words(const std::string& text, std::set<std::string, std::less<>>& words) {
+  std::string word;
+  for (const char c : text + " ") {
+    if (std::isalnum(static_cast<unsigned char>(c)) || c == '_')
+      word += c;
+    else
+      words.insert(std::exchange(word, {}));
+  }
+}
+
+}  // namespace
+
+std::set<std::string, std::less<>> words_of(const std::vector<std::filesystem::path>& files,
+                                            const std::vector<std::string>& overrides) {
+  std::set<std::string, std::less<>> words;
+  for (const std::filesystem::path& file : files) collect_words(read_located(file), words);
+  for (const std::string& change : overrides) collect_words(change, words);
+  if (words.contains("contact")) words.insert({standard_normal, standard_detection});  // it need not name them
+  return words;
+}
+
+Registry load_registry_for(const std::vector<std::filesystem::path>& files, const std::vector<std::string>& overrides) {
+  std::vector<PluginTarget> not_built = plugins_not_built();
+  if (!not_built.empty()) {
+    const auto words = words_of(files, overrides);
+    std::vector<std::string> targets;
+    for (const PluginTarget& plugin : not_built)
+      if (words.contains(plugin.id)) targets.push_back(plugin.name());
+    if (!targets.empty()) build_missing(targets);
+    not_built = plugins_not_built();
+  }
+  Registry registry = load_registry();
+  registry.set_not_built(std::move(not_built));
   return registry;
 }
 

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,12 @@ int run_command_line(int argc, char** argv);
 ReadOptions read_options(const Registry& registry, const RunOptions& options);
 /// Every plugin of the default folders; unusable files are named on standard error.
 Registry load_registry();
+/// What experiment files and overrides hold in words, and the ids that contact has where it names none.
+std::set<std::string, std::less<>> words_of(const std::vector<std::filesystem::path>& files,
+                                            const std::vector<std::string>& overrides);
+/// The same registry, after those whose ids are among these words were built where they had not been (plugin/on_demand.hpp).
+/// Throws NotBuilt.
+Registry load_registry_for(const std::vector<std::filesystem::path>& files, const std::vector<std::string>& overrides);
 
 int run(const RunOptions& options);
 /// Validates an experiment, or a study with all its combinations.

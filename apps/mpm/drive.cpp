@@ -302,7 +302,7 @@ int drive_every_material(const DriveOptions& options) {
 
 int run_material_point(const RunOptions& options) {
   refuse_options(options);
-  const Registry registry = load_registry();
+  const Registry registry = load_registry_for({options.file}, options.overrides);
   const ComponentLookup lookup(registry);
   const DriveExperiment path = drive::read_drive(options.file, lookup, options.overrides);
   const auto place = options.out.empty() ? fs::path("runs") / options.file.stem() : options.out;
@@ -320,7 +320,7 @@ int run_material_point(const RunOptions& options) {
 
 int check_material_point(const RunOptions& options) {
   refuse_options(options);
-  const Registry registry = load_registry();
+  const Registry registry = load_registry_for({options.file}, options.overrides);
   const DriveExperiment path = drive::read_drive(options.file, ComponentLookup(registry), options.overrides);
   long steps = 0;
   for (const drive::Stage& stage : path.stages) steps += stage.steps;

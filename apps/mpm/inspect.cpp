@@ -165,8 +165,8 @@ int check_study(const RunOptions& options) {
   if (options.backend) overrides.push_back("/backend=" + *options.backend);
   const study::Study plan = study::read_study(options.file, overrides);
   refuse_material_point(plan.base, plan.file, overrides);
-  const Registry registry = load_registry();
   read_located(plan.base);  // a base that is no JSON is one mistake, not one a combination
+  const Registry registry = load_registry_for({plan.file, plan.base}, overrides);
   const std::vector<study::Combination> combinations = study::expand(plan);
   std::vector<Problem> refused;
   ReadOptions read = read_options(registry, {});
@@ -207,7 +207,7 @@ void refuse_study(const std::filesystem::path& file, const std::string& verb) {
 int check(const RunOptions& options) {
   if (study::is_study(read_located(options.file))) return check_study(options);
   if (drive::is_material_point(options.file, options.overrides)) return check_material_point(options);
-  const Registry registry = load_registry();
+  const Registry registry = load_registry_for({options.file}, options.overrides);
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const Plan plan = make_plan(experiment);
   refuse_unknown_records(experiment);
@@ -228,7 +228,7 @@ int plan(const RunOptions& options, bool json, const std::string& graph, const s
     throw InputError({Problem{options.file.string(), 1, 1, "",
                               "a material point has no plan: its step is one update of one particle; `mpm check` "
                               "validates it, `mpm run` runs it"}});
-  const Registry registry = load_registry();
+  const Registry registry = load_registry_for({options.file}, options.overrides);
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const Plan plan = make_plan(experiment);
   if (!graph.empty()) {
@@ -369,11 +369,12 @@ int list_combinations(bool json) {
 }
 
 int describe(const std::string& id, bool json) {
-  const Registry registry = load_registry();
+  const Registry registry = load_registry_for({}, {id});
   const auto found = matching(registry, id);
   if (found.empty()) {
     std::vector<std::string> names;
     for (const Plugin& plugin : registry.plugins()) names.emplace_back(plugin.id());
+    for (const PluginTarget& plugin : registry.not_built()) names.push_back(plugin.id);
     throw PluginError("no plugin is called " + in_quotes(id) + did_you_mean(id, names) +
                       "; `mpm list` shows all: " + quoted_list(names));
   }

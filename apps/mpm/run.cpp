@@ -334,7 +334,7 @@ int run(const RunOptions& options) {
   const auto start = Clock::now();
   refuse_study(options.file, "run");
   if (drive::is_material_point(options.file, options.overrides)) return run_material_point(options);
-  const Registry registry = load_registry();
+  const Registry registry = load_registry_for({options.file}, options.overrides);
   const Experiment experiment = read_experiment(options.file, registry, read_options(registry, options));
   const auto place = options.out.empty() ? std::filesystem::path("runs") / options.file.stem() : options.out;
   refuse_unknown_records(experiment);

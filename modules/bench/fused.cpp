@@ -1,52 +1,11 @@
 #include "bench/fused.hpp"
 
 #include <stdexcept>
+#include <utility>
 
-#include "backends/cpu/cpu_backend.hpp"
-#include "backends/cpu/particles/particle_dilation.hpp"
-#include "backends/cpu/particles/particle_gather.hpp"
-#include "backends/cpu/particles/particle_heat.hpp"
-#include "backends/cpu/particles/particle_scatter.hpp"
-#include "backends/cpu/particles/particle_viscosity.hpp"
-#include "materials/neo_hookean/neo_hookean.hpp"
-#include "plugin/sdk.hpp"
-#include "shapes/bspline_quadratic/bspline_quadratic.hpp"
-#include "transfers/mls/mls.hpp"
-
-namespace mpm::cpu {
-extern template class GridStep<2, float>;
-extern template class GridStep<2, double>;
-extern template class GridStep<3, float>;
-extern template class GridStep<3, double>;
-}  // namespace mpm::cpu
+#include "backends/libraries/backend_library.hpp"
 
 namespace mpm::bench {
-namespace {
-
-template <int D, class T>
-struct FusedComponents {
-  using S = Lanes<T>;
-  static void evaluate_shape(const cpu::Scene<D, T>& scene, const mpm_shape_batch& batch) {
-    sdk::shape_batch<BsplineQuadratic, S>(scene.shape_parameters, &batch);
-  }
-  static void scatter(const cpu::Scene<D, T>& scene, const mpm_scatter_batch& batch) {
-    sdk::scatter_batch<Mls, D, S>(scene.transfer_parameters, &batch);
-  }
-  static void gather(const cpu::Scene<D, T>& scene, const mpm_gather_batch& batch) {
-    sdk::gather_batch<Mls, D, S>(scene.transfer_parameters, &batch);
-  }
-  static std::int32_t update_material(const cpu::Body<D, T>& body, const mpm_material_batch& batch) {
-    return sdk::material_batch<NeoHookean, D, S>(body.material->parameters.data(), &batch);
-  }
-};
-
-template <int D, class T>
-std::unique_ptr<Backend> make(const Experiment& experiment, const Plan& plan, std::vector<SeededBody> seeds,
-                              int threads) {
-  return std::make_unique<cpu::CpuBackend<D, T, FusedComponents<D, T>>>(experiment, plan, std::move(seeds), threads);
-}
-
-}  // namespace
 
 std::unique_ptr<Backend> make_fused_backend(const Experiment& experiment, const Plan& plan,
                                             std::vector<SeededBody> seeds, int threads) {
@@ -54,12 +13,7 @@ std::unique_ptr<Backend> make_fused_backend(const Experiment& experiment, const 
                !experiment.filter;
   for (const auto& material : experiment.materials) known = known && material.component.plugin->id() == "neo_hookean";
   if (!known) throw std::invalid_argument("compiled in are only bspline_quadratic, mls and neo_hookean");
-  const bool single = experiment.precision == Precision::single;
-  if (experiment.dimension == 2)
-    return single ? make<2, float>(experiment, plan, std::move(seeds), threads)
-                  : make<2, double>(experiment, plan, std::move(seeds), threads);
-  return single ? make<3, float>(experiment, plan, std::move(seeds), threads)
-                : make<3, double>(experiment, plan, std::move(seeds), threads);
+  return backend_library("cpu_fused")({experiment, plan, std::move(seeds), threads});
 }
 
 }  // namespace mpm::bench

@@ -447,10 +447,14 @@ bool Fields::read_expression_vector(const ParameterSpec& spec, const Node& node,
 }
 
 const Section* choose_kind(const Node& node, std::span<const Section> kinds, std::string_view what, bool bare,
-                           ReadContext& context, const Section* standard) {
+                           ReadContext& context, const Section* standard, std::span<const std::string> others) {
   const std::string name(what);
   std::vector<std::string> names;
   for (const Section& kind : kinds) names.push_back(kind.name);
+  if (!others.empty()) {
+    names.insert(names.end(), others.begin(), others.end());
+    std::sort(names.begin(), names.end());
+  }
   const bool by_string = bare && node.type == Node::Type::string;
   if (!by_string && node.type != Node::Type::object) {
     context.problem(node, "expected " + std::string(bare ? "a string or " : "") + "an object " +

@@ -188,9 +188,10 @@ class Fields {
 
 /// The kind that an object's "type" names, or that a bare string names when `bare` allows it. Null, with a problem
 /// recorded, when there is none; an object without "type" means `standard`, unless that is null. `what` names it in
-/// messages: "geometry", "material".
+/// messages: "geometry", "material". They also name `others`, which are no mistakes but not at hand.
 const Section* choose_kind(const Node& node, std::span<const Section> kinds, std::string_view what, bool bare,
-                           ReadContext& context, const Section* standard = nullptr);
+                           ReadContext& context, const Section* standard = nullptr,
+                           std::span<const std::string> others = {});
 
 /// The SI value of a number or of a string with a unit; nothing, with a problem recorded, when it is neither.
 bool read_si(const Node& node, std::string_view unit, std::string_view expected, double& value, ReadContext& context);

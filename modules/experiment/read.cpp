@@ -29,7 +29,7 @@ OrderedJson in_table_order(const OrderedJson& object, const Section& section) {
 
 }  // namespace
 
-ComponentLookup::ComponentLookup(const Registry& registry) {
+ComponentLookup::ComponentLookup(const Registry& registry) : not_built_(registry.not_built()) {
   for (const Plugin& plugin : registry.plugins()) plugins_.push_back(&plugin);
 }
 
@@ -46,6 +46,13 @@ std::vector<const Plugin*> ComponentLookup::of_kind(mpm_kind kind) const {
     if (plugin->descriptor->kind == static_cast<std::uint32_t>(kind)) found.push_back(plugin);
   }
   return found;
+}
+
+std::vector<std::string> ComponentLookup::not_built(mpm_kind kind) const {
+  std::vector<std::string> ids;
+  for (const PluginTarget& plugin : not_built_)
+    if (plugin.kind == kind) ids.push_back(plugin.id);
+  return ids;
 }
 
 OrderedJson read_constants(const Node& root, ReadContext& context) {

@@ -47,9 +47,12 @@ class ComponentLookup {
 
   const Plugin* find(mpm_kind kind, std::string_view id) const;
   std::vector<const Plugin*> of_kind(mpm_kind kind) const;
+  /// The ids of a kind that could be built and chosen too.
+  std::vector<std::string> not_built(mpm_kind kind) const;
 
  private:
   std::vector<const Plugin*> plugins_;
+  std::vector<PluginTarget> not_built_;
 };
 
 /// Reads, checks and resolves an experiment. Throws InputError with every problem found, in the order of the file.

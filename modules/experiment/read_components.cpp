@@ -106,7 +106,7 @@ ExperimentReader::Chosen ExperimentReader::read_component(const Node& node, mpm_
   const bool by_word = kind == MPM_NORMAL || kind == MPM_DETECTION;
   const std::string what =
       kind == MPM_CONTACT ? "contact law" : (by_word ? "contact " : "") + std::string(kind_name(kind));
-  const Section* section = choose_kind(node, kinds, what, by_word, context_);
+  const Section* section = choose_kind(node, kinds, what, by_word, context_, nullptr, components_.not_built(kind));
   if (!section) return chosen;
   const Plugin* plugin = components_.find(kind, section->name);
   const bool is_word = node.type == Node::Type::string;

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "plugin/extension_of.hpp"
+#include "plugin/on_demand.hpp"
 
 namespace mpm {
 namespace {
@@ -194,13 +195,6 @@ void check_extensions(const Plugin& plugin, const std::filesystem::path& file) {
            wrong_tables);
 }
 
-/// Folder of the running program.
-std::filesystem::path program_folder() {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return error ? std::filesystem::path(".") : program.parent_path();
-}
-
 }  // namespace
 
 std::string_view kind_name(mpm_kind kind) {
@@ -340,9 +334,7 @@ std::vector<std::filesystem::path> Registry::default_folders() {
     for (std::string folder; std::getline(list, folder, ':');)
       if (!folder.empty()) folders.emplace_back(folder);
   }
-  const auto program = program_folder();
-  for (const auto& folder :
-       {program / "plugins", program.parent_path() / "plugins", program.parent_path() / "lib" / "mpm" / "plugins"})
+  for (const auto& folder : folders_beside_program("plugins"))
     if (std::filesystem::is_directory(folder)) folders.push_back(folder);
   return folders;
 }

@@ -7,9 +7,11 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "plugin/abi.h"
+#include "plugin/on_demand.hpp"
 
 namespace mpm {
 
@@ -66,12 +68,16 @@ class Registry {
   /// The plugin of this kind and id, or null when there is none.
   const Plugin* find(mpm_kind kind, std::string_view id) const;
   std::vector<const Plugin*> of_kind(mpm_kind kind) const;
+  /// Plugins that the program's build tree has not built (plugin/on_demand.hpp), for messages that name what there is.
+  void set_not_built(std::vector<PluginTarget> plugins) { not_built_ = std::move(plugins); }
+  const std::vector<PluginTarget>& not_built() const { return not_built_; }
   /// One message a file that was found but not usable.
   const std::vector<std::string>& rejected() const { return rejected_; }
 
  private:
   std::vector<Plugin> plugins_;
   std::vector<std::string> rejected_;
+  std::vector<PluginTarget> not_built_;
 };
 
 }  // namespace mpm

@@ -122,14 +122,13 @@ foreach(source ${reference_sources})
     target_sources(${program} PRIVATE ${PROJECT_SOURCE_DIR}/modules/${source})
   endif()
 endforeach()
-foreach(unit grid particle)
+foreach(unit grid particle library)
   foreach(D 2 3)
     foreach(T float double)
       target_sources(${program} PRIVATE ${PROJECT_BINARY_DIR}/modules/${cpu}/${unit}_${D}_${T}.cpp)
     endforeach()
   endforeach()
 endforeach()
-target_sources(${program} PRIVATE ${PROJECT_SOURCE_DIR}/modules/${cpu}/cpu_backend.cpp)
 
 # The table of the device's headers, as modules/backends/device/CMakeLists.txt makes it.
 file(GLOB kernel_headers RELATIVE ${PROJECT_SOURCE_DIR}/modules

@@ -21,7 +21,7 @@ KINDS = ("backends", "kernel", "operators")
 OPTIMISATION = "-O2"  # that of the published runs; the compiler's fault with -O1 is mended (modules/MpmBuild.cmake)
 SUITES = ["parity", "unit", "conformance", "verification", "config"]
 DEVICE, DEVICE_SUITES = "modules/backends/device", ["device"]  # no other suite knows the device's objects
-KERNELS, COMPOSER = f"{DEVICE}/kernels/", "mpm_device_backend.dir/compose.cpp.o"  # the composer's object holds their text
+KERNELS, COMPOSER = f"{DEVICE}/kernels/", "mpm_device.dir/compose.cpp.o"  # the composer's object holds their text
 KEPT_PROGRAMS = ("host_programs_of_tests", "programs_of_tests")  # folders of the build (tests/device/device_support.hpp)
 TABLE, TABLE_FILE = "-DMPM_KERNEL_HEADERS=", "kernel_headers.inc"
 COMPILER = """#!/bin/sh
@@ -126,9 +126,9 @@ class Group:
                 test = self.build.test_of(name)
                 asked = test and (test[0] in self.suites or ".".join(test) in self.suites)
                 wanted = asked and (self.includes_one(name, files) or PLUGIN_IN_A_TEST.search(self.text_of(name)))
-            elif found or "mpm_cpu_backend.dir" in name:
-                wanted = found[1] in self.instantiations if found else any(self.instantiations)
-            elif "mpm_device_backend.dir" in name:
+            elif found or "mpm_fused_backend.dir" in name:
+                wanted = found and found[1] in self.instantiations
+            elif "mpm_device.dir" in name or "mpm_device_backend.dir" in name:
                 wanted = name in self.of_device(files)
             elif self.build.plugin_of(name) or not name.startswith("modules/"):
                 wanted = False

@@ -5,6 +5,7 @@
 
 #include "backends/device/kernels/sums.hpp"  // largest_team
 #include "backends/device/memory.hpp"
+#include "backends/libraries/backend_library.hpp"
 #include "experiment/contact_settings.hpp"
 #include "experiment/device_settings.hpp"
 #include "simulation/boundary.hpp"
@@ -150,11 +151,11 @@ std::uint64_t DeviceBackend<T>::grid_bytes() const {
 template class DeviceBackend<float>;
 template class DeviceBackend<double>;
 
-std::unique_ptr<Backend> make_device_backend(const Experiment& experiment, const Plan& plan,
-                                             const std::vector<SeededBody>& seeded, const DeviceSetup& setup) {
-  if (experiment.precision == Precision::single)
-    return std::make_unique<DeviceBackend<float>>(experiment, plan, seeded, setup);
-  return std::make_unique<DeviceBackend<double>>(experiment, plan, seeded, setup);
+/// What the library of the backend makes.
+std::unique_ptr<Backend> make(BackendRequest request) {
+  if (request.experiment.precision == Precision::single)
+    return std::make_unique<DeviceBackend<float>>(request.experiment, request.plan, request.bodies, *request.device);
+  return std::make_unique<DeviceBackend<double>>(request.experiment, request.plan, request.bodies, *request.device);
 }
 
 }  // namespace mpm::device

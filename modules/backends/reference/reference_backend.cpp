@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "backends/libraries/backend_library.hpp"
 #include "kernel/corner_domain.hpp"
 
 namespace mpm {
@@ -180,12 +181,10 @@ void ReferenceBackend::restore(ArchiveReader& archive) {
   for (Particles& body : bodies_) body.restore(archive);
 }
 
-}  // namespace reference
-
-std::unique_ptr<Backend> make_reference_backend(
-    const Experiment& experiment, const Plan& plan,
-    std::vector<SeededBody> seeded) {  // NOLINT(performance-unnecessary-value-param): one signature for all backends
-  return std::make_unique<reference::ReferenceBackend>(experiment, plan, seeded);
+/// What the library of the backend makes.
+std::unique_ptr<Backend> make(BackendRequest request) {
+  return std::make_unique<ReferenceBackend>(request.experiment, request.plan, request.bodies);
 }
 
+}  // namespace reference
 }  // namespace mpm
