@@ -179,6 +179,10 @@ TEST_CASE("a pair's force is what the block above it feels", "[chosen][pairs]") 
       INFO(transfer << filter << ", " << backend);
       Scene scene(stacked_blocks(backend, transfer, filter, "[0, -0.2]"));
       check_newton(scene.simulation, backend[0] == 'r' ? 12 : 60, 1e-8);
+      Numbers now = chosen(scene.metrics);  // the faces are level
+      CHECK(now["pair b1 b2 normal force"] == Approx(-now["pair b1 b2 force y"]));
+      CHECK(now["pair b1 b2 normal force"] > 0);
+      CHECK(std::abs(now["pair b1 b2 tangential force y"]) < 1e-9 * now["pair b1 b2 normal force"]);
     }
 }
 
