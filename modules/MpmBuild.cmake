@@ -89,12 +89,29 @@ function(mpm_add_module name)
   mpm_compile_together(mpm_${name})
 endfunction()
 
+# The hash of all headers whose classes a backend's library and the program hand to one another.
+file(GLOB_RECURSE boundary_headers CONFIGURE_DEPENDS
+     ${CMAKE_CURRENT_SOURCE_DIR}/modules/simulation/*.hpp ${CMAKE_CURRENT_SOURCE_DIR}/modules/experiment/*.hpp
+     ${CMAKE_CURRENT_SOURCE_DIR}/modules/plan/*.hpp ${CMAKE_CURRENT_SOURCE_DIR}/modules/plugin/*.h*
+     ${CMAKE_CURRENT_SOURCE_DIR}/modules/support/*.hpp ${CMAKE_CURRENT_SOURCE_DIR}/modules/backends/device/*.hpp
+     ${CMAKE_CURRENT_SOURCE_DIR}/modules/backends/libraries/*.hpp)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${boundary_headers})
+set(hashes)
+foreach(header ${boundary_headers})
+  file(SHA256 ${header} hash)
+  string(APPEND hashes ${hash})
+endforeach()
+string(SHA256 hash "${hashes}")
+string(SUBSTRING ${hash} 0 16 hash)
+set(mpm_hash_of_headers MPM_HASH_OF_HEADERS=0x${hash}ull)
+
 # mpm_add_backend_library(NAME SPACE MAKER LIBRARY...): the library backends/NAME.so of the build folder, as target
 # backend_NAME, of what mpm::SPACE::MAKER makes. What it shares with the program it takes from the program, where that has it.
 function(mpm_add_backend_library name space maker)
   set(entry ${CMAKE_CURRENT_BINARY_DIR}/${name}_entry.cpp)
   configure_file(${PROJECT_SOURCE_DIR}/modules/backends/libraries/entry.cpp.in ${entry} @ONLY)
   add_library(backend_${name} MODULE ${entry})
+  target_compile_definitions(backend_${name} PRIVATE ${mpm_hash_of_headers})
   target_link_libraries(backend_${name} PRIVATE mpm_flags ${ARGN} mpm_simulation mpm_plan mpm_plugin mpm_support)
   set_target_properties(backend_${name} PROPERTIES PREFIX "" SUFFIX .so OUTPUT_NAME ${name}
                         LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/backends)

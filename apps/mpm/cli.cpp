@@ -255,9 +255,7 @@ std::string unexpected_words(const CLI::App& app) {
   return message;
 }
 
-}  // namespace
-
-Registry load_registry() {
+Registry load_plugins() {
   Registry registry = Registry::from_folders(Registry::default_folders());
   for (const std::string& message : registry.rejected()) std::cerr << "warning: " << message << "\n";
   if (registry.plugins().empty())
@@ -265,18 +263,6 @@ Registry load_registry() {
   return registry;
 }
 
-namespace {
-
-void collect_words(const Node& node, std::set<std::string, std::less<>>& words) {
-  if (node.type == Node::Type::string) words.insert(node.text);
-  for (const Node& item : node.items) collect_words(item, words);
-  for (const Member& member : node.members) {
-    if (member.key == "contact") words.insert(member.key);
-    collect_words(member.value, words);
-  }
-}
-
-/// Those of a value as --set takes it: JSON or bare.
 void collect_words(const std::string& text, std::set<std::string, std::less<>>& words) {
   std::string word;
   for (const char c : text + " ") {
@@ -284,6 +270,17 @@ void collect_words(const std::string& text, std::set<std::string, std::less<>>& 
       word += c;
     else
       words.insert(std::exchange(word, {}));
+  }
+}
+
+/// Those of keys as well, which are pointers in a study; a title names nothing that is used.
+void collect_words(const Node& node, std::set<std::string, std::less<>>& words) {
+  if (node.type == Node::Type::string) collect_words(node.text, words);
+  for (const Node& item : node.items) collect_words(item, words);
+  for (const Member& member : node.members) {
+    if (member.key == "title") continue;
+    collect_words(member.key, words);
+    collect_words(member.value, words);
   }
 }
 
@@ -298,6 +295,13 @@ std::set<std::string, std::less<>> words_of(const std::vector<std::filesystem::p
   return words;
 }
 
+Registry load_registry() {
+  std::vector<std::string> targets;
+  for (const PluginTarget& plugin : plugins_not_built()) targets.push_back(plugin.name());
+  if (!targets.empty()) build_missing(targets);
+  return load_plugins();
+}
+
 Registry load_registry_for(const std::vector<std::filesystem::path>& files, const std::vector<std::string>& overrides) {
   std::vector<PluginTarget> not_built = plugins_not_built();
   if (!not_built.empty()) {
@@ -308,7 +312,7 @@ Registry load_registry_for(const std::vector<std::filesystem::path>& files, cons
     if (!targets.empty()) build_missing(targets);
     not_built = plugins_not_built();
   }
-  Registry registry = load_registry();
+  Registry registry = load_plugins();
   registry.set_not_built(std::move(not_built));
   return registry;
 }

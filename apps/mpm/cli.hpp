@@ -75,13 +75,13 @@ int run_command_line(int argc, char** argv);
 
 /// What the program offers to the reader: names of exact solutions, figures, quantities.
 ReadOptions read_options(const Registry& registry, const RunOptions& options);
-/// Every plugin of the default folders; unusable files are named on standard error.
+/// Every plugin of the default folders, after those that the build tree lacks were built (plugin/on_demand.hpp); unusable files
+/// are named on standard error. Throws NotBuilt.
 Registry load_registry();
 /// What experiment files and overrides hold in words, and the ids that contact has where it names none.
 std::set<std::string, std::less<>> words_of(const std::vector<std::filesystem::path>& files,
                                             const std::vector<std::string>& overrides);
-/// The same registry, after those whose ids are among these words were built where they had not been (plugin/on_demand.hpp).
-/// Throws NotBuilt.
+/// The same, where of those that the build tree lacks only the ones are built whose ids are among these words.
 Registry load_registry_for(const std::vector<std::filesystem::path>& files, const std::vector<std::string>& overrides);
 
 int run(const RunOptions& options);

@@ -209,6 +209,8 @@ ConformanceFinding compare(const Comparison& comparison, const std::string& chec
     return not_run(check, std::string("the scene is refused: ") + error.what());
   } catch (const device::MissingCompiler& error) {
     return not_run(check, error.what());
+  } catch (const NotBuilt&) {
+    throw;  // no fault of the plugin
   } catch (const std::exception& error) {
     return {check, false, std::numeric_limits<double>::infinity(), bound_of_state, error.what()};
   }

@@ -454,6 +454,7 @@ const Section* choose_kind(const Node& node, std::span<const Section> kinds, std
   if (!others.empty()) {
     names.insert(names.end(), others.begin(), others.end());
     std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
   }
   const bool by_string = bare && node.type == Node::Type::string;
   if (!by_string && node.type != Node::Type::object) {
@@ -479,6 +480,10 @@ const Section* choose_kind(const Node& node, std::span<const Section> kinds, std
                                  "-D only, but this experiment is " + std::to_string(context.dimension) + "-D");
     }
     return &kind;
+  }
+  if (std::find(others.begin(), others.end(), type->text) != others.end()) {
+    context.problem(*type, name + " " + in_quotes(type->text) + " is not built yet: `./mpm build` builds everything");
+    return nullptr;
   }
   context.problem(*type, "unknown " + name + " " + in_quotes(type->text) + suggestion(type->text, names, available));
   return nullptr;

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
+#include <system_error>
 
 #include "plugin/registry.hpp"
 
@@ -20,13 +21,14 @@ fs::path program_folder() {
   return error ? fs::path(".") : program.parent_path();
 }
 
-/// The exit status of a command, or -1 where it does not start or is ended by a signal.
+/// The exit status of a command, or -1 where a signal ends it. Throws NotBuilt where it does not start.
 int status_of(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t child = 0;
-  if (posix_spawn(&child, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0) return -1;
+  if (const int error = posix_spawnp(&child, arguments[0], nullptr, nullptr, arguments.data(), environ))
+    throw NotBuilt("cannot start " + words[0] + " " + words[1] + ": " + std::generic_category().message(error));
   int status = 0;
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR) return -1;
@@ -64,7 +66,7 @@ void build_missing(const std::vector<std::string>& targets) {
   const char* launcher = std::getenv("MPM_LAUNCHER");
   if (!launcher || !*launcher)
     throw NotBuilt("not built yet: " + names + "; `./mpm build` builds everything, and `./mpm run` what it needs");
-  std::vector<std::string> words{launcher, "needed"};
+  std::vector<std::string> words{"bash", launcher, "needed"};  // it need not be executable
   words.insert(words.end(), targets.begin(), targets.end());
   if (status_of(std::move(words)) != 0)
     throw NotBuilt("could not be built: " + names + "; see the lines above, then call again");

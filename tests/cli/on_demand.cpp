@@ -1,5 +1,7 @@
 // A build tree that holds part of what it can build: the launcher that started the program builds what a scene names.
 
+#include <algorithm>
+
 #include "cli/program.hpp"
 #include "drive/read_drive.hpp"
 #include "experiment/located_json.hpp"
@@ -28,18 +30,16 @@ struct PartOfABuild {
       fs::create_symlink(build / "plugins" / (plugin + std::string(".so")), plugins / (plugin + std::string(".so")));
     for (const std::string& backend : backends_there)
       fs::create_symlink(build / "backends" / (backend + ".so"), backends / (backend + ".so"));
-    spill(launcher, "#!/bin/sh\necho \"$@\" >> " + asked.string() + R"(
+    spill(launcher, "build='" + build.string() + "' part='" + (folder / "build").string() + R"('
+echo "$@" >> "$part/../asked"
 shift
 for target; do
   case $target in
-    backend_*) ln -s )" +
-                        (build / "backends").string() + R"(/"${target#backend_}.so" )" + backends.string() + R"(/ ;;
-    *) ln -s )" + (build / "plugins").string() +
-                        R"(/"$target.so" )" + plugins.string() + R"(/ ;;
+    backend_*) ln -s "$build/backends/${target#backend_}.so" "$part/backends/" ;;
+    *) ln -s "$build/plugins/$target.so" "$part/plugins/" ;;
   esac || exit 1
 done
 )");
-    fs::permissions(launcher, fs::perms::owner_all);
   }
 
   /// Runs the part's own program on a scene.
@@ -106,7 +106,7 @@ TEST_CASE("on demand: without a launcher, or with one that fails, the message sa
   CHECK(backend.code == 5);
   CHECK(has(backend.err, "not built yet: backend_cpu_2_double; `./mpm build` builds everything"));
   CHECK(!fs::exists(part.folder / "runs"));
-  spill(part.launcher, "#!/bin/sh\nexit 5\n");
+  spill(part.launcher, "exit 5\n");
   const Result failed = part.call("run", with_other_transfer("apic"));
   CHECK(failed.code == 5);
   CHECK(has(failed.err, "could not be built: transfer_apic; see the lines above"));
@@ -146,24 +146,58 @@ TEST_CASE("on demand: a library that is none, or of another build, is refused by
   spill(part.backends / "cpu_2_double.so", "no library");
   CHECK(has(part.call("run", ball(), {"--out", "run"}).err, "cpu_2_double.so: cannot be loaded: "));
 
-  // One whose number for the layout of what is handed over is another.
+  // One that says the hash of other headers.
   fs::remove(part.backends / "cpu_2_double.so");
   spill(part.folder / "old.c", "const unsigned long long mpm_backend_library[2] = {1, 0};\n");
-  const std::string command =
-      "cc -shared -fPIC -o " + (part.backends / "cpu_2_double.so").string() + " " + (part.folder / "old.c").string();
+  const std::string command = "cc -shared -fPIC -o '" + (part.backends / "cpu_2_double.so").string() + "' '" +
+                              (part.folder / "old.c").string() + "'";
   REQUIRE(std::system(command.c_str()) == 0);
   const Result old = part.call("run", ball(), {"--out", "run"});
   CHECK(old.code == 5);
   CHECK(has(old.err, "cpu_2_double.so: is of another build than this program; build it again (./mpm build)"));
 }
 
-TEST_CASE("on demand: every shipped experiment names the plugins that it uses") {
+TEST_CASE("on demand: verbs that look at all plugins have all of them built first") {
+  const PartOfABuild part;
+  const auto list = [&](const std::string& launcher) {
+    return Process(part.folder, {(part.bin / "mpm").string(), "list"}, {"MPM_LAUNCHER=" + launcher}).finish();
+  };
+  const Result alone = list("");
+  CHECK(alone.code == 5);
+  CHECK(has(alone.err, " transfer_tpic"));
+  CHECK(alone.out.empty());
+  const Result all = list(part.launcher.string());
+  CHECK(all.code == 0);
+  CHECK(all.out == call(part.folder, {"list"}).out);
+}
+
+TEST_CASE("on demand: the time of a compiler is no time of the run") {
+  const PartOfABuild part(Words{});
+  spill(part.launcher, "sleep 4\n" + slurp(part.launcher));
+  CHECK(part.call("run", ball(), {"--out", "run"}).code == 0);
+  CHECK(has(slurp(part.asked), "backend_cpu_2_double"));
+  CHECK(json_in(part.folder / "run/summary.json")["performance"]["wall_seconds"] < 4);
+}
+
+TEST_CASE("on demand: every shipped experiment and study names the plugins that it uses") {
   const mpm::Registry registry = mpm::Registry::from_folders(mpm::Registry::default_folders());
-  int read = 0;
+  int read = 0, studies = 0;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(MPM_SOURCE_DIR) / "experiments")) {
     const fs::path& file = entry.path();
     if (file.extension() != ".json" || file.filename() == "standard.json") continue;
-    if (mpm::drive::is_material_point(file, {}) || mpm::study::is_study(mpm::read_located(file))) continue;
+    if (mpm::drive::is_material_point(file, {})) continue;
+    if (mpm::study::is_study(mpm::read_located(file))) {
+      const mpm::study::Study study = mpm::study::read_study(file);
+      const auto words = mpm::app::words_of({study.file, study.base}, {});
+      for (const mpm::study::Combination& combination : mpm::study::expand(study))
+        for (const std::string& word : mpm::app::words_of({study.base}, combination.overrides)) {
+          const bool is_plugin = std::any_of(registry.plugins().begin(), registry.plugins().end(),
+                                             [&](const mpm::Plugin& plugin) { return plugin.id() == word; });
+          if (is_plugin && !words.contains(word)) FAIL_CHECK(file << ": " << word << " of " << combination.name);
+        }
+      ++studies;
+      continue;
+    }
     const mpm::Experiment experiment = mpm::read_experiment(file, registry, mpm::app::read_options(registry, {}));
     const auto words = mpm::app::words_of({file}, {});
     for (const mpm::Plugin* plugin : mpm::app::plugins_of(experiment)) {
@@ -173,4 +207,5 @@ TEST_CASE("on demand: every shipped experiment names the plugins that it uses") 
     ++read;
   }
   CHECK(read > 80);
+  CHECK(studies > 40);
 }

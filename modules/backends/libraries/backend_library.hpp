@@ -27,21 +27,10 @@ struct BackendRequest {
 
 using MakeBackend = std::unique_ptr<Backend> (*)(BackendRequest request);
 
-/// Changes with the size of what a library and the program hand one another: a library that is left of an earlier build, when
-/// these were others, is refused.
-constexpr std::uint64_t boundary_layout() {
-  std::uint64_t layout = 0;
-  for (const std::size_t size :
-       {sizeof(Experiment), sizeof(Plan), sizeof(Pass), sizeof(StepInfo), sizeof(SeededBody), sizeof(BodyState),
-        sizeof(Ledger), sizeof(HeatLedger), sizeof(ContactRecord), sizeof(PairRecord), sizeof(ContactNode),
-        sizeof(FilterRecord), sizeof(Reaction), sizeof(RigidState), sizeof(BackendRequest)})
-    layout = layout * 1000003 + size;
-  return layout;
-}
-
-/// What a library exports, under the name of `backend_library_symbol`.
+/// What a library exports, under the name of `backend_library_symbol`. Library and program hand objects to one another, so that
+/// both must be compiled of the same headers: a library that is left of an earlier build is refused by their hash.
 struct BackendLibrary {
-  std::uint64_t layout;
+  std::uint64_t headers;
   MakeBackend make;
 };
 inline constexpr const char* backend_library_symbol = "mpm_backend_library";
@@ -50,5 +39,8 @@ inline constexpr const char* backend_library_symbol = "mpm_backend_library";
 /// (bench/fused.hpp) and "device".
 /// The program throws NotBuilt, with file and remedy, where the library is missing or of another build.
 MakeBackend backend_library(std::string_view name);
+
+/// Loads the library of the backend that an experiment names, which may have to be built first. Throws NotBuilt.
+void load_backend_library(const Experiment& experiment);
 
 }  // namespace mpm

@@ -35,7 +35,7 @@ MakeBackend load(const std::string& name) {
   }
   const auto* library = static_cast<const BackendLibrary*>(dlsym(handle, backend_library_symbol));
   if (!library) refuse("exports no backend");
-  if (library->layout != boundary_layout()) refuse("is of another build than this program");
+  if (library->headers != MPM_HASH_OF_HEADERS) refuse("is of another build than this program");
   return library->make;
 }
 
