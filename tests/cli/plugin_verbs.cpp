@@ -194,3 +194,13 @@ TEST_CASE("test-plugin: what is no plugin, and wrong usage") {
   CHECK(as_json.code == 2);
   CHECK(Json::parse(as_json.out)["outcome"] == "refused");
 }
+
+// Forces over the masses of nodes that particles barely reach are unbounded with this shape, and rounding grows with them: in
+// space by more than the usual bound of 1e4 epsilons.
+TEST_CASE("test-plugin: the linear shape passes, as the device may differ by what rounding grows to") {
+  const Folder folder;
+  const Result result = call(folder, {"test-plugin", MPM_BUILD_DIR "/plugins/shape_linear.so", "--json"});
+  INFO(result.err);
+  CHECK(result.code == 0);
+  CHECK(has(result.out, "device [host, double, 3-D]"));
+}

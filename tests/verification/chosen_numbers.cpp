@@ -183,6 +183,8 @@ TEST_CASE("a pair's force is what the block above it feels", "[chosen][pairs]") 
       CHECK(now["pair b1 b2 normal force"] == Approx(-now["pair b1 b2 force y"]));
       CHECK(now["pair b1 b2 normal force"] > 0);
       CHECK(std::abs(now["pair b1 b2 tangential force y"]) < 1e-9 * now["pair b1 b2 normal force"]);
+      CHECK(std::abs(now["pair b1 b2 tangential force x"]) <
+            0.01 * now["pair b1 b2 normal force"]);  // friction of both ways
     }
 }
 
