@@ -152,6 +152,7 @@ template class DeviceBackend<float>;
 template class DeviceBackend<double>;
 
 /// What the library of the backend makes.
+// NOLINTNEXTLINE(performance-unnecessary-value-param): one signature for all backends
 std::unique_ptr<Backend> make(BackendRequest request) {
   if (request.experiment.precision == Precision::single)
     return std::make_unique<DeviceBackend<float>>(request.experiment, request.plan, request.bodies, *request.device);

@@ -182,6 +182,7 @@ void ReferenceBackend::restore(ArchiveReader& archive) {
 }
 
 /// What the library of the backend makes.
+// NOLINTNEXTLINE(performance-unnecessary-value-param): one signature for all backends
 std::unique_ptr<Backend> make(BackendRequest request) {
   return std::make_unique<ReferenceBackend>(request.experiment, request.plan, request.bodies);
 }
