@@ -81,6 +81,7 @@ void check_same_records(const Backend& a, const Backend& b) {
 /// Goes 7 of 14 steps on one backend and the rest on the other. The end is that of a whole run on either, as near as
 /// the two whole runs must be to each other.
 void check_goes_on(const Mix& mix, const std::string& precision, const std::string& first, const std::string& second) {
+  if (!is_chosen_check()) return;
   INFO(mix.name() << " " << precision << ", " << first << " to " << second);
   Run whole(mix, first, precision), other(mix, second, precision), part(mix, first, precision),
       resumed(mix, second, precision);

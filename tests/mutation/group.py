@@ -4,11 +4,14 @@ expression is noted once, so that a mutant is tried by the cases alone that come
 
 import hashlib
 import json
+import math
+import multiprocessing
 import os
 import re
 import resource
 import shutil
 import subprocess
+import time
 from collections import Counter
 from pathlib import Path
 
@@ -34,12 +37,14 @@ rm "$0.$$"
 exit $status
 """
 PLUGIN_IN_A_TEST = re.compile(r'#include "(?:contacts|detections|filters|materials|normals|shapes|transfers)/')
+CHECKS = re.compile(r"\b(?:is_chosen_check|check_parity|check_on_device)\(")
 INSTANTIATION = re.compile(r"_([23]_(?:float|double))\.cpp\.o$")
 
 
-def cases_of(build, suites):
-    """The quick cases of the suites."""
-    cases = []
+def cases_of(build, suites, most_checks):
+    """The quick cases of the suites; of one that makes many checks of a scene each is a case of its own, up to so many."""
+    cases, counted = [], build.work / "checks.json"
+    counts = json.loads(counted.read_text()) if counted.is_file() else {}
     for suite in [suite for suite in (*SUITES, *DEVICE_SUITES) if suite in build.suites]:
         for path in sorted((build.tree / "tests" / suite).glob("*.cpp")):
             name = f"{suite}.{path.stem}"
@@ -49,20 +54,35 @@ def cases_of(build, suites):
                                      f"[#{path.stem}]~[slow]"], cwd=build.folder, env=environment(),
                                     capture_output=True, text=True)  # fmt: skip
             text = path.read_text()
-            cases += [Case(suite, path.stem, name, text) for name in listed.stdout.split("\n") if name.strip()]
+            for case in [Case(suite, path.stem, title, text) for title in listed.stdout.split("\n") if title.strip()]:
+                if case.key not in counts:
+                    counts[case.key] = checks_of(build, case) if CHECKS.search(text) else 0
+                count = counts[case.key]
+                each = range(1, count + 1, math.ceil(count / most_checks)) if count > 1 else [None]
+                cases += [Case(suite, path.stem, case.title, text, check) for check in each]
+    counted.write_text(json.dumps(counts))
     return cases
 
 
-class Case:
-    """A quick case with what is known of it: how long it takes and which expressions it comes to. One that takes longer
-    than --longest is broken off there, and what it checks before that counts."""
+def checks_of(build, case):
+    """How many checks a case makes; it is run without them."""
+    file = build.work / "checks"
+    file.write_bytes(b"")
+    subprocess.run([build.folder / "bin" / f"test_{case.suite}", *case.call], cwd=build.folder, capture_output=True,
+                   env={**environment(), "MPM_CHECKS_COUNTED": str(file)})  # fmt: skip
+    return file.stat().st_size
 
-    def __init__(self, suite, file, name, text):
-        self.suite, self.file, self.title = suite, file, name
+
+class Case:
+    """A quick case, or one check of it, with what is known of it: how long it takes and which expressions it comes to. One
+    that takes longer than --longest is broken off there, and what it checks before that counts."""
+
+    def __init__(self, suite, file, title, text, check=None):
+        self.suite, self.file, self.title, self.check = suite, file, title, check
         self.name = f"{suite}.{file}"
-        self.key = f"{self.name} {hash_of(text)} {name}"
+        self.key = f"{self.name} {hash_of(text)} {title}" + (f" {check}" if check else "")
         self.seconds, self.comes_to, self.usable, self.broken_off = None, frozenset(), None, False
-        self.kills, self.tries = Counter(), Counter()
+        self.kills, self.tries, self.at = Counter(), Counter(), {}
 
     def learn(self, kept):
         self.seconds, self.usable, self.broken_off = kept["seconds"], kept["usable"], kept["broken_off"]
@@ -77,19 +97,32 @@ class Case:
         # Signs that Catch would read as its own.
         return [re.sub(r'([\\,\[\]"*~])', r"\\\1", self.title), "--abort"]
 
-    def promise(self, file):
-        """How likely it kills a mutant of a file, for a second of processor time."""
-        chance = (self.kills[file] + 0.2 * self.kills.total() + 0.2) / (self.tries[file] + 0.2 * self.tries.total() + 1)
-        return chance / ((0.5 if self.seconds is None else self.seconds) + 0.05)
+    @property
+    def variables(self):
+        return {"MPM_CHECK": str(self.check)} if self.check else {}
+
+    def note(self, mutant, killed):
+        self.tries[mutant.file] += 1
+        self.kills[mutant.file] += killed
+        self.at.setdefault((mutant.file, mutant.line // 4), []).append(killed)
+
+    def promise(self, mutant, passed):
+        """How likely it kills a mutant, for a second of processor time: as it did those of the file, and above all those
+        of the lines about it. Checks of a case that has passed before are likely to pass as well."""
+        near = self.at.get((mutant.file, mutant.line // 4), ())
+        kills = self.kills[mutant.file] + 0.2 * self.kills.total() + 0.2 + 3 * sum(near)
+        tries = self.tries[mutant.file] + 0.2 * self.tries.total() + 1 + 3 * len(near)
+        return kills / tries * 0.7 ** passed[self.title] / ((0.5 if self.seconds is None else self.seconds) + 0.05)
 
 
 class Group:
     """`mutants` are all of the build, whether or not they are tried in this call: objects once made serve again."""
 
-    def __init__(self, build, mutants, longest, patience, instantiations, suites, alone, say):
+    def __init__(self, build, mutants, longest, patience, instantiations, suites, alone, checks, say):
         self.build, self.mutants, self.longest, self.patience = build, mutants, longest, patience
         self.instantiations, self.suites, self.alone, self.say = instantiations, suites, alone, say
         self.bench = Bench(build, build.work / "group")
+        self.of_the_device = any(mutant.file.startswith(DEVICE) for mutant in mutants)
         self.read_programs()
         self.texts, self.number_of, self.noted_as = {}, {}, {}
         for file in dict.fromkeys(mutant.file for mutant in mutants):
@@ -106,12 +139,32 @@ class Group:
         self.objects = self.chosen_objects(set(self.texts))
         self.make()
         self.programs = {}
-        self.cases = cases_of(build, suites)
-        self.known = self.kept / "cases.json"
+        self.cases = cases_of(build, suites, checks)
+        self.known, self.kept_at = self.kept / "cases.json", 0
         kept = json.loads(self.known.read_text()) if self.known.is_file() else {}
         for case in self.cases:
             if case.key in kept:
                 case.learn(kept[case.key])
+
+    def results(self, mutants, jobs):
+        """(mutant, result) as they come, of `jobs` processes side by side."""
+        global sharer
+        sharer = self
+        if jobs == 1 or self.kernels:
+            for mutant in mutants:
+                yield mutant, self.result(mutant)
+            return
+        for suite in self.build.suites:
+            self.program_of(suite)
+        with multiprocessing.get_context("fork").Pool(jobs) as pool:
+            unseen = [place for place, case in enumerate(self.cases) if case.usable is None]
+            for place, learnt in pool.imap_unordered(look, unseen, chunksize=8):
+                self.take(self.cases[place], learnt)
+            self.keep()
+        with multiprocessing.get_context("fork").Pool(jobs) as pool:  # processes that know what the others have learnt
+            places = {mutant: place for place, mutant in enumerate(self.mutants)}
+            for place, result in pool.imap_unordered(try_one, [places[mutant] for mutant in mutants]):
+                yield self.mutants[place], result
 
     # ---- the build ---------------------------------------------------------------------------------------------
 
@@ -231,7 +284,7 @@ class Group:
         program = f"test_{suite}"
         own = {n: p for n, p in known.items() if not self.build.test_of(n) or self.build.test_of(n)[0] == suite}
         words = [own.get(word, word) for word in self.build.links[program]]
-        out = self.bench.folder / "bin" / f"{program}_changed{'' if changed is None else '_alone'}"
+        out = self.bench.folder / "bin" / f"{program}_changed" if changed is None else self.own(f"bin/{program}_alone")
         words[words.index("-o") + 1] = str(out)
         words = [words[0], *own.values(), *(word for word in words[1:] if word not in own.values())]
         code, output = self.bench.run(words, 300)
@@ -246,7 +299,7 @@ class Group:
     def read_programs(self):
         """Begins with the programs that the build has compiled for its tests of the device."""
         self.programs_kept = self.build.work / "programs"
-        for name in KEPT_PROGRAMS:
+        for name in KEPT_PROGRAMS if self.of_the_device else ():
             if (self.build.folder / name).is_dir() and not (self.programs_kept / name).is_dir():
                 shutil.copytree(self.build.folder / name, self.programs_kept / name)
         self.programs_kept.mkdir(exist_ok=True)
@@ -257,13 +310,17 @@ class Group:
         self.messages = compiler.with_name("c++.messages")
         self.tools = f"{compiler.parent}:{os.environ['PATH']}"
 
+    def own(self, name):
+        """A path of this process alone."""
+        return self.bench.folder / f"{name}_{os.getpid()}"
+
     def run(self, case, program, seconds, programs, **variables):
         """Runs a case that finds programs of the device in a folder, and has one for temporary files that it leaves empty."""
-        scratch = self.bench.folder / "scratch"
+        scratch = self.own("scratch")
         shutil.rmtree(scratch, ignore_errors=True)
         scratch.mkdir()
         return self.bench.run([program, *case.call], seconds, MPM_PROGRAMS_OF_TESTS=str(programs), TMPDIR=str(scratch),
-                              **({"PATH": self.tools} if self.kernels else {}), **variables)[0]  # fmt: skip
+                              **({"PATH": self.tools} if self.kernels else {}), **case.variables, **variables)[0]  # fmt: skip
 
     def compositions_refuse(self):
         """Takes out the mutants of kernels that the compiler of the device's programs refused; whether there were any."""
@@ -281,7 +338,7 @@ class Group:
 
     def programs_of_mutant(self):
         """Programs as the unchanged device compiled them, in a folder of their own: a mutant may keep wrong ones."""
-        folder = self.bench.folder / "programs"
+        folder = self.own("programs")
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(self.programs_kept, folder, copy_function=os.link)
         return folder
@@ -293,9 +350,9 @@ class Group:
         return used.ru_utime + used.ru_stime
 
     def look_at(self, case):
-        """Runs the unchanged program once, and once more where programs of the device had to be compiled first: whether
-        the case passes, how long it takes, what it comes to."""
-        seen = self.bench.folder / "seen"
+        """What is to be learnt of a case: runs the unchanged program once, and once more where programs of the device had
+        to be compiled first: whether the case passes, how long it takes, what it comes to."""
+        seen = self.own("seen")
         seen.write_bytes(bytes(len(self.mutants) + 1))
         compiled = None
         while compiled != (compiled := sum(1 for _ in self.programs_kept.glob("*/*"))):
@@ -304,11 +361,22 @@ class Group:
                             MPM_MUTANT="-1", MPM_MUTANT_SEEN=str(seen))  # fmt: skip
             if code not in (0, None) and self.compositions_refuse():
                 compiled = None
-        case.seconds, case.broken_off, case.usable = self.spent() - before, code is None, code in (0, None)
-        case.comes_to = frozenset(n for n, byte in enumerate(seen.read_bytes()) if byte)
+        return {"seconds": self.spent() - before, "broken_off": code is None, "usable": code in (0, None),
+                "comes_to": [n for n, byte in enumerate(seen.read_bytes()) if byte]}  # fmt: skip
+
+    def take(self, case, learnt):
+        case.learn(learnt)
         if not case.usable:
             self.say(f"mutation: {case.name} ({case.title}) fails on the unchanged program as it is compiled here, and is left out")
+
+    def keep(self):
+        self.kept_at = time.monotonic()
         self.known.write_text(json.dumps({case.key: case.learnt() for case in self.cases if case.usable is not None}))
+
+    def learn_of(self, case):
+        self.take(case, self.look_at(case))
+        if time.monotonic() > self.kept_at + 10:
+            self.keep()
 
     def result(self, mutant):
         """What became of a mutant; none where it can only be compiled alone and changes too many objects."""
@@ -321,12 +389,13 @@ class Group:
         objects = [name for name in self.chosen_objects({mutant.file}) if not self.build.test_of(name)]
         if not objects or len(objects) > self.alone or mutant.file in self.kernels:  # without one the program would be the unchanged one
             return None
-        overlay = self.bench.folder / "overlay"
+        overlay = self.own("overlay")
         self.write_texts(overlay, {mutant.file: mutant.applied(self.texts[mutant.file].text)})
         changed = {}
         for number, name in enumerate(objects):
-            changed[name] = str(self.bench.folder / f"alone_{number}.o")
-            if self.compile(name, self.bench.folder / f"alone_{number}.o", overlay) is not None:
+            out = self.own(f"alone_{number}").with_suffix(".o")
+            changed[name] = str(out)
+            if self.compile(name, out, overlay) is not None:
                 return Result(Result.UNCOMPILED)
         programs = {}
 
@@ -360,28 +429,40 @@ class Group:
     def tried(self, mutant, number, program_of, noted):
         near, namesakes = self.near(mutant) if noted is None else set(), self.namesakes(mutant)
         for case in [case for case in self.cases if near and case.usable is None]:
-            self.look_at(case)
-        begin, left, came, programs = self.spent(), list(self.cases), 0, self.programs_of_mutant()
+            self.learn_of(case)
+        begin, came, programs, passed = self.spent(), 0, self.programs_of_mutant(), Counter()
+        left = [case for case in self.cases if case.usable is None or case.usable and (noted is None or noted in case.comes_to)]
         while left:
-            case = max(left, key=lambda case: (case in namesakes, bool(near & case.comes_to), case.promise(mutant.file)))
+            case = max(left, key=lambda case: (case in namesakes, bool(near & case.comes_to), case.promise(mutant, passed)))
             left.remove(case)
             if case.usable is None:
                 before = self.spent()
-                self.look_at(case)
+                self.learn_of(case)
                 begin += self.spent() - before
-            if not case.usable or noted is not None and noted not in case.comes_to:
-                continue
+                if not case.usable or noted is not None and noted not in case.comes_to:
+                    continue
             came += 1
             most = self.longest if case.broken_off else 3 * case.seconds + 1
             code = self.run(case, program_of(case.suite), most, programs, MPM_MUTANT=str(number))
             if code is None and not case.broken_off:  # a machine with much to do makes processor time longer
                 code = self.run(case, program_of(case.suite), 4 * most, programs, MPM_MUTANT=str(number))
-            case.tries[mutant.file] += 1
             if code is None and case.broken_off:
                 code = 0
+            case.note(mutant, code != 0)
+            passed[case.title] += 1
             if code != 0:
-                case.kills[mutant.file] += 1
                 return Result(Result.TIMED_OUT if code is None else Result.KILLED, case.name, case.title)
             if self.spent() - begin > self.patience:
                 return Result(Result.SURVIVED, check=f"by {came} cases, {len(left)} not tried")
         return Result(Result.SURVIVED, check=f"by {came} cases, all that come to it" if came else "no case comes to it")
+
+
+sharer = None  # the group that the processes of results() share
+
+
+def look(place):
+    return place, sharer.look_at(sharer.cases[place])
+
+
+def try_one(place):
+    return place, sharer.result(sharer.mutants[place])

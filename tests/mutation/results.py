@@ -3,6 +3,7 @@
 import datetime
 import hashlib
 import json
+import time
 from dataclasses import asdict, dataclass
 
 from mutants import folder_of
@@ -36,7 +37,7 @@ class Results:
     """Results by mutant. A changed line makes other mutants, whose results are unknown."""
 
     def __init__(self, path):
-        self.path = path
+        self.path, self.saved = path, 0
         kept = json.loads(path.read_text()) if path.is_file() else {}
         self.dates = kept.get("dates", {})  # when a mutant of a folder was last tried
         self.known = {key: Result(**value) for key, value in kept.get("results", {}).items()}
@@ -51,13 +52,15 @@ class Results:
     def put(self, mutant, result):
         self.known[fingerprint(mutant)] = result
         self.dates[folder_of(mutant)] = datetime.date.today().isoformat()
-        self.save()
+        if time.monotonic() > self.saved + 2:
+            self.save()
 
     def save(self):
         self.path.parent.mkdir(parents=True, exist_ok=True)
         kept = {"dates": self.dates, "results": {key: asdict(value) for key, value in self.known.items()}}
         self.path.with_suffix(".new").write_text(json.dumps(kept, indent=1))
         self.path.with_suffix(".new").replace(self.path)
+        self.saved = time.monotonic()
 
 
 class Equivalents:

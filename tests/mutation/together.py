@@ -9,6 +9,7 @@ import re
 from mutants import closing, tokens_of
 
 ASSIGNMENTS = ("=", "+=", "-=", "*=", "/=")
+OPENMP_LOOP = re.compile(r"#pragma omp (?:[^\n]*\\\n)*[^\n]*\n\s*for \([^\n]*")  # its head has a form of its own
 CHOICE_OF_LANES = ["[", "]", "(", "int", "lane", ")", "{"]  # what shuffled() of modules/kernel/lanes.hpp is told
 SWITCH_FILE = "mpm_mutant_switch.hpp"
 SWITCH = """#pragma once
@@ -137,9 +138,11 @@ class Together:
                 self.refused.update(self.spans.pop((begin, end)))
 
     def refuse_constants(self):
-        """Takes out those of declarations that the compiler evaluates, which spares most of its refusals, and those of
+        """Takes out those of heads of loops of OpenMP and of declarations that the compiler evaluates, which spares most of its refusals, and those of
         choices of lanes, which it evaluates as well: where one is an argument of a function its refusal names nothing."""
         tokens = tokens_of(self.text)
+        for loop in OPENMP_LOOP.finditer(self.text):
+            self.refused.update(n for n, m in enumerate(self.mutants, self.first) if loop.start() < m.begin < loop.end())
         for place, token in enumerate(tokens):
             if token.text in ("constexpr", "alignas", "typedef"):
                 end = declaration_end(tokens, place)
@@ -172,7 +175,8 @@ class Together:
             if last > end:
                 raise ValueError("expressions overlap")
             base, spans = self.rendered(first, last, spans[1:])
-            parts += [self.text[at:first], self.chosen(first, last, numbers, base)]
+            behind = self.text.count("\n", 0, last) + 1
+            parts += [self.text[at:first], self.chosen(first, last, numbers, base), f'\n#line {behind} "unmarked {self.mutants[0].file}"\n']
             at = last
         return "".join([*parts, self.text[at:end]]), spans
 
@@ -190,10 +194,9 @@ class Together:
     def refuse(self, output):
         """Takes out the mutants that the compiler's messages name; whether there were any."""
         errors = re.findall(r"(?m)^(mutant|unchanged)_(\d+):\d+:\d+: (?:fatal )?error: (.*)", output)
-        # What is no constant or not declared any more makes others wrong that use it, which are no mistakes of their own.
-        own = ("constant", "operands to", "no match for", "invalid operands", "lvalue")
+        # What is not declared any more makes others wrong that use it, which are no mistakes of their own.
         syntax = bool(errors) and any(word in errors[0][2] for word in ("expected", "does not name"))
-        first = errors[:1] if syntax else [e for e in errors if any(word in e[2] for word in own)] or errors[:1]
+        first = errors[:1] if syntax else [e for e in errors if "not declared" not in e[2]] or errors[:1]
         named = {int(number) for where, number, _ in first if where == "mutant"}
         whole = {int(number) for where, number, _ in first if where == "unchanged"}
         if not named | whole:  # a template that another calls: the compiler then names who called
@@ -202,6 +205,9 @@ class Together:
         noted_as = self.expression_of()
         whole |= {noted_as[number] for number in whole & noted_as.keys()}
         named |= {number for number, noted in noted_as.items() if noted in whole}
+        lines = {int(line) for line in re.findall(rf"(?m)^unmarked {re.escape(self.mutants[0].file)}:(\d+):\d+: error: ", output)}
+        if not named and not errors:  # of an array the compiler names the whole line
+            named = {number for number, m in enumerate(self.mutants, self.first) if m.line in lines}
         named &= set(self.numbers())
         self.refused |= named
         return bool(named)

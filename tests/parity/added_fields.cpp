@@ -82,6 +82,7 @@ class RunWithMore {
 };
 
 void check_more_fields(const Mix& mix, const std::vector<std::string>& overrides) {
+  if (!is_chosen_check()) return;
   INFO(mix.name());
   CpuRun plain(mix.text(), overrides, 2);
   RunWithMore run(mix.text(), overrides, 2), resumed(mix.text(), overrides, 1);

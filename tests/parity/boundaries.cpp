@@ -76,3 +76,23 @@ TEST_CASE("parity of prescribed boxes of nodes", "[parity]") {
       check_parity(mix);
     }
 }
+
+// Rounding may put a node, whose place is a multiple of h, beside the edge that is meant to hold it: a box reaches 1e-9 h
+// beyond each.
+TEST_CASE("a box holds the nodes on its edges, and those that rounding alone puts beside them", "[parity]") {
+  const auto state = [](const std::string& backend, double inwards) {
+    Mix mix;
+    mix.more = R"(, "node_conditions": [{"type": "stick", "lower": [)" + digits(0.2 + inwards) + ", " +
+               digits(0.3 + inwards) + R"(], "upper": [)" + digits(0.4 - inwards) + ", " + digits(0.5 - inwards) +
+               "]}]";
+    Scene scene(mix.text(), {set("/backend", backend), "/precision=double"});
+    scene.run_steps(2);
+    return scene.body(0).velocity;
+  };
+  for (const std::string backend : {"reference", "cpu"}) {
+    INFO(backend);
+    const std::vector<double> exact = state(backend, 0);
+    CHECK(state(backend, 0.9e-10) == exact);
+    CHECK(difference(state(backend, 1.1e-10), exact, 1.0) > 1e-3);
+  }
+}

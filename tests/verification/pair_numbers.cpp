@@ -72,6 +72,9 @@ TEST_CASE("the area of contact is that of the face, for every shape and wherever
       Scene scene(shaft(2, 0.05), {set("/shape/type", std::string(shape->id())), set("/backend", backend)});
       const Numbers now = after(scene, 3);
       CHECK(now.at("pair low high nodes") > 0);
+      const ContactRecord& all = scene.simulation.backend().contact_record();  // of all pairs, here of one
+      CHECK(static_cast<double>(all.nodes) == now.at("pair low high nodes"));
+      CHECK(static_cast<double>(all.sticking) == now.at("pair low high sticking nodes"));
       CHECK(now.at("pair low high area") == Approx(0.5).epsilon(1e-4));
     }
   Scene solid(shaft(3, 0.1));
