@@ -118,9 +118,10 @@ class Case:
 class Group:
     """`mutants` are all of the build, whether or not they are tried in this call: objects once made serve again."""
 
-    def __init__(self, build, mutants, longest, patience, instantiations, suites, alone, checks, say):
+    def __init__(self, build, mutants, longest, patience, instantiations, suites, alone, checks, first, say):
         self.build, self.mutants, self.longest, self.patience = build, mutants, longest, patience
         self.instantiations, self.suites, self.alone, self.say = instantiations, suites, alone, say
+        self.first = first
         self.bench = Bench(build, build.work / "group")
         self.of_the_device = any(mutant.file.startswith(DEVICE) for mutant in mutants)
         self.read_programs()
@@ -433,7 +434,7 @@ class Group:
         begin, came, programs, passed = self.spent(), 0, self.programs_of_mutant(), Counter()
         left = [case for case in self.cases if case.usable is None or case.usable and (noted is None or noted in case.comes_to)]
         while left:
-            case = max(left, key=lambda case: (case in namesakes, bool(near & case.comes_to), case.promise(mutant, passed)))
+            case = max(left, key=lambda case: (case.name in self.first, case in namesakes, bool(near & case.comes_to), case.promise(mutant, passed)))
             left.remove(case)
             if case.usable is None:
                 before = self.spent()
