@@ -161,6 +161,7 @@ class Group:
             unseen = [place for place, case in enumerate(self.cases) if case.usable is None]
             for place, learnt in pool.imap_unordered(look, unseen, chunksize=8):
                 self.take(self.cases[place], learnt)
+                self.keep_now_and_then()
             self.keep()
         with multiprocessing.get_context("fork").Pool(jobs) as pool:  # processes that know what the others have learnt
             places = {mutant: place for place, mutant in enumerate(self.mutants)}
@@ -376,6 +377,9 @@ class Group:
 
     def learn_of(self, case):
         self.take(case, self.look_at(case))
+        self.keep_now_and_then()
+
+    def keep_now_and_then(self):
         if time.monotonic() > self.kept_at + 10:
             self.keep()
 
@@ -455,7 +459,7 @@ class Group:
                 return Result(Result.TIMED_OUT if code is None else Result.KILLED, case.name, case.title)
             if self.spent() - begin > self.patience:
                 return Result(Result.SURVIVED, check=f"by {came} cases, {len(left)} not tried")
-        return Result(Result.SURVIVED, check=f"by {came} cases, all that come to it" if came else "no case comes to it")
+        return Result(Result.SURVIVED, check=f"by {came} cases, all of those chosen that come to it" if came else "no case comes to it")
 
 
 sharer = None  # the group that the processes of results() share

@@ -18,7 +18,6 @@ FIRST_LOOK = "-O1"  # checks of the plugin alone run on a build that is made fas
 # What test-plugin has done already; what tests the checks themselves; what compares a plugin with its own text.
 NOT_OF_THE_PROGRAM = ("unit.verification_page",)  # compares pages with the texts of tests
 NOT_OF_PLUGINS = ("conformance.every_plugin", "conformance.device_pass")
-ASLEEP = -1000  # in place of the exit code of a program that waited for itself
 SLACK = 10  # times the processor time of a test on the unchanged program, after which it hangs
 
 
@@ -56,14 +55,18 @@ class Bench:
         with Bench.lock:
             Bench.running.add(process.pid)
         try:
-            output, _ = process.communicate(timeout=8 * seconds + 5)  # what sleeps takes no processor time
+            output, _ = process.communicate(timeout=15 * seconds + 5)  # what sleeps takes no processor time
             if Bench.stopped:  # it was ended from outside, which says nothing of the mutant
                 raise KeyboardInterrupt
             return None if process.returncode in (-signal.SIGKILL, -signal.SIGXCPU) else process.returncode, output
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
-            return ASLEEP, ""
+            return None, ""
+        except BaseException:  # Ctrl-C: the program has a session of its own
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+            raise
         finally:
             with Bench.lock:
                 Bench.running.discard(process.pid)

@@ -102,7 +102,7 @@ TEST_CASE("particles that creep out of their block are sorted before they leave 
 }
 
 // At 0.1 cells a step a block is sorted at most every 15 steps, and at least every 20.
-TEST_CASE("separate passes sort as seldom as fused ones", "[parity]") {
+TEST_CASE("separate passes seldom sort a slow block", "[parity]") {
   for (const std::string order : {"last", "modified_last"}) {
     CpuRun run(detail_flight("[1, 0]", ""), {"/solver/passes=separate", "/solver/stress_update=" + order}, 1);
     int sorts = 0;

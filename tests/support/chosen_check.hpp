@@ -6,9 +6,9 @@
 
 namespace mpm::test {
 
-/// Whether a case is to make its next check. All are made but where the environment's MPM_CHECK is a number, which
-/// chooses that check alone, counted from 1, and where MPM_CHECKS_COUNTED names a file, which takes a byte for each
-/// check, of which none is made.
+/// Whether the next check of this process is to be made. All are made but where the environment's MPM_CHECK is a number,
+/// which chooses that check alone, counted from 1 (the process then runs one case), and where MPM_CHECKS_COUNTED names a
+/// file, which takes a byte for each check, of which none is made.
 inline bool is_chosen_check() {
   static int count = 0;
   ++count;

@@ -229,8 +229,12 @@ class ParticleStep : NamedChannels {
   bool must_sort() const { return drift_ > 0.99; }
   /// Whether they must be sorted after a move like the last: what is scattered at once would be scattered again.
   bool must_sort_soon() const { return drift_ + last_drift_ > 0.99; }
-  /// Whether they need not be after a move of at most `cells`.
-  bool stays_within_tiles(double cells) const { return drift_ + cells * (1 + 1e-6) < 0.99; }
+  /// Whether they need not be after a move of at most `cells`. The move may be measured longer by the part of a cell to which
+  /// places are known (find_first_places).
+  bool stays_within_tiles(double cells) const {
+    const double part = measures_drift_ ? 1.0 / chunk_size<T> : 0;
+    return drift_ + part + cells * (1 + 1e-6) < 0.99;
+  }
   /// Widens the range of grid blocks that the lists of each block of particles may reach; returns whether any grew.
   bool widen_active_blocks();
   /// The second moment of every particle at its position, n*D*D, m^2, by index of seeding.
