@@ -6,6 +6,7 @@
 
 #include "simulation/saved_state.hpp"
 #include "simulation/simulation.hpp"
+#include "support/results.hpp"
 
 namespace mpm::test {
 
@@ -23,6 +24,20 @@ inline double drift_in_checkpoint(const Simulation& simulation) {
   double drift = 0;
   arrangement.get("drift", drift);
   return drift;
+}
+
+/// How often particles that fly by 0.1 cells a step are sorted in so many steps: each time their drift falls from the most
+/// that a tile has room for.
+inline int sorts_in(CpuRun& run, int steps) {
+  int sorts = 0;
+  double before = 0;
+  for (int step = 0; step < steps; ++step) {
+    run.steps(1);
+    const double now = drift_in_checkpoint(run.simulation);
+    sorts += before > 0.85 && now < 0.7;
+    before = now;
+  }
+  return sorts;
 }
 
 }  // namespace mpm::test

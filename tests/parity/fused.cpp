@@ -1,7 +1,7 @@
 // Gather and the next scatter in one pass against two passes, bit by bit: sorts fall on the same steps.
 
+#include "parity/drift.hpp"
 #include "parity/parity.hpp"
-#include "simulation/saved_state.hpp"
 #include "support/results.hpp"
 
 using namespace mpm;
@@ -134,22 +134,6 @@ std::string flight(double x, double y) {
          digits(10 * x) + ", " + digits(10 * y) + R"J(]}], "solver": {"time_step": 0.01, "end_time": 2}})J";
 }
 
-/// How far any particle is out of the block of cells that it was sorted into, in cells, as a checkpoint says.
-double drift_of(const Simulation& simulation) {
-  ArchiveWriter written;
-  simulation.backend().save(written);
-  ArchiveReader archive(written.bytes());
-  restore_records(archive, simulation.backend());
-  std::string arranged_by;
-  std::vector<char> bytes;
-  archive.get("arranged_by", arranged_by);
-  archive.get("arrangement", bytes);
-  ArchiveReader arrangement(bytes);
-  double drift = 0;
-  arrangement.get("drift", drift);
-  return drift;
-}
-
 }  // namespace
 
 // The first step already takes particles out of their tiles, so that no pass may leave their velocities behind.
@@ -169,14 +153,7 @@ TEST_CASE("a block that flies more than a cell a step keeps its velocities in ea
 TEST_CASE("particles are sorted by where they are in the middle of their way", "[parity]") {
   for (const auto& [x, y] : {std::pair{0.1, 0.0}, {-0.1, 0.0}, {0.0, 0.1}, {0.0, -0.1}}) {
     CpuRun run(flight(x, y), {"/solver/passes=fused"}, 1);
-    int sorts = 0;
-    double before = 0;
-    for (int step = 0; step < 180; ++step) {
-      run.steps(1);
-      const double now = drift_of(run.simulation);
-      sorts += before > 0.85 && now < 0.7;
-      before = now;
-    }
+    const int sorts = sorts_in(run, 180);
     INFO(x << " " << y << ": " << sorts << " sorts");
     CHECK(sorts >= 180 / 20);
     CHECK(sorts <= 180 / 15 + 1);

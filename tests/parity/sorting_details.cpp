@@ -152,14 +152,7 @@ TEST_CASE("a small block that flies is seldom sorted", "[parity]") {
     flight.seeding = R"(, "particles_per_cell_axis": 1)";
     flight.velocity = "[" + digits(x) + ", " + digits(y) + "]", flight.solver = R"({"time_step": 1, "end_time": 150})";
     CpuRun run(flight.text(), {"/precision=double", "/solver/passes=fused"}, 1);
-    int sorts = 0;
-    double before = 0;
-    for (int step = 0; step < 150; ++step) {
-      run.steps(1);
-      const double now = drift_in_checkpoint(run.simulation);
-      sorts += before > 0.85 && now < 0.7;
-      before = now;
-    }
+    const int sorts = sorts_in(run, 150);
     INFO(flight.velocity << ": " << sorts << " sorts");
     CHECK(sorts >= 150 / 20);
     CHECK(sorts <= 150 / 15 + 1);
