@@ -84,7 +84,7 @@ class FindsStaleReasons(unittest.TestCase):
 
 class WritesThePage(unittest.TestCase):
     OLD = """
-| `modules/filters` | 24 | 24 | 0 | 0 | 0 | 0 | 2026-11-27 |
+| `modules/filters` | 5 | 4 | 0 | 0 | 1 | 0 | 2026-11-27 |
 | `modules/shapes` | 807 | 806 | 0 | 0 | 1 | 0 | 2026-11-27 |
 
 - `modules/filters/a/a.hpp:1:+ to -`: `x = a + b;` (all quick tests)
@@ -109,6 +109,32 @@ class WritesThePage(unittest.TestCase):
                           "| `modules/shapes` | 807 | 806 | 0 | 0 | 1 | 0 | 2026-11-27 |", "", "Passed without a reason:", "",
                           "- `modules/filters/a/a.hpp:2:drop * a`: `z = 2 * a;` (all quick tests)",
                           "- `modules/shapes/b/b.hpp:2:+ to -`: `y = a + b;` (all quick tests)"])  # fmt: skip
+
+    def test_what_a_new_work_folder_has_not_tried_stays_as_it_was(self):
+        old = """
+| `modules/filters` | 11 | 6 | 1 | 0 | 3 | 1 | 2026-11-27 |
+
+- `modules/filters/a/a.hpp:3:drop + b`: `y = a + b;` (by 2 cases, all that come to it)
+- `modules/filters/a/a.hpp:4:drop z =`: `z = c - d;` (no case comes to it)
+- `modules/filters/a/a.hpp:4:- to +`: `z = c - d;` (no case comes to it)
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "equivalent.txt"
+            path.write_text("file: modules/filters/a/a.hpp\nline: z = c - d;\nchange: - to +\nreason: d is zero.\n")
+            results = Results(Path(folder) / "results.json")
+            mutants = mutants_of("modules/filters/a/a.hpp", "x = a + b;\ny = a + b;\nz = c - d;\nw = 2 * a;\n")
+            became = {(3, "drop z ="): Result.KILLED, (4, "drop * a"): Result.SURVIVED}
+            for mutant in mutants:
+                if (mutant.line, mutant.what) in became:
+                    results.put(mutant, Result(became[mutant.line, mutant.what]))
+            date = results.dates["modules/filters"]
+            text = page.written(old, mutants, results, Equivalents(path))
+        # 12 mutants: killed are those that are neither without a program (1), with a reason, listed nor not tried (1).
+        self.assertEqual(len(mutants), 12)
+        self.assertEqual(text.split("\n")[2:],
+                         [f"| `modules/filters` | 12 | 7 | 1 | 1 | 2 | 1 | {date} |", "", "Passed without a reason:", "",
+                          "- `modules/filters/a/a.hpp:2:drop + b`: `y = a + b;` (by 2 cases, all that come to it)",
+                          "- `modules/filters/a/a.hpp:4:drop * a`: `w = 2 * a;` (all quick tests)"])  # fmt: skip
 
     def test_kernels_of_the_device_are_counted_apart(self):
         names = ("modules/backends/device/kernels/sums.hpp", "modules/backends/device/loads.cpp")

@@ -63,6 +63,41 @@ def passed(mutants, results, equivalents):
     return [f"- `{m.name}`: `{m.code}` ({results.of(m).check or 'all quick tests'})" for m in survivors]
 
 
+def cells_of(line):
+    return line[2:-2].split(" | ")
+
+
+def tried_before(line):
+    """How many mutants of a row of the page had been tried."""
+    return sum(int(cell) for cell in cells_of(line)[2:6])
+
+
+def continued(line, listed, mutants, results, equivalents):
+    """The list and the row of a folder whose mutants the work folder has tried in part: those that it has not tried stay
+    what the page says, killed where it does not list them."""
+    by_key = {key_of(re.match(r"- (`[^`]+`: `.*`) \(", text)[1]): text for text in listed}
+    left, became = [], Counter()
+    for mutant in mutants:
+        column = column_of(mutant, results, equivalents)
+        if column == "not tried" and mutant.key in by_key:
+            left.append(f"- `{mutant.name}`: " + by_key[mutant.key].split("`: ", 1)[1])
+        elif column == "passed":
+            left += passed([mutant], results, equivalents)
+        became[column] += 1
+    folder, _, _, no_program, _, _, not_tried, _ = cells_of(line)
+    rest = int(no_program) + became["with a reason"] + len(left) + int(not_tried)
+    date = results.dates.get(folder_of(mutants[0]), "")
+    return left, [folder, str(len(mutants)), str(len(mutants) - rest), no_program, str(became["with a reason"]),
+                  str(len(left)), not_tried, date]  # fmt: skip
+
+
+def key_of(name_and_code):
+    """Mutant.key of a line of the list."""
+    name, _, code = name_and_code.partition("`: `")
+    file, _, what = name.removeprefix("`").split(":", 2)
+    return file, what, code.removesuffix("`")
+
+
 def written(old, mutants, results, equivalents):
     """The table and the list of what passed, anew for folders with results, and as they were for the others."""
     rows = {line.split("`")[1]: line for line in old.split("\n") if line.startswith("| `")}
@@ -74,7 +109,11 @@ def written(old, mutants, results, equivalents):
     for mutant in mutants:
         by_folder.setdefault(row_of(mutant), []).append(mutant)
     for folder, of_folder in by_folder.items():
-        if any(results.of(mutant) for mutant in of_folder):
+        tried = sum(results.of(mutant) is not None for mutant in of_folder)
+        if folder in rows and 0 < tried < tried_before(rows[folder]):  # the work folder is a new one
+            lists[folder], cells = continued(rows[folder], lists.get(folder, []), of_folder, results, equivalents)
+            rows[folder] = "| " + " | ".join(cells) + " |"
+        elif tried:
             rows[folder] = "| " + " | ".join(row(folder, of_folder, results, equivalents)) + " |"
             lists[folder] = passed(of_folder, results, equivalents)
     lines = ["| " + " | ".join(COLUMNS) + " |", "|---|" + "--:|" * (len(COLUMNS) - 2) + "---|", *rows.values(), ""]
