@@ -13,9 +13,11 @@ import shutil
 import subprocess
 import time
 from collections import Counter
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
-from build import environment, hash_of
+from build import BuildFailed, environment, hash_of
 from results import Result
 from together import SWITCH, SWITCH_FILE, SWITCH_ON_DEVICE, Together
 from trial import NOT_OF_THE_PROGRAM, Bench, Refused
@@ -157,16 +159,14 @@ class Group:
             return
         for suite in self.build.suites:
             self.program_of(suite)
-        with multiprocessing.get_context("fork").Pool(jobs) as pool:
-            unseen = [place for place, case in enumerate(self.cases) if case.usable is None]
-            for place, learnt in pool.imap_unordered(look, unseen, chunksize=8):
-                self.take(self.cases[place], learnt)
-                self.keep_now_and_then()
-            self.keep()
-        with multiprocessing.get_context("fork").Pool(jobs) as pool:  # processes that know what the others have learnt
-            places = {mutant: place for place, mutant in enumerate(self.mutants)}
-            for place, result in pool.imap_unordered(try_one, [places[mutant] for mutant in mutants]):
-                yield self.mutants[place], result
+        unseen = [place for place, case in enumerate(self.cases) if case.usable is None]
+        for place, learnt in side_by_side(jobs, look, unseen):
+            self.take(self.cases[place], learnt)
+            self.keep_now_and_then()
+        self.keep()
+        places = {mutant: place for place, mutant in enumerate(self.mutants)}
+        for place, result in side_by_side(jobs, try_one, [places[mutant] for mutant in mutants]):
+            yield self.mutants[place], result
 
     # ---- the build ---------------------------------------------------------------------------------------------
 
@@ -463,6 +463,19 @@ class Group:
 
 
 sharer = None  # the group that the processes of results() share
+
+
+def side_by_side(jobs, function, places):
+    """What a function answers, as it comes, from so many processes that begin with what is known now."""
+    with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("fork")) as pool:
+        try:
+            for answer in as_completed([pool.submit(function, place) for place in places]):
+                yield answer.result()
+        except BrokenProcessPool as broken:
+            raise BuildFailed("a process that tried mutants has ended, perhaps for want of memory; --resume goes on") from broken
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
 
 
 def look(place):
