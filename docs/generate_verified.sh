@@ -3,6 +3,8 @@
 # program built with its tests; takes a quarter of an hour. With --slow it runs the cases with the tag [slow] as well, which
 # takes as long again; the rows of slow cases that are not run stay as they are. --from FILE and --slow-from FILE take what
 # a run of the tests has left in FILE in place of running them: MPM_DISTANCES=FILE ctest --test-dir build -LE slow, or -L slow.
+# --only SUITE.FILE, as parity.bar, runs the quick cases of that file alone and leaves the rows of others as they are; it may
+# be given again.
 # MPM_BUILD_DIR is the build's folder, "build" unless set.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -12,24 +14,27 @@ trap 'rm -f "$lines" "$slow"' EXIT
 
 # run SUITE CASES FILE: appends a line for each case to the file.
 run() {
-  (cd "$build" && MPM_DISTANCES="$3" nice "bin/test_$1" "$2" >/dev/null) || {
+  (cd "$build" && MPM_DISTANCES="$3" nice "bin/test_$1" -# "$2" >/dev/null) || {
     echo "docs/generate_verified.sh: test_$1 failed; mend it first" >&2
     exit 1
   }
 }
 
-from= slow_from= runs_slow=
+from="" slow_from="" runs_slow="" only=()
 while [[ $# -gt 0 ]]; do
   case $1 in
     --from) from=$2; shift 2 ;;
     --slow-from) slow_from=$2; shift 2 ;;
     --slow) runs_slow=1; shift ;;
+    --only) only+=("$2"); shift 2 ;;
     *) echo "docs/generate_verified.sh: what is $1? See its head" >&2; exit 2 ;;
   esac
 done
 suites=(conformance verification faults stability parity device regression cli config)
 of_this_page='the page of what is verified has the cases of the tests and no others'  # holds of the new page only
-if [[ $from ]]; then
+if [[ ${#only[@]} -gt 0 ]]; then
+  for name in "${only[@]}"; do run "${name%%.*}" "[#${name#*.}]~[slow]~\"$of_this_page\"" "$lines"; done
+elif [[ $from ]]; then
   grep -v "$of_this_page" "$from" >>"$lines"
 else
   for suite in "${suites[@]}"; do run "$suite" '~[slow]' "$lines"; done
@@ -46,8 +51,11 @@ fi
 awk -F'\t' -v day="$(date +%F)" 'BEGIN { OFS = FS } { $2 = $2 " (slow, run of " day ")"; print }' "$slow" >>"$lines"
 # Those that were not run now have the row that the page has, while the tests have them.
 if [[ -f docs/verified.md ]]; then
-  awk -F' [|] ' -v runs="$slow" '
-    BEGIN { while ((getline line < runs) > 0) { split(line, field, "\t"); now[field[1] "\t" field[2]] = 1 } }
+  awk -F' [|] ' -v runs="$slow" -v only="${only[*]}" '
+    BEGIN {
+      while ((getline line < runs) > 0) { split(line, field, "\t"); now[field[1] "\t" field[2]] = 1 }
+      for (i = split(only, names, " "); i > 0; --i) { sub(/[.]/, "/", names[i]); again["tests/" names[i] ".cpp"] = 1 }
+    }
     function is_in(file, name, line, found) {
       while ((getline line < file) > 0) if (index(line, "\"" name "\"")) found = 1
       close(file)
@@ -58,6 +66,11 @@ if [[ -f docs/verified.md ]]; then
       sub(/^[|] /, "", $1); gsub(/\\\|/, "|", $1); sub(/ [|]$/, "", $4)
       name = $1; sub(/ \(slow, run of [0-9-]+\)$/, "", name)
       if (!((file "\t" name) in now) && is_in(file, name)) printf "%s\t%s\t%s\t%s\t%s\n", file, $1, $2, $3, $4
+      next
+    }
+    only && /^[|] .* [|] [0-9]+ [|]/ && !(file in again) {
+      sub(/^[|] /, "", $1); gsub(/\\\|/, "|", $1); sub(/ ?[|]$/, "", $4)
+      printf "%s\t%s\t%s\t%s\t%s\n", file, $1, $2, $3, $4
     }' docs/verified.md >>"$lines"
 fi
 # A slow case that no run of this script has met yet has a row without numbers.
