@@ -3,6 +3,7 @@
 #include <chrono>
 #include <set>
 
+#include "backends/cpu/particles/unit_order.hpp"
 #include "parity/drift.hpp"
 #include "parity/parity.hpp"
 #include "plugin/extensions.h"
@@ -60,6 +61,49 @@ const void* reads_temperature(const char* id) {
 void evaluate_too_long_lists(const void* parameters, const mpm_list_batch* batch) {
   shape_overdone->evaluate_list[MPM_LANES_DOUBLE][0](parameters, batch);
   batch->node_count[0] = static_cast<std::int32_t>(batch->capacity) + 1;
+}
+void evaluate_empty_lists(const void* parameters, const mpm_list_batch* batch) {
+  shape_overdone->evaluate_list[MPM_LANES_DOUBLE][0](parameters, batch);
+  batch->node_count[0] = 0;
+}
+
+/// Keeps to the stencil one node below up to 0.501 cells, where its next node has no weight yet.
+void evaluate_with_late_next_nodes(const void* parameters, const mpm_shape_batch* batch) {
+  shape_overdone->evaluate[MPM_LANES_DOUBLE](parameters, batch);
+  const std::size_t stride = batch->stride;
+  for (std::size_t i = 0; i < batch->dimension * stride; ++i) {
+    double& offset = static_cast<double*>(batch->offset)[i];
+    if (i % stride >= batch->count || offset >= 0.501) continue;
+    offset += 1;
+    --batch->base[i];
+    for (void* const values : {batch->weight, batch->gradient}) {
+      if (!values) continue;
+      double* const of_node = static_cast<double*>(values) + i / stride * 3 * stride + i % stride;
+      of_node[2 * stride] = of_node[stride], of_node[stride] = of_node[0], of_node[0] = 0;
+    }
+  }
+}
+
+const mpm_transfer* transfer_asked = nullptr;
+long batches_at_rest = 0, values_left_over = 0, fields_that_overlap = 0;
+
+void look_at_particles_at_rest(const void* parameters, const mpm_gather_batch* batch) {
+  const auto values_of = [&](const void* values, std::size_t components) {
+    const double* const first = static_cast<const double*>(values);
+    return std::count_if(first, first + components * batch->stride, [](double value) { return value != 0; });
+  };
+  if (values_of(batch->particle_velocity, 2) == 0) {
+    ++batches_at_rest;
+    values_left_over += values_of(batch->state[0], 4);
+    fields_that_overlap +=
+        static_cast<const double*>(batch->state[1]) - static_cast<const double*>(batch->state[0]) < 4 * batch->stride;
+  }
+  transfer_asked->gather[MPM_LANES_DOUBLE][0](parameters, batch);
+}
+
+const void* polynomials_of_degree_two(const char* id) {
+  static const mpm_transfer_polynomials table{MPM_TRANSFER_POLYNOMIALS_VERSION, 0, [](const void*) { return 2; }};
+  return id == std::string(MPM_TRANSFER_POLYNOMIALS_ID) ? &table : nullptr;
 }
 
 }  // namespace
@@ -186,6 +230,21 @@ TEST_CASE("in float particles lie as exactly far from the corner as near it", "[
   CHECK(difference(exact.body().position, scene.body().position, 1.0) <= 1e-6);
 }
 
+// Lists of nodes may be given from any block, but a particle far from its own would lose digits. One of two rests where they
+// began, the other flies through a hundred blocks.
+TEST_CASE("in float lists keep the digits of a particle that flies far", "[parity]") {
+  SortedScene flight;
+  flight.domain = "[[0, 0], [900, 16]]", flight.shape = "cpdi";
+  flight.geometry = R"({"type": "union", "of": [{"type": "box", "lower": [1, 3], "upper": [2, 4]},
+                                                {"type": "box", "lower": [6, 3], "upper": [7, 4]}]})";
+  flight.seeding = R"(, "particles_per_cell_axis": 1)", flight.velocity = R"J(["x>4?0.9:0", "x>4?0.0001:0"])J";
+  flight.solver = R"({"time_step": 1, "end_time": 900})";
+  Scene scene(flight.text(), {"/backend=cpu", "/precision=float"});
+  REQUIRE(scene.simulation.particle_count() == 2);
+  while (!scene.simulation.finished()) scene.simulation.step();
+  CHECK(difference({1.5, 3.5, 6.5 + 900 * 0.9, 3.5 + 900 * 0.0001}, scene.body().position, 1.0) <= 2e-3);
+}
+
 // It ends a step 1.8e-15 m before the lower face, from which 40 m later is the upper face to rounding.
 TEST_CASE("a particle that is before a periodic face by rounding is at the lower one", "[parity]") {
   SortedScene flight;
@@ -269,7 +328,56 @@ TEST_CASE("a shape that gives too long a list ends the run, on any number of thr
     Simulation simulation(experiment, [threads](const Experiment& e, const Plan& plan, std::vector<SeededBody> bodies) {
       return make_cpu_backend(e, plan, std::move(bodies), threads);
     });
-    CHECK_THROWS_AS(simulation.step(), std::logic_error);
+    CHECK_THROWS_WITH(simulation.step(), "shape \"cpdi2\" gave a list of 17 nodes");
+  }
+}
+
+// That is how a shape says that a domain is turned inside out (mpm_list_batch).
+TEST_CASE("a list without nodes, of corners, ends the run as a domain that is inside out", "[parity][failure]") {
+  const Plugin& shape = *plugins().find(MPM_SHAPE, "cpdi2");
+  shape_overdone = &shape.shape();
+  mpm_shape table = *shape_overdone;
+  table.evaluate_list[MPM_LANES_DOUBLE][0] = evaluate_empty_lists;
+  mpm_descriptor descriptor = *shape.descriptor;
+  descriptor.kind_table = &table;
+  Plugin empty = shape;
+  empty.descriptor = &descriptor;
+  SortedScene flight;
+  flight.shape = "cpdi2", flight.solver = R"({"time_step": 0.5, "end_time": 10})";
+  Experiment experiment = experiment_from(flight.text(), {"/backend=cpu", "/precision=double"});
+  experiment.shape.plugin = &empty;
+  Simulation simulation(experiment, backend_factory(1));
+  try {
+    simulation.step();
+    FAIL("the run has not stopped");
+  } catch (const RunFailure& stopped) {
+    CHECK(stopped.failure.cause == Cause::domain_inside_out);
+    CHECK(stopped.failure.particle == 0);
+  }
+}
+
+// PolyPIC has degree one, or as many as there are nodes for; a transfer of one's own may have any (mpm_transfer_polynomials).
+TEST_CASE("parity of polynomials of degree two on four nodes", "[parity]") {
+  Mix mix;
+  mix.shape = R"({"type": "bspline_cubic"})", mix.transfer = R"({"type": "polypic", "basis": "full"})";
+  const Plugin& transfer = *plugins().find(MPM_TRANSFER, "polypic");
+  mpm_descriptor descriptor = *transfer.descriptor;
+  descriptor.extension = polynomials_of_degree_two;
+  Plugin quadratic = transfer;
+  quadratic.descriptor = &descriptor;
+  std::vector<std::vector<BodyState>> ends;
+  for (const std::string backend : {"reference", "cpu"}) {
+    Experiment experiment = experiment_from(mix.text(), {set("/backend", backend), "/precision=double"});
+    experiment.transfer.plugin = &quadratic;
+    Simulation simulation(experiment, backend_factory(1));
+    while (!simulation.finished()) simulation.step();
+    ends.push_back({simulation.backend().body_state(0), simulation.backend().body_state(1)});
+  }
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  for (std::size_t body = 0; body < 2; ++body) {
+    CHECK(ends[0][body].transfer_state.at(polynomial_coefficients).size() == 6 * ends[0][body].velocity.size());
+    CHECK(difference(ends[0][body].position, ends[1][body].position, 1.0) <= parity_tolerance.position * epsilon);
+    CHECK(difference(ends[0][body].velocity, ends[1][body].velocity, 1.5) <= parity_tolerance.velocity * epsilon);
   }
 }
 
@@ -348,6 +456,13 @@ TEST_CASE("parity of filtered polynomials of all degrees", "[parity]") {
   check_parity(mix);
 }
 
+TEST_CASE("parity of polynomials in 3-D", "[parity]") {
+  Mix mix;
+  mix.dimension = 3, mix.transfer = R"({"type": "polypic", "basis": "full"})";
+  mix.overrides.emplace_back("/solver/end_time=0.036");
+  check_parity(mix);
+}
+
 // Lanes beyond the last particle hold it once more: those of one particle alone, and of two of which the last is too long.
 TEST_CASE("one particle flies without others, and of two the one that reaches too far is named", "[parity][failure]") {
   SortedScene flight;
@@ -372,5 +487,141 @@ TEST_CASE("one particle flies without others, and of two the one that reaches to
     const Failure found = failure_on(backend, two.text());
     CHECK(found.cause == Cause::domain_beyond_grid);
     CHECK(found.particle == 1);
+  }
+}
+
+// Of 1400 blocks 220 become empty in each step, whose chunks are there to be taken again: two megabytes in the end. Nodes are
+// between particles nearly as many to either side, so that these keep their velocities but for some parts in a million.
+TEST_CASE("a bar that contracts frees chunks by the hundred", "[parity]") {
+  SortedScene bar;
+  bar.domain = "[[0, 0], [11300, 4]]", bar.lower = "[10, 1]", bar.upper = "[11210, 2]";
+  bar.seeding = R"(, "particles_per_cell_axis": 1)", bar.velocity = R"J(["-0.16*(x-5610)", 0])J";
+  bar.solver = R"({"time_step": 1, "end_time": 5})";
+  Scene scene(bar.text(), {"/backend=cpu", "/precision=double"});
+  const std::vector<double> start = scene.body().position;
+  for (int step = 0; step < 5; ++step) scene.simulation.step();
+  const std::vector<double> end = scene.body().position;
+  double largest = 0;
+  for (std::size_t i = 0; i < start.size(); i += 2)
+    if (std::abs(start[i] - 5610) < 3000)
+      largest = std::max(largest, std::abs(end[i] - 5610 - 0.2 * (start[i] - 5610)));
+  CHECK(largest <= 0.01);
+}
+
+// Fifteen cells lead two blocks on, along both axes at once. A particle alone in its chunk flies to each cell of a row of the
+// next block: in none of them is it at home, whatever the cell's number.
+TEST_CASE("particles fly two blocks on, and one alone to each cell of a row", "[parity]") {
+  const auto check_flight = [](const SortedScene& flight, double x, double y) {
+    INFO(flight.velocity);
+    Scene scene(flight.text(), {"/backend=cpu", "/precision=double"});
+    std::vector<double> expected = scene.body().position;
+    for (std::size_t i = 0; i < expected.size(); ++i) expected[i] += 2 * (i % 2 == 0 ? x : y);
+    CHECK_NOTHROW(scene.run());
+    CHECK(difference(expected, scene.body().position, 1.0) <= 1e-12);
+  };
+  SortedScene flight;
+  flight.domain = "[[0, 0], [80, 80]]", flight.solver = R"({"time_step": 1, "end_time": 2})";
+  for (const auto& [x, y] : {std::pair{-15.0, -15.0}, {15.0, 15.0}, {-15.0, 15.0}}) {
+    flight.lower = "[36, 36]", flight.upper = "[40, 40]";
+    flight.velocity = "[" + digits(x) + ", " + digits(y) + "]";
+    check_flight(flight, x, y);
+  }
+  flight.seeding = R"(, "particles_per_cell_axis": 1)", flight.lower = "[36, 36]", flight.upper = "[37, 37]";
+  for (int y = -12; y < -4; ++y) {
+    flight.velocity = "[-12, " + std::to_string(y) + "]";
+    check_flight(flight, -12, y);
+  }
+}
+
+TEST_CASE("what grips give to a bar of many blocks is the same on any number of threads", "[parity]") {
+  SortedScene bar;
+  bar.domain = "[[0, 0], [400, 24]]", bar.lower = "[10, 3]", bar.upper = "[365, 10]";
+  bar.seeding = R"(, "particles_per_cell_axis": 1)", bar.solver = R"({"time_step": 1, "end_time": 100})";
+  bar.more = R"J(, "grips": [{"body": "b", "where": {"type": "half_space", "point": [0, 20], "normal": [0, 1]},
+    "velocity": ["0.1+0.0001*Y*X", "sin(X)*0.01*t"]}])J";
+  std::vector<std::vector<double>> given;
+  for (const int threads : {1, 2}) {
+    CpuRun run(bar.text(), {"/precision=double", R"(/output={"reactions": true})"}, threads);
+    std::vector<double>& all = given.emplace_back();
+    for (int step = 0; step < 16; ++step) {
+      run.steps(1);
+      for (const Reaction& reaction : run.simulation.backend().reactions())
+        all.insert(all.end(), reaction.impulse.begin(), reaction.impulse.end());
+    }
+  }
+  CHECK(different(given[0], given[1]) == 0);
+}
+
+// Stencils of this shape begin at the next node from 0.501 cells on, which is found at 17/32. After 20 steps the particle is
+// 0.979 cells above the latter, and 1.009 cells above the former: beyond its tile.
+TEST_CASE("particles that go up are sorted before they leave their tile, however little of it is left", "[parity]") {
+  const Plugin& shape = *plugins().find(MPM_SHAPE, "gimp");
+  shape_overdone = &shape.shape();
+  mpm_shape table = *shape_overdone;
+  table.evaluate[MPM_LANES_DOUBLE] = evaluate_with_late_next_nodes;
+  mpm_descriptor descriptor = *shape.descriptor;
+  descriptor.kind_table = &table;
+  Plugin late = shape;
+  late.descriptor = &descriptor;
+  for (const bool along_x : {true, false}) {
+    SortedScene up;
+    up.domain = "[[0, 0], [24, 24]]", up.shape = "gimp", up.seeding = R"(, "particles_per_cell_axis": 6)";
+    up.lower = along_x ? "[8.35, 3]" : "[3, 8.35]", up.upper = along_x ? "[8.45, 3.1]" : "[3.1, 8.45]";
+    up.velocity = along_x ? "[0.0546667, 0]" : "[0, 0.0546667]";
+    up.solver = R"({"time_step": 1, "end_time": 1000, "stress_update": "first"})";
+    Experiment experiment = experiment_from(up.text(), {"/backend=cpu", "/precision=double"});
+    experiment.shape.plugin = &late;
+    Simulation simulation(experiment, backend_factory(1));
+    CHECK_NOTHROW([&] {
+      for (int step = 0; step < 30; ++step) simulation.step();
+    }());
+  }
+}
+
+// A filter projects a velocity of the grid by the transfer itself, which must not see what the particles hold: what they keep
+// is none of its business, each field in a place of its own.
+TEST_CASE("a filter asks the transfer for particles at rest, with nothing in their state", "[parity]") {
+  const Plugin& transfer = *plugins().find(MPM_TRANSFER, "polypic");
+  transfer_asked = &transfer.transfer();
+  mpm_transfer table = *transfer_asked;
+  table.gather[MPM_LANES_DOUBLE][0] = look_at_particles_at_rest;
+  mpm_descriptor descriptor = *transfer.descriptor;
+  descriptor.kind_table = &table;
+  Plugin looking = transfer;
+  looking.descriptor = &descriptor;
+  Mix mix;
+  mix.transfer = R"({"type": "polypic", "basis": "full"})", mix.filter = R"({"type": "fmpm", "order": 2})";
+  Experiment experiment = experiment_from(mix.text(), {"/backend=cpu", "/precision=double"});
+  experiment.transfer.plugin = &looking;
+  Simulation simulation(experiment, backend_factory(1));
+  batches_at_rest = values_left_over = fields_that_overlap = 0;
+  for (int step = 0; step < 3; ++step) simulation.step();
+  CHECK(batches_at_rest > 0);
+  CHECK(values_left_over == 0);
+  CHECK(fields_that_overlap == 0);
+}
+
+// The system may give a run fewer threads than the body was shared out to, at times the caller's alone.
+TEST_CASE("a thread alone takes the units of all others too", "[parity]") {
+  struct OneBlock {
+    cpu::BlockCoordinates at{};
+    std::uint32_t count = 1;
+  };
+  std::vector<OneBlock> blocks(20);
+  cpu::ColouredUnits<2> units;
+  for (std::uint32_t b = 0; b < blocks.size(); ++b) {
+    blocks[b].at = {2 * static_cast<int>(b), 0, 0};
+    units[b % 2].push_back({b, b + 1});
+  }
+  for (const int parts : {1, 2, 3, 5, 7}) {
+    const cpu::UnitOrder order = cpu::ordered_units<2>(units, blocks, parts);
+    std::vector<std::atomic<int>> states;
+    for (int thread = 0; thread < parts; ++thread) {
+      INFO("thread " << thread << " of " << parts);
+      std::set<std::uint32_t> visited;
+      cpu::UnitPass pass(order, states);
+      pass.run(thread, [&](const cpu::Unit& unit) { visited.insert(unit.first); });
+      CHECK(visited.size() == blocks.size());
+    }
   }
 }

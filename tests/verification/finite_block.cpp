@@ -68,6 +68,25 @@ Slide slide(double friction, double angle, std::vector<std::string> settings = {
   return found;
 }
 
+struct Transfer {
+  std::string name;
+  std::vector<std::string> settings;
+};
+const std::vector<Transfer> transfers{
+    {"pic", {set("/transfer/type", "pic")}},
+    {"flip", {set("/transfer/type", "flip")}},
+    {"apic", {}},
+    {"mls", {set("/transfer/type", "mls")}},
+    {"fmpm", {set("/transfer/type", "pic"), R"(/filter={"type": "fmpm", "order": 4})"}}};
+
+void check_slides(const Transfer& transfer, double courant) {
+  std::vector<std::string> settings = transfer.settings;
+  settings.push_back(set("/solver/courant", digits(courant)));
+  INFO(transfer.name << ", courant " << courant);
+  CHECK(slide(0, 30, settings).acceleration == Approx(exact(0)).epsilon(0.01));
+  CHECK(slide(0.3, 30, settings).acceleration == Approx(exact(0.3)).epsilon(0.01));
+}
+
 }  // namespace
 
 TEST_CASE("a finite block slides with g (sin - mu cos), along the grid and turned against it", "[friction][finite]") {
@@ -79,31 +98,13 @@ TEST_CASE("a finite block slides with g (sin - mu cos), along the grid and turne
 }
 
 TEST_CASE("a finite block slides so with every transfer, and however short the step", "[friction][finite]") {
-  struct Transfer {
-    std::string name;
-    std::vector<std::string> settings;
-  };
-  for (const Transfer& transfer :
-       {Transfer{"pic", {set("/transfer/type", "pic")}}, Transfer{"flip", {set("/transfer/type", "flip")}},
-        Transfer{"apic", {}}, Transfer{"mls", {set("/transfer/type", "mls")}},
-        Transfer{"fmpm", {set("/transfer/type", "pic"), R"(/filter={"type": "fmpm", "order": 4})"}}})
-    for (const double courant : {0.3, 0.1}) {
-      std::vector<std::string> settings = transfer.settings;
-      settings.push_back(set("/solver/courant", digits(courant)));
-      INFO(transfer.name << ", courant " << courant);
-      CHECK(slide(0, 30, settings).acceleration == Approx(exact(0)).epsilon(0.01));
-      CHECK(slide(0.3, 30, settings).acceleration == Approx(exact(0.3)).epsilon(0.01));
-    }
+  for (const Transfer& transfer : transfers)
+    for (const double courant : {0.3, 0.1}) check_slides(transfer, courant);
 }
 
 TEST_CASE("a finite block slides so with steps a thirtieth as long", "[friction][finite][slow]") {
-  for (const std::string transfer : {"pic", "flip", "apic", "mls"})
-    for (const double courant : {0.03, 0.01}) {
-      INFO(transfer << ", courant " << courant);
-      const std::vector<std::string> settings{set("/transfer/type", transfer), set("/solver/courant", digits(courant))};
-      CHECK(slide(0, 30, settings).acceleration == Approx(exact(0)).epsilon(0.01));
-      CHECK(slide(0.3, 30, settings).acceleration == Approx(exact(0.3)).epsilon(0.01));
-    }
+  for (const Transfer& transfer : transfers)
+    for (const double courant : {0.03, 0.01}) check_slides(transfer, courant);
 }
 
 // cpdi2 takes no grips, which hold the slope.

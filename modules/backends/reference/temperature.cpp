@@ -183,8 +183,7 @@ void ReferenceBackend::conduct() {
 
 void ReferenceBackend::heat(const StepInfo& step) {
   const double rate = sum(heat_rate_);
-  const double power_of_walls = grid_.fold_forces(step.time);
-  if (accounted_) ledger_.boundary += step.dt * power_of_walls;
+  grid_.fold_forces(step.time);  // of the rates alone: forces were folded with the momenta, or are not scattered yet
   account(heat_ledger_.walls, step.dt * (sum(heat_rate_) - rate));
   heat_through_walls(step);
   heat_boxes(step);

@@ -272,7 +272,7 @@ void ReferenceBackend::gather_moments(Particles& body, const VectorField& veloci
 
 void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {
   if (accounted_ && pass.remap()) ledger_.remapped_strain -= pass.share * (power_of_forces(step.dt) - lumped_power_);
-  if (accounted_ && pass.stage == Stage::before_forces) early_share_ = pass.share;
+  if (pass.stage == Stage::before_forces) early_share_ = pass.share;
   for (Particles& body : bodies_) {
     gather_moments(body, velocity_);
     strain(body, pass.share * step.dt);

@@ -186,14 +186,14 @@ void Grid<D, T>::activate_mirrors() {
 template <int D, class T>
 void Grid<D, T>::list_faces() {
   faces_.clear();
-  // In a domain of few cells a ghost's mirror may be a ghost of the other wall, which is folded on afterwards: such
-  // ghosts are folded by their distance from the wall, the outermost first.
+  // In a domain of few cells ghosts of both walls may have one mirror, which may be a ghost itself and is folded on
+  // afterwards: such ghosts are folded by their distance from the wall, the outermost first.
   int first_face[3]{}, levels[3]{};
   for (const bool periodic : {true, false})  // images are folded before walls
     for (int axis = 0; axis < D; ++axis) {
       if (scene_.domain.periodic(axis) != periodic) continue;
       first_face[axis] = static_cast<int>(faces_.size());
-      levels[axis] = !periodic && scene_.domain.cells[axis] < padding(axis) ? padding(axis) : 1;
+      levels[axis] = !periodic && scene_.domain.cells[axis] < 2 * padding(axis) ? padding(axis) : 1;
       for (int level = levels[axis]; level > 0; --level)
         for (int side = 0; side < 2; ++side) {
           FaceNodes face;
@@ -319,8 +319,7 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
   };
   for (std::size_t body = 0; body < bodies.size(); ++body)
     for (Block<D>& block : bodies[body].blocks) {
-      const int field = field_of_body[body];  // fields beyond the bits count as shared
-      const std::uint64_t bits = field < 62 ? std::uint64_t{1} << field : std::uint64_t{3} << 62;
+      const std::uint64_t bits = std::uint64_t{1} << field_of_body[body];
       if (block.has_neighbours())
         for (std::int32_t& slot : block.neighbours) slot = activate_again(slot, bits);
       else

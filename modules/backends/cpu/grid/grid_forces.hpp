@@ -151,7 +151,7 @@ void GridStep<D, T>::momentum_to_velocity(bool remap, const StepInfo& step) {
   fold_images(remap, step);
   const double edges_raw = accounted ? kinetic_energy_of_edges() : 0.0;
   fold_walls(remap, step);
-  if (!remap && !scene_.experiment.grips.empty()) find_gripped_nodes();
+  if (!scene_.experiment.grips.empty()) find_gripped_nodes();
   grips_at_end_ = remap;
   if (merges() && !remap) return;
   const double folded = accounted ? kinetic_energy_of_edges() - edges_raw : 0.0;

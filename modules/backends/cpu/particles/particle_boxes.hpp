@@ -34,18 +34,11 @@ void ParticleStep<D, T, Components>::evaluate_boxes(const Chunk& chunk, Work& wo
   if (scene_.plan.stencil.second_moment) invert_moments(chunk, work);
 }
 
-/// Sets widths that kernels have, places in the tile and the boxes' reach; false when a particle has no box there.
+/// Sets widths that kernels have, places in the tile and the boxes' reach; false when a particle has no box there. A box
+/// has four nodes an axis at most, around a particle inside the domain: it never reaches too far beyond that.
 template <int D, class T, class Components>
 bool ParticleStep<D, T, Components>::place_boxes(const Chunk& chunk, Work& work) const {
   BoxWork<D, T>& boxes = work.boxes;
-  int lowest[D], highest[D];  // nodes that a box may have: those of the tile, not too far beyond the domain
-  for (int a = 0; a < D; ++a) {
-    lowest[a] = -1, highest[a] = kernels_.side - 2;
-    if (scene_.domain.periodic(a)) continue;
-    const int origin = chunk.block.at[a] * block_side<D>;
-    lowest[a] = std::max(lowest[a], -scene_.padding - origin);
-    highest[a] = std::min(highest[a], scene_.domain.cells[a] + scene_.padding - origin);
-  }
   int lists = 0;
   std::int32_t* const widths = boxes.width;
   const int end = chunk.end, side = kernels_.side;
@@ -55,7 +48,7 @@ bool ParticleStep<D, T, Components>::place_boxes(const Chunk& chunk, Work& work)
     int fits = widths[p] > 0 ? 1 : 0, node = 0;
     for (int a = 0; a < D; ++a) {
       const int base = boxes.base[a * chunk_size<T> + p];
-      fits &= (base >= lowest[a] ? 1 : 0) & (base <= highest[a] + 1 - width ? 1 : 0);
+      fits &= (base >= -1 ? 1 : 0) & (base <= side - 1 - width ? 1 : 0);
       node = node * side + base + 1;
     }
     widths[p] = fits ? width : 0;

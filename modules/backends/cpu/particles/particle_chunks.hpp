@@ -26,9 +26,8 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
   });
   for (std::size_t k = 0; k < scene.experiment.grips.size(); ++k)
     grips_.push_back({channel_of(scene.plan, grip_field(k)), channel_of(scene.plan, grip_field(k) + "_before")});
-  int transfer_components = 0;
-  for (const Particles<D, T>& body : particles)
-    transfer_components = std::max(transfer_components, body.motion_components - D);
+  int motion_components = 0;
+  for (const Particles<D, T>& body : particles) motion_components = std::max(motion_components, body.motion_components);
   for (int thread = 0; thread < scene.threads; ++thread) {
     work_.push_back(std::make_unique<Work>());
     Work& work = *work_.back();
@@ -38,7 +37,7 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
         for (const Channel c : channels) work.tile[c].require(kernels_.scalars);
     work.velocity_tile.require(kernels_.scalars);
     if (scene.has(MPM_GATHERS_INCREMENT)) work.increment_tile.require(kernels_.scalars);
-    if (dilation >= 0 || mean_stress >= 0 || reached >= 0) work.mean_tile.require(kernels_.scalars);
+    if (mean_stress >= 0 || reached >= 0) work.mean_tile.require(kernels_.scalars);
     if (scene.list) {
       work.lists.require(scene.capacity);
       if (scene.evaluate_box) work.boxes.require();
@@ -49,10 +48,10 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
     if (scene.plan.basis_functions > 0)
       work.higher.require(std::size_t(scene.plan.basis_functions) * D * chunk_size<T>);
     if (scene.plan.fused() && scene.has(MPM_REPLACES_MOTION))
-      work.passing_motion.require(std::size_t(D + transfer_components) * chunk_size<T>);
+      work.passing_motion.require(std::size_t(motion_components) * chunk_size<T>);
     if (!scene.plan.filters() && !scene.experiment.has_temperature()) continue;
     work.scratch_velocity.require(std::size_t(D) * chunk_size<T>);
-    work.scratch_state.require(std::size_t(std::max(transfer_components, 1)) * chunk_size<T>);
+    work.scratch_state.require(std::size_t(motion_components) * chunk_size<T>);
   }
   measures_drift_ = !scene.list && !scene.plan.particle_field(0, "domain");
   for (int axis = 0; axis < D; ++axis) measures_drift_ = measures_drift_ && !scene.domain.periodic(axis);

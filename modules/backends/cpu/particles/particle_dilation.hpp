@@ -54,10 +54,9 @@ void ParticleStep<D, T, Components>::scatter_average(Channel channel, bool veloc
   failure_.raise();
 }
 
-/// Scatters what stands in the first row of b, beside the volumes in `scalar`.
+/// Scatters what stands in the first row of b, beside the volumes in `scalar`. Of the nodes nobody reads another row.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::scatter_sum_by_volume(const Chunk& chunk, Work& work, Channel channel) {
-  std::fill_n(work.b + chunk_size<T>, (D - 1) * chunk_size<T>, T(0));
   if (!scene_.list) place_to_scatter(chunk, work, false);
   add_to_tile(chunk, work, channel, work.scalar, true, false, false);
 }

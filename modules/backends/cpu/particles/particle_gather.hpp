@@ -321,7 +321,6 @@ const T* ParticleStep<D, T, Components>::moments_for_transfer(const Chunk& chunk
   const bool varies = scene_.moment_of_particle || scene_.moment_is_gradient;
   if (!varies || !scene_.has(MPM_READS_SECOND_MOMENT)) return nullptr;
   if (scene_.list) return work.second_moment;
-  std::fill_n(work.transfer_moment, D * D * chunk_size<T>, T(0));
   for (int a = 0; a < D; ++a)
     for (int p = 0; p < chunk.end; ++p) {
       const T f = work.offset[a * chunk_size<T> + p];
@@ -357,9 +356,8 @@ void ParticleStep<D, T, Components>::project_chunk(const StepInfo& step, const C
   States state{};
   T* next = work.scratch_state.data();
   for (std::size_t f = 0; f < chunk.particles.transfer_state.size(); ++f) {
-    const int scalars = chunk.particles.transfer_state[f].field->components * chunk_size<T>;
-    state.fields[f] = std::fill_n(next, scalars, T(0)) - scalars;
-    next += scalars;
+    state.fields[f] = next;
+    next = std::fill_n(next, chunk.particles.transfer_state[f].field->components * chunk_size<T>, T(0));
   }
   const std::uint32_t n = static_cast<std::uint32_t>(chunk.end);
   const mpm_gather_batch gathered{n,
@@ -601,9 +599,9 @@ void ParticleStep<D, T, Components>::note_outside(const Chunk& chunk) {
     }
 }
 
+/// Moves particles in a pass of its own; the gather before it has set `moved` back.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::move(const StepInfo& step) {
-  for (auto& work : work_) work->moved = {};
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
       block.bounds.known = false;

@@ -89,8 +89,7 @@ void ParticleStep<D, T, Components>::scatter_heated_volume(const Chunk& chunk, W
       for (int p = 0; p < chunk.end; ++p) work.A[(c * D + c) * chunk_size<T> + p] = -work.mass[p];
     add_to_tile(chunk, work, capacity_position, nullptr, false, true, false);
   }
-  std::fill(work.b, work.b + D * chunk_size<T>, T(0));
-  const T volume = static_cast<T>(chunk.body.volume);
+  const T volume = static_cast<T>(chunk.body.volume);  // it goes into the first row of b, the only one that is read
   for (int p = 0; p < chunk.end; ++p) work.b[p] = volume * work.volume_ratio[p];
   if (const T* const size = sizes(chunk))
     for (int p = 0; p < chunk.end; p += Lanes<T>::width)
@@ -129,9 +128,8 @@ void ParticleStep<D, T, Components>::conduct_chunk(const Chunk& chunk, Work& wor
   for (int p = 0; p < chunk.end; ++p)
     work.scalar[p] =
         volume * work.volume_ratio[p] * (size ? size[p] : T(1)) * of_phase(chunk, p, &ThermalProperties::conductivity);
-  for (int a = 0; a < D; ++a)  // S takes the place of the gradient
+  for (int a = 0; a < D; ++a)  // S takes the place of the gradient, whose other rows are read neither here nor there
     for (int p = 0; p < chunk.end; ++p) work.S[a * chunk_size<T> + p] *= work.scalar[p];
-  std::fill_n(work.S + D * chunk_size<T>, (D - 1) * D * chunk_size<T>, T(0));
   if (!scene_.list) place_to_scatter(chunk, work, false);
   add_to_tile(chunk, work, heat_rate, nullptr, false, false, true);
 }

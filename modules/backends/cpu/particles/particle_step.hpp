@@ -101,7 +101,8 @@ struct alignas(page) Workspace {
   alignas(64) T mean[chunk_size<T>];  ///< an average of the nodes at the particles: of the dilation or the stress
   /// Moments of particles that have their own, cells^2, and inverses in 1/m^2: [D] of a product, [D * D] of a list.
   alignas(64) T second_moment[D * D * chunk_size<T>], inverse_moment[D * D * chunk_size<T>];
-  alignas(64) T transfer_moment[D * D * chunk_size<T>];  ///< moment that the transfer reads, unless it is second_moment
+  /// The moment that the transfer reads, unless it is second_moment; beside its diagonal it is zero and stays so.
+  alignas(64) T transfer_moment[D * D * chunk_size<T>];
   using Integers = typename Lanes<float>::Mask;
   static constexpr int integers = Lanes<float>::width;
   Integers lowest[3], highest[3];  ///< first nodes of a block's stencils, lane by lane

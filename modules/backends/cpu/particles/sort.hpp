@@ -219,8 +219,8 @@ class Sorter {
     if (scene_.list) {  // the middle of the list's nodes comes to the middle of the tile
       for (int axis = 0; axis < D; ++axis)
         for (int p = 0; p < padded(count); ++p)
-          base[axis * chunk_size<T> + p] = static_cast<std::int32_t>(
-              std::floor(particles_.chunk(chunk)[axis * chunk_size<T> + std::min(p, count - 1)] - T(0.5)));
+          base[axis * chunk_size<T> + p] =
+              static_cast<std::int32_t>(std::floor(particles_.chunk(chunk)[axis * chunk_size<T> + p] - T(0.5)));
       return;
     }
     alignas(64) T offset[D * chunk_size<T>], weight[D * 4 * chunk_size<T>], ahead[D * chunk_size<T>];
@@ -397,7 +397,7 @@ class Sorter {
   }
 
   Change change_of(std::uint32_t target) const {
-    if (first_ || target >= sources_.size() || targets_[target].number < 0) return Change::anew;
+    if (first_ || target >= sources_.size()) return Change::anew;
     const std::uint32_t incoming = targets_[target].incoming;
     if (wants_order(target, incoming)) return Change::anew;
     return sources_[target].leaving + sources_[target].far + incoming == 0 ? Change::nothing : Change::mended;
@@ -548,7 +548,6 @@ class Sorter {
 
   void receive(std::uint32_t number, std::uint32_t next_block, int thread) {
     const Target& target = targets_[number];
-    const Change change = change_of(number);
     std::vector<std::byte*>& unused = space_.unused[thread];
     const bool existed = number < sources_.size();
     const std::uint32_t had = existed ? chunks_of(particles_.blocks[number].count) : 0;
@@ -557,6 +556,7 @@ class Sorter {
       const Block<D>& block = blocks_[target.number];
       const std::uint32_t has = chunks_of(block.count);
       std::byte** const places = places_.data() + block.first_chunk;
+      const Change change = change_of(number);
       if (change != Change::anew) kept = std::min(had, has);
       for (std::uint32_t i = 0; i < has; ++i)
         places[i] = i < kept ? particles_.places[particles_.blocks[number].first_chunk + i] : take(unused);

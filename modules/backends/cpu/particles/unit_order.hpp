@@ -25,7 +25,7 @@ inline constexpr int colour_count = D == 3 ? 4 : 2;
 template <int D>
 using ColouredUnits = std::array<std::vector<Unit>, colour_count<D>>;
 
-/// A unit and its neighbours of the colours before, whose nodes it may not touch until they are done.
+/// A unit and its neighbours that come before it, of other colours, whose nodes it may not touch until they are done.
 struct UnitTask {
   Unit unit;
   int waits_for = 0;
@@ -85,7 +85,6 @@ UnitOrder ordered_units(const ColouredUnits<D>& units, const Blocks& blocks, int
     if (colour + 1 == colour_count<D>)
       std::stable_sort(of_colour.begin(), of_colour.end(),
                        [&](const Unit& a, const Unit& b) { return size(a) > size(b); });
-    const std::uint32_t earlier = static_cast<std::uint32_t>(order.tasks.size());
     for (const Unit& unit : of_colour) {
       const BlockCoordinates& at = blocks[unit.first].at;
       const int x = at[0] >> 1, y = D == 3 ? at[1] >> 1 : 0;
@@ -93,8 +92,7 @@ UnitOrder ordered_units(const ColouredUnits<D>& units, const Blocks& blocks, int
       for (int dx = -1; dx <= 1; ++dx)
         for (int dy = D == 3 ? -1 : 0; dy <= (D == 3 ? 1 : 0); ++dy) {
           const int found = numbers.find({x + dx, y + dy, 0});
-          if (found >= 0 && static_cast<std::uint32_t>(found) < earlier)
-            task.neighbours[task.waits_for++] = static_cast<std::uint32_t>(found);
+          if (found >= 0) task.neighbours[task.waits_for++] = static_cast<std::uint32_t>(found);
         }
       numbers.insert({x, y, 0}, static_cast<int>(order.tasks.size()));
       order.tasks.push_back(task);

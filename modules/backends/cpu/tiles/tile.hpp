@@ -280,7 +280,7 @@ struct PackSums {
   /// particles.
   template <int i, class Node>
   static MPM_ROW_INLINE void store(T* quads, const T* weights, const T* slopes, Node&& node) {
-    Lanes<T> w[K], terms[1 + D + D];
+    Lanes<T> w[K], terms[quad_groups(D, Moment, Gradient)];
     for (int k = 0; k < K; ++k) w[k] = of_block<i>(weights + k * chunk_size<T>);
     constexpr int first_g = 1 + (Moment ? D : 0);
     for (int k = 0; k < K; ++k) {
