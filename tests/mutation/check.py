@@ -110,6 +110,17 @@ class WritesThePage(unittest.TestCase):
                           "- `modules/filters/a/a.hpp:2:drop * a`: `z = 2 * a;` (all quick tests)",
                           "- `modules/shapes/b/b.hpp:2:+ to -`: `y = a + b;` (all quick tests)"])  # fmt: skip
 
+    def test_a_folder_that_nobody_has_tried_has_a_row(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "equivalent.txt"
+            path.write_text("file: modules/detections/a/a.hpp\nline: x = a + b;\nchange: drop + b\nreason: b is zero.\n")
+            mutants = mutants_of("modules/detections/a/a.hpp", "x = a + b;\n")
+            text = page.written(self.OLD, mutants, Results(Path(folder) / "results.json"), Equivalents(path))
+        self.assertEqual(text.split("\n")[2:5],
+                         ["| `modules/filters` | 5 | 4 | 0 | 0 | 1 | 0 | 2026-11-27 |",
+                          "| `modules/shapes` | 807 | 806 | 0 | 0 | 1 | 0 | 2026-11-27 |",
+                          "| `modules/detections` | 3 | 0 | 0 | 1 | 0 | 2 |  |"])  # fmt: skip
+
     def test_what_a_new_work_folder_has_not_tried_stays_as_it_was(self):
         old = """
 | `modules/filters` | 11 | 6 | 1 | 0 | 3 | 1 | 2026-11-27 |

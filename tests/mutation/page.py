@@ -99,7 +99,8 @@ def key_of(name_and_code):
 
 
 def written(old, mutants, results, equivalents):
-    """The table and the list of what passed, anew for folders with results, and as they were for the others."""
+    """The table and the list of what passed, anew for folders with results, and as they were for the others. A folder that
+    the page does not know has a row before anything of it is tried, so that the page says so."""
     rows = {line.split("`")[1]: line for line in old.split("\n") if line.startswith("| `")}
     lists = {}
     for line in old.split("\n"):
@@ -113,7 +114,7 @@ def written(old, mutants, results, equivalents):
         if folder in rows and 0 < tried < tried_before(rows[folder]):  # the work folder is a new one
             lists[folder], cells = continued(rows[folder], lists.get(folder, []), of_folder, results, equivalents)
             rows[folder] = "| " + " | ".join(cells) + " |"
-        elif tried:
+        elif tried or folder not in rows:
             rows[folder] = "| " + " | ".join(row(folder, of_folder, results, equivalents)) + " |"
             lists[folder] = passed(of_folder, results, equivalents)
     lines = ["| " + " | ".join(COLUMNS) + " |", "|---|" + "--:|" * (len(COLUMNS) - 2) + "---|", *rows.values(), ""]
