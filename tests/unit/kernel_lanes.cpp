@@ -1,5 +1,6 @@
 // Elementary functions over lanes, against long double, in units in the last place.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -155,4 +156,18 @@ TEMPLATE_TEST_CASE("lanes add, subtract, multiply and divide, with packs and wit
   CHECK(is(two * a, 12));
   CHECK(is(two / b, 2.0 / 3));
   CHECK(is(-a, -6));
+}
+
+TEMPLATE_TEST_CASE("the largest of lanes is found, and whether any holds, wherever in the pack it lies", "", float,
+                   double) {
+  using Pack = mpm::Lanes<TestType>;
+  for (int at = 0; at < Pack::width; ++at) {
+    alignas(64) TestType x[Pack::width];
+    std::fill_n(x, Pack::width, TestType(-3));
+    x[at] = TestType(-2);
+    INFO(at);
+    CHECK(mpm::largest_lane(Pack::load(x)) == -2);
+    CHECK(mpm::any_lane<TestType>(Pack::load(x) > TestType(-3)));
+  }
+  CHECK_FALSE(mpm::any_lane<TestType>(Pack(TestType(-3)) > TestType(-3)));
 }
