@@ -158,19 +158,29 @@ TEST_CASE("strain energy and volume ratio of a stretched cell are those of the m
       }
 }
 
-// The upper slab begins inside the lower one, by whole rows of particles, which are 0.05 m apart.
+// The upper slab begins inside the lower one, by whole rows of particles, which are 0.05 m apart. Tents see particles within one
+// cell of a node: with two and three rows of overlap those of a body lie as far above the node as below it, and its face might be
+// a quarter of a cell nearer. They touch from the second step on, when there are stresses.
 TEST_CASE("the largest penetration of two slabs is their overlap", "[metrics][contact]") {
   for (const std::string& backend : backends)
-    for (const std::string shape : {"gimp_contiguous", "b2gimp", "bspline_quadratic", "bspline_cubic"})
+    for (const std::string shape :
+         {"linear", "gimp", "gimp_contiguous", "b2gimp", "bspline_quadratic", "bspline_cubic", "cpdi", "cpdi2"})
       for (const int rows : {1, 2, 3}) {
         INFO(backend << " " << shape << " " << rows);
         const double overlap = 0.05 * rows;
+        const bool tents = shape == "linear";
         Scene scene(slabs, {set("/backend", backend), set("/shape/type", shape),
-                            set("/bodies/1/geometry/lower", "[0," + digits(1 - overlap) + "]")});
-        scene.run();
-        // B2GIMP's edge is a fit: 0.4 % of a cell off where one row overlaps.
-        const double margin = shape == "b2gimp" ? 4e-4 : 1e-12;
-        CHECK(scene.simulation.backend().contact_record().largest_penetration == Approx(overlap).margin(margin));
+                            set("/bodies/1/geometry/lower", "[0," + digits(1 - overlap) + "]"),
+                            set("/solver/end_time", tents ? "3e-4" : "1e-4")});
+        double largest = 0;
+        while (!scene.simulation.finished()) {
+          scene.simulation.step();
+          largest = std::max(largest, scene.simulation.backend().contact_record().largest_penetration);
+        }
+        // B2GIMP's edge is a fit: 0.4 % of a cell off where one row overlaps. Tents move by up to 2e-5 m a step.
+        const double margin = shape == "b2gimp" ? 4e-4 : tents ? 6e-5 : 1e-12;
+        const double seen = tents && rows > 1 ? overlap - 0.025 : overlap;
+        CHECK(largest == Approx(seen).margin(margin));
       }
 }
 
@@ -198,8 +208,8 @@ TEST_CASE("slabs that press on each other touch at every node between them", "[m
     }
 }
 
-// No law of the sandbox reads the area yet. Nairn (2013), CMES 92:271, eq. 26: sqrt(2 (V_a + V_b) min(V_a, V_b)) / h.
-// A node between two slabs has h^2 / 2 of either, and so its share h of the interface.
+// The area that springs and liquids between bodies act on. Nairn (2013), CMES 92:271, eq. 26:
+// sqrt(2 (V_a + V_b) min(V_a, V_b)) / h. A node between two slabs has h^2 / 2 of either, and so its share h of the interface.
 TEST_CASE("the areas of the nodes between two slabs add up to the interface", "[metrics][contact]") {
   mpm_contact table{};
   for (const mpm_precision precision : {MPM_LANES_DOUBLE, MPM_SCALAR_DOUBLE}) table.apply[precision][0] = book_area;
