@@ -53,13 +53,9 @@ double courant_of(const Experiment& experiment) {
   return solver_of(experiment).limit(experiment, {speed}).seconds * speed / experiment.grid.cell_size;
 }
 
-struct Outcome {
-  bool bounded = false;
-  double gain = 0;  ///< largest energy over the first, less 1
-};
-
-/// Runs to the end, and judges energies at one time.
-Outcome outcome(const std::string& path, const std::vector<std::string>& overrides, const std::string& update) {
+/// Runs to the end. Returns the largest energy over the first, less 1, of energies at one time; infinity where the run
+/// stops.
+double gain_of(const std::string& path, const std::vector<std::string>& overrides, const std::string& update) {
   ShippedScene scene(path, overrides);
   std::vector<double> kinetic{scene.metrics.initial().kinetic}, strain{scene.metrics.initial().strain};
   scene.run([&] {
@@ -68,21 +64,17 @@ Outcome outcome(const std::string& path, const std::vector<std::string>& overrid
     REQUIRE(std::isfinite(now.kinetic + now.strain));
   });
   const double first = kinetic[0] + strain[0];
-  Outcome found;
-  for (const double total : energies_at_one_time(kinetic, strain, update))
-    found.gain = std::max(found.gain, total / first - 1);
-  found.bounded = scene.failure.empty() && found.gain <= 0.01;
-  if (!scene.failure.empty()) found.gain = INFINITY;
-  return found;
+  double gain = 0;
+  for (const double total : energies_at_one_time(kinetic, strain, update)) gain = std::max(gain, total / first - 1);
+  return scene.failure.empty() ? gain : INFINITY;
 }
+constexpr double bounded = 0.01;  ///< the most that a run gains which is called bounded
 
 void check_bounded(int dimension, const std::string& shape, const Scheme& scheme, const std::string& update,
                    double courant) {
   if (is_refused(shape, scheme)) return;
-  const Outcome found = outcome(scene_of(dimension), settings(dimension, shape, scheme, update, courant), update);
-  INFO(dimension << "-D " << shape << " " << scheme.name << " " << update << ", courant " << courant
-                 << ": energy gained " << found.gain);
-  CHECK(found.bounded);
+  INFO(dimension << "-D " << shape << " " << scheme.name << " " << update << ", courant " << courant);
+  CHECK(gain_of(scene_of(dimension), settings(dimension, shape, scheme, update, courant), update) <= bounded);
 }
 
 const std::vector<std::string> smooth{"gimp", "gimp_contiguous", "b2gimp", "bspline_quadratic", "bspline_cubic", "cpdi",
@@ -117,31 +109,39 @@ std::vector<Row> measured(const std::string& name) {
 
 }  // namespace
 
+namespace {
+
 // With FMPM(4) the limit of the shape is halved, as always; where a filter is refused or a run of the study is missing
 // there is no row.
-TEST_CASE("the limit of the step lies within two thirds of what the study measured", "[largest_step]") {
-  for (const auto& [dimension, name, within] :
-       {std::tuple{2, "largest_step", 1.5}, std::tuple{3, "largest_step_3d", 1.8}}) {
-    const std::vector<Row> rows = measured(name);
-    REQUIRE(rows.size() > 50);
-    std::printf("Largest Courant number in %d-D: measured, limit of the automatic step\n", dimension);
-    for (const Row& row : rows)
-      for (const Scheme& scheme : schemes)
-        if (row.scheme == scheme.name) {
-          const double limit =
-              courant_of(shipped(scene_of(dimension), settings(dimension, row.shape, scheme, "last", 2)));
-          std::printf("  %-18s%-8s %.3f %.3f\n", row.shape.c_str(), scheme.name, row.largest, limit);
-          INFO(dimension << "-D " << row.shape << " " << scheme.name << ": measured " << row.largest << ", limit "
-                         << limit);
-          CHECK(limit <= row.largest);
-          CHECK(limit * within >= row.largest);
-        }
-  }
+void check_limits_by_usl(int dimension, const std::string& study, double within) {
+  const std::vector<Row> rows = measured(study);
+  REQUIRE(rows.size() > 50);
+  std::printf("Largest Courant number in %d-D: measured, limit of the automatic step\n", dimension);
+  for (const Row& row : rows)
+    for (const Scheme& scheme : schemes)
+      if (row.scheme == scheme.name) {
+        const double limit =
+            courant_of(shipped(scene_of(dimension), settings(dimension, row.shape, scheme, "last", 2)));
+        std::printf("  %-18s%-8s %.3f %.3f\n", row.shape.c_str(), scheme.name, row.largest, limit);
+        INFO(row.shape << " " << scheme.name << ": measured " << row.largest << ", limit " << limit);
+        CHECK(limit <= row.largest);
+        CHECK(limit * within >= row.largest);
+      }
+}
+
+}  // namespace
+
+TEST_CASE("in 2-D by USL the study's largest steps are 1 to 1.5 times the limit of the step", "[largest_step]") {
+  check_limits_by_usl(2, "largest_step", 1.5);
+}
+
+TEST_CASE("in 3-D by USL the study's largest steps are 1 to 1.8 times the limit of the step", "[largest_step]") {
+  check_limits_by_usl(3, "largest_step_3d", 1.8);
 }
 
 // The half step by which USAVG strains ahead lets FLIP stand more than with USL; its limit is that of the column for the
 // grid's velocity, which is not raised for one order alone (docs/method.md, "The time step").
-TEST_CASE("the limit of USAVG lies within half of what the study measured", "[largest_step]") {
+TEST_CASE("in 2-D by USAVG with FLIP the study's largest steps are 1 to 2 times the limit", "[largest_step]") {
   int rows = 0;
   for (const Row& row : measured("largest_step"))
     if (row.scheme == "FLIP, USAVG") {
@@ -155,7 +155,7 @@ TEST_CASE("the limit of USAVG lies within half of what the study measured", "[la
 }
 
 // The study's rows in 2-D are the least of three orders, so what one of them stands may be more.
-TEST_CASE("where only what particles carry strains, the limit lies within the study's measured steps",
+TEST_CASE("where only what particles carry strains, the study's largest steps are 1 to 1.8 times the limit",
           "[largest_step]") {
   int rows = 0;
   for (const auto& [dimension, name, these] :
@@ -181,7 +181,7 @@ TEST_CASE("where only what particles carry strains, the limit lies within the st
 
 // The study lets a gain of 10 % pass, as the energies are those of different times, and the limits are those of USL but
 // where only what particles carry strains.
-TEST_CASE("in 3-D no order of the stress update has a limit above what the study measured", "[largest_step]") {
+TEST_CASE("in 3-D by USF, MUSL and USAVG the study's largest steps are 1 to 2.6 times the limit", "[largest_step]") {
   int rows = 0;
   for (const auto& [name, update] :
        {std::pair{"largest_step_orders_3d_1", "first"}, std::pair{"largest_step_orders_3d_2", "modified_last"},
@@ -192,12 +192,33 @@ TEST_CASE("in 3-D no order of the stress update has a limit above what the study
         const double limit = courant_of(shipped(scene_of(3), settings(3, row.shape, scheme, update, 2)));
         INFO(row.shape << " " << scheme.name << " " << update << ": measured " << row.largest << ", limit " << limit);
         CHECK(limit <= row.largest);
-        // USF with kept or filtered velocities is held for its energy, not for its stability.
+        // USF with kept or filtered velocities is held for its energy, not for its stability: see the next case.
         const bool is_held = update == std::string("first") && (limit == Approx(0.12) || *scheme.filter);
         if (!is_held) CHECK(limit * 2.6 >= row.largest);
         ++rows;
       }
   CHECK(rows == 3 * (5 * 11 + 2 * 10));
+}
+
+// The limit of USF with kept velocities is for its energy, which FLIP gains most of: the study's largest steps, 0.77 to 1.06
+// times the estimate, let ten times that gain pass.
+TEST_CASE("in 3-D USF with FLIP gains at most 1 % at its limit, and more at 1.25 times that step", "[largest_step]") {
+  std::printf("USF with FLIP in 3-D: shape, limit, energy gained at the limit and at 1.25 times it (%%)\n");
+  double most = 0;
+  for (const std::string shape : {"gimp", "bspline_quadratic", "cpdi"}) {
+    std::vector<std::string> all = settings(3, shape, schemes[1], "first", 2);
+    const double limit = courant_of(shipped(scene_of(3), all)), at_limit = gain_of(scene_of(3), all, "first");
+    ShippedScene first(scene_of(3), all);
+    first.simulation.step();
+    all.push_back(set("/solver/time_step", digits(1.25 * first.simulation.last_time_step())));
+    const double longer = gain_of(scene_of(3), all, "first");
+    std::printf("  %-18s%.3f %.3f %.3f\n", shape.c_str(), limit, 100 * at_limit, 100 * longer);
+    INFO(shape);
+    CHECK(limit == Approx(0.12));
+    CHECK(at_limit <= bounded);
+    most = std::max(most, longer);
+  }
+  CHECK(most > bounded);
 }
 
 // USF with kept velocities gains energy in proportion to the step.
@@ -260,13 +281,14 @@ TEST_CASE("tents are stable by USF and MUSL, and by USL more often than at the s
     for (const double shift : {0.0, 0.003, 0.007, 0.011, 0.017}) {
       std::vector<std::string> all = settings(2, "linear", scheme, "last", 0.3);
       all.push_back(set("/bodies/0/geometry/centre", "[" + digits(0.2 + shift) + ", " + digits(0.2 + 2 * shift) + "]"));
-      limited += outcome(scene_of(2), all, "last").bounded;
+      limited += gain_of(scene_of(2), all, "last") <= bounded;
       // The step that others take at the same courant: 0.3 h / (wave speed + particle speed).
       all.push_back(set("/solver/time_step", digits(0.3 * 0.0384122)));
-      unlimited += outcome(scene_of(2), all, "last").bounded;
+      unlimited += gain_of(scene_of(2), all, "last") <= bounded;
       ++runs;
     }
   std::printf("Tents by USL: of %d runs %d are bounded with the limit, %d without\n", runs, limited, unlimited);
   CHECK(limited >= 3 * unlimited);
   CHECK(2 * limited > runs);
+  CHECK(limited < runs);  // no limit makes tents sure (docs/method.md, "The time step")
 }
