@@ -22,8 +22,8 @@ set(now "test::injected == test::Fault")
 # The reference backend
 set(reference backends/reference)
 mpm_fault(${reference}/grid_step.cpp
-          "i, momentum_[i] - before);"
-          "i, momentum_[i] - before);
+          "boundary_impulse_, i, momentum_[i] - before);"
+          "boundary_impulse_, i, momentum_[i] - before);
     if (${now}::wall) momentum_[i] -= 0.01 * (momentum_[i] - before);")
 mpm_fault(${reference}/contact.cpp
           "record(contact_impulse_, standing_contact_impulse_, a, J);"

@@ -165,10 +165,8 @@ void ReferenceBackend::impose_on_velocity(double time) {
     if (mass_[i] <= 0) return;
     const Vector before = velocity_[i];
     const std::vector<Held> all = grid_.held(i, before, time);
-    for (const Held& held : all) {
-      note_held(held, i, mass_[i] * (held.velocity - velocity_[i][held.component]));
-      velocity_[i][held.component] = held.velocity;
-    }
+    for (const Held& held : all) velocity_[i][held.component] = held.velocity;
+    note_held(all, i, mass_[i] * (velocity_[i] - before));
     if (!all.empty()) record(boundary_impulse_, standing_boundary_impulse_, i, mass_[i] * (velocity_[i] - before));
   });
 }

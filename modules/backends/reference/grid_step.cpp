@@ -49,21 +49,28 @@ void ReferenceBackend::impose_conditions(double time) {
     if (mass_[i] <= 0) return;
     const Vector before = momentum_[i];
     const std::vector<Held> all = grid_.held(i, momentum_[i] / mass_[i], time);
-    for (const Held& held : all) {
-      double& momentum = momentum_[i][held.component];
-      note_held(held, i, mass_[i] * held.velocity - momentum);
-      momentum = mass_[i] * held.velocity;
-    }
+    for (const Held& held : all) momentum_[i][held.component] = mass_[i] * held.velocity;
+    note_held(all, i, momentum_[i] - before);
     if (!all.empty()) record(boundary_impulse_, standing_boundary_impulse_, i, momentum_[i] - before);
   });
 }
 
-/// Notes the impulse that a support gives a component of a node.
-void ReferenceBackend::note_held(const Held& held, std::size_t i, double given) {
+/// Notes the impulse that a node takes from those who hold it: each component all of it from the last one, or from the first
+/// of the last ones that give it the same velocity.
+void ReferenceBackend::note_held(const std::vector<Held>& all, std::size_t i, const Vector& given) {
   if (!notes_reactions_) return;
-  Vector3 impulse{};
-  impulse[held.component] = given;
-  reactions_.hold(held.support, as_array(grid_.position(grid_.coordinates(i))), impulse);
+  for (int c = 0; c < experiment_.dimension; ++c) {
+    const Held* holder = nullptr;
+    for (auto held = all.rbegin(); held != all.rend(); ++held) {
+      if (held->component != c) continue;
+      if (holder && held->velocity != holder->velocity) break;
+      holder = &*held;
+    }
+    if (!holder) continue;
+    Vector3 impulse{};
+    impulse[c] = given[c];
+    reactions_.hold(holder->support, as_array(grid_.position(grid_.coordinates(i))), impulse);
+  }
 }
 
 /// Damps the motion: a share of the unbalanced force, by which all that acts has changed the velocity, acts against each

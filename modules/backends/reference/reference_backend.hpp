@@ -68,7 +68,7 @@ class ReferenceBackend final : public Backend {
   void momentum_to_velocity(const Pass& pass, const StepInfo& step);
   /// Sets the momenta that conditions give.
   void impose_conditions(double time);
-  void note_held(const Held& held, std::size_t i, double given);
+  void note_held(const std::vector<Held>& all, std::size_t i, const Vector& given);
   void record_reactions(const StepInfo& step);
   void damp(const StepInfo& step);
   void keep_free_velocity(bool after_forces);

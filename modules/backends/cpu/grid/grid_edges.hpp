@@ -266,6 +266,7 @@ void GridStep<D, T>::fill_ghosts(double time, bool increments) {
 /// Sets the velocities that walls and boxes give.
 template <int D, class T>
 void GridStep<D, T>::impose(double time) {
+  holders_.clear();
   for (const FaceNodes& face : grid_.faces()) {
     const int type = static_cast<int>(face.condition->type), support = support_of_wall(face.axis, face.side);
     find_velocities(face.condition->velocity, face.wall_position, time);
@@ -330,9 +331,27 @@ void GridStep<D, T>::hold(int field, std::uint32_t node, int c, T velocity, int 
     Vector3 impulse{};
     impulse[c] = double(v[3]) * (double(velocity) - double(v[c]));
     if (records_) record(boundary_impulse, standing_boundary, field, node, c, impulse[c]);
-    if (notes_reactions_) reactions_.hold(support, x, impulse);
+    if (notes_reactions_)
+      note_held((std::uint64_t(field) * grid_.nodes() + node) * D + c, support, velocity != v[c], x, impulse);
   }
   v[c] = velocity;
+}
+
+/// Notes what a support gives a component of a node. One that gives it another velocity than those before takes over what
+/// they have given.
+template <int D, class T>
+void GridStep<D, T>::note_held(std::uint64_t component, int support, bool differs, const Vector3& x,
+                               const Vector3& impulse) {
+  Holder& holder = holders_.try_emplace(component, Holder{support}).first->second;
+  if (holder.support != support && differs) {
+    Vector3 back = holder.impulse;
+    for (double& value : back) value = -value;
+    reactions_.hold(holder.support, x, back);
+    reactions_.hold(support, x, holder.impulse);
+    holder.support = support;
+  }
+  for (int c = 0; c < 3; ++c) holder.impulse[c] += impulse[c];
+  reactions_.hold(holder.support, x, impulse);
 }
 
 // ---- reactions of walls ------------------------------------------------------------------------------------------

@@ -116,6 +116,7 @@ class GridStep : NamedChannels {
 
   void impose(double time);
   void hold(int field, std::uint32_t node, int component, T velocity, int support, const Vector3& x);
+  void note_held(std::uint64_t component, int support, bool differs, const Vector3& x, const Vector3& impulse);
   void find_gripped_nodes();
   void impose_grips();
   MirroredPlaces places(const FaceNodes& face, const MirrorPair& pair) const;
@@ -239,7 +240,13 @@ class GridStep : NamedChannels {
     Vector3 x;  ///< m
   };
   std::vector<GrippedNode> gripped_;
-  std::vector<Channel> grip_channels_;  ///< of the masses of their particles
+  /// Who holds a component of a node in the imposition under way, and the impulse that it has given it.
+  struct Holder {
+    int support;
+    Vector3 impulse{};  ///< kg m/s
+  };
+  std::unordered_map<std::uint64_t, Holder> holders_;  ///< where reactions are noted
+  std::vector<Channel> grip_channels_;                 ///< of the masses of their particles
   bool grips_at_end_ = false;      ///< nodes are held as particles are told for the end of the step, not as they were
   std::vector<Signs> signs_;       ///< signs of folded_[with_mass] at the face that is folded now
   std::vector<Channel> slipping_;  ///< channels that vanish across a wall on its nodes

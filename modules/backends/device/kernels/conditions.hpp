@@ -87,7 +87,8 @@ MPM_HD void impose_conditions(const Team& team, const Arguments<typename Scene::
   });
 }
 
-/// Sums what the support a.support is about to give the nodes: each takes the velocity from the one before it.
+/// Sums what the support a.support is about to give the nodes. Of supports that give a component different velocities the
+/// last one gives all of its impulse, of those that give it the same the first.
 template <class Scene>
 MPM_HD void held(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -96,15 +97,19 @@ MPM_HD void held(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   sum_over_nodes<support_sums>(team, a, [&](int node, double* sums) {
     const double mass = a.grid.field[N::mass][node];
     if (!(mass > 0)) return;
-    double velocity[3] = {}, place[3];
-    for (int c = 0; c < D; ++c) velocity[c] = a.grid.field[N::velocity][c * a.node_count + node];
-    place_of_node<D>(a, node, place);
+    int holder[D];
+    T given[D];
+    for (int c = 0; c < D; ++c) holder[c] = -1, given[c] = T(0);
     for_each_hold<Scene>(a, node, [&](int support, int c, T value) {
-      double impulse[3] = {};
-      impulse[c] = mass * (double(value) - velocity[c]);
-      velocity[c] = value;
-      if (support == a.support) add_impulse(sums, sums + 3, place, impulse);
+      if (holder[c] < 0 || value != given[c]) holder[c] = support;
+      given[c] = value;
     });
+    double impulse[3] = {}, place[3];
+    for (int c = 0; c < D; ++c)
+      if (holder[c] == a.support)
+        impulse[c] = mass * (double(given[c]) - double(a.grid.field[N::velocity][c * a.node_count + node]));
+    place_of_node<D>(a, node, place);
+    add_impulse(sums, sums + 3, place, impulse);
   });
 }
 
