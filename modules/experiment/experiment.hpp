@@ -392,6 +392,7 @@ struct Experiment {
   /// Gravity in the step that begins at a time, s.
   Vector3 gravity_at(double time) const { return changing_gravity ? (*changing_gravity)({}, {}, time) : gravity; }
   bool has_gravity(int axis) const { return gravity[axis] != 0 || gravity_changes[axis]; }
+  bool has_gravity() const { return has_gravity(0) || has_gravity(1) || has_gravity(2); }
   /// A particle that leaves along a periodic axis has its height again: gravity along it does work without a potential.
   /// So does gravity that changes in time.
   bool gravity_has_potential(int axis) const {

@@ -29,7 +29,7 @@ Field& FieldList::summed(const std::string& id, const std::string& unit, int com
 }
 
 void FieldList::in_place_of(const std::string& other, Field& field) const {
-  if (needs.keeps_all_apart) return;
+  if (!needs.shares_memory) return;
   field.in_place_of = other;
   field.bytes = 0;
 }
@@ -98,9 +98,9 @@ void increment_fields(FieldList& fields) {
 }
 
 /// Whether a force from outside is scattered with that of the stress or with the momenta: then only the ledger wants it
-/// apart.
-bool joins_force(ExternalForce external) {
-  return external == ExternalForce::body_force;
+/// apart. On a device each has a scatter of its own.
+bool joins_force(const FieldList& fields, ExternalForce external) {
+  return external == ExternalForce::body_force && !fields.needs.keeps_all_apart && !fields.needs.launches;
 }
 
 /// Who asks for a force that is not merged into the momentum; empty where nobody in the scene does.
@@ -111,7 +111,7 @@ std::string why_separate_force(const FieldList& fields) {
   if (experiment.damping.acts()) return experiment.damping.pointer + ": acts on the change of velocity";
   for (const ExternalForce external : external_forces) {
     const std::string giver = experiment.giver_of(external);
-    if (!joins_force(external) && !giver.empty()) return giver + ": work of the forces";
+    if (!joins_force(fields, external) && !giver.empty()) return giver + ": work of the forces";
   }
   if (const Operator* const averages = fields.plan.find(Act::average_mean_stress))
     return asker(averages->because) + ": forces of the mean stress after the momenta";
@@ -122,7 +122,15 @@ std::string why_separate_force(const FieldList& fields) {
   if (fields.plan.filters() && fields.plan.pass_of(Act::begin_filter)->stage == Stage::before_forces)
     return FieldList::named(*experiment.filter) + ": filters before the forces";
   if (experiment.separates()) return "/grid/boundaries \"separate\": the wall predicts with the forces";
+  if (fields.needs.launches && !fields.plan.divides_with_forces()) return fields.why_apart();
   return "";
+}
+
+/// Whether gravity's force has a field of its own. On the cpu backend the ledger takes its work from the masses, and
+/// without a ledger a device adds it to what else changes the momenta.
+bool keeps_weight_apart(const FieldList& fields) {
+  if (!fields.needs.launches) return fields.needs.keeps_all_apart;
+  return fields.experiment.has_gravity() && fields.plan.has_ledger();
 }
 
 void force_fields(FieldList& fields) {
@@ -140,14 +148,14 @@ void force_fields(FieldList& fields) {
         .for_ledger = for_ledger;
   for (const ExternalForce external : external_forces) {
     const std::string giver = experiment.giver_of(external);
-    const bool ledger_alone = joins_force(external) && !fields.needs.keeps_all_apart;
+    const bool ledger_alone = joins_force(fields, external);
     if (giver.empty() || (ledger_alone && !fields.plan.has_ledger())) continue;
     fields
         .summed(field_of(external), "N", D, AtWall::vector, Folded::with_force,
                 giver + ": its work is accounted for apart")
         .for_ledger = ledger_alone;
   }
-  if (fields.needs.keeps_weight_apart)
+  if (keeps_weight_apart(fields))
     fields.summed("weight", "N", D, AtWall::vector, Folded::with_force, "/gravity: its work is accounted for apart");
 }
 

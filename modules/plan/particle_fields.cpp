@@ -196,7 +196,8 @@ void waiting_field(FieldList& fields, int body, const std::string& id, const std
   if (!move) return;
   const Pass* const gather = fields.plan.pass_of(Act::gather);
   const bool waits = !gather || !gather->has(Act::move);
-  if (!waits && (!fields.needs.keeps_all_apart || fields.plan.advance == Advance::at_once)) return;
+  const bool apart = fields.needs.keeps_all_apart || (fields.needs.launches && fields.plan.advance != Advance::at_once);
+  if (!waits && !apart) return;
   fields
       .of_particles(body, id, unit, components, first,
                     waits ? asker(move->because) + ": " + what + " wait for the remapped strain" : fields.why_apart())

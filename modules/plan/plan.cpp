@@ -289,7 +289,8 @@ BackendNeeds backend_needs(std::string_view backend) {
   BackendNeeds needs;
   needs.sorts = needs.fuses = backend == "cpu";
   needs.forgets_stencils = backend != "reference";
-  needs.keeps_all_apart = needs.keeps_weight_apart = backend != "cpu";
+  needs.keeps_all_apart = backend == "reference";
+  needs.shares_memory = backend == "cpu";
   needs.launches = backend == "cuda";
   return needs;
 }

@@ -96,12 +96,12 @@ struct Plan {
 
 /// How a backend works, as far as it changes what a step holds and does.
 struct BackendNeeds {
-  bool sorts = false;               ///< particles are put in order, and must stay so
-  bool fuses = false;               ///< a gather may scatter for the next step in one visit of a particle
-  bool forgets_stencils = false;    ///< weights are evaluated anew in every pass
-  bool keeps_all_apart = false;     ///< nothing is merged or shares memory
-  bool keeps_weight_apart = false;  ///< gravity's force has a field of its own, "weight"
-  bool launches = false;            ///< passes are launches of a device, see Advance
+  bool sorts = false;             ///< particles are put in order, and must stay so
+  bool fuses = false;             ///< a gather may scatter for the next step in one visit of a particle
+  bool forgets_stencils = false;  ///< weights are evaluated anew in every pass
+  bool keeps_all_apart = false;   ///< nothing is merged, and gravity's force always has a field of its own
+  bool shares_memory = false;     ///< a field of nodes may take the place of one that nobody reads any more
+  bool launches = false;          ///< passes are launches of a device, see Advance
 };
 BackendNeeds backend_needs(std::string_view backend);
 

@@ -18,6 +18,7 @@ void DeviceBackend<T>::momentum_to_velocity(const Pass& pass, const StepInfo& st
     later([this, heat, folded] { heat_of_images_ = (*folded)[0] - (*heat)[0]; });
   }
   if (!pass.remap()) fold_forces();
+  if (merges_ && !pass.remap()) return;  // velocities are made of the momenta when these have their forces
   for_each_field("divide", vectors());
   scene_.grips_at_end = pass.remap();
   keep_free_velocity({});
@@ -29,7 +30,7 @@ void DeviceBackend<T>::momentum_to_velocity(const Pass& pass, const StepInfo& st
   measure_constraints();
   if (notes_reactions_) later([this] { reactions_.keep_before(); });
   if (scene_.records) book_folds(), book_impulses();
-  if (!pass.remap()) for_each_field("keep_velocity", vectors());
+  if (!pass.remap() && plan_.node_field("velocity_before")) for_each_field("keep_velocity", vectors());
   for_each_axis("fill_velocities", filled_axes());
 }
 
@@ -39,9 +40,13 @@ void DeviceBackend<T>::apply_forces(const StepInfo& step) {
   scene_.grips_at_end = true;
   conditions_.evaluate(step.time + step.dt, scene_);
   scene_.records = accounted_;
-  fold_forces();  // folds what USF scattered after the momenta were folded
-  if (accounted_) book_folds();
-  for_each_field("accelerate", nodes());
+  if (merges_) {
+    for_each_field("divide", vectors());
+  } else {
+    fold_forces();  // folds what USF scattered after the momenta were folded
+    if (accounted_) book_folds();
+    for_each_field("accelerate", nodes());
+  }
   begin_stage(accounted_);
   keep_free_velocity(after);
   impose_conditions(after);
@@ -53,7 +58,7 @@ void DeviceBackend<T>::apply_forces(const StepInfo& step) {
   if (experiment_.damping.acts()) damp(step);
   if (accounted_) account_for_impulses();
   for_each_axis("fill_velocities", filled_axes());
-  if (notes_reactions_) later([this, dt = step.dt] { reactions_.apply_forces(dt); });
+  if (notes_reactions_ && !merges_) later([this, dt = step.dt] { reactions_.apply_forces(dt); });
   record_reactions(step);
   rigid_.bodies().end_step(step);
 }
@@ -100,6 +105,7 @@ void DeviceBackend<T>::fold_momenta(const Manner& manner) {
 
 template <class T>
 void DeviceBackend<T>::fold_forces() {
+  if (!folds_forces_) return;
   for (const int axis : folded_axes()) fold("fold_forces", axis, {}, GivenBySupport::force);
 }
 
@@ -130,7 +136,7 @@ void DeviceBackend<T>::record_reactions(const StepInfo& step) {
   if (!notes_reactions_) return;
   later([this] { reactions_.begin_gather(); });
   note_beyond(beyond_velocity, GivenBySupport::beyond);
-  note_beyond(beyond_change, GivenBySupport::beyond_increment);
+  if (plan_.node_field("velocity_before")) note_beyond(beyond_change, GivenBySupport::beyond_increment);
   later([this, step] { reactions_.record(step); });
 }
 

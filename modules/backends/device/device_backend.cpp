@@ -86,6 +86,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
       exact_sums_(*device_, "exact sums"),
       results_(*device_),
       conditions_(*device_, experiment, scene_),
+      merges_(!plan.node_field("force")),
       edges_(*device_, experiment),
       contact_impulse_(experiment),
       reactions_(experiment),
@@ -133,6 +134,8 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
   last_pass_ = last_pass_of(plan.step);
   scene_.partial_sums = partial_sums_.data();
   for (int axis = 0; axis < experiment.dimension; ++axis) (periodic(axis) ? images_ : walls_).push_back(axis);
+  for (const Field& field : plan.fields)
+    folds_forces_ = folds_forces_ || (field.owner == Owner::node && field.folded == Folded::with_force);
 }
 
 template <class T>

@@ -311,6 +311,8 @@ class DeviceBackend final : public Backend {
   std::vector<BodyLoads> loads_;  ///< of each body
   std::vector<VelocityField<T>> fields_;
   std::vector<int> images_, walls_;  ///< axes with periodic images, and those with walls
+  bool merges_;                      ///< momenta are scattered with what forces add to them in the step
+  bool folds_forces_ = false;        ///< nodes have sums that are folded with the forces
   ContactEdges edges_;
   std::optional<ContactPairs<T>> contact_pairs_;  ///< where contact looks at particles
   std::optional<ContactNotes<T>> contact_notes_;  ///< where single nodes are recorded

@@ -63,12 +63,14 @@ void DeviceBackend<T>::scatter(const Pass& pass, const StepInfo& step) {
   if (!pass.has(Act::scatter_momentum)) return;
   for (VelocityField<T>& field : fields_)
     if (accounted_ && enters) sum<4>("momentum_of_nodes", arguments_of(field, {}), nodes(), unbalanced, -1);
-  const Vector3 gravity = experiment_.gravity_at(step.time);
-  for (std::size_t c = 0; c < 3; ++c) scene_.gravity[c] = static_cast<T>(gravity[c]);
-  if (enters) for_each_field("weigh", nodes());
+  if (enters && experiment_.has_gravity()) {
+    const Vector3 gravity = experiment_.gravity_at(step.time);
+    for (std::size_t c = 0; c < 3; ++c) scene_.gravity[c] = static_cast<T>(gravity[c]);
+    for_each_field("weigh", nodes());
+  }
   for_each_axis("fold_masses", images_, {pass.remap()});
   if (!enters) return;
-  for_each_axis("fold_forces", images_);
+  if (folds_forces_) for_each_axis("fold_forces", images_);
   if (!accounted_) return;
   const Tally<1> scattered = sum_over_nodes("energy_of_momenta");
   later([this, energy, unbalanced, scattered] {

@@ -37,17 +37,21 @@ MPM_HD void clear(const Team& team, const Arguments<typename Scene::Scalar>& a) 
   });
 }
 
-/// Computes the weight m g of what was scattered.
+/// Adds the weight m g of what was scattered to the field that the scene has for it: of weights, of forces, or of momenta,
+/// which take it times dt.
 template <class Scene>
 MPM_HD void weigh(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
   using N = typename Scene::Node;
+  constexpr int taken = N::weight >= 0 ? N::weight : N::force >= 0 ? N::force : N::momentum;
+  const T share = taken == N::momentum ? a.dt : T(1);
   for_each_node(team, a, [&](int node) {
     for (int c = 0; c < Scene::dimension; ++c)
-      a.grid.field[N::weight][c * a.node_count + node] += a.grid.field[N::mass][node] * a.gravity[c];
+      a.grid.field[taken][c * a.node_count + node] += share * a.grid.field[N::mass][node] * a.gravity[c];
   });
 }
 
-/// A component of a force from outside, zero where the scene has none of its kind.
+/// A component of a force, zero where the scene has none of its kind.
 template <int field, class T>
 MPM_HD T load_at(const Arguments<T>& a, int at) {
   if constexpr (field >= 0) return a.grid.field[field][at];
@@ -58,7 +62,7 @@ MPM_HD T load_at(const Arguments<T>& a, int at) {
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD T total_force(const Arguments<T>& a, int at) {
   using N = typename Scene::Node;
-  T force = a.grid.field[N::force][at] + a.grid.field[N::weight][at];
+  T force = load_at<N::force>(a, at) + load_at<N::weight>(a, at);
   force += load_at<N::body_force>(a, at);
   force += load_at<N::surface_load>(a, at);
   force += load_at<N::point_load>(a, at);
@@ -174,8 +178,8 @@ MPM_HD void note_work_beyond_wall(const Arguments<T>& a, const Fold& fold) {
     if (!a.records || fold.wall == wall_periodic) return;
     for (int c = 0; c < Scene::dimension; ++c) {
       const int at = c * a.node_count + fold.ghost;
-      T force = a.grid.field[N::force][at];
-      if (a.gravity_has_potential[c]) force += a.grid.field[N::weight][at];
+      T force = load_at<N::force>(a, at);
+      if (a.gravity_has_potential[c]) force += load_at<N::weight>(a, at);
       const T sign = T(mirror_sign(fold.wall, fold.axis, c));
       a.grid.field[N::work_beyond_walls][fold.ghost] -= a.dt * force * (T(1) - sign) * velocity_of_wall(a, fold, c);
     }

@@ -94,7 +94,7 @@ MPM_HD void power_of_forces(const Team& team, const Arguments<typename Scene::Sc
         const int at = c * a.node_count + node;
         const double way = double(a.dt) * a.grid.field[N::velocity][at];
         sum[0] += a.grid.field[N::force][at] * way;
-        if (a.gravity_has_potential[c]) sum[1] += a.grid.field[N::weight][at] * way;
+        if (a.gravity_has_potential[c]) sum[1] += load_at<N::weight>(a, at) * way;
       }
   });
 }
@@ -157,7 +157,7 @@ MPM_HD void work_of_forces(const Team& team, const Arguments<typename Scene::Sca
         const int at = c * a.node_count + node;
         const double before = a.grid.field[N::velocity_before][at], after = a.grid.field[N::velocity][at];
         const double mean = mean_velocity(before, after);
-        const double internal = a.grid.field[N::force][at], weight = a.grid.field[N::weight][at];
+        const double internal = a.grid.field[N::force][at], weight = load_at<N::weight>(a, at);
         sum[0] += dt * internal * mean;
         sum[1] += dt * load_at<N::body_force>(a, at) * mean;
         sum[6] += dt * load_at<N::surface_load>(a, at) * mean;

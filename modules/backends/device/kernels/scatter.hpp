@@ -139,7 +139,8 @@ MPM_HD T volume_of_particle(const ParticleArrays<T>& particles, int p) {
 }
 
 /// Scatters w m, w (b + A d), -V0 tau grad w (or w D^-1 d), and the contact fields, as `a` says, around an
-/// axis also -w V0 tau_zz / r. The weight follows from the masses (weigh).
+/// axis also -w V0 tau_zz / r. Forces without a field of their own go into the momenta, times dt. The weight follows from
+/// the masses (weigh).
 template <class Scene>
 MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -147,6 +148,9 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
   using P = typename Scene::Particle;
   using Place = typename Scene::Place;
   constexpr int D = Scene::dimension;
+  constexpr bool merged = Place::force < 0;  // without a field of forces momenta take what these add in the step
+  constexpr int of_force = merged ? Place::momentum : Place::force;
+  const T force_share = merged ? a.dt : T(1);
   T* channel[Scene::scattered];
   find_channels<Scene>(a, channel);
   scatter_blocks<Scene, Scene::scattered>(team, a, channel, [&](int p, auto add) {
@@ -191,9 +195,10 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
         values[Place::momentum + i] = s.weight * momentum;
         if constexpr (Scene::basis_functions > 0)
           values[Place::momentum + i] += mass_of_particle * higher.given(s.node, i);
-        values[Place::force + i] = -volume_of_particle * traction;
+        values[of_force + i] -= force_share * volume_of_particle * traction;
       }
-      if constexpr (Scene::axisymmetric) values[Place::force] -= s.weight * volume_of_particle * tau.s[2] / position[p];
+      if constexpr (Scene::axisymmetric)
+        values[of_force] -= force_share * s.weight * volume_of_particle * tau.s[2] / position[p];
       if constexpr (Place::volume_gradient >= 0) {
         const T volume = a.contact_fields ? volume_of_particle * particles.field[P::volume_ratio][p] : T(0);
         T around = T(1);  // a ring's volume and mass grow away from the axis; gradients are those of its section
