@@ -113,18 +113,26 @@ Books run(const Variant& variant, Fault fault, Kind kind = Kind::pressed_and_fil
   return books;
 }
 
-bool grid_agrees(const Variant& variant, const Books& books) {
-  return std::abs(books.ledger.grid_book) < variant.rounding() * books.start.kinetic;
+void check_grid_agrees(const Variant& variant, const Books& books) {
+  CHECK(std::abs(books.ledger.grid_book) < variant.rounding() * books.start.kinetic);
 }
-bool filter_agrees(const Variant& variant, const Books& books) {
-  return std::abs(books.ledger.filter_book) < variant.rounding() * books.start.kinetic;
+void check_filter_agrees(const Variant& variant, const Books& books) {
+  CHECK(std::abs(books.ledger.filter_book) < variant.rounding() * books.start.kinetic);
 }
-bool scatter_agrees(const Variant& variant, const Books& books) {
-  return std::abs(books.ledger.mass_book) < variant.rounding() * books.start.mass &&
-         books.ledger.momentum_book < variant.rounding() * books.start.momentum_scale;
+void check_scatter_agrees(const Variant& variant, const Books& books) {
+  CHECK(std::abs(books.ledger.mass_book) < variant.rounding() * books.start.mass);
+  CHECK(books.ledger.momentum_book < variant.rounding() * books.start.momentum_scale);
 }
+/// The residual tells of the fault.
 void check_residual(const Books& books, const Books& right) {
   CHECK(std::abs(books.residual - right.residual) > seen * books.start.kinetic);
+}
+/// The entry of a transfer has the fault, and the residual does not tell of it: an entry is the difference of the energies on
+/// both sides, whatever made it. The other motion that follows from the fault has another residual, a quarter of that at most.
+void check_entry(const Books& books, const Books& right, double Ledger::*entry) {
+  const double in_entry = std::abs(books.ledger.*entry - right.ledger.*entry);
+  CHECK(in_entry > seen * books.start.kinetic);
+  CHECK(std::abs(books.residual - right.residual) < 0.25 * in_entry);
 }
 
 }  // namespace
@@ -140,9 +148,9 @@ TEST_CASE("without a fault all books agree", "[ledger][faults]") {
     INFO(variant.name() << ": grid " << books.ledger.grid_book / energy << ", filter "
                         << books.ledger.filter_book / energy << ", mass " << books.ledger.mass_book / books.start.mass
                         << ", momentum " << books.ledger.momentum_book / books.start.momentum_scale);
-    CHECK(grid_agrees(variant, books));
-    CHECK(filter_agrees(variant, books));
-    CHECK(scatter_agrees(variant, books));
+    check_grid_agrees(variant, books);
+    check_filter_agrees(variant, books);
+    check_scatter_agrees(variant, books);
   }
 }
 
@@ -154,7 +162,7 @@ TEST_CASE("a condition or a contact that does not give what it records shows in 
       INFO(variant.name() << ", fault " << static_cast<int>(fault));
       const Books books = run(variant, fault, Kind::pressed);
       CHECK(std::abs(books.ledger.grid_book) > seen * books.start.kinetic);
-      CHECK(scatter_agrees(variant, books));
+      check_scatter_agrees(variant, books);
       check_residual(books, right);  // the residual of the whole sees it too
     }
   }
@@ -164,22 +172,24 @@ TEST_CASE("a filter that adds to the velocity shows in the book of the filter", 
   for (const Variant& variant : variants_of_backends) {
     INFO(variant.name());
     const Books books = run(variant, Fault::filter), right = run(variant, Fault::none);
-    CHECK(grid_agrees(variant, books));
+    check_grid_agrees(variant, books);
     CHECK(std::abs(books.ledger.filter_book) > seen * books.start.kinetic);
-    CHECK(scatter_agrees(variant, books));
+    check_scatter_agrees(variant, books);
     check_residual(books, right);
   }
 }
 
 TEST_CASE("a scatter that loses what it gave shows in the books of mass and momentum", "[ledger][faults]") {
   for (const Variant& variant : variants_of_backends) {
-    const Books books = run(variant, Fault::scatter);
+    const Books books = run(variant, Fault::scatter), right = run(variant, Fault::none);
     INFO(variant.name() << ": mass " << books.ledger.mass_book / books.start.mass << ", momentum "
-                        << books.ledger.momentum_book / books.start.momentum_scale);
-    CHECK(grid_agrees(variant, books));
-    CHECK(filter_agrees(variant, books));
+                        << books.ledger.momentum_book / books.start.momentum_scale << ", residual "
+                        << (books.residual - right.residual) / books.start.kinetic);
+    check_grid_agrees(variant, books);
+    check_filter_agrees(variant, books);
     CHECK(std::abs(books.ledger.mass_book) > seen * books.start.mass);
     CHECK(books.ledger.momentum_book > seen * books.start.momentum_scale);
+    check_entry(books, right, &Ledger::scatter);
   }
 }
 
@@ -192,8 +202,8 @@ TEST_CASE("a gather of too little strain shows between the work of the forces an
     const double gap = books.strain_gap() - right.strain_gap();
     INFO(variant.name() << ": gap " << gap / books.start.kinetic << ", residual "
                         << (books.residual - right.residual) / books.start.kinetic);
-    CHECK(grid_agrees(variant, books));
-    CHECK(scatter_agrees(variant, books));
+    check_grid_agrees(variant, books);
+    check_scatter_agrees(variant, books);
     CHECK(std::abs(gap) > seen * books.start.kinetic);
     check_residual(books, right);
     CHECK(books.residual - right.residual == Approx(gap).epsilon(0.1));
@@ -208,12 +218,14 @@ TEST_CASE("a gather that loses velocity shows in the entry of the gather and in 
     INFO(variant.name() << ": momentum lost " << right.momentum_lost / right.start.momentum_scale << ", "
                         << books.momentum_lost / books.start.momentum_scale << "; gather "
                         << right.ledger.gather / right.start.kinetic << ", "
-                        << books.ledger.gather / books.start.kinetic);
+                        << books.ledger.gather / books.start.kinetic << "; residual "
+                        << (books.residual - right.residual) / books.start.kinetic);
     CHECK(right.momentum_lost < variant.rounding() * right.start.momentum_scale);
     CHECK(books.momentum_lost > seen * books.start.momentum_scale);
-    CHECK(books.ledger.gather < right.ledger.gather - seen * books.start.kinetic);
-    CHECK(grid_agrees(variant, books));
-    CHECK(scatter_agrees(variant, books));
+    CHECK(books.ledger.gather < right.ledger.gather);
+    check_entry(books, right, &Ledger::gather);
+    check_grid_agrees(variant, books);
+    check_scatter_agrees(variant, books);
   }
 }
 
@@ -222,9 +234,9 @@ TEST_CASE("a material that dissipates less than it says shows in the book of the
     INFO(variant.name());
     const Books right = run(variant, Fault::none),
                 books = run(variant, Fault::none, Kind::pressed_and_filtered, "lying_metal");
-    CHECK(grid_agrees(variant, books));
-    CHECK(filter_agrees(variant, books));
-    CHECK(scatter_agrees(variant, books));
+    check_grid_agrees(variant, books);
+    check_filter_agrees(variant, books);
+    check_scatter_agrees(variant, books);
     const double dissipated = right.ledger.material, exact = variant.precision == "double" ? 1 : 1e3;
     CHECK(books.ledger.material == Approx(dissipated / 0.95).epsilon(exact * 1e-9));
     CHECK(books.ledger.material_book - right.ledger.material_book ==
