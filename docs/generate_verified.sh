@@ -88,13 +88,18 @@ done
 
 Written by `docs/generate_verified.sh` from a run of the tests: a line for each test case. [The catalogue of
 cases](verification.md) says where the expected values come from; a file's heading links its part of the catalogue.
-**Apart** is the largest distance of a found from an expected value, relative to that value, in the assertions of the form
-*found equals expected* (but for values near zero, which a margin holds); **bound used** the largest share of its bound that
-an assertion of the form *value below bound* used. A field is empty where a case has no such assertion: it compares bits,
+**Apart** is the largest distance of a found from an expected value in the assertions of the form *found equals expected*,
+relative to the expected value, or the found value itself where zero is expected. Left out are those that hold although the
+two are half of the expected value or more apart: a margin holds a value near zero there. **Bound used** is the largest share of its
+bound that an assertion of the form *value below bound* used. A field is empty where a case has no such assertion: it compares bits,
 words or counts, or asks several things at once. Cases with the tag `[slow]` carry the day of their run; one that says *not run
 yet* has not been run for this page. Not here are the
 tests in Python (`ctest --test-dir build -R python`), which execute [two](python.md) [pages](lessons/7_own_body.md) and compare
 what comes out with what stands there.
+
+Each entry of CTest compares its cases with their rows, and fails where a number is off by more than a factor of two. Rounding
+differs between compilers and machines: distances below 10⁻⁹ count as 10⁻⁹, and shares of a bound below 0.05 as 0.05. A case
+that says that it left something out on this machine is not compared.
 
 To run the cases of a file: `ctest --test-dir build -R verification.bar` for `tests/verification/bar.cpp`.
 

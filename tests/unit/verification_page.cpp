@@ -1,7 +1,9 @@
 // docs/verification.md names the files that hold its cases, and docs/verified.md the cases themselves: none is missing there,
 // none is named that does not exist.
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
@@ -11,6 +13,7 @@
 
 #include "support/catch.hpp"
 #include "support/files.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
 
@@ -167,5 +170,41 @@ TEST_CASE("the page of what is verified has the cases of the tests and no others
   for (const auto& [file, cases] : on_page) {
     INFO(file);
     CHECK(files.count(file) == 1);
+  }
+}
+
+namespace {
+
+/// What the program of these tests says of the one case below, with a page on which the row of the case has these cells.
+int compared_with(const std::string& cells) {
+  const mpm::test::TemporaryFolder folder;
+  const std::string page = (folder / "page.md").string();
+  std::ofstream(page) << "## `tests/unit/verification_page.cpp`\n\n| a row that is compared | " << cells << " |\n";
+  return std::system(("env -u MPM_DISTANCES MPM_VERIFIED=" + page +
+                      " '" MPM_BUILD_DIR "/bin/test_unit' 'a row that is compared' >/dev/null 2>&1")
+                         .c_str());
+}
+
+}  // namespace
+
+// Three assertions, 1 % apart, half of a bound used; and a value near zero, which counts as an assertion alone.
+TEST_CASE("a row that is compared", "[docs]") {
+  const double above_one = 1.01, half = 0.5, small = 1e-9;
+  CHECK(above_one == Approx(1).epsilon(0.1));
+  CHECK(half < 1);
+  CHECK(small == Approx(1e-12).margin(1e-6));
+}
+
+TEST_CASE("a program of tests fails where a number in a row of verified cases is off by more than a factor of two",
+          "[docs]") {
+  for (const char* cells :
+       {"3 | 0.01 | 0.5", "2 | 0.01 | 0.5", "6 | 0.01 | 0.5", "3 | 0.0051 | 0.5", "3 | 0.01 | 0.99"}) {
+    INFO(cells);
+    CHECK(compared_with(cells) == 0);
+  }
+  for (const char* cells : {"1 | 0.01 | 0.5", "7 | 0.01 | 0.5", "3 | 0.0049 | 0.5", "3 | 0.021 | 0.5", "3 |  | 0.5",
+                            "3 | 0.01 | 0.24", "3 | 0.01 | 1.1", "3 | 0.01 | "}) {
+    INFO(cells);
+    CHECK(compared_with(cells) != 0);
   }
 }
