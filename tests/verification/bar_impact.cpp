@@ -6,25 +6,12 @@
 
 #include "shipped.hpp"
 #include "support/catch.hpp"
-#include "support/page.hpp"
+#include "verification/two_bars.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
 
 namespace {
-
-/// With L = 1 m, E = 1e4 Pa and density 1, c = 100 m/s. At 0.1 m/s each, the bars touch for 2 L / c = 0.02 s with rho c
-/// v = 10 Pa.
-const char* two_bars = R"J({
-  "dimension": 2,
-  "grid": {"cell_size": 0.01, "domain": [[0, 0], [3, 0.01]],
-           "boundaries": {"x_min": "free", "x_max": "free", "y_min": "slip", "y_max": "slip"}},
-  "shape": {"type": "linear"}, "transfer": {"type": "flip"}, "contact": {"type": "coulomb"},
-  "materials": {"m": {"type": "linear_elastic", "youngs_modulus": 1e4, "poisson_ratio": 0, "density": 1}},
-  "bodies": [
-    {"name": "left", "material": "m", "velocity": [0.1, 0], "geometry": {"type": "box", "lower": [0.5, 0], "upper": [1.5, 0.01]}},
-    {"name": "right", "material": "m", "velocity": [-0.1, 0], "geometry": {"type": "box", "lower": [1.5, 0], "upper": [2.5, 0.01]}}],
-  "solver": {"time_step": 3e-5, "end_time": 0.03}, "output": {"ledger": false}})J";
 
 double mean_velocity(const BodyState& state) {
   double sum = 0;
@@ -144,32 +131,6 @@ TEST_CASE("the energy that bars in impact lose converges as the width of the fro
       if (!two && !of_two.empty()) CHECK(lost.back() == Approx(of_two.back()).epsilon(0.01));
     }
   }
-}
-
-// FLIP keeps what the transfer would damp, but USL damps short waves in every step, and contact makes more of these. The
-// numbers of docs/contact.md.
-TEST_CASE("what FLIP loses in an impact of bars is the damping of stress updated last", "[impact][docs]") {
-  const auto lost = [](bool two, const std::string& update, const std::string& courant) {
-    std::vector<std::string> settings{set("/shape/type", "bspline_quadratic"),
-                                      "/solver/time_step=auto",
-                                      "/solver/end_time=0.02",
-                                      set("/grid/boundaries/y_min", "periodic"),
-                                      set("/grid/boundaries/y_max", "periodic"),
-                                      set("/solver/stress_update", update),
-                                      set("/solver/courant", courant)};
-    if (!two) settings.emplace_back("/contact=null");
-    return 100 * (1 - meet(settings).total);
-  };
-  const Page page("docs/contact.md");
-  const auto coarse =
-                 page.read("on 100 cells a bar # % as two bodies and # % as one at `courant` 0.3, # and # % at 0.03"),
-             by_musl = page.read("by MUSL it is # and # % at `courant` 0.3");
-  CHECK(lost(true, "last", "0.3") == coarse[0].rounded());
-  CHECK(lost(false, "last", "0.3") == coarse[1].rounded());
-  CHECK(lost(true, "last", "0.03") == coarse[2].rounded());
-  CHECK(lost(false, "last", "0.03") == coarse[3].rounded());
-  CHECK(lost(true, "modified_last", "0.3") == by_musl[0].rounded());
-  CHECK(lost(false, "modified_last", "0.3") == by_musl[1].rounded());
 }
 
 TEST_CASE("contact on every increment gives the shock of a single field", "[impact][contact][filters]") {
