@@ -2,11 +2,13 @@
 // page its sentences, a # for each number, and where each number comes from:
 //   "only FIGURE: CELL | CELL"   the value of the one row of figures/studies/FIGURE.csv that has these cells
 //   "least …", "most …", "sum …", "first …", "last …", "count …"   the same of all rows that have them
+//   "front FIGURE: CELL | CELL"  how many of the rows that have the cells are on the figure's front
 //   "notes+ …"                   the numbers behind this sign in the rows' notes, added up
 //   "runs PATH"                  how many combinations the study experiments/PATH.json has
 //   {"as": FORMULA, "x": …, "y": …, "z": …}   a formula of such values
 //   {"of": "least", "each": [WORD, …], …}     the least of them with each word in the place of {}
-// A cell "!C" is one that a row must not have, "A / B" either of two, "A*" what begins with A. FIGURE#2 takes the values of
+// A cell "!C" is one that a row must not have, "A / B" either of two, "A*" what begins with A, "*A" what ends
+// with it, "*A*" what holds it. FIGURE#2 takes the values of
 // another column than that of the figure. "words" are the sentences that state a quantity in words, each with a formula of such
 // values: "rounded" of it to a whole number "is" what the word says (3 for a third of one over it), or it "holds", which is 1.
 // "tables" are compared in study_pages.cpp, and "given" says of which numbers no run
@@ -60,6 +62,10 @@ std::optional<double> number(const std::string& text) {
 
 bool is_cell(const std::string& cell, const std::string& wanted) {
   for (const std::string& one : split(wanted, " / ")) {
+    if (one.size() > 2 && one.starts_with('*') && one.ends_with('*')) {
+      if (cell.find(one.substr(1, one.size() - 2)) != std::string::npos) return true;
+      continue;
+    }
     if (cell == one || (one.ends_with('*') && cell.starts_with(one.substr(0, one.size() - 1)))) return true;
     if (one.starts_with('*') && cell.ends_with(one.substr(1))) return true;
     const auto value = number(cell), same = number(one);
@@ -117,6 +123,9 @@ double picked(const std::string& text) {
   const Cells rows = rows_of(source[0], colon == std::string::npos ? "" : rest.substr(colon + 2));
   if (take.starts_with("notes")) return sum_of_notes(rows, take.substr(5));
   if (take == "count") return static_cast<double>(rows.size());
+  if (take == "front")
+    return static_cast<double>(
+        std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.back().empty(); }));
   const std::size_t column = source.size() > 1 ? std::stoul(source[1]) : column_of_values(figure(source[0]).front());
   std::vector<double> values;
   for (const auto& row : rows)
