@@ -159,10 +159,12 @@ void draw_series(Canvas& canvas, const Theme& theme, const Scales& s, const Cont
 struct Occupied {
   std::vector<std::vector<Point>> lines;
   std::vector<Box> boxes;
+  std::vector<Box> labels;  ///< two labels in one place can neither be read, a label over a mark can
 
   double cost(const Box& box) const {
     double sum = 0;
     for (const Box& other : boxes) sum += box.overlaps(other) ? 10 : 0;
+    for (const Box& other : labels) sum += box.overlaps(other) ? 60 : 0;
     for (const auto& line : lines) {
       for (std::size_t i = 0; i + 1 < line.size(); ++i) sum += crosses(line[i], line[i + 1], box) ? 3 : 0;
     }
@@ -215,7 +217,7 @@ void draw_point_labels(Canvas& canvas, const Theme& theme, const Scales& s, cons
   for (const Label& label : labels) {
     const double width = canvas.measure_text(label.text, theme.text), air = 14 * theme.unit;
     const auto [box, cost] = place_label(theme, s, label.at, width, labels_to, occupied);
-    occupied.boxes.push_back({box.x0 - air, box.y0, box.x1 + air, box.y1});  // two labels without air would read as one
+    occupied.labels.push_back({box.x0 - air, box.y0, box.x1 + air, box.y1});  // two labels without air would read as one
     const Point corners[] = {{box.x0, box.y0}, {box.x1, box.y0}, {box.x1, box.y1}, {box.x0, box.y1}};
     if (cost < 10) canvas.polygon(corners, kWhite);  // covers lines that no place keeps clear of, never a mark
     const Colour colour = mix(kWhite, kInk, label.is_faded ? 0.6 : 1);
@@ -247,6 +249,7 @@ double cost_of(const Triangle& t, const Scales& s, const Occupied& occupied, dou
   if (all.x0 < s.box.x0 || all.x1 > s.box.x1 || all.y0 < s.box.y0 || all.y1 > s.box.y1) return 1000;
   double sum = 2 * occupied.cost(t.label);
   for (const Box& other : occupied.boxes) sum += body.overlaps(other) ? 10 : 0;
+  for (const Box& other : occupied.labels) sum += body.overlaps(other) ? 10 : 0;
   const Point sides[][2] = {{t.a, t.b}, {t.b, t.corner}, {t.corner, t.a}};
   for (const auto& line : occupied.lines) {
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {

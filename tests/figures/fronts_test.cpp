@@ -1,6 +1,9 @@
 // Fronts of studies as figures and tables.
 
+#include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <regex>
 
 #include "study/figures.hpp"
 #include "study/results.hpp"
@@ -38,4 +41,37 @@ TEST_CASE("a front in a crowd is numbered, and its table names every point and w
     CHECK(table.find(row) != std::string::npos);
   }
   CHECK(picture.find("front: 1:\u00a00 · 2:\u00a01 · 3:\u00a02") != std::string::npos);
+}
+
+TEST_CASE("numbers of a front stand apart in every figure of the studies", "[docs]") {
+  const std::regex number(
+      "<text font-size=\"([0-9.]+)\"[^>]*text-anchor=\"middle\" x=\"([0-9.]+)\" y=\"([0-9.]+)\">([0-9]+)</text>");
+  struct Place {
+    std::string text;
+    double x, y, width, height;
+  };
+  int fronts = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(MPM_SOURCE_DIR "/figures/studies")) {
+    if (!entry.path().filename().string().ends_with("_flops.svg")) continue;
+    std::ifstream file(entry.path());
+    const std::string picture(std::istreambuf_iterator<char>(file), {});
+    if (picture.find("front: 1:") == std::string::npos) continue;
+    ++fronts;
+    INFO(entry.path().filename());
+    std::vector<Place> places;
+    for (std::sregex_iterator found(picture.begin(), picture.end(), number), end; found != end; ++found) {
+      const std::string text = (*found)[4];
+      const double size = std::stod((*found)[1]);  // digits are half as wide and 0.7 times as high
+      places.push_back({text, std::stod((*found)[2]), std::stod((*found)[3]),
+                        0.5 * size * static_cast<double>(text.size()), 0.7 * size});
+    }
+    CHECK(places.size() > 5);
+    for (std::size_t k = 0; k < places.size(); ++k)
+      for (std::size_t other = 0; other < k; ++other) {
+        const Place &a = places[k], &b = places[other];
+        INFO(a.text << " and " << b.text);
+        CHECK((std::abs(a.x - b.x) > (a.width + b.width) / 2 || std::abs(a.y - b.y) > a.height));
+      }
+  }
+  CHECK(fronts >= 3);
 }
