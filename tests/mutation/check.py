@@ -11,7 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import page
 from build import Build
-from group import KINDS
+from group import COMPILING, KINDS, Case, Group, in_overlay
 from mutants import mutants_of, tokens_of
 from results import Equivalents, Result, Results
 from together import Together
@@ -66,6 +66,48 @@ class KnowsObjects(unittest.TestCase):
     def test_a_material_is_one_plugin_of_two_objects(self):
         names = [f"modules/CMakeFiles/material_damage{part}.dir/materials/damage/damage.cpp.o" for part in ("", "_second_part")]
         self.assertEqual([Build.plugin_of(None, name) for name in names], ["material_damage"] * 2)
+
+
+class TriesTheDevice(unittest.TestCase):
+    def test_files_that_are_compiled_as_one_are_taken_from_the_overlay(self):
+        with tempfile.TemporaryDirectory() as folder:
+            tree, overlay = Path(folder) / "tree", Path(folder) / "overlay"
+            (overlay / "modules").mkdir(parents=True)
+            (overlay / "modules/changed.cpp").touch()
+            listed = f'#include "{tree}/modules/changed.cpp"\n#include "{tree}/modules/other.cpp"\n#include <map>\n'
+            self.assertEqual(in_overlay(listed, tree, overlay),
+                             listed.replace(f"{tree}/modules/changed.cpp", f"{overlay}/modules/changed.cpp"))  # fmt: skip
+
+    def looked_at(self, runs):
+        """What is learnt of a case with these runs, each (processor time, programs that it compiles, exit code), and how
+        long each may take."""
+        group, left, spent, most = Group.__new__(Group), list(runs), [0], []
+        with tempfile.TemporaryDirectory() as folder:
+            group.longest, group.of_the_device, group.mutants = 5, True, []
+            group.programs_kept, kept = Path(folder), Path(folder) / "programs"
+            kept.mkdir()
+            group.own, group.program_of = lambda name: Path(folder) / name, lambda suite: None
+            group.spent, group.compositions_refuse = lambda: spent[0], lambda: False
+
+            def run(case, program, seconds, *_, **__):
+                taken, compiled, code = left.pop(0)
+                spent[0] += taken
+                most.append(seconds)
+                for _ in range(compiled):
+                    (kept / str(group.count_programs())).touch()
+                return code
+
+            group.run = run
+            learnt = group.look_at(Case("device", "file", "title", "text"))
+        self.assertEqual(left, [])
+        return (learnt["seconds"], learnt["usable"], learnt["broken_off"]), most
+
+    def test_a_case_is_timed_without_the_compiler_of_its_programs(self):
+        self.assertEqual(self.looked_at([(20, 3, 0), (0.5, 0, 0)]), ((0.5, True, False), [5 + COMPILING] * 2))
+
+    def test_a_long_case_is_broken_off_after_its_programs_are_compiled(self):
+        self.assertEqual(self.looked_at([(20, 3, 0), (9, 0, 0), (5, 0, None)]),
+                         ((5, True, True), [5 + COMPILING, 5 + COMPILING, 5]))  # fmt: skip
 
 
 class FindsStaleReasons(unittest.TestCase):

@@ -27,6 +27,7 @@ OPTIMISATION = "-O2"  # that of the published runs; the compiler's fault with -O
 SUITES = ["parity", "unit", "conformance", "verification", "config"]
 DEVICE, DEVICE_SUITES = "modules/backends/device", ["device"]  # no other suite knows the device's objects
 KERNELS, COMPOSER = f"{DEVICE}/kernels/", "mpm_device.dir/compose.cpp.o"  # the composer's object holds their text
+COMPILING = 60  # seconds of processor time that the compiler of a program of the device may take
 KEPT_PROGRAMS = ("host_programs_of_tests", "programs_of_tests")  # folders of the build (tests/device/device_support.hpp)
 TABLE, TABLE_FILE = "-DMPM_KERNEL_HEADERS=", "kernel_headers.inc"
 COMPILER = """#!/bin/sh
@@ -67,12 +68,22 @@ def cases_of(build, suites, most_checks):
 
 
 def checks_of(build, case):
-    """How many checks a case makes; it is run without them."""
+    """How many checks a case makes; it is run without them, and without a compiler, so that no program of the device is
+    compiled for it."""
     file = build.work / "checks"
     file.write_bytes(b"")
     subprocess.run([build.folder / "bin" / f"test_{case.suite}", *case.call], cwd=build.folder, capture_output=True,
-                   env={**environment(), "MPM_CHECKS_COUNTED": str(file)})  # fmt: skip
+                   env={**environment(), "MPM_CHECKS_COUNTED": str(file), "PATH": str(build.work)})  # fmt: skip
     return file.stat().st_size
+
+
+def in_overlay(listed, tree, overlay):
+    """A list of included files of the tree, with those that the overlay has in their place."""
+    def place(found):
+        own = overlay / os.path.relpath(found[1], tree)
+        return f'#include "{own if own.is_file() else found[1]}"'
+
+    return re.sub(r'(?m)^#include "([^"]+)"', place, listed)
 
 
 class Case:
@@ -265,10 +276,8 @@ class Group:
     def compile(self, name, out, overlay):
         """The compiler's messages where it refuses."""
         words = [word for word in self.build.compile_of[name] if word != "-Werror"]
-        source = self.build.source_of[name]
-        own = overlay / os.path.relpath(source, self.build.tree)
         words[words.index("-o") + 1] = str(out.with_suffix(".new"))
-        words[words.index("-c") + 1] = str(own) if own.is_file() else source
+        words[words.index("-c") + 1] = self.source_in(overlay, name)
         words.insert(1, f"-I{overlay / 'modules'}")
         if self.kernels:
             words = [f'{TABLE}"{overlay / TABLE_FILE}"' if word.startswith(TABLE) else word for word in words]
@@ -277,6 +286,18 @@ class Group:
             return output
         out.with_suffix(".new").replace(out)
         return None
+
+    def source_in(self, overlay, name):
+        """An object's source, that of the overlay where it has one. Of files that are compiled as one it is their list."""
+        source = self.build.source_of[name]
+        own = overlay / os.path.relpath(source, self.build.tree)
+        if own.is_file():
+            return str(own)
+        if "/Unity/unity_" not in source:
+            return source
+        together = overlay / f"{name.replace('/', '_')}.cpp"
+        together.write_text(in_overlay(self.text_of(name), self.build.tree, overlay))
+        return str(together)
 
     def program_of(self, suite, changed=None):
         """A suite's program with the changed objects before all others: what several define is taken from the first."""
@@ -352,19 +373,27 @@ class Group:
         return used.ru_utime + used.ru_stime
 
     def look_at(self, case):
-        """What is to be learnt of a case: runs the unchanged program once, and once more where programs of the device had
-        to be compiled first: whether the case passes, how long it takes, what it comes to."""
+        """What is to be learnt of a case: whether it passes unchanged, how long it takes, what it comes to. Programs of the
+        device are compiled in a run of their own, whose compiler may take longer than --longest."""
         seen = self.own("seen")
-        seen.write_bytes(bytes(len(self.mutants) + 1))
-        compiled = None
-        while compiled != (compiled := sum(1 for _ in self.programs_kept.glob("*/*"))):
-            before = self.spent()
-            code = self.run(case, self.program_of(case.suite), self.longest, self.programs_kept,
+        most = self.longest + (COMPILING if self.of_the_device else 0)
+        while True:
+            seen.write_bytes(bytes(len(self.mutants) + 1))
+            kept, before = self.count_programs(), self.spent()
+            code = self.run(case, self.program_of(case.suite), most, self.programs_kept,
                             MPM_MUTANT="-1", MPM_MUTANT_SEEN=str(seen))  # fmt: skip
+            seconds = self.spent() - before
             if code not in (0, None) and self.compositions_refuse():
-                compiled = None
-        return {"seconds": self.spent() - before, "broken_off": code is None, "usable": code in (0, None),
+                continue
+            if self.count_programs() == kept:
+                if most == self.longest or seconds <= self.longest:
+                    break
+                most = self.longest
+        return {"seconds": seconds, "broken_off": code is None, "usable": code in (0, None),
                 "comes_to": [n for n, byte in enumerate(seen.read_bytes()) if byte]}  # fmt: skip
+
+    def count_programs(self):
+        return sum(1 for _ in self.programs_kept.glob("*/*"))
 
     def take(self, case, learnt):
         case.learn(learnt)
