@@ -18,7 +18,7 @@ TEST_CASE("FMPM below order 4 keeps less of an impact's energy than FLIP, order 
           "[contact][filters]") {
   const double flip = collide({set("/transfer/type", "flip")}).last;
   for (const int order : {1, 2, 4, 8, 16}) {
-    const double kept = collide({filter("fmpm", order)}).last;
+    const double kept = collide({set_filter("fmpm", order)}).last;
     INFO("order " << order << ": " << kept << ", FLIP " << flip);
     if (order < 4) CHECK(kept < flip - 0.05);
     if (order == 4) CHECK(kept == Approx(flip).margin(0.005));
@@ -33,8 +33,8 @@ TEST_CASE("contact at the end of the loop gains the more energy the higher the o
   std::printf("Energy gain, largest energy of the same impact: order, law on every increment, at the end\n");
   double before = 0;
   for (const int order : {2, 4, 8}) {
-    const double inside = collide({filter("fmpm", order)}).largest,
-                 late = collide({filter("fmpm", order), "/filter/constraints=at_end"}).largest;
+    const double inside = collide({set_filter("fmpm", order)}).largest,
+                 late = collide({set_filter("fmpm", order), "/filter/constraints=at_end"}).largest;
     std::printf("  %2d %8.5f %8.5f\n", order, inside, late);
     INFO("order " << order);
     CHECK(late - 1 > 2 * before);

@@ -52,7 +52,7 @@ TEST_CASE("contact that stays pressed is a weld to every filter", "[contact][fil
             for (const int order : {2, 3, 8}) {
               const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
                                                     set("/transfer/type", transfer),
-                                                    set("/solver/stress_update", update), filter(type, order)};
+                                                    set("/solver/stress_update", update), set_filter(type, order)};
               std::vector<std::string> welded = common;
               welded.emplace_back(R"(/contact={"type":"stick"})");
               Scene pressed(halves, common), weld(halves, welded);
@@ -84,7 +84,7 @@ TEST_CASE("a separating wall that stays pressed is a slip wall to every filter",
         for (const std::string type : {"fmpm", "xpic"})
           for (const int order : {2, 3, 8}) {
             const std::vector<std::string> common{set("/backend", backend), set("/shape/type", shape),
-                                                  set("/solver/stress_update", update), filter(type, order)};
+                                                  set("/solver/stress_update", update), set_filter(type, order)};
             std::vector<std::string> separating = common;
             separating.push_back(set("/grid/boundaries/x_min", "separate"));
             Scene pressed(half, separating), slips(half, common);
@@ -105,12 +105,12 @@ TEST_CASE("a filter and contact gain no energy in an impact", "[energy_gain][con
   };
   double before = 0;
   for (const int order : {1, 2, 4, 8, 16}) {
-    const double kept = check("frictionless " + std::to_string(order), {filter("fmpm", order)});
+    const double kept = check("frictionless " + std::to_string(order), {set_filter("fmpm", order)});
     CHECK(kept > before);
     before = kept;
   }
-  check("friction 0.3", {filter("fmpm", 8), set("/contact/friction", "0.3")});
-  check("reference", {filter("fmpm", 8), set("/backend", "reference")});
+  check("friction 0.3", {set_filter("fmpm", 8), set("/contact/friction", "0.3")});
+  check("reference", {set_filter("fmpm", 8), set("/backend", "reference")});
 }
 
 // The impulses that the loop takes back do no work (a proposition of docs/studies/filtered_contact.md); those that it keeps

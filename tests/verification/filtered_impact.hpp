@@ -10,7 +10,7 @@
 
 namespace mpm::test::filtered_impact {
 
-inline std::string filter(const std::string& type, int order) {
+inline std::string set_filter(const std::string& type, int order) {
   return set("/filter", R"({"type":")" + type + R"(","order":)" + std::to_string(order) + "}");
 }
 
@@ -45,7 +45,7 @@ inline Energies collide(const std::vector<std::string>& settings) {
 /// The largest gain of energy over the steps of experiments/studies/impacting_discs.json with PIC, contact without friction
 /// and FMPM of this order, %.
 inline double gain_of_discs(int order, std::vector<std::string> settings) {
-  settings.insert(settings.begin(), {set("/transfer/type", "pic"), filter("fmpm", order),
+  settings.insert(settings.begin(), {set("/transfer/type", "pic"), set_filter("fmpm", order),
                                      R"(/contact={"type": "coulomb", "friction": 0})"});
   Scene scene(mpm::support::read_file(MPM_SOURCE_DIR "/experiments/studies/impacting_discs.json"), settings);
   const double first = scene.metrics.initial().total_energy();
